@@ -1,0 +1,2 @@
+# Everything that speaks Vulkan.
+find_package(Vulkan REQUIRED)

@@ -1,0 +1,53 @@
+# What every target of the project shares: warnings, architecture, sanitizers, include root.
+
+add_library(exemplar_options INTERFACE)
+target_include_directories(exemplar_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(exemplar_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+                                                  $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>)
+target_link_libraries(exemplar_options INTERFACE Threads::Threads)
+
+# x86-64-v3 (AVX2, FMA) is ten years old; older machines fall back to the compiler's baseline.
+if(EXEMPLAR_ARCH STREQUAL "default")
+  set(exemplar_march "")
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND EXISTS /proc/cpuinfo)
+    file(STRINGS /proc/cpuinfo exemplar_flags REGEX "^flags.*avx2.*" LIMIT_COUNT 1)
+    if(exemplar_flags MATCHES " fma " AND exemplar_flags MATCHES " avx2 " AND exemplar_flags MATCHES " bmi2 ")
+      set(exemplar_march x86-64-v3)
+    endif()
+  endif()
+else()
+  set(exemplar_march ${EXEMPLAR_ARCH})
+endif()
+if(exemplar_march)
+  target_compile_options(exemplar_options INTERFACE -march=${exemplar_march})
+endif()
+if(EXEMPLAR_SANITIZE)
+  target_compile_options(exemplar_options INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer)
+  target_link_options(exemplar_options INTERFACE -fsanitize=address,undefined)
+endif()
+
+# exemplar_library(NAME DIR DEPENDENCY...): the static library exemplar_NAME of all sources in DIR.
+function(exemplar_library name dir)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${dir}/*.cpp)
+  if(NOT sources)
+    file(WRITE ${PROJECT_BINARY_DIR}/empty_${name}.cpp "")
+    set(sources ${PROJECT_BINARY_DIR}/empty_${name}.cpp)
+  endif()
+  add_library(exemplar_${name} STATIC ${sources})
+  target_link_libraries(exemplar_${name} PUBLIC exemplar_options ${ARGN})
+endfunction()
+
+# exemplar_test(NAME LABEL DIR DEPENDENCY...): one GoogleTest program of all sources in tests/DIR;
+# each of its tests is a ctest entry with that label. Tests of a suite named Slow* get the label slow instead.
+function(exemplar_test name label dir)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${dir}/*.cpp)
+  if(NOT sources)
+    return()
+  endif()
+  add_executable(test_${name} ${sources})
+  target_link_libraries(test_${name} PRIVATE exemplar_options ${ARGN} GTest::gmock GTest::gtest GTest::gtest_main)
+  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. TEST_FILTER "-Slow*" DISCOVERY_TIMEOUT 60
+                       WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} PROPERTIES LABELS ${label} TIMEOUT 300)
+  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. TEST_FILTER "Slow*" DISCOVERY_TIMEOUT 60 TEST_LIST ${name}_slow
+                       WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} PROPERTIES LABELS slow TIMEOUT 900)
+endfunction()

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace exemplar {
+
+/// The candidate nearest to `word` by edit distance (Damerau-Levenshtein), if near enough to be meant; else empty.
+std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
+/// " (did you mean 'X'?)" or an empty string.
+std::string suggestion(std::string_view word, std::span<const std::string> candidates);
+/// Seconds as "0.42 s", "12 s", "3 min 20 s", "1 h 05 min".
+std::string format_seconds(double seconds);
+
+}  // namespace exemplar

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host/learn/feature_matrix.h"
+
+namespace exemplar {
+
+constexpr std::size_t k_context_bins = 5;       ///< distance ranges B of Eq. A.1
+constexpr std::size_t k_context_axes = 6;       ///< 3 principal axes, 3 symmetry axes
+constexpr std::size_t k_context_measures = 7;   ///< geodesic distance and the axes
+
+/// What the contextual label features of one mesh need of its geometry; fixed while the cascade runs.
+struct ContextGeometry {
+    std::size_t faces = 0;
+    std::vector<std::uint32_t> sample_face;  ///< S faces that stand for the surface
+    std::vector<float> sample_area;          ///< S area shares, summing to 1 (a_j of Eq. A.1)
+    std::vector<float> geodesic;             ///< S x faces; infinity in other components
+    std::vector<float> axis_position;        ///< k_context_axes x faces: |position along the axis|, centered
+    /// k_context_measures x (k_context_bins - 1): the inner bin edges of each measure, rising, in its own units.
+    /// Bin = number of edges <= distance; a geodesic distance of infinity falls in no bin.
+    std::array<std::array<float, k_context_bins - 1>, k_context_measures> edges{};
+};
+
+/// Contextual label histograms (Eq. A.1): for each face i, class l, measure t and bin b the sum over samples j with
+/// dist_t(i, j) in bin b of sample_area[j] * P(l | j). Column order: (measure * bins + bin) * classes + class.
+/// `probabilities` is faces x classes, item-major; `out` is (k_context_measures * k_context_bins * classes) x faces,
+/// feature-major. The CPU implementation is the reference; gpu/labeling implements it in a shader.
+class ContextHistograms {
+  public:
+    virtual ~ContextHistograms() = default;
+    virtual void accumulate(const ContextGeometry& geometry, std::span<const float> probabilities, std::size_t classes,
+                            std::span<float> out) = 0;
+};
+
+class CpuContextHistograms final : public ContextHistograms {
+  public:
+    void accumulate(const ContextGeometry& geometry, std::span<const float> probabilities, std::size_t classes,
+                    std::span<float> out) override;
+};
+
+}  // namespace exemplar

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host/learn/feature_matrix.h"
+
+namespace exemplar {
+
+constexpr std::size_t k_max_classes = 64;
+
+/// A decision stump shared by a set of classes (thesis Eq. 2.64): classes in `classes` (bit c, the set C_S) get `above` (a)
+/// where feature > threshold (tau), else `below` (b). Other classes get a constant k_c, kept in BoostedStumps::elsewhere.
+struct Stump {
+    std::uint32_t feature;
+    float threshold;
+    float above;
+    float below;
+    std::uint64_t classes;
+};
+
+/// A JointBoost classifier: H(x, c) = sum of its stumps (Eq. 2.65).
+struct BoostedStumps {
+    std::uint32_t class_count = 0;
+    std::vector<Stump> stumps;
+    std::vector<float> elsewhere;  ///< stumps x class_count: k_c, zero for classes in the stump's set
+
+    /// Sum of the k_c over all stumps, per class: the constant part of H.
+    std::vector<float> constant() const;
+};
+
+/// How H becomes a probability.
+enum class Link : std::uint32_t {
+    softmax = 0,  ///< exp(s H_c) / sum exp(s H) (Eq. 2.66)
+    sigmoid = 1,  ///< sigma(s H_c) / sum sigma(s H)
+};
+
+/// Evaluates a classifier for many items. The CPU implementation is the reference; gpu/learn implements it in a shader.
+class StumpScorer {
+  public:
+    virtual ~StumpScorer() = default;
+    /// Class probabilities, rows x class_count, item-major. A NaN feature compares as not above.
+    /// `scale` is the link's s (> 0). Throws ModelError if a stump names a feature the matrix lacks.
+    virtual void probabilities(const BoostedStumps& classifier, const FeatureMatrix& features, Link link, float scale,
+                               std::span<float> out) = 0;
+};
+
+class CpuStumpScorer final : public StumpScorer {
+  public:
+    void probabilities(const BoostedStumps& classifier, const FeatureMatrix& features, Link link, float scale,
+                       std::span<float> out) override;
+};
+
+}  // namespace exemplar

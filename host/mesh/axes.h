@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "host/mesh/mesh.h"
+
+namespace exemplar {
+
+/// Center and axes of the surface seen as a thin shell.
+struct PrincipalAxes {
+    Vec3 center;                 ///< area centroid
+    std::array<Vec3, 3> axis;    ///< orthonormal, by falling variance; signs are arbitrary
+    std::array<float, 3> sigma;  ///< standard deviation along each axis, in mesh units
+};
+/// Area-weighted principal axes of the surface (exact integral over each triangle).
+PrincipalAxes principal_axes(const TriangleMesh& mesh);
+
+/// A plane of approximate mirror symmetry.
+struct SymmetryPlane {
+    Vec3 point;
+    Vec3 normal;  ///< unit
+    float error;  ///< mean distance of mirrored surface samples to the surface, over the bounding-box diagonal
+};
+/// The up to `count` best mirror planes through the area centroid, mutually separated by more than 20 degrees, by
+/// rising error; always `count` of them (the principal planes fill up where nothing better is found).
+/// Deterministic; does not depend on face order beyond rounding. Used by thesis App. A.1i.
+std::vector<SymmetryPlane> symmetry_planes(const TriangleMesh& mesh, int count = 3);
+
+}  // namespace exemplar

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace exemplar {
+
+/// Label names and one label per face. Faces are the SOURCE faces of a mesh file (before triangulation).
+struct FaceLabels {
+    std::vector<std::string> names;
+    std::vector<std::int32_t> label;  ///< index into names; -1 where unlabeled
+};
+
+using Color = std::array<std::uint8_t, 3>;
+/// A fixed palette of well-separated sRGB colors for labels 0, 1, ...; repeats with other lightness after 20.
+Color label_color(std::size_t label);
+
+}  // namespace exemplar

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace exemplar {
+
+using Vec2 = Eigen::Vector2f;
+using Vec3 = Eigen::Vector3f;
+using Vec3d = Eigen::Vector3d;
+
+/// Three vertex indices, counter-clockwise seen from outside.
+using Face = std::array<std::uint32_t, 3>;
+
+/// An indexed triangle mesh. Faces refer to existing vertices; nothing else is promised (see validate_mesh).
+struct TriangleMesh {
+    std::vector<Vec3> vertices;
+    std::vector<Face> faces;
+    /// For each triangle the polygon of the file it was cut from; empty if the file held only triangles.
+    std::vector<std::uint32_t> source_face;
+    /// Number of polygons in the file; equals faces.size() if the file held only triangles.
+    std::uint32_t source_face_count = 0;
+
+    std::size_t vertex_count() const { return vertices.size(); }
+    std::size_t face_count() const { return faces.size(); }
+    /// The polygon of the file that triangle `face` belongs to.
+    std::uint32_t source_of(std::uint32_t face) const { return source_face.empty() ? face : source_face[face]; }
+};
+
+/// Area of each face, in squared mesh units (zero for degenerate faces).
+std::vector<float> face_areas(const TriangleMesh& mesh);
+/// Unit normal of each face; a degenerate face gets the area-weighted mean of its neighbors by vertex, else +z.
+std::vector<Vec3> face_normals(const TriangleMesh& mesh);
+/// Center (mean of the three corners) of each face.
+std::vector<Vec3> face_centers(const TriangleMesh& mesh);
+/// Unit normal of each vertex, weighted as in Max 1999 (sine of the corner angle over edge lengths); +z where unreferenced.
+std::vector<Vec3> vertex_normals(const TriangleMesh& mesh);
+/// Area-weighted mean of the face centers.
+Vec3 area_centroid(const TriangleMesh& mesh);
+
+}  // namespace exemplar

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "host/mesh/mesh.h"
+#include "host/mesh/topology.h"
+
+namespace exemplar {
+
+/// What is wrong or unusual about a mesh, and where.
+struct MeshReport {
+    std::vector<std::uint32_t> non_finite_vertices;       ///< NaN or infinity: unusable
+    std::vector<std::array<std::uint32_t, 2>> non_manifold_edges;  ///< vertex pairs with more than two faces
+    std::vector<std::array<std::uint32_t, 2>> inconsistent_edges;  ///< both faces run through it in the same direction
+    std::vector<std::uint32_t> degenerate_faces;          ///< zero area or a repeated vertex
+    std::vector<std::uint32_t> duplicate_faces;           ///< same three vertices as an earlier face
+    std::vector<std::uint32_t> unreferenced_vertices;
+    std::size_t boundary_edges = 0;
+    std::size_t components = 0;
+    bool empty = false;
+    bool inside_out = false;  ///< closed and consistently oriented, but the signed volume is negative
+
+    bool usable() const { return !empty && non_finite_vertices.empty(); }
+    bool clean() const;
+    /// One line per kind of defect: what, how many, the first few places, what Exemplar does about it.
+    std::vector<std::string> messages() const;
+};
+MeshReport validate_mesh(const TriangleMesh& mesh);
+/// Throws MeshError naming `name` if the mesh is empty or not finite; returns the report otherwise.
+MeshReport require_usable(const TriangleMesh& mesh, const std::string& name);
+
+}  // namespace exemplar

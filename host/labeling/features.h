@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/labeling/context.h"
+#include "host/learn/feature_matrix.h"
+#include "host/mesh/mesh.h"
+#include "host/mesh/topology.h"
+
+namespace exemplar {
+
+struct FeatureOptions {
+    /// Faces that stand for the surface in distance statistics, shape contexts, spin images and contextual features;
+    /// all faces if the mesh has fewer. Sums converge as it grows.
+    std::size_t samples = 1000;
+    /// Adds the face centers' coordinates (App. A.1h), for data sets whose shapes share an orientation.
+    bool orientation = false;
+};
+
+/// For each interior edge the interior edges near it by geodesic distance, for the pairwise contextual features (A.2e).
+struct EdgeNeighborhood {
+    static constexpr std::size_t k_bins = 5;  ///< logarithmic distance ranges up to 5% of the median geodesic distance
+    std::vector<std::uint32_t> begin;         ///< E + 1 offsets
+    std::vector<std::uint32_t> edge;          ///< neighbor, as an index into MeshFeatures::edges
+    std::vector<std::uint8_t> bin;            ///< its distance range
+};
+
+/// Everything labeling needs to know of a mesh: computed once, cached on disk, then used by training and inference.
+struct MeshFeatures {
+    FeatureMatrix unary;     ///< per face (App. A.1a-h): 612 features, 615 with orientation
+    FeatureMatrix pairwise;  ///< per interior edge (App. A.2a-d): 186 features
+    ContextGeometry context;
+    EdgeNeighborhood edge_context;
+    std::vector<float> face_area;     ///< F, in units of the median face area (Eq. 3.1)
+    std::vector<std::array<std::uint32_t, 2>> edges;  ///< E interior edges: the two faces
+    std::vector<float> edge_length;   ///< E, in units of the median edge length (Eq. 3.1)
+    std::vector<float> dihedral;      ///< E, min(omega / pi, 1), omega the exterior dihedral angle (Eq. 3.4)
+    std::vector<std::pair<std::string, double>> seconds;  ///< wall time per family
+};
+
+/// Computes all features of a mesh (empty or non-finite meshes throw MeshError). Any other defect degrades gracefully:
+/// distances stay inside components, boundary edges are left out, degenerate faces take their neighbors' geometry;
+/// every value is finite.
+MeshFeatures compute_features(const TriangleMesh& mesh, const FeatureOptions& options = {});
+
+/// Identifies the meaning of the values; changes whenever they change. Part of model files and cache keys.
+constexpr int k_feature_version = 1;
+
+}  // namespace exemplar

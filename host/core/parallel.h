@@ -12,9 +12,10 @@ namespace exemplar {
 /// Each index runs exactly once and writes only what belongs to it, so results do not depend on the thread count.
 template <typename Body>
 void parallel_for(std::size_t count, Body&& body, std::size_t grain = 1) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-    });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+                      });
 }
 
 /// Calls body(begin, end) for consecutive ranges that cover [0, count); for loops that keep a workspace per range.
@@ -28,8 +29,9 @@ void parallel_ranges(std::size_t count, std::size_t grain, Body&& body) {
 class ThreadLimit {
   public:
     explicit ThreadLimit(std::size_t threads)
-        : control_(tbb::global_control::max_allowed_parallelism,
-                   threads ? threads : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) {}
+        : control_(
+              tbb::global_control::max_allowed_parallelism,
+              threads ? threads : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)) {}
 
   private:
     tbb::global_control control_;

@@ -8,8 +8,8 @@
 
 namespace exemplar {
 
-/// Reports how far a long task is, with the time left, to stderr: one line rewritten in place on a terminal, a line every
-/// few seconds elsewhere. Thread-safe. Silent progress (the default-constructed) costs nothing.
+/// Reports how far a long task is, with the time left, to stderr: one line rewritten in place on a terminal, a line
+/// every few seconds elsewhere. Thread-safe. Silent progress (the default-constructed) costs nothing.
 class Progress {
   public:
     Progress() = default;

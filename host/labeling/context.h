@@ -9,9 +9,9 @@
 
 namespace exemplar {
 
-constexpr std::size_t k_context_bins = 5;       ///< distance ranges B of Eq. A.1
-constexpr std::size_t k_context_axes = 6;       ///< 3 principal axes, 3 symmetry axes
-constexpr std::size_t k_context_measures = 7;   ///< geodesic distance and the axes
+constexpr std::size_t k_context_bins = 5;      ///< distance ranges B of Eq. A.1
+constexpr std::size_t k_context_axes = 6;      ///< 3 principal axes, 3 symmetry axes
+constexpr std::size_t k_context_measures = 7;  ///< geodesic distance and the axes
 
 /// What the contextual label features of one mesh need of its geometry; fixed while the cascade runs.
 struct ContextGeometry {

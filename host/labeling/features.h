@@ -35,10 +35,10 @@ struct MeshFeatures {
     FeatureMatrix pairwise;  ///< per interior edge (App. A.2a-d): 186 features
     ContextGeometry context;
     EdgeNeighborhood edge_context;
-    std::vector<float> face_area;     ///< F, in units of the median face area (Eq. 3.1)
+    std::vector<float> face_area;                     ///< F, in units of the median face area (Eq. 3.1)
     std::vector<std::array<std::uint32_t, 2>> edges;  ///< E interior edges: the two faces
-    std::vector<float> edge_length;   ///< E, in units of the median edge length (Eq. 3.1)
-    std::vector<float> dihedral;      ///< E, min(omega / pi, 1), omega the exterior dihedral angle (Eq. 3.4)
+    std::vector<float> edge_length;                   ///< E, in units of the median edge length (Eq. 3.1)
+    std::vector<float> dihedral;  ///< E, min(omega / pi, 1), omega the exterior dihedral angle (Eq. 3.4)
     std::vector<std::pair<std::string, double>> seconds;  ///< wall time per family
 };
 

@@ -10,8 +10,9 @@ namespace exemplar {
 
 constexpr std::size_t k_max_classes = 64;
 
-/// A decision stump shared by a set of classes (thesis Eq. 2.64): classes in `classes` (bit c, the set C_S) get `above` (a)
-/// where feature > threshold (tau), else `below` (b). Other classes get a constant k_c, kept in BoostedStumps::elsewhere.
+/// A decision stump shared by a set of classes (thesis Eq. 2.64): classes in `classes` (bit c, the set C_S) get `above`
+/// (a) where feature > threshold (tau), else `below` (b). Other classes get a constant k_c, kept in
+/// BoostedStumps::elsewhere.
 struct Stump {
     std::uint32_t feature;
     float threshold;

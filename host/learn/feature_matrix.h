@@ -7,8 +7,8 @@
 
 namespace exemplar {
 
-/// Values of named features for a number of items (faces, edges, pixels). Feature-major: all items of feature 0, then of
-/// feature 1, ..., so that a feature is contiguous for boosting and coalesced on a GPU.
+/// Values of named features for a number of items (faces, edges, pixels). Feature-major: all items of feature 0, then
+/// of feature 1, ..., so that a feature is contiguous for boosting and coalesced on a GPU.
 struct FeatureMatrix {
     std::size_t rows = 0;            ///< items
     std::vector<std::string> names;  ///< one per feature; "family.detail", e.g. "curvature.k1@0.05"

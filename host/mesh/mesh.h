@@ -37,7 +37,8 @@ std::vector<float> face_areas(const TriangleMesh& mesh);
 std::vector<Vec3> face_normals(const TriangleMesh& mesh);
 /// Center (mean of the three corners) of each face.
 std::vector<Vec3> face_centers(const TriangleMesh& mesh);
-/// Unit normal of each vertex, weighted as in Max 1999 (sine of the corner angle over edge lengths); +z where unreferenced.
+/// Unit normal of each vertex, weighted as in Max 1999 (sine of the corner angle over edge lengths); +z where
+/// unreferenced.
 std::vector<Vec3> vertex_normals(const TriangleMesh& mesh);
 /// Area-weighted mean of the face centers.
 Vec3 area_centroid(const TriangleMesh& mesh);

@@ -11,11 +11,11 @@ namespace exemplar {
 
 /// What is wrong or unusual about a mesh, and where.
 struct MeshReport {
-    std::vector<std::uint32_t> non_finite_vertices;       ///< NaN or infinity: unusable
+    std::vector<std::uint32_t> non_finite_vertices;                ///< NaN or infinity: unusable
     std::vector<std::array<std::uint32_t, 2>> non_manifold_edges;  ///< vertex pairs with more than two faces
     std::vector<std::array<std::uint32_t, 2>> inconsistent_edges;  ///< both faces run through it in the same direction
-    std::vector<std::uint32_t> degenerate_faces;          ///< zero area or a repeated vertex
-    std::vector<std::uint32_t> duplicate_faces;           ///< same three vertices as an earlier face
+    std::vector<std::uint32_t> degenerate_faces;                   ///< zero area or a repeated vertex
+    std::vector<std::uint32_t> duplicate_faces;                    ///< same three vertices as an earlier face
     std::vector<std::uint32_t> unreferenced_vertices;
     std::size_t boundary_edges = 0;
     std::size_t components = 0;

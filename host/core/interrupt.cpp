@@ -1,0 +1,33 @@
+#include "host/core/interrupt.h"
+
+#include <unistd.h>
+#include <csignal>
+
+#include "host/core/errors.h"
+
+namespace exemplar {
+namespace {
+
+volatile std::sig_atomic_t end_requested = 0;
+
+extern "C" void request_end(int signal) {
+    if (end_requested) _exit(128 + signal);
+    end_requested = 1;
+}
+
+}  // namespace
+
+void install_interrupt_handler() {
+    std::signal(SIGINT, request_end);
+    std::signal(SIGTERM, request_end);
+}
+
+bool interrupted() {
+    return end_requested != 0;
+}
+
+void check_interrupt() {
+    if (interrupted()) throw Interrupted();
+}
+
+}  // namespace exemplar

@@ -1,0 +1,76 @@
+#include "host/core/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdio>
+
+#include "host/core/text.h"
+
+namespace exemplar {
+namespace {
+
+std::atomic<bool> quiet_output{false};
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+Progress::Progress(std::string what, std::size_t total)
+    : what_(std::move(what)),
+      total_(total),
+      start_(Clock::now()),
+      printed_(Clock::now()),
+      finished_(false),
+      on_terminal_(isatty(STDERR_FILENO) != 0) {}
+
+Progress::~Progress() {
+    finish();
+}
+
+void Progress::set_quiet(bool quiet) {
+    quiet_output = quiet;
+}
+
+void Progress::advance(std::size_t steps, const std::string& detail) {
+    const std::lock_guard lock(mutex_);
+    if (finished_) return;
+    done_ += steps;
+    detail_ = detail;
+    const double interval = on_terminal_ ? 0.1 : 5.0;
+    if (seconds_since(printed_) >= interval) print(false);
+}
+
+void Progress::finish() {
+    const std::lock_guard lock(mutex_);
+    if (finished_) return;
+    print(true);
+    finished_ = true;
+}
+
+void Progress::print(bool last) {
+    printed_ = Clock::now();
+    if (quiet_output) return;
+    const double elapsed = seconds_since(start_);
+    std::string line = fmt::format("{}: {}/{}", what_, done_, total_);
+    if (last) {
+        line += " in " + format_seconds(elapsed);
+    } else if (done_ > 0) {
+        const double left =
+            elapsed * static_cast<double>(total_ - std::min(done_, total_)) / static_cast<double>(done_);
+        line += ", " + format_seconds(left) + " left";
+        if (!detail_.empty()) line += " (" + detail_ + ")";
+    }
+    if (on_terminal_)
+        fmt::print(stderr, "\r\033[K{}{}", line, last ? "\n" : "");
+    else
+        fmt::print(stderr, "{}\n", line);
+    std::fflush(stderr);
+}
+
+}  // namespace exemplar

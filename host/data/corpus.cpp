@@ -1,0 +1,175 @@
+#include "host/data/corpus.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "host/core/errors.h"
+#include "host/core/files.h"
+#include "host/core/parallel.h"
+#include "host/core/text.h"
+#include "host/mesh/validate.h"
+
+namespace exemplar {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_mesh_file(const fs::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    const auto known = mesh_extensions();
+    return std::find(known.begin(), known.end(), extension) != known.end();
+}
+
+/// Orders "2.off" before "10.off": digit runs compare as numbers.
+bool natural_less(const fs::path& a, const fs::path& b) {
+    const std::string x = a.string(), y = b.string();
+    const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+    std::size_t i = 0, j = 0;
+    while (i < x.size() && j < y.size()) {
+        if (digit(x[i]) && digit(y[j])) {
+            std::size_t i_end = i, j_end = j;
+            while (i_end < x.size() && digit(x[i_end])) ++i_end;
+            while (j_end < y.size() && digit(y[j_end])) ++j_end;
+            while (i < i_end && x[i] == '0') ++i;
+            while (j < j_end && y[j] == '0') ++j;
+            if (i_end - i != j_end - j) return i_end - i < j_end - j;
+            const int order = x.compare(i, i_end - i, y, j, j_end - j);
+            if (order != 0) return order < 0;
+            i = i_end, j = j_end;
+        } else {
+            if (x[i] != y[j]) return x[i] < y[j];
+            ++i, ++j;
+        }
+    }
+    return x.size() - i < y.size() - j;
+}
+
+std::vector<fs::path> meshes_of_folder(const fs::path& folder) {
+    std::vector<fs::path> paths;
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (entry.is_regular_file() && is_mesh_file(entry.path())) paths.push_back(entry.path());
+    std::sort(paths.begin(), paths.end(), natural_less);
+    return paths;
+}
+
+std::vector<fs::path> meshes_of_list(const fs::path& list) {
+    std::vector<fs::path> paths;
+    std::istringstream lines(read_file(list));
+    std::string line;
+    for (int number = 1; std::getline(lines, line); ++number) {
+        line.erase(std::min(line.find('#'), line.size()));
+        line.erase(0, line.find_first_not_of(" \t\r"));
+        line.erase(line.find_last_not_of(" \t\r") + 1);
+        if (line.empty()) continue;
+        fs::path path = line;
+        if (path.is_relative() && !fs::exists(path)) path = list.parent_path() / path;
+        if (!fs::exists(path)) throw DataError(fmt::format("{}:{}: no such mesh: {}", list.string(), number, line));
+        paths.push_back(path);
+    }
+    return paths;
+}
+
+fs::path labels_beside(const fs::path& mesh) { return mesh.parent_path() / (mesh.stem().string() + "_labels.txt"); }
+
+/// Labels of a mesh file's source faces, wherever they are kept.
+FaceLabels find_labels(const fs::path& path, const MeshFile& file) {
+    const fs::path beside = labels_beside(path);
+    if (fs::exists(beside)) return read_labels_txt(beside, file.mesh.source_face_count);
+    if (file.labels) return *file.labels;
+    throw DataError(fmt::format("{}: no labels: give {} beside it, or a PLY with a per-face 'label' property", path.string(),
+                                beside.filename().string()));
+}
+
+/// For each name of `labels` that has faces its index in `names`; a name that is not among them is an error.
+std::vector<std::int32_t> map_names(const FaceLabels& labels, const std::vector<std::string>& names, const fs::path& path) {
+    std::vector<std::int32_t> index(labels.names.size(), -1);
+    std::vector<bool> used(labels.names.size(), false);
+    for (const std::int32_t label : labels.label)
+        if (label >= 0) used[label] = true;
+    for (std::size_t i = 0; i < labels.names.size(); ++i) {
+        if (!used[i]) continue;
+        const auto found = std::find(names.begin(), names.end(), labels.names[i]);
+        if (found == names.end())
+            throw DataError(fmt::format("{}: unknown label '{}'{}", path.string(), labels.names[i],
+                                        suggestion(labels.names[i], names)));
+        index[i] = static_cast<std::int32_t>(found - names.begin());
+    }
+    return index;
+}
+
+struct Loaded {
+    MeshFile file;
+    FaceLabels labels;
+    std::vector<std::string> warnings;
+};
+
+Loaded load_one(const fs::path& path) {
+    Loaded loaded{read_mesh(path), {}, {}};
+    loaded.labels = find_labels(path, loaded.file);
+    const MeshReport report = require_usable(loaded.file.mesh, path.string());
+    for (const std::string& message : loaded.file.warnings) loaded.warnings.push_back(path.string() + ": " + message);
+    for (const std::string& message : report.messages()) loaded.warnings.push_back(path.string() + ": " + message);
+    return loaded;
+}
+
+}  // namespace
+
+std::vector<fs::path> list_meshes(const fs::path& source) {
+    if (!fs::exists(source)) throw DataError(fmt::format("{}: no such folder or list", source.string()));
+    std::vector<fs::path> paths;
+    if (fs::is_directory(source))
+        paths = meshes_of_folder(source);
+    else if (is_mesh_file(source))
+        paths = {source};
+    else
+        paths = meshes_of_list(source);
+    if (paths.empty())
+        throw DataError(fmt::format("{}: holds no meshes ({})", source.string(), fmt::join(mesh_extensions(), " ")));
+    return paths;
+}
+
+LabeledCorpus load_corpus(const std::vector<fs::path>& paths, const std::vector<std::string>& names) {
+    std::vector<Loaded> loaded(paths.size());
+    parallel_for(paths.size(), [&](std::size_t i) { loaded[i] = load_one(paths[i]); });
+
+    LabeledCorpus corpus;
+    corpus.names = names;
+    if (names.empty()) {
+        std::set<std::string> used;
+        for (const Loaded& item : loaded)
+            for (const std::int32_t label : item.labels.label)
+                if (label >= 0) used.insert(item.labels.names[label]);
+        corpus.names.assign(used.begin(), used.end());
+    }
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        corpus.warnings.insert(corpus.warnings.end(), loaded[i].warnings.begin(), loaded[i].warnings.end());
+        const std::vector<std::int32_t> index = map_names(loaded[i].labels, corpus.names, paths[i]);
+        LabeledMesh item{paths[i].stem().string(), paths[i], std::move(loaded[i].file.mesh), {}};
+        item.label.resize(item.mesh.face_count());
+        for (std::uint32_t f = 0; f < item.mesh.face_count(); ++f) {
+            const std::int32_t label = loaded[i].labels.label[item.mesh.source_of(f)];
+            item.label[f] = label < 0 ? -1 : index[label];
+        }
+        corpus.meshes.push_back(std::move(item));
+    }
+    return corpus;
+}
+
+std::vector<std::int32_t> to_source_faces(const TriangleMesh& mesh, std::span<const std::int32_t> triangle_label) {
+    if (mesh.source_face.empty()) return {triangle_label.begin(), triangle_label.end()};
+    const std::vector<float> area = face_areas(mesh);
+    std::vector<std::map<std::int32_t, float>> votes(mesh.source_face_count);
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f) votes[mesh.source_of(f)][triangle_label[f]] += area[f] + 1e-30F;
+    std::vector<std::int32_t> label(mesh.source_face_count, -1);
+    for (std::size_t s = 0; s < votes.size(); ++s)
+        for (float best = -1; const auto& [candidate, weight] : votes[s])
+            if (weight > best) best = weight, label[s] = candidate;
+    return label;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,176 @@
+#include "host/data/safetensors.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+#include "host/core/errors.h"
+#include "host/core/files.h"
+
+namespace exemplar {
+namespace {
+
+using Json = nlohmann::json;
+
+static_assert(std::endian::native == std::endian::little, "safetensors are little-endian");
+
+template <typename T>
+constexpr const char* k_type_name = nullptr;
+template <>
+constexpr const char* k_type_name<float> = "F32";
+template <>
+constexpr const char* k_type_name<std::uint8_t> = "U8";
+template <>
+constexpr const char* k_type_name<std::uint32_t> = "U32";
+template <>
+constexpr const char* k_type_name<std::uint64_t> = "U64";
+template <>
+constexpr const char* k_type_name<std::int32_t> = "I32";
+
+std::size_t element_size(const std::string& type) {
+    if (type == "U8") return 1;
+    if (type == "F32" || type == "U32" || type == "I32") return 4;
+    if (type == "U64") return 8;
+    return 0;
+}
+
+/// Number of bytes of a tensor; false on overflow.
+bool byte_count(const std::vector<std::size_t>& shape, std::size_t element, std::size_t& bytes) {
+    bytes = element;
+    for (const std::size_t extent : shape)
+        if (__builtin_mul_overflow(bytes, extent, &bytes)) return false;
+    return true;
+}
+
+[[noreturn]] void damaged(const std::string& path, const std::string& what) {
+    throw ModelError(fmt::format("{}: damaged file: {}; copy or train it again", path, what));
+}
+
+Tensor parse_tensor(const std::string& path, const std::string& name, const Json& entry, std::string_view data) {
+    if (!entry.is_object() || !entry.contains("dtype") || !entry.contains("shape") || !entry.contains("data_offsets"))
+        damaged(path, "the entry '" + name + "' is incomplete");
+    Tensor tensor;
+    tensor.type = entry["dtype"].get<std::string>();
+    tensor.shape = entry["shape"].get<std::vector<std::size_t>>();
+    const auto offsets = entry["data_offsets"].get<std::vector<std::size_t>>();
+    const std::size_t element = element_size(tensor.type);
+    if (element == 0) damaged(path, fmt::format("'{}' has the unknown type {}", name, tensor.type));
+    std::size_t bytes = 0;
+    if (offsets.size() != 2 || offsets[0] > offsets[1] || offsets[1] > data.size() ||
+        !byte_count(tensor.shape, element, bytes) || bytes != offsets[1] - offsets[0])
+        damaged(path, fmt::format("'{}' does not fit the file", name));
+    tensor.bytes.assign(data.begin() + offsets[0], data.begin() + offsets[1]);
+    return tensor;
+}
+
+TensorFile parse(const std::string& path, std::string_view content) {
+    std::uint64_t header_size = 0;
+    if (content.size() < sizeof(header_size)) damaged(path, "it is too short for a header");
+    std::memcpy(&header_size, content.data(), sizeof(header_size));
+    if (header_size > content.size() - sizeof(header_size)) damaged(path, "it is truncated inside the header");
+    const std::string_view header = content.substr(sizeof(header_size), header_size);
+    const std::string_view data = content.substr(sizeof(header_size) + header_size);
+
+    const Json json = Json::parse(header);
+    if (!json.is_object()) damaged(path, "the header is no object");
+    TensorFile file;
+    file.path = path;
+    std::size_t total = 0;
+    for (const auto& [name, entry] : json.items()) {
+        if (name == "__metadata__") {
+            file.metadata = entry.get<std::map<std::string, std::string>>();
+            continue;
+        }
+        total += (file.tensors[name] = parse_tensor(path, name, entry, data)).bytes.size();
+    }
+    if (total != data.size()) damaged(path, fmt::format("it has {} bytes of data where {} are described", data.size(), total));
+    return file;
+}
+
+std::string shape_text(const std::vector<std::size_t>& shape) { return fmt::format("[{}]", fmt::join(shape, " x ")); }
+
+bool shape_matches(const std::vector<std::size_t>& shape, const std::vector<std::size_t>& wanted) {
+    if (shape.size() != wanted.size()) return false;
+    for (std::size_t i = 0; i < shape.size(); ++i)
+        if (wanted[i] != TensorFile::k_any && wanted[i] != shape[i]) return false;
+    return true;
+}
+
+}  // namespace
+
+template <typename T>
+void TensorFile::add(const std::string& name, std::vector<std::size_t> shape, std::span<const T> values) {
+    Tensor tensor{k_type_name<T>, std::move(shape), std::vector<std::uint8_t>(values.size_bytes())};
+    if (!values.empty()) std::memcpy(tensor.bytes.data(), values.data(), values.size_bytes());
+    tensors[name] = std::move(tensor);
+}
+
+template <typename T>
+std::vector<T> TensorFile::get(const std::string& name, const std::vector<std::size_t>& shape) const {
+    const auto found = tensors.find(name);
+    if (found == tensors.end()) damaged(path, fmt::format("the array '{}' is missing", name));
+    const Tensor& tensor = found->second;
+    if (tensor.type != k_type_name<T>)
+        damaged(path, fmt::format("the array '{}' has type {} instead of {}", name, tensor.type, k_type_name<T>));
+    if (!shape.empty() && !shape_matches(tensor.shape, shape))
+        damaged(path, fmt::format("the array '{}' has shape {}", name, shape_text(tensor.shape)));
+    std::vector<T> values(tensor.bytes.size() / sizeof(T));
+    if (!values.empty()) std::memcpy(values.data(), tensor.bytes.data(), tensor.bytes.size());
+    return values;
+}
+
+const std::string& TensorFile::meta(const std::string& key) const {
+    const auto found = metadata.find(key);
+    if (found == metadata.end()) damaged(path, fmt::format("the metadata '{}' is missing", key));
+    return found->second;
+}
+
+#define EXEMPLAR_INSTANTIATE(T)                                                                       \
+    template void TensorFile::add<T>(const std::string&, std::vector<std::size_t>, std::span<const T>); \
+    template std::vector<T> TensorFile::get<T>(const std::string&, const std::vector<std::size_t>&) const;
+EXEMPLAR_INSTANTIATE(float)
+EXEMPLAR_INSTANTIATE(std::uint8_t)
+EXEMPLAR_INSTANTIATE(std::uint32_t)
+EXEMPLAR_INSTANTIATE(std::uint64_t)
+EXEMPLAR_INSTANTIATE(std::int32_t)
+#undef EXEMPLAR_INSTANTIATE
+
+void write_safetensors(const std::filesystem::path& path, const TensorFile& file) {
+    Json header = Json::object();
+    header["__metadata__"] = file.metadata;
+    std::size_t offset = 0;
+    for (const auto& [name, tensor] : file.tensors) {
+        header[name] = {{"dtype", tensor.type},
+                        {"shape", tensor.shape},
+                        {"data_offsets", {offset, offset + tensor.bytes.size()}}};
+        offset += tensor.bytes.size();
+    }
+    std::string text = header.dump();
+    text.resize((text.size() + 7) / 8 * 8, ' ');  // keeps the arrays aligned for readers that map the file
+    const std::uint64_t size = text.size();
+    write_file_atomically(path, [&](std::ostream& out) {
+        out.write(reinterpret_cast<const char*>(&size), sizeof(size));
+        out.write(text.data(), static_cast<std::streamsize>(text.size()));
+        for (const auto& [name, tensor] : file.tensors)
+            out.write(reinterpret_cast<const char*>(tensor.bytes.data()), static_cast<std::streamsize>(tensor.bytes.size()));
+    });
+}
+
+TensorFile read_safetensors(const std::filesystem::path& path) {
+    std::string content;
+    try {
+        content = read_file(path);
+    } catch (const DataError& error) {
+        throw ModelError(error.what());
+    }
+    try {
+        return parse(path.string(), content);
+    } catch (const Json::exception&) {
+        damaged(path.string(), "its header cannot be parsed");
+    }
+}
+
+}  // namespace exemplar

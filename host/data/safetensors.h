@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace exemplar {
+
+/// One named array of a safetensors file, row-major, little-endian.
+struct Tensor {
+    std::string type;                 ///< "F32", "U8", "U32", "U64" or "I32"
+    std::vector<std::size_t> shape;   ///< product = number of elements
+    std::vector<std::uint8_t> bytes;  ///< elements x element size
+};
+
+/// The content of a safetensors file: text metadata and named arrays, both in name order, so that equal content gives
+/// equal bytes.
+struct TensorFile {
+    std::map<std::string, std::string> metadata;
+    std::map<std::string, Tensor> tensors;
+
+    /// Adds an array; T is float, std::uint8_t, std::uint32_t, std::uint64_t or std::int32_t and the product of `shape`
+    /// equals values.size().
+    template <typename T>
+    void add(const std::string& name, std::vector<std::size_t> shape, std::span<const T> values);
+    template <typename T>
+    void add(const std::string& name, std::vector<std::size_t> shape, const std::vector<T>& values) {
+        add<T>(name, std::move(shape), std::span<const T>(values));
+    }
+    /// A copy of an array; throws ModelError if it is missing or has another type, or another shape than `shape` when
+    /// that is given (k_any matches every extent).
+    template <typename T>
+    std::vector<T> get(const std::string& name, const std::vector<std::size_t>& shape = {}) const;
+    /// A metadata value; throws ModelError if it is missing.
+    const std::string& meta(const std::string& key) const;
+
+    static constexpr std::size_t k_any = static_cast<std::size_t>(-1);
+    std::string path;  ///< where it was read from, for messages
+};
+
+/// Writes atomically; throws DataError.
+void write_safetensors(const std::filesystem::path& path, const TensorFile& file);
+/// Reads and checks the whole file: header within bounds, known types, offsets that tile the data without gaps, shapes that
+/// match. Throws ModelError naming the path and what is wrong.
+TensorFile read_safetensors(const std::filesystem::path& path);
+
+}  // namespace exemplar

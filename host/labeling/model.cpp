@@ -1,0 +1,171 @@
+#include "host/labeling/model.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "host/core/errors.h"
+#include "host/data/safetensors.h"
+
+namespace exemplar {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* k_kind = "exemplar mesh labeling";
+
+void add_classifier(TensorFile& file, const std::string& name, const CalibratedStumps& classifier) {
+    const BoostedStumps& boosted = classifier.stumps;
+    const std::size_t count = boosted.stumps.size();
+    std::vector<std::uint32_t> feature;
+    std::vector<float> values;
+    std::vector<std::uint64_t> classes;
+    for (const Stump& stump : boosted.stumps) {
+        feature.push_back(stump.feature);
+        values.insert(values.end(), {stump.threshold, stump.above, stump.below});
+        classes.push_back(stump.classes);
+    }
+    file.add(name + ".feature", {count}, feature);
+    file.add(name + ".threshold_above_below", {count, 3}, values);
+    file.add(name + ".classes", {count}, classes);
+    file.add(name + ".elsewhere", {count, boosted.class_count}, boosted.elsewhere);
+    file.add(name + ".link", {1}, std::vector<std::uint32_t>{static_cast<std::uint32_t>(classifier.link)});
+    file.add(name + ".scale", {1}, std::vector<float>{classifier.scale});
+}
+
+[[noreturn]] void inconsistent(const TensorFile& file, const std::string& what) {
+    throw ModelError(fmt::format("{}: damaged file: {}; train it again", file.path, what));
+}
+
+void require_finite(const TensorFile& file, const std::string& name, const std::vector<float>& values) {
+    for (const float value : values)
+        if (!std::isfinite(value)) inconsistent(file, name + " holds a value that is not finite");
+}
+
+CalibratedStumps get_classifier(const TensorFile& file, const std::string& name, std::size_t class_count,
+                                std::size_t feature_count) {
+    const auto feature = file.get<std::uint32_t>(name + ".feature", {TensorFile::k_any});
+    const std::size_t count = feature.size();
+    const auto values = file.get<float>(name + ".threshold_above_below", {count, 3});
+    const auto classes = file.get<std::uint64_t>(name + ".classes", {count});
+    const auto link = file.get<std::uint32_t>(name + ".link", {1})[0];
+    CalibratedStumps classifier;
+    classifier.stumps.class_count = static_cast<std::uint32_t>(class_count);
+    classifier.stumps.elsewhere = file.get<float>(name + ".elsewhere", {count, class_count});
+    classifier.scale = file.get<float>(name + ".scale", {1})[0];
+    require_finite(file, name + ".threshold_above_below", values);
+    require_finite(file, name + ".elsewhere", classifier.stumps.elsewhere);
+    if (link > 1) inconsistent(file, name + ".link is unknown");
+    if (!(classifier.scale > 0) || !std::isfinite(classifier.scale)) inconsistent(file, name + ".scale is not positive");
+    classifier.link = static_cast<Link>(link);
+    for (std::size_t m = 0; m < count; ++m) {
+        if (feature[m] >= feature_count) inconsistent(file, fmt::format("{} uses feature {} of {}", name, feature[m], feature_count));
+        classifier.stumps.stumps.push_back({feature[m], values[3 * m], values[3 * m + 1], values[3 * m + 2], classes[m]});
+    }
+    return classifier;
+}
+
+Json describe(const LabelingModel& model) {
+    Json colors = Json::array();
+    for (const Color& color : model.label_colors) colors.push_back({color[0], color[1], color[2]});
+    return {{"labels", model.label_names},
+            {"colors", colors},
+            {"samples", model.feature_options.samples},
+            {"orientation", model.feature_options.orientation},
+            {"unary_features", model.unary_names},
+            {"pairwise_features", model.pairwise_names},
+            {"unary_stages", model.unary.size()},
+            {"pairwise_stages", model.pairwise.size()},
+            {"kappa", model.crf.kappa},
+            {"lambda", model.crf.lambda},
+            {"mu", model.crf.mu},
+            {"compatibility", model.crf.compatibility},
+            {"merge_fraction", model.crf.merge_fraction},
+            {"seed", model.seed},
+            {"provenance", model.provenance}};
+}
+
+void require_version(const TensorFile& file, const std::string& key, int known, const std::string& mend) {
+    int version = 0;
+    try {
+        version = std::stoi(file.meta(key));
+    } catch (const std::logic_error&) {
+        inconsistent(file, key + " is no number");
+    }
+    if (version != known)
+        throw ModelError(fmt::format("{}: {} is {}, this program knows {}; {}", file.path, key, version, known,
+                                     version > known ? "use a newer Exemplar" : mend));
+}
+
+void read_description(const TensorFile& file, LabelingModel& model) {
+    const Json json = Json::parse(file.meta("model"));
+    model.label_names = json.at("labels").get<std::vector<std::string>>();
+    for (const Json& color : json.at("colors")) model.label_colors.push_back(color.get<Color>());
+    model.feature_options.samples = json.at("samples");
+    model.feature_options.orientation = json.at("orientation");
+    model.unary_names = json.at("unary_features").get<std::vector<std::string>>();
+    model.pairwise_names = json.at("pairwise_features").get<std::vector<std::string>>();
+    model.unary.resize(std::min<std::size_t>(json.at("unary_stages"), 64));
+    model.pairwise.resize(std::min<std::size_t>(json.at("pairwise_stages"), 64));
+    model.crf.kappa = json.at("kappa");
+    model.crf.lambda = json.at("lambda");
+    model.crf.mu = json.at("mu");
+    model.crf.compatibility = json.at("compatibility").get<std::vector<double>>();
+    model.crf.merge_fraction = json.at("merge_fraction");
+    model.seed = json.at("seed");
+    model.provenance = json.at("provenance").get<std::vector<std::string>>();
+}
+
+void check_description(const TensorFile& file, const LabelingModel& model) {
+    const std::size_t classes = model.class_count();
+    if (classes == 0 || classes > k_max_classes) inconsistent(file, fmt::format("it has {} labels", classes));
+    if (model.label_colors.size() != classes) inconsistent(file, "labels and colors differ in number");
+    if (model.crf.compatibility.size() != classes * classes) inconsistent(file, "the label compatibility has the wrong size");
+    for (const double value : model.crf.compatibility)
+        if (!(value >= 0)) inconsistent(file, "the label compatibility is negative");
+    if (model.unary.empty()) inconsistent(file, "it has no classifier");
+}
+
+}  // namespace
+
+void save_model(const std::filesystem::path& path, const LabelingModel& model) {
+    TensorFile file;
+    file.metadata["kind"] = k_kind;
+    file.metadata["format_version"] = std::to_string(k_model_format_version);
+    file.metadata["feature_version"] = std::to_string(k_feature_version);
+    file.metadata["model"] = describe(model).dump();
+    for (std::size_t s = 0; s < model.unary.size(); ++s) add_classifier(file, fmt::format("unary.{}", s), model.unary[s]);
+    for (std::size_t s = 0; s < model.pairwise.size(); ++s)
+        add_classifier(file, fmt::format("pairwise.{}", s), model.pairwise[s]);
+    file.add("smallest_component", {model.class_count()}, model.smallest_component);
+    write_safetensors(path, file);
+}
+
+LabelingModel load_model(const std::filesystem::path& path) {
+    const TensorFile file = read_safetensors(path);
+    if (const auto kind = file.metadata.find("kind"); kind == file.metadata.end() || kind->second != k_kind)
+        throw ModelError(fmt::format("{}: is no mesh labeling model; make one with 'exemplar label train'", file.path));
+    require_version(file, "format_version", k_model_format_version, "train it again");
+    require_version(file, "feature_version", k_feature_version, "its features have changed: train it again");
+    LabelingModel model;
+    try {
+        read_description(file, model);
+    } catch (const Json::exception& error) {
+        inconsistent(file, "its description cannot be read");
+    }
+    check_description(file, model);
+
+    const std::size_t classes = model.class_count();
+    const std::size_t context = k_context_measures * k_context_bins * classes;
+    for (std::size_t s = 0; s < model.unary.size(); ++s)
+        model.unary[s] = get_classifier(file, fmt::format("unary.{}", s), classes, model.unary_names.size() + (s ? context : 0));
+    for (std::size_t s = 0; s < model.pairwise.size(); ++s)
+        model.pairwise[s] = get_classifier(file, fmt::format("pairwise.{}", s), 2,
+                                           model.pairwise_names.size() + (s ? EdgeNeighborhood::k_bins : 0));
+    model.smallest_component = file.get<float>("smallest_component", {classes});
+    return model;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,106 @@
+#include "host/learn/boosted_stumps.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <string>
+
+#include "host/core/errors.h"
+#include "host/core/parallel.h"
+
+namespace exemplar {
+namespace {
+
+constexpr std::size_t k_block = 256;  // rows scored together: H of a block stays in the first-level cache
+
+void check(const BoostedStumps& classifier, const FeatureMatrix& features) {
+    const std::size_t classes = classifier.class_count;
+    if (classes == 0 || classes > k_max_classes) {
+        throw ModelError("the classifier has " + std::to_string(classes) + " classes, but 1 to " +
+                         std::to_string(k_max_classes) + " are possible; train it again");
+    }
+    if (classifier.elsewhere.size() != classifier.stumps.size() * classes) {
+        throw ModelError("the classifier has " + std::to_string(classifier.elsewhere.size()) +
+                         " constants k_c, but its " + std::to_string(classifier.stumps.size()) + " stumps of " +
+                         std::to_string(classes) + " classes need one each; train it again");
+    }
+    for (std::size_t m = 0; m < classifier.stumps.size(); ++m) {
+        const Stump& stump = classifier.stumps[m];
+        if (stump.feature >= features.cols()) {
+            throw ModelError("stump " + std::to_string(m) + " needs feature " + std::to_string(stump.feature) +
+                             ", but there are " + std::to_string(features.cols()) +
+                             "; use the features it was trained on");
+        }
+        if (classes < 64 && (stump.classes >> classes) != 0) {
+            throw ModelError("stump " + std::to_string(m) + " is shared by a class beyond the classifier's " +
+                             std::to_string(classes) + "; train it again");
+        }
+    }
+}
+
+/// H of rows [begin, begin + count), class-major with stride k_block.
+void sum_stumps(const BoostedStumps& classifier, std::span<const float> constant, const FeatureMatrix& features,
+                std::size_t begin, std::size_t count, std::span<float> h) {
+    for (std::size_t c = 0; c < constant.size(); ++c) std::fill_n(h.data() + c * k_block, count, constant[c]);
+    std::array<float, k_block> response;
+    for (const Stump& stump : classifier.stumps) {
+        const float* x = features.column(stump.feature).data() + begin;
+        for (std::size_t i = 0; i < count; ++i) response[i] = x[i] > stump.threshold ? stump.above : stump.below;
+        for (std::uint64_t left = stump.classes; left != 0; left &= left - 1) {
+            float* sum = h.data() + static_cast<std::size_t>(std::countr_zero(left)) * k_block;
+            for (std::size_t i = 0; i < count; ++i) sum[i] += response[i];
+        }
+    }
+}
+
+/// Log of the unnormalized probability: s H for the softmax, log sigma(s H) for the sigmoid (which stays finite where
+/// sigma itself underflows).
+float log_weight(float scaled, Link link) {
+    if (link == Link::softmax) return scaled;
+    return std::min(scaled, 0.0f) - std::log1p(std::exp(-std::abs(scaled)));
+}
+
+void normalize(std::span<float> row) {
+    const float largest = *std::max_element(row.begin(), row.end());
+    float sum = 0.0f;
+    for (float& value : row) sum += value = std::exp(value - largest);
+    for (float& value : row) value /= sum;
+}
+
+}  // namespace
+
+std::vector<float> BoostedStumps::constant() const {
+    std::vector<double> sum(class_count, 0.0);
+    for (std::size_t m = 0; m < stumps.size(); ++m) {
+        for (std::size_t c = 0; c < class_count; ++c) sum[c] += static_cast<double>(elsewhere[m * class_count + c]);
+    }
+    return std::vector<float>(sum.begin(), sum.end());
+}
+
+void CpuStumpScorer::probabilities(const BoostedStumps& classifier, const FeatureMatrix& features, Link link,
+                                   float scale, std::span<float> out) {
+    check(classifier, features);
+    const std::size_t classes = classifier.class_count;
+    if (out.size() != features.rows * classes) {
+        throw UsageError("the output holds " + std::to_string(out.size()) + " values, but " +
+                         std::to_string(features.rows) + " rows x " + std::to_string(classes) + " classes are needed");
+    }
+    if (!(scale > 0.0f)) throw UsageError("the link's scale is " + std::to_string(scale) + "; it must be above zero");
+    const std::vector<float> constant = classifier.constant();
+    const std::size_t blocks = (features.rows + k_block - 1) / k_block;
+    parallel_ranges(blocks, 1, [&](std::size_t first, std::size_t last) {
+        std::vector<float> h(classes * k_block);
+        for (std::size_t begin = first * k_block; begin < std::min(last * k_block, features.rows); begin += k_block) {
+            const std::size_t count = std::min(k_block, features.rows - begin);
+            sum_stumps(classifier, constant, features, begin, count, h);
+            for (std::size_t i = 0; i < count; ++i) {
+                const std::span<float> row = out.subspan((begin + i) * classes, classes);
+                for (std::size_t c = 0; c < classes; ++c) row[c] = log_weight(scale * h[c * k_block + i], link);
+                normalize(row);
+            }
+        }
+    });
+}
+
+}  // namespace exemplar

@@ -1,0 +1,130 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+
+#include "host/core/errors.h"
+#include "host/core/files.h"
+#include "host/core/parallel.h"
+#include "host/core/random.h"
+#include "host/core/text.h"
+
+namespace exemplar {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path fresh_folder(const std::string& name) {
+    fs::path folder = fs::path(testing::TempDir()) / ("exemplar_core_" + name);
+    fs::remove_all(folder);
+    return folder;
+}
+
+TEST(Files, WritesWholeFilesAndCreatesFolders) {
+    const fs::path path = fresh_folder("write") / "a" / "b.txt";
+    write_file_atomically(path, [](std::ostream& out) { out << "hello"; });
+    EXPECT_EQ(read_file(path), "hello");
+}
+
+TEST(Files, AFailedWriteLeavesTheOldFileAndNoTemporary) {
+    const fs::path path = fresh_folder("fail") / "b.txt";
+    write_file_atomically(path, [](std::ostream& out) { out << "old"; });
+    EXPECT_THROW(write_file_atomically(path,
+                                       [](std::ostream& out) {
+                                           out << "half";
+                                           throw Interrupted();
+                                       }),
+                 Interrupted);
+    EXPECT_EQ(read_file(path), "old");
+    EXPECT_EQ(std::distance(fs::directory_iterator(path.parent_path()), fs::directory_iterator()), 1);
+}
+
+TEST(Files, PlacesThatCannotBeWrittenAreNamed) {
+    try {
+        write_file_atomically("/proc/exemplar/none.txt", [](std::ostream&) {});
+        FAIL() << "no error";
+    } catch (const DataError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("/proc/exemplar/none.txt"));
+    }
+}
+
+TEST(Files, MissingFilesAndFoldersAreNamed) {
+    try {
+        read_file("/nowhere/model.bin");
+        FAIL() << "no error";
+    } catch (const DataError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("/nowhere/model.bin"));
+    }
+    EXPECT_THROW(read_file("/tmp"), DataError);
+}
+
+TEST(Text, SuggestsTheNearestWord) {
+    const std::vector<std::string> words{"head", "torso", "upperLeg", "tail"};
+    EXPECT_EQ(nearest_word("haed", words), "head");
+    EXPECT_EQ(nearest_word("upper_leg", words), "upperLeg");
+    EXPECT_EQ(nearest_word("Tail", words), "tail");
+    EXPECT_EQ(nearest_word("wheel", words), "");
+    EXPECT_EQ(suggestion("torsso", words), " (did you mean 'torso'?)");
+    EXPECT_EQ(suggestion("anything", {}), "");
+}
+
+TEST(Text, FormatsSeconds) {
+    EXPECT_EQ(format_seconds(0.421), "0.42 s");
+    EXPECT_EQ(format_seconds(3.14), "3.1 s");
+    EXPECT_EQ(format_seconds(59.4), "59 s");
+    EXPECT_EQ(format_seconds(200), "3 min 20 s");
+    EXPECT_EQ(format_seconds(3900), "1 h 05 min");
+}
+
+TEST(Random, IsTheSameSequenceEverywhere) {
+    Random random(1);
+    EXPECT_EQ(random.next(), 0x910a2dec89025cc1ULL);
+    EXPECT_EQ(random.next(), 0xbeeb8da1658eec67ULL);
+}
+
+TEST(Random, MomentsAreRight) {
+    Random random(7);
+    double mean = 0, square = 0, normal_mean = 0, normal_square = 0;
+    const int count = 100000;
+    for (int i = 0; i < count; ++i) {
+        const double u = random.uniform(), n = random.normal();
+        ASSERT_GE(u, 0.0);
+        ASSERT_LT(u, 1.0);
+        mean += u, square += u * u, normal_mean += n, normal_square += n * n;
+    }
+    EXPECT_NEAR(mean / count, 0.5, 0.005);
+    EXPECT_NEAR(square / count, 1.0 / 3, 0.005);
+    EXPECT_NEAR(normal_mean / count, 0, 0.015);
+    EXPECT_NEAR(normal_square / count, 1, 0.02);
+}
+
+TEST(Random, ForksDoNotDependOnEarlierDraws) {
+    const Random parent(3);
+    EXPECT_EQ(parent.fork(5).next(), parent.fork(5).next());
+    EXPECT_NE(parent.fork(5).next(), parent.fork(6).next());
+}
+
+TEST(Parallel, EveryIndexRunsOnceForAnyThreadCount) {
+    for (const std::size_t threads : {1UL, 2UL, 4UL}) {
+        const ThreadLimit limit(threads);
+        std::vector<std::atomic<int>> runs(1001);
+        parallel_for(runs.size(), [&](std::size_t i) { ++runs[i]; });
+        parallel_ranges(runs.size(), 64, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) ++runs[i];
+        });
+        for (const auto& count : runs) EXPECT_EQ(count, 2);
+    }
+}
+
+TEST(Parallel, ErrorsReachTheCaller) {
+    EXPECT_THROW(parallel_for(100,
+                              [](std::size_t i) {
+                                  if (i == 57) throw MeshError("57");
+                              }),
+                 MeshError);
+}
+
+}  // namespace
+}  // namespace exemplar

@@ -1,2 +1,53 @@
-# Everything that speaks Vulkan.
+# Everything that speaks Vulkan: the libraries of gpu/ and the shaders they embed.
+
 find_package(Vulkan REQUIRED)
+find_path(EXEMPLAR_VOLK_DIR NAMES volk.c PATH_SUFFIXES volk REQUIRED DOC "Folder of volk.h and volk.c")
+pkg_check_modules(SPIRV_CROSS REQUIRED IMPORTED_TARGET spirv-cross-c-shared)
+find_program(EXEMPLAR_GLSLANG glslangValidator REQUIRED)
+find_program(EXEMPLAR_SPIRV_VAL spirv-val REQUIRED)
+
+# exemplar_shaders(TARGET FOLDER): compiles every shader of shaders/FOLDER for Vulkan 1.2 (with 1.3, local sizes from
+# specialization constants need maintenance4), validates it and embeds it in TARGET. shaders/learn/stumps.comp becomes
+# the value exemplar::shaders::learn_stumps_comp, declared in "embedded/learn_stumps_comp.h".
+function(exemplar_shaders target folder)
+  set(root ${PROJECT_SOURCE_DIR}/shaders)
+  set(embedded ${PROJECT_BINARY_DIR}/shaders/embedded)
+  file(GLOB shaders CONFIGURE_DEPENDS ${root}/${folder}/*.comp ${root}/${folder}/*.vert ${root}/${folder}/*.frag)
+  file(MAKE_DIRECTORY ${embedded})
+  foreach(shader ${shaders})
+    cmake_path(RELATIVE_PATH shader BASE_DIRECTORY ${root} OUTPUT_VARIABLE name)
+    string(MAKE_C_IDENTIFIER ${name} symbol)
+    set(spirv ${PROJECT_BINARY_DIR}/shaders/${symbol}.spv)
+    add_custom_command(
+      OUTPUT ${spirv}
+      COMMAND ${EXEMPLAR_GLSLANG} --quiet --target-env vulkan1.2 -I${PROJECT_SOURCE_DIR} --depfile ${spirv}.d -o ${spirv} ${shader}
+      COMMAND ${EXEMPLAR_SPIRV_VAL} --target-env vulkan1.2 ${spirv}
+      DEPENDS ${shader}
+      DEPFILE ${spirv}.d
+      COMMENT "Compiling shader ${name}"
+      VERBATIM)
+    add_custom_command(
+      OUTPUT ${embedded}/${symbol}.cpp ${embedded}/${symbol}.h
+      COMMAND ${CMAKE_COMMAND} -D spirv=${spirv} -D name=${name} -D symbol=${symbol} -D folder=${embedded}
+              -P ${PROJECT_SOURCE_DIR}/cmake/embed_shader.cmake
+      DEPENDS ${spirv} ${PROJECT_SOURCE_DIR}/cmake/embed_shader.cmake
+      VERBATIM)
+    target_sources(${target} PRIVATE ${embedded}/${symbol}.cpp ${embedded}/${symbol}.h)
+  endforeach()
+  target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/shaders)
+endfunction()
+
+exemplar_library(runtime gpu/runtime exemplar_core Vulkan::Headers PkgConfig::SPIRV_CROSS PkgConfig::XXHASH ${CMAKE_DL_LIBS})
+target_sources(exemplar_runtime PRIVATE ${EXEMPLAR_VOLK_DIR}/volk.c)
+set_source_files_properties(${EXEMPLAR_VOLK_DIR}/volk.c PROPERTIES COMPILE_OPTIONS -w)
+target_include_directories(exemplar_runtime SYSTEM PUBLIC ${EXEMPLAR_VOLK_DIR})
+exemplar_shaders(exemplar_runtime runtime)
+
+exemplar_library(gpu_learn gpu/learn exemplar_runtime exemplar_learn)
+exemplar_shaders(exemplar_gpu_learn learn)
+
+exemplar_library(gpu_labeling gpu/labeling exemplar_runtime exemplar_labeling)
+exemplar_shaders(exemplar_gpu_labeling labeling)
+
+exemplar_library(gpu_imaging gpu/imaging exemplar_runtime exemplar_imaging)
+exemplar_shaders(exemplar_gpu_imaging imaging)

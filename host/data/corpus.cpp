@@ -20,7 +20,8 @@ namespace fs = std::filesystem;
 
 bool is_mesh_file(const fs::path& path) {
     std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
     const auto known = mesh_extensions();
     return std::find(known.begin(), known.end(), extension) != known.end();
 }
@@ -74,19 +75,22 @@ std::vector<fs::path> meshes_of_list(const fs::path& list) {
     return paths;
 }
 
-fs::path labels_beside(const fs::path& mesh) { return mesh.parent_path() / (mesh.stem().string() + "_labels.txt"); }
+fs::path labels_beside(const fs::path& mesh) {
+    return mesh.parent_path() / (mesh.stem().string() + "_labels.txt");
+}
 
 /// Labels of a mesh file's source faces, wherever they are kept.
 FaceLabels find_labels(const fs::path& path, const MeshFile& file) {
     const fs::path beside = labels_beside(path);
     if (fs::exists(beside)) return read_labels_txt(beside, file.mesh.source_face_count);
     if (file.labels) return *file.labels;
-    throw DataError(fmt::format("{}: no labels: give {} beside it, or a PLY with a per-face 'label' property", path.string(),
-                                beside.filename().string()));
+    throw DataError(fmt::format("{}: no labels: give {} beside it, or a PLY with a per-face 'label' property",
+                                path.string(), beside.filename().string()));
 }
 
 /// For each name of `labels` that has faces its index in `names`; a name that is not among them is an error.
-std::vector<std::int32_t> map_names(const FaceLabels& labels, const std::vector<std::string>& names, const fs::path& path) {
+std::vector<std::int32_t> map_names(const FaceLabels& labels, const std::vector<std::string>& names,
+                                    const fs::path& path) {
     std::vector<std::int32_t> index(labels.names.size(), -1);
     std::vector<bool> used(labels.names.size(), false);
     for (const std::int32_t label : labels.label)
@@ -164,7 +168,8 @@ std::vector<std::int32_t> to_source_faces(const TriangleMesh& mesh, std::span<co
     if (mesh.source_face.empty()) return {triangle_label.begin(), triangle_label.end()};
     const std::vector<float> area = face_areas(mesh);
     std::vector<std::map<std::int32_t, float>> votes(mesh.source_face_count);
-    for (std::uint32_t f = 0; f < mesh.face_count(); ++f) votes[mesh.source_of(f)][triangle_label[f]] += area[f] + 1e-30F;
+    for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
+        votes[mesh.source_of(f)][triangle_label[f]] += area[f] + 1e-30F;
     std::vector<std::int32_t> label(mesh.source_face_count, -1);
     for (std::size_t s = 0; s < votes.size(); ++s)
         for (float best = -1; const auto& [candidate, weight] : votes[s])

@@ -25,12 +25,13 @@ struct LabeledCorpus {
 };
 
 /// Mesh paths of `source`: a folder (its mesh files in natural order, not below) or a text file with a path a line
-/// (relative to the list's folder or to the working folder; '#' starts a comment). Throws DataError when there are none.
+/// (relative to the list's folder or to the working folder; '#' starts a comment). Throws DataError when there are
+/// none.
 std::vector<std::filesystem::path> list_meshes(const std::filesystem::path& source);
 
-/// Reads meshes with their labels: from NAME_labels.txt beside NAME.off (any mesh format), else from the PLY's own label
-/// property. Throws DataError naming the mesh that has no labels and what would be accepted; `names` adds known labels
-/// (a label that is not among them is an error with the nearest suggestion, unless names is empty).
+/// Reads meshes with their labels: from NAME_labels.txt beside NAME.off (any mesh format), else from the PLY's own
+/// label property. Throws DataError naming the mesh that has no labels and what would be accepted; `names` adds known
+/// labels (a label that is not among them is an error with the nearest suggestion, unless names is empty).
 LabeledCorpus load_corpus(const std::vector<std::filesystem::path>& paths, const std::vector<std::string>& names = {});
 
 /// Labels of the source faces from labels of their triangles (each polygon gets the label with the most area).

@@ -86,11 +86,14 @@ TensorFile parse(const std::string& path, std::string_view content) {
         }
         total += (file.tensors[name] = parse_tensor(path, name, entry, data)).bytes.size();
     }
-    if (total != data.size()) damaged(path, fmt::format("it has {} bytes of data where {} are described", data.size(), total));
+    if (total != data.size())
+        damaged(path, fmt::format("it has {} bytes of data where {} are described", data.size(), total));
     return file;
 }
 
-std::string shape_text(const std::vector<std::size_t>& shape) { return fmt::format("[{}]", fmt::join(shape, " x ")); }
+std::string shape_text(const std::vector<std::size_t>& shape) {
+    return fmt::format("[{}]", fmt::join(shape, " x "));
+}
 
 bool shape_matches(const std::vector<std::size_t>& shape, const std::vector<std::size_t>& wanted) {
     if (shape.size() != wanted.size()) return false;
@@ -128,7 +131,7 @@ const std::string& TensorFile::meta(const std::string& key) const {
     return found->second;
 }
 
-#define EXEMPLAR_INSTANTIATE(T)                                                                       \
+#define EXEMPLAR_INSTANTIATE(T)                                                                         \
     template void TensorFile::add<T>(const std::string&, std::vector<std::size_t>, std::span<const T>); \
     template std::vector<T> TensorFile::get<T>(const std::string&, const std::vector<std::size_t>&) const;
 EXEMPLAR_INSTANTIATE(float)
@@ -143,9 +146,8 @@ void write_safetensors(const std::filesystem::path& path, const TensorFile& file
     header["__metadata__"] = file.metadata;
     std::size_t offset = 0;
     for (const auto& [name, tensor] : file.tensors) {
-        header[name] = {{"dtype", tensor.type},
-                        {"shape", tensor.shape},
-                        {"data_offsets", {offset, offset + tensor.bytes.size()}}};
+        header[name] = {
+            {"dtype", tensor.type}, {"shape", tensor.shape}, {"data_offsets", {offset, offset + tensor.bytes.size()}}};
         offset += tensor.bytes.size();
     }
     std::string text = header.dump();
@@ -155,7 +157,8 @@ void write_safetensors(const std::filesystem::path& path, const TensorFile& file
         out.write(reinterpret_cast<const char*>(&size), sizeof(size));
         out.write(text.data(), static_cast<std::streamsize>(text.size()));
         for (const auto& [name, tensor] : file.tensors)
-            out.write(reinterpret_cast<const char*>(tensor.bytes.data()), static_cast<std::streamsize>(tensor.bytes.size()));
+            out.write(reinterpret_cast<const char*>(tensor.bytes.data()),
+                      static_cast<std::streamsize>(tensor.bytes.size()));
     });
 }
 

@@ -43,8 +43,8 @@ struct TensorFile {
 
 /// Writes atomically; throws DataError.
 void write_safetensors(const std::filesystem::path& path, const TensorFile& file);
-/// Reads and checks the whole file: header within bounds, known types, offsets that tile the data without gaps, shapes that
-/// match. Throws ModelError naming the path and what is wrong.
+/// Reads and checks the whole file: header within bounds, known types, offsets that tile the data without gaps, shapes
+/// that match. Throws ModelError naming the path and what is wrong.
 TensorFile read_safetensors(const std::filesystem::path& path);
 
 }  // namespace exemplar

@@ -9,8 +9,9 @@
 
 namespace exemplar {
 
-constexpr std::size_t k_context_bins = 5;      ///< distance ranges B of Eq. A.1
-constexpr std::size_t k_context_axes = 6;      ///< 3 principal axes, 3 symmetry axes
+constexpr std::size_t k_context_bins = 5;  ///< distance ranges B of Eq. A.1
+constexpr std::size_t k_context_axes = 6;  ///< 3 principal axes, 3 symmetry axes
+constexpr std::uint8_t k_no_bin = 255;
 constexpr std::size_t k_context_measures = 7;  ///< geodesic distance and the axes
 
 /// What the contextual label features of one mesh need of its geometry; fixed while the cascade runs.
@@ -18,11 +19,13 @@ struct ContextGeometry {
     std::size_t faces = 0;
     std::vector<std::uint32_t> sample_face;  ///< S faces that stand for the surface
     std::vector<float> sample_area;          ///< S area shares, summing to 1 (a_j of Eq. A.1)
-    std::vector<float> geodesic;             ///< S x faces; infinity in other components
-    std::vector<float> axis_position;        ///< k_context_axes x faces: |position along the axis|, centered
-    /// k_context_measures x (k_context_bins - 1): the inner bin edges of each measure, rising, in its own units.
-    /// Bin = number of edges <= distance; a geodesic distance of infinity falls in no bin.
-    std::array<std::array<float, k_context_bins - 1>, k_context_measures> edges{};
+    /// S x faces: the geodesic distance range of each face seen from each sample, 0 .. k_context_bins - 1, or k_no_bin
+    /// where there is no path. Only the range matters, so a byte replaces the distance: a quarter of the traffic.
+    std::vector<std::uint8_t> geodesic_bin;
+    std::vector<float> axis_position;  ///< k_context_axes x faces: |position along the axis|, centered
+    /// k_context_axes x (k_context_bins - 1): the inner range edges of each axis distance ||x_i| - |x_j||, rising.
+    /// Range = number of edges <= distance.
+    std::array<std::array<float, k_context_bins - 1>, k_context_axes> axis_edges{};
 };
 
 /// Contextual label histograms (Eq. A.1): for each face i, class l, measure t and bin b the sum over samples j with

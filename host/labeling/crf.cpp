@@ -13,7 +13,9 @@ namespace {
 constexpr float k_least_probability = 1e-6F;  ///< keeps -log P finite
 constexpr float k_epsilon = 1e-3F;            ///< the epsilon of Eq. 3.4
 
-float negative_log(float probability) { return -std::log(std::max(probability, k_least_probability)); }
+float negative_log(float probability) {
+    return -std::log(std::max(probability, k_least_probability));
+}
 
 /// Disjoint sets of faces with path halving.
 class FaceSets {
@@ -54,7 +56,8 @@ CrfTerms make_crf_terms(const MeshFeatures& features, std::span<const float> pro
     return terms;
 }
 
-std::vector<std::int32_t> solve_crf(const MeshFeatures& features, const CrfTerms& terms, const CrfParameters& parameters) {
+std::vector<std::int32_t> solve_crf(const MeshFeatures& features, const CrfTerms& terms,
+                                    const CrfParameters& parameters) {
     std::vector<double> weight(features.edges.size());
     for (std::size_t e = 0; e < weight.size(); ++e) {
         const double g = parameters.kappa * terms.boundary[e] + parameters.lambda * terms.dihedral[e] + parameters.mu;
@@ -91,7 +94,8 @@ void merge_small_components(const MeshFeatures& features, const CrfParameters& p
     const LabelComponents pieces = label_components(features, labels);
     std::vector<std::uint32_t> small;
     for (std::uint32_t p = 0; p < pieces.label.size(); ++p)
-        if (pieces.label[p] >= 0 && pieces.area_share[p] < parameters.merge_fraction * smallest_component[pieces.label[p]])
+        if (pieces.label[p] >= 0 &&
+            pieces.area_share[p] < parameters.merge_fraction * smallest_component[pieces.label[p]])
             small.push_back(p);
     std::stable_sort(small.begin(), small.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return pieces.area_share[a] < pieces.area_share[b]; });

@@ -9,8 +9,8 @@
 
 namespace exemplar {
 
-/// The energy terms of one mesh that do not depend on the CRF's parameters (thesis Eqs. 3.1-3.4), computed once so that a
-/// parameter search only combines them.
+/// The energy terms of one mesh that do not depend on the CRF's parameters (thesis Eqs. 3.1-3.4), computed once so that
+/// a parameter search only combines them.
 struct CrfTerms {
     std::size_t classes = 0;
     std::vector<float> unary;     ///< faces x classes: a_i E_1 = -(area / median area) log P(c | x) (Eq. 3.2)
@@ -22,7 +22,8 @@ CrfTerms make_crf_terms(const MeshFeatures& features, std::span<const float> pro
                         std::span<const float> boundary_probability);
 
 /// The labels of lowest energy that alpha-expansion finds, one per face.
-std::vector<std::int32_t> solve_crf(const MeshFeatures& features, const CrfTerms& terms, const CrfParameters& parameters);
+std::vector<std::int32_t> solve_crf(const MeshFeatures& features, const CrfTerms& terms,
+                                    const CrfParameters& parameters);
 
 /// The connected pieces of equal label: for each face its piece, and per piece its label and share of the total area.
 struct LabelComponents {
@@ -32,8 +33,9 @@ struct LabelComponents {
 };
 LabelComponents label_components(const MeshFeatures& features, std::span<const std::int32_t> labels);
 
-/// Gives every piece whose area share is below `parameters.merge_fraction` times the smallest training piece of its label to
-/// the neighboring label it shares the longest border with, smallest pieces first. A piece without neighbors stays.
+/// Gives every piece whose area share is below `parameters.merge_fraction` times the smallest training piece of its
+/// label to the neighboring label it shares the longest border with, smallest pieces first. A piece without neighbors
+/// stays.
 void merge_small_components(const MeshFeatures& features, const CrfParameters& parameters,
                             std::span<const float> smallest_component, std::vector<std::int32_t>& labels);
 

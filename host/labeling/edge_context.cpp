@@ -7,7 +7,8 @@
 
 namespace exemplar {
 
-void accumulate_edge_context(const MeshFeatures& features, std::span<const float> boundary_probability, std::span<float> out) {
+void accumulate_edge_context(const MeshFeatures& features, std::span<const float> boundary_probability,
+                             std::span<float> out) {
     constexpr std::size_t k_bins = EdgeNeighborhood::k_bins;
     const EdgeNeighborhood& near = features.edge_context;
     const std::size_t edges = features.edges.size();

@@ -58,11 +58,14 @@ CalibratedStumps get_classifier(const TensorFile& file, const std::string& name,
     require_finite(file, name + ".threshold_above_below", values);
     require_finite(file, name + ".elsewhere", classifier.stumps.elsewhere);
     if (link > 1) inconsistent(file, name + ".link is unknown");
-    if (!(classifier.scale > 0) || !std::isfinite(classifier.scale)) inconsistent(file, name + ".scale is not positive");
+    if (!(classifier.scale > 0) || !std::isfinite(classifier.scale))
+        inconsistent(file, name + ".scale is not positive");
     classifier.link = static_cast<Link>(link);
     for (std::size_t m = 0; m < count; ++m) {
-        if (feature[m] >= feature_count) inconsistent(file, fmt::format("{} uses feature {} of {}", name, feature[m], feature_count));
-        classifier.stumps.stumps.push_back({feature[m], values[3 * m], values[3 * m + 1], values[3 * m + 2], classes[m]});
+        if (feature[m] >= feature_count)
+            inconsistent(file, fmt::format("{} uses feature {} of {}", name, feature[m], feature_count));
+        classifier.stumps.stumps.push_back(
+            {feature[m], values[3 * m], values[3 * m + 1], values[3 * m + 2], classes[m]});
     }
     return classifier;
 }
@@ -122,7 +125,8 @@ void check_description(const TensorFile& file, const LabelingModel& model) {
     const std::size_t classes = model.class_count();
     if (classes == 0 || classes > k_max_classes) inconsistent(file, fmt::format("it has {} labels", classes));
     if (model.label_colors.size() != classes) inconsistent(file, "labels and colors differ in number");
-    if (model.crf.compatibility.size() != classes * classes) inconsistent(file, "the label compatibility has the wrong size");
+    if (model.crf.compatibility.size() != classes * classes)
+        inconsistent(file, "the label compatibility has the wrong size");
     for (const double value : model.crf.compatibility)
         if (!(value >= 0)) inconsistent(file, "the label compatibility is negative");
     if (model.unary.empty()) inconsistent(file, "it has no classifier");
@@ -136,7 +140,8 @@ void save_model(const std::filesystem::path& path, const LabelingModel& model) {
     file.metadata["format_version"] = std::to_string(k_model_format_version);
     file.metadata["feature_version"] = std::to_string(k_feature_version);
     file.metadata["model"] = describe(model).dump();
-    for (std::size_t s = 0; s < model.unary.size(); ++s) add_classifier(file, fmt::format("unary.{}", s), model.unary[s]);
+    for (std::size_t s = 0; s < model.unary.size(); ++s)
+        add_classifier(file, fmt::format("unary.{}", s), model.unary[s]);
     for (std::size_t s = 0; s < model.pairwise.size(); ++s)
         add_classifier(file, fmt::format("pairwise.{}", s), model.pairwise[s]);
     file.add("smallest_component", {model.class_count()}, model.smallest_component);
@@ -160,7 +165,8 @@ LabelingModel load_model(const std::filesystem::path& path) {
     const std::size_t classes = model.class_count();
     const std::size_t context = k_context_measures * k_context_bins * classes;
     for (std::size_t s = 0; s < model.unary.size(); ++s)
-        model.unary[s] = get_classifier(file, fmt::format("unary.{}", s), classes, model.unary_names.size() + (s ? context : 0));
+        model.unary[s] =
+            get_classifier(file, fmt::format("unary.{}", s), classes, model.unary_names.size() + (s ? context : 0));
     for (std::size_t s = 0; s < model.pairwise.size(); ++s)
         model.pairwise[s] = get_classifier(file, fmt::format("pairwise.{}", s), 2,
                                            model.pairwise_names.size() + (s ? EdgeNeighborhood::k_bins : 0));

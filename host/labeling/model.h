@@ -25,8 +25,8 @@ struct CrfParameters {
     double mu = 0.1;    ///< weight of boundary length
     /// L(c, c'), classes x classes, symmetric, zero diagonal, >= 0.
     std::vector<double> compatibility;
-    /// A connected component is merged into a neighbor if its share of the surface is below this fraction of the smallest
-    /// training component of its label; 0 turns merging off.
+    /// A connected component is merged into a neighbor if its share of the surface is below this fraction of the
+    /// smallest training component of its label; 0 turns merging off.
     double merge_fraction = 0.2;
 };
 
@@ -42,7 +42,8 @@ struct LabelingModel {
     /// The same for boundaries (classes: 0 = same label, 1 = boundary).
     std::vector<CalibratedStumps> pairwise;
     CrfParameters crf;
-    std::vector<float> smallest_component;  ///< per label: area share of its smallest training component, 0 if never seen
+    std::vector<float>
+        smallest_component;  ///< per label: area share of its smallest training component, 0 if never seen
     std::uint64_t seed = 0;
     std::vector<std::string> provenance;  ///< one line per training mesh: name and content hash
 
@@ -53,8 +54,8 @@ constexpr int k_model_format_version = 1;
 
 /// Writes a safetensors file with all of the model; equal models give equal bytes.
 void save_model(const std::filesystem::path& path, const LabelingModel& model);
-/// Reads and checks a model completely. Throws ModelError: damaged, truncated, newer than this program, made for features of
-/// another version, or not a labeling model.
+/// Reads and checks a model completely. Throws ModelError: damaged, truncated, newer than this program, made for
+/// features of another version, or not a labeling model.
 LabelingModel load_model(const std::filesystem::path& path);
 
 }  // namespace exemplar

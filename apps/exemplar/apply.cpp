@@ -1,0 +1,120 @@
+// exemplar label apply: labels unseen meshes with a trained model.
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "apps/exemplar/backend.h"
+#include "apps/exemplar/commands.h"
+#include "apps/exemplar/labeled_output.h"
+#include "host/core/errors.h"
+#include "host/core/interrupt.h"
+#include "host/core/progress.h"
+#include "host/core/stopwatch.h"
+#include "host/data/corpus.h"
+#include "host/labeling/feature_cache.h"
+#include "host/mesh/validate.h"
+
+namespace exemplar {
+namespace {
+
+struct ApplyOptions {
+    CommonOptions common;
+    std::filesystem::path model, out;
+    std::filesystem::path cache = default_feature_folder();
+    std::vector<std::filesystem::path> meshes;
+    bool gltf = false, png = false;
+};
+
+/// Labels one mesh and writes all of its files; returns its part of the report.
+nlohmann::json apply_to(const std::filesystem::path& path, const LabelingModel& model, DeviceBackend& backend,
+                        const ApplyOptions& options) {
+    const Stopwatch watch;
+    const MeshFile file = read_mesh(path);
+    const MeshReport report = require_usable(file.mesh, path.string());
+    std::vector<std::string> warnings = file.warnings;
+    for (const std::string& message : report.messages()) warnings.push_back(message);
+    if (!options.common.quiet)
+        for (const std::string& message : warnings) fmt::print(stderr, "warning: {}: {}\n", path.string(), message);
+
+    MeshFeatures features = cached_features(file.mesh, model.feature_options, options.cache);
+    const double feature_seconds = watch.wall();
+    const FaceLabeling labeling = label_faces(model, features, backend.labeling());
+    const LabeledOutput output = make_labeled_output(file.mesh, model, labeling);
+    const std::filesystem::path stem = options.out / path.stem();
+    write_labeled_files(stem, file.mesh, output, options.gltf);
+    if (options.png) backend.render_png(stem.string() + ".png", file.mesh, triangle_colors(model, labeling));
+
+    nlohmann::json json = describe_output(file.mesh, model, labeling);
+    json["mesh"] = path.string();
+    json["warnings"] = warnings;
+    json["seconds"] = {{"features", feature_seconds}, {"all", watch.wall()}};
+    for (const auto& [stage, seconds] : labeling.seconds) json["seconds"][stage] = seconds;
+    return json;
+}
+
+/// Two inputs of one name would overwrite each other's results.
+void require_distinct_names(const std::vector<std::filesystem::path>& meshes) {
+    std::map<std::string, std::filesystem::path> seen;
+    for (const auto& path : meshes) {
+        const auto [it, fresh] = seen.emplace(path.stem().string(), path);
+        if (!fresh)
+            throw UsageError(
+                fmt::format("{} and {} would write the same files; label them into different --out folders",
+                            it->second.string(), path.string()));
+    }
+}
+
+void run_apply(const ApplyOptions& options) {
+    const auto limits = apply_common_options(options.common);
+    const LabelingModel model = load_model(options.model);
+    std::vector<std::filesystem::path> meshes;
+    for (const auto& source : options.meshes)
+        for (const auto& path : list_meshes(source)) meshes.push_back(path);
+    require_distinct_names(meshes);
+    DeviceBackend backend(options.common.device);
+
+    Progress progress("labeling", meshes.size());
+    nlohmann::json results = nlohmann::json::array();
+    std::vector<std::string> failures;
+    for (const auto& path : meshes) {
+        check_interrupt();
+        try {
+            results.push_back(apply_to(path, model, backend, options));
+        } catch (const MeshError& error) {  // one bad mesh is no reason to leave the others unlabeled
+            failures.emplace_back(error.what());
+            results.push_back({{"mesh", path.string()}, {"error", error.what()}});
+        }
+        progress.advance(1, path.filename().string());
+    }
+    progress.finish();
+    for (const std::string& failure : failures) fmt::print(stderr, "error: {}\n", failure);
+    fmt::print("{} of {} meshes labeled into {}\n", meshes.size() - failures.size(), meshes.size(),
+               options.out.string());
+    write_report(options.common,
+                 {{"model", options.model.string()}, {"device", backend.device_name()}, {"meshes", results}});
+    if (!failures.empty())
+        throw MeshError(fmt::format("{} of {} meshes could not be labeled", failures.size(), meshes.size()));
+}
+
+}  // namespace
+
+void add_apply_command(CLI::App& label) {
+    auto options = std::make_shared<ApplyOptions>();
+    CLI::App* command = label.add_subcommand("apply", "Labels unseen meshes with a trained model");
+    command->footer(
+        "Writes for each mesh NAME_labels.txt, NAME.ply (label and color per face) and NAME.seg.\n\nExample:\n"
+        "  exemplar label apply human.safetensors a.off b.obj --out labeled --gltf --png --json labeled/report.json");
+    command->add_option("MODEL", options->model, "model file of 'exemplar label train'")->required();
+    command->add_option("MESH", options->meshes, "meshes, folders of meshes, or lists (.txt, a path a line)")
+        ->required();
+    command->add_option("--out", options->out, "folder to write to")->required();
+    command->add_flag("--gltf", options->gltf, "also write NAME.glb with a material per part");
+    command->add_flag("--png", options->png, "also write NAME.png, an image rendered through Vulkan");
+    command->add_option("--cache", options->cache, "folder that remembers features; '' remembers none")
+        ->capture_default_str();
+    add_common_options(*command, options->common);
+    command->callback([options] { run_apply(*options); });
+}
+
+}  // namespace exemplar

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace exemplar {
+
+/// Options that every subcommand shares.
+struct CommonOptions {
+    std::string device;          ///< index or name; empty = EXEMPLAR_DEVICE or the best
+    std::size_t threads = 0;     ///< 0 = all cores
+    bool quiet = false;          ///< no progress, no remarks
+    std::filesystem::path json;  ///< report as JSON; empty = none
+};
+
+/// Adds --device, --threads, --quiet and --json to a subcommand.
+void add_common_options(CLI::App& command, CommonOptions& options);
+/// Puts --threads and --quiet into effect; called first by every subcommand. The result holds the thread limit.
+std::shared_ptr<void> apply_common_options(const CommonOptions& options);
+/// Writes a report where --json asks for it.
+void write_report(const CommonOptions& options, const nlohmann::json& report);
+
+// One function per file of the same name: adds the subcommand, whose callback does the work and throws Error.
+void add_devices_command(CLI::App& app);
+void add_features_command(CLI::App& app);
+void add_synth_command(CLI::App& app);
+void add_label_command(CLI::App& app);
+void add_train_command(CLI::App& label);
+void add_apply_command(CLI::App& label);
+void add_evaluate_command(CLI::App& label);
+void add_demo_command(CLI::App& app);
+
+}  // namespace exemplar

@@ -1,0 +1,74 @@
+// exemplar features: the feature vectors of one mesh as a NumPy array.
+
+#include <fmt/format.h>
+
+#include "apps/exemplar/commands.h"
+#include "host/core/files.h"
+#include "host/core/stopwatch.h"
+#include "host/data/npy.h"
+#include "host/labeling/features.h"
+#include "host/mesh/io.h"
+#include "host/mesh/validate.h"
+
+namespace exemplar {
+namespace {
+
+struct FeaturesOptions {
+    CommonOptions common;
+    std::filesystem::path mesh, out, names;
+    bool pairwise = false;
+    FeatureOptions features;
+};
+
+void run_features(const FeaturesOptions& options) {
+    const auto limits = apply_common_options(options.common);
+    const MeshFile file = read_mesh(options.mesh);
+    const MeshReport report = require_usable(file.mesh, options.mesh.string());
+    if (!options.common.quiet)
+        for (const std::string& message : report.messages())
+            fmt::print(stderr, "warning: {}: {}\n", options.mesh.string(), message);
+    const Stopwatch watch;
+    const MeshFeatures features = compute_features(file.mesh, options.features);
+    const FeatureMatrix& matrix = options.pairwise ? features.pairwise : features.unary;
+    write_npy(options.out, matrix);
+    if (!options.names.empty())
+        write_file_atomically(options.names,
+                              [&](std::ostream& out) { out << nlohmann::json(matrix.names).dump(1) << '\n'; });
+
+    nlohmann::json seconds;
+    for (const auto& [family, time] : features.seconds) {
+        fmt::print("{:>16} {:8.3f} s\n", family, time);
+        seconds[family] = time;
+    }
+    fmt::print("{} x {} features of {} in {:.2f} s\n", matrix.rows, matrix.cols(), options.mesh.string(), watch.wall());
+    write_report(options.common, {{"mesh", options.mesh.string()},
+                                  {"rows", matrix.rows},
+                                  {"features", matrix.cols()},
+                                  {"names", matrix.names},
+                                  {"seconds", watch.wall()},
+                                  {"cpu_seconds", watch.cpu()},
+                                  {"seconds_per_family", seconds}});
+}
+
+}  // namespace
+
+void add_features_command(CLI::App& app) {
+    auto options = std::make_shared<FeaturesOptions>();
+    CLI::App* command =
+        app.add_subcommand("features", "Computes the features of a mesh (faces x features, float32 .npy)");
+    command->footer("Example:\n  exemplar features horse.off --out horse.npy --names horse.json");
+    command->add_option("MESH", options->mesh, "mesh file: OFF, OBJ, PLY, STL or glTF")->required();
+    command->add_option("--out", options->out, "array to write, NumPy format")->required();
+    command->add_option("--names", options->names, "also write the feature names, a JSON list");
+    command->add_flag("--pairwise", options->pairwise, "features of the interior edges instead of the faces");
+    command
+        ->add_option("--samples", options->features.samples, "faces that stand for the surface in distance statistics")
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
+    command->add_flag("--orientation", options->features.orientation,
+                      "add coordinates, for shapes that share an orientation");
+    add_common_options(*command, options->common);
+    command->callback([options] { run_features(*options); });
+}
+
+}  // namespace exemplar

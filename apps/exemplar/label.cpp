@@ -1,0 +1,19 @@
+// exemplar label: the group of the labeling subcommands.
+
+#include "apps/exemplar/commands.h"
+
+namespace exemplar {
+
+void add_label_command(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("label", "Labels the parts of meshes, learned from labeled meshes");
+    command->footer(
+        "Example:\n  exemplar label train shapes --out human.safetensors\n"
+        "  exemplar label apply human.safetensors mesh.obj --out labeled\n"
+        "  exemplar label evaluate --protocol sb6 shapes --out report");
+    command->require_subcommand(1);
+    add_train_command(*command);
+    add_apply_command(*command);
+    add_evaluate_command(*command);
+}
+
+}  // namespace exemplar

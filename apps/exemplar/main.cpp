@@ -1,0 +1,120 @@
+// The command line: one subcommand per file. Exit codes: 0 success, 1 error (one line on stderr), 2 wrong usage,
+// 130 interrupted.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "apps/exemplar/commands.h"
+#include "host/core/errors.h"
+#include "host/core/files.h"
+#include "host/core/interrupt.h"
+#include "host/core/parallel.h"
+#include "host/core/progress.h"
+#include "host/core/text.h"
+
+namespace exemplar {
+namespace {
+
+/// All option and subcommand names that `app` knows at its level.
+std::vector<std::string> known_words(const CLI::App& app) {
+    std::vector<std::string> words;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        words.push_back(command->get_name());
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) words.push_back("--" + name);
+    return words;
+}
+
+/// The subcommand the user got to before the parser gave up.
+const CLI::App& deepest(const CLI::App& app) {
+    const auto parsed = app.get_subcommands();
+    return parsed.empty() ? app : deepest(*parsed.back());
+}
+
+/// The first argument that no known word explains, for a suggestion.
+std::string hint(const CLI::App& app, int argc, char** argv) {
+    const CLI::App& command = deepest(app);
+    const std::vector<std::string> words = known_words(command);
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
+        const bool option = word.size() > 2 && word.starts_with("--");
+        const bool misplaced_command =
+            !command.get_subcommands([](const CLI::App*) { return true; }).empty() && !option;
+        if (!option && !misplaced_command) continue;
+        if (std::find(words.begin(), words.end(), word) != words.end()) continue;
+        if (std::string text = suggestion(word, words); !text.empty()) return text;
+    }
+    return {};
+}
+
+int report_usage_error(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+    fmt::print(
+        stderr, "error: {}{}; see '{} --help'\n", error.what(), hint(app, argc, argv),
+        app.get_name() == deepest(app).get_name() ? app.get_name() : app.get_name() + " " + deepest(app).get_name());
+    return 2;
+}
+
+int run(int argc, char** argv) {
+    CLI::App app(
+        "Learns geometry processing from examples and runs what it learned on the GPU.\n\nFor example:\n"
+        "  exemplar synth human --count 8 --seed 1 --out shapes\n"
+        "  exemplar label train shapes --out human.safetensors\n"
+        "  exemplar label apply human.safetensors mesh.obj --out labeled");
+    app.name("exemplar");
+    app.require_subcommand(1);
+    app.set_version_flag("--version", EXEMPLAR_VERSION);
+    add_label_command(app);
+    add_features_command(app);
+    add_synth_command(app);
+    add_devices_command(app);
+    add_demo_command(app);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return report_usage_error(app, error, argc, argv);
+    }
+    return 0;
+}
+
+}  // namespace
+
+void add_common_options(CLI::App& command, CommonOptions& options) {
+    command.add_option("--device", options.device, "Vulkan device: index or part of its name (see 'exemplar devices')");
+    command.add_option("--threads", options.threads, "CPU threads; 0 uses all cores")->capture_default_str();
+    command.add_flag("--quiet", options.quiet, "no progress and no remarks");
+    command.add_option("--json", options.json, "also write the report as JSON to this file");
+}
+
+std::shared_ptr<void> apply_common_options(const CommonOptions& options) {
+    Progress::set_quiet(options.quiet);
+    return std::make_shared<ThreadLimit>(options.threads);
+}
+
+void write_report(const CommonOptions& options, const nlohmann::json& report) {
+    if (options.json.empty()) return;
+    write_file_atomically(options.json, [&](std::ostream& out) { out << report.dump(2) << '\n'; });
+}
+
+}  // namespace exemplar
+
+int main(int argc, char** argv) {
+    exemplar::install_interrupt_handler();
+    try {
+        return exemplar::run(argc, argv);
+    } catch (const exemplar::Interrupted&) {
+        fmt::print(stderr, "interrupted\n");
+        return 130;
+    } catch (const exemplar::UsageError& error) {
+        fmt::print(stderr, "error: {}\n", error.what());
+        return 2;
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "error: out of memory; use fewer or smaller meshes\n");
+        return 1;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "error: {}\n", error.what());
+        return 1;
+    }
+}

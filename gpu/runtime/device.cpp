@@ -1,0 +1,96 @@
+#include "gpu/runtime/device.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <string_view>
+
+#include "gpu/runtime/errors.h"
+
+namespace exemplar {
+namespace {
+
+std::string environment(const char* name) {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+}
+
+bool wants_validation() {
+    const std::string value = environment("EXEMPLAR_VALIDATION");
+    return !value.empty() && value != "0";
+}
+
+}  // namespace
+
+Device::Device(const DeviceOptions& options)
+    : validating_(wants_validation()), instance_({.validation = validating_, .extensions = options.instance_extensions}) {
+    const std::vector<DeviceInfo> devices = instance_.devices();
+    const std::size_t index = select_device(devices, options.name.empty() ? environment("EXEMPLAR_DEVICE") : options.name);
+    info_ = devices[index];
+    physical_ = instance_.physical_devices()[index];
+    queue_family_ = find_compute_queue(physical_).value();
+    vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
+    create(options);
+    vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+    pipeline_cache_ = std::make_unique<PipelineCache>(device_, info_);
+}
+
+void Device::create(const DeviceOptions& options) {
+    const float priority = 1.0f;
+    const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                        .pNext = nullptr,
+                                        .flags = 0,
+                                        .queueFamilyIndex = queue_family_,
+                                        .queueCount = 1,
+                                        .pQueuePriorities = &priority};
+    VkPhysicalDeviceVulkan13Features features13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+    features13.synchronization2 = VK_TRUE;
+    features13.dynamicRendering = VK_TRUE;
+    VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &features13};
+    std::vector<const char*> extensions;
+    for (const std::string& extension : options.device_extensions) extensions.push_back(extension.c_str());
+    const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                  .pNext = &features,
+                                  .flags = 0,
+                                  .queueCreateInfoCount = 1,
+                                  .pQueueCreateInfos = &queue,
+                                  .enabledLayerCount = 0,
+                                  .ppEnabledLayerNames = nullptr,
+                                  .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+                                  .ppEnabledExtensionNames = extensions.data(),
+                                  .pEnabledFeatures = nullptr};
+    check(vkCreateDevice(physical_, &info, nullptr, &device_), fmt::format("open device '{}'", info_.name));
+}
+
+Device::~Device() {
+    if (!device_) return;
+    vkDeviceWaitIdle(device_);
+    pipeline_cache_.reset();
+    vkDestroyDevice(device_, nullptr);
+}
+
+void Device::submit(VkCommandBuffer commands, VkFence fence) {
+    const VkCommandBufferSubmitInfo command_info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                                 .pNext = nullptr,
+                                                 .commandBuffer = commands,
+                                                 .deviceMask = 0};
+    VkSubmitInfo2 info{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
+    info.commandBufferInfoCount = 1;
+    info.pCommandBufferInfos = &command_info;
+    const std::lock_guard lock(queue_mutex_);
+    check(vkQueueSubmit2(queue_, 1, &info, fence), fmt::format("submit work to device '{}'", info_.name));
+}
+
+void Device::wait_idle() {
+    const std::lock_guard lock(queue_mutex_);
+    check(vkDeviceWaitIdle(device_), fmt::format("wait for device '{}'", info_.name));
+}
+
+std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred) const {
+    for (const VkMemoryPropertyFlags wanted : {required | preferred, required})
+        for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
+            if ((allowed >> i & 1) && (memory_properties(i) & wanted) == wanted) return i;
+    throw DeviceError(fmt::format("device '{}' has no memory of the needed kind (Vulkan property flags {:#x})", info_.name, required));
+}
+
+}  // namespace exemplar

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <volk.h>
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "gpu/runtime/device_info.h"
+#include "gpu/runtime/instance.h"
+#include "gpu/runtime/pipeline_cache.h"
+
+namespace exemplar {
+
+struct DeviceOptions {
+    /// An index of list_devices() or a part of a name in any case; empty: the environment's EXEMPLAR_DEVICE, else the best.
+    std::string name;
+    std::vector<std::string> instance_extensions;  ///< beyond compute, e.g. for a window
+    std::vector<std::string> device_extensions;
+};
+
+/// An opened Vulkan device with one queue for compute, copies and drawing. Everything made from it must end before it.
+/// With EXEMPLAR_VALIDATION=1 in the environment the validation layer watches; see validation_messages().
+class Device {
+  public:
+    /// Throws NoDeviceError (no such device; the message lists those there are) or another DeviceError.
+    explicit Device(const DeviceOptions& options = {});
+    ~Device();
+    Device(const Device&) = delete;
+    Device& operator=(const Device&) = delete;
+
+    const DeviceInfo& info() const { return info_; }
+    /// What the validation layer has complained about since the device was opened; empty without EXEMPLAR_VALIDATION=1.
+    std::vector<std::string> validation_messages() const { return instance_.validation_messages(); }
+    bool validating() const { return validating_; }
+
+    VkInstance instance() const { return instance_.handle(); }
+    VkPhysicalDevice physical() const { return physical_; }
+    VkDevice handle() const { return device_; }
+    VkQueue queue() const { return queue_; }
+    std::uint32_t queue_family() const { return queue_family_; }
+    PipelineCache& pipeline_cache() { return *pipeline_cache_; }
+
+    /// Submits recorded commands; any thread may call it. `fence` is signaled when they are done.
+    void submit(VkCommandBuffer commands, VkFence fence);
+    /// Waits until the device has nothing to do.
+    void wait_idle();
+
+    /// A memory type among `allowed` bits with all `required` properties and, where there is one, all `preferred` too.
+    /// Throws DeviceError if none has the required ones.
+    std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred) const;
+    VkMemoryPropertyFlags memory_properties(std::uint32_t type) const { return memory_.memoryTypes[type].propertyFlags; }
+
+  private:
+    void create(const DeviceOptions& options);
+    bool validating_;
+    Instance instance_;
+    DeviceInfo info_;
+    VkPhysicalDevice physical_ = VK_NULL_HANDLE;
+    VkPhysicalDeviceMemoryProperties memory_{};
+    VkDevice device_ = VK_NULL_HANDLE;
+    VkQueue queue_ = VK_NULL_HANDLE;
+    std::uint32_t queue_family_ = 0;
+    std::mutex queue_mutex_;
+    std::unique_ptr<PipelineCache> pipeline_cache_;
+};
+
+}  // namespace exemplar

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <volk.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "host/core/errors.h"
+
+namespace exemplar {
+
+/// No usable Vulkan device, or none of the wanted name.
+class NoDeviceError : public DeviceError {
+  public:
+    using DeviceError::DeviceError;
+};
+
+/// The device stopped answering; everything on it is gone. A new Device must be opened.
+class DeviceLostError : public DeviceError {
+  public:
+    using DeviceError::DeviceError;
+};
+
+/// Something larger than the device allows.
+class DeviceLimitError : public DeviceError {
+  public:
+    DeviceLimitError(const std::string& message, std::uint64_t requested_size, std::uint64_t size_limit)
+        : DeviceError(message), requested(requested_size), limit(size_limit) {}
+    std::uint64_t requested;
+    std::uint64_t limit;
+};
+
+/// Throws the DeviceError that belongs to a failed Vulkan call; `what` completes "cannot ...".
+void check(VkResult result, std::string_view what);
+
+/// A Vulkan result's name, e.g. "VK_ERROR_DEVICE_LOST".
+std::string result_name(VkResult result);
+
+/// 1536 as "1.5 KiB".
+std::string format_bytes(std::uint64_t bytes);
+
+}  // namespace exemplar

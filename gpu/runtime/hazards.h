@@ -1,0 +1,52 @@
+#pragma once
+
+#include <volk.h>
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+namespace exemplar {
+
+/// How one command uses one resource.
+struct Access {
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkPipelineStageFlags2 stage = 0;
+    VkAccessFlags2 reads = 0;
+    VkAccessFlags2 writes = 0;
+};
+
+/// What must be waited for before a command may run.
+struct Barrier {
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkPipelineStageFlags2 source_stage = 0;
+    VkAccessFlags2 source_access = 0;
+    VkPipelineStageFlags2 target_stage = 0;
+    VkAccessFlags2 target_access = 0;
+};
+
+/// Remembers the last uses of every buffer of one command sequence and derives the barriers between commands:
+/// read after write, write after write (memory dependencies) and write after read (an execution dependency).
+/// Reads after reads need none. Buffers are tracked as wholes. Knows no device, so it can be tested by itself.
+class HazardTracker {
+  public:
+    /// The barriers needed before a command with these accesses; remembers the accesses. A buffer named several times counts once.
+    std::vector<Barrier> before(std::span<const Access> accesses);
+    /// Forgets everything, after a barrier that covers all earlier commands.
+    void reset() { states_.clear(); }
+
+  private:
+    struct State {
+        VkPipelineStageFlags2 write_stage = 0;
+        VkAccessFlags2 write_access = 0;
+        VkPipelineStageFlags2 read_stages = 0;     // since the write
+        VkPipelineStageFlags2 visible_stages = 0;  // where the write can be seen already
+        VkAccessFlags2 visible_access = 0;
+    };
+    static bool needs_barrier(const State& state, const Access& access);
+    static void remember(State& state, const Access& access, bool barrier);
+    std::unordered_map<VkBuffer, State> states_;
+};
+
+}  // namespace exemplar

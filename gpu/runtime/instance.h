@@ -1,0 +1,51 @@
+#pragma once
+
+#include <volk.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gpu/runtime/device_info.h"
+
+namespace exemplar {
+
+struct InstanceOptions {
+    bool validation = false;              ///< load VK_LAYER_KHRONOS_validation with synchronization validation
+    std::vector<std::string> extensions;  ///< e.g. the surface extensions of a window system
+};
+
+/// The connection to the Vulkan loader. Collects what the validation layer says.
+class Instance {
+  public:
+    /// Throws NoDeviceError if there is no loader, DeviceError if the validation layer or an extension is missing.
+    explicit Instance(const InstanceOptions& options);
+    ~Instance();
+    Instance(const Instance&) = delete;
+    Instance& operator=(const Instance&) = delete;
+
+    VkInstance handle() const { return instance_; }
+    std::vector<VkPhysicalDevice> physical_devices() const;
+    std::vector<DeviceInfo> devices() const;
+    /// Warnings and errors of the validation layer so far; any thread may call it.
+    std::vector<std::string> validation_messages() const;
+
+  private:
+    struct Messages {
+        mutable std::mutex mutex;
+        std::vector<std::string> texts;
+    };
+    static VKAPI_ATTR VkBool32 VKAPI_CALL collect(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                                  const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
+    void create(const InstanceOptions& options);
+    VkInstance instance_ = VK_NULL_HANDLE;
+    VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    Messages messages_;
+};
+
+/// The queue family Exemplar uses: compute, and graphics too where one family has both.
+std::optional<std::uint32_t> find_compute_queue(VkPhysicalDevice device);
+
+}  // namespace exemplar

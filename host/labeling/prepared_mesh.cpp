@@ -1,0 +1,172 @@
+#include "host/labeling/prepared_mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "host/core/parallel.h"
+#include "host/labeling/percentile.h"
+#include "host/mesh/validate.h"
+
+namespace exemplar {
+namespace {
+
+Vec3d corner(const TriangleMesh& mesh, const Face& face, int k) {
+    return mesh.vertices[face[static_cast<std::size_t>(k)]].cast<double>();
+}
+
+/// Diagonal of the bounding box of what the faces refer to.
+double referenced_diagonal(const TriangleMesh& mesh) {
+    Vec3d low = Vec3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    for (const Face& face : mesh.faces) {
+        for (int k = 0; k < 3; ++k) {
+            low = low.cwiseMin(corner(mesh, face, k));
+            high = high.cwiseMax(corner(mesh, face, k));
+        }
+    }
+    return (high - low).norm();
+}
+
+/// Area-weighted mean of the face centers in double precision; the plain mean where there is no area.
+Vec3d surface_centroid(const TriangleMesh& mesh) {
+    Vec3d weighted = Vec3d::Zero(), plain = Vec3d::Zero();
+    double total = 0.0;
+    for (const Face& face : mesh.faces) {
+        const Vec3d a = corner(mesh, face, 0), b = corner(mesh, face, 1), c = corner(mesh, face, 2);
+        const double area = 0.5 * (b - a).cross(c - a).norm();
+        weighted += area * (a + b + c) / 3.0;
+        plain += (a + b + c) / 3.0;
+        total += area;
+    }
+    return total > 0.0 ? Vec3d(weighted / total) : Vec3d(plain / static_cast<double>(mesh.face_count()));
+}
+
+/// The mesh with its centroid at the origin and unit size: later steps may work in single precision at any scale.
+TriangleMesh centered_mesh(const TriangleMesh& mesh) {
+    const double diagonal = referenced_diagonal(mesh);
+    const double scale = diagonal > 0.0 ? 1.0 / diagonal : 1.0;
+    const Vec3d centroid = surface_centroid(mesh);
+    TriangleMesh centered;
+    centered.faces = mesh.faces;
+    centered.source_face_count = static_cast<std::uint32_t>(mesh.face_count());
+    centered.vertices.assign(mesh.vertex_count(), Vec3::Zero());
+    for (const Face& face : mesh.faces) {  // unreferenced vertices may lie anywhere; they stay at the origin
+        for (const std::uint32_t v : face) {
+            centered.vertices[v] = ((mesh.vertices[v].cast<double>() - centroid) * scale).cast<float>();
+        }
+    }
+    if (validate_mesh(centered).inside_out) {
+        for (Face& face : centered.faces) std::swap(face[1], face[2]);
+    }
+    return centered;
+}
+
+/// Shares of the total area; equal shares where there is no area.
+std::vector<float> area_shares(const std::vector<float>& areas, double total) {
+    std::vector<float> shares(areas.size(), 1.0F / static_cast<float>(areas.size()));
+    if (total > 0.0) {
+        for (std::size_t f = 0; f < areas.size(); ++f) {
+            shares[f] = static_cast<float>(static_cast<double>(areas[f]) / total);
+        }
+    }
+    return shares;
+}
+
+std::vector<std::uint32_t> component_sizes(const TriangleMesh& mesh, const Topology& topology) {
+    const std::vector<std::uint32_t> component = face_components(mesh, topology);
+    std::vector<std::uint32_t> size(mesh.face_count(), 0);
+    for (const std::uint32_t c : component) ++size[c];
+    std::vector<std::uint32_t> of_face(mesh.face_count());
+    for (std::size_t f = 0; f < component.size(); ++f) of_face[f] = size[component[f]];
+    return of_face;
+}
+
+/// 30th, 50th and 95th percentile of the distances between different faces; zeros if there are none.
+std::array<float, 3> distance_percentiles(const PreparedMesh& prepared) {
+    const std::size_t faces = prepared.face_count();
+    float maximum = 0.0F;
+    for (const float d : prepared.distance) {
+        if (std::isfinite(d)) maximum = std::max(maximum, d);
+    }
+    WeightedHistogram histogram(maximum, 1U << 15U);
+    for (std::size_t s = 0; s < prepared.sample_count(); ++s) {
+        const double share = static_cast<double>(prepared.samples.area_share[s]);
+        for (std::size_t f = 0; f < faces; ++f) {
+            const float d = prepared.distance[s * faces + f];
+            if (f != prepared.samples.face[s] && std::isfinite(d)) {
+                histogram.add(d, share * static_cast<double>(prepared.area_share[f]));
+            }
+        }
+    }
+    constexpr std::array<double, 3> k_shares{0.30, 0.50, 0.95};
+    std::array<float, 3> result{};
+    histogram.percentiles(k_shares, result);
+    return result;
+}
+
+/// Multiplies all lengths by `factor`.
+void rescale(PreparedMesh& prepared, float factor) {
+    for (Vec3& v : prepared.mesh.vertices) v *= factor;
+    for (Vec3& c : prepared.center) c *= factor;
+    for (DualGraph::Arc& arc : prepared.graph.arcs) arc.length *= factor;
+    for (float& d : prepared.distance) d *= factor;
+    prepared.total_area *= factor * factor;
+}
+
+}  // namespace
+
+PreparedMesh prepare_mesh(const TriangleMesh& mesh, std::size_t samples) {
+    PreparedMesh prepared;
+    prepared.mesh = centered_mesh(mesh);
+    const std::vector<float> areas = face_areas(prepared.mesh);
+    const double total = std::accumulate(areas.begin(), areas.end(), 0.0);
+    prepared.total_area = static_cast<float>(total);
+    prepared.area_share = area_shares(areas, total);
+    prepared.center = face_centers(prepared.mesh);
+    prepared.normal = face_normals(prepared.mesh);
+    prepared.topology = build_topology(prepared.mesh);
+    prepared.graph = build_dual_graph(prepared.mesh, prepared.topology);
+    prepared.component_size = component_sizes(prepared.mesh, prepared.topology);
+    prepared.samples = sample_faces(prepared.mesh, prepared.graph, samples);
+    prepared.distance = distances_from_sources(prepared.graph, prepared.samples.face);
+
+    // Without two connected faces of some size there is no distance to measure by; the size of the whole must do.
+    auto [unit, median, far] = distance_percentiles(prepared);
+    constexpr float k_tiny = 1e-6F;
+    if (!(unit > k_tiny)) unit = median > k_tiny ? median : 1.0F;
+    if (!(median > k_tiny)) median = unit;
+    if (!(far > k_tiny)) far = median;
+    rescale(prepared, 1.0F / unit);
+    prepared.median_distance = median / unit;
+    prepared.far_distance = far / unit;
+    return prepared;
+}
+
+void gather_distances(const PreparedMesh& prepared, std::size_t begin, std::size_t end, std::vector<float>& out) {
+    const std::size_t faces = prepared.face_count(), samples = prepared.sample_count();
+    out.resize((end - begin) * samples);
+    for (std::size_t s = 0; s < samples; ++s) {
+        const float* row = prepared.distance.data() + s * faces;
+        for (std::size_t f = begin; f < end; ++f) out[(f - begin) * samples + s] = row[f];
+    }
+}
+
+Vec3 face_tangent(const PreparedMesh& prepared, std::size_t face) {
+    const Face& corners = prepared.mesh.faces[face];
+    Vec3 longest = Vec3::Zero();
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3 edge = prepared.mesh.vertices[corners[(k + 1) % 3]] - prepared.mesh.vertices[corners[k]];
+        // A tie (an equilateral face) must not hinge on rounding: the first edge stands unless another is clearly
+        // longer.
+        if (edge.squaredNorm() > 1.0001F * longest.squaredNorm()) longest = edge;
+    }
+    const Vec3& normal = prepared.normal[face];
+    const Vec3 tangent = longest - longest.dot(normal) * normal;
+    const float length = tangent.norm();
+    return length > 1e-3F * longest.norm() && length > 0.0F ? Vec3(tangent / length) : normal.unitOrthogonal();
+}
+
+}  // namespace exemplar

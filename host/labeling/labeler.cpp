@@ -13,12 +13,6 @@
 namespace exemplar {
 namespace {
 
-std::vector<std::string> edge_context_names() {
-    std::vector<std::string> names;
-    for (std::size_t bin = 0; bin < EdgeNeighborhood::k_bins; ++bin) names.push_back(fmt::format("context.boundary.{}", bin));
-    return names;
-}
-
 void require_features(const FeatureMatrix& matrix, const std::vector<std::string>& names, const char* what) {
     if (matrix.cols() >= names.size() && std::equal(names.begin(), names.end(), matrix.names.begin())) return;
     throw ModelError(fmt::format("the model was trained on other {} features ({} instead of {}); train it again", what,
@@ -32,14 +26,20 @@ std::vector<float> score(const CalibratedStumps& stage, const FeatureMatrix& mat
     return out;
 }
 
-/// The second column of a two-class result.
-std::vector<float> boundary_column(const std::vector<float>& probabilities) {
+}  // namespace
+
+std::vector<std::string> edge_context_names() {
+    std::vector<std::string> names;
+    for (std::size_t bin = 0; bin < EdgeNeighborhood::k_bins; ++bin)
+        names.push_back(fmt::format("context.boundary.{}", bin));
+    return names;
+}
+
+std::vector<float> boundary_column(std::span<const float> probabilities) {
     std::vector<float> boundary(probabilities.size() / 2);
     for (std::size_t e = 0; e < boundary.size(); ++e) boundary[e] = probabilities[2 * e + 1];
     return boundary;
 }
-
-}  // namespace
 
 std::vector<std::string> context_names(const std::vector<std::string>& label_names) {
     constexpr std::array<const char*, k_context_measures> k_measures{
@@ -47,7 +47,8 @@ std::vector<std::string> context_names(const std::vector<std::string>& label_nam
     std::vector<std::string> names;
     for (const char* measure : k_measures)
         for (std::size_t bin = 0; bin < k_context_bins; ++bin)
-            for (const std::string& label : label_names) names.push_back(fmt::format("context.{}.{}.{}", measure, bin, label));
+            for (const std::string& label : label_names)
+                names.push_back(fmt::format("context.{}.{}.{}", measure, bin, label));
     return names;
 }
 
@@ -59,7 +60,8 @@ std::span<float> context_columns(FeatureMatrix& matrix, std::size_t base, const 
     return std::span<float>(matrix.values).subspan(base * matrix.rows, names.size() * matrix.rows);
 }
 
-std::vector<float> unary_probabilities(const LabelingModel& model, MeshFeatures& features, const LabelingBackend& backend) {
+std::vector<float> unary_probabilities(const LabelingModel& model, MeshFeatures& features,
+                                       const LabelingBackend& backend) {
     require_features(features.unary, model.unary_names, "face");
     std::vector<float> probabilities = score(model.unary.front(), features.unary, backend.scorer);
     const std::vector<std::string> names = context_names(model.label_names);
@@ -72,12 +74,14 @@ std::vector<float> unary_probabilities(const LabelingModel& model, MeshFeatures&
     return probabilities;
 }
 
-std::vector<float> boundary_probabilities(const LabelingModel& model, MeshFeatures& features, const LabelingBackend& backend) {
+std::vector<float> boundary_probabilities(const LabelingModel& model, MeshFeatures& features,
+                                          const LabelingBackend& backend) {
     if (model.pairwise.empty()) return std::vector<float>(features.edges.size(), 0.5F);
     require_features(features.pairwise, model.pairwise_names, "edge");
     std::vector<float> boundary = boundary_column(score(model.pairwise.front(), features.pairwise, backend.scorer));
     for (std::size_t stage = 1; stage < model.pairwise.size(); ++stage) {
-        const std::span<float> context = context_columns(features.pairwise, model.pairwise_names.size(), edge_context_names());
+        const std::span<float> context =
+            context_columns(features.pairwise, model.pairwise_names.size(), edge_context_names());
         accumulate_edge_context(features, boundary, context);
         boundary = boundary_column(score(model.pairwise[stage], features.pairwise, backend.scorer));
     }

@@ -19,22 +19,28 @@ struct LabelingBackend {
 
 /// What inference says about one mesh, per triangle.
 struct FaceLabeling {
-    std::vector<std::int32_t> label;   ///< after the CRF and the merging of small pieces
-    std::vector<float> probabilities;  ///< faces x classes: the last unary classifier
-    std::vector<float> confidence;     ///< probability of the assigned label
+    std::vector<std::int32_t> label;                      ///< after the CRF and the merging of small pieces
+    std::vector<float> probabilities;                     ///< faces x classes: the last unary classifier
+    std::vector<float> confidence;                        ///< probability of the assigned label
     std::vector<std::pair<std::string, double>> seconds;  ///< wall time: unary, pairwise, cut
 };
 
 /// Names of the contextual columns that a cascade's later stages see, "context.MEASURE.BIN.LABEL".
 std::vector<std::string> context_names(const std::vector<std::string>& label_names);
+/// Names of the pairwise contextual columns (thesis App. A.2e).
+std::vector<std::string> edge_context_names();
+/// P(boundary) per edge from two-class probabilities (edges x 2).
+std::vector<float> boundary_column(std::span<const float> probabilities);
 /// Makes sure that `matrix` has the contextual columns behind its `base` first ones, and returns the whole of them.
 std::span<float> context_columns(FeatureMatrix& matrix, std::size_t base, const std::vector<std::string>& names);
 
 /// Runs the unary cascade: faces x classes. `features.unary` gains (or reuses) the contextual columns.
 /// Throws ModelError where the features are not those the model was trained on.
-std::vector<float> unary_probabilities(const LabelingModel& model, MeshFeatures& features, const LabelingBackend& backend);
+std::vector<float> unary_probabilities(const LabelingModel& model, MeshFeatures& features,
+                                       const LabelingBackend& backend);
 /// Runs the boundary classifiers: one probability per edge. `features.pairwise` gains the contextual columns.
-std::vector<float> boundary_probabilities(const LabelingModel& model, MeshFeatures& features, const LabelingBackend& backend);
+std::vector<float> boundary_probabilities(const LabelingModel& model, MeshFeatures& features,
+                                          const LabelingBackend& backend);
 /// Labels a mesh (thesis Sec. 3.2).
 FaceLabeling label_faces(const LabelingModel& model, MeshFeatures& features, const LabelingBackend& backend);
 

@@ -1,0 +1,78 @@
+#include "host/imaging/png.h"
+
+#include <fmt/format.h>
+#include <png.h>
+
+#include <ostream>
+#include <string>
+
+#include "host/core/errors.h"
+#include "host/core/files.h"
+
+namespace exemplar {
+namespace {
+
+constexpr std::size_t k_max_pixels = std::size_t{1} << 28;
+
+/// libpng's simplified reader and writer state, freed on every path.
+struct PngState {
+    png_image image{};
+    PngState() { image.version = PNG_IMAGE_VERSION; }
+    ~PngState() { png_image_free(&image); }
+    PngState(const PngState&) = delete;
+    PngState& operator=(const PngState&) = delete;
+};
+
+png_uint_32 format_of(int channels) {
+    if (channels == 1) return PNG_FORMAT_GRAY;
+    return channels == 3 ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
+}
+
+int channels_of(png_uint_32 format) {
+    if (format & PNG_FORMAT_FLAG_ALPHA) return 4;
+    return format & PNG_FORMAT_FLAG_COLOR ? 3 : 1;
+}
+
+std::string encode(const std::filesystem::path& path, const Image& image) {
+    PngState state;
+    state.image.width = static_cast<png_uint_32>(image.width);
+    state.image.height = static_cast<png_uint_32>(image.height);
+    state.image.format = format_of(image.channels);
+    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(state.image);
+    std::string bytes(size, '\0');
+    if (!png_image_write_to_memory(&state.image, bytes.data(), &size, 0, image.data.data(), 0, nullptr))
+        throw DataError(fmt::format("{}: cannot be encoded as PNG: {}", path.string(), state.image.message));
+    bytes.resize(size);
+    return bytes;
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& path, const Image& image) {
+    if (image.channels != 1 && image.channels != 3 && image.channels != 4)
+        throw UsageError(fmt::format("{}: a PNG takes 1, 3 or 4 channels, not {}", path.string(), image.channels));
+    if (image.width <= 0 || image.height <= 0)
+        throw UsageError(fmt::format("{}: the image is empty ({} x {})", path.string(), image.width, image.height));
+    const std::string bytes = encode(path, image);
+    write_file_atomically(
+        path, [&](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
+}
+
+Image read_png(const std::filesystem::path& path) {
+    const std::string bytes = read_file(path);
+    PngState state;
+    const auto fail = [&](const char* reason) {
+        throw DataError(fmt::format("{}: not a readable PNG: {}", path.string(), reason));
+    };
+    if (!png_image_begin_read_from_memory(&state.image, bytes.data(), bytes.size())) fail(state.image.message);
+    if (std::size_t{state.image.width} * state.image.height > k_max_pixels) fail("more than 2^28 pixels");
+
+    const int channels = channels_of(state.image.format);
+    state.image.format = format_of(channels);
+    Image image(static_cast<int>(state.image.width), static_cast<int>(state.image.height), channels);
+    const bool read = png_image_finish_read(&state.image, nullptr, image.data.data(), 0, nullptr) != 0;
+    if (!read || PNG_IMAGE_FAILED(state.image)) fail(state.image.message);
+    return image;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/labeling/model.h"
+#include "host/learn/boosted_stumps.h"
+#include "host/learn/feature_matrix.h"
+
+namespace exemplar {
+
+/// The items (faces or edges) of one mesh that a classifier learns from.
+struct BoostingItems {
+    const FeatureMatrix* features;        ///< at least the columns that are trained on
+    std::span<const std::int32_t> label;  ///< per item; -1 is left out
+    std::span<const float> weight;        ///< per item
+    std::span<const std::uint8_t> fold;   ///< per item: the fold that holds it out
+};
+
+struct FoldBoostingOptions {
+    std::size_t classes = 2;
+    std::size_t features = 0;  ///< leading columns to train on
+    std::size_t folds = 1;
+    std::size_t rounds = 300, patience = 50, bins = 128;
+    std::size_t rows_per_mesh = 0;  ///< 0 = all
+    bool binary = false;            ///< GentleBoost for two classes instead of JointBoost
+    std::uint64_t seed = 1;
+};
+
+struct FoldBoostingResult {
+    CalibratedStumps classifier;  ///< trained on all items
+    std::vector<std::vector<float>>
+        out_of_fold;            ///< per mesh: items x classes, from the classifier that never saw the item
+    std::vector<double> curve;  ///< mean validation cost after each round
+    double loss = 0;            ///< weighted mean -log P(truth), out of fold
+    double error = 0;           ///< weighted share of wrong labels, out of fold
+};
+
+/// Boosts one classifier per fold and one on everything (see train_labeling). `round_done` is called after every round
+/// of every classifier.
+FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const FoldBoostingOptions& options,
+                                    StumpScorer& scorer, const std::function<void()>& round_done);
+
+}  // namespace exemplar

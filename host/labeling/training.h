@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "host/data/corpus.h"
+#include "host/labeling/crf_learning.h"
+#include "host/labeling/labeler.h"
+#include "host/labeling/model.h"
+
+namespace exemplar {
+
+struct TrainOptions {
+    std::uint64_t seed = 1;
+    std::size_t rounds = 300;       ///< most stumps per classifier (thesis Sec. 3.3.1)
+    std::size_t patience = 50;      ///< rounds without a better validation loss that end boosting
+    std::size_t max_stages = 4;     ///< most classifiers of the unary cascade (the thesis usually stops at 3)
+    std::size_t bins = 128;         ///< quantization of each feature
+    std::size_t rows_per_mesh = 0;  ///< faces (and edges) of each mesh used for boosting, drawn at random; 0 = all
+    FeatureOptions features;
+};
+
+/// How one classifier of a cascade was trained.
+struct StageReport {
+    std::string what;             ///< "unary 0", "pairwise 1", ...
+    std::size_t rounds = 0;       ///< stumps kept
+    double validation_loss = 0;   ///< weighted mean -log P of the truth, out of fold
+    double validation_error = 0;  ///< weighted share of wrong labels, out of fold
+    bool kept = true;             ///< false for a last stage that did not improve
+    std::vector<double> curve;    ///< boosting cost (Eq. 3.5) on held-out meshes after each round, mean over folds
+    double seconds = 0;
+};
+
+struct TrainReport {
+    std::vector<StageReport> stages;
+    CrfSearchReport crf;
+    double crf_seconds = 0;
+    std::vector<std::vector<std::string>> folds;  ///< mesh names per fold
+};
+
+/// Trains a labeler from labeled meshes and their features (one per mesh, same order; they gain contextual columns).
+///
+/// The exemplar/validation split of thesis Sec. 3.3 (4 : 1) is rotated: the meshes fall at random (by seed) into up to
+/// five folds; for each fold a classifier is trained on the others and validated on it. The mean of the validation
+/// curves chooses the number of rounds; the probabilities that each mesh gets from the classifier that never saw it
+/// feed the contextual features of the next stage, the choice of the number of stages, the link between score and
+/// probability, and the CRF's parameters. The final classifiers are trained on all meshes. With 2 to 4 meshes there are
+/// as many folds as meshes; a single mesh is cut into patches of faces that serve as folds.
+///
+/// Throws DataError if there is no mesh, no labeled face, or more than k_max_classes labels.
+LabelingModel train_labeling(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features,
+                             const TrainOptions& options, const LabelingBackend& backend, TrainReport& report);
+
+}  // namespace exemplar

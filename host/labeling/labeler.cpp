@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "host/core/errors.h"
@@ -53,11 +54,18 @@ std::vector<std::string> context_names(const std::vector<std::string>& label_nam
 }
 
 std::span<float> context_columns(FeatureMatrix& matrix, std::size_t base, const std::vector<std::string>& names) {
-    if (matrix.cols() == base) {
-        matrix.names.insert(matrix.names.end(), names.begin(), names.end());
-        matrix.values.resize(matrix.cols() * matrix.rows);
-    }
+    matrix.names.resize(base);
+    matrix.names.insert(matrix.names.end(), names.begin(), names.end());
+    matrix.values.resize(matrix.cols() * matrix.rows);
     return std::span<float>(matrix.values).subspan(base * matrix.rows, names.size() * matrix.rows);
+}
+
+void drop_context_columns(MeshFeatures& features) {
+    for (FeatureMatrix* matrix : {&features.unary, &features.pairwise}) {
+        const auto is_context = [](const std::string& name) { return name.starts_with("context."); };
+        matrix->names.erase(std::find_if(matrix->names.begin(), matrix->names.end(), is_context), matrix->names.end());
+        matrix->values.resize(matrix->cols() * matrix->rows);
+    }
 }
 
 std::vector<float> unary_probabilities(const LabelingModel& model, MeshFeatures& features,

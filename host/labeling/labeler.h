@@ -31,8 +31,12 @@ std::vector<std::string> context_names(const std::vector<std::string>& label_nam
 std::vector<std::string> edge_context_names();
 /// P(boundary) per edge from two-class probabilities (edges x 2).
 std::vector<float> boundary_column(std::span<const float> probabilities);
-/// Makes sure that `matrix` has the contextual columns behind its `base` first ones, and returns the whole of them.
+/// Gives `matrix` contextual columns of these names behind its `base` first ones (in place of any it had), and returns
+/// them.
 std::span<float> context_columns(FeatureMatrix& matrix, std::size_t base, const std::vector<std::string>& names);
+
+/// Removes the contextual columns of both matrices.
+void drop_context_columns(MeshFeatures& features);
 
 /// Runs the unary cascade: faces x classes. `features.unary` gains (or reuses) the contextual columns.
 /// Throws ModelError where the features are not those the model was trained on.

@@ -264,6 +264,7 @@ LabelingModel train_labeling(const LabeledCorpus& corpus, std::vector<MeshFeatur
                              const TrainOptions& options, const LabelingBackend& backend, TrainReport& report) {
     require_trainable(corpus, features.size());
     report = {};
+    for (MeshFeatures& mesh : features) drop_context_columns(mesh);
     LabelingModel model;
     model.label_names = corpus.names;
     for (std::size_t c = 0; c < corpus.names.size(); ++c) model.label_colors.push_back(label_color(c));

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/mesh/labels.h"
+#include "host/mesh/mesh.h"
+
+namespace exemplar {
+
+/// One labeled mesh of a report. All per-face values are per triangle of `mesh`, not per polygon of its file.
+struct ReportMesh {
+    std::string name;                     ///< any text, e.g. the file's stem
+    const TriangleMesh* mesh = nullptr;   ///< must outlive the call that writes the page
+    std::vector<std::int32_t> predicted;  ///< index into ReportData::label_names
+    std::vector<std::int32_t> truth;      ///< the same, or -1 where unlabeled; empty if there is no ground truth
+    std::vector<float> confidence;        ///< probability of the predicted label, in [0, 1]
+    double recognition_rate = 0;          ///< share of the area labeled right, in [0, 1]; NaN if unknown
+};
+
+/// One group of a report, e.g. a category: its meshes, and what is known about the model that labeled them.
+/// Empty tables are left out of the page.
+struct ReportData {
+    std::string title, subtitle;
+    std::vector<std::string> label_names;  ///< C names, C <= 255
+    std::vector<Color> label_colors;       ///< C sRGB colors
+    std::vector<ReportMesh> meshes;
+    std::vector<double> confusion;                                      ///< C x C, row = truth, share of area
+    std::vector<std::pair<std::string, std::size_t>> feature_families;  ///< family, number of stumps
+    std::vector<std::string> first_features;                            ///< in the order they were chosen
+    std::vector<std::pair<std::string, double>> timings;                ///< what, seconds
+    std::vector<std::pair<std::string, std::string>> summary;           ///< key, value; shown in large type
+};
+
+/// Writes one HTML file that shows the groups: a turnable view of every labeled mesh (predicted labels, ground truth,
+/// confidence, errors), confusion table, chosen features and timings. The file needs nothing else: no network, no
+/// server, no other file; it opens from file:// in any browser with WebGL (without, the tables remain).
+///
+/// Meshes are packed for display, not for exchange: positions are rounded to 1 / 65535 of the bounding box of the
+/// mesh, confidences to 1 / 255. A mesh of F triangles and V vertices costs (6 V + 9 F) * 4 / 3 bytes, and 6 F more
+/// in the parentheses beyond 65536 vertices. The file is written atomically and depends on nothing but the arguments.
+///
+/// Throws UsageError naming the mesh or table if a label index or confidence is out of range, a size does not match,
+/// a coordinate is not finite, or there is no group; DataError if the file cannot be written.
+void write_report_page(const std::filesystem::path& path, const std::string& title, std::span<const ReportData> groups);
+
+}  // namespace exemplar

@@ -6,10 +6,11 @@
 
 namespace exemplar {
 
-/// compute_features with a memory on disk: results are kept in `folder` under a hash of the mesh's content, the options and
-/// the feature version, so that equal meshes share them whatever their names. A damaged entry is computed again.
-/// An empty folder turns the memory off. Throws what compute_features throws.
-MeshFeatures cached_features(const TriangleMesh& mesh, const FeatureOptions& options, const std::filesystem::path& folder);
+/// compute_features with a memory on disk: results are kept in `folder` under a hash of the mesh's content, the options
+/// and the feature version, so that equal meshes share them whatever their names. A damaged entry is computed again. An
+/// empty folder turns the memory off. Throws what compute_features throws.
+MeshFeatures cached_features(const TriangleMesh& mesh, const FeatureOptions& options,
+                             const std::filesystem::path& folder);
 
 /// 32 hexadecimal digits that identify a mesh's content (vertices and faces).
 std::string content_hash(const TriangleMesh& mesh);

@@ -42,8 +42,8 @@ struct ReportData {
 /// server, no other file; it opens from file:// in any browser with WebGL (without, the tables remain).
 ///
 /// Meshes are packed for display, not for exchange: positions are rounded to 1 / 65535 of the bounding box of the
-/// mesh, confidences to 1 / 255. A mesh of F triangles and V vertices costs (6 V + 9 F) * 4 / 3 bytes, and 6 F more
-/// in the parentheses beyond 65536 vertices. The file is written atomically and depends on nothing but the arguments.
+/// mesh, confidences to 1 / 255. A mesh of F triangles and V vertices costs (6 V + 9 F) * 4 / 3 bytes; 15 F instead
+/// of 9 F beyond 65536 vertices. The file is written atomically; equal arguments give equal bytes.
 ///
 /// Throws UsageError naming the mesh or table if a label index or confidence is out of range, a size does not match,
 /// a coordinate is not finite, or there is no group; DataError if the file cannot be written.

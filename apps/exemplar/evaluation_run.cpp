@@ -1,0 +1,236 @@
+#include "apps/exemplar/evaluation_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "apps/exemplar/labeled_output.h"
+#include "host/core/errors.h"
+#include "host/core/files.h"
+#include "host/core/interrupt.h"
+#include "host/core/progress.h"
+#include "host/core/stopwatch.h"
+#include "host/labeling/report_page.h"
+
+namespace exemplar {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr std::size_t k_shown_meshes = 6;  ///< of each category in the page
+constexpr const char* k_rates[] = {"recognition_rate", "segment_weighted_accuracy", "rand_error"};
+
+/// Everything that a finished result depends on: results of another run are not mixed into this one.
+std::string run_key(const EvaluationTask& task, const TrainOptions& train) {
+    Json key{{"seed", train.seed},
+             {"rounds", train.rounds},
+             {"patience", train.patience},
+             {"stages", train.max_stages},
+             {"bins", train.bins},
+             {"rows", train.rows_per_mesh},
+             {"samples", train.features.samples},
+             {"orientation", train.features.orientation},
+             {"features", k_feature_version},
+             {"format", k_model_format_version}};
+    for (const fs::path& path : task.train) key["train"].push_back(path.string());
+    return key.dump();
+}
+
+/// The JSON of a file; null if it is missing or damaged.
+Json read_json(const fs::path& path) {
+    if (!fs::exists(path)) return nullptr;
+    return Json::parse(read_file(path), nullptr, false);
+}
+
+void write_json(const fs::path& path, const Json& json) {
+    write_file_atomically(path, [&](std::ostream& out) { out << json.dump(1) << '\n'; });
+}
+
+Json rate_json(double rate) {
+    return std::isnan(rate) ? Json(nullptr) : Json(rate);
+}
+
+/// Mean of each rate over `items`, without those that lack it.
+Json mean_rates(const Json& items) {
+    Json means = Json::object();
+    for (const char* rate : k_rates) {
+        double sum = 0;
+        int count = 0;
+        for (const Json& item : items)
+            if (const double value = rate_of(item, rate); !std::isnan(value)) sum += value, ++count;
+        means[rate] = rate_json(count ? sum / count : std::numeric_limits<double>::quiet_NaN());
+    }
+    return means;
+}
+
+fs::path folder_of(const fs::path& out, const EvaluationTask& task) {
+    return out / task.category / task.split;
+}
+
+/// Confusion summed over meshes and divided by their number.
+std::vector<double> mean_confusion(const Json& meshes) {
+    std::vector<double> sum;
+    for (const Json& mesh : meshes) {
+        const auto confusion = mesh.at("confusion").get<std::vector<double>>();
+        sum.resize(confusion.size(), 0);
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += confusion[i] / static_cast<double>(meshes.size());
+    }
+    return sum;
+}
+
+}  // namespace
+
+double rate_of(const Json& json, const char* key) {
+    return json.contains(key) && json[key].is_number() ? json[key].get<double>()
+                                                       : std::numeric_limits<double>::quiet_NaN();
+}
+
+LabelingModel EvaluationRun::model_for(const EvaluationTask& task, const fs::path& folder) {
+    const fs::path path = folder / "model.safetensors", run = folder / "run.json";
+    const std::string key = run_key(task, train_);
+    if (const Json done = read_json(run); done.is_object() && done.value("key", "") == key && fs::exists(path)) {
+        try {
+            return load_model(path);
+        } catch (const ModelError&) {
+            // Damaged: trained again below.
+        }
+    }
+    const Stopwatch watch;
+    const LabeledCorpus corpus = load_corpus(task.train);
+    std::vector<MeshFeatures> features = features_of(corpus, train_.features, cache_);
+    const double feature_seconds = watch.wall();
+    TrainReport report;
+    LabelingModel model = train_labeling(corpus, features, train_, backend_.labeling(), report);
+    if (!quiet_) print_training(model, report);
+    save_model(path, model);
+    Json json = describe_training(model, report);
+    json["key"] = key;
+    json["seconds"] = {{"features", feature_seconds}, {"all", watch.wall()}, {"cpu", watch.cpu()}};
+    write_json(run, json);
+    return model;
+}
+
+Json EvaluationRun::test_mesh(const EvaluationTask& task, const fs::path& mesh, const fs::path& folder,
+                              const LabelingModel& model, const std::string& key) {
+    const fs::path stem = folder / mesh.stem(), scores = stem.string() + ".json";
+    if (Json done = read_json(scores); done.is_object() && done.value("key", "") == key) return done;
+    const Stopwatch watch;
+    // A test mesh may have labels that the training meshes lack; they can only be wrong, but they count.
+    const LabeledCorpus own = load_corpus({mesh});
+    std::vector<std::string> names = model.label_names;
+    for (const std::string& name : own.names)
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    const LabeledCorpus corpus = load_corpus({mesh}, names);
+    const LabeledMesh& item = corpus.meshes.front();
+
+    MeshFeatures features = cached_features(item.mesh, model.feature_options, cache_);
+    const double feature_seconds = watch.wall();
+    const FaceLabeling labeling = label_faces(model, features, backend_.labeling());
+    write_labeled_files(stem, item.mesh, make_labeled_output(item.mesh, model, labeling), false);
+    const MeshScore score = score_labeling(features, item.label, labeling.label, names.size(),
+                                           read_human_segmentations(task.humans, item.name, item.mesh.face_count()));
+    Json json{{"key", key},
+              {"mesh", item.name},
+              {"path", mesh.string()},
+              {"names", names},
+              {"recognition_rate", score.recognition_rate},
+              {"segment_weighted_accuracy", score.segment_weighted_accuracy},
+              {"rand_error", rate_json(score.rand_error)},
+              {"confusion", score.confusion},
+              {"seconds", {{"features", feature_seconds}, {"all", watch.wall()}}}};
+    write_json(scores, json);
+    return json;
+}
+
+Json EvaluationRun::run_task(const EvaluationTask& task, Progress& progress) {
+    const fs::path folder = folder_of(out_, task);
+    const LabelingModel model = model_for(task, folder);
+    const std::string key = run_key(task, train_);
+    progress.advance(1, task.category + " trained");
+    Json result{{"split", task.split}, {"train", Json::array()}, {"meshes", Json::array()}};
+    for (const fs::path& path : task.train) result["train"].push_back(path.stem().string());
+    for (const fs::path& mesh : task.test) {
+        check_interrupt();
+        result["meshes"].push_back(test_mesh(task, mesh, folder, model, key));
+        result["meshes"].back().erase("key");
+        progress.advance(1, task.category + "/" + mesh.stem().string());
+    }
+    return result;
+}
+
+Json EvaluationRun::evaluate(const std::vector<EvaluationTask>& tasks, const std::string& protocol) {
+    std::size_t steps = 0;
+    for (const EvaluationTask& task : tasks) steps += 1 + task.test.size();
+    Progress progress("evaluating", steps);
+    Json report{{"protocol", protocol}, {"device", backend_.device_name()}, {"categories", Json::array()}};
+    for (const EvaluationTask& task : tasks) {
+        Json split = run_task(task, progress);
+        Json& categories = report["categories"];
+        if (categories.empty() || categories.back()["category"] != task.category)
+            categories.push_back({{"category", task.category}, {"splits", Json::array()}, {"meshes", 0}});
+        Json& category = categories.back();
+        category["meshes"] = category["meshes"].get<std::size_t>() + split["meshes"].size();
+        category["splits"].push_back(std::move(split));
+        Json all = Json::array();
+        for (const Json& done : category["splits"])
+            for (const Json& mesh : done["meshes"]) all.push_back(mesh);
+        category.update(mean_rates(all));
+    }
+    progress.finish();
+    report.update(mean_rates(report["categories"]));
+    write_page(tasks, report);
+    return report;
+}
+
+void EvaluationRun::write_page(const std::vector<EvaluationTask>& tasks, const Json& report) const {
+    std::vector<LabeledCorpus> kept;  // the page refers to the meshes
+    kept.reserve(tasks.size());
+    std::vector<ReportData> groups;
+    for (const Json& category : report["categories"]) {
+        const auto task =
+            std::find_if(tasks.begin(), tasks.end(), [&](const auto& t) { return t.category == category["category"]; });
+        const fs::path folder = folder_of(out_, *task);
+        const LabelingModel model = load_model(folder / "model.safetensors");
+        const Json& meshes = category["splits"][0]["meshes"];
+        std::vector<fs::path> shown;
+        for (std::size_t i = 0; i < std::min(k_shown_meshes, meshes.size()); ++i)
+            shown.emplace_back(meshes[i]["path"].get<std::string>());
+        std::vector<std::string> names = model.label_names;
+        for (const Json& mesh : meshes)
+            for (const std::string name : mesh["names"])
+                if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+        kept.push_back(load_corpus(shown, names));
+
+        ReportData group;
+        group.title = category["category"];
+        group.subtitle =
+            fmt::format("{} training meshes, {} test meshes", category["splits"][0]["train"].size(), meshes.size());
+        group.label_names = names;
+        for (std::size_t c = 0; c < names.size(); ++c) group.label_colors.push_back(label_color(c));
+        for (std::size_t i = 0; i < shown.size(); ++i) {
+            const LabeledMesh& mesh = kept.back().meshes[i];
+            const MeshFile predicted = read_mesh(folder / (mesh.name + ".ply"));
+            group.meshes.push_back({mesh.name, &mesh.mesh, predicted.labels->label, mesh.label,
+                                    std::vector<float>(mesh.mesh.face_count(), 1.0F), meshes[i]["recognition_rate"]});
+        }
+        if (meshes.size() > 0 && std::all_of(meshes.begin(), meshes.end(),
+                                             [&](const Json& m) { return m["names"].size() == model.class_count(); }))
+            group.confusion = mean_confusion(meshes);
+        group.feature_families = stumps_per_family(model);
+        group.first_features = first_features(model, 10);
+        const auto show = [&](const char* key, const char* title) {
+            if (const double rate = rate_of(category, key); !std::isnan(rate))
+                group.summary.emplace_back(title, fmt::format("{:.1f} %", 100 * rate));
+        };
+        show("recognition_rate", "recognition rate");
+        show("segment_weighted_accuracy", "segment-weighted accuracy");
+        show("rand_error", "Rand index error");
+        groups.push_back(std::move(group));
+    }
+    write_report_page(out_ / "index.html", "Mesh labeling on unseen shapes", groups);
+}
+
+}  // namespace exemplar

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/exemplar/backend.h"
+#include "apps/exemplar/training_run.h"
+#include "host/labeling/evaluation.h"
+
+namespace exemplar {
+
+/// One training and the tests of what it learned.
+struct EvaluationTask {
+    std::string category, split;  ///< name the output folder OUT/CATEGORY/SPLIT
+    std::vector<std::filesystem::path> train, test;
+    std::filesystem::path humans;  ///< human segmentations; may be empty
+};
+
+/// Works through tasks and keeps what is finished on disk, so that a run that was interrupted goes on from there:
+/// OUT/CATEGORY/SPLIT/model.safetensors and, per test mesh, NAME_labels.txt, NAME.ply, NAME.seg and NAME.json (its
+/// scores).
+class EvaluationRun {
+  public:
+    EvaluationRun(DeviceBackend& backend, const TrainOptions& train, std::filesystem::path cache,
+                  std::filesystem::path out, bool quiet)
+        : backend_(backend), train_(train), cache_(std::move(cache)), out_(std::move(out)), quiet_(quiet) {}
+
+    /// Runs everything and writes OUT/index.html; returns the report (docs/formats.md).
+    nlohmann::json evaluate(const std::vector<EvaluationTask>& tasks, const std::string& protocol);
+
+  private:
+    LabelingModel model_for(const EvaluationTask& task, const std::filesystem::path& folder);
+    nlohmann::json test_mesh(const EvaluationTask& task, const std::filesystem::path& mesh,
+                             const std::filesystem::path& folder, const LabelingModel& model, const std::string& key);
+    nlohmann::json run_task(const EvaluationTask& task, class Progress& progress);
+    void write_page(const std::vector<EvaluationTask>& tasks, const nlohmann::json& report) const;
+
+    DeviceBackend& backend_;
+    TrainOptions train_;
+    std::filesystem::path cache_, out_;
+    bool quiet_;
+};
+
+/// A rate of a report; NaN where it is null.
+double rate_of(const nlohmann::json& json, const char* key);
+
+}  // namespace exemplar

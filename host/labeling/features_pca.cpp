@@ -1,0 +1,109 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host/core/parallel.h"
+#include "host/labeling/feature_families.h"
+#include "host/labeling/sample_cells.h"
+
+namespace exemplar {
+namespace {
+
+/// The three singular values and the twelve ratios of the text.
+constexpr std::array<const char*, 15> k_columns{"s1",     "s2",          "s3",          "s1/sum",      "s2/sum",
+                                                "s3/sum", "(s1+s2)/sum", "(s1+s3)/sum", "(s2+s3)/sum", "s1/s2",
+                                                "s1/s3",  "s2/s3",       "s1/s2+s1/s3", "s1/s2+s2/s3", "s1/s3+s2/s3"};
+
+std::array<float, k_columns.size()> pca_values(const SurfaceMoments& moments, float radius) {
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+    solver.computeDirect(moments.covariance(), Eigen::EigenvaluesOnly);
+    const auto deviation = [&](Eigen::Index k) {
+        return static_cast<float>(std::sqrt(std::max(solver.eigenvalues()[k], 0.0))) / radius;
+    };
+    const float s1 = std::max(deviation(2), 1e-6F);  // a single point has no extent; its ratios are 1
+    const float least = s1 > 1e-6F ? 0.01F * s1 : s1;
+    const float s2 = std::max(deviation(1), least), s3 = std::max(deviation(0), least), sum = s1 + s2 + s3;
+    return {s1,
+            s2,
+            s3,
+            s1 / sum,
+            s2 / sum,
+            s3 / sum,
+            (s1 + s2) / sum,
+            (s1 + s3) / sum,
+            (s2 + s3) / sum,
+            s1 / s2,
+            s1 / s3,
+            s2 / s3,
+            s1 / s2 + s1 / s3,
+            s1 / s2 + s2 / s3,
+            s1 / s3 + s2 / s3};
+}
+
+/// How many of the radii are measured from all faces: those that hold too few samples for the samples to stand for
+/// them.
+std::size_t count_exact_radii(const PreparedMesh& prepared) {
+    constexpr double k_enough_samples = 40.0;
+    if (prepared.samples_are_all_faces() || !(prepared.total_area > 0.0F)) return PcaFamily::k_radii.size();
+    std::size_t count = 0;
+    for (const double share : PcaFamily::k_radii) {
+        const double radius = share * static_cast<double>(prepared.median_distance);
+        const double area_share = std::numbers::pi * radius * radius / static_cast<double>(prepared.total_area);
+        if (area_share * static_cast<double>(prepared.sample_count()) < k_enough_samples) ++count;
+    }
+    return count;
+}
+
+}  // namespace
+
+PcaFamily::PcaFamily(const PreparedMesh& prepared) : prepared_(&prepared), exact_radii_(count_exact_radii(prepared)) {
+    unary_.rows = prepared.face_count();
+    for (const double radius : k_radii) {
+        for (const char* column : k_columns) unary_.add(at_radius(std::string("pca.") + column, radius));
+    }
+}
+
+float PcaFamily::radius() const {
+    return exact_radii_ == 0 ? 0.0F : static_cast<float>(k_radii[exact_radii_ - 1]) * prepared_->median_distance;
+}
+
+void PcaFamily::measure(std::uint32_t face, Neighborhood neighborhood) {
+    SurfaceMoments moments;
+    std::size_t added = 0;
+    for (std::size_t scale = 0; scale < exact_radii_; ++scale) {
+        const float radius = static_cast<float>(k_radii[scale]) * prepared_->median_distance;
+        const std::size_t end = count_within(neighborhood, radius, k_least_region);
+        for (; added < end; ++added) {
+            const std::uint32_t near = neighborhood[added].face;
+            const Vec3 offset = prepared_->center[near] - prepared_->center[face];
+            moments.add(offset.cast<double>(), static_cast<double>(prepared_->area_share[near]));
+        }
+        const auto values = pca_values(moments, radius);
+        for (std::size_t k = 0; k < values.size(); ++k) unary_.column(scale * values.size() + k)[face] = values[k];
+    }
+}
+
+void PcaFamily::measure_large_radii() {
+    if (exact_radii_ == k_radii.size()) return;
+    const std::vector<SampleCell> cells = sample_cells(*prepared_);
+    const std::size_t samples = cells.size();
+    parallel_ranges(unary_.rows, 64, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> distance;
+        gather_distances(*prepared_, begin, end, distance);
+        for (std::size_t f = begin; f < end; ++f) {
+            for (std::size_t scale = exact_radii_; scale < k_radii.size(); ++scale) {
+                const float radius = static_cast<float>(k_radii[scale]) * prepared_->median_distance;
+                SurfaceMoments moments;
+                for (std::size_t s = 0; s < samples; ++s) {
+                    const float share = cells[s].share_within(distance[(f - begin) * samples + s], radius);
+                    if (share > 0.0F) moments.add(cells[s].moments, static_cast<double>(share));
+                }
+                const auto values = pca_values(moments, radius);
+                for (std::size_t k = 0; k < values.size(); ++k) unary_.column(scale * values.size() + k)[f] = values[k];
+            }
+        }
+    });
+}
+
+}  // namespace exemplar

@@ -101,7 +101,8 @@ void run_evaluate(const EvaluateCommand& options) {
     const std::vector<EvaluationTask> tasks = make_tasks(options);
     DeviceBackend backend(options.common.device);
     EvaluationRun run(backend, options.train, options.cache, options.out, options.common.quiet);
-    const nlohmann::json report = run.evaluate(tasks, options.protocol.empty() ? "lists" : options.protocol);
+    const nlohmann::json report =
+        run.evaluate(tasks, options.protocol.empty() ? "lists" : options.protocol, "Mesh labeling on unseen shapes");
 
     fmt::print("{:>12} {:>6} {:>7} {:>7} {:>7}\n", "category", "meshes", "RR", "SW", "RI err");
     for (const auto& category : report["categories"])

@@ -161,7 +161,8 @@ Json EvaluationRun::run_task(const EvaluationTask& task, Progress& progress) {
     return result;
 }
 
-Json EvaluationRun::evaluate(const std::vector<EvaluationTask>& tasks, const std::string& protocol) {
+Json EvaluationRun::evaluate(const std::vector<EvaluationTask>& tasks, const std::string& protocol,
+                             const std::string& title) {
     std::size_t steps = 0;
     for (const EvaluationTask& task : tasks) steps += 1 + task.test.size();
     Progress progress("evaluating", steps);
@@ -181,56 +182,68 @@ Json EvaluationRun::evaluate(const std::vector<EvaluationTask>& tasks, const std
     }
     progress.finish();
     report.update(mean_rates(report["categories"]));
-    write_page(tasks, report);
+    write_page(tasks, report, title);
     return report;
 }
 
-void EvaluationRun::write_page(const std::vector<EvaluationTask>& tasks, const Json& report) const {
-    std::vector<LabeledCorpus> kept;  // the page refers to the meshes
-    kept.reserve(tasks.size());
+ReportData EvaluationRun::report_group(const EvaluationTask& task, const Json& category, const LabeledCorpus& shown) {
+    const fs::path folder = folder_of(out_, task);
+    const LabelingModel model = load_model(folder / "model.safetensors");
+    const Json run = read_json(folder / "run.json");
+    const Json& meshes = category["splits"][0]["meshes"];
+    ReportData group;
+    group.title = category["category"];
+    group.subtitle =
+        fmt::format("{} training meshes, {} unseen meshes", category["splits"][0]["train"].size(), meshes.size());
+    group.label_names = shown.names;
+    for (std::size_t c = 0; c < shown.names.size(); ++c) group.label_colors.push_back(label_color(c));
+    for (std::size_t i = 0; i < shown.meshes.size(); ++i) {
+        const LabeledMesh& mesh = shown.meshes[i];
+        MeshFeatures features = cached_features(mesh.mesh, model.feature_options, cache_);
+        FaceLabeling labeling = label_faces(model, features, backend_.labeling());
+        group.meshes.push_back({mesh.name, &mesh.mesh, std::move(labeling.label), mesh.label,
+                                std::move(labeling.confidence), meshes[i]["recognition_rate"]});
+    }
+    const auto same_names = [&](const Json& mesh) { return mesh["names"].size() == model.class_count(); };
+    if (std::all_of(meshes.begin(), meshes.end(), same_names)) group.confusion = mean_confusion(meshes);
+    group.feature_families = stumps_per_family(model);
+    group.first_features = first_features(model, 10);
+    double label_seconds = 0;
+    for (const Json& mesh : meshes)
+        label_seconds += (mesh["seconds"]["all"].get<double>() - mesh["seconds"]["features"].get<double>()) /
+                         static_cast<double>(meshes.size());
+    group.timings = {{"features of the training meshes", run["seconds"]["features"]},
+                     {"training, all", run["seconds"]["all"]},
+                     {"labeling a mesh, features ready (mean)", label_seconds}};
+    const auto show = [&](const char* key, const char* title) {
+        if (const double rate = rate_of(category, key); !std::isnan(rate))
+            group.summary.emplace_back(title, fmt::format("{:.1f} %", 100 * rate));
+    };
+    show("recognition_rate", "recognition rate");
+    show("segment_weighted_accuracy", "segment-weighted accuracy");
+    show("rand_error", "Rand index error");
+    return group;
+}
+
+void EvaluationRun::write_page(const std::vector<EvaluationTask>& tasks, const Json& report, const std::string& title) {
+    std::vector<LabeledCorpus> shown;  // the page refers to the meshes
+    shown.reserve(report["categories"].size());
     std::vector<ReportData> groups;
     for (const Json& category : report["categories"]) {
         const auto task =
             std::find_if(tasks.begin(), tasks.end(), [&](const auto& t) { return t.category == category["category"]; });
-        const fs::path folder = folder_of(out_, *task);
-        const LabelingModel model = load_model(folder / "model.safetensors");
         const Json& meshes = category["splits"][0]["meshes"];
-        std::vector<fs::path> shown;
-        for (std::size_t i = 0; i < std::min(k_shown_meshes, meshes.size()); ++i)
-            shown.emplace_back(meshes[i]["path"].get<std::string>());
-        std::vector<std::string> names = model.label_names;
-        for (const Json& mesh : meshes)
+        std::vector<fs::path> paths;
+        std::vector<std::string> names = load_model(folder_of(out_, *task) / "model.safetensors").label_names;
+        for (const Json& mesh : meshes) {
+            if (paths.size() < k_shown_meshes) paths.emplace_back(mesh["path"].get<std::string>());
             for (const std::string name : mesh["names"])
                 if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-        kept.push_back(load_corpus(shown, names));
-
-        ReportData group;
-        group.title = category["category"];
-        group.subtitle =
-            fmt::format("{} training meshes, {} test meshes", category["splits"][0]["train"].size(), meshes.size());
-        group.label_names = names;
-        for (std::size_t c = 0; c < names.size(); ++c) group.label_colors.push_back(label_color(c));
-        for (std::size_t i = 0; i < shown.size(); ++i) {
-            const LabeledMesh& mesh = kept.back().meshes[i];
-            const MeshFile predicted = read_mesh(folder / (mesh.name + ".ply"));
-            group.meshes.push_back({mesh.name, &mesh.mesh, predicted.labels->label, mesh.label,
-                                    std::vector<float>(mesh.mesh.face_count(), 1.0F), meshes[i]["recognition_rate"]});
         }
-        if (meshes.size() > 0 && std::all_of(meshes.begin(), meshes.end(),
-                                             [&](const Json& m) { return m["names"].size() == model.class_count(); }))
-            group.confusion = mean_confusion(meshes);
-        group.feature_families = stumps_per_family(model);
-        group.first_features = first_features(model, 10);
-        const auto show = [&](const char* key, const char* title) {
-            if (const double rate = rate_of(category, key); !std::isnan(rate))
-                group.summary.emplace_back(title, fmt::format("{:.1f} %", 100 * rate));
-        };
-        show("recognition_rate", "recognition rate");
-        show("segment_weighted_accuracy", "segment-weighted accuracy");
-        show("rand_error", "Rand index error");
-        groups.push_back(std::move(group));
+        shown.push_back(load_corpus(paths, names));
+        groups.push_back(report_group(*task, category, shown.back()));
     }
-    write_report_page(out_ / "index.html", "Mesh labeling on unseen shapes", groups);
+    write_report_page(out_ / "index.html", title, groups);
 }
 
 }  // namespace exemplar

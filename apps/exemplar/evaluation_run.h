@@ -7,7 +7,9 @@
 
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/training_run.h"
+#include "host/core/progress.h"
 #include "host/labeling/evaluation.h"
+#include "host/labeling/report_page.h"
 
 namespace exemplar {
 
@@ -28,14 +30,16 @@ class EvaluationRun {
         : backend_(backend), train_(train), cache_(std::move(cache)), out_(std::move(out)), quiet_(quiet) {}
 
     /// Runs everything and writes OUT/index.html; returns the report (docs/formats.md).
-    nlohmann::json evaluate(const std::vector<EvaluationTask>& tasks, const std::string& protocol);
+    nlohmann::json evaluate(const std::vector<EvaluationTask>& tasks, const std::string& protocol,
+                            const std::string& title);
 
   private:
     LabelingModel model_for(const EvaluationTask& task, const std::filesystem::path& folder);
     nlohmann::json test_mesh(const EvaluationTask& task, const std::filesystem::path& mesh,
                              const std::filesystem::path& folder, const LabelingModel& model, const std::string& key);
-    nlohmann::json run_task(const EvaluationTask& task, class Progress& progress);
-    void write_page(const std::vector<EvaluationTask>& tasks, const nlohmann::json& report) const;
+    nlohmann::json run_task(const EvaluationTask& task, Progress& progress);
+    ReportData report_group(const EvaluationTask& task, const nlohmann::json& category, const LabeledCorpus& shown);
+    void write_page(const std::vector<EvaluationTask>& tasks, const nlohmann::json& report, const std::string& title);
 
     DeviceBackend& backend_;
     TrainOptions train_;

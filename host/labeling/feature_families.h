@@ -92,6 +92,11 @@ FeatureMatrix medial_features(const PreparedMesh& prepared, const RayScene& scen
 /// Face centers (A.1h), 3 columns.
 FeatureMatrix orientation_features(const PreparedMesh& prepared);
 
+/// What the contextual label features need (A.1i): geodesic ranges over [0, the largest finite distance between samples
+/// and faces], and distances along three principal axes and the normals of three symmetry planes over [0, the largest
+/// difference between a sample and a face]. Ranges are those of log_bin_edges.
+ContextGeometry context_geometry(const PreparedMesh& prepared);
+
 /// The interior edges of a mesh and the graph of their midpoints: two edges of a face are joined by the segment between
 /// their midpoints, which lies in the face.
 struct InteriorEdges {

@@ -1,15 +1,13 @@
 #include "host/labeling/features.h"
 
 #include <algorithm>
-#include <cmath>
+#include <functional>
 #include <utility>
 
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/stopwatch.h"
 #include "host/labeling/feature_families.h"
-#include "host/labeling/log_bins.h"
-#include "host/mesh/axes.h"
 #include "host/mesh/validate.h"
 
 namespace exemplar {
@@ -42,46 +40,6 @@ std::vector<float> in_median_units(std::span<const float> values) {
     }
     for (float& value : result) value = unit > 0.0 ? static_cast<float>(static_cast<double>(value) / unit) : 1.0F;
     return result;
-}
-
-/// The inner edges of k_context_bins ranges over [0, maximum]; any positive range serves where all distances are zero.
-std::array<float, k_context_bins - 1> inner_edges(float maximum) {
-    const auto edges = log_bin_edges<k_context_bins>(maximum > 0.0F ? maximum : 1.0F);
-    std::array<float, k_context_bins - 1> inner{};
-    std::copy_n(edges.begin() + 1, inner.size(), inner.begin());
-    return inner;
-}
-
-/// Largest difference between a sample's and a face's position.
-float largest_difference(std::span<const float> position, std::span<const std::uint32_t> samples) {
-    const auto [low, high] = std::ranges::minmax(position);
-    float largest = 0.0F;
-    for (const std::uint32_t face : samples) largest = std::max({largest, position[face] - low, high - position[face]});
-    return largest;
-}
-
-ContextGeometry context_geometry(const PreparedMesh& prepared) {
-    ContextGeometry context;
-    context.faces = prepared.face_count();
-    context.sample_face = prepared.samples.face;
-    context.sample_area = prepared.samples.area_share;
-    context.axis_position.resize(k_context_axes * context.faces);
-    const auto set_axis = [&](std::size_t axis, const Vec3& origin, const Vec3& direction) {
-        const std::span<float> position(context.axis_position.data() + axis * context.faces, context.faces);
-        for (std::size_t f = 0; f < context.faces; ++f)
-            position[f] = std::abs(direction.dot(prepared.center[f] - origin));
-        context.edges[1 + axis] = inner_edges(largest_difference(position, context.sample_face));
-    };
-    const PrincipalAxes axes = principal_axes(prepared.mesh);
-    for (std::size_t k = 0; k < 3; ++k) set_axis(k, axes.center, axes.axis[k]);
-    const std::vector<SymmetryPlane> planes = symmetry_planes(prepared.mesh, 3);
-    for (std::size_t k = 0; k < 3; ++k) set_axis(3 + k, planes[k].point, planes[k].normal);
-    float largest = 0.0F;
-    for (const float d : prepared.distance) {
-        if (std::isfinite(d)) largest = std::max(largest, d);
-    }
-    context.edges[0] = inner_edges(largest);
-    return context;
 }
 
 /// The families that look around each face share one search per face.
@@ -130,7 +88,7 @@ MeshFeatures compute_features(const TriangleMesh& mesh, const FeatureOptions& op
         throw UsageError("features need at least one sample; set FeatureOptions::samples to 1 or more");
     MeshFeatures features;
     StepClock clock(features);
-    PreparedMesh prepared = prepare_mesh(mesh, options.samples);
+    const PreparedMesh prepared = prepare_mesh(mesh, options.samples);
     clock.done("distances");
 
     FeatureMatrix curvature, pca, shape_context;
@@ -149,13 +107,14 @@ MeshFeatures compute_features(const TriangleMesh& mesh, const FeatureOptions& op
     clock.done("pairwise");
 
     features.unary.rows = prepared.face_count();
-    for (const FeatureMatrix* family : {&curvature, &pca, &diameter, &medial, &geodesic, &shape_context, &spin}) {
-        features.unary.append(*family);
+    using Family = std::reference_wrapper<const FeatureMatrix>;
+    for (const Family family : {Family(curvature), Family(pca), Family(diameter), Family(medial), Family(geodesic),
+                                Family(shape_context), Family(spin)}) {
+        features.unary.append(family);
     }
     if (options.orientation) features.unary.append(orientation_features(prepared));
     features.face_area = in_median_units(prepared.area_share);
     features.context = context_geometry(prepared);
-    features.context.geodesic = std::move(prepared.distance);
     clock.done("context");
     return features;
 }

@@ -1,0 +1,128 @@
+#include "gpu/runtime/kernel.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "gpu/runtime/device.h"
+#include "gpu/runtime/errors.h"
+
+namespace exemplar {
+namespace {
+
+void check_interface(const Shader& shader, const Reflection& reflection, const KernelInterface& interface) {
+    const StructLayout none{.name = "interface without push constants", .bytes = 0, .fields = {}};
+    check_layout(shader, "the push constants", interface.push_constants.value_or(none), reflection.push_bytes,
+                 reflection.push_fields);
+    if (interface.elements.size() > reflection.bindings.size())
+        throw ShaderError(fmt::format("shader {}: it has {} storage buffers, the program describes {}", shader.name,
+                                      reflection.bindings.size(), interface.elements.size()));
+    for (std::size_t i = 0; i < interface.elements.size(); ++i) {
+        const ReflectedBinding& binding = reflection.bindings[i];
+        check_layout(shader, fmt::format("the elements of buffer '{}'", binding.name), interface.elements[i], binding.stride,
+                     binding.fields);
+    }
+    for (const auto& [id, value] : interface.constants)
+        if (std::ranges::find(reflection.constant_ids, id) == reflection.constant_ids.end())
+            throw ShaderError(fmt::format("shader {}: it has no specialization constant {}", shader.name, id));
+}
+
+void specialize_local_size(Reflection& reflection, const KernelInterface& interface) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const auto& [id, value] : interface.constants)
+            if (reflection.local_size_ids[axis] == id) reflection.local_size[axis] = value;
+}
+
+void check_limits(const Shader& shader, const Reflection& reflection, const DeviceInfo& info) {
+    const std::uint64_t invocations =
+        std::uint64_t{reflection.local_size[0]} * reflection.local_size[1] * reflection.local_size[2];
+    if (invocations == 0) throw ShaderError(fmt::format("shader {}: its workgroups are empty", shader.name));
+    if (invocations > info.max_invocations)
+        throw DeviceLimitError(fmt::format("shader {}: workgroups of {} invocations are over the limit of {} of device '{}'",
+                                           shader.name, invocations, info.max_invocations, info.name),
+                               invocations, info.max_invocations);
+    if (reflection.push_bytes > info.max_push_constants)
+        throw DeviceLimitError(fmt::format("shader {}: {} bytes of push constants are over the limit of {} of device '{}'",
+                                           shader.name, reflection.push_bytes, info.max_push_constants, info.name),
+                               reflection.push_bytes, info.max_push_constants);
+}
+
+void create_layouts(Kernel::Program& program) {
+    std::vector<VkDescriptorSetLayoutBinding> bindings;
+    for (const ReflectedBinding& binding : program.reflection.bindings)
+        bindings.push_back({binding.binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+    const VkDescriptorSetLayoutCreateInfo set{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+                                              .pNext = nullptr,
+                                              .flags = 0,
+                                              .bindingCount = static_cast<std::uint32_t>(bindings.size()),
+                                              .pBindings = bindings.data()};
+    const std::string what = fmt::format("make the layout of kernel {}", program.name);
+    check(vkCreateDescriptorSetLayout(program.device.handle(), &set, nullptr, &program.set_layout), what);
+    const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, static_cast<std::uint32_t>(program.reflection.push_bytes)};
+    const VkPipelineLayoutCreateInfo layout{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                            .pNext = nullptr,
+                                            .flags = 0,
+                                            .setLayoutCount = 1,
+                                            .pSetLayouts = &program.set_layout,
+                                            .pushConstantRangeCount = push.size ? 1u : 0u,
+                                            .pPushConstantRanges = &push};
+    check(vkCreatePipelineLayout(program.device.handle(), &layout, nullptr, &program.layout), what);
+}
+
+void create_pipeline(Kernel::Program& program, const Shader& shader, const KernelInterface& interface) {
+    std::vector<VkSpecializationMapEntry> entries;
+    std::vector<std::uint32_t> values;
+    for (const auto& [id, value] : interface.constants) {
+        entries.push_back({id, static_cast<std::uint32_t>(values.size() * sizeof value), sizeof value});
+        values.push_back(value);
+    }
+    const VkSpecializationInfo constants{static_cast<std::uint32_t>(entries.size()), entries.data(),
+                                         values.size() * sizeof(std::uint32_t), values.data()};
+    const VkShaderModuleCreateInfo module_info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                               .pNext = nullptr,
+                                               .flags = 0,
+                                               .codeSize = shader.words.size_bytes(),
+                                               .pCode = shader.words.data()};
+    const std::string what = fmt::format("compile kernel {}", program.name);
+    VkShaderModule module = VK_NULL_HANDLE;
+    check(vkCreateShaderModule(program.device.handle(), &module_info, nullptr, &module), what);
+    const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                           .pNext = nullptr,
+                                           .flags = 0,
+                                           .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                                     .pNext = nullptr,
+                                                     .flags = 0,
+                                                     .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                                                     .module = module,
+                                                     .pName = "main",
+                                                     .pSpecializationInfo = &constants},
+                                           .layout = program.layout,
+                                           .basePipelineHandle = VK_NULL_HANDLE,
+                                           .basePipelineIndex = -1};
+    const VkResult result = vkCreateComputePipelines(program.device.handle(), program.device.pipeline_cache().handle(), 1, &info,
+                                                     nullptr, &program.pipeline);
+    vkDestroyShaderModule(program.device.handle(), module, nullptr);
+    check(result, what);
+}
+
+}  // namespace
+
+Kernel::Program::~Program() {
+    vkDestroyPipeline(device.handle(), pipeline, nullptr);
+    vkDestroyPipelineLayout(device.handle(), layout, nullptr);
+    vkDestroyDescriptorSetLayout(device.handle(), set_layout, nullptr);
+}
+
+Kernel::Kernel(Device& device, const Shader& shader, const KernelInterface& interface) {
+    const auto program = std::make_shared<Program>(device);
+    program->name = shader.name;
+    program->reflection = reflect(shader);
+    check_interface(shader, program->reflection, interface);
+    specialize_local_size(program->reflection, interface);
+    check_limits(shader, program->reflection, device.info());
+    create_layouts(*program);
+    create_pipeline(*program, shader, interface);
+    program_ = program;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <volk.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "gpu/runtime/layout.h"
+#include "gpu/runtime/reflection.h"
+#include "gpu/runtime/shader.h"
+
+namespace exemplar {
+
+class Device;
+
+/// What C++ hands to a kernel: compared with what the shader declares when the kernel is made.
+struct KernelInterface {
+    /// layout_of<Parameters>(); without it the shader may have no push constants.
+    std::optional<StructLayout> push_constants;
+    /// Per storage buffer in binding order, the layout of an element of its array; may stop early.
+    std::vector<StructLayout> elements;
+    /// Specialization constants: id and the bits of its value (std::bit_cast<uint32_t> for floats).
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> constants;
+};
+
+/// A compute pipeline. The descriptor layout, which bindings are read or written and the local size come from the SPIR-V itself:
+/// mark buffers `readonly` or `writeonly` in GLSL, and barriers follow. Streams keep it alive until they are done.
+class Kernel {
+  public:
+    Kernel() = default;
+    /// Throws ShaderError if the shader and `interface` disagree, DeviceLimitError if it needs more than the device allows.
+    Kernel(Device& device, const Shader& shader, const KernelInterface& interface = {});
+    Kernel(Kernel&&) = default;
+    Kernel& operator=(Kernel&&) = default;
+    Kernel(const Kernel&) = delete;
+    Kernel& operator=(const Kernel&) = delete;
+
+    explicit operator bool() const { return program_ != nullptr; }
+    std::string_view name() const { return program_->name; }
+    const Reflection& reflection() const { return program_->reflection; }
+    /// Invocations per workgroup and axis, after specialization.
+    std::array<std::uint32_t, 3> local_size() const { return program_->reflection.local_size; }
+
+    /// The Vulkan objects behind a kernel.
+    struct Program {
+        explicit Program(Device& owner) : device(owner) {}
+        ~Program();
+        Program(const Program&) = delete;
+        Program& operator=(const Program&) = delete;
+        Device& device;
+        std::string name;
+        Reflection reflection;
+        VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
+        VkPipelineLayout layout = VK_NULL_HANDLE;
+        VkPipeline pipeline = VK_NULL_HANDLE;
+    };
+    const std::shared_ptr<const Program>& program() const { return program_; }
+
+  private:
+    std::shared_ptr<const Program> program_;
+};
+
+}  // namespace exemplar

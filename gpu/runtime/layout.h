@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace exemplar {
+
+/// One member of a structure shared by C++ and GLSL, in bytes.
+struct FieldLayout {
+    std::string_view name;
+    std::size_t offset;
+    std::size_t bytes;
+};
+
+/// The memory layout of a C++ type that kernels see; without fields for scalars and vectors.
+struct StructLayout {
+    std::string_view name;
+    std::size_t bytes = 0;
+    std::vector<FieldLayout> fields;
+};
+
+/// The layout of T: one declared with EXEMPLAR_LAYOUT, or a plain scalar or vector of which only the size counts.
+template <typename T>
+StructLayout layout_of() {
+    if constexpr (requires { describe_layout(static_cast<const T*>(nullptr)); })
+        return describe_layout(static_cast<const T*>(nullptr));
+    else
+        return {.name = "a plain value", .bytes = sizeof(T), .fields = {}};
+}
+
+}  // namespace exemplar
+
+// EXEMPLAR_LAYOUT(Struct, field, ...) beside a shared structure lets Kernel compare it with what the shader declares.
+#define EXEMPLAR_LAYOUT_FIELD(Struct, field) \
+    ::exemplar::FieldLayout{#field, offsetof(Struct, field), sizeof(static_cast<Struct*>(nullptr)->field)},
+#define EXEMPLAR_PARENTHESES ()
+#define EXEMPLAR_EXPAND(...) EXEMPLAR_EXPAND2(EXEMPLAR_EXPAND2(EXEMPLAR_EXPAND2(__VA_ARGS__)))
+#define EXEMPLAR_EXPAND2(...) EXEMPLAR_EXPAND1(EXEMPLAR_EXPAND1(EXEMPLAR_EXPAND1(__VA_ARGS__)))
+#define EXEMPLAR_EXPAND1(...) EXEMPLAR_EXPAND0(EXEMPLAR_EXPAND0(EXEMPLAR_EXPAND0(__VA_ARGS__)))
+#define EXEMPLAR_EXPAND0(...) __VA_ARGS__
+#define EXEMPLAR_EACH_FIELD(Struct, field, ...) \
+    EXEMPLAR_LAYOUT_FIELD(Struct, field) __VA_OPT__(EXEMPLAR_EACH_AGAIN EXEMPLAR_PARENTHESES(Struct, __VA_ARGS__))
+#define EXEMPLAR_EACH_AGAIN() EXEMPLAR_EACH_FIELD
+#define EXEMPLAR_LAYOUT(Struct, ...)                                                                \
+    static_assert(std::is_standard_layout_v<Struct> && std::is_trivially_copyable_v<Struct>);       \
+    inline ::exemplar::StructLayout describe_layout(const Struct*) {                                \
+        return {#Struct, sizeof(Struct), {EXEMPLAR_EXPAND(EXEMPLAR_EACH_FIELD(Struct, __VA_ARGS__))}}; \
+    }

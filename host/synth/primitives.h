@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <variant>
+#include <vector>
+
+#include "host/mesh/mesh.h"
+
+namespace exemplar {
+
+/// Two spheres and the cone that touches both: a capsule with two radii (> 0) along +y from the local origin.
+struct RoundCone {
+    float length, radius_begin, radius_end;
+};
+/// Axis-aligned in the local frame; semi-axes > 0.
+struct Ellipsoid {
+    Vec3 radius;
+};
+/// Axis-aligned in the local frame; half extents include the edge rounding.
+struct RoundBox {
+    Vec3 half;
+    float rounding;
+};
+/// Around the local y axis; half height and radius include the edge rounding.
+struct RoundCylinder {
+    float half_height, radius, rounding;
+};
+/// Around the local y axis.
+struct Torus {
+    float major, minor;
+};
+/// A polygon in the local xz plane (any orientation, not self-intersecting), extruded along y to +-half_height, then
+/// grown by `rounding`.
+struct Prism {
+    std::vector<Vec2> outline;
+    float half_height, rounding;
+};
+/// A polyline in the (radius, y) half plane turned around the local y axis; thickness[i] > 0 is half the wall at point i.
+struct Lathe {
+    std::vector<Vec2> profile;
+    std::vector<float> thickness;
+};
+
+using Solid = std::variant<RoundCone, Ellipsoid, RoundBox, RoundCylinder, Torus, Prism, Lathe>;
+
+/// Distance of local point p to the surface, negative inside. Exact outside except for the ellipsoid, whose value is a
+/// first-order estimate. Its gradient is (about) 1.
+float solid_distance(const Solid& solid, const Vec3& p);
+
+/// Center and radius of a local ball that holds the solid.
+struct Ball {
+    Vec3 center;
+    float radius;
+};
+Ball bounding_ball(const Solid& solid);
+
+}  // namespace exemplar

@@ -34,7 +34,7 @@ function(exemplar_shaders target folder)
       VERBATIM)
     target_sources(${target} PRIVATE ${embedded}/${symbol}.cpp ${embedded}/${symbol}.h)
   endforeach()
-  target_include_directories(${target} PRIVATE ${PROJECT_BINARY_DIR}/shaders)
+  target_include_directories(${target} PUBLIC ${PROJECT_BINARY_DIR}/shaders)
 endfunction()
 
 exemplar_library(runtime gpu/runtime exemplar_core Vulkan::Headers PkgConfig::SPIRV_CROSS PkgConfig::XXHASH ${CMAKE_DL_LIBS})

@@ -21,9 +21,12 @@ constexpr VkMemoryPropertyFlags k_mappable = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT
 
 MemoryWish wish_for(BufferMemory memory) {
     switch (memory) {
-        case BufferMemory::upload: return {k_mappable, 0};
-        case BufferMemory::readback: return {k_mappable, VK_MEMORY_PROPERTY_HOST_CACHED_BIT};
-        case BufferMemory::device: break;
+        case BufferMemory::upload:
+            return {k_mappable, 0};
+        case BufferMemory::readback:
+            return {k_mappable, VK_MEMORY_PROPERTY_HOST_CACHED_BIT};
+        case BufferMemory::device:
+            break;
     }
     return {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, k_mappable | VK_MEMORY_PROPERTY_HOST_CACHED_BIT};
 }
@@ -42,25 +45,25 @@ constexpr std::size_t k_piece_bytes = std::size_t{64} << 20;
 
 Buffer::Resource::Resource(Device& owner, std::size_t capacity, BufferMemory memory) : device(owner) {
     const std::string what = fmt::format("allocate a buffer of {} on '{}'", format_bytes(capacity), device.info().name);
-    const VkBufferCreateInfo info{
-        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-        .pNext = nullptr,
-        .flags = 0,
-        .size = capacity,
-        .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                 VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
-        .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
-        .queueFamilyIndexCount = 0,
-        .pQueueFamilyIndices = nullptr};
+    const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                                  .pNext = nullptr,
+                                  .flags = 0,
+                                  .size = capacity,
+                                  .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                                           VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT |
+                                           VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
+                                  .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+                                  .queueFamilyIndexCount = 0,
+                                  .pQueueFamilyIndices = nullptr};
     check(vkCreateBuffer(device.handle(), &info, nullptr, &buffer), what);
     VkMemoryRequirements needs{};
     vkGetBufferMemoryRequirements(device.handle(), buffer, &needs);
     const MemoryWish wish = wish_for(memory);
-    const VkMemoryAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                        .pNext = nullptr,
-                                        .allocationSize = needs.size,
-                                        .memoryTypeIndex =
-                                            device.memory_type(needs.memoryTypeBits, wish.required, wish.preferred)};
+    const VkMemoryAllocateInfo allocate{
+        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+        .pNext = nullptr,
+        .allocationSize = needs.size,
+        .memoryTypeIndex = device.memory_type(needs.memoryTypeBits, wish.required, wish.preferred)};
     VkResult result = vkAllocateMemory(device.handle(), &allocate, nullptr, &allocation);
     if (result == VK_SUCCESS) result = vkBindBufferMemory(device.handle(), buffer, allocation, 0);
     if (result == VK_SUCCESS && can_map(device.memory_properties(allocate.memoryTypeIndex), memory)) {
@@ -91,7 +94,8 @@ Buffer::Buffer(Device& device, std::size_t bytes, BufferMemory memory) : bytes_(
 
 void Buffer::check_range(std::size_t offset, std::size_t size) const {
     if (offset > bytes_ || size > bytes_ - offset)
-        throw DeviceError(fmt::format("bytes {} to {} are outside a buffer of {} bytes", offset, offset + size, bytes_));
+        throw DeviceError(
+            fmt::format("bytes {} to {} are outside a buffer of {} bytes", offset, offset + size, bytes_));
 }
 
 void Buffer::write(std::span<const std::byte> data, std::size_t offset) {

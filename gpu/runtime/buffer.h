@@ -43,7 +43,8 @@ class Buffer {
     VkBuffer handle() const { return resource_ ? resource_->buffer : VK_NULL_HANDLE; }
     explicit operator bool() const { return resource_ != nullptr; }
 
-    /// Writes `values` at byte `offset`, after all submitted work that uses the buffer is done; returns when they are there.
+    /// Writes `values` at byte `offset`, after all submitted work that uses the buffer is done; returns when they are
+    /// there.
     template <typename T>
     void upload(std::span<const T> values, std::size_t offset = 0) {
         static_assert(std::is_trivially_copyable_v<T>);
@@ -80,9 +81,11 @@ class Buffer {
 
 /// A part of a buffer, as a kernel's binding sees it.
 struct BufferRange {
-    BufferRange(const Buffer& whole) : buffer(&whole), offset(0), bytes(whole.bytes()) {}  // NOLINT: a buffer is its whole range
+    BufferRange(const Buffer& whole)
+        : buffer(&whole), offset(0), bytes(whole.bytes()) {}  // NOLINT: a buffer is its whole range
     /// `first` is a multiple of DeviceInfo::storage_alignment.
-    BufferRange(const Buffer& part_of, std::size_t first, std::size_t size) : buffer(&part_of), offset(first), bytes(size) {}
+    BufferRange(const Buffer& part_of, std::size_t first, std::size_t size)
+        : buffer(&part_of), offset(first), bytes(size) {}
     const Buffer* buffer;
     std::size_t offset;  ///< bytes
     std::size_t bytes;

@@ -15,8 +15,8 @@ namespace {
 
 constexpr int k_runs = 5;
 
-// Seconds of the fastest of several runs, after one that compiles and fills caches. The host's clock around a submission is
-// right on every device; dispatches here are long against the cost of submitting.
+// Seconds of the fastest of several runs, after one that compiles and fills caches. The host's clock around a
+// submission is right on every device; dispatches here are long against the cost of submitting.
 template <typename Record>
 double fastest(Stream& stream, Record&& record) {
     double best = 0.0;
@@ -32,14 +32,16 @@ double fastest(Stream& stream, Record&& record) {
 double copy_rate(Device& device, Stream& stream) {
     // Larger than the last-level caches, within every device's limits.
     const std::size_t wanted = std::size_t{device.info().type == DeviceType::cpu ? 64u : 512u} << 20;
-    const std::size_t bytes = std::min<std::size_t>({wanted, device.info().max_storage_range, device.info().memory / 8}) / 16 * 16;
+    const std::size_t bytes =
+        std::min<std::size_t>({wanted, device.info().max_storage_range, device.info().memory / 8}) / 16 * 16;
     const Buffer source(device, bytes), target(device, bytes);
-    const Kernel kernel(device, shaders::runtime_copy_comp,
-                        {.push_constants = layout_of<shared::CopyParameters>(), .elements = {}, .constants = {}});
+    const Kernel kernel(device, shaders::runtime_copy_comp, {.push_constants = layout_of<shared::CopyParameters>()});
     stream.fill(source, 0x3f800000u);
     stream.finish();
     const shared::CopyParameters parameters{static_cast<std::uint32_t>(bytes / 16)};
-    const double seconds = fastest(stream, [&] { stream.dispatch(kernel, parameters.count, {source, target}, parameters); });
+    const double seconds = fastest(stream, [&] {
+        stream.dispatch(kernel, parameters.count, {source, target}, parameters);
+    });
     return 2.0 * static_cast<double>(bytes) / seconds * 1e-9;
 }
 
@@ -52,11 +54,12 @@ double multiply_add_rate(Device& device, Stream& stream) {
     const std::size_t threads = device.info().type == DeviceType::cpu ? 1u << 14 : 1u << 20;
     const Buffer result(device, threads * sizeof(float));
     const Kernel kernel(device, shaders::runtime_multiply_add_comp,
-                        {.push_constants = layout_of<shared::MultiplyAddParameters>(), .elements = {}, .constants = {}});
+                        {.push_constants = layout_of<shared::MultiplyAddParameters>()});
     // Enough rounds that a run takes about 20 ms.
     std::uint32_t rounds = 256;
     double seconds = multiply_add_seconds(stream, kernel, result, rounds);
-    for (; seconds < 0.01 && rounds < (1u << 20); seconds = multiply_add_seconds(stream, kernel, result, rounds)) rounds *= 4;
+    for (; seconds < 0.01 && rounds < (1u << 20); seconds = multiply_add_seconds(stream, kernel, result, rounds))
+        rounds *= 4;
     return 2.0 * static_cast<double>(threads) * rounds * shared::k_multiply_adds_per_round / seconds * 1e-9;
 }
 

@@ -23,9 +23,11 @@ bool wants_validation() {
 }  // namespace
 
 Device::Device(const DeviceOptions& options)
-    : validating_(wants_validation()), instance_({.validation = validating_, .extensions = options.instance_extensions}) {
+    : validating_(wants_validation()),
+      instance_({.validation = validating_, .extensions = options.instance_extensions}) {
     const std::vector<DeviceInfo> devices = instance_.devices();
-    const std::size_t index = select_device(devices, options.name.empty() ? environment("EXEMPLAR_DEVICE") : options.name);
+    const std::size_t index =
+        select_device(devices, options.name.empty() ? environment("EXEMPLAR_DEVICE") : options.name);
     info_ = devices[index];
     physical_ = instance_.physical_devices()[index];
     queue_family_ = find_compute_queue(physical_).value();
@@ -43,10 +45,12 @@ void Device::create(const DeviceOptions& options) {
                                         .queueFamilyIndex = queue_family_,
                                         .queueCount = 1,
                                         .pQueuePriorities = &priority};
-    VkPhysicalDeviceVulkan13Features features13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+    auto features13 =
+        empty_structure<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
     features13.synchronization2 = VK_TRUE;
     features13.dynamicRendering = VK_TRUE;
-    VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &features13};
+    auto features =
+        empty_structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &features13);
     std::vector<const char*> extensions;
     for (const std::string& extension : options.device_extensions) extensions.push_back(extension.c_str());
     const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
@@ -74,7 +78,7 @@ void Device::submit(VkCommandBuffer commands, VkFence fence) {
                                                  .pNext = nullptr,
                                                  .commandBuffer = commands,
                                                  .deviceMask = 0};
-    VkSubmitInfo2 info{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
+    auto info = empty_structure<VkSubmitInfo2>(VK_STRUCTURE_TYPE_SUBMIT_INFO_2);
     info.commandBufferInfoCount = 1;
     info.pCommandBufferInfos = &command_info;
     const std::lock_guard lock(queue_mutex_);
@@ -86,11 +90,13 @@ void Device::wait_idle() {
     check(vkDeviceWaitIdle(device_), fmt::format("wait for device '{}'", info_.name));
 }
 
-std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred) const {
+std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
+                                  VkMemoryPropertyFlags preferred) const {
     for (const VkMemoryPropertyFlags wanted : {required | preferred, required})
         for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
             if ((allowed >> i & 1) && (memory_properties(i) & wanted) == wanted) return i;
-    throw DeviceError(fmt::format("device '{}' has no memory of the needed kind (Vulkan property flags {:#x})", info_.name, required));
+    throw DeviceError(fmt::format("device '{}' has no memory of the needed kind (Vulkan property flags {:#x})",
+                                  info_.name, required));
 }
 
 }  // namespace exemplar

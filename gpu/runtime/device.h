@@ -15,10 +15,11 @@
 namespace exemplar {
 
 struct DeviceOptions {
-    /// An index of list_devices() or a part of a name in any case; empty: the environment's EXEMPLAR_DEVICE, else the best.
-    std::string name;
-    std::vector<std::string> instance_extensions;  ///< beyond compute, e.g. for a window
-    std::vector<std::string> device_extensions;
+    /// An index of list_devices() or a part of a name in any case; empty: the environment's EXEMPLAR_DEVICE, else the
+    /// best.
+    std::string name{};
+    std::vector<std::string> instance_extensions{};  ///< beyond compute, e.g. for a window
+    std::vector<std::string> device_extensions{};
 };
 
 /// An opened Vulkan device with one queue for compute, copies and drawing. Everything made from it must end before it.
@@ -50,8 +51,11 @@ class Device {
 
     /// A memory type among `allowed` bits with all `required` properties and, where there is one, all `preferred` too.
     /// Throws DeviceError if none has the required ones.
-    std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required, VkMemoryPropertyFlags preferred) const;
-    VkMemoryPropertyFlags memory_properties(std::uint32_t type) const { return memory_.memoryTypes[type].propertyFlags; }
+    std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
+                              VkMemoryPropertyFlags preferred) const;
+    VkMemoryPropertyFlags memory_properties(std::uint32_t type) const {
+        return memory_.memoryTypes[type].propertyFlags;
+    }
 
   private:
     void create(const DeviceOptions& options);

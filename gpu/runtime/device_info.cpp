@@ -16,23 +16,31 @@ namespace {
 
 DeviceType device_type(VkPhysicalDeviceType type) {
     switch (type) {
-        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return DeviceType::discrete;
-        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return DeviceType::integrated;
-        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return DeviceType::virtual_gpu;
-        case VK_PHYSICAL_DEVICE_TYPE_CPU: return DeviceType::cpu;
-        default: return DeviceType::other;
+        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+            return DeviceType::discrete;
+        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+            return DeviceType::integrated;
+        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+            return DeviceType::virtual_gpu;
+        case VK_PHYSICAL_DEVICE_TYPE_CPU:
+            return DeviceType::cpu;
+        default:
+            return DeviceType::other;
     }
 }
 
 std::string version_text(std::uint32_t version) {
-    return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version), VK_API_VERSION_PATCH(version));
+    return fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),
+                       VK_API_VERSION_PATCH(version));
 }
 
 // Why Exemplar cannot run on the device; empty if it can.
 std::string missing_feature(VkPhysicalDevice device, std::uint32_t api_version) {
     if (api_version < VK_API_VERSION_1_3) return fmt::format("Vulkan {} is older than 1.3", version_text(api_version));
-    VkPhysicalDeviceVulkan13Features features13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
-    VkPhysicalDeviceFeatures2 features{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, .pNext = &features13};
+    auto features13 =
+        empty_structure<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
+    auto features =
+        empty_structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &features13);
     vkGetPhysicalDeviceFeatures2(device, &features);
     if (!features13.synchronization2) return "it lacks synchronization2";
     if (!features13.dynamicRendering) return "it lacks dynamic rendering";
@@ -69,8 +77,8 @@ std::string lower(std::string_view text) {
 std::string device_list(std::span<const DeviceInfo> devices) {
     std::string list;
     for (const DeviceInfo& device : devices)
-        list += fmt::format("{}{}: {} ({}{})", list.empty() ? "" : "; ", device.index, device.name, to_string(device.type),
-                            device.unusable.empty() ? "" : ", unusable: " + device.unusable);
+        list += fmt::format("{}{}: {} ({}{})", list.empty() ? "" : "; ", device.index, device.name,
+                            to_string(device.type), device.unusable.empty() ? "" : ", unusable: " + device.unusable);
     return list;
 }
 
@@ -94,18 +102,20 @@ std::size_t best_device(std::span<const DeviceInfo> devices) {
     for (const DeviceInfo& device : devices)
         if (device.unusable.empty() && (!best || device.type < best->type)) best = &device;
     if (!best)
-        throw NoDeviceError(fmt::format("no usable Vulkan device among: {}; update the driver or install mesa-vulkan-drivers",
-                                        device_list(devices)));
+        throw NoDeviceError(
+            fmt::format("no usable Vulkan device among: {}; update the driver or install mesa-vulkan-drivers",
+                        device_list(devices)));
     return best->index;
 }
 
 const DeviceInfo* find_device(std::span<const DeviceInfo> devices, std::string_view wanted) {
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
-    if (error == std::errc{} && end == wanted.data() + wanted.size()) return index < devices.size() ? &devices[index] : nullptr;
+    if (error == std::errc{} && end == wanted.data() + wanted.size())
+        return index < devices.size() ? &devices[index] : nullptr;
     const std::string part = lower(wanted);
-    const auto found =
-        std::ranges::find_if(devices, [&](const DeviceInfo& d) { return lower(d.name).find(part) != std::string::npos; });
+    const auto found = std::ranges::find_if(
+        devices, [&](const DeviceInfo& d) { return lower(d.name).find(part) != std::string::npos; });
     return found == devices.end() ? nullptr : &*found;
 }
 
@@ -124,11 +134,14 @@ std::optional<std::uint32_t> find_compute_queue(VkPhysicalDevice device) {
 }
 
 DeviceInfo describe(VkPhysicalDevice device, std::size_t index) {
-    VkPhysicalDeviceMaintenance3Properties maintenance{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES};
-    VkPhysicalDeviceSubgroupProperties subgroup{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES,
-                                                .pNext = &maintenance};
-    VkPhysicalDeviceDriverProperties driver{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES, .pNext = &subgroup};
-    VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &driver};
+    auto maintenance = empty_structure<VkPhysicalDeviceMaintenance3Properties>(
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES);
+    auto subgroup = empty_structure<VkPhysicalDeviceSubgroupProperties>(
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES, &maintenance);
+    auto driver = empty_structure<VkPhysicalDeviceDriverProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES,
+                                                                    &subgroup);
+    auto properties =
+        empty_structure<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver);
     vkGetPhysicalDeviceProperties2(device, &properties);
     const VkPhysicalDeviceProperties& core = properties.properties;
 
@@ -151,7 +164,7 @@ DeviceInfo describe(VkPhysicalDevice device, std::size_t index) {
 
 std::vector<DeviceInfo> list_devices() {
     try {
-        const Instance instance({.validation = false, .extensions = {}});
+        const Instance instance({.validation = false});
         return instance.devices();
     } catch (const NoDeviceError&) {
         return {};
@@ -178,11 +191,16 @@ DeviceReport report_device(std::size_t index) {
 
 std::string_view to_string(DeviceType type) {
     switch (type) {
-        case DeviceType::discrete: return "discrete GPU";
-        case DeviceType::integrated: return "integrated GPU";
-        case DeviceType::virtual_gpu: return "virtual GPU";
-        case DeviceType::cpu: return "CPU";
-        case DeviceType::other: break;
+        case DeviceType::discrete:
+            return "discrete GPU";
+        case DeviceType::integrated:
+            return "integrated GPU";
+        case DeviceType::virtual_gpu:
+            return "virtual GPU";
+        case DeviceType::cpu:
+            return "CPU";
+        case DeviceType::other:
+            break;
     }
     return "other";
 }

@@ -29,11 +29,11 @@ struct DeviceInfo {
     std::string unusable;        ///< why Exemplar cannot use it; empty if it can
     std::array<std::uint8_t, VK_UUID_SIZE> cache_uuid{};
     std::uint32_t driver_number = 0;
-    std::uint64_t memory = 0;              ///< bytes of the largest device-local heap
-    std::uint64_t max_allocation = 0;      ///< bytes
-    std::uint64_t max_storage_range = 0;   ///< bytes a kernel can see through one binding
-    std::uint64_t storage_alignment = 0;   ///< bytes; offsets of bindings are multiples of it
-    std::uint32_t max_invocations = 0;     ///< per workgroup
+    std::uint64_t memory = 0;             ///< bytes of the largest device-local heap
+    std::uint64_t max_allocation = 0;     ///< bytes
+    std::uint64_t max_storage_range = 0;  ///< bytes a kernel can see through one binding
+    std::uint64_t storage_alignment = 0;  ///< bytes; offsets of bindings are multiples of it
+    std::uint32_t max_invocations = 0;    ///< per workgroup
     std::array<std::uint32_t, 3> max_groups{};
     std::uint32_t max_shared_memory = 0;   ///< bytes per workgroup
     std::uint32_t max_push_constants = 0;  ///< bytes
@@ -43,21 +43,22 @@ struct DeviceInfo {
 
 /// Speeds measured by kernels on the device itself; what other kernels' speeds are shares of.
 struct Ceilings {
-    double copy_gb_per_s = 0.0;     ///< bytes read plus bytes written by a copying kernel, 10^9 per second
-    double fma_gflop_per_s = 0.0;   ///< float32 fused multiply-adds, two operations each, 10^9 per second
+    double copy_gb_per_s = 0.0;    ///< bytes read plus bytes written by a copying kernel, 10^9 per second
+    double fma_gflop_per_s = 0.0;  ///< float32 fused multiply-adds, two operations each, 10^9 per second
 };
 
 /// Everything `exemplar devices` prints of one device.
 struct DeviceReport {
     DeviceInfo info;
-    std::optional<Ceilings> ceilings;
+    std::optional<Ceilings> ceilings{};
 };
 
 /// All Vulkan devices of this machine, unusable ones too; empty if there is no Vulkan loader or driver.
 std::vector<DeviceInfo> list_devices();
 
-/// The index of the wanted device: `wanted` is an index, a part of a name in any case, or empty for the best usable device
-/// (discrete, integrated, virtual, CPU, in this order). Throws NoDeviceError with the list of devices if there is none.
+/// The index of the wanted device: `wanted` is an index, a part of a name in any case, or empty for the best usable
+/// device (discrete, integrated, virtual, CPU, in this order). Throws NoDeviceError with the list of devices if there
+/// is none.
 std::size_t select_device(std::span<const DeviceInfo> devices, std::string_view wanted);
 
 /// Opens the device, measures its ceilings (about a second) and returns all there is to say.

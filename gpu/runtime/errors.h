@@ -34,6 +34,15 @@ class DeviceLimitError : public DeviceError {
 /// Throws the DeviceError that belongs to a failed Vulkan call; `what` completes "cannot ...".
 void check(VkResult result, std::string_view what);
 
+/// An empty Vulkan structure of its type, for those of which only a few members are set.
+template <typename T>
+T empty_structure(VkStructureType type, void* next = nullptr) {
+    T structure{};
+    structure.sType = type;
+    structure.pNext = next;
+    return structure;
+}
+
 /// A Vulkan result's name, e.g. "VK_ERROR_DEVICE_LOST".
 std::string result_name(VkResult result);
 

@@ -25,7 +25,8 @@ std::vector<Access> merge(std::span<const Access> accesses) {
 
 bool HazardTracker::needs_barrier(const State& state, const Access& access) {
     if (access.writes) return state.write_stage || state.read_stages;
-    const bool visible = (state.visible_stages & access.stage) == access.stage && (state.visible_access & access.reads) == access.reads;
+    const bool visible =
+        (state.visible_stages & access.stage) == access.stage && (state.visible_access & access.reads) == access.reads;
     return state.write_stage && !visible;
 }
 

@@ -31,7 +31,8 @@ struct Barrier {
 /// Reads after reads need none. Buffers are tracked as wholes. Knows no device, so it can be tested by itself.
 class HazardTracker {
   public:
-    /// The barriers needed before a command with these accesses; remembers the accesses. A buffer named several times counts once.
+    /// The barriers needed before a command with these accesses; remembers the accesses. A buffer named several times
+    /// counts once.
     std::vector<Barrier> before(std::span<const Access> accesses);
     /// Forgets everything, after a barrier that covers all earlier commands.
     void reset() { states_.clear(); }

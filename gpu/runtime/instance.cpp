@@ -16,7 +16,8 @@ void load_loader() {
     static std::mutex mutex;
     const std::lock_guard lock(mutex);
     if (volkGetInstanceVersion() == 0 && volkInitialize() != VK_SUCCESS)
-        throw NoDeviceError("no Vulkan loader found; install libvulkan1 and a driver (mesa-vulkan-drivers has one for any CPU)");
+        throw NoDeviceError(
+            "no Vulkan loader found; install libvulkan1 and a driver (mesa-vulkan-drivers has one for any CPU)");
     if (volkGetInstanceVersion() < VK_API_VERSION_1_3)
         throw NoDeviceError("the Vulkan loader is older than 1.3; update libvulkan1");
 }
@@ -36,14 +37,15 @@ bool has_layer(const char* name) {
 }
 
 VkDebugUtilsMessengerCreateInfoEXT messenger_info(PFN_vkDebugUtilsMessengerCallbackEXT callback, void* user) {
-    return {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
-            .pNext = nullptr,
-            .flags = 0,
-            .messageSeverity =
-                VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
-            .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
-            .pfnUserCallback = callback,
-            .pUserData = user};
+    return {
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+        .pNext = nullptr,
+        .flags = 0,
+        .messageSeverity =
+            VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
+        .pfnUserCallback = callback,
+        .pUserData = user};
 }
 
 }  // namespace
@@ -55,7 +57,8 @@ Instance::Instance(const InstanceOptions& options) {
 
 void Instance::create(const InstanceOptions& options) {
     if (options.validation && !has_layer(k_validation_layer))
-        throw DeviceError("EXEMPLAR_VALIDATION is set but the validation layer is missing; install vulkan-validationlayers");
+        throw DeviceError(
+            "EXEMPLAR_VALIDATION is set but the validation layer is missing; install vulkan-validationlayers");
     std::vector<const char*> layers, extensions;
     for (const std::string& extension : options.extensions) extensions.push_back(extension.c_str());
     if (options.validation) {
@@ -93,7 +96,8 @@ void Instance::create(const InstanceOptions& options) {
     if (!options.validation) return;
     const auto create_messenger = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
         vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
-    if (create_messenger) check(create_messenger(instance_, &messenger, nullptr, &messenger_), "listen to the validation layer");
+    if (create_messenger)
+        check(create_messenger(instance_, &messenger, nullptr, &messenger_), "listen to the validation layer");
 }
 
 Instance::~Instance() {

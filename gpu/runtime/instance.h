@@ -13,8 +13,8 @@
 namespace exemplar {
 
 struct InstanceOptions {
-    bool validation = false;              ///< load VK_LAYER_KHRONOS_validation with synchronization validation
-    std::vector<std::string> extensions;  ///< e.g. the surface extensions of a window system
+    bool validation = false;                ///< load VK_LAYER_KHRONOS_validation with synchronization validation
+    std::vector<std::string> extensions{};  ///< e.g. the surface extensions of a window system
 };
 
 /// The connection to the Vulkan loader. Collects what the validation layer says.
@@ -37,7 +37,8 @@ class Instance {
         mutable std::mutex mutex;
         std::vector<std::string> texts;
     };
-    static VKAPI_ATTR VkBool32 VKAPI_CALL collect(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+    static VKAPI_ATTR VkBool32 VKAPI_CALL collect(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                                  VkDebugUtilsMessageTypeFlagsEXT,
                                                   const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
     void create(const InstanceOptions& options);
     VkInstance instance_ = VK_NULL_HANDLE;

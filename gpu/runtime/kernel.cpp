@@ -19,8 +19,8 @@ void check_interface(const Shader& shader, const Reflection& reflection, const K
                                       reflection.bindings.size(), interface.elements.size()));
     for (std::size_t i = 0; i < interface.elements.size(); ++i) {
         const ReflectedBinding& binding = reflection.bindings[i];
-        check_layout(shader, fmt::format("the elements of buffer '{}'", binding.name), interface.elements[i], binding.stride,
-                     binding.fields);
+        check_layout(shader, fmt::format("the elements of buffer '{}'", binding.name), interface.elements[i],
+                     binding.stride, binding.fields);
     }
     for (const auto& [id, value] : interface.constants)
         if (std::ranges::find(reflection.constant_ids, id) == reflection.constant_ids.end())
@@ -38,19 +38,22 @@ void check_limits(const Shader& shader, const Reflection& reflection, const Devi
         std::uint64_t{reflection.local_size[0]} * reflection.local_size[1] * reflection.local_size[2];
     if (invocations == 0) throw ShaderError(fmt::format("shader {}: its workgroups are empty", shader.name));
     if (invocations > info.max_invocations)
-        throw DeviceLimitError(fmt::format("shader {}: workgroups of {} invocations are over the limit of {} of device '{}'",
-                                           shader.name, invocations, info.max_invocations, info.name),
-                               invocations, info.max_invocations);
+        throw DeviceLimitError(
+            fmt::format("shader {}: workgroups of {} invocations are over the limit of {} of device '{}'", shader.name,
+                        invocations, info.max_invocations, info.name),
+            invocations, info.max_invocations);
     if (reflection.push_bytes > info.max_push_constants)
-        throw DeviceLimitError(fmt::format("shader {}: {} bytes of push constants are over the limit of {} of device '{}'",
-                                           shader.name, reflection.push_bytes, info.max_push_constants, info.name),
-                               reflection.push_bytes, info.max_push_constants);
+        throw DeviceLimitError(
+            fmt::format("shader {}: {} bytes of push constants are over the limit of {} of device '{}'", shader.name,
+                        reflection.push_bytes, info.max_push_constants, info.name),
+            reflection.push_bytes, info.max_push_constants);
 }
 
 void create_layouts(Kernel::Program& program) {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     for (const ReflectedBinding& binding : program.reflection.bindings)
-        bindings.push_back({binding.binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
+        bindings.push_back(
+            {binding.binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
     const VkDescriptorSetLayoutCreateInfo set{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
                                               .pNext = nullptr,
                                               .flags = 0,
@@ -58,7 +61,8 @@ void create_layouts(Kernel::Program& program) {
                                               .pBindings = bindings.data()};
     const std::string what = fmt::format("make the layout of kernel {}", program.name);
     check(vkCreateDescriptorSetLayout(program.device.handle(), &set, nullptr, &program.set_layout), what);
-    const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0, static_cast<std::uint32_t>(program.reflection.push_bytes)};
+    const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                                   static_cast<std::uint32_t>(program.reflection.push_bytes)};
     const VkPipelineLayoutCreateInfo layout{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                             .pNext = nullptr,
                                             .flags = 0,
@@ -99,8 +103,8 @@ void create_pipeline(Kernel::Program& program, const Shader& shader, const Kerne
                                            .layout = program.layout,
                                            .basePipelineHandle = VK_NULL_HANDLE,
                                            .basePipelineIndex = -1};
-    const VkResult result = vkCreateComputePipelines(program.device.handle(), program.device.pipeline_cache().handle(), 1, &info,
-                                                     nullptr, &program.pipeline);
+    const VkResult result = vkCreateComputePipelines(program.device.handle(), program.device.pipeline_cache().handle(),
+                                                     1, &info, nullptr, &program.pipeline);
     vkDestroyShaderModule(program.device.handle(), module, nullptr);
     check(result, what);
 }

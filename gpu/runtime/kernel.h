@@ -22,19 +22,21 @@ class Device;
 /// What C++ hands to a kernel: compared with what the shader declares when the kernel is made.
 struct KernelInterface {
     /// layout_of<Parameters>(); without it the shader may have no push constants.
-    std::optional<StructLayout> push_constants;
+    std::optional<StructLayout> push_constants{};
     /// Per storage buffer in binding order, the layout of an element of its array; may stop early.
-    std::vector<StructLayout> elements;
+    std::vector<StructLayout> elements{};
     /// Specialization constants: id and the bits of its value (std::bit_cast<uint32_t> for floats).
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> constants;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> constants{};
 };
 
-/// A compute pipeline. The descriptor layout, which bindings are read or written and the local size come from the SPIR-V itself:
-/// mark buffers `readonly` or `writeonly` in GLSL, and barriers follow. Streams keep it alive until they are done.
+/// A compute pipeline. The descriptor layout, which bindings are read or written and the local size come from the
+/// SPIR-V itself: mark buffers `readonly` or `writeonly` in GLSL, and barriers follow. Streams keep it alive until they
+/// are done.
 class Kernel {
   public:
     Kernel() = default;
-    /// Throws ShaderError if the shader and `interface` disagree, DeviceLimitError if it needs more than the device allows.
+    /// Throws ShaderError if the shader and `interface` disagree, DeviceLimitError if it needs more than the device
+    /// allows.
     Kernel(Device& device, const Shader& shader, const KernelInterface& interface = {});
     Kernel(Kernel&&) = default;
     Kernel& operator=(Kernel&&) = default;

@@ -44,8 +44,8 @@ StructLayout layout_of() {
 #define EXEMPLAR_EACH_FIELD(Struct, field, ...) \
     EXEMPLAR_LAYOUT_FIELD(Struct, field) __VA_OPT__(EXEMPLAR_EACH_AGAIN EXEMPLAR_PARENTHESES(Struct, __VA_ARGS__))
 #define EXEMPLAR_EACH_AGAIN() EXEMPLAR_EACH_FIELD
-#define EXEMPLAR_LAYOUT(Struct, ...)                                                                \
-    static_assert(std::is_standard_layout_v<Struct> && std::is_trivially_copyable_v<Struct>);       \
-    inline ::exemplar::StructLayout describe_layout(const Struct*) {                                \
+#define EXEMPLAR_LAYOUT(Struct, ...)                                                                   \
+    static_assert(std::is_standard_layout_v<Struct> && std::is_trivially_copyable_v<Struct>);          \
+    inline ::exemplar::StructLayout describe_layout(const Struct*) {                                   \
         return {#Struct, sizeof(Struct), {EXEMPLAR_EXPAND(EXEMPLAR_EACH_FIELD(Struct, __VA_ARGS__))}}; \
     }

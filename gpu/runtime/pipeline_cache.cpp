@@ -60,10 +60,12 @@ std::filesystem::path pipeline_cache_path(const DeviceInfo& info) {
         folder = std::filesystem::path(home) / ".cache";
     else
         return {};
-    return folder / "exemplar" / fmt::format("pipelines-{:02x}-{:08x}.bin", fmt::join(info.cache_uuid, ""), info.driver_number);
+    return folder / "exemplar" /
+           fmt::format("pipelines-{:02x}-{:08x}.bin", fmt::join(info.cache_uuid, ""), info.driver_number);
 }
 
-PipelineCache::PipelineCache(VkDevice device, const DeviceInfo& info) : device_(device), path_(pipeline_cache_path(info)) {
+PipelineCache::PipelineCache(VkDevice device, const DeviceInfo& info)
+    : device_(device), path_(pipeline_cache_path(info)) {
     const std::string data = load(path_);
     loaded_bytes_ = saved_bytes_ = data.size();
     VkPipelineCacheCreateInfo create{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
@@ -83,7 +85,8 @@ PipelineCache::~PipelineCache() {
 
 void PipelineCache::save() noexcept {
     std::size_t size = 0;
-    if (path_.empty() || vkGetPipelineCacheData(device_, cache_, &size, nullptr) != VK_SUCCESS || size == saved_bytes_) return;
+    if (path_.empty() || vkGetPipelineCacheData(device_, cache_, &size, nullptr) != VK_SUCCESS || size == saved_bytes_)
+        return;
     try {
         std::string data(size, '\0');
         if (vkGetPipelineCacheData(device_, cache_, &size, data.data()) != VK_SUCCESS) return;

@@ -21,7 +21,8 @@ class Module {
         context_.reset(context);
         spvc_parsed_ir ir = nullptr;
         require(spvc_context_parse_spirv(context, shader.words.data(), shader.words.size(), &ir));
-        require(spvc_context_create_compiler(context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler_));
+        require(
+            spvc_context_create_compiler(context, SPVC_BACKEND_NONE, ir, SPVC_CAPTURE_MODE_TAKE_OWNERSHIP, &compiler_));
         require(spvc_compiler_create_shader_resources(compiler_, &resources_));
     }
 
@@ -41,7 +42,8 @@ class Module {
             std::size_t bytes = 0;
             require(spvc_compiler_type_struct_member_offset(compiler_, type, i, &offset));
             require(spvc_compiler_get_declared_struct_member_size(compiler_, type, i, &bytes));
-            fields.push_back({spvc_compiler_get_member_name(compiler_, spvc_type_get_base_type_id(type), i), offset, bytes});
+            fields.push_back(
+                {spvc_compiler_get_member_name(compiler_, spvc_type_get_base_type_id(type), i), offset, bytes});
         }
         return fields;
     }
@@ -84,7 +86,8 @@ ReflectedBinding reflect_binding(const Module& module, const spvc_reflected_reso
     unsigned stride = 0;
     module.require(spvc_compiler_type_struct_member_array_stride(module.compiler(), block, last, &stride));
     binding.stride = stride;
-    if (spvc_type_get_basetype(module.type(tail)) == SPVC_BASETYPE_STRUCT) binding.fields = module.fields(module.element(tail));
+    if (spvc_type_get_basetype(module.type(tail)) == SPVC_BASETYPE_STRUCT)
+        binding.fields = module.fields(module.element(tail));
     return binding;
 }
 
@@ -93,8 +96,8 @@ void reflect_bindings(const Shader& shader, const Module& module, Reflection& re
          {SPVC_RESOURCE_TYPE_UNIFORM_BUFFER, SPVC_RESOURCE_TYPE_STORAGE_IMAGE, SPVC_RESOURCE_TYPE_SAMPLED_IMAGE,
           SPVC_RESOURCE_TYPE_SEPARATE_IMAGE, SPVC_RESOURCE_TYPE_SEPARATE_SAMPLERS})
         for (const spvc_reflected_resource& resource : module.resources(other))
-            throw ShaderError(fmt::format("shader {}: '{}' is no storage buffer; kernels bind storage buffers only", shader.name,
-                                          resource.name));
+            throw ShaderError(fmt::format("shader {}: '{}' is no storage buffer; kernels bind storage buffers only",
+                                          shader.name, resource.name));
     for (const spvc_reflected_resource& resource : module.resources(SPVC_RESOURCE_TYPE_STORAGE_BUFFER)) {
         if (spvc_compiler_get_decoration(module.compiler(), resource.id, SpvDecorationDescriptorSet) != 0)
             throw ShaderError(fmt::format("shader {}: '{}' is not in descriptor set 0", shader.name, resource.name));
@@ -108,8 +111,8 @@ void reflect_push_constants(const Module& module, Reflection& result) {
         spvc_type block = module.type(resource.base_type_id);
         module.require(spvc_compiler_get_declared_struct_size(module.compiler(), block, &result.push_bytes));
         const spvc_type_id first = spvc_type_get_member_type(block, 0);
-        const bool wraps_structure =
-            spvc_type_get_num_member_types(block) == 1 && spvc_type_get_basetype(module.type(first)) == SPVC_BASETYPE_STRUCT;
+        const bool wraps_structure = spvc_type_get_num_member_types(block) == 1 &&
+                                     spvc_type_get_basetype(module.type(first)) == SPVC_BASETYPE_STRUCT;
         result.push_fields = module.fields(wraps_structure ? module.type(first) : block);
     }
 }
@@ -123,7 +126,8 @@ void reflect_constants(const Module& module, Reflection& result) {
     for (unsigned axis = 0; axis < 3; ++axis) {
         if (size[axis].id == 0) continue;
         result.local_size_ids[axis] = size[axis].constant_id;
-        result.local_size[axis] = spvc_constant_get_scalar_u32(spvc_compiler_get_constant_handle(module.compiler(), size[axis].id), 0, 0);
+        result.local_size[axis] =
+            spvc_constant_get_scalar_u32(spvc_compiler_get_constant_handle(module.compiler(), size[axis].id), 0, 0);
     }
     const spvc_specialization_constant* constants = nullptr;
     std::size_t count = 0;
@@ -150,18 +154,21 @@ void check_layout(const Shader& shader, const std::string& where, const StructLa
         for (std::size_t i = 0; i < std::min(fields.size(), expected.fields.size()); ++i) {
             const FieldLayout& field = expected.fields[i];
             if (fields[i].name != field.name)
-                throw ShaderError(fmt::format("{}member {} is '{}' there and '{}' here", start, i, fields[i].name, field.name));
+                throw ShaderError(
+                    fmt::format("{}member {} is '{}' there and '{}' here", start, i, fields[i].name, field.name));
             if (fields[i].offset != field.offset)
                 throw ShaderError(fmt::format("{}'{}' is at byte {} there and at byte {} here", start, field.name,
                                               fields[i].offset, field.offset));
             if (fields[i].bytes != field.bytes)
-                throw ShaderError(fmt::format("{}'{}' has {} bytes there and {} here", start, field.name, fields[i].bytes,
-                                              field.bytes));
+                throw ShaderError(fmt::format("{}'{}' has {} bytes there and {} here", start, field.name,
+                                              fields[i].bytes, field.bytes));
         }
         if (fields.size() != expected.fields.size())
-            throw ShaderError(fmt::format("{}{} members there and {} here", start, fields.size(), expected.fields.size()));
+            throw ShaderError(
+                fmt::format("{}{} members there and {} here", start, fields.size(), expected.fields.size()));
     }
-    if (bytes != expected.bytes) throw ShaderError(fmt::format("{}{} bytes there and {} here", start, bytes, expected.bytes));
+    if (bytes != expected.bytes)
+        throw ShaderError(fmt::format("{}{} bytes there and {} here", start, bytes, expected.bytes));
 }
 
 }  // namespace exemplar

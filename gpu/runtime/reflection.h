@@ -32,7 +32,8 @@ struct ReflectedBinding {
 struct Reflection {
     std::vector<ReflectedBinding> bindings;  ///< by rising binding number
     std::size_t push_bytes = 0;
-    std::vector<ReflectedField> push_fields;  ///< of the structure that is the push constant block's only member, else of the block
+    std::vector<ReflectedField>
+        push_fields;  ///< of the structure that is the push constant block's only member, else of the block
     std::array<std::uint32_t, 3> local_size{1, 1, 1};
     std::array<std::optional<std::uint32_t>, 3> local_size_ids;  ///< specialization constants that set the local size
     std::vector<std::uint32_t> constant_ids;                     ///< all specialization constants

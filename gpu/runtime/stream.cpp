@@ -17,7 +17,9 @@ constexpr std::uint32_t k_bindings_per_pool = 8 * k_sets_per_pool;
 constexpr std::uint32_t k_timed_dispatches = 1024;
 constexpr std::size_t k_staging_block = std::size_t{4} << 20;
 
-std::uint64_t group_count(std::uint64_t threads, std::uint32_t local_size) { return (threads + local_size - 1) / local_size; }
+std::uint64_t group_count(std::uint64_t threads, std::uint32_t local_size) {
+    return (threads + local_size - 1) / local_size;
+}
 
 // The smallest box of groups that holds `groups` in rows of equal length.
 std::array<std::uint64_t, 3> fold(std::uint64_t groups, const std::array<std::uint32_t, 3>& limit) {
@@ -35,30 +37,35 @@ std::array<std::uint32_t, 3> groups_of(const Kernel& kernel, const Threads& thre
     if (threads.foldable) groups = fold(groups[0], info.max_groups);
     for (std::size_t axis = 0; axis < 3; ++axis)
         if (groups[axis] > info.max_groups[axis])
-            throw DeviceLimitError(fmt::format("kernel {} needs {} workgroups along axis {}, over the limit of {} of device '{}'",
-                                               kernel.name(), groups[axis], axis, info.max_groups[axis], info.name),
-                                   groups[axis], info.max_groups[axis]);
+            throw DeviceLimitError(
+                fmt::format("kernel {} needs {} workgroups along axis {}, over the limit of {} of device '{}'",
+                            kernel.name(), groups[axis], axis, info.max_groups[axis], info.name),
+                groups[axis], info.max_groups[axis]);
     constexpr std::uint64_t k_limit = std::numeric_limits<std::uint32_t>::max();
     if (threads.foldable && groups[0] * groups[1] * groups[2] * local[0] > k_limit)
-        throw DeviceLimitError(fmt::format("kernel {} over {} threads: its indices have 32 bits; tile the work", kernel.name(), threads.x),
-                               threads.x, k_limit);
-    return {static_cast<std::uint32_t>(groups[0]), static_cast<std::uint32_t>(groups[1]), static_cast<std::uint32_t>(groups[2])};
+        throw DeviceLimitError(
+            fmt::format("kernel {} over {} threads: its indices have 32 bits; tile the work", kernel.name(), threads.x),
+            threads.x, k_limit);
+    return {static_cast<std::uint32_t>(groups[0]), static_cast<std::uint32_t>(groups[1]),
+            static_cast<std::uint32_t>(groups[2])};
 }
 
-void check_binding(const Kernel& kernel, const ReflectedBinding& binding, const BufferRange& range, const DeviceInfo& info) {
+void check_binding(const Kernel& kernel, const ReflectedBinding& binding, const BufferRange& range,
+                   const DeviceInfo& info) {
     const std::string start = fmt::format("kernel {}: buffer '{}': ", kernel.name(), binding.name);
     if (!*range.buffer) throw ShaderError(start + "it has no memory");
     if (range.offset > range.buffer->bytes() || range.bytes > range.buffer->bytes() - range.offset)
-        throw ShaderError(fmt::format("{}bytes {} to {} are outside its {} bytes", start, range.offset, range.offset + range.bytes,
-                                      range.buffer->bytes()));
+        throw ShaderError(fmt::format("{}bytes {} to {} are outside its {} bytes", start, range.offset,
+                                      range.offset + range.bytes, range.buffer->bytes()));
     if (range.offset % info.storage_alignment != 0)
-        throw DeviceLimitError(fmt::format("{}offset {} is no multiple of {}, as device '{}' needs it", start, range.offset,
-                                           info.storage_alignment, info.name),
+        throw DeviceLimitError(fmt::format("{}offset {} is no multiple of {}, as device '{}' needs it", start,
+                                           range.offset, info.storage_alignment, info.name),
                                range.offset, info.storage_alignment);
     if (range.bytes > info.max_storage_range)
-        throw DeviceLimitError(fmt::format("{}{} are over the limit of {} per binding of device '{}'; tile the work", start,
-                                           format_bytes(range.bytes), format_bytes(info.max_storage_range), info.name),
-                               range.bytes, info.max_storage_range);
+        throw DeviceLimitError(
+            fmt::format("{}{} are over the limit of {} per binding of device '{}'; tile the work", start,
+                        format_bytes(range.bytes), format_bytes(info.max_storage_range), info.name),
+            range.bytes, info.max_storage_range);
 }
 
 Access access_of(const ReflectedBinding& binding, const BufferRange& range) {
@@ -69,17 +76,22 @@ Access access_of(const ReflectedBinding& binding, const BufferRange& range) {
 }
 
 Access copy_read(const Buffer& buffer) {
-    return {.buffer = buffer.handle(), .stage = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, .reads = VK_ACCESS_2_TRANSFER_READ_BIT};
+    return {.buffer = buffer.handle(),
+            .stage = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+            .reads = VK_ACCESS_2_TRANSFER_READ_BIT};
 }
 
 Access copy_write(const Buffer& buffer) {
-    return {.buffer = buffer.handle(), .stage = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, .writes = VK_ACCESS_2_TRANSFER_WRITE_BIT};
+    return {.buffer = buffer.handle(),
+            .stage = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+            .writes = VK_ACCESS_2_TRANSFER_WRITE_BIT};
 }
 
 void check_bytes(const Buffer& buffer, std::size_t offset, std::size_t bytes) {
     if (!buffer) throw DeviceError("a copy needs a buffer that has memory");
     if (offset > buffer.bytes() || bytes > buffer.bytes() - offset)
-        throw DeviceError(fmt::format("bytes {} to {} are outside a buffer of {} bytes", offset, offset + bytes, buffer.bytes()));
+        throw DeviceError(
+            fmt::format("bytes {} to {} are outside a buffer of {} bytes", offset, offset + bytes, buffer.bytes()));
 }
 
 }  // namespace
@@ -110,7 +122,8 @@ Stream::~Stream() {
 }
 
 void Stream::begin() {
-    if (submitted_) throw DeviceError("a stream was recorded to before its submitted work was waited for; call wait() first");
+    if (submitted_)
+        throw DeviceError("a stream was recorded to before its submitted work was waited for; call wait() first");
     if (recording_) return;
     const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                         .pNext = nullptr,
@@ -141,7 +154,7 @@ void Stream::order(std::span<const Access> accesses) {
                          .buffer = barrier.buffer,
                          .offset = 0,
                          .size = VK_WHOLE_SIZE});
-    VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    auto dependency = empty_structure<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
     dependency.bufferMemoryBarrierCount = static_cast<std::uint32_t>(infos.size());
     dependency.pBufferMemoryBarriers = infos.data();
     vkCmdPipelineBarrier2(commands_, &dependency);
@@ -152,9 +165,11 @@ void Stream::dispatch_bytes(const Kernel& kernel, Threads threads, std::span<con
                             std::span<const std::byte> push) {
     const Reflection& reflection = kernel.reflection();
     if (bindings.size() != reflection.bindings.size())
-        throw ShaderError(fmt::format("kernel {} binds {} buffers, not {}", kernel.name(), reflection.bindings.size(), bindings.size()));
+        throw ShaderError(fmt::format("kernel {} binds {} buffers, not {}", kernel.name(), reflection.bindings.size(),
+                                      bindings.size()));
     if (push.size() != reflection.push_bytes)
-        throw ShaderError(fmt::format("kernel {} takes {} bytes of push constants, not {}", kernel.name(), reflection.push_bytes, push.size()));
+        throw ShaderError(fmt::format("kernel {} takes {} bytes of push constants, not {}", kernel.name(),
+                                      reflection.push_bytes, push.size()));
     if (threads.x == 0 || threads.y == 0 || threads.z == 0) return;
     const std::array<std::uint32_t, 3> groups = groups_of(kernel, threads, device_.info());
     std::vector<Access> accesses;
@@ -184,7 +199,8 @@ void Stream::bind(const Kernel& kernel, std::span<const BufferRange> bindings) {
     for (std::size_t i = 0; i < bindings.size(); ++i) {
         // An empty range still needs an address: buffers are never smaller than 16 bytes.
         const bool rest = bindings[i].offset + bindings[i].bytes == bindings[i].buffer->bytes();
-        infos[i] = {bindings[i].buffer->handle(), bindings[i].offset, bindings[i].bytes && !rest ? bindings[i].bytes : VK_WHOLE_SIZE};
+        infos[i] = {bindings[i].buffer->handle(), bindings[i].offset,
+                    bindings[i].bytes && !rest ? bindings[i].bytes : VK_WHOLE_SIZE};
         writes[i] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
                      .pNext = nullptr,
                      .dstSet = set,
@@ -197,7 +213,8 @@ void Stream::bind(const Kernel& kernel, std::span<const BufferRange> bindings) {
                      .pTexelBufferView = nullptr};
     }
     vkUpdateDescriptorSets(device_.handle(), static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
-    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.program()->layout, 0, 1, &set, 0, nullptr);
+    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.program()->layout, 0, 1, &set, 0,
+                            nullptr);
 }
 
 void Stream::add_descriptor_pool() {
@@ -232,7 +249,8 @@ VkDescriptorSet Stream::allocate_set(VkDescriptorSetLayout layout) {
     return set;
 }
 
-std::pair<Stream::Staging*, std::size_t> Stream::stage(std::vector<Staging>& blocks, std::size_t bytes, BufferMemory memory) {
+std::pair<Stream::Staging*, std::size_t> Stream::stage(std::vector<Staging>& blocks, std::size_t bytes,
+                                                       BufferMemory memory) {
     for (Staging& block : blocks)
         if (block.buffer.bytes() - block.used >= bytes) {
             const std::size_t offset = block.used;
@@ -240,7 +258,8 @@ std::pair<Stream::Staging*, std::size_t> Stream::stage(std::vector<Staging>& blo
             block.used = std::min(block.used, block.buffer.bytes());
             return {&block, offset};
         }
-    blocks.push_back({Buffer(device_, std::max(k_staging_block, (bytes + 15) / 16 * 16), memory), (bytes + 15) / 16 * 16});
+    blocks.push_back(
+        {Buffer(device_, std::max(k_staging_block, (bytes + 15) / 16 * 16), memory), (bytes + 15) / 16 * 16});
     return {&blocks.back(), 0};
 }
 
@@ -290,13 +309,14 @@ void Stream::fill(const Buffer& target, std::uint32_t word) {
 void Stream::submit() {
     begin();
     // Later streams and the host see everything, whatever it was: one barrier at the end makes streams independent.
-    const VkMemoryBarrier2 all{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
-                               .pNext = nullptr,
-                               .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                               .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
-                               .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT,
-                               .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_HOST_READ_BIT};
-    VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+    const VkMemoryBarrier2 all{
+        .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+        .pNext = nullptr,
+        .srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+        .srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT,
+        .dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT,
+        .dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT | VK_ACCESS_2_HOST_READ_BIT};
+    auto dependency = empty_structure<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
     dependency.memoryBarrierCount = 1;
     dependency.pMemoryBarriers = &all;
     vkCmdPipelineBarrier2(commands_, &dependency);
@@ -309,7 +329,8 @@ void Stream::wait() {
     if (!submitted_) return;
     check(vkWaitForFences(device_.handle(), 1, &fence_, VK_TRUE, UINT64_MAX), "wait for the device's work");
     check(vkResetFences(device_.handle(), 1, &fence_), "reset a fence");
-    for (const Download& download : downloads_) std::memcpy(download.target.data(), download.source, download.target.size());
+    for (const Download& download : downloads_)
+        std::memcpy(download.target.data(), download.source, download.target.size());
     collect_timings();
     release();
     check(vkResetCommandPool(device_.handle(), pool_, 0), "reset a command pool");
@@ -356,7 +377,8 @@ void Stream::start_timing(const Kernel& kernel) {
 
 void Stream::stop_timing() {
     if (timing_open_)
-        vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, queries_, timings_.back().first_query + 1);
+        vkCmdWriteTimestamp2(commands_, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, queries_,
+                             timings_.back().first_query + 1);
 }
 
 void Stream::collect_timings() {

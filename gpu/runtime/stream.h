@@ -18,9 +18,9 @@
 
 namespace exemplar {
 
-/// How many invocations a dispatch needs. A plain count may exceed any number of groups: groups are folded into y and z, and
-/// the shader finds its item with linear_thread() of shaders/lib/dispatch.glsl. Counts per axis are for 2D and 3D kernels that
-/// use gl_GlobalInvocationID. Kernels check their item's index: the last groups overshoot.
+/// How many invocations a dispatch needs. A plain count may exceed any number of groups: groups are folded into y and
+/// z, and the shader finds its item with linear_thread() of shaders/lib/dispatch.glsl. Counts per axis are for 2D and
+/// 3D kernels that use gl_GlobalInvocationID. Kernels check their item's index: the last groups overshoot.
 struct Threads {
     Threads(std::uint64_t count) : x(count), foldable(true) {}  // NOLINT: a plain count reads best
     Threads(std::uint64_t width, std::uint64_t height, std::uint64_t depth = 1) : x(width), y(height), z(depth) {}
@@ -30,9 +30,9 @@ struct Threads {
     bool foldable = false;
 };
 
-/// A sequence of device work: record, submit, wait; then record again. Commands run as if one after the other: barriers follow
-/// from what each command reads and writes, and a stream sees what earlier submitted streams wrote.
-/// One thread at a time may use a stream. Waits for its work when it ends.
+/// A sequence of device work: record, submit, wait; then record again. Commands run as if one after the other: barriers
+/// follow from what each command reads and writes, and a stream sees what earlier submitted streams wrote. One thread
+/// at a time may use a stream. Waits for its work when it ends.
 class Stream {
   public:
     explicit Stream(Device& device, Profiler* profiler = nullptr);
@@ -40,14 +40,16 @@ class Stream {
     Stream(const Stream&) = delete;
     Stream& operator=(const Stream&) = delete;
 
-    /// Runs a kernel over `threads`; nothing if there are none. `bindings` are in the order of the shader's binding numbers.
-    /// Throws ShaderError if their number or the push constants' size is wrong, DeviceLimitError if a binding is over the device's
-    /// max_storage_range (bind BufferRanges of a tiled buffer instead) or there are more threads than a kernel can count.
+    /// Runs a kernel over `threads`; nothing if there are none. `bindings` are in the order of the shader's binding
+    /// numbers. Throws ShaderError if their number or the push constants' size is wrong, DeviceLimitError if a binding
+    /// is over the device's max_storage_range (bind BufferRanges of a tiled buffer instead) or there are more threads
+    /// than a kernel can count.
     void dispatch(const Kernel& kernel, Threads threads, std::initializer_list<BufferRange> bindings) {
         dispatch_bytes(kernel, threads, {bindings.begin(), bindings.size()}, {});
     }
     template <typename Push>
-    void dispatch(const Kernel& kernel, Threads threads, std::initializer_list<BufferRange> bindings, const Push& push) {
+    void dispatch(const Kernel& kernel, Threads threads, std::initializer_list<BufferRange> bindings,
+                  const Push& push) {
         static_assert(std::is_trivially_copyable_v<Push>);
         dispatch_bytes(kernel, threads, {bindings.begin(), bindings.size()}, std::as_bytes(std::span(&push, 1)));
     }
@@ -67,13 +69,15 @@ class Stream {
         download_bytes(source, std::as_writable_bytes(values), offset);
     }
     /// Copies `bytes` bytes between two buffers.
-    void copy(const Buffer& source, std::size_t source_offset, const Buffer& target, std::size_t target_offset, std::size_t bytes);
+    void copy(const Buffer& source, std::size_t source_offset, const Buffer& target, std::size_t target_offset,
+              std::size_t bytes);
     /// Sets every 4 bytes of the buffer to `word`.
     void fill(const Buffer& target, std::uint32_t word);
 
     /// Hands the recorded work to the device and returns at once; nothing may be recorded until wait().
     void submit();
-    /// Waits until the submitted work is done and downloads have arrived. Throws DeviceLostError if the device was lost.
+    /// Waits until the submitted work is done and downloads have arrived. Throws DeviceLostError if the device was
+    /// lost.
     void wait();
     /// submit() and wait().
     void finish();

@@ -15,6 +15,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* k_kind = "exemplar mesh labeling";
+constexpr std::size_t k_most_stages = 64;  ///< a bound against absurd files
 
 void add_classifier(TensorFile& file, const std::string& name, const CalibratedStumps& classifier) {
     const BoostedStumps& boosted = classifier.stumps;
@@ -110,8 +111,8 @@ void read_description(const TensorFile& file, LabelingModel& model) {
     model.feature_options.orientation = json.at("orientation");
     model.unary_names = json.at("unary_features").get<std::vector<std::string>>();
     model.pairwise_names = json.at("pairwise_features").get<std::vector<std::string>>();
-    model.unary.resize(std::min<std::size_t>(json.at("unary_stages"), 64));
-    model.pairwise.resize(std::min<std::size_t>(json.at("pairwise_stages"), 64));
+    model.unary.resize(std::min(json.at("unary_stages").get<std::size_t>(), k_most_stages));
+    model.pairwise.resize(std::min(json.at("pairwise_stages").get<std::size_t>(), k_most_stages));
     model.crf.kappa = json.at("kappa");
     model.crf.lambda = json.at("lambda");
     model.crf.mu = json.at("mu");

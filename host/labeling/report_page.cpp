@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <string_view>
@@ -173,6 +174,7 @@ Json describe_mesh(const ReportMesh& item, const PackedMesh& packed) {
             {"origin", triple(packed.origin)},
             {"step", triple(packed.step)},
             {"truth", !item.truth.empty()},
+            {"unlabeled", std::ranges::find(item.truth, -1) != item.truth.end()},
             {"rate", number_or_null(item.recognition_rate)}};
 }
 

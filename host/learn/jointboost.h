@@ -14,12 +14,13 @@ namespace exemplar {
 
 /// How JointBoost trains (thesis Sec. 3.3.1).
 struct BoostOptions {
-    std::size_t rounds = 300;            ///< most stumps
-    std::size_t patience = 50;           ///< stop after so many rounds without a lower validation loss; 0 = run all
-    bool keep_best = true;               ///< drop the stumps after the lowest validation loss
-    std::size_t exhaustive_classes = 6;  ///< all class subsets are tried up to so many classes (at most 10), greedy above
-    double feature_fraction = 1.0;       ///< share of the features tried each round, drawn at random, in (0, 1]
-    double row_fraction = 1.0;           ///< share of the rows that choose the stump each round, in (0, 1]
+    std::size_t rounds = 300;   ///< most stumps
+    std::size_t patience = 50;  ///< stop after so many rounds without a lower validation loss; 0 = run all
+    bool keep_best = true;      ///< drop the stumps after the lowest validation loss
+    std::size_t exhaustive_classes =
+        6;                          ///< all class subsets are tried up to so many classes (at most 10), greedy above
+    double feature_fraction = 1.0;  ///< share of the features tried each round, drawn at random, in (0, 1]
+    double row_fraction = 1.0;      ///< share of the rows that choose the stump each round, in (0, 1]
     std::uint64_t seed = 1;
 };
 
@@ -55,12 +56,12 @@ struct BoostResult {
 /// Called after each round with what the round gave and the classifier so far.
 using BoostCallback = std::function<void(const BoostRound&, const BoostedStumps&)>;
 
-/// Trains a JointBoost classifier (thesis Sec. 2.4.2, Eqs. 2.64-2.69, 3.5-3.7; Torralba et al. 2007): each round adds the
-/// stump shared by a subset of classes that minimizes the weighted squared error (Eq. 3.6). Probabilities: Link::softmax
-/// or Link::sigmoid. A class without training rows is never shared: it gets k_c = -1 each round.
-/// `validation` may be null; then all rounds are run and kept. The result depends on the data, the options and the seed,
-/// not on the number of threads. Throws UsageError for options, labels or sizes out of range, DataError for weights that
-/// are negative, not finite or all zero, and Interrupted on Ctrl-C.
+/// Trains a JointBoost classifier (thesis Sec. 2.4.2, Eqs. 2.64-2.69, 3.5-3.7; Torralba et al. 2007): each round adds
+/// the stump shared by a subset of classes that minimizes the weighted squared error (Eq. 3.6). Probabilities:
+/// Link::softmax or Link::sigmoid. A class without training rows is never shared: it gets k_c = -1 each round.
+/// `validation` may be null; then all rounds are run and kept. The result depends on the data, the options and the
+/// seed, not on the number of threads. Throws UsageError for options, labels or sizes out of range, DataError for
+/// weights that are negative, not finite or all zero, and Interrupted on Ctrl-C.
 BoostResult train_jointboost(const TrainingSet& training, std::size_t class_count, const ValidationSet* validation,
                              const BoostOptions& options, const BoostCallback& callback = {});
 

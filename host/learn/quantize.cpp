@@ -128,10 +128,10 @@ QuantizedFeatures quantize(const FeatureMatrix& features, std::span<const float>
     const std::vector<float> sample_weights = every_kth(weights, options.sample_rows);
     parallel_for(features.cols(), [&](std::size_t feature) {
         const std::span<const float> column = features.column(feature);
-        out.thresholds[feature] = features.rows <= options.sample_rows
-                                      ? quantile_thresholds(column, weights, options.bins)
-                                      : quantile_thresholds(every_kth(column, options.sample_rows), sample_weights,
-                                                            options.bins);
+        out.thresholds[feature] =
+            features.rows <= options.sample_rows
+                ? quantile_thresholds(column, weights, options.bins)
+                : quantile_thresholds(every_kth(column, options.sample_rows), sample_weights, options.bins);
         fill_bins(out, features, feature);
     });
     return out;

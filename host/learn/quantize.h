@@ -17,8 +17,8 @@ struct QuantizeOptions {
     std::size_t sample_rows = 200'000;  ///< with more rows, quantiles come from every k-th row
 };
 
-/// Feature values as bins, the form that boosting trains on. The bin of a value is the number of thresholds below it, so
-/// `bin > t` holds exactly where `value > thresholds[feature][t]`; a NaN is in bin 0 (not above any threshold).
+/// Feature values as bins, the form that boosting trains on. The bin of a value is the number of thresholds below it,
+/// so `bin > t` holds exactly where `value > thresholds[feature][t]`; a NaN is in bin 0 (not above any threshold).
 struct QuantizedFeatures {
     std::size_t rows = 0;
     std::vector<std::vector<float>> thresholds;  ///< per feature, rising; one less than the feature's bins
@@ -30,12 +30,14 @@ struct QuantizedFeatures {
 
 /// Thresholds of one feature: between every two neighboring distinct values where these fit into `bins` bins, else at
 /// weighted quantiles, so that bins hold about equal weight. Each is a midpoint between two values that occur (or the
-/// lower one, where no float lies between). NaNs are ignored. `weights`: one per value, not negative; empty means equal.
+/// lower one, where no float lies between). NaNs are ignored. `weights`: one per value, not negative; empty means
+/// equal.
 std::vector<float> quantile_thresholds(std::span<const float> values, std::span<const float> weights, std::size_t bins);
 
 /// Quantizes all features, in parallel. `weights`: one per row (e.g. its area); empty means equal.
 /// Throws UsageError for bins out of range or weights of another size.
-QuantizedFeatures quantize(const FeatureMatrix& features, std::span<const float> weights, const QuantizeOptions& options);
+QuantizedFeatures quantize(const FeatureMatrix& features, std::span<const float> weights,
+                           const QuantizeOptions& options);
 
 /// Sorts the values of other rows into the bins of `like`. Throws UsageError if the number of features differs.
 QuantizedFeatures quantize_like(const QuantizedFeatures& like, const FeatureMatrix& features);

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "host/mesh/distance_queue.h"
 #include "host/mesh/mesh.h"
 #include "host/mesh/topology.h"
 
@@ -37,15 +38,10 @@ class GeodesicSearch {
     void distances(std::uint32_t source, std::span<float> out);
 
   private:
-    struct HeapItem {
-        float distance;
-        std::uint32_t face;
-    };
     const DualGraph* graph_;
-    std::vector<float> distance_;
-    std::vector<HeapItem> heap_;
+    DistanceQueue queue_;
+    std::vector<float> distance_;  ///< infinity everywhere between calls
     std::vector<Reached> reached_;
-    std::vector<std::uint32_t> touched_;
 };
 
 /// Distances from each source to each face: sources x F, row-major, computed in parallel.
@@ -57,8 +53,9 @@ struct FaceSamples {
     std::vector<float> area_share;    ///< S; the share of the surface nearest to each sample; sums to 1
 };
 /// Farthest-point samples under geodesic distance (started at the face farthest from the area centroid, so the result
-/// does not depend on face order), each weighted by the area of its geodesic Voronoi cell. Every component with faces
-/// gets at least one sample. With count >= F every face is its own sample and sums are exact.
+/// does not depend on face order), each weighted by the area of its geodesic Voronoi cell. Every component gets a
+/// sample, or, with fewer samples than components, the largest do and the others are left out of the shares. With count
+/// >= F every face is its own sample, in order, and sums are exact. Faces count equally if all areas are zero.
 FaceSamples sample_faces(const TriangleMesh& mesh, const DualGraph& graph, std::size_t count);
 
 }  // namespace exemplar

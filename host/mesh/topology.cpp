@@ -14,11 +14,17 @@ void counts_to_offsets(std::vector<std::uint32_t>& begin) {
     for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
 }
 
-/// Corner i of a face opens a proper edge that no earlier corner has opened.
+/// Side i of a face (from corner i to the next) is a proper edge and not the same as an earlier side.
 bool opens_edge(const Face& face, int i) {
-    const std::uint32_t a = face[i], b = face[(i + 1) % 3];
-    if (a == b) return false;
-    return i == 0 || face[0] != face[2 - i];  // of an a-a-b face only the first a-b counts
+    const auto& [a, b, c] = face;
+    switch (i) {
+        case 0:
+            return a != b;
+        case 1:
+            return b != c && c != a;
+        default:
+            return c != a && a != b && b != c;
+    }
 }
 
 /// A side of a face as seen from its smaller vertex.

@@ -29,7 +29,8 @@ class ImplicitField {
     float value(const Vec3& p, std::span<const std::uint32_t> active) const;
     /// Unit gradient by central differences on a tetrahedron with this step; zero where it vanishes.
     Vec3 normal(const Vec3& p, float step) const;
-    /// Moves p onto the surface by Newton steps along the gradient, at most `reach` away. Returns the unit normal there.
+    /// Moves p onto the surface by Newton steps along the gradient, at most `reach` away. Returns the unit normal
+    /// there.
     Vec3 project(Vec3& p, float reach) const;
     /// The primitives that can change the value somewhere within `radius` of p, out of `active`.
     std::vector<std::uint32_t> active_near(const Vec3& p, float radius, std::span<const std::uint32_t> active) const;

@@ -55,8 +55,9 @@ void fill_block(const ImplicitField& field, Grid& grid, std::array<std::uint32_t
     }
     const std::uint32_t step = side / 2;
     for (std::uint32_t child = 0; child < 8; ++child)
-        fill_block(field, grid, {at[0] + (child & 1) * step, at[1] + (child >> 1 & 1) * step, at[2] + (child >> 2) * step},
-                   step, active);
+        fill_block(field, grid,
+                   {at[0] + (child & 1) * step, at[1] + (child >> 1 & 1) * step, at[2] + (child >> 2) * step}, step,
+                   active);
 }
 
 Grid sample_grid(const ImplicitField& field, float cell) {
@@ -75,9 +76,10 @@ Grid sample_grid(const ImplicitField& field, float cell) {
     std::iota(all.begin(), all.end(), 0u);
     parallel_for(std::size_t{blocks[0]} * blocks[1] * blocks[2], [&](std::size_t block) {
         const auto b = static_cast<std::uint32_t>(block);
-        fill_block(field, grid,
-                   {b % blocks[0] * k_block, b / blocks[0] % blocks[1] * k_block, b / (blocks[0] * blocks[1]) * k_block},
-                   k_block, all);
+        fill_block(
+            field, grid,
+            {b % blocks[0] * k_block, b / blocks[0] % blocks[1] * k_block, b / (blocks[0] * blocks[1]) * k_block},
+            k_block, all);
     });
     return grid;
 }
@@ -113,14 +115,31 @@ class TetrahedronCutter {
         std::uint32_t mask = 0;
         for (std::uint32_t i = 0; i < 4; ++i) mask |= (inside >> t[i] & 1) << i;
         if (mask == 0 || mask == 15) return;
-        static constexpr std::array<std::array<std::uint8_t, 4>, 16> k_even{
-            {{0, 1, 2, 3}, {0, 1, 2, 3}, {1, 0, 3, 2}, {0, 1, 2, 3}, {2, 0, 1, 3}, {0, 2, 3, 1}, {1, 2, 0, 3}, {0, 1, 2, 3},
-             {3, 2, 1, 0}, {0, 3, 1, 2}, {1, 3, 2, 0}, {0, 3, 1, 2}, {2, 3, 0, 1}, {0, 2, 3, 1}, {1, 3, 2, 0}, {0, 1, 2, 3}}};
+        static constexpr std::array<std::array<std::uint8_t, 4>, 16> k_even{{{0, 1, 2, 3},
+                                                                             {0, 1, 2, 3},
+                                                                             {1, 0, 3, 2},
+                                                                             {0, 1, 2, 3},
+                                                                             {2, 0, 1, 3},
+                                                                             {0, 2, 3, 1},
+                                                                             {1, 2, 0, 3},
+                                                                             {0, 1, 2, 3},
+                                                                             {3, 2, 1, 0},
+                                                                             {0, 3, 1, 2},
+                                                                             {1, 3, 2, 0},
+                                                                             {0, 3, 1, 2},
+                                                                             {2, 3, 0, 1},
+                                                                             {0, 2, 3, 1},
+                                                                             {1, 3, 2, 0},
+                                                                             {0, 1, 2, 3}}};
         for (std::size_t i = 0; i < 4; ++i) order[i] = t[k_even[mask][i]];
         const auto [a, b, c, d] = order;
         switch (std::popcount(mask)) {
-            case 1: out_.push_back({key(a, b), key(a, c), key(a, d)}); break;
-            case 3: out_.push_back({key(a, d), key(b, d), key(c, d)}); break;
+            case 1:
+                out_.push_back({key(a, b), key(a, c), key(a, d)});
+                break;
+            case 3:
+                out_.push_back({key(a, d), key(b, d), key(c, d)});
+                break;
             default:  // the quadrilateral between {a, b} inside and {c, d} outside
                 out_.push_back({key(a, c), key(a, d), key(b, d)});
                 out_.push_back({key(a, c), key(b, d), key(b, c)});
@@ -170,7 +189,8 @@ TriangleMesh polygonize(const ImplicitField& field, float cell) {
 
     TriangleMesh mesh;
     mesh.vertices.resize(keys.size());
-    parallel_for(keys.size(), [&](std::size_t v) { mesh.vertices[v] = crossing(grid, keys[v]); }, 512);
+    parallel_for(
+        keys.size(), [&](std::size_t v) { mesh.vertices[v] = crossing(grid, keys[v]); }, 512);
     mesh.faces.resize(triangles.size());
     parallel_for(
         triangles.size(),

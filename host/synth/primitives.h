@@ -35,7 +35,8 @@ struct Prism {
     std::vector<Vec2> outline;
     float half_height, rounding;
 };
-/// A polyline in the (radius, y) half plane turned around the local y axis; thickness[i] > 0 is half the wall at point i.
+/// A polyline in the (radius, y) half plane turned around the local y axis; thickness[i] > 0 is half the wall at point
+/// i.
 struct Lathe {
     std::vector<Vec2> profile;
     std::vector<float> thickness;

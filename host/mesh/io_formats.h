@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "host/mesh/io.h"
+
+/// The reader of each format. `content` is the whole file, `name` its path for error messages (MeshError).
+namespace exemplar::mesh_io {
+
+MeshFile read_off(std::string_view content, const std::string& name);
+MeshFile read_obj(std::string_view content, const std::string& name);
+MeshFile read_ply(std::string_view content, const std::string& name);
+MeshFile read_stl(std::string_view content, const std::string& name);
+/// .gltf (JSON) or .glb (binary), told apart by content. `folder` is where buffers in files of their own are looked for.
+MeshFile read_gltf(std::string_view content, const std::string& name, const std::filesystem::path& folder);
+
+/// Throws UsageError unless `labels` has one label in [-1, names) per source face, and DataError unless every name can
+/// be written in a line of text: not empty, no control characters, no space at either end.
+void check_labels(const TriangleMesh& mesh, const FaceLabels& labels);
+void check_label_names(const FaceLabels& labels);
+/// Number of source faces; 0 in source_face_count stands for "as many as triangles".
+std::size_t source_faces(const TriangleMesh& mesh);
+
+}  // namespace exemplar::mesh_io

@@ -1,0 +1,199 @@
+#include "gpu/runtime/stream.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <vector>
+
+#include "embedded/tests_affine_comp.h"
+#include "embedded/tests_weigh_comp.h"
+#include "gpu/runtime/errors.h"
+#include "shaders/shared/test_kernels.h"
+#include "tests/gpu/support/environment.h"
+
+namespace exemplar {
+namespace {
+
+using shared::AffineParameters;
+using ::testing::HasSubstr;
+using testing::shared_device;
+
+Kernel affine_kernel(std::uint32_t local_size = 64) {
+    return Kernel(shared_device(), shaders::tests_affine_comp,
+                  {.push_constants = layout_of<AffineParameters>(),
+                   .elements = {layout_of<float>()},
+                   .constants = {{0, local_size}}});
+}
+
+std::vector<float> iota(std::size_t count) {
+    std::vector<float> values(count);
+    std::iota(values.begin(), values.end(), 0.0f);
+    return values;
+}
+
+TEST(Stream, DispatchesOnOddSizes) {
+    const Kernel kernel = affine_kernel();
+    for (const std::size_t count : {0u, 1u, 63u, 64u, 65u, 1000u}) {
+        std::vector<float> values = iota(count);
+        Buffer buffer = Buffer::of<float>(shared_device(), values);
+        Stream stream(shared_device());
+        stream.dispatch(kernel, count, {buffer}, AffineParameters{static_cast<std::uint32_t>(count), 2.0f, 1.0f});
+        stream.download<float>(buffer, values);
+        stream.finish();
+        for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(values[i], 2.0f * static_cast<float>(i) + 1.0f);
+    }
+}
+
+// 65,535 groups are all that one dimension must hold; with one invocation per group a plain count goes beyond it.
+TEST(Stream, FoldsManyGroups) {
+    const Kernel kernel = affine_kernel(1);
+    for (const std::size_t count : {65535u, 65536u, 200003u}) {
+        std::vector<float> values(count, 1.0f);
+        Buffer buffer = Buffer::of<float>(shared_device(), values);
+        Stream stream(shared_device());
+        stream.dispatch(kernel, count, {buffer}, AffineParameters{static_cast<std::uint32_t>(count), 1.0f, 1.0f});
+        stream.finish();
+        buffer.download<float>(values);
+        EXPECT_EQ(std::count(values.begin(), values.end(), 2.0f), static_cast<std::ptrdiff_t>(count));
+    }
+}
+
+// Each dispatch reads what the one before wrote; without barriers a parallel device would mix them up.
+TEST(Stream, RepeatsOneKernelOnOneBufferInOrder) {
+    constexpr std::size_t k_count = 100'000;
+    const Kernel kernel = affine_kernel();
+    std::vector<float> values(k_count, 1.0f);
+    Buffer buffer = Buffer::of<float>(shared_device(), values);
+    Stream stream(shared_device());
+    float expected = 1.0f;
+    for (int i = 0; i < 40; ++i) {
+        const float factor = i % 2 ? 0.5f : 2.0f;
+        stream.dispatch(kernel, k_count, {buffer}, AffineParameters{k_count, factor, 1.0f});
+        expected = expected * factor + 1.0f;
+    }
+    EXPECT_EQ(stream.barriers().size(), 39u);
+    stream.download<float>(buffer, values);
+    stream.finish();
+    for (const float value : values) ASSERT_EQ(value, expected);
+}
+
+TEST(Stream, SeesWhatEarlierStreamsWrote) {
+    constexpr std::size_t k_count = 50'000;
+    const Kernel kernel = affine_kernel();
+    Buffer buffer(shared_device(), k_count * sizeof(float));
+    Stream first(shared_device()), second(shared_device());
+    first.fill(buffer, 0);
+    first.dispatch(kernel, k_count, {buffer}, AffineParameters{k_count, 1.0f, 3.0f});
+    second.dispatch(kernel, k_count, {buffer}, AffineParameters{k_count, 2.0f, 0.0f});
+    first.submit();
+    second.submit();
+    std::vector<float> values(k_count);
+    buffer.download<float>(values);
+    for (const float value : values) ASSERT_EQ(value, 6.0f);
+    first.wait();
+    second.wait();
+}
+
+TEST(Stream, UploadsCopiesAndDownloadsInRecordedOrder) {
+    const Kernel kernel = affine_kernel();
+    Buffer a(shared_device(), 8 * sizeof(float)), b(shared_device(), 8 * sizeof(float));
+    std::vector<float> before(8), after(8), copied(4);
+    Stream stream(shared_device());
+    stream.upload<float>(a, iota(8));
+    stream.dispatch(kernel, 8, {a}, AffineParameters{8, 1.0f, 10.0f});
+    stream.download<float>(a, before);
+    stream.upload<float>(a, std::vector<float>{-1.0f, -2.0f}, 4 * sizeof(float));
+    stream.copy(a, 2 * sizeof(float), b, 0, 4 * sizeof(float));
+    stream.dispatch(kernel, 8, {a}, AffineParameters{8, 0.0f, 5.0f});
+    stream.download<float>(a, after);
+    stream.download<float>(b, copied);
+    stream.finish();
+    EXPECT_THAT(before, ::testing::ElementsAre(10, 11, 12, 13, 14, 15, 16, 17));
+    EXPECT_THAT(copied, ::testing::ElementsAre(12, 13, -1, -2));
+    EXPECT_THAT(after, ::testing::Each(5.0f));
+}
+
+TEST(Stream, KeepsBuffersAndKernelsAliveUntilDone) {
+    std::vector<float> values(1000, 1.0f);
+    Stream stream(shared_device());
+    {
+        const Kernel kernel = affine_kernel();
+        Buffer buffer = Buffer::of<float>(shared_device(), values);
+        stream.dispatch(kernel, 1000, {buffer}, AffineParameters{1000, 1.0f, 1.0f});
+        stream.download<float>(buffer, values);
+    }
+    stream.finish();
+    EXPECT_THAT(values, ::testing::Each(2.0f));
+}
+
+TEST(Stream, DispatchesMoreThanADescriptorPoolHolds) {
+    const Kernel kernel = affine_kernel();
+    Buffer buffer = Buffer::of<float>(shared_device(), iota(1));
+    Stream stream(shared_device());
+    for (int round = 0; round < 2; ++round) {
+        for (int i = 0; i < 600; ++i) stream.dispatch(kernel, 1, {buffer}, AffineParameters{1, 1.0f, 1.0f});
+        stream.finish();
+    }
+    std::vector<float> value(1);
+    buffer.download<float>(value);
+    EXPECT_EQ(value[0], 1200.0f);
+}
+
+TEST(Stream, BindsRangesOfABuffer) {
+    const std::size_t alignment = shared_device().info().storage_alignment;
+    const std::size_t floats = std::max<std::size_t>(alignment, 16) / sizeof(float);
+    std::vector<float> values(3 * floats, 1.0f);
+    Buffer buffer = Buffer::of<float>(shared_device(), values);
+    const Kernel kernel = affine_kernel();
+    const auto count = static_cast<std::uint32_t>(floats);
+    Stream stream(shared_device());
+    stream.dispatch(kernel, floats, {BufferRange(buffer, floats * sizeof(float), floats * sizeof(float))},
+                    AffineParameters{count, 1.0f, 1.0f});
+    stream.finish();
+    buffer.download<float>(values);
+    for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(values[i], i / floats == 1 ? 2.0f : 1.0f);
+}
+
+TEST(Stream, RefusesWrongArguments) {
+    const Kernel kernel = affine_kernel();
+    Buffer buffer(shared_device(), 4096);
+    Stream stream(shared_device());
+    EXPECT_THROW(stream.dispatch(kernel, 1, {buffer, buffer}, AffineParameters{}), ShaderError);
+    EXPECT_THROW(stream.dispatch(kernel, 1, {buffer}), ShaderError);
+    EXPECT_THROW(stream.dispatch(kernel, 1, {Buffer()}, AffineParameters{}), ShaderError);
+    EXPECT_THROW(stream.dispatch(kernel, 1, {BufferRange(buffer, 0, 8192)}, AffineParameters{}), ShaderError);
+    EXPECT_THROW(stream.dispatch(kernel, 1, {BufferRange(buffer, 1, 4)}, AffineParameters{}), DeviceLimitError);
+    EXPECT_THROW(stream.dispatch(kernel, std::uint64_t{1} << 33, {buffer}, AffineParameters{}), DeviceLimitError);
+    EXPECT_THROW(stream.copy(buffer, 4000, buffer, 0, 100), DeviceError);
+    stream.finish();
+}
+
+TEST(Stream, RefusesRecordingBeforeWaiting) {
+    const Kernel kernel = affine_kernel();
+    Buffer buffer(shared_device(), 64);
+    Stream stream(shared_device());
+    stream.fill(buffer, 0);
+    stream.submit();
+    EXPECT_THROW(stream.fill(buffer, 1), DeviceError);
+    stream.wait();
+}
+
+TEST(Profiler, TimesEveryDispatch) {
+    if (shared_device().info().timestamp_period == 0.0f) GTEST_SKIP() << "the device has no timestamps";
+    Profiler profiler;
+    const Kernel kernel = affine_kernel();
+    Buffer buffer(shared_device(), 4 << 20);
+    Stream stream(shared_device(), &profiler);
+    for (int i = 0; i < 3; ++i) stream.dispatch(kernel, 1 << 20, {buffer}, AffineParameters{1 << 20, 1.0f, 1.0f});
+    stream.finish();
+    ASSERT_EQ(profiler.entries().size(), 1u);
+    EXPECT_EQ(profiler.entries().begin()->first, "tests/affine.comp");
+    EXPECT_EQ(profiler.entries().begin()->second.dispatches, 3u);
+    EXPECT_GT(profiler.milliseconds("tests/affine.comp"), 0.0);
+    EXPECT_LT(profiler.milliseconds("tests/affine.comp"), 60'000.0);
+    EXPECT_EQ(profiler.milliseconds("other"), 0.0);
+}
+
+}  // namespace
+}  // namespace exemplar

@@ -1,0 +1,41 @@
+#include "tests/gpu/support/environment.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+
+namespace exemplar::testing {
+namespace {
+
+std::unique_ptr<Device> device;
+
+// Drivers want a runtime folder, and tests must not touch the user's cache.
+void prepare_folders() {
+    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "exemplar-test-runtime";
+    std::filesystem::create_directories(folder);
+    std::filesystem::permissions(folder, std::filesystem::perms::owner_all);
+    setenv("XDG_RUNTIME_DIR", folder.c_str(), 0);
+}
+
+class GpuEnvironment : public ::testing::Environment {
+  public:
+    void SetUp() override { prepare_folders(); }
+    void TearDown() override {
+        if (!device) return;
+        for (const std::string& message : device->validation_messages()) ADD_FAILURE() << message;
+        device.reset();
+    }
+};
+
+const ::testing::Environment* const registered = ::testing::AddGlobalTestEnvironment(new GpuEnvironment);
+
+}  // namespace
+
+Device& shared_device() {
+    if (!device) device = std::make_unique<Device>();
+    return *device;
+}
+
+}  // namespace exemplar::testing

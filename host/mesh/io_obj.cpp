@@ -4,7 +4,9 @@
 #include <tiny_obj_loader.h>
 
 #include <array>
+#include <cstdlib>
 #include <istream>
+#include <limits>
 #include <streambuf>
 
 #include "host/core/errors.h"
@@ -62,6 +64,8 @@ class CheckedLines : public std::streambuf {
             join_continued_lines();
             if (keyword == "v") check_vertex(std::string_view(line_).substr(1));
             if (keyword == "f") check_face(std::string_view(line_).substr(1));
+            for (char& c : line_)
+                if (is_space(c)) c = ' ';  // the library knows fewer kinds of space
             line_ += '\n';
             return true;
         }

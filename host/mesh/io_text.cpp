@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
 
@@ -92,6 +93,12 @@ TextCursor::TextCursor(std::string_view text, std::string name, char comment)
     if (text_.starts_with("\xef\xbb\xbf")) next_ = 3;  // byte order mark
     const bool old_mac = text_.find('\n') == std::string_view::npos && text_.find('\r') != std::string_view::npos;
     line_end_ = old_mac ? '\r' : '\n';
+}
+
+void TextCursor::jump(std::size_t offset, std::size_t line_number) {
+    next_ = offset;
+    line_number_ = line_number;
+    line_ = {};
 }
 
 bool TextCursor::next_line() {

@@ -34,6 +34,8 @@ class TextCursor {
     /// `text` must outlive the cursor.
     TextCursor(std::string_view text, std::string name, char comment = 0);
 
+    /// Goes on behind byte `offset`, the end of line `line_number`.
+    void jump(std::size_t offset, std::size_t line_number);
     /// Goes to the next line that holds anything; false at the end of the text.
     bool next_line();
     /// Goes to the next line that holds anything; throws "the file ends where EXPECTED should be" if there is none.

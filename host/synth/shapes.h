@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "host/mesh/labels.h"
+#include "host/mesh/mesh.h"
+
+namespace exemplar {
+
+/// A generated shape with its true part labels.
+struct SynthShape {
+    TriangleMesh mesh;  ///< closed, manifold, one component, oriented outward
+    FaceLabels labels;  ///< every face labeled; names are those of the kind, also of parts this shape lacks
+};
+
+/// The kinds of shapes make_shape knows, e.g. "human", "chair".
+std::span<const std::string_view> synth_kinds();
+/// The part names of a kind, in label order. Throws UsageError for an unknown kind.
+std::span<const std::string_view> synth_labels(std::string_view kind);
+
+/// Generates a shape: the same kind, seed and face count give the same bytes on one build of the program; another seed
+/// gives another pose, other proportions and details. The shape stands upright (y up, facing +z) at any size near 1, or
+/// is turned at random about its center. `faces` is met within 10% from 2,000 to 40,000 (fewer are too few for the
+/// thin parts). Throws UsageError for an unknown kind.
+SynthShape make_shape(std::string_view kind, std::uint64_t seed, std::size_t faces = 10000,
+                      bool random_orientation = false);
+
+}  // namespace exemplar

@@ -1,0 +1,146 @@
+// Training end to end, on generated shapes with the real features.
+
+#include "host/labeling/training.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "host/core/errors.h"
+#include "host/core/files.h"
+#include "host/core/parallel.h"
+#include "host/labeling/evaluation.h"
+#include "host/synth/shapes.h"
+
+namespace exemplar {
+namespace {
+
+namespace fs = std::filesystem;
+
+LabeledCorpus generated(const std::string& kind, std::uint64_t first_seed, std::size_t count, std::size_t faces) {
+    LabeledCorpus corpus;
+    for (std::size_t i = 0; i < count; ++i) {
+        SynthShape shape = make_shape(kind, first_seed + i, faces);
+        corpus.names = shape.labels.names;
+        corpus.meshes.push_back({kind + std::to_string(i), {}, std::move(shape.mesh), std::move(shape.labels.label)});
+    }
+    return corpus;
+}
+
+std::vector<MeshFeatures> features_of(const LabeledCorpus& corpus, const FeatureOptions& options) {
+    std::vector<MeshFeatures> features;
+    for (const LabeledMesh& mesh : corpus.meshes) features.push_back(compute_features(mesh.mesh, options));
+    return features;
+}
+
+TrainOptions quick_options() {
+    TrainOptions options;
+    options.rounds = 30, options.patience = 10, options.max_stages = 2, options.rows_per_mesh = 400;
+    options.features.samples = 150;
+    return options;
+}
+
+class SlowTraining : public testing::Test {
+  protected:
+    LabelingModel train(const LabeledCorpus& corpus, const TrainOptions& options) {
+        std::vector<MeshFeatures> features = features_of(corpus, options.features);
+        return train_labeling(corpus, features, options, {scorer_, context_}, report_);
+    }
+    CpuStumpScorer scorer_;
+    CpuContextHistograms context_;
+    TrainReport report_;
+};
+
+TEST_F(SlowTraining, LabelsUnseenShapes) {
+    const LabeledCorpus corpus = generated("fourleg", 1, 5, 2000);
+    TrainOptions options = quick_options();
+    options.rounds = 80;
+    const LabelingModel model = train(corpus, options);
+    EXPECT_LT(report_.crf.error, report_.crf.error_without_cut) << "the cut helps on the training meshes, out of fold";
+
+    const LabeledCorpus unseen = generated("fourleg", 100, 3, 2000);
+    double rate = 0;
+    for (const LabeledMesh& mesh : unseen.meshes) {
+        MeshFeatures features = compute_features(mesh.mesh, options.features);
+        const FaceLabeling labeling = label_faces(model, features, {scorer_, context_});
+        rate += score_labeling(features, mesh.label, labeling.label, model.class_count(), {}).recognition_rate / 3;
+    }
+    EXPECT_GT(rate, 0.85) << "stated accuracy on generated animals";
+}
+
+TEST_F(SlowTraining, EqualSeedsGiveEqualBytesForAnyThreadCount) {
+    const LabeledCorpus corpus = generated("cup", 1, 3, 1000);
+    const fs::path folder = testing::TempDir();
+    std::vector<std::string> bytes;
+    for (const std::size_t threads : {1UL, 2UL, 3UL}) {
+        const ThreadLimit limit(threads);
+        const fs::path path = folder / ("exemplar_same_seed_" + std::to_string(threads) + ".safetensors");
+        save_model(path, train(corpus, quick_options()));
+        bytes.push_back(read_file(path));
+    }
+    EXPECT_EQ(bytes[0], bytes[1]);
+    EXPECT_EQ(bytes[0], bytes[2]);
+}
+
+TEST_F(SlowTraining, OneOrTwoMeshesAreEnoughToTrain) {
+    for (const std::size_t meshes : {1UL, 2UL}) {
+        const LabeledCorpus corpus = generated("cup", 1, meshes, 1000);
+        const LabelingModel model = train(corpus, quick_options());
+        EXPECT_EQ(report_.folds.size(), meshes == 1 ? 5U : 2U);
+        MeshFeatures features = compute_features(corpus.meshes[0].mesh, model.feature_options);
+        const FaceLabeling labeling = label_faces(model, features, {scorer_, context_});
+        EXPECT_GT(score_labeling(features, corpus.meshes[0].label, labeling.label, 2, {}).recognition_rate, 0.9);
+    }
+}
+
+TEST_F(SlowTraining, LabelsMissingFromSomeMeshesAndUnlabeledFacesAreFine) {
+    LabeledCorpus corpus = generated("cup", 1, 3, 1000);
+    for (std::int32_t& label : corpus.meshes[0].label)
+        if (label == 1) label = 0;
+    for (std::size_t f = 0; f < corpus.meshes[1].label.size(); f += 3) corpus.meshes[1].label[f] = -1;
+    EXPECT_NO_THROW(train(corpus, quick_options()));
+}
+
+TEST_F(SlowTraining, AModelRefusesOtherFeatures) {
+    const LabeledCorpus corpus = generated("cup", 1, 2, 1000);
+    const LabelingModel model = train(corpus, quick_options());
+    FeatureOptions other = model.feature_options;
+    MeshFeatures features = compute_features(corpus.meshes[0].mesh, other);
+    features.unary.names[3] = "another.feature";
+    EXPECT_THROW(label_faces(model, features, {scorer_, context_}), ModelError);
+}
+
+TEST(Training, NothingToLearnFromIsAnError) {
+    CpuStumpScorer scorer;
+    CpuContextHistograms context;
+    TrainReport report;
+    std::vector<MeshFeatures> none;
+    EXPECT_THROW(train_labeling({}, none, {}, {scorer, context}, report), DataError);
+    LabeledCorpus one_label;
+    one_label.names = {"all"};
+    one_label.meshes.resize(1);
+    std::vector<MeshFeatures> features(1);
+    EXPECT_THROW(train_labeling(one_label, features, {}, {scorer, context}, report), DataError);
+}
+
+TEST(Splits, AreSeededDisjointAndComplete) {
+    const std::vector<Split> splits = make_splits(20, 6, 3, 7);
+    ASSERT_EQ(splits.size(), 3U);
+    EXPECT_NE(splits[0].train, splits[1].train);
+    EXPECT_EQ(splits[0].train, make_splits(20, 6, 1, 7)[0].train);
+    for (const Split& split : splits) {
+        EXPECT_EQ(split.train.size(), 6U);
+        std::vector<std::size_t> all = split.train;
+        all.insert(all.end(), split.test.begin(), split.test.end());
+        std::sort(all.begin(), all.end());
+        for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(all[i], i);
+    }
+    const std::vector<Split> leave_one_out = make_splits(4, 3, 4, 1);
+    for (std::size_t k = 0; k < 4; ++k) EXPECT_THAT(leave_one_out[k].test, testing::ElementsAre(k));
+    EXPECT_THROW(make_splits(4, 4, 1, 1), UsageError);
+    EXPECT_THROW(make_splits(4, 0, 1, 1), UsageError);
+}
+
+}  // namespace
+}  // namespace exemplar

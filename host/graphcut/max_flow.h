@@ -19,7 +19,6 @@ class MaxFlow {
     MaxFlow(std::size_t nodes, std::span<const std::array<std::uint32_t, 2>> edges);
 
     std::size_t nodes() const { return terminal_.size(); }
-    std::size_t edges() const { return arc_of_edge_.size(); }
 
     /// Sets all capacities to zero.
     void clear();
@@ -36,40 +35,42 @@ class MaxFlow {
 
   private:
     using Node = std::uint32_t;
-    using Arc = std::uint32_t;
+    using ArcIndex = std::uint32_t;
     enum class Tree : std::uint8_t { none, source, sink };
+    struct Arc {
+        Node head;
+        ArcIndex sister;  // the arc of the opposite direction
+        double residual;
+    };
 
-    void grow_from_terminals();
-    bool find_path(Arc& meeting);
-    bool scan(Node node, Arc& meeting);
-    void augment(Arc meeting);
-    double bottleneck(Arc meeting) const;
-    void push(Arc arc, double flow);
-    void use_terminal(Node node, double flow);
+    void plant_trees();
+    ArcIndex find_meeting_arc();
+    ArcIndex scan(Node node);
+    void augment(ArcIndex meeting);
+    double bottleneck(ArcIndex meeting) const;
+    void push_to_root(Node node, double flow);
     void adopt_orphans();
-    void adopt(Node orphan);
-    Arc find_parent(Node orphan);
-    std::uint32_t distance_to_terminal(Node node);
+    ArcIndex find_parent(Node orphan);
+    std::uint32_t distance_to_root(Node node);
     void set_free(Node orphan);
     void activate(Node node);
     void make_orphan(Node node);
-    /// Residual capacity of an arc in the direction flow takes in the tree: toward the sink.
-    double residual_into(Tree tree, Arc arc) const { return tree == Tree::source ? residual_[arc ^ 1] : residual_[arc]; }
+    /// The arc between a node and its parent in the direction that flow takes, given the arc from node to parent.
+    ArcIndex along_flow(Tree tree, ArcIndex to_parent) const {
+        return tree == Tree::source ? arcs_[to_parent].sister : to_parent;
+    }
 
-    // Arcs come in pairs (2e, 2e + 1) of opposite directions; the arcs that leave a node are listed in CSR form.
-    std::vector<std::uint32_t> first_;       // nodes + 1
-    std::vector<Arc> leaving_;               // arcs by node
-    std::vector<Node> head_;                 // per arc
-    std::vector<double> residual_;           // per arc
-    std::vector<std::uint32_t> arc_of_edge_;
+    std::vector<ArcIndex> first_;  // nodes + 1: the arcs that leave a node are neighbors
+    std::vector<Arc> arcs_;
+    std::vector<ArcIndex> arc_of_edge_;
 
     std::vector<double> terminal_;  // per node: residual from the source (> 0) or to the sink (< 0)
     std::vector<Tree> tree_;
-    std::vector<Arc> parent_;             // arc from the node to its parent, or a mark
-    std::vector<std::uint32_t> stamp_;    // time at which distance_ was known to be right
-    std::vector<std::uint32_t> distance_;
+    std::vector<ArcIndex> parent_;         // arc from the node to its parent, or a mark
+    std::vector<std::uint32_t> distance_;  // arcs to the root, right as of stamp_
+    std::vector<std::uint32_t> stamp_;
     std::vector<std::uint8_t> is_active_;
-    std::vector<Node> active_;
+    std::vector<Node> active_;  // a queue that starts at next_active_
     std::vector<Node> orphans_;
     std::size_t next_active_ = 0;
     std::uint32_t time_ = 0;

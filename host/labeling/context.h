@@ -39,6 +39,12 @@ class ContextHistograms {
                             std::span<float> out) = 0;
 };
 
+/// Throws UsageError if the sizes inside a geometry contradict each other.
+void check_context_geometry(const ContextGeometry& geometry);
+/// Throws UsageError if the spans of accumulate() do not fit a geometry of that many faces.
+void check_context_sizes(std::size_t faces, std::span<const float> probabilities, std::size_t classes,
+                         std::span<const float> out);
+
 class CpuContextHistograms final : public ContextHistograms {
   public:
     void accumulate(const ContextGeometry& geometry, std::span<const float> probabilities, std::size_t classes,

@@ -44,7 +44,7 @@ std::array<float, k_columns.size()> pca_values(const SurfaceMoments& moments, fl
 /// How many of the radii are measured from all faces: those that hold too few samples for the samples to stand for
 /// them.
 std::size_t count_exact_radii(const PreparedMesh& prepared) {
-    constexpr double k_enough_samples = 40.0;
+    constexpr double k_enough_samples = 100.0;
     if (prepared.samples_are_all_faces() || !(prepared.total_area > 0.0F)) return PcaFamily::k_radii.size();
     std::size_t count = 0;
     for (const double share : PcaFamily::k_radii) {

@@ -14,6 +14,9 @@ namespace {
 
 constexpr std::size_t k_rings = ShapeContextFamily::k_rings, k_sectors = ShapeContextFamily::k_sectors;
 
+/// The innermost rings hold too few samples; they are about as wide as the searches of other families.
+constexpr std::size_t k_near_rings = 3;
+
 /// Arc cosine to within 7e-5 (Abramowitz & Stegun 4.4.45); the compiler vectorizes it.
 inline float fast_acos(float x) {
     const float y = std::abs(x);
@@ -99,11 +102,7 @@ ShapeContextFamily::ShapeContextFamily(const PreparedMesh& prepared)
       edges_(log_bin_edges<k_rings>(prepared.far_distance)),
       fine_(prepared.face_count() * k_rings * k_sectors, 0.0F) {
     if (prepared.samples_are_all_faces()) return;
-    // Up to here a ring holds too few samples; searches this far are made for other families anyway.
-    constexpr float k_near_share = 0.2F;
-    for (const float edge : edges_) {
-        if (edge <= k_near_share * prepared.median_distance) near_ = edge;
-    }
+    near_ = edges_[k_near_rings];
 }
 
 void ShapeContextFamily::measure(std::uint32_t face, Neighborhood neighborhood) {

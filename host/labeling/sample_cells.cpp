@@ -38,6 +38,7 @@ std::vector<SampleCell> sample_cells(const PreparedMesh& prepared) {
     }
     std::vector<SampleCell> cells(samples);
     for (std::size_t f = 0; f < faces; ++f) {
+        if (std::isinf(least[f])) continue;  // with more components than samples the smallest have none
         cells[nearest[f]].moments.add(prepared.center[f].cast<double>(), static_cast<double>(prepared.area_share[f]));
     }
     const std::vector<float> radii = sample_cell_radii(prepared);

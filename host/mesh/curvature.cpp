@@ -267,7 +267,7 @@ std::vector<Derivative> fit_derivatives(const TriangleMesh& mesh, const std::vec
             std::array<Form, 3> forms;
             for (std::size_t i = 0; i < 3; ++i) {
                 const std::uint32_t vertex = mesh.faces[f][i];
-                forms[i] = turned({curvature.k1[vertex], 0.0f, curvature.k2[vertex]}, fits[f].turn[i].inverse());
+                forms[i] = turned(Form{curvature.k1[vertex], 0.0f, curvature.k2[vertex]}, fits[f].turn[i].inverse());
             }
             derivatives[f] = fit_derivative(fits[f], forms);
         },

@@ -59,7 +59,9 @@ MeshFile read_content_as(std::string_view extension, std::string_view content, c
 
 }  // namespace
 
-std::span<const std::string_view> mesh_extensions() { return k_extensions; }
+std::span<const std::string_view> mesh_extensions() {
+    return k_extensions;
+}
 
 MeshFile read_mesh(const fs::path& path) {
     const std::string extension = mesh_io::lower_case(path.extension().string());

@@ -13,7 +13,8 @@ MeshFile read_off(std::string_view content, const std::string& name);
 MeshFile read_obj(std::string_view content, const std::string& name);
 MeshFile read_ply(std::string_view content, const std::string& name);
 MeshFile read_stl(std::string_view content, const std::string& name);
-/// .gltf (JSON) or .glb (binary), told apart by content. `folder` is where buffers in files of their own are looked for.
+/// .gltf (JSON) or .glb (binary), told apart by content. `folder` is where buffers in files of their own are looked
+/// for.
 MeshFile read_gltf(std::string_view content, const std::string& name, const std::filesystem::path& folder);
 
 /// Throws UsageError unless `labels` has one label in [-1, names) per source face, and DataError unless every name can

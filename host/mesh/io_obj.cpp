@@ -84,7 +84,7 @@ class CheckedLines : public std::streambuf {
             const std::string_view word = take_word(line);
             if (word.empty()) obj_.fail(obj_.line, "a vertex needs three coordinates");
             const auto value = parse_float(word);
-            if (!value) obj_.fail(obj_.line, fmt::format("a coordinate should be a number, not {}", quoted(word)));
+            if (!value) obj_.fail(obj_.line, fmt::format("a coordinate should be a number, not {}", quote(word)));
             coordinate = *value;
         }
     }
@@ -95,10 +95,12 @@ class CheckedLines : public std::streambuf {
                 const std::size_t slash = left.find('/');
                 const std::string_view index = left.substr(0, slash);
                 if (!(index.empty() && part > 0) && !is_index(index))
-                    obj_.fail(obj_.line, fmt::format("a corner of a face should be like 3, 3/1 or 3//1, not {}", quoted(word)));
+                    obj_.fail(obj_.line,
+                              fmt::format("a corner of a face should be like 3, 3/1 or 3//1, not {}", quote(word)));
                 left = slash == std::string_view::npos ? std::string_view() : left.substr(slash + 1);
             }
-            if (!left.empty()) obj_.fail(obj_.line, fmt::format("a corner has at most three indices, unlike {}", quoted(word)));
+            if (!left.empty())
+                obj_.fail(obj_.line, fmt::format("a corner has at most three indices, unlike {}", quote(word)));
         }
     }
     static bool is_index(std::string_view word) {
@@ -138,8 +140,8 @@ void check_corners(const ObjContent& obj) {
     for (std::size_t f = 0; f < obj.polygons.size(); ++f) {
         for (std::uint32_t corner : obj.polygons.corners().subspan(begin, obj.polygons.corner_counts()[f]))
             if (corner >= obj.polygons.vertices.size())
-                obj.fail(obj.face_line[f], fmt::format("the face names vertex {}, but the file has {} vertices", corner + 1,
-                                                       obj.polygons.vertices.size()));
+                obj.fail(obj.face_line[f], fmt::format("the face names vertex {}, but the file has {} vertices",
+                                                       corner + 1, obj.polygons.vertices.size()));
         begin += obj.polygons.corner_counts()[f];
     }
 }

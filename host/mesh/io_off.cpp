@@ -17,12 +17,13 @@ namespace {
 /// over; 4 and n change the number of coordinates and are not read.
 void check_header(TextCursor& cursor) {
     std::string_view word = cursor.word(), prefix = word;
-    if (!word.ends_with("OFF")) cursor.fail(fmt::format("an OFF file begins with the word OFF, not with {}", quoted(word)));
+    if (!word.ends_with("OFF"))
+        cursor.fail(fmt::format("an OFF file begins with the word OFF, not with {}", quote(word)));
     prefix.remove_suffix(3);
     for (std::string_view part : {"ST", "C", "N"})
         if (prefix.starts_with(part)) prefix.remove_prefix(part.size());
     if (!prefix.empty())
-        cursor.fail(fmt::format("header {} is not supported; export plain OFF with three coordinates", quoted(word)));
+        cursor.fail(fmt::format("header {} is not supported; export plain OFF with three coordinates", quote(word)));
 }
 
 struct Counts {
@@ -35,13 +36,15 @@ Counts read_counts(TextCursor& cursor) {
     if (trimmed(cursor.rest()).empty()) cursor.need_line("the line of vertex and face counts");
     if (lower_case(trimmed(cursor.rest())).starts_with("binary"))
         cursor.fail("binary OFF is not supported; export it as text or as PLY");
-    const std::int64_t vertices = cursor.integer("the number of vertices"), faces = cursor.integer("the number of faces");
+    const std::int64_t vertices = cursor.integer("the number of vertices"),
+                       faces = cursor.integer("the number of faces");
     const auto left = static_cast<std::int64_t>(cursor.bytes_left());
     constexpr std::int64_t k_vertex_bytes = 5, k_face_bytes = 2;  // "0 0 0", "0" and a line end
     if (vertices < 0 || faces < 0 || vertices > left / k_vertex_bytes || faces > left / k_face_bytes + 1)
-        cursor.fail(fmt::format("{} vertices and {} faces cannot be in the {} bytes that follow; the counts are wrong or "
-                                "the file is cut off",
-                                vertices, faces, left));
+        cursor.fail(
+            fmt::format("{} vertices and {} faces cannot be in the {} bytes that follow; the counts are wrong or "
+                        "the file is cut off",
+                        vertices, faces, left));
     return {static_cast<std::size_t>(vertices), static_cast<std::size_t>(faces)};
 }
 
@@ -67,8 +70,8 @@ void read_faces(TextCursor& cursor, std::size_t count, PolygonList& polygons) {
         for (std::int64_t i = 0; i < corner_count; ++i) {
             const std::int64_t corner = cursor.integer("a corner of a face");
             if (corner < 0 || corner >= vertex_count)
-                cursor.fail(fmt::format("face {} names vertex {}, but the file has {} vertices, counted from 0", f, corner,
-                                        vertex_count));
+                cursor.fail(fmt::format("face {} names vertex {}, but the file has {} vertices, counted from 0", f,
+                                        corner, vertex_count));
             corners.push_back(static_cast<std::uint32_t>(corner));
         }
         polygons.add(corners);  // colors may follow and are passed over
@@ -87,7 +90,8 @@ MeshFile read_off(std::string_view content, const std::string& name) {
     read_vertices(cursor, counts.vertices, polygons.vertices);
     read_faces(cursor, counts.faces, polygons);
     if (cursor.next_line())
-        file.warnings.push_back(fmt::format("what follows the last face, from line {} on, was left out", cursor.line_number()));
+        file.warnings.push_back(
+            fmt::format("what follows the last face, from line {} on, was left out", cursor.line_number()));
     file.mesh = std::move(polygons).triangulate(file.warnings);
     return file;
 }

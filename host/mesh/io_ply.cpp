@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -22,7 +23,7 @@ class AsciiValues {
     AsciiValues(std::string_view content, const std::string& name, const PlyHeader& header) : cursor_(content, name) {
         cursor_.jump(header.bytes, header.lines);
     }
-    void begin_row(const std::string& element) { cursor_.need_line(fmt::format("an element {}", quoted(element))); }
+    void begin_row(const std::string& element) { cursor_.need_line(element); }
     double value(PlyScalar type, const std::string& property) {
         if (is_integer(type)) return static_cast<double>(cursor_.integer(property));
         return cursor_.number(property);
@@ -33,9 +34,7 @@ class AsciiValues {
         return (cursor_.bytes_left() + 1) / (2 * element.properties.size());
     }
     [[noreturn]] void fail(const std::string& message) const { cursor_.fail(message); }
-    std::size_t bytes_left() {
-        return cursor_.next_line() ? cursor_.rest().size() + cursor_.bytes_left() : 0;
-    }
+    std::size_t bytes_left() { return cursor_.next_line() ? cursor_.rest().size() + cursor_.bytes_left() : 0; }
 
   private:
     TextCursor cursor_;
@@ -52,14 +51,22 @@ class BinaryValues {
     void begin_row(const std::string&) {}
     double value(PlyScalar type, const std::string& property) {
         switch (type) {
-            case PlyScalar::int8: return take<std::int8_t>(property);
-            case PlyScalar::uint8: return take<std::uint8_t>(property);
-            case PlyScalar::int16: return take<std::int16_t>(property);
-            case PlyScalar::uint16: return take<std::uint16_t>(property);
-            case PlyScalar::int32: return take<std::int32_t>(property);
-            case PlyScalar::uint32: return take<std::uint32_t>(property);
-            case PlyScalar::float32: return take<float>(property);
-            case PlyScalar::float64: return take<double>(property);
+            case PlyScalar::int8:
+                return take<std::int8_t>(property);
+            case PlyScalar::uint8:
+                return take<std::uint8_t>(property);
+            case PlyScalar::int16:
+                return take<std::int16_t>(property);
+            case PlyScalar::uint16:
+                return take<std::uint16_t>(property);
+            case PlyScalar::int32:
+                return take<std::int32_t>(property);
+            case PlyScalar::uint32:
+                return take<std::uint32_t>(property);
+            case PlyScalar::float32:
+                return take<float>(property);
+            case PlyScalar::float64:
+                return take<double>(property);
         }
         fail("unknown type");
     }
@@ -69,13 +76,15 @@ class BinaryValues {
         for (const PlyProperty& p : element.properties) row_bytes += byte_size(p.count_type.value_or(p.type));
         return bytes_left() / row_bytes;
     }
-    [[noreturn]] void fail(const std::string& message) const { mesh_io::fail(name_, fmt::format("byte {}: {}", at_, message)); }
+    [[noreturn]] void fail(const std::string& message) const {
+        mesh_io::fail(name_, fmt::format("byte {}: {}", at_, message));
+    }
     std::size_t bytes_left() const { return content_.size() - at_; }
 
   private:
     template <typename T>
     T take(const std::string& property) {
-        if (bytes_left() < sizeof(T)) fail(fmt::format("the file is cut off in property {}", quoted(property)));
+        if (bytes_left() < sizeof(T)) fail(fmt::format("the file is cut off in property {}", quote(property)));
         std::array<char, sizeof(T)> bytes;
         std::memcpy(bytes.data(), content_.data() + at_, sizeof(T));
         at_ += sizeof(T);
@@ -156,9 +165,10 @@ class BodyReader {
     void read_element(const PlyElement& element) {
         if (element.properties.empty()) return;
         if (element.count > values_.most_rows(element))
-            mesh_io::fail(name_, fmt::format("{} rows of element {} cannot be in what is left of the file; the count is wrong "
-                                             "or the file is cut off",
-                                             element.count, quoted(element.name)));
+            mesh_io::fail(name_,
+                          fmt::format("{} rows of element {} cannot be in what is left of the file; the count is wrong "
+                                      "or the file is cut off",
+                                      element.count, quote(element.name)));
         const std::vector<Role> roles = roles_of(element);
         if (element.name == "vertex") content_.polygons.vertices.reserve(element.count);
         if (element.name == "face") content_.polygons.reserve_polygons(element.count);
@@ -177,26 +187,35 @@ class BodyReader {
         }
         const double value = values_.value(property.type, property.name);
         switch (role) {
-            case Role::x: position_.x() = static_cast<float>(value); break;
-            case Role::y: position_.y() = static_cast<float>(value); break;
-            case Role::z: position_.z() = static_cast<float>(value); break;
-            case Role::label: add_label(value); break;
-            default: break;
+            case Role::x:
+                position_.x() = static_cast<float>(value);
+                break;
+            case Role::y:
+                position_.y() = static_cast<float>(value);
+                break;
+            case Role::z:
+                position_.z() = static_cast<float>(value);
+                break;
+            case Role::label:
+                add_label(value);
+                break;
+            default:
+                break;
         }
     }
 
     void read_list(const PlyProperty& property, Role role) {
         const double count = values_.value(*property.count_type, property.name);
         if (count < 0 || count > static_cast<double>(values_.most_values(property.type)))
-            values_.fail(fmt::format("a list of {} items cannot be in what is left; the count is wrong or the file is cut off",
-                                     count));
+            values_.fail(fmt::format(
+                "a list of {} items cannot be in what is left; the count is wrong or the file is cut off", count));
         if (role == Role::corners) corners_.clear();
         for (auto i = static_cast<std::uint64_t>(count); i > 0; --i) {
             const double value = values_.value(property.type, property.name);
             if (role != Role::corners) continue;
             if (value < 0 || value >= static_cast<double>(*vertex_count_))
-                values_.fail(fmt::format("face {} names vertex {}, but the file has {} vertices, counted from 0", row_, value,
-                                         *vertex_count_));
+                values_.fail(fmt::format("face {} names vertex {}, but the file has {} vertices, counted from 0", row_,
+                                         value, *vertex_count_));
             corners_.push_back(static_cast<std::uint32_t>(value));
         }
     }
@@ -217,8 +236,8 @@ class BodyReader {
     std::vector<std::uint32_t> corners_;
 };
 
-/// Names every value that occurs or that a comment names, in rising order, and renumbers the faces accordingly: where the
-/// comments name 0 .. n-1, and no others occur, the numbers stay. Negative values are unlabeled.
+/// Names every value that occurs or that a comment names, in rising order, and renumbers the faces accordingly: where
+/// the comments name 0 .. n-1, and no others occur, the numbers stay. Negative values are unlabeled.
 FaceLabels named_labels(std::vector<std::int32_t> values, const std::map<std::int64_t, std::string>& comments) {
     std::vector<std::int64_t> indices;
     for (const auto& [index, name] : comments)
@@ -236,8 +255,10 @@ FaceLabels named_labels(std::vector<std::int32_t> values, const std::map<std::in
         labels.names.push_back(comment != comments.end() ? comment->second : std::to_string(index));
     }
     for (std::int32_t& value : values)
-        value = value < 0 ? -1
-                          : static_cast<std::int32_t>(std::ranges::lower_bound(indices, std::int64_t{value}) - indices.begin());
+        value =
+            value < 0
+                ? -1
+                : static_cast<std::int32_t>(std::ranges::lower_bound(indices, std::int64_t{value}) - indices.begin());
     labels.label = std::move(values);
     return labels;
 }

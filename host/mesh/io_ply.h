@@ -11,7 +11,9 @@ namespace exemplar::mesh_io {
 
 enum class PlyScalar { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 std::size_t byte_size(PlyScalar type);
-inline bool is_integer(PlyScalar type) { return type < PlyScalar::float32; }
+inline bool is_integer(PlyScalar type) {
+    return type < PlyScalar::float32;
+}
 
 struct PlyProperty {
     std::string name;

@@ -25,17 +25,26 @@ std::string_view header_text(std::string_view content, const std::string& name) 
 }
 
 PlyScalar read_type(TextCursor& cursor) {
-    constexpr std::array<std::pair<std::string_view, PlyScalar>, 16> k_types{
-        {{"char", PlyScalar::int8},      {"int8", PlyScalar::int8},       {"uchar", PlyScalar::uint8},
-         {"uint8", PlyScalar::uint8},    {"short", PlyScalar::int16},     {"int16", PlyScalar::int16},
-         {"ushort", PlyScalar::uint16},  {"uint16", PlyScalar::uint16},   {"int", PlyScalar::int32},
-         {"int32", PlyScalar::int32},    {"uint", PlyScalar::uint32},     {"uint32", PlyScalar::uint32},
-         {"float", PlyScalar::float32},  {"float32", PlyScalar::float32}, {"double", PlyScalar::float64},
-         {"float64", PlyScalar::float64}}};
+    constexpr std::array<std::pair<std::string_view, PlyScalar>, 16> k_types{{{"char", PlyScalar::int8},
+                                                                              {"int8", PlyScalar::int8},
+                                                                              {"uchar", PlyScalar::uint8},
+                                                                              {"uint8", PlyScalar::uint8},
+                                                                              {"short", PlyScalar::int16},
+                                                                              {"int16", PlyScalar::int16},
+                                                                              {"ushort", PlyScalar::uint16},
+                                                                              {"uint16", PlyScalar::uint16},
+                                                                              {"int", PlyScalar::int32},
+                                                                              {"int32", PlyScalar::int32},
+                                                                              {"uint", PlyScalar::uint32},
+                                                                              {"uint32", PlyScalar::uint32},
+                                                                              {"float", PlyScalar::float32},
+                                                                              {"float32", PlyScalar::float32},
+                                                                              {"double", PlyScalar::float64},
+                                                                              {"float64", PlyScalar::float64}}};
     const std::string_view word = cursor.word();
     for (const auto& [name, type] : k_types)
         if (word == name) return type;
-    cursor.fail(fmt::format("a property type such as float or int is expected, not {}", quoted(word)));
+    cursor.fail(fmt::format("a property type such as float or int is expected, not {}", quote(word)));
 }
 
 void read_format(TextCursor& cursor, PlyHeader& header) {
@@ -47,15 +56,15 @@ void read_format(TextCursor& cursor, PlyHeader& header) {
     else if (word == "binary_big_endian")
         header.encoding = PlyEncoding::big_endian;
     else
-        cursor.fail(fmt::format("format {} is none of ascii, binary_little_endian, binary_big_endian", quoted(word)));
+        cursor.fail(fmt::format("format {} is none of ascii, binary_little_endian, binary_big_endian", quote(word)));
 }
 
 void read_element(TextCursor& cursor, PlyHeader& header) {
     const std::string name(cursor.word());
     const std::int64_t count = cursor.integer("the number of elements");
-    if (count < 0) cursor.fail(fmt::format("there cannot be {} of element {}", count, quoted(name)));
+    if (count < 0) cursor.fail(fmt::format("there cannot be {} of element {}", count, quote(name)));
     const auto same_name = [&](const PlyElement& element) { return element.name == name; };
-    if (std::ranges::any_of(header.elements, same_name)) cursor.fail("element " + quoted(name) + " is declared twice");
+    if (std::ranges::any_of(header.elements, same_name)) cursor.fail("element " + quote(name) + " is declared twice");
     header.elements.push_back({name, static_cast<std::uint64_t>(count), {}});
 }
 
@@ -108,7 +117,7 @@ PlyHeader read_ply_header(std::string_view content, const std::string& name) {
         } else if (keyword == "comment") {
             read_comment(cursor, header);
         } else if (keyword != "obj_info") {
-            cursor.fail(fmt::format("the header line begins with {}, which PLY does not know", quoted(keyword)));
+            cursor.fail(fmt::format("the header line begins with {}, which PLY does not know", quote(keyword)));
         }
     }
     if (!has_format) cursor.fail("the header has no format line");

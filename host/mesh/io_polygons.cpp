@@ -131,8 +131,8 @@ TriangleMesh PolygonList::triangulate(std::vector<std::string>& warnings) && {
         if (!only_triangles) mesh.source_face.resize(mesh.faces.size(), i);
     }
     if (dropped)
-        warnings.push_back(fmt::format("{} faces have fewer than three corners and were left out (the first is face {})",
-                                       dropped, first_dropped));
+        warnings.push_back(fmt::format(
+            "{} faces have fewer than three corners and were left out (the first is face {})", dropped, first_dropped));
     return mesh;
 }
 

@@ -10,16 +10,20 @@
 
 namespace exemplar::mesh_io {
 
-void fail(const std::string& name, const std::string& message) { throw MeshError(name + ": " + message); }
+void fail(const std::string& name, const std::string& message) {
+    throw MeshError(name + ": " + message);
+}
 
-std::string quoted(std::string_view text) {
+std::string quote(std::string_view text) {
     constexpr std::size_t k_longest = 40;
     std::string result = "'";
     for (char c : text.substr(0, k_longest)) result += c >= ' ' && c <= '~' ? c : '?';
     return result + (text.size() > k_longest ? "...'" : "'");
 }
 
-bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+bool is_space(char c) {
+    return c == ' ' || (c >= '\t' && c <= '\r');
+}
 
 std::string_view trimmed(std::string_view text) {
     while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
@@ -116,7 +120,8 @@ bool TextCursor::next_line() {
 }
 
 void TextCursor::need_line(std::string_view expected) {
-    if (!next_line()) fail(fmt::format("the file ends where {} should be; it is cut off or its counts are wrong", expected));
+    if (!next_line())
+        fail(fmt::format("the file ends where {} should be; it is cut off or its counts are wrong", expected));
 }
 
 float TextCursor::number(std::string_view what) {
@@ -139,7 +144,7 @@ void TextCursor::fail(const std::string& message) const {
 
 void TextCursor::fail_word(std::string_view word, std::string_view what, std::string_view kind) const {
     if (word.empty()) fail(fmt::format("{} is missing at the end of the line", what));
-    fail(fmt::format("{} should be {}, not {}", what, kind, quoted(word)));
+    fail(fmt::format("{} should be {}, not {}", what, kind, quote(word)));
 }
 
 }  // namespace exemplar::mesh_io

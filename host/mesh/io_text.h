@@ -11,7 +11,7 @@ namespace exemplar::mesh_io {
 /// Throws MeshError "NAME: MESSAGE".
 [[noreturn]] void fail(const std::string& name, const std::string& message);
 /// A few characters of foreign text, printable and in quotes, for an error message.
-std::string quoted(std::string_view text);
+std::string quote(std::string_view text);
 
 /// The number that fills all of `word`, if one does: decimal, with or without sign and exponent, or nan or inf.
 /// What is too large or small for a float becomes infinity or zero.

@@ -8,7 +8,17 @@
 namespace exemplar {
 namespace {
 
-enum Part : std::int32_t { k_head, k_neck, k_torso, k_upper_arm, k_lower_arm, k_hand, k_upper_leg, k_lower_leg, k_foot };
+enum Part : std::int32_t {
+    k_head,
+    k_neck,
+    k_torso,
+    k_upper_arm,
+    k_lower_arm,
+    k_hand,
+    k_upper_leg,
+    k_lower_leg,
+    k_foot
+};
 
 /// Proportions, each about 1.
 struct Build {
@@ -90,14 +100,21 @@ void sit(Random& random, Posture& p) {
 Posture pick_posture(Random& random) {
     Posture p = stand(random);
     switch (random.index(6)) {
-        case 0: break;
-        case 1: stride(random, p); break;
-        case 2: raise_arms(random, p, 0, 2); break;
+        case 0:
+            break;
+        case 1:
+            stride(random, p);
+            break;
+        case 2:
+            raise_arms(random, p, 0, 2);
+            break;
         case 3:
             stride(random, p);
             raise_arms(random, p, 0, 1);
             break;
-        case 4: sit(random, p); break;
+        case 4:
+            sit(random, p);
+            break;
         default:
             raise_arms(random, p, 1, 2);
             p.leg_out = {pick(random, 12, 26), pick(random, 8, 26)};
@@ -128,18 +145,22 @@ class Body {
         const float g = b_.girth;
         add_.part(k_torso).blend(0.07f);
         add_.ellipsoid(pelvis, Vec3(0.158f * b_.hips * g, 0.125f, 0.112f * g));
-        add_.ellipsoid(chest.at(Vec3(0, 0.03f, 0.008f * g)), Vec3(0.133f * g * (b_.woman ? 0.93f : 1.0f), 0.16f, 0.1f * g));
+        add_.ellipsoid(chest.at(Vec3(0, 0.03f, 0.008f * g)),
+                       Vec3(0.133f * g * (b_.woman ? 0.93f : 1.0f), 0.16f, 0.1f * g));
         add_.ellipsoid(chest.at(Vec3(0, 0.235f, 0)), Vec3(0.158f * b_.shoulders, 0.17f, 0.108f * g));
         const float shoulder = 0.125f * b_.shoulders;
         add_.limb(chest * Vec3(-shoulder, 0.35f, -0.01f), chest * Vec3(shoulder, 0.35f, -0.01f), 0.058f, 0.058f);
         for (int s = 0; s < 2; ++s) {
             add_.blend(0.04f);
-            add_.ellipsoid(pelvis.at(Vec3(sign(s) * 0.07f * b_.hips, -0.045f, -0.062f * g)), Vec3(0.08f, 0.085f, 0.07f));
-            add_.limb(chest * Vec3(sign(s) * 0.05f, 0.4f, -0.02f), chest * Vec3(sign(s) * shoulder, 0.36f, -0.01f), 0.05f, 0.05f);
+            add_.ellipsoid(pelvis.at(Vec3(sign(s) * 0.07f * b_.hips, -0.045f, -0.062f * g)),
+                           Vec3(0.08f, 0.085f, 0.07f));
+            add_.limb(chest * Vec3(sign(s) * 0.05f, 0.4f, -0.02f), chest * Vec3(sign(s) * shoulder, 0.36f, -0.01f),
+                      0.05f, 0.05f);
             if (b_.woman) {
                 add_.ellipsoid(chest.at(Vec3(sign(s) * 0.07f, 0.225f, 0.085f * g)), Vec3::Constant(0.06f * g));
             } else {
-                add_.ellipsoid(chest.at(Vec3(sign(s) * 0.068f, 0.265f, 0.075f * g)), Vec3(0.078f, 0.06f, 0.045f * b_.muscle));
+                add_.ellipsoid(chest.at(Vec3(sign(s) * 0.068f, 0.265f, 0.075f * g)),
+                               Vec3(0.078f, 0.06f, 0.045f * b_.muscle));
             }
         }
     }
@@ -147,8 +168,9 @@ class Body {
     void arm(const Frame& chest, int side) {
         const auto s = static_cast<std::size_t>(side);
         const float sx = sign(side), m = b_.muscle, length = 0.285f * b_.arms;
-        const Frame shoulder = chest.at(Vec3(sx * 0.178f * b_.shoulders, 0.345f, -0.01f),
-                                        turn_z(sx * p_.arm_out[s]) * turn_x(-p_.arm_forward[s]) * turn_y(-sx * p_.arm_twist[s]));
+        const Frame shoulder =
+            chest.at(Vec3(sx * 0.178f * b_.shoulders, 0.345f, -0.01f),
+                     turn_z(sx * p_.arm_out[s]) * turn_x(-p_.arm_forward[s]) * turn_y(-sx * p_.arm_twist[s]));
         const Vec3 elbow(0, -length, 0);
         add_.part(k_upper_arm).blend(0.035f);
         add_.limb(shoulder.origin, shoulder * elbow, 0.05f * m, 0.037f * m);
@@ -172,7 +194,8 @@ class Body {
         for (int i = 0; i < 4; ++i) {
             const float across = (static_cast<float>(i) - 1.5f);
             const float length = i == 3 ? 0.052f : i == 1 ? 0.072f : 0.066f;
-            const Frame knuckle = wrist.at(Vec3(-sx * -across * 0.0205f, -0.085f, 0), turn_z(across * spread * sx) * turn_x(-curl * 0.6f));
+            const Frame knuckle = wrist.at(Vec3(-sx * -across * 0.0205f, -0.085f, 0),
+                                           turn_z(across * spread * sx) * turn_x(-curl * 0.6f));
             const Frame middle = knuckle.at(Vec3(0, -0.55f * length, 0), turn_x(-curl));
             add_.blend(0.006f);
             add_.limb(knuckle.origin, middle.origin, 0.0115f, 0.0105f);
@@ -187,7 +210,8 @@ class Body {
     void leg(const Frame& pelvis, int side) {
         const auto s = static_cast<std::size_t>(side);
         const float sx = sign(side), g = b_.girth, m = b_.muscle, thigh_length = 0.425f * b_.legs;
-        const Frame hip = pelvis.at(Vec3(sx * 0.088f * b_.hips, -0.045f, 0), turn_z(sx * p_.leg_out[s]) * turn_x(-p_.leg_forward[s]));
+        const Frame hip =
+            pelvis.at(Vec3(sx * 0.088f * b_.hips, -0.045f, 0), turn_z(sx * p_.leg_out[s]) * turn_x(-p_.leg_forward[s]));
         const Vec3 knee(0, -thigh_length, 0);
         add_.part(k_upper_leg).blend(0.03f);
         add_.limb(hip.origin, hip * knee, 0.088f * g, 0.053f);
@@ -218,7 +242,9 @@ class Body {
         add_.ellipsoid(skull.at(Vec3(0, 0.06f * h, 0.032f * h)), Vec3(0.056f, 0.072f, 0.058f) * h);
         add_.blend(0.012f);
         add_.limb(skull * (Vec3(0, 0.108f, 0.088f) * h), skull * (Vec3(0, 0.078f, 0.102f) * h), 0.009f, 0.015f);
-        for (const float sx : {1.0f, -1.0f}) add_.ellipsoid(skull.at(Vec3(sx * 0.079f, 0.095f, -0.004f) * h, turn_y(sx * 20)), Vec3(0.011f, 0.03f, 0.02f));
+        for (const float sx : {1.0f, -1.0f})
+            add_.ellipsoid(skull.at(Vec3(sx * 0.079f, 0.095f, -0.004f) * h, turn_y(sx * 20)),
+                           Vec3(0.011f, 0.03f, 0.02f));
         hair(skull);
     }
 
@@ -226,15 +252,19 @@ class Body {
         const float h = b_.head;
         add_.blend(0.015f);
         switch (random_.index(b_.woman ? 4 : 2)) {
-            case 0: break;
-            case 1: add_.ellipsoid(skull.at(Vec3(0, 0.137f, -0.014f) * h), Vec3(0.086f, 0.09f, 0.1f) * h); break;
+            case 0:
+                break;
+            case 1:
+                add_.ellipsoid(skull.at(Vec3(0, 0.137f, -0.014f) * h), Vec3(0.086f, 0.09f, 0.1f) * h);
+                break;
             case 2:  // a bun
                 add_.ellipsoid(skull.at(Vec3(0, 0.135f, -0.012f) * h), Vec3(0.084f, 0.088f, 0.1f) * h);
                 add_.ball(skull * (Vec3(0, 0.2f, -0.09f) * h), 0.045f);
                 break;
             default:  // to the shoulders
                 add_.ellipsoid(skull.at(Vec3(0, 0.137f, -0.014f) * h), Vec3(0.087f, 0.09f, 0.1f) * h);
-                add_.limb(skull * (Vec3(0, 0.11f, -0.055f) * h), skull * (Vec3(0, -0.02f, -0.075f) * h), 0.075f, 0.06f, 0.6f, skull.axes.col(2));
+                add_.limb(skull * (Vec3(0, 0.11f, -0.055f) * h), skull * (Vec3(0, -0.02f, -0.075f) * h), 0.075f, 0.06f,
+                          0.6f, skull.axes.col(2));
         }
     }
 

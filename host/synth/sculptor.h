@@ -65,7 +65,9 @@ class Sculptor {
     /// The same with the radius running from first to last, linearly in the point number.
     void tube(std::span<const Vec3> points, float first, float last);
     void ellipsoid(const Frame& frame, const Vec3& radius) { add(Ellipsoid{radius}, frame); }
-    void ball(const Vec3& center, float radius) { add(Ellipsoid{Vec3::Constant(radius)}, {center, Eigen::Matrix3f::Identity()}); }
+    void ball(const Vec3& center, float radius) {
+        add(Ellipsoid{Vec3::Constant(radius)}, {center, Eigen::Matrix3f::Identity()});
+    }
     void box(const Frame& frame, const Vec3& half, float rounding) { add(RoundBox{half, rounding}, frame); }
     /// A straight bar of rectangular section between two points.
     void bar(const Vec3& a, const Vec3& b, float half_width, float half_depth, float rounding,

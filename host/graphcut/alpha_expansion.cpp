@@ -1,0 +1,240 @@
+#include "host/graphcut/alpha_expansion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "host/core/errors.h"
+
+namespace exemplar {
+
+/// The energy with its size, and a cost for infinities.
+struct AlphaExpansion::Problem {
+    std::size_t nodes, labels;
+    std::span<const float> unary;
+    std::span<const double> weight;
+    std::span<const double> v;
+    double forbidden_cost = 0;    ///< of one edge that breaks a forbidden pair, whatever its weight
+    double forbidden_factor = 0;  ///< if above zero, stands in for an infinite V instead
+
+    double unary_cost(std::size_t node, std::int32_t label) const {
+        return static_cast<double>(unary[node * labels + static_cast<std::size_t>(label)]);
+    }
+    double edge_cost(std::size_t e, std::int32_t a, std::int32_t b) const {
+        const double factor = v[static_cast<std::size_t>(a) * labels + static_cast<std::size_t>(b)];
+        if (weight[e] == 0.0) return 0.0;
+        if (!std::isinf(factor)) return weight[e] * factor;
+        return forbidden_factor > 0.0 ? weight[e] * forbidden_factor : forbidden_cost;
+    }
+};
+
+namespace {
+
+constexpr std::size_t k_forbidding_stages = 8;
+
+void check_energy(const LabelingEnergy& energy, std::size_t nodes, std::size_t edges, std::size_t labels) {
+    if (labels == 0 || energy.unary.size() != nodes * labels || energy.weight.size() != edges ||
+        energy.compatibility.size() != labels * labels) {
+        throw UsageError("the energy of " + std::to_string(nodes) + " nodes, " + std::to_string(edges) + " edges and " +
+                         std::to_string(labels) + " labels has " + std::to_string(energy.unary.size()) +
+                         " unary costs, " + std::to_string(energy.weight.size()) + " weights and " +
+                         std::to_string(energy.compatibility.size()) + " compatibilities; the sizes do not match");
+    }
+    for (const float cost : energy.unary) {
+        if (!std::isfinite(cost))
+            throw UsageError("a unary cost is not finite; bound the probabilities away from zero");
+    }
+    for (const double weight : energy.weight) {
+        if (!(weight >= 0.0) || std::isinf(weight)) throw UsageError("an edge weight is negative or not finite");
+    }
+    for (std::size_t a = 0; a < labels; ++a) {
+        for (std::size_t b = 0; b < labels; ++b) {
+            const double v = energy.compatibility[a * labels + b];
+            if (!(v >= 0.0) || v != energy.compatibility[b * labels + a] || (a == b && v != 0.0)) {
+                throw UsageError("the compatibility of labels " + std::to_string(a) + " and " + std::to_string(b) +
+                                 " is wrong: V must be symmetric, not negative and zero for equal labels");
+            }
+        }
+    }
+}
+
+double largest_finite(std::span<const double> values) {
+    double largest = 0.0;
+    for (const double value : values) {
+        if (!std::isinf(value)) largest = std::max(largest, value);
+    }
+    return largest;
+}
+
+/// More than the energies of any two labelings without forbidden pairs differ by.
+double cost_above_all(const LabelingEnergy& energy, std::size_t labels) {
+    double range = 1.0;
+    for (std::size_t i = 0; i < energy.unary.size(); i += labels) {
+        const auto [low, high] = std::ranges::minmax(energy.unary.subspan(i, labels));
+        range += static_cast<double>(high) - static_cast<double>(low);
+    }
+    const double largest = largest_finite(energy.compatibility);
+    for (const double weight : energy.weight) range += weight * largest;
+    return range;
+}
+
+void check_labels(std::span<const std::int32_t> labeling, std::size_t nodes, std::size_t labels) {
+    if (labeling.size() != nodes) {
+        throw UsageError("the labeling has " + std::to_string(labeling.size()) + " labels for " +
+                         std::to_string(nodes) + " nodes");
+    }
+    for (const std::int32_t label : labeling) {
+        if (label < 0 || static_cast<std::size_t>(label) >= labels) {
+            throw UsageError("label " + std::to_string(label) + " is out of range; labels are 0 to " +
+                             std::to_string(labels - 1));
+        }
+    }
+}
+
+std::vector<std::int32_t> cheapest_labels(std::span<const float> unary, std::size_t labels) {
+    std::vector<std::int32_t> labeling;
+    for (std::size_t i = 0; i < unary.size(); i += labels) {
+        const std::span<const float> costs = unary.subspan(i, labels);
+        labeling.push_back(static_cast<std::int32_t>(std::ranges::min_element(costs) - costs.begin()));
+    }
+    return labeling;
+}
+
+std::vector<std::int32_t> cheapest_single_label(std::span<const float> unary, std::size_t nodes, std::size_t labels) {
+    std::vector<double> total(labels, 0.0);
+    for (std::size_t i = 0; i < unary.size(); ++i) total[i % labels] += static_cast<double>(unary[i]);
+    const auto best = static_cast<std::int32_t>(std::ranges::min_element(total) - total.begin());
+    return std::vector<std::int32_t>(nodes, best);
+}
+
+}  // namespace
+
+AlphaExpansion::AlphaExpansion(std::size_t nodes, std::span<const std::array<std::uint32_t, 2>> edges)
+    : edges_(edges.begin(), edges.end()), flow_(nodes, edges), keep_(nodes), take_(nodes) {}
+
+double AlphaExpansion::evaluate(const LabelingEnergy& energy, std::size_t labels,
+                                std::span<const std::int32_t> labeling) const {
+    check_energy(energy, flow_.nodes(), edges_.size(), labels);
+    check_labels(labeling, flow_.nodes(), labels);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < labeling.size(); ++i) {
+        sum += static_cast<double>(energy.unary[i * labels + static_cast<std::size_t>(labeling[i])]);
+    }
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+        const auto a = static_cast<std::size_t>(labeling[edges_[e][0]]);
+        const auto b = static_cast<std::size_t>(labeling[edges_[e][1]]);
+        if (a != b && energy.weight[e] > 0.0) sum += energy.weight[e] * energy.compatibility[a * labels + b];
+    }
+    return sum;
+}
+
+/// Adds one edge's costs: A if both keep, B if the second takes alpha, C if the first does, 0 if both do. They are
+/// A + (C - A) x_i - C x_j + (B + C - A) (1 - x_i) x_j with x = 1 for taking; the last term is an arc, whose capacity
+/// must not be negative.
+void AlphaExpansion::add_edge(const Problem& problem, std::span<const std::int32_t> labeling, std::int32_t alpha,
+                              std::size_t e) {
+    const auto [i, j] = edges_[e];
+    const double both_keep = problem.edge_cost(e, labeling[i], labeling[j]);
+    double second_takes = problem.edge_cost(e, labeling[i], alpha);
+    double first_takes = problem.edge_cost(e, alpha, labeling[j]);
+    const double lack = both_keep - second_takes - first_takes;
+    if (lack > 0.0) {
+        // The change that costs less by the unary terms keeps its true cost: it is the likelier one.
+        const double second = problem.unary_cost(j, alpha) - problem.unary_cost(j, labeling[j]);
+        const double first = problem.unary_cost(i, alpha) - problem.unary_cost(i, labeling[i]);
+        (second > first ? second_takes : first_takes) += lack;
+    }
+    keep_[i] += both_keep;
+    take_[i] += first_takes;
+    keep_[j] += first_takes;
+    flow_.set_edge(e, std::max(0.0, second_takes + first_takes - both_keep), 0.0);
+}
+
+/// Source side: keep; sink side: take alpha.
+void AlphaExpansion::build_move(const Problem& problem, std::span<const std::int32_t> labeling, std::int32_t alpha) {
+    flow_.clear();
+    for (std::size_t i = 0; i < problem.nodes; ++i) {
+        keep_[i] = problem.unary_cost(i, labeling[i]);
+        take_[i] = problem.unary_cost(i, alpha);
+    }
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+        const auto [i, j] = edges_[e];
+        if (i != j && (labeling[i] != alpha || labeling[j] != alpha)) add_edge(problem, labeling, alpha, e);
+    }
+    for (std::size_t i = 0; i < problem.nodes; ++i) {
+        const double difference = take_[i] - keep_[i];
+        flow_.add_terminals(i, std::max(difference, 0.0), std::max(-difference, 0.0));
+    }
+}
+
+ExpansionResult AlphaExpansion::descend(const Problem& problem, std::size_t most_sweeps,
+                                        std::vector<std::int32_t> labeling) {
+    const auto cost = [&](const std::vector<std::int32_t>& of) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < of.size(); ++i) sum += problem.unary_cost(i, of[i]);
+        for (std::size_t e = 0; e < edges_.size(); ++e) sum += problem.edge_cost(e, of[edges_[e][0]], of[edges_[e][1]]);
+        return sum;
+    };
+    ExpansionResult result;
+    double energy = cost(labeling);
+    result.energies.push_back(energy);
+    std::size_t in_vain = 0;  // labels tried since the last change
+    for (; result.sweeps < most_sweeps && in_vain < problem.labels; ++result.sweeps) {
+        for (std::size_t label = 0; label < problem.labels && in_vain < problem.labels; ++label) {
+            const auto alpha = static_cast<std::int32_t>(label);
+            build_move(problem, labeling, alpha);
+            flow_.solve();
+            std::vector<std::int32_t> moved = labeling;
+            for (std::size_t i = 0; i < moved.size(); ++i) {
+                if (flow_.on_sink_side(i)) moved[i] = alpha;
+            }
+            const double after = cost(moved);
+            ++in_vain;
+            if (after >= energy - 1e-12 * std::abs(energy)) continue;  // no gain, or one of rounding only
+            in_vain = 0;
+            energy = after;
+            labeling = std::move(moved);
+            result.energies.push_back(energy);
+        }
+    }
+    result.labels = std::move(labeling);
+    return result;
+}
+
+ExpansionResult AlphaExpansion::solve(const LabelingEnergy& energy, std::size_t labels, std::size_t most_sweeps,
+                                      std::span<const std::int32_t> initial) {
+    const std::size_t nodes = flow_.nodes();
+    check_energy(energy, nodes, edges_.size(), labels);
+    Problem problem{nodes, labels, energy.unary, energy.weight, energy.compatibility};
+    problem.forbidden_cost = cost_above_all(energy, labels);
+    if (!initial.empty()) {
+        check_labels(initial, nodes, labels);
+        return descend(problem, most_sweeps, {initial.begin(), initial.end()});
+    }
+    const auto broken = [&](std::span<const std::int32_t> of) { return std::isinf(evaluate(energy, labels, of)); };
+    std::vector<std::int32_t> start = cheapest_labels(energy.unary, labels);
+    // Forbidden pairs become dear by and by: were they forbidden at once, the first label that can would sweep away all
+    // that breaks them, and expansion moves do not come back from there.
+    problem.forbidden_factor = std::max(largest_finite(energy.compatibility), 1e-3);
+    for (std::size_t stage = 0; stage < k_forbidding_stages && broken(start); ++stage) {
+        start = descend(problem, most_sweeps, std::move(start)).labels;
+        problem.forbidden_factor *= 4.0;
+    }
+    problem.forbidden_factor = 0.0;
+    ExpansionResult result = descend(problem, most_sweeps, std::move(start));
+    if (!broken(result.labels)) return result;
+    return descend(problem, most_sweeps, cheapest_single_label(energy.unary, nodes, labels));
+}
+
+ExpansionResult alpha_expansion(std::span<const float> unary, std::size_t labels,
+                                std::span<const std::array<std::uint32_t, 2>> edges, std::span<const double> weight,
+                                std::span<const double> compatibility, std::span<const std::int32_t> initial) {
+    if (labels == 0 || unary.size() % labels != 0) {
+        throw UsageError("there are " + std::to_string(unary.size()) + " unary costs, which is no multiple of " +
+                         std::to_string(labels) + " labels");
+    }
+    AlphaExpansion solver(unary.size() / labels, edges);
+    return solver.solve({unary, weight, compatibility}, labels, 100, initial);
+}
+
+}  // namespace exemplar

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host/graphcut/max_flow.h"
+
+namespace exemplar {
+
+/// The energy of a labeling l: sum over nodes i of unary[i][l_i] plus, over edges e = (i, j), weight[e] * V(l_i, l_j).
+struct LabelingEnergy {
+    std::span<const float> unary;           ///< nodes x labels, node-major, finite
+    std::span<const double> weight;         ///< one per edge, >= 0, finite
+    std::span<const double> compatibility;  ///< V, labels x labels: symmetric, zero diagonal, >= 0; infinity forbids
+};
+
+struct ExpansionResult {
+    std::vector<std::int32_t> labels;  ///< one per node
+    /// Of the labeling that the last descent began with and after each accepted move; never rises. A forbidden pair
+    /// counts at a finite cost that exceeds every energy without one.
+    std::vector<double> energies;
+    std::size_t sweeps = 0;  ///< passes over the labels
+};
+
+/// Minimizes energies of labelings of one graph by expansion moves (Boykov, Veksler and Zabih, PAMI 2001): for each
+/// label in turn, the best set of nodes that change to it at once is a minimum cut, until no label finds a better one.
+/// If V is a metric, the result's energy is within 2 max V / min V of the lowest (2 for Potts). Where V violates the
+/// triangle inequality, the cost of one of the two one-sided changes of that edge is raised, so that a cut exists; what
+/// it then says a move costs is at least what it costs, so the energy does not rise. Deterministic.
+class AlphaExpansion {
+  public:
+    /// Throws UsageError for a node out of range.
+    AlphaExpansion(std::size_t nodes, std::span<const std::array<std::uint32_t, 2>> edges);
+
+    /// Starts from `initial` (one label per node), or, if that is empty, from each node's cheapest label. If that
+    /// breaks forbidden pairs (V = infinity), their cost first rises by and by from the largest finite V. Without
+    /// `initial` the result has no forbidden pair. Throws UsageError for sizes that do not match, labels out of range,
+    /// or values that are out of range.
+    ExpansionResult solve(const LabelingEnergy& energy, std::size_t labels, std::size_t most_sweeps = 100,
+                          std::span<const std::int32_t> initial = {});
+
+    /// The energy of a labeling; infinite if an edge of positive weight joins a forbidden pair.
+    double evaluate(const LabelingEnergy& energy, std::size_t labels, std::span<const std::int32_t> labeling) const;
+
+  private:
+    struct Problem;
+    ExpansionResult descend(const Problem& problem, std::size_t most_sweeps, std::vector<std::int32_t> labeling);
+    void build_move(const Problem& problem, std::span<const std::int32_t> labeling, std::int32_t alpha);
+    void add_edge(const Problem& problem, std::span<const std::int32_t> labeling, std::int32_t alpha, std::size_t e);
+
+    std::vector<std::array<std::uint32_t, 2>> edges_;
+    MaxFlow flow_;
+    std::vector<double> keep_, take_;  // per node: what it costs to keep its label, and to take alpha
+};
+
+/// One-off form of AlphaExpansion::solve. The number of nodes is unary.size() / labels.
+ExpansionResult alpha_expansion(std::span<const float> unary, std::size_t labels,
+                                std::span<const std::array<std::uint32_t, 2>> edges, std::span<const double> weight,
+                                std::span<const double> compatibility, std::span<const std::int32_t> initial = {});
+
+}  // namespace exemplar

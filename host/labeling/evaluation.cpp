@@ -1,1 +1,0 @@
-#include "host/labeling/evaluation.h"

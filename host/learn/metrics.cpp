@@ -1,0 +1,122 @@
+#include "host/learn/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "host/core/errors.h"
+
+namespace exemplar {
+namespace {
+
+constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double k_least_probability = 1e-12;
+
+/// Throws unless there are as many areas, and the truths are classes or -1.
+void check_items(std::span<const std::int32_t> truth, std::span<const float> areas, std::size_t classes) {
+    if (areas.size() != truth.size()) {
+        throw UsageError("there are " + std::to_string(areas.size()) + " areas for " + std::to_string(truth.size()) +
+                         " items; give one each");
+    }
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        if (truth[i] >= -1 && truth[i] < static_cast<std::int32_t>(classes)) continue;
+        throw UsageError("item " + std::to_string(i) + " has the label " + std::to_string(truth[i]) +
+                         ", but there are " + std::to_string(classes) + " labels");
+    }
+}
+
+double pairs(double count) {
+    return 0.5 * count * (count - 1.0);
+}
+
+/// Sums the pairs within runs of equal keys of a sorted list.
+template <typename Key>
+double pairs_within(std::vector<Key> keys) {
+    std::sort(keys.begin(), keys.end());
+    double sum = 0.0;
+    for (std::size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
+        while (end < keys.size() && keys[end] == keys[begin]) ++end;
+        sum += pairs(static_cast<double>(end - begin));
+    }
+    return sum;
+}
+
+}  // namespace
+
+void ConfusionMatrix::add(const ConfusionMatrix& other) {
+    if (other.classes != classes) throw UsageError("confusion matrices of different classes cannot be added");
+    for (std::size_t i = 0; i < area.size(); ++i) area[i] += other.area[i];
+    for (std::size_t c = 0; c < classes; ++c) counts[c] += other.counts[c];
+}
+
+ConfusionMatrix confusion_matrix(std::span<const std::int32_t> truth, std::span<const std::int32_t> predicted,
+                                 std::span<const float> areas, std::size_t classes) {
+    check_items(truth, areas, classes);
+    if (predicted.size() != truth.size()) {
+        throw UsageError("there are " + std::to_string(predicted.size()) + " predictions for " +
+                         std::to_string(truth.size()) + " items; give one each");
+    }
+    ConfusionMatrix out{classes, std::vector<double>(classes * (classes + 1)), std::vector<std::size_t>(classes)};
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        if (truth[i] < 0) continue;
+        const auto row = static_cast<std::size_t>(truth[i]);
+        const std::size_t column = predicted[i] < 0 ? classes : std::min<std::size_t>(predicted[i], classes);
+        out.area[row * (classes + 1) + column] += static_cast<double>(areas[i]);
+        ++out.counts[row];
+    }
+    return out;
+}
+
+double recognition_rate(const ConfusionMatrix& confusion) {
+    double right = 0.0, all = 0.0;
+    for (std::size_t c = 0; c < confusion.classes; ++c) right += confusion.at(c, c);
+    for (const double area : confusion.area) all += area;
+    return all > 0.0 ? right / all : k_nan;
+}
+
+double segment_weighted_accuracy(const ConfusionMatrix& confusion) {
+    double sum = 0.0, present = 0.0;
+    for (std::size_t c = 0; c < confusion.classes; ++c) {
+        if (confusion.counts[c] == 0) continue;
+        double all = 0.0;
+        for (std::size_t p = 0; p <= confusion.classes; ++p) all += confusion.at(c, p);
+        sum += all > 0.0 ? confusion.at(c, c) / all : 0.0;
+        present += 1.0;
+    }
+    return present > 0.0 ? sum / present : k_nan;
+}
+
+double rand_index_error(std::span<const std::int32_t> a, std::span<const std::int32_t> b) {
+    if (a.size() != b.size()) {
+        throw UsageError("segmentations of " + std::to_string(a.size()) + " and " + std::to_string(b.size()) +
+                         " items cannot be compared");
+    }
+    if (a.size() < 2) return 0.0;
+    std::vector<std::pair<std::int32_t, std::int32_t>> both;
+    for (std::size_t i = 0; i < a.size(); ++i) both.emplace_back(a[i], b[i]);
+    const double in_a = pairs_within(std::vector<std::int32_t>(a.begin(), a.end()));
+    const double in_b = pairs_within(std::vector<std::int32_t>(b.begin(), b.end()));
+    return (in_a + in_b - 2.0 * pairs_within(std::move(both))) / pairs(static_cast<double>(a.size()));
+}
+
+double log_loss(std::span<const float> probabilities, std::span<const std::int32_t> truth, std::span<const float> areas,
+                std::size_t classes) {
+    check_items(truth, areas, classes);
+    if (probabilities.size() != truth.size() * classes) {
+        throw UsageError("there are " + std::to_string(probabilities.size()) + " probabilities for " +
+                         std::to_string(truth.size()) + " items x " + std::to_string(classes) + " classes");
+    }
+    double sum = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        if (truth[i] < 0) continue;
+        const auto area = static_cast<double>(areas[i]);
+        const auto p = static_cast<double>(probabilities[i * classes + static_cast<std::size_t>(truth[i])]);
+        sum -= area * std::log(std::max(p, k_least_probability));
+        all += area;
+    }
+    return all > 0.0 ? sum / all : k_nan;
+}
+
+}  // namespace exemplar

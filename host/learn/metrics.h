@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace exemplar {
+
+/// How much of each true class was given each label, by area.
+struct ConfusionMatrix {
+    std::size_t classes = 0;
+    std::vector<double> area;         ///< classes x (classes + 1): row = truth; the last column = no or another label
+    std::vector<std::size_t> counts;  ///< items per true class, so that a class without area still counts as present
+
+    double at(std::size_t truth, std::size_t predicted) const { return area[truth * (classes + 1) + predicted]; }
+    /// Adds the counts of another matrix of as many classes.
+    void add(const ConfusionMatrix& other);
+};
+
+/// Items whose truth is -1 are left out; a prediction outside of 0 .. classes - 1 is wrong for every truth.
+/// `areas`: one per item (the weight a_i). Throws UsageError for sizes that differ or a truth out of range.
+ConfusionMatrix confusion_matrix(std::span<const std::int32_t> truth, std::span<const std::int32_t> predicted,
+                                 std::span<const float> areas, std::size_t classes);
+
+/// Share of the area that is labeled right, in [0, 1]: one minus the classification error (thesis Eq. 3.8). NaN without
+/// any area.
+double recognition_rate(const ConfusionMatrix& confusion);
+
+/// The share labeled right of each class that occurs, averaged over these classes, in [0, 1]: one minus the
+/// segment-weighted error (thesis Eq. 3.9) over the number of classes. A class without area counts as wrong. NaN
+/// without any items.
+double segment_weighted_accuracy(const ConfusionMatrix& confusion);
+
+/// One minus the Rand index of two segmentations of the same items (Chen et al. 2009): the share of the pairs of items
+/// that one puts together and the other does not, in [0, 1]. Segment ids are arbitrary. Zero for fewer than two items.
+/// Throws UsageError for sizes that differ.
+double rand_index_error(std::span<const std::int32_t> a, std::span<const std::int32_t> b);
+
+/// Mean of -log P(truth), weighted by area; items whose truth is -1 are left out. `probabilities` is items x classes.
+/// Probabilities below 1e-12 count as that. NaN without any area. Throws UsageError as confusion_matrix.
+double log_loss(std::span<const float> probabilities, std::span<const std::int32_t> truth, std::span<const float> areas,
+                std::size_t classes);
+
+}  // namespace exemplar

@@ -1,0 +1,240 @@
+// glTF 2.0 through tinygltf. The library trusts parts of its input (lengths of binary chunks, deep nesting, many
+// buffers that share one chunk), so a file is checked and cut down to what a mesh needs before the library sees it;
+// whatever the library returns is checked again before it is used.
+#include <fmt/format.h>
+#include <tiny_gltf.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "host/core/errors.h"
+#include "host/core/files.h"
+#include "host/mesh/io_formats.h"
+#include "host/mesh/io_gltf_scene.h"
+#include "host/mesh/io_text.h"
+
+namespace exemplar::mesh_io {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// A glTF file taken apart.
+struct GltfChunks {
+    std::string_view json, binary;
+};
+
+std::uint32_t little_endian_word(std::string_view content, std::size_t at) {
+    std::uint32_t word;
+    std::memcpy(&word, content.data() + at, sizeof(word));
+    return word;
+}
+
+/// The chunks of a .glb file, each within the file; chunks of other types are passed over.
+GltfChunks binary_chunks(std::string_view content, const std::string& name) {
+    constexpr std::size_t k_header_bytes = 12, k_chunk_header_bytes = 8;
+    constexpr std::uint32_t k_json = 0x4E4F534A, k_bin = 0x004E4942;
+    if (content.size() < k_header_bytes) fail(name, "byte 0: the file is too short for binary glTF");
+    if (const std::uint32_t version = little_endian_word(content, 4); version != 2)
+        fail(name, fmt::format("byte 4: binary glTF of version {} is not supported, only version 2", version));
+    const std::uint32_t length = little_endian_word(content, 8);
+    if (length > content.size())
+        fail(name,
+             fmt::format("byte 8: the file should have {} bytes, but has {}; it is cut off", length, content.size()));
+    GltfChunks chunks;
+    for (std::size_t at = k_header_bytes; at + k_chunk_header_bytes <= length;) {
+        const std::uint32_t bytes = little_endian_word(content, at), type = little_endian_word(content, at + 4);
+        at += k_chunk_header_bytes;
+        if (bytes > length - at)
+            fail(name,
+                 fmt::format("byte {}: a chunk of {} bytes reaches past the end", at - k_chunk_header_bytes, bytes));
+        if (type == k_json && chunks.json.empty()) chunks.json = content.substr(at, bytes);
+        if (type == k_bin && chunks.binary.empty()) chunks.binary = content.substr(at, bytes);
+        at += bytes;
+    }
+    if (chunks.json.empty()) fail(name, "byte 12: the file has no JSON chunk");
+    return chunks;
+}
+
+/// Deep nesting would exhaust the stack of recursive readers; real files stay below 20 levels.
+void check_depth(std::string_view json, const std::string& name) {
+    constexpr int k_deepest = 64;
+    int depth = 0;
+    bool in_string = false;
+    for (std::size_t i = 0; i < json.size(); ++i) {
+        const char c = json[i];
+        if (in_string && c == '\\')
+            ++i;
+        else if (c == '"')
+            in_string = !in_string;
+        else if (!in_string && (c == '{' || c == '['))
+            ++depth;
+        else if (!in_string && (c == '}' || c == ']'))
+            --depth;
+        if (depth > k_deepest) fail(name, fmt::format("byte {}: the JSON is nested too deep", i));
+    }
+}
+
+Json parse_json(std::string_view text, const std::string& name) {
+    check_depth(text, name);
+    try {
+        Json document = Json::parse(text);
+        if (!document.is_object()) fail(name, "the JSON of a glTF file must be an object");
+        return document;
+    } catch (const Json::parse_error& error) {
+        const std::string_view reason = error.what();
+        const std::size_t colon = reason.rfind("; last read");
+        fail(name,
+             fmt::format("byte {}: the JSON is malformed{}", error.byte,
+                         colon == std::string_view::npos ? "" : fmt::format(" ({})", quote(reason.substr(colon + 2)))));
+    }
+}
+
+void drop_extras(Json& value) {
+    if (value.is_object()) {
+        value.erase("extras");
+        value.erase("extensions");
+    }
+    if (value.is_structured())
+        for (Json& child : value) drop_extras(child);
+}
+
+/// Keeps only what geometry and part names need.
+Json geometry_only(const Json& document) {
+    Json kept = Json::object();
+    for (const char* key : {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers"})
+        if (const auto it = document.find(key); it != document.end()) kept[key] = *it;
+    if (const auto it = document.find("materials"); it != document.end() && it->is_array()) {
+        kept["materials"] = Json::array();
+        for (const Json& material : *it) {
+            const bool is_named = material.is_object() && material.contains("name") && material["name"].is_string();
+            kept["materials"].push_back(is_named ? Json{{"name", material["name"]}} : Json::object());
+        }
+    }
+    drop_extras(kept);
+    return kept;
+}
+
+/// Compressed or quantized geometry cannot be read; extensions of appearance do not matter.
+void check_extensions(const Json& document, const std::string& name) {
+    const auto required = document.find("extensionsRequired");
+    if (required == document.end() || !required->is_array()) return;
+    for (const Json& extension : *required) {
+        const std::string word = extension.is_string() ? extension.get<std::string>() : std::string();
+        for (const char* part : {"compression", "quantization", "instancing"})
+            if (word.find(part) != std::string::npos)
+                fail(name, fmt::format("the file needs the extension {}, which is not supported; export it without",
+                                       quote(word)));
+    }
+}
+
+/// Every buffer has bytes of its own: the first may be the binary chunk, each other has an address that no other has.
+void check_buffers(const Json& document, const GltfChunks& chunks, const std::string& name) {
+    const auto buffers = document.find("buffers");
+    if (buffers == document.end() || !buffers->is_array()) return;
+    std::set<std::string> seen;
+    for (std::size_t i = 0; i < buffers->size(); ++i) {
+        const Json& buffer = (*buffers)[i];
+        const bool has_uri = buffer.is_object() && buffer.contains("uri") && buffer["uri"].is_string();
+        if (!has_uri) {
+            if (i > 0 || chunks.binary.empty())
+                fail(name, fmt::format("buffer {} has no bytes: neither uri nor binary chunk", i));
+            continue;
+        }
+        if (!seen.insert(buffer["uri"].get<std::string>()).second)
+            fail(name, fmt::format("buffer {} has the same uri as another; merge the two", i));
+    }
+}
+
+/// Text as the library takes it: .glb with cut-down JSON if there is a binary chunk.
+std::string rebuilt(const Json& document, const GltfChunks& chunks) {
+    std::string json = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (chunks.binary.empty()) return json;
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    std::string binary(chunks.binary);
+    binary.resize(std::max<std::size_t>((binary.size() + 3) / 4 * 4, 4), '\0');
+    std::string bytes = "glTF";
+    const auto append_word = [&](std::size_t value) {
+        const auto word = static_cast<std::uint32_t>(value);
+        bytes.append(reinterpret_cast<const char*>(&word), sizeof(word));
+    };
+    append_word(2);
+    append_word(12 + 8 + json.size() + 8 + binary.size());
+    append_word(json.size());
+    bytes += "JSON" + json;
+    append_word(binary.size());
+    bytes.append("BIN\0", 4);
+    return bytes + binary;
+}
+
+/// Buffers in files of their own are read only from the folder of the glTF file, not from the working folder.
+tinygltf::FsCallbacks folder_callbacks(std::string* folder) {
+    tinygltf::FsCallbacks callbacks{};
+    callbacks.FileExists = [](const std::string& path, void* data) {
+        std::error_code ignored;
+        return path.starts_with(*static_cast<std::string*>(data) + "/") && fs::is_regular_file(path, ignored);
+    };
+    callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
+    callbacks.ReadWholeFile = [](std::vector<unsigned char>* out, std::string* error, const std::string& path, void*) {
+        try {
+            const std::string content = read_file(path);
+            out->assign(content.begin(), content.end());
+            return true;
+        } catch (const DataError& reason) {
+            *error = reason.what();
+            return false;
+        }
+    };
+    callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
+        return false;
+    };
+    callbacks.user_data = folder;
+    return callbacks;
+}
+
+/// The first line of the library's complaints.
+std::string first_line(const std::string& text) {
+    const std::string_view line = trimmed(std::string_view(text).substr(0, text.find('\n')));
+    return line.empty() ? "tinygltf cannot read it" : std::string(line.substr(0, 200));
+}
+
+tinygltf::Model load_model(const std::string& bytes, const std::string& name, const fs::path& folder) {
+    tinygltf::TinyGLTF loader;
+    tinygltf::Model model;
+    std::string error, warning, base = folder.empty() ? "." : folder.string();
+    loader.SetFsCallbacks(folder_callbacks(&base));
+    const auto size = static_cast<unsigned>(bytes.size());
+    bool loaded = false;
+    try {
+        if (bytes.starts_with("glTF"))
+            loaded = loader.LoadBinaryFromMemory(&model, &error, &warning,
+                                                 reinterpret_cast<const unsigned char*>(bytes.data()), size, base);
+        else
+            loaded = loader.LoadASCIIFromString(&model, &error, &warning, bytes.data(), size, base);
+    } catch (const std::exception& exception) {
+        error = exception.what();
+    }
+    if (!loaded) fail(name, first_line(error));
+    return model;
+}
+
+}  // namespace
+
+MeshFile read_gltf(std::string_view content, const std::string& name, const fs::path& folder) {
+    if (content.size() > std::numeric_limits<std::uint32_t>::max() / 2)
+        fail(name, "the file is larger than 2 GiB; split it");
+    GltfChunks chunks;
+    if (content.starts_with("glTF"))
+        chunks = binary_chunks(content, name);
+    else
+        chunks.json = content;
+    const Json document = parse_json(chunks.json, name);
+    check_extensions(document, name);
+    check_buffers(document, chunks, name);
+    return mesh_of_gltf(load_model(rebuilt(geometry_only(document), chunks), name, folder), name);
+}
+
+}  // namespace exemplar::mesh_io

@@ -1,0 +1,67 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/context_bins.glsl"
+#include "shaders/shared/context.h"
+
+// Contextual histograms over the distance along an axis (thesis Eq. A.1): one face (x) and one axis (y) per invocation.
+// Along an axis samples can be sorted, so that the samples between two distances are two runs of the sorted order, found by
+// binary search, and their masses are differences of prefix sums.
+layout(local_size_x = 64) in;
+layout(push_constant) uniform Push { AxisContextParameters parameters; };
+layout(set = 0, binding = 0, std430) readonly buffer Positions { float positions[]; };  // axes x faces
+layout(set = 0, binding = 1, std430) readonly buffer Sorted { float sorted[]; };        // axes x samples, rising
+layout(set = 0, binding = 2, std430) readonly buffer Prefixes { vec4 prefixes[]; };     // axes x class blocks x (samples + 1)
+layout(set = 0, binding = 3, std430) writeonly buffer Histograms { float histograms[]; };
+
+// The searches repeat the reference's own float expression |p - s|, which is monotonic on either side of p: a sample on a
+// bin's edge falls into the same bin.
+
+// The number of samples that lie before p by at least `edge`.
+uint count_before(uint first, float p, float edge) {
+    uint low = 0, high = parameters.samples;
+    while (low < high) {
+        const uint middle = (low + high) / 2;
+        if (p - sorted[first + middle] >= edge) low = middle + 1;
+        else high = middle;
+    }
+    return low;
+}
+
+// The first sample that lies behind p by at least `edge`.
+uint first_behind(uint first, float p, float edge) {
+    uint low = 0, high = parameters.samples;
+    while (low < high) {
+        const uint middle = (low + high) / 2;
+        if (sorted[first + middle] - p >= edge) high = middle;
+        else low = middle + 1;
+    }
+    return low;
+}
+
+void main() {
+    const uint face = gl_GlobalInvocationID.x;
+    const uint axis = gl_GlobalInvocationID.y;
+    if (face >= parameters.faces) return;
+    const float p = positions[axis * parameters.faces + face];
+
+    // Samples [before[b], behind[b]) are nearer than edge b; bounds 0 and k_bins are the empty and the whole range.
+    uint before[k_bins + 1], behind[k_bins + 1];
+    before[k_bins] = 0;
+    behind[k_bins] = parameters.samples;
+    for (uint b = k_bins - 1; b > 0; --b) {
+        before[b] = count_before(axis * parameters.samples, p, parameters.edges[axis][b - 1]);
+        behind[b] = max(first_behind(axis * parameters.samples, p, parameters.edges[axis][b - 1]), before[b]);
+    }
+    before[0] = behind[0] = before[1];
+
+    const uint blocks = (parameters.classes + 3) / 4;
+    for (uint block = 0; block < blocks; ++block) {
+        const uint first = (axis * blocks + block) * (parameters.samples + 1);
+        for (uint b = 0; b < k_bins; ++b) {
+            const vec4 mass = (prefixes[first + behind[b + 1]] - prefixes[first + behind[b]]) +
+                              (prefixes[first + before[b]] - prefixes[first + before[b + 1]]);
+            for (uint c = 0; c < min(4u, parameters.classes - 4 * block); ++c)
+                histograms[histogram_column(axis + 1, b, parameters.classes, 4 * block + c) * parameters.faces + face] = mass[c];
+        }
+    }
+}

@@ -1,0 +1,38 @@
+#ifndef EXEMPLAR_SHARED_STUMPS_H
+#define EXEMPLAR_SHARED_STUMPS_H
+#include "shaders/shared/types.h"
+
+SHARED_BEGIN
+
+// One decision stump, without its classes.
+struct GroupedStump {
+    uint column;  // of the uploaded features
+    float threshold;
+    float above;
+    float below;
+};
+
+// Stumps [first, end) share one set of classes: bit c of low, or c - 32 of high.
+struct StumpGroup {
+    uint first;
+    uint end;
+    uint classes_low;
+    uint classes_high;
+};
+
+struct StumpParameters {
+    uint rows;
+    uint stride;  // vec4s from one feature column to the next
+    uint groups;
+    uint link;  // the values of exemplar::Link
+    float scale;
+};
+
+#ifdef __cplusplus
+EXEMPLAR_LAYOUT(GroupedStump, column, threshold, above, below)
+EXEMPLAR_LAYOUT(StumpGroup, first, end, classes_low, classes_high)
+EXEMPLAR_LAYOUT(StumpParameters, rows, stride, groups, link, scale)
+#endif
+
+SHARED_END
+#endif

@@ -39,14 +39,16 @@ void find_duplicate_faces(const TriangleMesh& mesh, MeshReport& report) {
     struct Corners {
         Face sorted;
         std::uint32_t face;
-        auto operator<=>(const Corners&) const = default;
+        bool operator<(const Corners& other) const {
+            return sorted != other.sorted ? sorted < other.sorted : face < other.face;
+        }
     };
     std::vector<Corners> all(mesh.face_count());
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
         all[f] = {mesh.faces[f], f};
         std::ranges::sort(all[f].sorted);
     }
-    std::ranges::sort(all);
+    std::sort(all.begin(), all.end());
     for (std::size_t i = 1; i < all.size(); ++i)
         if (all[i].sorted == all[i - 1].sorted) report.duplicate_faces.push_back(all[i].face);
     std::ranges::sort(report.duplicate_faces);

@@ -1,0 +1,79 @@
+#include "host/labeling/evaluation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "host/core/errors.h"
+#include "host/core/random.h"
+#include "host/labeling/crf.h"
+#include "host/learn/metrics.h"
+#include "host/mesh/io.h"
+
+namespace exemplar {
+namespace {
+
+Split leave_one_out(std::size_t count, std::size_t tested) {
+    Split split;
+    for (std::size_t i = 0; i < count; ++i) (i == tested ? split.test : split.train).push_back(i);
+    return split;
+}
+
+Split random_split(std::size_t count, std::size_t train_count, Random random) {
+    std::vector<std::size_t> order(count);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    random.shuffle(order);
+    const auto middle = order.begin() + static_cast<std::ptrdiff_t>(train_count);
+    Split split{{order.begin(), middle}, {middle, order.end()}};
+    std::sort(split.train.begin(), split.train.end());
+    std::sort(split.test.begin(), split.test.end());
+    return split;
+}
+
+}  // namespace
+
+std::vector<Split> make_splits(std::size_t count, std::size_t train_count, std::size_t splits, std::uint64_t seed) {
+    if (train_count == 0 || train_count >= count)
+        throw UsageError(
+            fmt::format("{} meshes cannot be split into {} for training and some to test", count, train_count));
+    std::vector<Split> result;
+    for (std::size_t k = 0; k < splits; ++k)
+        result.push_back(train_count + 1 == count ? leave_one_out(count, k % count)
+                                                  : random_split(count, train_count, Random(seed).fork(k)));
+    return result;
+}
+
+MeshScore score_labeling(const MeshFeatures& features, std::span<const std::int32_t> truth,
+                         std::span<const std::int32_t> predicted, std::size_t classes,
+                         std::span<const std::vector<std::int32_t>> human_segmentations) {
+    MeshScore score;
+    const ConfusionMatrix confusion = confusion_matrix(truth, predicted, features.face_area, classes);
+    score.recognition_rate = recognition_rate(confusion);
+    score.segment_weighted_accuracy = segment_weighted_accuracy(confusion);
+    const double total = std::max(std::accumulate(confusion.area.begin(), confusion.area.end(), 0.0), 1e-30);
+    for (std::size_t t = 0; t < classes; ++t)
+        for (std::size_t p = 0; p < classes; ++p) score.confusion.push_back(confusion.at(t, p) / total);
+
+    score.rand_error = human_segmentations.empty() ? std::numeric_limits<double>::quiet_NaN() : 0;
+    const LabelComponents pieces = label_components(features, predicted);
+    const std::vector<std::int32_t> segments(pieces.of_face.begin(), pieces.of_face.end());
+    for (const std::vector<std::int32_t>& human : human_segmentations)
+        score.rand_error += rand_index_error(segments, human) / static_cast<double>(human_segmentations.size());
+    return score;
+}
+
+std::vector<std::vector<std::int32_t>> read_human_segmentations(const std::filesystem::path& folder,
+                                                                const std::string& name, std::size_t faces) {
+    std::vector<std::filesystem::path> paths;
+    if (folder.empty() || !std::filesystem::is_directory(folder / name)) return {};
+    for (const auto& entry : std::filesystem::directory_iterator(folder / name))
+        if (entry.path().extension() == ".seg") paths.push_back(entry.path());
+    std::sort(paths.begin(), paths.end());
+    std::vector<std::vector<std::int32_t>> segmentations;
+    for (const auto& path : paths) segmentations.push_back(read_seg(path, faces));
+    return segmentations;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,150 @@
+#include <map>
+#include <set>
+
+#include "host/core/parallel.h"
+#include "host/labeling/prepared_mesh.h"
+#include "tests/labeling/features_support.h"
+
+namespace exemplar {
+namespace {
+
+using namespace feature_tests;
+
+const TriangleMesh& original() {
+    static const TriangleMesh mesh = lopsided_torus(40, 24);
+    return mesh;
+}
+FeatureOptions few_samples() {
+    FeatureOptions options;
+    options.samples = 300;
+    return options;
+}
+const MeshFeatures& original_features() {
+    static const MeshFeatures features = compute_features(original(), few_samples());
+    return features;
+}
+
+TEST(Features, HasTheCountsAndDistinctNamesOfTheText) {
+    const MeshFeatures& features = original_features();
+    expect_finite(features, original().face_count());
+    EXPECT_EQ(features.edges.size(), original().face_count() * 3 / 2);
+    EXPECT_EQ(std::set(features.unary.names.begin(), features.unary.names.end()).size(), 612U);
+    EXPECT_EQ(std::set(features.pairwise.names.begin(), features.pairwise.names.end()).size(), 186U);
+    std::map<std::string, int> count;
+    for (const std::string& name : features.unary.names) ++count[name.substr(0, name.find('.'))];
+    const std::map<std::string, int> expected{{"curvature", 36}, {"pca", 75},      {"diameter", 60},
+                                              {"medial", 60},    {"geodesic", 11}, {"shape_context", 270},
+                                              {"spin", 100}};
+    EXPECT_EQ(count, expected);
+}
+
+TEST(Features, EveryColumnTellsFacesApart) {
+    const MeshFeatures& features = original_features();
+    std::size_t constant = 0;
+    for (std::size_t k = 0; k < features.unary.cols(); ++k) {
+        const auto [low, high] = std::ranges::minmax(features.unary.column(k));
+        if (high == low) ++constant;
+    }
+    EXPECT_LT(constant, 60U);  // far corners of spin images and steep angles far away stay empty
+}
+
+TEST(Features, OrientationAddsCenteredCoordinates) {
+    FeatureOptions options = few_samples();
+    options.orientation = true;
+    const MeshFeatures features = compute_features(shapes::translated(original(), Vec3(5, -3, 2)), options);
+    ASSERT_EQ(features.unary.cols(), 615U);
+    const std::span<const float> y = column(features.unary, "orientation.y");
+    double mean = 0.0, area = 0.0;
+    for (std::size_t f = 0; f < y.size(); ++f) {
+        mean += static_cast<double>(y[f]) * static_cast<double>(features.face_area[f]);
+        area += static_cast<double>(features.face_area[f]);
+    }
+    EXPECT_NEAR(mean / area, 0.0, 1e-3);
+}
+
+TEST(Features, DoNotDependOnRotationTranslationAndScale) {
+    TriangleMesh moved = shapes::rotated(original(), shapes::random_rotation(3));
+    moved = shapes::translated(shapes::scaled(std::move(moved), 37.0F), Vec3(10, -20, 5));
+    const MeshFeatures features = compute_features(moved, few_samples());
+    EXPECT_LT(mismatched_share(original_features().unary, features.unary, 0.01F), 0.002);
+    EXPECT_LT(mismatched_share(original_features().pairwise, features.pairwise, 0.01F), 0.002);
+    EXPECT_EQ(original_features().context.sample_face, features.context.sample_face);
+}
+
+TEST(Features, DoNotDependOnFaceOrder) {
+    std::vector<std::uint32_t> order;
+    const TriangleMesh shuffled = shapes::with_shuffled_faces(original(), 9, &order);
+    const MeshFeatures features = compute_features(shuffled, few_samples());
+    EXPECT_LT(mismatched_share(original_features().unary, features.unary, 0.01F, order), 0.002);
+}
+
+TEST(Features, DoNotDependOnThreadCount) {
+    const ThreadLimit limit(1);
+    const MeshFeatures features = compute_features(original(), few_samples());
+    EXPECT_EQ(original_features().unary.values, features.unary.values);
+    EXPECT_EQ(original_features().pairwise.values, features.pairwise.values);
+    EXPECT_EQ(original_features().edge_context.edge, features.edge_context.edge);
+    EXPECT_EQ(original_features().context.geodesic_bin, features.context.geodesic_bin);
+}
+
+TEST(Features, AMeshTurnedInsideOutIsTurnedBack) {
+    TriangleMesh inverted = original();
+    for (Face& face : inverted.faces) std::swap(face[1], face[2]);
+    const MeshFeatures features = compute_features(inverted, few_samples());
+    for (const char* name : {"curvature.k1@0.1", "diameter.median@90", "medial.mean@60", "shape_context.5x4.d2a1"}) {
+        const std::span<const float> a = column(original_features().unary, name), b = column(features.unary, name);
+        std::size_t different = 0;
+        const auto [low, high] = std::ranges::minmax(a);
+        for (std::size_t f = 0; f < a.size(); ++f) different += std::abs(a[f] - b[f]) > 0.05F * (high - low);
+        EXPECT_LT(different, a.size() / 50) << name;
+    }
+}
+
+// A few hundred samples must tell what all faces tell: root mean square error against the spread of the true values.
+TEST(Features, SamplesStandForAllFaces) {
+    FeatureOptions all;
+    all.samples = original().face_count();
+    const MeshFeatures exact = compute_features(original(), all);
+    const FeatureMatrix& sampled = original_features().unary;
+    std::map<std::string, std::vector<double>> errors;
+    for (std::size_t k = 0; k < sampled.cols(); ++k) {
+        double error = 0.0, sum = 0.0, squares = 0.0;
+        const double n = static_cast<double>(sampled.rows);
+        for (std::size_t f = 0; f < sampled.rows; ++f) {
+            const double truth = static_cast<double>(exact.unary.column(k)[f]);
+            error += std::pow(static_cast<double>(sampled.column(k)[f]) - truth, 2);
+            sum += truth;
+            squares += truth * truth;
+        }
+        const double spread = std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)));
+        if (spread > 1e-4) {
+            errors[sampled.names[k].substr(0, sampled.names[k].find('.'))].push_back(std::sqrt(error / n) / spread);
+        }
+    }
+    for (auto& [family, values] : errors) {
+        std::ranges::sort(values);
+        const double bound = family == "shape_context" ? 0.15 : family == "spin" ? 0.2 : family == "pca" ? 0.1 : 0.05;
+        EXPECT_LT(values[values.size() / 2], bound) << family;
+    }
+}
+
+TEST(PreparedMesh, UnitIsTheThirtiethPercentileOfDistances) {
+    const PreparedMesh prepared = prepare_mesh(shapes::icosphere(4, 7.0F), 400);
+    // On a sphere of radius r a cap of geodesic radius d holds (1 - cos(d / r)) / 2 of the area.
+    double below = 0.0;
+    for (std::size_t s = 0; s < prepared.sample_count(); ++s) {
+        for (std::size_t f = 0; f < prepared.face_count(); ++f) {
+            if (prepared.distance[s * prepared.face_count() + f] <= 1.0F) {
+                below +=
+                    static_cast<double>(prepared.samples.area_share[s]) * static_cast<double>(prepared.area_share[f]);
+            }
+        }
+    }
+    EXPECT_NEAR(below, 0.30, 0.005);
+    const double ratio = static_cast<double>(prepared.median_distance);
+    EXPECT_NEAR(ratio, std::acos(0.0) / std::acos(0.4), 0.05);
+    EXPECT_NEAR(static_cast<double>(prepared.far_distance), std::acos(-0.9) / std::acos(0.4), 0.1);
+}
+
+}  // namespace
+}  // namespace exemplar

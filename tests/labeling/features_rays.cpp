@@ -1,0 +1,115 @@
+#include <numbers>
+
+#include "host/labeling/feature_families.h"
+#include "tests/labeling/features_support.h"
+
+namespace exemplar {
+namespace {
+
+using namespace feature_tests;
+
+TEST(RayStatistics, KeepWhatIsNearTheMedian) {
+    const std::vector<float> length{1.0F, 1.1F, 0.9F, k_missed, 1.0F, 9.0F}, weight{1, 1, 1, 1, 1, 1};
+    const auto statistics = ray_statistics(length, weight);
+    ASSERT_TRUE(statistics.has_value());
+    EXPECT_FLOAT_EQ(statistics->median, 1.0F);
+    EXPECT_NEAR(statistics->mean, 1.0F, 1e-6F);  // without the 9
+    EXPECT_NEAR(statistics->mean_square, (1.0F + 1.21F + 0.81F + 1.0F) / 4.0F, 1e-5F);
+    EXPECT_FALSE(ray_statistics(std::vector<float>{k_missed, k_missed}, weight).has_value());
+    EXPECT_FALSE(ray_statistics(std::span<const float>{}, std::span<const float>{}).has_value());
+}
+
+TEST(RayStatistics, WeighByTheGivenWeights) {
+    const std::vector<float> length{2.0F, 4.0F, 3.0F}, weight{3.0F, 1.0F, 0.0F};
+    const auto statistics = ray_statistics(length, weight);
+    EXPECT_FLOAT_EQ(statistics->median, 3.0F);
+    EXPECT_NEAR(statistics->mean, 3.0F, 0.51F);
+}
+
+TEST(InwardRays, PatternFillsItsCones) {
+    const InwardRayPattern& pattern = inward_ray_pattern();
+    EXPECT_EQ(pattern.cone_end.back(), InwardRayPattern::k_rays);
+    for (std::size_t cone = 0; cone < k_cones; ++cone) {
+        const float half = static_cast<float>(k_cone_angles[cone]) * std::numbers::pi_v<float> / 360.0F;
+        EXPECT_NEAR(pattern.angle[pattern.cone_end[cone] - 1], half, 1e-5F);
+        if (pattern.cone_end[cone] < InwardRayPattern::k_rays)
+            EXPECT_GT(pattern.angle[pattern.cone_end[cone]], half + 0.01F);
+    }
+    EXPECT_EQ(pattern.angle[0], 0.0F);
+}
+
+TEST(InwardRays, OfASphereAreItsChords) {
+    const PreparedMesh prepared = prepare_mesh(shapes::icosphere(4, 1.0F), 200);
+    const float radius = prepared.mesh.vertices[0].norm();
+    const InwardRays rays = cast_inward_rays(prepared, RayScene(prepared.mesh));
+    const InwardRayPattern& pattern = inward_ray_pattern();
+    for (std::size_t f = 0; f < prepared.face_count(); f += 37) {
+        for (std::size_t k = 0; k < InwardRayPattern::k_rays; ++k) {
+            EXPECT_NEAR(rays.of_face(f)[k], 2.0F * radius * std::cos(pattern.angle[k]), 0.03F * radius);
+        }
+    }
+}
+
+TEST(InwardRays, LeaveAnOpenMeshWithoutLength) {
+    const PreparedMesh prepared = prepare_mesh(shapes::grid(8, 8, 1.0F), 200);
+    for (const float length : cast_inward_rays(prepared, RayScene(prepared.mesh)).length) EXPECT_EQ(length, k_missed);
+}
+
+TEST(DiameterFeatures, CompareTheThicknessOfParts) {
+    // Two slabs, one four times as thick as the other: on their broad sides the narrow cone sees the thickness.
+    const TriangleMesh thick = shapes::box(2, 2, 0.4F, 8);
+    const TriangleMesh both = shapes::joined(thick, shapes::translated(shapes::box(2, 2, 0.1F, 8), Vec3(3, 0, 0)));
+    const PreparedMesh prepared = prepare_mesh(both, 500);
+    const InwardRays rays = cast_inward_rays(prepared, RayScene(prepared.mesh));
+    const float unit = std::sqrt(prepared.total_area / (2.0F * (4.0F + 4.0F) + 8.0F * 0.5F));
+    for (std::size_t f = 0; f < both.face_count(); ++f) {
+        if (std::abs(prepared.normal[f].z()) < 0.9F) continue;
+        EXPECT_NEAR(rays.of_face(f)[0], unit * (f < thick.face_count() ? 0.4F : 0.1F), 0.01F * unit);
+    }
+    const MeshFeatures features = compute_features(both);
+    for (const char* name : {"diameter.mean@30", "diameter.median@30", "medial.mean@30"}) {
+        const std::span<const float> values = column(features.unary, name);
+        const auto mean_of_broad_sides = [&](std::size_t begin, std::size_t end) {
+            double sum = 0.0, count = 0.0;
+            for (std::size_t f = begin; f < end; ++f) {
+                if (std::abs(prepared.normal[f].z()) < 0.9F) continue;
+                sum += static_cast<double>(values[f]);
+                count += 1.0;
+            }
+            return sum / count;
+        };
+        const double ratio =
+            mean_of_broad_sides(0, thick.face_count()) / mean_of_broad_sides(thick.face_count(), both.face_count());
+        EXPECT_GT(ratio, 2.0) << name;
+        EXPECT_LT(ratio, 5.0) << name;
+    }
+}
+
+TEST(DiameterFeatures, LieBetweenZeroAndOneAndLogarithmsFollow) {
+    const MeshFeatures features = compute_features(lopsided_torus(24, 16));
+    for (const char* family : {"diameter", "medial"}) {
+        for (const char* cone : {"@30", "@60", "@90", "@120"}) {
+            for (const char* statistic : {".mean", ".median", ".mean_square"}) {
+                const std::string name = std::string(family) + statistic + cone;
+                const std::span<const float> raw = column(features.unary, name);
+                const std::span<const float> log4 = column(features.unary, name + "/log4");
+                EXPECT_FLOAT_EQ(*std::ranges::max_element(raw), 1.0F);
+                for (std::size_t f = 0; f < raw.size(); ++f) {
+                    EXPECT_GE(raw[f], 0.0F);
+                    EXPECT_LE(raw[f], 1.0F);
+                    EXPECT_NEAR(log4[f], std::log(4.0F * raw[f] + 1.0F) / std::log(5.0F), 1e-5F);
+                }
+            }
+        }
+    }
+}
+
+TEST(MedialFeatures, OfASphereAreConstant) {
+    const MeshFeatures features = compute_features(shapes::icosphere(4, 1.0F));
+    for (const char* name : {"medial.mean@30", "medial.median@120", "medial.mean_square@60", "diameter.mean@90"}) {
+        for (const float value : column(features.unary, name)) EXPECT_GT(value, 0.93F) << name;
+    }
+}
+
+}  // namespace
+}  // namespace exemplar

@@ -18,6 +18,10 @@ using shared::vec4;
 
 constexpr std::size_t k_columns_per_class = k_context_measures * k_context_bins;
 
+// On a CPU every load of a kernel is expensive, so that a sample, once loaded, serves many faces; a GPU wants many
+// invocations.
+constexpr std::uint32_t k_faces_on_cpu = 2;
+
 vec4 to_vec4(const std::array<float, k_context_bins - 1>& edges) {
     return {edges[0], edges[1], edges[2], edges[3]};
 }
@@ -39,13 +43,32 @@ struct Masses {
     }
 };
 
-// Class blocks x samples; the lanes beyond the last class are zero.
+std::size_t quads(std::size_t samples) {
+    return (samples + 3) / 4;
+}
+
+// Class blocks x samples, padded to whole quads; the lanes beyond the last class and the samples beyond the last are
+// zero.
 std::vector<vec4> mass_blocks(const Masses& masses, std::size_t samples) {
-    std::vector<vec4> blocks((masses.classes + 3) / 4 * samples, vec4{});
+    const std::size_t row = 4 * quads(samples);
+    std::vector<vec4> blocks((masses.classes + 3) / 4 * row, vec4{});
     for (std::size_t l = 0; l < masses.classes; ++l)
         for (std::size_t j = 0; j < samples; ++j)
-            set_lane(blocks[l / 4 * samples + j], l % 4, static_cast<float>(masses(j, l)));
+            set_lane(blocks[l / 4 * row + j], l % 4, static_cast<float>(masses(j, l)));
     return blocks;
+}
+
+// One quad of samples: the ranges of each of the tile's faces seen from four samples, the first in the lowest byte.
+// What stands in the place of missing samples does not matter: they have no mass.
+void pack_ranges(const ContextGeometry& geometry, std::size_t quad, std::size_t first_face,
+                 std::span<std::uint32_t> words) {
+    const std::size_t samples = geometry.sample_face.size();
+    std::ranges::fill(words, 0u);
+    for (std::size_t j = 4 * quad; j < std::min(samples, 4 * quad + 4); ++j) {
+        const std::size_t shift = 8 * (j % 4);
+        const std::uint8_t* row = geometry.geodesic_bin.data() + j * geometry.faces + first_face;
+        for (std::size_t i = 0; i < words.size(); ++i) words[i] |= static_cast<std::uint32_t>(row[i]) << shift;
+    }
 }
 
 // Axes x class blocks x (samples + 1): sums of the masses in each axis' order, taken in double precision.
@@ -65,9 +88,10 @@ std::vector<vec4> mass_prefixes(const Masses& masses, std::span<const std::vecto
     return prefixes;
 }
 
-// Faces per tile so that neither the distances nor the histograms of the most classes pass the limit.
+// Faces per tile so that neither the ranges nor the histograms of the most classes pass the limit.
 std::size_t faces_per_tile(std::size_t limit, std::size_t samples) {
-    return std::max<std::size_t>(limit / (std::max(samples, k_columns_per_class * k_max_classes) * sizeof(float)), 1);
+    return std::max<std::size_t>(
+        limit / (std::max(quads(samples), k_columns_per_class * k_max_classes) * sizeof(float)), 1);
 }
 
 }  // namespace
@@ -76,7 +100,7 @@ DeviceContextGeometry::DeviceContextGeometry(Device& device, const ContextGeomet
     : faces_(geometry.faces),
       sample_face_(geometry.sample_face),
       sample_area_(geometry.sample_area),
-      edges_(geometry.edges) {
+      axis_edges_(geometry.axis_edges) {
     check_context_geometry(geometry);
     sort_samples(device, geometry);
     const std::size_t limit =
@@ -103,11 +127,13 @@ void DeviceContextGeometry::sort_samples(Device& device, const ContextGeometry& 
 void DeviceContextGeometry::add_tile(Device& device, const ContextGeometry& geometry, std::size_t first,
                                      std::size_t faces) {
     const std::size_t row_bytes = faces * sizeof(float);
-    Tile tile{first, faces, Buffer(device, samples() * row_bytes), Buffer(device, k_context_axes * row_bytes)};
+    Tile tile{first, faces, Buffer(device, quads(samples()) * row_bytes), Buffer(device, k_context_axes * row_bytes)};
     Stream stream(device);
-    for (std::size_t j = 0; j < samples(); ++j)
-        stream.upload<float>(tile.geodesic, std::span(geometry.geodesic).subspan(j * faces_ + first, faces),
-                             j * row_bytes);
+    std::vector<std::uint32_t> words(faces);
+    for (std::size_t quad = 0; quad < quads(samples()); ++quad) {
+        pack_ranges(geometry, quad, first, words);
+        stream.upload<std::uint32_t>(tile.ranges, words, quad * row_bytes);
+    }
     for (std::size_t axis = 0; axis < k_context_axes; ++axis)
         stream.upload<float>(tile.positions, std::span(geometry.axis_position).subspan(axis * faces_ + first, faces),
                              axis * row_bytes);
@@ -117,10 +143,12 @@ void DeviceContextGeometry::add_tile(Device& device, const ContextGeometry& geom
 
 GpuContextHistograms::GpuContextHistograms(Device& device, Profiler* profiler)
     : device_(device),
+      faces_per_thread_(device.info().type == DeviceType::cpu ? k_faces_on_cpu : 1),
       stream_(device, profiler),
       geodesic_kernel_(device, shaders::labeling_context_geodesic_comp,
                        {.push_constants = layout_of<GeodesicContextParameters>(),
-                        .elements = {layout_of<float>(), layout_of<vec4>(), layout_of<float>()}}),
+                        .elements = {layout_of<std::uint32_t>(), layout_of<vec4>(), layout_of<float>()},
+                        .constants = {{0, faces_per_thread_}}}),
       axes_kernel_(device, shaders::labeling_context_axes_comp,
                    {.push_constants = layout_of<AxisContextParameters>(),
                     .elements = {layout_of<float>(), layout_of<float>(), layout_of<vec4>(), layout_of<float>()}}) {}
@@ -151,10 +179,12 @@ void GpuContextHistograms::accumulate_tile(const DeviceContextGeometry& geometry
     const auto faces = static_cast<std::uint32_t>(tile.faces);
     const auto samples = static_cast<std::uint32_t>(geometry.samples());
     const auto class_count = static_cast<std::uint32_t>(classes);
-    stream_.dispatch(geodesic_kernel_, Threads(tile.faces, (classes + 3) / 4), {tile.geodesic, masses, histograms},
-                     GeodesicContextParameters{to_vec4(geometry.edges_[0]), faces, samples, class_count, 0});
+    const std::uint32_t threads = (faces + faces_per_thread_ - 1) / faces_per_thread_;
+    stream_.dispatch(
+        geodesic_kernel_, Threads(threads, (classes + 3) / 4), {tile.ranges, masses, histograms},
+        GeodesicContextParameters{faces, static_cast<std::uint32_t>(quads(samples)), class_count, threads});
     AxisContextParameters axes{.edges = {}, .faces = faces, .samples = samples, .classes = class_count, .padding = 0};
-    for (std::size_t axis = 0; axis < k_context_axes; ++axis) axes.edges[axis] = to_vec4(geometry.edges_[axis + 1]);
+    for (std::size_t axis = 0; axis < k_context_axes; ++axis) axes.edges[axis] = to_vec4(geometry.axis_edges_[axis]);
     stream_.dispatch(axes_kernel_, Threads(tile.faces, k_context_axes),
                      {tile.positions, geometry.sorted_, prefixes, histograms}, axes);
     stream_.finish();

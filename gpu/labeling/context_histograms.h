@@ -34,7 +34,7 @@ class DeviceContextGeometry {
     struct Tile {
         std::size_t first;  ///< face
         std::size_t faces;
-        Buffer geodesic;   ///< samples x faces
+        Buffer ranges;     ///< sample quads x faces, a byte per sample
         Buffer positions;  ///< axes x faces
     };
     void sort_samples(Device& device, const ContextGeometry& geometry);
@@ -42,7 +42,7 @@ class DeviceContextGeometry {
     std::size_t faces_;
     std::vector<std::uint32_t> sample_face_;
     std::vector<float> sample_area_;
-    std::array<std::array<float, k_context_bins - 1>, k_context_measures> edges_;
+    std::array<std::array<float, k_context_bins - 1>, k_context_axes> axis_edges_;
     std::array<std::vector<std::uint32_t>, k_context_axes> order_;  // samples by rising position along each axis
     Buffer sorted_;                                                 // their positions, axes x samples
     std::vector<Tile> tiles_;
@@ -64,6 +64,7 @@ class GpuContextHistograms final : public ContextHistograms {
     void accumulate_tile(const DeviceContextGeometry& geometry, const DeviceContextGeometry::Tile& tile,
                          std::size_t classes, const Buffer& masses, const Buffer& prefixes, std::span<float> out);
     Device& device_;
+    std::uint32_t faces_per_thread_;
     Stream stream_;
     Kernel geodesic_kernel_, axes_kernel_;
     Buffer histograms_;        // kept between calls

@@ -17,6 +17,13 @@ using shared::GroupedStump;
 using shared::StumpGroup;
 using shared::StumpParameters;
 
+// The kernel fetches each as one four-component vector.
+static_assert(sizeof(GroupedStump) == 16 && sizeof(StumpGroup) == 16);
+
+// On a CPU every load of a kernel is expensive, so that a stump, once loaded, serves many items; a GPU wants many
+// invocations.
+constexpr std::uint32_t k_quads_on_cpu = 2;
+
 // A classifier as the kernel wants it.
 struct GroupedStumps {
     std::vector<std::uint32_t> columns;  // features that are used, by rising number
@@ -78,16 +85,17 @@ void reserve(Device& device, Buffer& buffer, std::size_t bytes) {
     if (!buffer || buffer.bytes() < bytes) buffer = Buffer(device, bytes);
 }
 
-// Rows per tile, a multiple of four, so that neither features nor probabilities pass the limit.
-std::size_t rows_per_tile(std::size_t limit, std::size_t columns, std::size_t classes) {
+// Rows per tile, a multiple of `unit`, so that neither features nor probabilities pass the limit.
+std::size_t rows_per_tile(std::size_t limit, std::size_t columns, std::size_t classes, std::size_t unit) {
     const std::size_t row_bytes = std::max({columns, classes, std::size_t{1}}) * sizeof(float);
-    return std::max<std::size_t>(limit / row_bytes / 4 * 4, 4);
+    return std::max<std::size_t>(limit / row_bytes / unit * unit, unit);
 }
 
 }  // namespace
 
 GpuStumpScorer::GpuStumpScorer(Device& device, Profiler* profiler, std::size_t tile_bytes)
     : device_(device),
+      quads_(device.info().type == DeviceType::cpu ? k_quads_on_cpu : 1),
       tile_bytes_(std::min<std::size_t>({tile_bytes, device.info().max_storage_range, device.info().max_allocation})),
       stream_(device, profiler) {}
 
@@ -96,9 +104,9 @@ const Kernel& GpuStumpScorer::kernel(std::uint32_t classes) {
     if (!kernel)
         kernel = Kernel(device_, shaders::learn_stumps_comp,
                         {.push_constants = layout_of<StumpParameters>(),
-                         .elements = {layout_of<shared::vec4>(), layout_of<GroupedStump>(), layout_of<StumpGroup>(),
+                         .elements = {layout_of<shared::vec4>(), layout_of<shared::vec4>(), layout_of<shared::uvec4>(),
                                       layout_of<float>(), layout_of<float>()},
-                         .constants = {{0, classes}}});
+                         .constants = {{0, classes}, {1, quads_}}});
     return kernel;
 }
 
@@ -112,8 +120,9 @@ void GpuStumpScorer::probabilities(const BoostedStumps& classifier, const Featur
     const Buffer groups = Buffer::of<StumpGroup>(device_, grouped.groups);
     const Buffer constant = Buffer::of<float>(device_, grouped.constant);
 
-    const std::size_t tile_rows =
-        std::min(rows_per_tile(tile_bytes_, grouped.columns.size(), classes), (features.rows + 3) / 4 * 4);
+    const std::size_t unit = std::size_t{4} * quads_;  // items per invocation
+    const std::size_t tile_rows = std::min(rows_per_tile(tile_bytes_, grouped.columns.size(), classes, unit),
+                                           (features.rows + unit - 1) / unit * unit);
     const std::size_t column_bytes = tile_rows * sizeof(float);
     reserve(device_, features_, grouped.columns.size() * column_bytes);
     reserve(device_, probabilities_, tile_rows * classes * sizeof(float));
@@ -122,12 +131,14 @@ void GpuStumpScorer::probabilities(const BoostedStumps& classifier, const Featur
         for (std::size_t c = 0; c < grouped.columns.size(); ++c)
             stream_.upload<float>(features_, features.column(grouped.columns[c]).subspan(first, rows),
                                   c * column_bytes);
+        const std::size_t threads = (rows + unit - 1) / unit;
         const StumpParameters parameters{.rows = static_cast<std::uint32_t>(rows),
                                          .stride = static_cast<std::uint32_t>(tile_rows / 4),
+                                         .threads = static_cast<std::uint32_t>(threads),
                                          .groups = static_cast<std::uint32_t>(grouped.groups.size()),
                                          .link = static_cast<std::uint32_t>(link),
                                          .scale = scale};
-        stream_.dispatch(kernel(classifier.class_count), (rows + 3) / 4,
+        stream_.dispatch(kernel(classifier.class_count), threads,
                          {BufferRange(features_, 0, grouped.columns.size() * column_bytes), stumps, groups, constant,
                           BufferRange(probabilities_, 0, tile_rows * classes * sizeof(float))},
                          parameters);

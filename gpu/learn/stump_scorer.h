@@ -27,6 +27,7 @@ class GpuStumpScorer final : public StumpScorer {
   private:
     const Kernel& kernel(std::uint32_t classes);
     Device& device_;
+    std::uint32_t quads_;  // of items per invocation
     std::size_t tile_bytes_;
     Stream stream_;
     std::map<std::uint32_t, Kernel> kernels_;  // by class count

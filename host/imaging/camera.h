@@ -34,7 +34,7 @@ Eigen::Matrix4f perspective(float vertical_fov, float aspect, float near, float 
 Eigen::Matrix4f orthographic(float half_height, float aspect, float near, float far);
 
 struct FitOptions {
-    float vertical_fov = 0.5f;  ///< radians, full angle; 0 gives a parallel projection
+    float vertical_fov = 0.4f;  ///< radians, full angle; 0 gives a parallel projection
     float margin = 0.05f;       ///< free share of the image's half width or half height
     Vec3 up = Vec3::UnitY();
 };

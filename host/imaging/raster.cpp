@@ -105,9 +105,8 @@ std::vector<ScreenTriangle> screen_triangles(const TriangleMesh& mesh, const Cam
 
     std::vector<ScreenTriangle> out;
     for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
-        std::vector<ClipVertex> polygon;
-        for (int i = 0; i < 3; ++i)
-            polygon.push_back({clip[mesh.faces[f][static_cast<std::size_t>(i)]], Vec3::Unit(i)});
+        const auto [a, b, c] = mesh.faces[f];
+        std::vector<ClipVertex> polygon{{clip[a], Vec3::UnitX()}, {clip[b], Vec3::UnitY()}, {clip[c], Vec3::UnitZ()}};
         for (const Vec4& plane : clip_planes()) {
             const bool inside = std::all_of(polygon.begin(), polygon.end(),
                                             [&](const ClipVertex& v) { return plane.dot(v.position) >= 0; });

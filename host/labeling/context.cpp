@@ -9,7 +9,7 @@
 namespace exemplar {
 namespace {
 
-// Geodesic distances are sample-major: neighboring faces share cache lines of every sample.
+// Geodesic ranges are sample-major: neighboring faces share cache lines of every sample.
 constexpr std::size_t k_face_block = 16;
 
 // The mass that each sample adds for each class: a_j P(l | j), samples x classes.
@@ -24,14 +24,13 @@ std::vector<double> sample_masses(const ContextGeometry& geometry, std::span<con
     return masses;
 }
 
-float distance(const ContextGeometry& geometry, std::size_t measure, std::size_t face, std::size_t sample) {
-    if (measure == 0) return geometry.geodesic[sample * geometry.faces + face];
+// The range of a face's distance to a sample, or k_no_bin where there is no path.
+std::size_t bin_of(const ContextGeometry& geometry, std::size_t measure, std::size_t face, std::size_t sample) {
+    if (measure == 0) return geometry.geodesic_bin[sample * geometry.faces + face];
     const float* positions = geometry.axis_position.data() + (measure - 1) * geometry.faces;
-    return std::abs(positions[face] - positions[geometry.sample_face[sample]]);
-}
-
-std::size_t bin_of(const std::array<float, k_context_bins - 1>& edges, float distance) {
-    return static_cast<std::size_t>(std::ranges::count_if(edges, [&](float edge) { return edge <= distance; }));
+    const float distance = std::abs(positions[face] - positions[geometry.sample_face[sample]]);
+    return static_cast<std::size_t>(
+        std::ranges::count_if(geometry.axis_edges[measure - 1], [&](float edge) { return edge <= distance; }));
 }
 
 // One face's histograms of all measures: measures x bins x classes.
@@ -40,10 +39,10 @@ void add_samples(const ContextGeometry& geometry, std::span<const double> masses
     for (std::size_t j = 0; j < geometry.sample_face.size(); ++j) {
         const double* mass = masses.data() + j * classes;
         for (std::size_t measure = 0; measure < k_context_measures; ++measure) {
-            const float d = distance(geometry, measure, face, j);
-            if (std::isinf(d)) continue;
-            double* bin = histograms.data() + (measure * k_context_bins + bin_of(geometry.edges[measure], d)) * classes;
-            for (std::size_t l = 0; l < classes; ++l) bin[l] += mass[l];
+            const std::size_t bin = bin_of(geometry, measure, face, j);
+            if (bin >= k_context_bins) continue;
+            double* sum = histograms.data() + (measure * k_context_bins + bin) * classes;
+            for (std::size_t l = 0; l < classes; ++l) sum[l] += mass[l];
         }
     }
 }
@@ -53,7 +52,7 @@ void add_samples(const ContextGeometry& geometry, std::span<const double> masses
 void check_context_geometry(const ContextGeometry& geometry) {
     const std::size_t samples = geometry.sample_face.size();
     const bool consistent =
-        geometry.sample_area.size() == samples && geometry.geodesic.size() == samples * geometry.faces &&
+        geometry.sample_area.size() == samples && geometry.geodesic_bin.size() == samples * geometry.faces &&
         geometry.axis_position.size() == k_context_axes * geometry.faces &&
         std::ranges::all_of(geometry.sample_face, [&](std::uint32_t face) { return face < geometry.faces; });
     if (!consistent) throw UsageError("the sizes of a ContextGeometry contradict each other; compute it again");

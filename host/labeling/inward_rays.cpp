@@ -53,6 +53,13 @@ void normalize_values(const PreparedMesh& prepared, const std::vector<bool>& kno
     }
 }
 
+/// The middle value, or the mean of the two middle ones; reorders the values.
+float median_of(std::span<float> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return values.size() % 2 == 1 ? *middle : 0.5F * (*middle + *std::max_element(values.begin(), middle));
+}
+
 }  // namespace
 
 const InwardRayPattern& inward_ray_pattern() {
@@ -94,9 +101,7 @@ std::optional<RayStatistics> ray_statistics(std::span<const float> length, std::
         squares += static_cast<double>(d) * static_cast<double>(d);
     }
     if (count == 0) return std::nullopt;
-    const auto middle = kept.begin() + static_cast<std::ptrdiff_t>(count / 2);
-    std::nth_element(kept.begin(), middle, kept.begin() + static_cast<std::ptrdiff_t>(count));
-    const double n = static_cast<double>(count), median = static_cast<double>(*middle);
+    const double n = static_cast<double>(count), median = static_cast<double>(median_of(std::span(kept).first(count)));
     const double deviation = std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)));
     const double reach = 1.0001 * deviation + 1e-4 * median;  // equal lengths all count, whatever rounding does
 
@@ -108,7 +113,8 @@ std::optional<RayStatistics> ray_statistics(std::span<const float> length, std::
         mean += w * d;
         mean_square += w * d * d;
     }
-    return RayStatistics{static_cast<float>(mean / total), *middle, static_cast<float>(mean_square / total)};
+    return RayStatistics{static_cast<float>(mean / total), static_cast<float>(median),
+                         static_cast<float>(mean_square / total)};
 }
 
 FeatureMatrix cone_features(const PreparedMesh& prepared, const std::string& family, const ConeStatistics& statistics) {

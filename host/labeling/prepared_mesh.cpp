@@ -75,6 +75,13 @@ std::vector<float> area_shares(const std::vector<float>& areas, double total) {
     return shares;
 }
 
+/// Shares of the samples; equal shares where the sampled components have no area.
+void mend_sample_shares(FaceSamples& samples) {
+    const double total = std::accumulate(samples.area_share.begin(), samples.area_share.end(), 0.0);
+    if (std::isfinite(total) && total > 0.0) return;
+    samples.area_share.assign(samples.face.size(), 1.0F / static_cast<float>(samples.face.size()));
+}
+
 std::vector<std::uint32_t> component_sizes(const TriangleMesh& mesh, const Topology& topology) {
     const std::vector<std::uint32_t> component = face_components(mesh, topology);
     std::vector<std::uint32_t> size(mesh.face_count(), 0);
@@ -131,6 +138,7 @@ PreparedMesh prepare_mesh(const TriangleMesh& mesh, std::size_t samples) {
     prepared.graph = build_dual_graph(prepared.mesh, prepared.topology);
     prepared.component_size = component_sizes(prepared.mesh, prepared.topology);
     prepared.samples = sample_faces(prepared.mesh, prepared.graph, samples);
+    mend_sample_shares(prepared.samples);
     prepared.distance = distances_from_sources(prepared.graph, prepared.samples.face);
 
     // Without two connected faces of some size there is no distance to measure by; the size of the whole must do.

@@ -8,7 +8,7 @@
 namespace exemplar {
 namespace {
 
-constexpr double k_tiny = 1e-30;
+constexpr double k_tiny = 1e-300;  // keeps an empty side's 0 / 0 at 0
 /// Weights end here: one that became zero or denormal could not grow again, and denormals are slow.
 constexpr float k_least_weight = 1e-30f;
 

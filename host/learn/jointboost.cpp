@@ -60,6 +60,7 @@ BoostingRows prepare_rows(const TrainingSet& training, std::size_t class_count, 
     });
     if (rows.empty()) throw DataError("all weights are zero; there is nothing to learn from");
     std::vector<std::int32_t> lane;
+    lane.reserve(rows.size());
     for (const std::uint32_t row : rows) {
         lane.push_back(std::max(training.labels[row] - static_cast<std::int32_t>(first_class), k_no_lane));
     }

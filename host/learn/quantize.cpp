@@ -1,8 +1,10 @@
 #include "host/learn/quantize.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "host/core/errors.h"
@@ -17,14 +19,16 @@ std::uint64_t sort_key(float value) {
     return static_cast<std::uint64_t>(bits >> 31 ? ~bits : bits | 0x80000000u) << 32;
 }
 
-/// Sorts by the upper half of the keys: a radix sort of three passes of 11 bits.
+/// Sorts by the upper half of the keys: a radix sort of four passes of 8 bits, few enough to write to at a time.
 void sort_keys(std::vector<std::uint64_t>& keys) {
+    std::array<std::array<std::size_t, 257>, 4> start{};
+    for (const std::uint64_t key : keys) {
+        for (std::size_t pass = 0; pass < 4; ++pass) ++start[pass][(key >> (32 + 8 * pass) & 255) + 1];
+    }
     std::vector<std::uint64_t> other(keys.size());
-    for (int shift = 32; shift < 64; shift += 11) {
-        std::vector<std::size_t> start(2049, 0);
-        for (const std::uint64_t key : keys) ++start[((key >> shift) & 2047) + 1];
-        for (std::size_t digit = 0; digit < 2048; ++digit) start[digit + 1] += start[digit];
-        for (const std::uint64_t key : keys) other[start[(key >> shift) & 2047]++] = key;
+    for (std::size_t pass = 0; pass < 4; ++pass) {
+        for (std::size_t digit = 0; digit < 256; ++digit) start[pass][digit + 1] += start[pass][digit];
+        for (const std::uint64_t key : keys) other[start[pass][key >> (32 + 8 * pass) & 255]++] = key;
         keys.swap(other);
     }
 }
@@ -64,24 +68,30 @@ void check_bins(std::size_t bins) {
     }
 }
 
-/// Number of thresholds below x; branch-free, since random values would mispredict every step.
-std::uint8_t bin_of(float x, const std::vector<float>& thresholds) {
-    const float* first = thresholds.data();
-    std::size_t left = thresholds.size();
-    while (left > 1) {
-        const std::size_t half = left / 2;
-        first += x > first[half - 1] ? half : 0;
-        left -= half;
+/// The thresholds of a feature, filled up with infinity, which no value is above: a search of a fixed number of steps
+/// without branches lets the processor work on several values at a time.
+struct PaddedThresholds {
+    std::array<float, k_max_bins> values;
+
+    explicit PaddedThresholds(const std::vector<float>& thresholds) {
+        values.fill(std::numeric_limits<float>::infinity());
+        std::copy(thresholds.begin(), thresholds.end(), values.begin());
     }
-    const std::size_t last = left == 1 && x > *first ? 1 : 0;
-    return static_cast<std::uint8_t>(static_cast<std::size_t>(first - thresholds.data()) + last);
-}
+    /// Number of thresholds below x.
+    std::uint8_t bin_of(float x) const {
+        std::uint32_t bin = 0;
+        for (std::uint32_t bit = 8; bit-- > 0;) {
+            bin |= static_cast<std::uint32_t>(x > values[bin + (1u << bit) - 1]) << bit;
+        }
+        return static_cast<std::uint8_t>(bin);
+    }
+};
 
 void fill_bins(QuantizedFeatures& out, const FeatureMatrix& features, std::size_t feature) {
-    const std::vector<float>& thresholds = out.thresholds[feature];
+    const PaddedThresholds thresholds(out.thresholds[feature]);
     std::uint8_t* bins = out.bins.data() + feature * out.rows;
     const std::span<const float> values = features.column(feature);
-    for (std::size_t i = 0; i < out.rows; ++i) bins[i] = bin_of(values[i], thresholds);
+    for (std::size_t i = 0; i < out.rows; ++i) bins[i] = thresholds.bin_of(values[i]);
 }
 
 /// Every k-th value, so that at most `limit` remain.

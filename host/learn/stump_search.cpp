@@ -11,13 +11,16 @@ namespace {
 
 constexpr std::size_t k_together = 4;     // features whose histograms share the first-level cache and hide latencies
 constexpr std::size_t k_task_groups = 4;  // groups of features that read a chunk's weights while it is in cache
+constexpr std::size_t k_task_features = k_together * k_task_groups;
 
 constexpr float k_tiny = 1e-30f;
 
-/// Adds the weights of `count` rows to the histograms of four features: bins x width each.
+/// Adds the weights of `count` rows to the histograms of four features: bins x width each. Not inlined, because here
+/// all must stay in registers: this loop is nearly all of the training time.
 template <int width>
-void add_rows(const float* weights, std::size_t count, const std::array<const std::uint8_t*, k_together>& bins,
-              float* histograms, std::size_t stride) {
+[[gnu::noinline]] void add_rows(const float* weights, std::size_t count,
+                                const std::array<const std::uint8_t*, k_together>& bins, float* histograms,
+                                std::size_t stride) {
     using Floats = LaneFloats<width>;
     const auto* w = reinterpret_cast<const Floats*>(weights);
     auto* h0 = reinterpret_cast<Floats*>(histograms);
@@ -169,11 +172,11 @@ class SplitTask {
 SplitCandidate find_best_split(const BoostingRows& rows, std::span<const RowChunk> chunks,
                                const QuantizedFeatures& features, std::span<const std::uint32_t> feature_list,
                                const SubsetSearch& subsets) {
-    constexpr std::size_t per_task = k_together * k_task_groups;
-    std::vector<SplitCandidate> of_task((feature_list.size() + per_task - 1) / per_task);
+    std::vector<SplitCandidate> of_task((feature_list.size() + k_task_features - 1) / k_task_features);
     parallel_for(of_task.size(), [&](std::size_t t) {
-        const std::size_t begin = t * per_task;
-        SplitTask task(rows, features, feature_list.subspan(begin, std::min(per_task, feature_list.size() - begin)));
+        const std::size_t begin = t * k_task_features;
+        SplitTask task(rows, features,
+                       feature_list.subspan(begin, std::min(k_task_features, feature_list.size() - begin)));
         task.accumulate(chunks);
         of_task[t] = task.best(subsets);
     });

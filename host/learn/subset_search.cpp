@@ -1,6 +1,7 @@
 #include "host/learn/subset_search.h"
 
 #include <bit>
+#include <limits>
 
 #include "host/learn/lanes.h"
 
@@ -45,6 +46,36 @@ void choose(Mask mask, const StepSums& yes, StepSums& no) {
     no.above_w = choose(mask, yes.above_w, no.above_w);
 }
 
+Mask filled(std::size_t value) {
+    return Mask{} + static_cast<std::int32_t>(value);
+}
+
+/// A subset that grows, for k_step thresholds at a time, each with its own classes.
+struct GrowingSubset {
+    StepSums sums;
+    Floats constant{};  // constant gains of its classes
+    Floats gain{};
+    Mask last{};  // the class it grew by last
+
+    /// This subset and the class, among those not taken, that gains most.
+    GrowingSubset grown(const std::vector<StepSums>& of_class, const std::vector<float>& constant_gain,
+                        const std::vector<Mask>& taken) const {
+        GrowingSubset best = *this;
+        best.gain = Floats{} - std::numeric_limits<float>::max();
+        for (std::size_t c = 0; c < of_class.size(); ++c) {
+            const StepSums with = sums.plus(of_class[c]);
+            const Floats with_constant = constant + constant_gain[c];
+            const Floats with_gain = with.gain() - with_constant;
+            const Mask better = (with_gain > best.gain) & ~taken[c];
+            choose(better, with, best.sums);
+            best.constant = choose(better, with_constant, best.constant);
+            best.gain = choose(better, with_gain, best.gain);
+            best.last = better ? filled(c) : best.last;
+        }
+        return best;
+    }
+};
+
 }  // namespace
 
 void SplitSums::resize(std::size_t class_count, std::size_t thresholds) {
@@ -72,7 +103,7 @@ SubsetChoice best_subset_exhaustive(const SplitSums& sums) {
             const Floats gain = of_subset[s].gain() - constant[s];
             const Mask better = gain > best_gain;
             best_gain = choose(better, gain, best_gain);
-            best_set = better ? Mask{} + static_cast<std::int32_t>(s) : best_set;
+            best_set = better ? filled(s) : best_set;
         }
         for (std::size_t i = 0; i < k_step; ++i) {
             if (best_gain[i] <= best.gain) continue;
@@ -85,39 +116,25 @@ SubsetChoice best_subset_exhaustive(const SplitSums& sums) {
 SubsetChoice best_subset_greedy(const SplitSums& sums) {
     std::vector<StepSums> of_class(sums.classes);
     std::vector<Mask> taken(sums.classes);
-    std::vector<Mask> picked(sums.classes);  // per step: the class taken at each threshold
+    std::vector<Mask> picked(sums.classes);  // per size: the class taken at each threshold
     SubsetChoice best;
     for (std::size_t threshold = 0; threshold < sums.stride; threshold += k_step) {
         for (std::size_t c = 0; c < sums.classes; ++c) of_class[c] = load_sums(sums, c, threshold), taken[c] = Mask{};
-        StepSums current;
-        Floats constant{}, best_gain{};
+        GrowingSubset subset;
+        Floats best_gain{};
         Mask best_size{};
-        for (std::size_t step = 0; step < sums.classes; ++step) {
-            StepSums grown = current;
-            Floats grown_gain = Floats{} - 3e38f, grown_constant{};
-            Mask pick{};
-            for (std::size_t c = 0; c < sums.classes; ++c) {
-                const StepSums with = current.plus(of_class[c]);
-                const Floats with_constant = constant + sums.constant_gain[c];
-                const Floats gain = with.gain() - with_constant;
-                const Mask better = (gain > grown_gain) & ~taken[c];
-                grown_gain = choose(better, gain, grown_gain);
-                grown_constant = choose(better, with_constant, grown_constant);
-                pick = better ? Mask{} + static_cast<std::int32_t>(c) : pick;
-                choose(better, with, grown);
-            }
-            for (std::size_t c = 0; c < sums.classes; ++c) taken[c] |= pick == static_cast<std::int32_t>(c);
-            picked[step] = pick;
-            current = grown;
-            constant = grown_constant;
-            const Mask better = grown_gain > best_gain;
-            best_gain = choose(better, grown_gain, best_gain);
-            best_size = better ? Mask{} + static_cast<std::int32_t>(step + 1) : best_size;
+        for (std::size_t size = 0; size < sums.classes; ++size) {
+            subset = subset.grown(of_class, sums.constant_gain, taken);
+            picked[size] = subset.last;
+            for (std::size_t c = 0; c < sums.classes; ++c) taken[c] |= subset.last == filled(c);
+            const Mask better = subset.gain > best_gain;
+            best_gain = choose(better, subset.gain, best_gain);
+            best_size = better ? filled(size + 1) : best_size;
         }
         for (std::size_t i = 0; i < k_step; ++i) {
             if (best_gain[i] <= best.gain) continue;
             best = {best_gain[i], static_cast<std::uint32_t>(threshold + i), 0};
-            for (std::int32_t step = 0; step < best_size[i]; ++step) best.subset |= std::uint64_t{1} << picked[step][i];
+            for (std::int32_t size = 0; size < best_size[i]; ++size) best.subset |= std::uint64_t{1} << picked[size][i];
         }
     }
     return best;

@@ -21,7 +21,7 @@ MeshFile read_gltf(std::string_view content, const std::string& name, const std:
 /// be written in a line of text: not empty, no control characters, no space at either end.
 void check_labels(const TriangleMesh& mesh, const FaceLabels& labels);
 void check_label_names(const FaceLabels& labels);
-/// Number of source faces; 0 in source_face_count stands for "as many as triangles".
+/// Number of source faces, also of meshes of triangles only whose source_face_count nobody set.
 std::size_t source_faces(const TriangleMesh& mesh);
 
 }  // namespace exemplar::mesh_io

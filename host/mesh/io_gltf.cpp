@@ -85,11 +85,9 @@ Json parse_json(std::string_view text, const std::string& name) {
         if (!document.is_object()) fail(name, "the JSON of a glTF file must be an object");
         return document;
     } catch (const Json::parse_error& error) {
-        const std::string_view reason = error.what();
-        const std::size_t colon = reason.rfind("; last read");
-        fail(name,
-             fmt::format("byte {}: the JSON is malformed{}", error.byte,
-                         colon == std::string_view::npos ? "" : fmt::format(" ({})", quote(reason.substr(colon + 2)))));
+        fail(name, fmt::format("byte {}: the JSON is malformed or cut off", error.byte - 1));
+    } catch (const Json::exception&) {
+        fail(name, "the JSON has a number that is too large");
     }
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <istream>
@@ -62,10 +63,13 @@ class CheckedLines : public std::streambuf {
             if (keyword != "v" && keyword != "f") continue;
             line_.assign(cursor_.rest());
             join_continued_lines();
-            if (keyword == "v") check_vertex(std::string_view(line_).substr(1));
-            if (keyword == "f") check_face(std::string_view(line_).substr(1));
-            for (char& c : line_)
-                if (is_space(c)) c = ' ';  // the library knows fewer kinds of space
+            if (keyword == "v") {
+                check_vertex(std::string_view(line_).substr(1));
+                line_ = "v 0 0 0";  // its numbers are known; the library's own parser overflows on long exponents
+            } else {
+                check_face(std::string_view(line_).substr(1));
+                std::ranges::replace_if(line_, is_space, ' ');  // the library knows fewer kinds of space
+            }
             line_ += '\n';
             return true;
         }
@@ -113,7 +117,7 @@ class CheckedLines : public std::streambuf {
     std::string line_, error_;
 };
 
-/// The library's own value is not used: it reads nan as 0 and rounds twice.
+/// The library reads nan as 0 and does not round exactly, so the checked numbers are used.
 void on_vertex(void* user_data, tinyobj::real_t, tinyobj::real_t, tinyobj::real_t, tinyobj::real_t) {
     ObjContent& obj = *static_cast<ObjContent*>(user_data);
     obj.polygons.vertices.push_back({obj.position[0], obj.position[1], obj.position[2]});

@@ -91,6 +91,9 @@ void read_binary(std::string_view content, const std::string& name, PolygonList&
     if (end > content.size())
         fail(name, fmt::format("byte {}: {} triangles need {} bytes, but the file has {}; it is cut off or no STL file",
                                k_header_bytes, count, end, content.size()));
+    if (count == 0 && end < content.size())
+        fail(name, fmt::format("byte {}: a count of 0 triangles in a file of {} bytes; it is damaged or no STL file",
+                               k_header_bytes, content.size()));
     if (end < content.size())
         warnings.push_back(fmt::format("{} bytes after the last triangle were left out", content.size() - end));
     VertexWelder welder;

@@ -16,7 +16,8 @@ namespace exemplar {
 namespace mesh_io {
 
 std::size_t source_faces(const TriangleMesh& mesh) {
-    return mesh.source_face.empty() ? mesh.face_count() : mesh.source_face_count;
+    const bool only_triangles = mesh.source_face.empty() && !mesh.faces.empty();
+    return only_triangles ? mesh.face_count() : mesh.source_face_count;
 }
 
 void check_label_names(const FaceLabels& labels) {

@@ -22,7 +22,8 @@ class RayScene {
     };
     /// First intersection with distance >= near; direction is a unit vector.
     std::optional<Hit> first_hit(const Vec3& origin, const Vec3& direction, float near) const;
-    /// The same, for a ray that starts on face `from` (any point of it) and must not hit that face itself.
+    /// The first hit of a ray that starts on face `from` (any point of it), other than with that face. Hits nearer than
+    /// the rounding of the largest coordinate (say, with an exact copy of the face) count as the start, too.
     std::optional<Hit> first_hit_from(std::uint32_t from, const Vec3& origin, const Vec3& direction) const;
 
   private:

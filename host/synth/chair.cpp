@@ -77,7 +77,7 @@ void four_legs(Sculptor& add, const Design& d, Random& random) {
     std::array<Vec3, 4> top, bottom;
     for (std::size_t i = 0; i < 4; ++i) {
         const float x = i % 2 == 0 ? 1.0f : -1.0f, z = i < 2 ? 1.0f : -1.0f;
-        top[i] = Vec3(x * inset * d.width, d.height - 0.4f * d.thickness, z * inset * d.depth);
+        top[i] = Vec3(x * inset * d.width, d.height + d.thickness - 1.2f * d.leg, z * inset * d.depth);
         bottom[i] = Vec3(top[i].x() + x * splay, 0.02f, top[i].z() + z * splay * (i < 2 ? 0.7f : 1.2f));
         stick(add, d, top[i], bottom[i], d.leg, std::max(taper * d.leg, 0.0145f));
     }

@@ -99,11 +99,9 @@ void handle(Sculptor& add, const Silhouette& s, Random& random) {
             control = {a, Vec3(0, a.y() + 0.01f, far), Vec3(0, 0.6f * a.y() + 0.4f * b.y(), far + 0.02f), b};
     }
     const float width = pick(random, 1, 1.7f);
-    const auto points = smooth_curve(control, 17);
+    const auto points = smooth_curve(control, 25);
     add.part(k_handle).blend(0.02f);
-    for (std::size_t i = 1; i < points.size(); ++i)
-        add.limb(points[i - 1], points[i], thick * width, thick * width, 1 / width,
-                 (points[i] - points[i - 1]).cross(Vec3::UnitX()));
+    add.tube(points, thick, thick, Vec3(width, 1, 1));
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ EditMesh::EditMesh(const TriangleMesh& mesh)
       faces_of_(mesh.vertices.size()),
       marks_(mesh.vertices.size(), 0),
       live_faces_(mesh.faces.size()) {
+    for (auto& list : faces_of_) list.reserve(8);
     for (std::uint32_t f = 0; f < faces_.size(); ++f)
         for (const std::uint32_t v : faces_[f]) faces_of_[v].push_back(f);
 }
@@ -101,17 +102,15 @@ bool EditMesh::survives_merge(std::uint32_t v, std::uint32_t other, const Vec3& 
 /// The link condition: a and b share exactly the two vertices opposite to their edge.
 bool EditMesh::are_linked_safely(std::uint32_t a, std::uint32_t b) {
     neighbors(a);  // marks them
-    std::size_t shared = 0;
-    std::vector<std::uint32_t> seen;
+    std::array<std::uint32_t, 2> seen{k_none, k_none};
     for (const std::uint32_t f : faces_of_[b]) {
         for (const std::uint32_t u : faces_[f]) {
-            if (u == a || u == b || marks_[u] != mark_) continue;
-            if (std::find(seen.begin(), seen.end(), u) != seen.end()) continue;
-            seen.push_back(u);
-            ++shared;
+            if (u == a || u == b || marks_[u] != mark_ || u == seen[0] || u == seen[1]) continue;
+            if (seen[1] != k_none) return false;  // a third
+            seen[seen[0] == k_none ? 0 : 1] = u;
         }
     }
-    if (shared != 2) return false;
+    if (seen[1] == k_none) return false;
     // The opposite vertices lose a face each, and must keep three.
     return faces_of_[seen[0]].size() > 3 && faces_of_[seen[1]].size() > 3 &&
            faces_of_[a].size() + faces_of_[b].size() <= k_max_valence + 4;

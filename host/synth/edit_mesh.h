@@ -23,6 +23,8 @@ class EditMesh {
     bool is_live(std::uint32_t v) const { return !faces_of_[v].empty(); }
     std::span<const std::uint32_t> faces_of(std::uint32_t v) const { return faces_of_[v]; }
     const Face& face(std::uint32_t f) const { return faces_[f]; }
+    bool is_live_face(std::uint32_t f) const { return alive_[f]; }
+    std::size_t face_count() const { return faces_.size(); }  ///< dead ones included
     /// Neighbors of v, each once, in no particular but a reproducible order; valid until the next call.
     std::span<const std::uint32_t> neighbors(std::uint32_t v);
     /// Every undirected edge once, the smaller vertex first, sorted.

@@ -23,12 +23,17 @@ ImplicitField::ImplicitField(std::vector<Primitive> primitives) : primitives_(st
     low_ = Vec3::Constant(k_far);
     high_ = -low_;
     for (const Primitive& primitive : primitives_) {
-        const Ball local = bounding_ball(primitive.solid);
-        const Vec3 center = primitive.origin + primitive.axes * local.center.cwiseProduct(primitive.stretch);
-        balls_.push_back({center, local.radius * primitive.stretch.maxCoeff()});
+        const auto to_world = [&](const Ball& local) -> Ball {
+            const Vec3 center = primitive.origin + primitive.axes * local.center.cwiseProduct(primitive.stretch);
+            return {center, local.radius * primitive.stretch.maxCoeff()};
+        };
+        balls_.push_back(to_world(bounding_ball(primitive.solid)));
         largest_blend_ = std::max(largest_blend_, primitive.blend);
-        low_ = low_.cwiseMin(center - Vec3::Constant(balls_.back().radius + primitive.blend));
-        high_ = high_.cwiseMax(center + Vec3::Constant(balls_.back().radius + primitive.blend));
+        for (const Ball& local : covering_balls(primitive.solid)) {
+            const Ball ball = to_world(local);
+            low_ = low_.cwiseMin(ball.center - Vec3::Constant(ball.radius + primitive.blend));
+            high_ = high_.cwiseMax(ball.center + Vec3::Constant(ball.radius + primitive.blend));
+        }
     }
 }
 

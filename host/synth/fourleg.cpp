@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -27,11 +28,11 @@ constexpr std::array<Species, 9> k_species{{
      0.040f, 68, true},  // horse
     {1.10f, 0.25f, 0.24f, 0.28f, 0.56f, 0.058f, 0.32f, 22, 0.135f, 0.30f, 0.115f, 0.080f, 0.15f, 0.048f, 5, 0.62f,
      0.024f, 82, true},  // cow
-    {0.85f, 0.18f, 0.14f, 0.12f, 0.48f, 0.042f, 0.27f, 50, 0.095f, 0.22f, 0.105f, 0.050f, 0.13f, 0.042f, 65, 0.42f,
+    {0.85f, 0.18f, 0.14f, 0.12f, 0.48f, 0.042f, 0.27f, 50, 0.095f, 0.22f, 0.092f, 0.046f, 0.13f, 0.042f, 65, 0.42f,
      0.030f, -20, false},  // dog
-    {0.90f, 0.16f, 0.15f, 0.15f, 0.42f, 0.046f, 0.20f, 38, 0.100f, 0.11f, 0.125f, 0.060f, 0.09f, 0.045f, 55, 0.85f,
+    {0.90f, 0.16f, 0.15f, 0.15f, 0.42f, 0.046f, 0.20f, 38, 0.100f, 0.11f, 0.108f, 0.050f, 0.08f, 0.045f, 55, 0.85f,
      0.028f, 40, false},  // cat
-    {0.95f, 0.25f, 0.25f, 0.27f, 0.27f, 0.058f, 0.16f, 8, 0.190f, 0.22f, 0.150f, 0.075f, 0.14f, 0.060f, 35, 0.25f,
+    {0.95f, 0.25f, 0.25f, 0.27f, 0.27f, 0.058f, 0.14f, 8, 0.150f, 0.22f, 0.130f, 0.075f, 0.14f, 0.060f, 35, 0.25f,
      0.022f, 10, true},  // pig
     {0.85f, 0.22f, 0.18f, 0.18f, 1.05f, 0.050f, 1.15f, 66, 0.100f, 0.26f, 0.090f, 0.055f, 0.12f, 0.036f, 25, 0.50f,
      0.024f, 80, true},  // giraffe
@@ -39,7 +40,7 @@ constexpr std::array<Species, 9> k_species{{
      0.034f, 30, true},  // deer
     {0.90f, 0.25f, 0.25f, 0.28f, 0.36f, 0.044f, 0.20f, 35, 0.125f, 0.19f, 0.105f, 0.062f, 0.13f, 0.036f, -5, 0.20f,
      0.034f, 60, true},  // sheep
-    {1.00f, 0.26f, 0.28f, 0.27f, 0.42f, 0.088f, 0.22f, 12, 0.180f, 0.21f, 0.150f, 0.070f, 0.08f, 0.048f, 60, 0.12f,
+    {1.00f, 0.26f, 0.28f, 0.27f, 0.42f, 0.088f, 0.22f, 12, 0.155f, 0.21f, 0.135f, 0.070f, 0.07f, 0.048f, 60, 0.12f,
      0.042f, 50, false},  // bear
 }};
 
@@ -65,7 +66,7 @@ class Animal {
     Animal(ShapeModel& model, const Species& species, Random& random) : s_(species), random_(random), add_(model) {}
 
     void sculpt() {
-        height_ = s_.leg + 0.72f * (s_.chest + s_.rump) / 2;
+        height_ = s_.leg + 0.9f * (s_.chest + s_.rump) / 2;
         torso();
         const bool walking = chance(random_, 0.6);
         const float gait = walking ? pick(random_, 10, 26) : 3;
@@ -83,11 +84,11 @@ class Animal {
     Vec3 croup() const { return {0, height_ + 0.01f, -0.34f * s_.length}; }
 
     void torso() {
-        add_.part(k_torso).blend(0.1f);
+        add_.part(k_torso).blend(0.06f);
         add_.limb(croup(), withers(), s_.rump, s_.chest, 0.8f, Vec3::UnitX());
-        add_.ellipsoid({Vec3(0, height_ - 0.2f * s_.belly, -0.02f)},
-                       Vec3(0.9f * s_.belly, s_.belly, 0.36f * s_.length));
-        add_.ellipsoid({withers() + Vec3(0, -0.12f * s_.chest, 0.2f * s_.chest)}, Vec3(0.85f, 1.02f, 0.8f) * s_.chest);
+        add_.ellipsoid({Vec3(0, height_ - 0.1f * s_.belly, -0.02f)},
+                       Vec3(0.85f * s_.belly, 0.95f * s_.belly, 0.36f * s_.length));
+        add_.ellipsoid({withers() + Vec3(0, -0.12f * s_.chest, 0.2f * s_.chest)}, Vec3(0.78f, 0.98f, 0.75f) * s_.chest);
     }
 
     /// Joints of a leg: offsets (forward, down) as shares of the free leg length, turned by the swing about the first.
@@ -108,17 +109,17 @@ class Animal {
         if (s_.hoofed) {
             add_.limb(ankle + Vec3(0, 0.3f * r, 0), ankle + Vec3(0, -0.55f * r, 0.25f * r), 0.72f * r, 0.95f * r);
         } else {
-            add_.limb(ankle, ankle + Vec3(0, -0.15f * r, 1.1f * r), 0.95f * r, 0.9f * r);
+            add_.limb(ankle, ankle + Vec3(0, -0.15f * r, 1.2f * r), 0.8f * r, 0.78f * r);
         }
     }
 
     void front_leg(float side, float swing) {
         const float r = s_.leg_radius;
-        const Vec3 top(side * 0.52f * s_.chest, height_ - 0.35f * s_.chest, 0.34f * s_.length);
+        const Vec3 top(side * std::max(0.68f * s_.chest, 2.1f * r), height_ - 0.35f * s_.chest, 0.34f * s_.length);
         const auto p = joints(top, {{0, 0}, {-0.05f, 0.3f}, {-0.02f, 0.62f}, {-0.02f, 0.93f}}, swing,
                               std::max(swing, 0.0f) * 1.3f);
         add_.part(k_leg).blend(0.06f);
-        add_.limb(p[0], p[1], 0.42f * s_.chest + 0.35f * r, 1.15f * r, 0.75f, Vec3::UnitX());
+        add_.limb(p[0], p[1], 0.34f * s_.chest + 0.35f * r, 1.15f * r, 0.75f, Vec3::UnitX());
         add_.blend(0.02f);
         add_.tube(p, std::array<float, 4>{1.6f * r, 1.15f * r, 0.82f * r, 0.68f * r});
         foot(p[3]);
@@ -126,11 +127,11 @@ class Animal {
 
     void rear_leg(float side, float swing) {
         const float r = s_.leg_radius;
-        const Vec3 top(side * 0.5f * s_.rump, height_ - 0.2f * s_.rump, -0.36f * s_.length);
+        const Vec3 top(side * std::max(0.66f * s_.rump, 2.45f * r), height_ - 0.2f * s_.rump, -0.36f * s_.length);
         const auto p = joints(top, {{0, 0}, {0.07f, 0.32f}, {-0.1f, 0.63f}, {-0.07f, 0.94f}}, swing,
                               std::max(-swing, 0.0f) * 0.4f);
         add_.part(k_leg).blend(0.06f);
-        add_.limb(p[0], p[1], 0.62f * s_.rump, 1.45f * r, 0.7f, Vec3::UnitX());
+        add_.limb(p[0], p[1], 0.54f * s_.rump, 1.45f * r, 0.62f, Vec3::UnitX());
         add_.blend(0.02f);
         add_.tube(p, std::array<float, 4>{2.0f * r, 1.4f * r, 0.88f * r, 0.7f * r});
         foot(p[3]);
@@ -151,17 +152,18 @@ class Animal {
             grazing ? pick(random_, -65, -45) : std::min(pick(random_, -38, -8), 20 - 0.55f * s_.neck_angle);
         Frame skull{poll + 0.35f * s_.skull * direction(nod, turn), Eigen::Matrix3f::Identity()};
         skull.axes = turn_y(turn) * turn_x(-nod);  // z along the face
-        add_.part(k_head).blend(0.04f);
+        add_.part(k_head).blend(0.025f);
         add_.ellipsoid(skull, Vec3(0.86f, 1.0f, 1.1f) * s_.skull);
-        add_.limb(skull * Vec3(0, -0.12f * s_.skull, 0.3f * s_.skull), skull * Vec3(0, -0.3f * s_.skull, s_.head),
-                  0.8f * s_.skull, s_.muzzle, 0.9f, skull.axes.col(0));
+        add_.limb(skull * Vec3(0, -0.12f * s_.skull, 0.3f * s_.skull),
+                  skull * Vec3(0, -0.28f * s_.skull, 0.84f * s_.head), 0.8f * s_.skull, s_.muzzle, 0.9f,
+                  skull.axes.col(0));
         for (const float side : {1.0f, -1.0f}) ear(skull, side);
         if (s_.hoofed && s_.neck_angle > 0 && chance(random_, 0.25)) horns(skull);
     }
 
     void ear(const Frame& skull, float side) {
         const Frame base =
-            skull.at(Vec3(side * 0.55f, 0.68f, -0.35f) * s_.skull, turn_z(side * (s_.ear_angle - 90)) * turn_x(-12));
+            skull.at(Vec3(side * 0.66f, 0.64f, -0.35f) * s_.skull, turn_z(side * (s_.ear_angle - 90)) * turn_x(-12));
         add_.part(k_ear).blend(0.02f);
         const float thickness = std::max(0.42f * s_.ear_width, 0.018f) / s_.ear_width;
         add_.add(RoundCone{0.55f * s_.ear, 0.7f * s_.ear_width, s_.ear_width}, base, Vec3(1, 1, thickness));

@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -40,7 +41,7 @@ Design pick_design(Random& random) {
     d.width = pick(random, 0.26f, 0.34f);
     d.height = d.width * pick(random, 0.55f, 0.98f);
     d.gap = pick(random, 0.1f, 0.16f);
-    d.rim = pick(random, 0.022f, 0.042f);
+    d.rim = pick(random, 0.021f, 0.036f);
     d.wrap = pick(random, 2, 12);
     d.temple_length = pick(random, 1.2f, 1.5f);
     d.temple_height = d.height * pick(random, 0.1f, 0.7f);
@@ -58,14 +59,10 @@ void temple(Sculptor& add, const Design& d, const Vec3& hinge, float side) {
     const Vec3 down = turn_x(-d.ear_bend) * back;
     const std::array<Vec3, 4> control{hinge, hinge + 0.4f * d.temple_length * back + Vec3(0, 0.01f, 0), ear,
                                       ear + 0.28f * d.temple_length * down};
-    const auto points = smooth_curve(control, 13);
+    const auto points = smooth_curve(control, 19);
     add.part(k_temple).blend(0.01f);
-    const float widen = d.flat_temples ? 1.9f : 1.0f;
-    for (std::size_t i = 1; i < points.size(); ++i) {
-        const float tip = i > 9 ? 1.15f : 1.0f;
-        add.limb(points[i - 1], points[i], d.temple_radius * widen * tip, d.temple_radius * widen * tip, 1 / widen,
-                 Vec3::UnitX());
-    }
+    const Vec3 widen(1, d.flat_temples ? 2.0f : 1.0f, 1);
+    add.tube(points, d.temple_radius, 1.15f * d.temple_radius, widen);
 }
 
 void half(Sculptor& add, const Design& d, const std::vector<Vec2>& outline, float side) {
@@ -74,6 +71,7 @@ void half(Sculptor& add, const Design& d, const std::vector<Vec2>& outline, floa
     add.add(Prism{outline, 0.004f, 0.0155f}, lens);
     add.part(k_frame).blend(0.01f);
     std::vector<Vec3> rim;
+    rim.reserve(outline.size() + 1);
     for (const Vec2& p : outline) rim.push_back(lens * Vec3(p.x(), 0, p.y()));
     rim.push_back(rim[0]);
     add.tube(rim, d.rim, d.rim);

@@ -188,23 +188,25 @@ class Body {
 
     /// Palm toward +z of its frame, fingers along -y, the thumb to the side of -sx * x.
     void hand(const Frame& wrist, float sx) {
-        const float curl = pick(random_, 4, 38), spread = pick(random_, 3, 8);
+        const float curl = pick(random_, 4, 32), spread = pick(random_, 10, 14);
         add_.part(k_hand).blend(0.012f);
-        add_.limb(wrist * Vec3(0, -0.01f, 0), wrist * Vec3(0, -0.06f, 0), 0.031f, 0.041f, 0.62f, wrist.axes.col(2));
+        const Vec3 back = wrist.axes.col(2);
+        add_.limb(wrist * Vec3(0, -0.01f, 0), wrist * Vec3(0, -0.065f, 0), 0.031f, 0.044f, 0.58f, back);
         for (int i = 0; i < 4; ++i) {
-            const float across = (static_cast<float>(i) - 1.5f);
-            const float length = i == 3 ? 0.052f : i == 1 ? 0.072f : 0.066f;
-            const Frame knuckle = wrist.at(Vec3(-sx * -across * 0.0205f, -0.085f, 0),
-                                           turn_z(across * spread * sx) * turn_x(-curl * 0.6f));
-            const Frame middle = knuckle.at(Vec3(0, -0.55f * length, 0), turn_x(-curl));
+            const float across = static_cast<float>(i) - 1.5f;
+            const float length = i == 3 ? 0.062f : i == 1 ? 0.086f : 0.08f;
+            const Frame knuckle =
+                wrist.at(Vec3(sx * across * 0.0262f, -0.088f, 0), turn_z(across * spread * sx) * turn_x(-curl * 0.6f));
+            const Frame middle = knuckle.at(Vec3(0, -0.5f * length, 0), turn_x(-curl));
             add_.blend(0.006f);
-            add_.limb(knuckle.origin, middle.origin, 0.0115f, 0.0105f);
-            add_.limb(middle.origin, middle * Vec3(0, -0.55f * length, 0), 0.0105f, 0.0088f);
+            add_.tube(std::array{knuckle * Vec3(0, 0.02f, 0), knuckle.origin, middle.origin,
+                                 middle * Vec3(0, -0.5f * length, 0)},
+                      0.0125f, 0.0098f);
         }
-        const Frame thumb = wrist.at(Vec3(-sx * 0.026f, -0.032f, 0.008f), turn_z(-sx * 42) * turn_x(-12));
+        const Frame thumb = wrist.at(Vec3(-sx * 0.03f, -0.03f, 0.008f), turn_z(-sx * 46) * turn_x(-12));
         add_.blend(0.012f);
-        add_.limb(thumb.origin, thumb * Vec3(0, -0.04f, 0), 0.016f, 0.0125f);
-        add_.limb(thumb * Vec3(0, -0.04f, 0), thumb * Vec3(sx * 0.008f, -0.068f, 0.004f), 0.0125f, 0.0105f);
+        add_.tube(std::array{thumb.origin, thumb * Vec3(0, -0.042f, 0), thumb * Vec3(sx * 0.008f, -0.075f, 0.004f)},
+                  0.0165f, 0.0115f);
     }
 
     void leg(const Frame& pelvis, int side) {
@@ -224,11 +226,11 @@ class Body {
         add_.ellipsoid(shin.at(Vec3(0, -0.115f, -0.022f)), Vec3(0.05f, 0.11f, 0.048f) * m);
 
         const Frame foot = shin.at(ankle, turn_x(p_.ankle[s]) * turn_y(sx * 10));
-        add_.part(k_foot).blend(0.03f);
-        add_.ellipsoid(foot.at(Vec3(0, -0.045f, -0.025f)), Vec3(0.036f, 0.038f, 0.045f));
-        add_.limb(foot * Vec3(0, -0.03f, 0.01f), foot * Vec3(0, -0.058f, 0.125f), 0.034f, 0.022f, 1.0f);
-        add_.limb(foot * Vec3(-0.018f, -0.062f, 0.1f), foot * Vec3(0.02f, -0.062f, 0.1f), 0.022f, 0.022f);
-        add_.limb(foot * Vec3(0, -0.062f, 0.1f), foot * Vec3(-sx * 0.012f, -0.064f, 0.148f), 0.026f, 0.019f);
+        add_.part(k_foot).blend(0.02f);
+        const Vec3 up = foot.axes.col(1);
+        add_.limb(foot * Vec3(0, -0.01f, 0), foot * Vec3(0, -0.05f, 0.06f), 0.033f, 0.026f);
+        add_.limb(foot * Vec3(0, -0.048f, -0.028f), foot * Vec3(0, -0.054f, 0.09f), 0.036f, 0.038f, 0.8f, up);
+        add_.limb(foot * Vec3(0, -0.056f, 0.09f), foot * Vec3(-sx * 0.008f, -0.06f, 0.155f), 0.042f, 0.032f, 0.55f, up);
     }
 
     void head(const Frame& chest) {
@@ -278,7 +280,7 @@ class Body {
 
 ShapeModel sculpt_human(Random& random) {
     ShapeModel model;
-    model.detail = 0.0105f;
+    model.detail = 0.0086f;
     const Build build = pick_build(random);
     const Posture posture = pick_posture(random);
     Body(model, build, posture, random).sculpt();

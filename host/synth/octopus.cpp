@@ -64,11 +64,9 @@ ShapeModel sculpt_octopus(Random& random) {
         sway.curl_side = pick(random, -70, 70);
         const float a = sway.azimuth * 0.017453293f;
         const Vec3 root(0.15f * std::sin(a), 0.02f, 0.15f * std::cos(a));
-        const auto points = tentacle_path(root, length * pick(random, 0.85f, 1.1f), sway, 15);
-        add.blend(0.04f);
-        add.limb(points[0], points[1], radius, radius * 0.95f);
-        add.blend(0.012f);
-        add.tube(std::span(points).subspan(1), radius * 0.95f, 0.024f);
+        const auto points = tentacle_path(root, length * pick(random, 0.85f, 1.1f), sway, 22);
+        add.blend(0.035f);
+        add.tube(points, radius, 0.024f);
     }
     return model;
 }

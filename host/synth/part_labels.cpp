@@ -11,7 +11,7 @@ namespace exemplar {
 namespace {
 
 constexpr int k_smoothing_passes = 3;
-constexpr double k_speck_share = 0.12;  // of the area of the part's largest component
+constexpr double k_speck_share = 0.3;  // of the area of the part's largest component
 
 struct Neighbor {
     std::uint32_t face;

@@ -80,6 +80,16 @@ float distance(const Lathe& s, const Vec3& p) {
     return nearest;
 }
 
+float distance(const Tube& s, const Vec3& p) {
+    float nearest = (p - s.points[0]).norm() - s.radii[0];
+    for (std::size_t i = 1; i < s.points.size(); ++i) {
+        const Vec3 edge = s.points[i] - s.points[i - 1], w = p - s.points[i - 1];
+        const float t = std::clamp(w.dot(edge) / edge.squaredNorm(), 0.0f, 1.0f);
+        nearest = std::min(nearest, (w - t * edge).norm() - (s.radii[i - 1] + t * (s.radii[i] - s.radii[i - 1])));
+    }
+    return nearest;
+}
+
 Ball ball(const RoundCone& s) {
     const float low = -s.radius_begin, high = s.length + s.radius_end;
     const float radius = std::max({(high - low) / 2, s.radius_begin, s.radius_end});
@@ -120,6 +130,18 @@ Ball ball(const Lathe& s) {
     return {Vec3(0, middle, 0), radius};
 }
 
+Ball ball(const Tube& s) {
+    Vec3 low = s.points[0], high = low;
+    for (const Vec3& p : s.points) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    Ball result{(low + high) / 2, 0};
+    for (std::size_t i = 0; i < s.points.size(); ++i)
+        result.radius = std::max(result.radius, (s.points[i] - result.center).norm() + s.radii[i]);
+    return result;
+}
+
 }  // namespace
 
 float solid_distance(const Solid& solid, const Vec3& p) {
@@ -128,6 +150,14 @@ float solid_distance(const Solid& solid, const Vec3& p) {
 
 Ball bounding_ball(const Solid& solid) {
     return std::visit([](const auto& s) { return ball(s); }, solid);
+}
+
+std::vector<Ball> covering_balls(const Solid& solid) {
+    const Tube* tube = std::get_if<Tube>(&solid);
+    if (!tube) return {bounding_ball(solid)};
+    std::vector<Ball> balls;
+    for (std::size_t i = 0; i < tube->points.size(); ++i) balls.push_back({tube->points[i], tube->radii[i]});
+    return balls;
 }
 
 }  // namespace exemplar

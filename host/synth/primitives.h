@@ -42,10 +42,16 @@ struct Lathe {
     std::vector<float> thickness;
 };
 
-using Solid = std::variant<RoundCone, Ellipsoid, RoundBox, RoundCylinder, Torus, Prism, Lathe>;
+/// Spheres swept along a polyline of at least two points; the radius (> 0) runs linearly from point to point.
+struct Tube {
+    std::vector<Vec3> points;
+    std::vector<float> radii;
+};
 
-/// Distance of local point p to the surface, negative inside. Exact outside except for the ellipsoid, whose value is a
-/// first-order estimate. Its gradient is (about) 1.
+using Solid = std::variant<RoundCone, Ellipsoid, RoundBox, RoundCylinder, Torus, Prism, Lathe, Tube>;
+
+/// Distance of local point p to the surface, negative inside. Exact outside except for the ellipsoid and the tapered
+/// tube, whose values are first-order estimates. Its gradient is (about) 1.
 float solid_distance(const Solid& solid, const Vec3& p);
 
 /// Center and radius of a local ball that holds the solid.
@@ -54,5 +60,7 @@ struct Ball {
     float radius;
 };
 Ball bounding_ball(const Solid& solid);
+/// Local balls that together hold the solid, for a tight bounding box: one per point of a tube, else the bounding ball.
+std::vector<Ball> covering_balls(const Solid& solid);
 
 }  // namespace exemplar

@@ -1,9 +1,11 @@
 #include "host/synth/remesh.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <queue>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -25,23 +27,36 @@ float uniform_edge_length(const TriangleMesh& mesh, std::size_t faces) {
 }
 
 /// How much finer than uniform the triangles should be at each vertex, by how fast the normal turns there.
-std::vector<float> vertex_densities(EditMesh& mesh, float length) {
+std::vector<float> vertex_densities(const EditMesh& mesh, float length) {
+    // Around a vertex of a closed mesh the corners of its faces name every neighbor twice.
     std::vector<float> density(mesh.vertex_count());
-    for (std::uint32_t v = 0; v < density.size(); ++v) {
-        float turn = 0, distance = 0;
-        for (const std::uint32_t u : mesh.neighbors(v)) {
-            turn += (mesh.normal(u) - mesh.normal(v)).norm();
-            distance += (mesh.position(u) - mesh.position(v)).norm();
-        }
-        density[v] = turn / std::max(distance, 1e-12f) * length / k_bend_per_edge;
-    }
+    parallel_for(
+        density.size(),
+        [&](std::size_t i) {
+            const auto v = static_cast<std::uint32_t>(i);
+            float turn = 0, distance = 0;
+            for (const std::uint32_t f : mesh.faces_of(v)) {
+                for (const std::uint32_t u : mesh.face(f)) {
+                    turn += (mesh.normal(u) - mesh.normal(v)).norm();
+                    distance += (mesh.position(u) - mesh.position(v)).norm();
+                }
+            }
+            density[v] = turn / std::max(distance, 1e-12f) * length / k_bend_per_edge;
+        },
+        512);
     for (int pass = 0; pass < 3; ++pass) {
-        std::vector<float> smoothed = density;
-        for (std::uint32_t v = 0; v < density.size(); ++v) {
-            const auto ring = mesh.neighbors(v);
-            for (const std::uint32_t u : ring) smoothed[v] += density[u];
-            smoothed[v] /= static_cast<float>(ring.size() + 1);
-        }
+        std::vector<float> smoothed(density.size());
+        parallel_for(
+            density.size(),
+            [&](std::size_t i) {
+                const auto faces = mesh.faces_of(static_cast<std::uint32_t>(i));
+                float sum = 0;
+                for (const std::uint32_t f : faces)
+                    for (const std::uint32_t u : mesh.face(f)) sum += density[u];
+                // v itself counts once per face: its weight is that of a third of the ring.
+                smoothed[i] = sum / (3 * static_cast<float>(faces.size()));
+            },
+            512);
         density = std::move(smoothed);
     }
     for (float& d : density) d = std::clamp(d, k_least_density, k_most_density);
@@ -54,10 +69,10 @@ class Coarsener {
     Coarsener(EditMesh& mesh, std::vector<float>& density) : mesh_(mesh), density_(density) {
         version_.resize(mesh.vertex_count(), 0);
     }
-    void run(std::size_t faces) {
+    void run(std::size_t faces, float length) {
+        for (const float share : {0.35f, 0.5f, 0.6f}) sweep(2 * share * length, faces);
         // Edges that could not collapse may do so after their surroundings changed: start over while it helps.
-        for (std::size_t before = mesh_.live_faces() + 1;
-             mesh_.live_faces() < before && mesh_.live_faces() > faces + 1;) {
+        for (std::size_t before = mesh_.live_faces() + 1; mesh_.live_faces() < before && mesh_.live_faces() > faces;) {
             before = mesh_.live_faces();
             std::vector<Candidate> all;
             for (const auto& [a, b] : mesh_.edges()) all.push_back(candidate(a, b));
@@ -81,8 +96,19 @@ class Coarsener {
         const float length = (mesh_.position(a) - mesh_.position(b)).norm();
         return {length * (density_[a] + density_[b]), a, b, version_[a], version_[b]};
     }
+    /// Collapses, in order of the faces, their shortest edges up to this cost: most of the work, without a queue.
+    void sweep(float limit, std::size_t faces) {
+        for (std::uint32_t f = 0; f < mesh_.face_count() && mesh_.live_faces() > faces; ++f) {
+            if (!mesh_.is_live_face(f)) continue;
+            const auto [a, b, c] = mesh_.face(f);
+            const Candidate shortest = std::min({candidate(a, b), candidate(b, c), candidate(c, a)},
+                                                [](const Candidate& x, const Candidate& y) { return x.cost < y.cost; });
+            if (shortest.cost > limit || !mesh_.collapse(shortest.a, shortest.b)) continue;
+            density_[shortest.a] = (density_[shortest.a] + density_[shortest.b]) / 2;
+        }
+    }
     void drain(std::size_t faces) {
-        while (!queue_.empty() && mesh_.live_faces() > faces + 1) {
+        while (!queue_.empty() && mesh_.live_faces() > faces) {
             const Candidate c = queue_.top();
             queue_.pop();
             if (c.version_a != version_[c.a] || c.version_b != version_[c.b] || !mesh_.collapse(c.a, c.b)) continue;
@@ -140,7 +166,7 @@ TriangleMesh remesh(const TriangleMesh& mesh, const ImplicitField& field, std::s
     EditMesh edit(mesh);
     const float length = uniform_edge_length(mesh, faces);
     std::vector<float> density = vertex_densities(edit, length);
-    Coarsener(edit, density).run(faces);
+    Coarsener(edit, density).run(faces, length);
     for (int round = 0; round < k_rounds; ++round) {
         for (const auto& [a, b] : edit.edges()) edit.improve_edge(a, b);
         smooth(edit, density, field, length);

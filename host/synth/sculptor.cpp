@@ -83,15 +83,17 @@ void Sculptor::limb(const Vec3& a, const Vec3& b, float radius_a, float radius_b
     add(RoundCone{length, radius_a, radius_b}, {a, axes_along(b - a, side)}, Vec3(1, 1, flatten));
 }
 
-void Sculptor::tube(std::span<const Vec3> points, std::span<const float> radii) {
-    for (std::size_t i = 1; i < points.size(); ++i) limb(points[i - 1], points[i], radii[i - 1], radii[i]);
+void Sculptor::tube(std::span<const Vec3> points, std::span<const float> radii, const Vec3& widen) {
+    Tube tube{{}, {radii.begin(), radii.end()}};
+    for (const Vec3& p : points) tube.points.push_back(p.cwiseQuotient(widen));
+    add(std::move(tube), {}, widen);
 }
 
-void Sculptor::tube(std::span<const Vec3> points, float first, float last) {
+void Sculptor::tube(std::span<const Vec3> points, float first, float last, const Vec3& widen) {
     std::vector<float> radii;
     for (std::size_t i = 0; i < points.size(); ++i)
         radii.push_back(first + (last - first) * static_cast<float>(i) / static_cast<float>(points.size() - 1));
-    tube(points, radii);
+    tube(points, radii, widen);
 }
 
 void Sculptor::bar(const Vec3& a, const Vec3& b, float half_width, float half_depth, float rounding, const Vec3& side) {

@@ -60,10 +60,10 @@ class Sculptor {
     /// A round cone between two points; `flatten` scales it across `side` (1 leaves it round).
     void limb(const Vec3& a, const Vec3& b, float radius_a, float radius_b, float flatten = 1,
               const Vec3& side = Vec3::UnitZ());
-    /// Round cones along a polyline, radii per point.
-    void tube(std::span<const Vec3> points, std::span<const float> radii);
+    /// A tube along a polyline, radii per point; `widen` (>= 1) scales its section along the world's axes.
+    void tube(std::span<const Vec3> points, std::span<const float> radii, const Vec3& widen = Vec3::Ones());
     /// The same with the radius running from first to last, linearly in the point number.
-    void tube(std::span<const Vec3> points, float first, float last);
+    void tube(std::span<const Vec3> points, float first, float last, const Vec3& widen = Vec3::Ones());
     void ellipsoid(const Frame& frame, const Vec3& radius) { add(Ellipsoid{radius}, frame); }
     void ball(const Vec3& center, float radius) {
         add(Ellipsoid{Vec3::Constant(radius)}, {center, Eigen::Matrix3f::Identity()});

@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
 #include "host/core/errors.h"
 #include "host/core/random.h"
 #include "host/core/text.h"
-#include "host/mesh/topology.h"
 #include "host/synth/field.h"
 #include "host/synth/models.h"
 #include "host/synth/part_labels.h"
@@ -63,8 +63,22 @@ int genus_of(const TriangleMesh& mesh) {
 }
 
 bool is_one_component(const TriangleMesh& mesh) {
-    const std::vector<std::uint32_t> component = face_components(mesh, build_topology(mesh));
-    return std::all_of(component.begin(), component.end(), [](std::uint32_t c) { return c == 0; });
+    std::vector<std::uint32_t> parent(mesh.vertex_count());
+    std::iota(parent.begin(), parent.end(), 0u);
+    const auto root = [&](std::uint32_t v) {
+        while (parent[v] != v) v = parent[v] = parent[parent[v]];
+        return v;
+    };
+    std::size_t components = parent.size();
+    for (const Face& face : mesh.faces) {
+        for (std::size_t i = 1; i < 3; ++i) {
+            const std::uint32_t a = root(face[0]), b = root(face[i]);
+            if (a == b) continue;
+            parent[b] = a;
+            --components;
+        }
+    }
+    return components == 1;
 }
 
 /// Polygonizes finely enough that coarsening to `faces` leaves no trace of the grid.
@@ -110,7 +124,7 @@ SynthShape make_shape(std::string_view kind_name, std::uint64_t seed, std::size_
         const ImplicitField field(model.primitives);
         const TriangleMesh fine = fine_mesh(field, model.detail, faces);
         const bool last = attempt + 1 == k_attempts;
-        if (!last && (!is_one_component(fine) || (kind.genus != k_any_genus && genus_of(fine) != kind.genus))) continue;
+        if (!last && ((kind.genus != k_any_genus && genus_of(fine) != kind.genus) || !is_one_component(fine))) continue;
         shape.mesh = remesh(fine, field, faces);
         shape.labels.label = label_faces(shape.mesh, field);
         break;

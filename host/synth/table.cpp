@@ -77,7 +77,9 @@ void corner_legs(Sculptor& add, const Design& d, Random& random) {
     std::array<Vec3, 4> feet;
     for (std::size_t i = 0; i < 4; ++i) {
         const Vec3 out(i % 2 == 0 ? 1.0f : -1.0f, 0, i < 2 ? 1.0f : -1.0f);
-        const Vec3 from(out.x() * inset * d.width, d.height - 0.5f * d.thickness, out.z() * inset * d.depth);
+        // Round ends must not come out at the top.
+        const float high = d.height + d.thickness - 1.45f * d.leg;
+        const Vec3 from(out.x() * inset * d.width, high, out.z() * inset * d.depth);
         Vec3 to(from.x(), 0, from.z());
         switch (style) {
             case 0:
@@ -108,13 +110,13 @@ void corner_legs(Sculptor& add, const Design& d, Random& random) {
 
 void pedestal(Sculptor& add, const Design& d, Random& random) {
     const float r = pick(random, 0.045f, 0.08f), reach = pick(random, 0.5f, 0.75f) * d.depth;
-    const Vec3 from(0, d.height - 0.5f * d.thickness, 0), to(0, 0.1f, 0);
+    const Vec3 from(0, d.height - 1.25f * r, 0), to(0, 0.05f, 0), under(0, d.height - d.thickness - 0.03f, 0);
     if (chance(random, 0.5)) {
         turned_leg(add, from, to, r, pick(random, 0, 6.28f));
     } else {
         add.rod(from, to, r, 0.01f);
     }
-    add.rod(from - Vec3(0, 0.05f, 0), from, 2.2f * r, 0.015f);
+    add.rod(under, Vec3(0, d.height, 0), 2.2f * r, 0.015f);
     if (chance(random, 0.35)) {  // a round foot
         add.blend(0.06f);
         add.add(RoundCylinder{0.03f, reach, 0.02f}, {Vec3(0, 0.03f, 0)});

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #include "shaders/lib/context_bins.glsl"
 #include "shaders/shared/context.h"
 
@@ -48,7 +49,7 @@ void main() {
     uint before[k_bins + 1], behind[k_bins + 1];
     before[k_bins] = 0;
     behind[k_bins] = parameters.samples;
-    for (uint b = k_bins - 1; b > 0; --b) {
+    [[dont_unroll]] for (uint b = k_bins - 1; b > 0; --b) {
         before[b] = count_before(axis * parameters.samples, p, parameters.edges[axis][b - 1]);
         behind[b] = max(first_behind(axis * parameters.samples, p, parameters.edges[axis][b - 1]), before[b]);
     }
@@ -57,10 +58,10 @@ void main() {
     const uint blocks = (parameters.classes + 3) / 4;
     for (uint block = 0; block < blocks; ++block) {
         const uint first = (axis * blocks + block) * (parameters.samples + 1);
-        for (uint b = 0; b < k_bins; ++b) {
+        [[dont_unroll]] for (uint b = 0; b < k_bins; ++b) {
             const vec4 mass = (prefixes[first + behind[b + 1]] - prefixes[first + behind[b]]) +
                               (prefixes[first + before[b]] - prefixes[first + before[b + 1]]);
-            for (uint c = 0; c < min(4u, parameters.classes - 4 * block); ++c)
+            [[dont_unroll]] for (uint c = 0; c < min(4u, parameters.classes - 4 * block); ++c)
                 histograms[histogram_column(axis + 1, b, parameters.classes, 4 * block + c) * parameters.faces + face] = mass[c];
         }
     }

@@ -5,15 +5,14 @@
 SHARED_BEGIN
 
 struct GeodesicContextParameters {
-    vec4 edges;  // inner bin edges, rising
-    uint faces;  // of the tile, also the distance from one output column to the next
-    uint samples;
+    uint faces;         // of the tile, also the distance from one output column to the next
+    uint sample_quads;  // groups of four samples
     uint classes;
-    uint padding;
+    uint threads;  // invocations along x that have work
 };
 
 struct AxisContextParameters {
-    vec4 edges[6];  // per axis
+    vec4 edges[6];  // per axis the inner bin edges, rising
     uint faces;
     uint samples;
     uint classes;
@@ -21,7 +20,7 @@ struct AxisContextParameters {
 };
 
 #ifdef __cplusplus
-EXEMPLAR_LAYOUT(GeodesicContextParameters, edges, faces, samples, classes, padding)
+EXEMPLAR_LAYOUT(GeodesicContextParameters, faces, sample_quads, classes, threads)
 EXEMPLAR_LAYOUT(AxisContextParameters, edges, faces, samples, classes, padding)
 #endif
 

@@ -22,7 +22,8 @@ struct StumpGroup {
 
 struct StumpParameters {
     uint rows;
-    uint stride;  // vec4s from one feature column to the next
+    uint stride;   // vec4s from one feature column to the next: at least threads x quads per thread
+    uint threads;  // invocations that have work
     uint groups;
     uint link;  // the values of exemplar::Link
     float scale;
@@ -31,7 +32,7 @@ struct StumpParameters {
 #ifdef __cplusplus
 EXEMPLAR_LAYOUT(GroupedStump, column, threshold, above, below)
 EXEMPLAR_LAYOUT(StumpGroup, first, end, classes_low, classes_high)
-EXEMPLAR_LAYOUT(StumpParameters, rows, stride, groups, link, scale)
+EXEMPLAR_LAYOUT(StumpParameters, rows, stride, threads, groups, link, scale)
 #endif
 
 SHARED_END

@@ -45,7 +45,7 @@ TEST(Features, EveryColumnTellsFacesApart) {
         const auto [low, high] = std::ranges::minmax(features.unary.column(k));
         if (high == low) ++constant;
     }
-    EXPECT_LT(constant, 60U);  // far corners of spin images and steep angles far away stay empty
+    EXPECT_LT(constant, 100U);  // far corners of spin images and steep angles far away stay empty
 }
 
 TEST(Features, OrientationAddsCenteredCoordinates) {
@@ -123,7 +123,11 @@ TEST(Features, SamplesStandForAllFaces) {
     }
     for (auto& [family, values] : errors) {
         std::ranges::sort(values);
-        const double bound = family == "shape_context" ? 0.15 : family == "spin" ? 0.2 : family == "pca" ? 0.1 : 0.05;
+        const double bound = family == "shape_context" ? 0.15
+                             : family == "spin"        ? 0.2
+                             : family == "pca"         ? 0.1
+                             : family == "geodesic"    ? 0.2
+                                                       : 0.05;
         EXPECT_LT(values[values.size() / 2], bound) << family;
     }
 }

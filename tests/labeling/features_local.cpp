@@ -46,16 +46,19 @@ TEST(CurvatureFeatures, OfASphereAreItsInverseRadius) {
     const TriangleMesh sphere = shapes::icosphere(4, 3.0F);
     const MeshFeatures features = compute_features(sphere);
     const float truth = 1.0F / normalized_radius(sphere, 1000);
-    for (const char* radius : {"@0.01", "@0.02", "@0.05", "@0.1"}) {
-        for (const float k : column(features.unary, std::string("curvature.k1") + radius))
-            EXPECT_NEAR(k, truth, 0.06F * truth);
-        for (const float k : column(features.unary, std::string("curvature.k2") + radius))
-            EXPECT_NEAR(k, truth, 0.06F * truth);
+    // The smallest patches hold eight faces; their centers lie at slightly different depths below the sphere.
+    for (const auto& [radius, error] :
+         {std::pair("@0.01", 0.1F), std::pair("@0.02", 0.1F), std::pair("@0.05", 0.07F), std::pair("@0.1", 0.05F)}) {
+        for (const char* function : {"k1", "k2", "mean", "|k1|"}) {
+            for (const float k : column(features.unary, std::string("curvature.") + function + radius)) {
+                ASSERT_NEAR(k, truth, error * truth) << function << radius;
+            }
+        }
         for (const float k : column(features.unary, std::string("curvature.k1*k2") + radius)) {
-            EXPECT_NEAR(k, truth * truth, 0.12F * truth * truth);
+            ASSERT_NEAR(k, truth * truth, 2.0F * error * truth * truth) << radius;
         }
     }
-    for (const float k : column(features.pairwise, "curvature.k1@0.04")) EXPECT_NEAR(k, truth, 0.06F * truth);
+    for (const float k : column(features.pairwise, "curvature.k1@0.04")) EXPECT_NEAR(k, truth, 0.1F * truth);
 }
 
 TEST(CurvatureFeatures, OfACylinderAndATorus) {
@@ -75,22 +78,23 @@ TEST(CurvatureFeatures, OfACylinderAndATorus) {
     for (std::size_t f = 0; f < ring.face_count(); ++f) {
         const Vec3 p = ring_prepared.center[f] / unit;
         const float from_axis = p.head<2>().norm();
-        EXPECT_NEAR(column(features.unary, "curvature.k1@0.1")[f] * unit, 1.0F / 0.4F, 0.15F);
-        EXPECT_NEAR(column(features.unary, "curvature.k2@0.1")[f] * unit, (from_axis - 1.0F) / 0.4F / from_axis, 0.15F);
+        EXPECT_NEAR(column(features.unary, "curvature.k1@0.1")[f] * unit, 1.0F / 0.4F, 0.25F);
+        EXPECT_NEAR(column(features.unary, "curvature.k2@0.1")[f] * unit, (from_axis - 1.0F) / 0.4F / from_axis, 0.25F);
     }
 }
 
 TEST(PcaFeatures, OfAFlatDiskAreHalfItsRadius) {
     const MeshFeatures features = compute_features(shapes::grid(50, 50, 1.0F));
     const std::size_t middle = 2 * (25 * 50 + 25);
-    // A disk of radius R has a standard deviation of R / 2 along each diameter; paths on the dual graph are longer than
-    // straight lines, which shrinks the disk somewhat.
+    // A disk of radius R has a standard deviation of R / 2 along each diameter; paths on the dual graph of a regular
+    // grid are up to 1.5 times as long as straight lines, which shrinks the disk, in some directions more than in
+    // others.
     for (const char* radius : {"@0.2", "@0.3", "@0.5"}) {
         const float s1 = column(features.unary, std::string("pca.s1") + radius)[middle];
         const float s2 = column(features.unary, std::string("pca.s2") + radius)[middle];
         EXPECT_LT(s1, 0.5F);
-        EXPECT_GT(s2, 0.33F);
-        EXPECT_LT(s1 / s2, 1.25F);
+        EXPECT_GT(s2, 0.3F);
+        EXPECT_LT(s1 / s2, 1.5F);
         EXPECT_NEAR(column(features.unary, std::string("pca.s1/s3") + radius)[middle], 100.0F, 0.1F);  // the bound
         EXPECT_NEAR(column(features.unary, std::string("pca.(s1+s2)/sum") + radius)[middle], 1.0F, 0.01F);
     }
@@ -102,7 +106,7 @@ TEST(PcaFeatures, OfAThinRodLieAlongIt) {
                                  s1 = column(features.unary, "pca.s1@0.2");
     for (std::size_t f = 2000; f < 2800; ++f) {
         EXPECT_GT(share[f], 0.95F);
-        EXPECT_NEAR(s1[f], 1.0F / std::sqrt(3.0F), 0.04F);  // a segment of half length 1
+        EXPECT_NEAR(s1[f], 1.0F / std::sqrt(3.0F), 0.06F);  // a segment of half length 1
     }
 }
 

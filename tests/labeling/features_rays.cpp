@@ -20,10 +20,11 @@ TEST(RayStatistics, KeepWhatIsNearTheMedian) {
 }
 
 TEST(RayStatistics, WeighByTheGivenWeights) {
-    const std::vector<float> length{2.0F, 4.0F, 3.0F}, weight{3.0F, 1.0F, 0.0F};
+    const std::vector<float> length{2.0F, 3.0F, 2.0F, 3.0F}, weight{3.0F, 1.0F, 3.0F, 1.0F};
     const auto statistics = ray_statistics(length, weight);
-    EXPECT_FLOAT_EQ(statistics->median, 3.0F);
-    EXPECT_NEAR(statistics->mean, 3.0F, 0.51F);
+    EXPECT_FLOAT_EQ(statistics->median, 2.5F);
+    EXPECT_FLOAT_EQ(statistics->mean, 2.25F);
+    EXPECT_FLOAT_EQ(statistics->mean_square, 5.25F);
 }
 
 TEST(InwardRays, PatternFillsItsCones) {
@@ -32,8 +33,9 @@ TEST(InwardRays, PatternFillsItsCones) {
     for (std::size_t cone = 0; cone < k_cones; ++cone) {
         const float half = static_cast<float>(k_cone_angles[cone]) * std::numbers::pi_v<float> / 360.0F;
         EXPECT_NEAR(pattern.angle[pattern.cone_end[cone] - 1], half, 1e-5F);
-        if (pattern.cone_end[cone] < InwardRayPattern::k_rays)
+        if (cone + 1 < k_cones) {
             EXPECT_GT(pattern.angle[pattern.cone_end[cone]], half + 0.01F);
+        }
     }
     EXPECT_EQ(pattern.angle[0], 0.0F);
 }
@@ -45,7 +47,14 @@ TEST(InwardRays, OfASphereAreItsChords) {
     const InwardRayPattern& pattern = inward_ray_pattern();
     for (std::size_t f = 0; f < prepared.face_count(); f += 37) {
         for (std::size_t k = 0; k < InwardRayPattern::k_rays; ++k) {
-            EXPECT_NEAR(rays.of_face(f)[k], 2.0F * radius * std::cos(pattern.angle[k]), 0.03F * radius);
+            // Beyond 45 degrees a chord ends where the normal points the same way: Shapira's rule drops it.
+            const float same_way = -std::cos(2.0F * pattern.angle[k]), length = rays.of_face(f)[k];
+            if (same_way < 0.05F) {
+                EXPECT_NEAR(length, 2.0F * radius * std::cos(pattern.angle[k]), 0.03F * radius);
+            }
+            if (same_way > 0.15F) {
+                EXPECT_EQ(length, k_missed);
+            }
         }
     }
 }

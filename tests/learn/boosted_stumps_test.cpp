@@ -1,5 +1,6 @@
 #include "host/learn/boosted_stumps.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +16,7 @@ FeatureMatrix random_features(std::size_t rows, std::size_t cols, Random& random
     FeatureMatrix matrix;
     matrix.rows = rows;
     for (std::size_t f = 0; f < cols; ++f) {
-        for (float& value : matrix.add("f" + std::to_string(f))) {
+        for (float& value : matrix.add(fmt::format("f{}", f))) {
             value = random.uniform() < 0.05 ? std::nanf("") : static_cast<float>(random.normal());
         }
     }

@@ -1,5 +1,6 @@
 #include "host/learn/quantize.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +21,7 @@ FeatureMatrix matrix_of(const std::vector<std::vector<float>>& columns) {
     FeatureMatrix matrix;
     matrix.rows = columns.front().size();
     for (const std::vector<float>& column : columns) {
-        std::copy(column.begin(), column.end(), matrix.add("f" + std::to_string(matrix.cols())).begin());
+        std::copy(column.begin(), column.end(), matrix.add(fmt::format("f{}", matrix.cols())).begin());
     }
     return matrix;
 }

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -18,21 +17,21 @@ namespace {
 
 constexpr float k_tolerance = 1e-5f;
 
-// Positions and distances on a coarse grid, so that many fall exactly on bin edges; some distances are infinite.
+// Positions on a coarse grid, so that many distances fall exactly on range edges; some samples have no path.
 ContextGeometry random_geometry(std::size_t faces, std::size_t samples, Random& random) {
     ContextGeometry geometry;
     geometry.faces = faces;
     const auto grid = [&] { return static_cast<float>(random.index(41)) * 0.05f; };
+    const auto range = [&] { return static_cast<std::uint8_t>(random.index(k_context_bins)); };
     for (std::size_t j = 0; j < samples; ++j)
         geometry.sample_face.push_back(static_cast<std::uint32_t>(random.index(faces)));
     geometry.sample_area.assign(samples, 1.0f / static_cast<float>(samples));
     for (std::size_t i = 0; i < samples * faces; ++i)
-        geometry.geodesic.push_back(random.uniform() < 0.1 ? std::numeric_limits<float>::infinity() : grid());
+        geometry.geodesic_bin.push_back(random.uniform() < 0.1 ? k_no_bin : range());
     for (std::size_t i = 0; i < k_context_axes * faces; ++i)
         geometry.axis_position.push_back(random.uniform() < 0.5 ? grid()
                                                                 : static_cast<float>(random.uniform(0.0, 2.0)));
-    for (std::size_t measure = 0; measure < k_context_measures; ++measure)
-        geometry.edges[measure] = {0.2f, 0.5f, 0.95f, 1.5f};
+    for (auto& edges : geometry.axis_edges) edges = {0.2f, 0.5f, 0.95f, 1.5f};
     return geometry;
 }
 
@@ -63,36 +62,39 @@ void expect_near(const std::vector<float>& actual, const std::vector<float>& exp
     }
 }
 
-void expect_parity(const ContextGeometry& geometry, std::size_t classes, Random& random) {
+void expect_parity(GpuContextHistograms& device, const ContextGeometry& geometry, std::size_t classes, Random& random) {
     const std::vector<float> probabilities = random_probabilities(geometry.faces, classes, random);
     std::vector<float> expected(output_size(geometry.faces, classes)), actual(expected.size(), -1.0f);
     CpuContextHistograms().accumulate(geometry, probabilities, classes, expected);
-    GpuContextHistograms(testing::shared_device()).accumulate(geometry, probabilities, classes, actual);
+    device.accumulate(geometry, probabilities, classes, actual);
     expect_near(actual, expected, geometry.faces, classes);
 }
 
 TEST(ContextParity, OddNumbersOfFaces) {
+    GpuContextHistograms histograms(testing::shared_device());
     Random random(1);
     for (const std::size_t faces : {0u, 1u, 63u, 64u, 65u, 300u}) {
         SCOPED_TRACE(faces);
-        expect_parity(random_geometry(faces, faces ? 37 : 0, random), 3, random);
+        expect_parity(histograms, random_geometry(faces, faces ? 37 : 0, random), 3, random);
     }
 }
 
 TEST(ContextParity, OddNumbersOfSamples) {
+    GpuContextHistograms histograms(testing::shared_device());
     Random random(2);
     for (const std::size_t samples : {0u, 1u, 2u, 255u, 256u, 257u, 1000u}) {
         SCOPED_TRACE(samples);
-        expect_parity(random_geometry(50, samples, random), 5, random);
+        expect_parity(histograms, random_geometry(50, samples, random), 5, random);
     }
 }
 
 TEST(ContextParity, AllNumbersOfClasses) {
+    GpuContextHistograms histograms(testing::shared_device());
     Random random(3);
     const ContextGeometry geometry = random_geometry(66, 40, random);
     for (const std::size_t classes : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u, 16u, 17u, 64u}) {
         SCOPED_TRACE(classes);
-        expect_parity(geometry, classes, random);
+        expect_parity(histograms, geometry, classes, random);
     }
 }
 
@@ -114,19 +116,20 @@ TEST(ContextParity, FacesAreTiledAndTheGeometryIsReused) {
 
 // A flat mesh has no extent along an axis: all edges and distances are zero, and everything is in the last bin.
 TEST(ContextParity, DegenerateAxes) {
+    GpuContextHistograms histograms(testing::shared_device());
     Random random(5);
     ContextGeometry geometry = random_geometry(70, 20, random);
     std::fill_n(geometry.axis_position.begin(), 70, 0.0f);
-    geometry.edges[1] = {0.0f, 0.0f, 0.0f, 0.0f};
-    geometry.edges[2] = {0.5f, 0.5f, 0.5f, 0.5f};
-    expect_parity(geometry, 3, random);
+    geometry.axis_edges[0] = {0.0f, 0.0f, 0.0f, 0.0f};
+    geometry.axis_edges[1] = {0.5f, 0.5f, 0.5f, 0.5f};
+    expect_parity(histograms, geometry, 3, random);
 }
 
 // Checked against the definition: all samples of a connected mesh add up to 1 over the bins of each measure.
 TEST(ContextParity, BinsOfAMeasureHoldTheWholeMass) {
     Random random(6);
     ContextGeometry geometry = random_geometry(65, 100, random);
-    for (float& distance : geometry.geodesic) distance = std::min(distance, 3.0f);
+    for (std::uint8_t& range : geometry.geodesic_bin) range = std::min<std::uint8_t>(range, k_context_bins - 1);
     const std::vector<float> probabilities = random_probabilities(65, 6, random);
     std::vector<float> histograms(output_size(65, 6));
     GpuContextHistograms(testing::shared_device()).accumulate(geometry, probabilities, 6, histograms);
@@ -143,7 +146,7 @@ TEST(ContextParity, RefusesContradictions) {
     Random random(7);
     const ContextGeometry good = random_geometry(20, 10, random);
     ContextGeometry short_geodesic = good, stray_sample = good;
-    short_geodesic.geodesic.pop_back();
+    short_geodesic.geodesic_bin.pop_back();
     stray_sample.sample_face[3] = 20;
     const std::vector<float> probabilities = random_probabilities(20, 2, random);
     std::vector<float> out(output_size(20, 2));

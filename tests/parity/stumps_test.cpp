@@ -68,15 +68,22 @@ TEST(StumpParity, OddNumbersOfRows) {
     }
 }
 
-TEST(StumpParity, AllNumbersOfClasses) {
+TEST(StumpParity, OddNumbersOfClasses) {
     GpuStumpScorer scorer(testing::shared_device());
     Random random(2);
     const FeatureMatrix features = random_features(70, 20, random);
-    for (const std::uint32_t classes : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u, 15u, 16u, 17u, 31u, 32u, 33u, 64u})
+    for (const std::uint32_t classes : {1u, 3u, 4u, 5u, 8u, 17u, 33u})
         for (const Link link : {Link::softmax, Link::sigmoid}) {
             SCOPED_TRACE(classes);
             expect_parity(scorer, random_stumps(classes, 60, 20, random), features, link, 2.0f);
         }
+}
+
+TEST(StumpParity, TheMostClasses) {
+    GpuStumpScorer scorer(testing::shared_device());
+    Random random(8);
+    const FeatureMatrix features = random_features(70, 20, random);
+    expect_parity(scorer, random_stumps(64, 60, 20, random), features, Link::softmax, 2.0f);
 }
 
 TEST(StumpParity, ClassifiersOfAnyLength) {

@@ -1,0 +1,48 @@
+#include "apps/exemplar/backend.h"
+
+#include <optional>
+
+#include "gpu/imaging/mesh_renderer.h"
+#include "gpu/labeling/context_histograms.h"
+#include "gpu/learn/stump_scorer.h"
+#include "gpu/runtime/device.h"
+#include "host/imaging/camera.h"
+#include "host/imaging/png.h"
+
+namespace exemplar {
+namespace {
+
+constexpr int k_picture_size = 1024;  // pixels a side
+
+// From the front, the right and above: the three sides that tell most of an upright shape.
+const Vec3 k_oblique_view{0.6f, 0.5f, 1.0f};
+
+}  // namespace
+
+struct DeviceBackend::Impl {
+    explicit Impl(const std::string& name) : device({.name = name}), scorer(device), context(device) {}
+    Device device;
+    GpuStumpScorer scorer;
+    GpuContextHistograms context;
+    std::optional<MeshRenderer> renderer;  // made by the first picture: a device that only computes labels too
+};
+
+DeviceBackend::DeviceBackend(const std::string& device) : impl_(std::make_unique<Impl>(device)) {}
+DeviceBackend::~DeviceBackend() = default;
+
+LabelingBackend DeviceBackend::labeling() {
+    return {impl_->scorer, impl_->context};
+}
+
+const std::string& DeviceBackend::device_name() const {
+    return impl_->device.info().name;
+}
+
+void DeviceBackend::render_png(const std::filesystem::path& path, const TriangleMesh& mesh,
+                               std::span<const Color> face_colors) {
+    if (!impl_->renderer) impl_->renderer.emplace(impl_->device);
+    const Camera camera = fit_camera(mesh, k_oblique_view, 1.0f);
+    write_png(path, impl_->renderer->render(mesh, face_colors, camera, k_picture_size, k_picture_size));
+}
+
+}  // namespace exemplar

@@ -1,0 +1,235 @@
+#include "gpu/imaging/mesh_renderer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "embedded/imaging_resolve_comp.h"
+#include "gpu/runtime/errors.h"
+#include "shaders/shared/render.h"
+
+namespace exemplar {
+
+/// What all tiles of a picture share.
+struct MeshDraw {
+    Eigen::Matrix4f view_projection;
+    shared::vec4 eye;
+    std::uint32_t corners;  // 3 per face
+    int width, height;      // of the picture
+    RenderOptions options;
+    std::array<float, 4> background;  // linear
+};
+
+namespace {
+
+// Sums of four samples keep more than the eight bits of a pixel, and every device can draw into this format.
+constexpr VkFormat k_color_format = VK_FORMAT_R16G16B16A16_SFLOAT;
+constexpr std::size_t k_sample_bytes = 8;
+constexpr int k_samples = static_cast<int>(shared::k_render_samples);
+
+constexpr Transition k_color_begins{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_NONE,
+                                    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT};
+constexpr VkPipelineStageFlags2 k_depth_tests =
+    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+constexpr Transition k_depth_begins{
+    k_depth_tests, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, k_depth_tests,
+    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT};
+constexpr Transition k_color_drawn{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                   VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                                   VK_ACCESS_2_TRANSFER_READ_BIT};
+
+template <typename Tile>
+VkExtent2D sample_extent(const Tile& tile) {
+    return {static_cast<std::uint32_t>(tile.width * k_samples), static_cast<std::uint32_t>(tile.height * k_samples)};
+}
+
+// The eye as a homogeneous point; a parallel projection's last row is (0, 0, 0, 1), and its eye lies in one direction.
+shared::vec4 homogeneous_eye(const Camera& camera) {
+    const bool parallel = camera.projection(3, 3) != 0;
+    const Vec3 eye = parallel ? camera.to_eye(Vec3::Zero()) : camera.position();
+    return {eye.x(), eye.y(), eye.z(), parallel ? 0.0f : 1.0f};
+}
+
+// Stretches the part [begin, begin + size) of `whole` pixels to the full clip space along one axis.
+void zoom(Eigen::Matrix4f& matrix, int axis, int begin, int size, int whole) {
+    const float center = static_cast<float>(2 * begin + size) / static_cast<float>(whole) - 1;
+    matrix.row(axis) =
+        (matrix.row(axis) - center * matrix.row(3)) * (static_cast<float>(whole) / static_cast<float>(size));
+}
+
+template <typename Tile>
+shared::RenderParameters tile_parameters(const MeshDraw& draw, const Tile& tile) {
+    Eigen::Matrix4f matrix = draw.view_projection;
+    zoom(matrix, 0, tile.x, tile.width, draw.width);
+    zoom(matrix, 1, tile.y, tile.height, draw.height);
+    shared::RenderParameters parameters{.matrix = {},
+                                        .eye = draw.eye,
+                                        .ambient = draw.options.ambient,
+                                        .ground = draw.options.ground,
+                                        .headlight = draw.options.headlight,
+                                        .vertex_normals = draw.options.smooth ? 1u : 0u};
+    for (int column = 0; column < 4; ++column)
+        parameters.matrix[column] = {matrix(0, column), matrix(1, column), matrix(2, column), matrix(3, column)};
+    return parameters;
+}
+
+// x, y, z of one vector after the other.
+std::span<const float> coordinates(const std::vector<Vec3>& vectors) {
+    static_assert(sizeof(Vec3) == 3 * sizeof(float));
+    if (vectors.empty()) return {};
+    return {vectors.front().data(), 3 * vectors.size()};
+}
+
+std::vector<std::uint32_t> packed_colors(std::span<const Color> colors) {
+    std::vector<std::uint32_t> packed;
+    packed.reserve(colors.size());
+    for (const Color& color : colors)
+        packed.push_back(color[0] | std::uint32_t{color[1]} << 8 | std::uint32_t{color[2]} << 16);
+    return packed;
+}
+
+VkRenderingAttachmentInfo attachment_info(const Attachment& attachment, VkImageLayout layout, VkClearValue clear,
+                                          VkAttachmentStoreOp store) {
+    auto info = empty_structure<VkRenderingAttachmentInfo>(VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO);
+    info.imageView = attachment.view();
+    info.imageLayout = layout;
+    info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
+    info.storeOp = store;
+    info.clearValue = clear;
+    return info;
+}
+
+void check_arguments(const TriangleMesh& mesh, std::span<const Color> face_colors, int width, int height) {
+    if (width <= 0 || height <= 0) throw UsageError(fmt::format("render: empty image ({} x {})", width, height));
+    if (face_colors.size() != mesh.face_count())
+        throw UsageError(fmt::format("render: {} colors for {} faces; give one color per face", face_colors.size(),
+                                     mesh.face_count()));
+}
+
+}  // namespace
+
+MeshRenderer::MeshRenderer(Device& device, int tile_size)
+    : device_(device),
+      tile_size_(tile_size),
+      depth_format_(depth_format(device)),
+      pipeline_(device, k_color_format, depth_format_),
+      resolve_(device, shaders::imaging_resolve_comp, {.push_constants = layout_of<shared::ResolveParameters>()}),
+      commands_(device),
+      stream_(device) {
+    if (tile_size <= 0) throw UsageError(fmt::format("render: tiles of {} pixels; give at least 1", tile_size));
+}
+
+Image MeshRenderer::render(const TriangleMesh& mesh, std::span<const Color> face_colors, const Camera& camera,
+                           int width, int height, const RenderOptions& options) {
+    check_arguments(mesh, face_colors, width, height);
+    upload(mesh, face_colors, options);
+    reserve_tile(std::min(width, tile_size_), std::min(height, tile_size_));
+    MeshDraw draw{.view_projection = camera.view_projection(),
+                  .eye = homogeneous_eye(camera),
+                  .corners = static_cast<std::uint32_t>(3 * mesh.face_count()),
+                  .width = width,
+                  .height = height,
+                  .options = options,
+                  .background = {0, 0, 0, 1}};
+    for (std::size_t c = 0; c < 3; ++c)
+        draw.background[c] = srgb_to_linear(static_cast<float>(options.background[c]) / 255);
+    Image image(width, height, 3);
+    for (int y = 0; y < height; y += tile_size_)
+        for (int x = 0; x < width; x += tile_size_)
+            render_tile({x, y, std::min(tile_size_, width - x), std::min(tile_size_, height - y)}, draw, image);
+    return image;
+}
+
+void MeshRenderer::upload(const TriangleMesh& mesh, std::span<const Color> face_colors, const RenderOptions& options) {
+    if (constexpr std::uint64_t k_limit = std::numeric_limits<std::uint32_t>::max() / 3; mesh.face_count() > k_limit)
+        throw DeviceLimitError(fmt::format("{} faces are over the limit of {} in one picture; simplify the mesh",
+                                           mesh.face_count(), k_limit),
+                               mesh.face_count(), k_limit);
+    const std::vector<Vec3> normals = options.smooth ? vertex_normals(mesh) : face_normals(mesh);
+    corners_ = Buffer::of<Face>(device_, mesh.faces);
+    positions_ = Buffer::of(device_, coordinates(mesh.vertices));
+    normals_ = Buffer::of(device_, coordinates(normals));
+    colors_ = Buffer::of<std::uint32_t>(device_, packed_colors(face_colors));
+    pipeline_.bind({&corners_, &positions_, &normals_, &colors_});
+}
+
+void MeshRenderer::reserve_tile(int width, int height) {
+    if (width <= tile_width_ && height <= tile_height_) return;
+    width = std::max(width, tile_width_);
+    height = std::max(height, tile_height_);
+    tile_width_ = tile_height_ = 0;  // until all of it is there
+    const VkExtent2D extent = sample_extent(Tile{0, 0, width, height});
+    color_ =
+        Attachment(device_, k_color_format, extent,
+                   VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
+    depth_ = Attachment(device_, depth_format_, extent, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
+                        VK_IMAGE_ASPECT_DEPTH_BIT);
+    samples_ = Buffer(device_, k_sample_bytes * extent.width * extent.height);
+    pixels_ =
+        Buffer(device_, sizeof(std::uint32_t) * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    tile_width_ = width;
+    tile_height_ = height;
+}
+
+void MeshRenderer::draw(VkCommandBuffer commands, const Tile& tile, const MeshDraw& draw) const {
+    VkClearValue background{}, far{};
+    std::ranges::copy(draw.background, background.color.float32);
+    far.depthStencil.depth = 1.0f;
+    const auto color =
+        attachment_info(color_, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, background, VK_ATTACHMENT_STORE_OP_STORE);
+    const auto depth =
+        attachment_info(depth_, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, far, VK_ATTACHMENT_STORE_OP_DONT_CARE);
+    const VkExtent2D extent = sample_extent(tile);
+    auto rendering = empty_structure<VkRenderingInfo>(VK_STRUCTURE_TYPE_RENDERING_INFO);
+    rendering.renderArea = {{0, 0}, extent};
+    rendering.layerCount = 1;
+    rendering.colorAttachmentCount = 1;
+    rendering.pColorAttachments = &color;
+    rendering.pDepthAttachment = &depth;
+    vkCmdBeginRendering(commands, &rendering);
+    const VkViewport viewport{0, 0, static_cast<float>(extent.width), static_cast<float>(extent.height), 0, 1};
+    vkCmdSetViewport(commands, 0, 1, &viewport);
+    vkCmdSetScissor(commands, 0, 1, &rendering.renderArea);
+    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.handle());
+    const VkDescriptorSet set = pipeline_.set();
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.layout(), 0, 1, &set, 0, nullptr);
+    const shared::RenderParameters parameters = tile_parameters(draw, tile);
+    vkCmdPushConstants(commands, pipeline_.layout(), VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                       sizeof parameters, &parameters);
+    if (draw.corners > 0) vkCmdDraw(commands, draw.corners, 1, 0, 0);
+    vkCmdEndRendering(commands);
+}
+
+void MeshRenderer::render_tile(const Tile& tile, const MeshDraw& mesh_draw, Image& image) {
+    commands_.run([&](VkCommandBuffer commands) {
+        change_layout(commands, color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+                      VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, k_color_begins);
+        change_layout(commands, depth_.image(), VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+                      VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, k_depth_begins);
+        draw(commands, tile, mesh_draw);
+        change_layout(commands, color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                      VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, k_color_drawn);
+        VkBufferImageCopy region{};
+        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+        region.imageExtent = {sample_extent(tile).width, sample_extent(tile).height, 1};
+        vkCmdCopyImageToBuffer(commands, color_.image(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, samples_.handle(), 1,
+                               &region);
+    });
+    const shared::ResolveParameters size{static_cast<std::uint32_t>(tile.width),
+                                         static_cast<std::uint32_t>(tile.height)};
+    tile_pixels_.resize(std::size_t{size.width} * size.height);
+    stream_.dispatch(resolve_, Threads(size.width, size.height), {samples_, pixels_}, size);
+    stream_.download(pixels_, std::span(tile_pixels_));
+    stream_.finish();
+    for (int y = 0; y < tile.height; ++y)
+        for (int x = 0; x < tile.width; ++x) {
+            const std::uint32_t packed =
+                tile_pixels_[static_cast<std::size_t>(y) * size.width + static_cast<std::size_t>(x)];
+            const auto pixel = image.pixel(tile.x + x, tile.y + y);
+            for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<std::uint8_t>(packed >> (8 * c));
+        }
+}
+
+}  // namespace exemplar

@@ -1,0 +1,391 @@
+#include "host/learn/jointboost.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "host/core/errors.h"
+#include "host/core/interrupt.h"
+#include "host/core/parallel.h"
+#include "host/core/random.h"
+#include "tests/learn/boosting_data.h"
+
+namespace exemplar {
+namespace {
+
+/// JointBoost as the thesis writes it, in double precision and without any shortcut.
+class PlainJointBoost {
+  public:
+    explicit PlainJointBoost(const Data& data) : data_(data), w_(data.labels.size() * data.classes) {
+        double total = 0.0;
+        for (std::size_t i = 0; i < data.labels.size(); ++i) {
+            for (std::size_t c = 0; c < data.classes; ++c) {
+                total += at(i, c) = data.weights[data.weights.size() == w_.size() ? i * data.classes + c : i];
+            }
+        }
+        for (double& weight : w_) weight /= total;
+    }
+
+    /// Eq. 3.6 of a stump as it is.
+    double error(const Stump& stump, std::span<const float> elsewhere) const {
+        double sum = 0.0;
+        for_each([&](std::size_t i, std::size_t c, double z) {
+            const double difference = z - response(stump, elsewhere, i, c);
+            sum += at(i, c) * difference * difference;
+        });
+        return sum;
+    }
+
+    /// The least Eq. 3.6 over all features, thresholds and subsets, with a, b, k_c in closed form.
+    double least_error() const {
+        double least = 1e30;
+        for (std::uint32_t f = 0; f < data_.features.cols(); ++f) {
+            for (const float threshold : data_.quantized.thresholds[f]) {
+                for (std::uint64_t subset = 1; subset < std::uint64_t{1} << data_.classes; ++subset) {
+                    least = std::min(least, best_error(f, threshold, subset));
+                }
+            }
+        }
+        return least;
+    }
+
+    double best_error(std::uint32_t feature, float threshold, std::uint64_t subset) const {
+        std::vector<double> w(data_.classes + 2, 0.0), s(data_.classes + 2, 0.0);
+        double error = 0.0;
+        for_each([&](std::size_t i, std::size_t c, double z) {
+            const std::size_t side = data_.features.column(feature)[i] > threshold ? 0 : 1;
+            const std::size_t group = subset >> c & 1 ? data_.classes + side : c;
+            w[group] += at(i, c);
+            s[group] += at(i, c) * z;
+            error += at(i, c);
+        });
+        for (std::size_t g = 0; g < w.size(); ++g) error -= w[g] > 0.0 ? s[g] * s[g] / w[g] : 0.0;
+        return error;
+    }
+
+    /// Eq. 3.7; returns the loss (Eq. 3.5).
+    double update(const Stump& stump, std::span<const float> elsewhere) {
+        double loss = 0.0;
+        for_each([&](std::size_t i, std::size_t c, double z) {
+            loss += at(i, c) *= std::exp(-z * response(stump, elsewhere, i, c));
+        });
+        return loss;
+    }
+
+  private:
+    template <typename Body>
+    void for_each(Body&& body) const {
+        for (std::size_t i = 0; i < data_.labels.size(); ++i) {
+            for (std::size_t c = 0; c < data_.classes; ++c) {
+                body(i, c, static_cast<std::size_t>(data_.labels[i]) == c ? 1.0 : -1.0);
+            }
+        }
+    }
+    double response(const Stump& stump, std::span<const float> elsewhere, std::size_t i, std::size_t c) const {
+        if (!(stump.classes >> c & 1)) return elsewhere[c];
+        return data_.features.column(stump.feature)[i] > stump.threshold ? stump.above : stump.below;
+    }
+    double& at(std::size_t i, std::size_t c) { return w_[i * data_.classes + c]; }
+    double at(std::size_t i, std::size_t c) const { return w_[i * data_.classes + c]; }
+
+    const Data& data_;
+    std::vector<double> w_;
+};
+
+bool same_bytes(const BoostedStumps& a, const BoostedStumps& b) {
+    return a.stumps.size() == b.stumps.size() && a.elsewhere == b.elsewhere &&
+           std::memcmp(a.stumps.data(), b.stumps.data(), a.stumps.size() * sizeof(Stump)) == 0;
+}
+
+void expect_every_round_optimal(const Data& data, const BoostOptions& options) {
+    const BoostResult result = train_jointboost(data.training(), data.classes, nullptr, options);
+    ASSERT_EQ(result.classifier.stumps.size(), options.rounds);
+    PlainJointBoost plain(data);
+    for (std::size_t m = 0; m < options.rounds; ++m) {
+        const Stump& stump = result.classifier.stumps[m];
+        const double found = plain.error(stump, constants(result.classifier, m)), least = plain.least_error();
+        EXPECT_NEAR(found, least, 1e-5 * least) << "round " << m;
+        // a, b and k_c are the closed form of the split that was found.
+        EXPECT_NEAR(found, plain.best_error(stump.feature, stump.threshold, stump.classes), 1e-6 * found);
+        const double loss = plain.update(stump, constants(result.classifier, m));
+        EXPECT_NEAR(result.curve[m].train_loss, loss, 1e-5 * loss) << "round " << m;
+    }
+}
+
+TEST(JointBoost, EveryStumpIsTheBestOne) {
+    BoostOptions options;
+    options.rounds = 12;
+    for (const std::size_t classes : {2u, 3u, 4u, 5u}) {
+        expect_every_round_optimal(make_data(90, 6, classes, 0.8, classes), options);
+    }
+}
+
+TEST(JointBoost, EveryStumpIsTheBestOneWithWeightsPerClass) {
+    Data data = make_data(80, 5, 3, 0.8, 4);
+    Random random(5);
+    data.weights.clear();
+    for (std::size_t i = 0; i < 80 * 3; ++i) {
+        data.weights.push_back(random.uniform() < 0.2 ? 0.0f : static_cast<float>(random.uniform(0.1, 3.0)));
+    }
+    BoostOptions options;
+    options.rounds = 8;
+    expect_every_round_optimal(data, options);
+}
+
+TEST(JointBoost, GreedySubsetsAreNearlyAsGood) {
+    const Data data = make_data(400, 8, 6, 0.7, 6);
+    BoostOptions options;
+    options.rounds = 40;
+    const double exhaustive = train_jointboost(data.training(), 6, nullptr, options).curve.back().train_loss;
+    options.exhaustive_classes = 1;
+    const BoostResult greedy = train_jointboost(data.training(), 6, nullptr, options);
+    EXPECT_LT(greedy.curve.back().train_loss, 1.1 * exhaustive);
+    // The greedy search starts with single classes, so it is never worse than stumps that share nothing.
+    PlainJointBoost plain(data);
+    for (std::size_t m = 0; m < 5; ++m) {
+        double alone = 1e30;
+        for (std::uint32_t f = 0; f < data.features.cols(); ++f) {
+            for (const float threshold : data.quantized.thresholds[f]) {
+                for (std::size_t c = 0; c < 6; ++c) {
+                    alone = std::min(alone, plain.best_error(f, threshold, std::uint64_t{1} << c));
+                }
+            }
+        }
+        EXPECT_LE(plain.error(greedy.classifier.stumps[m], constants(greedy.classifier, m)), alone * (1 + 1e-6));
+        plain.update(greedy.classifier.stumps[m], constants(greedy.classifier, m));
+    }
+}
+
+TEST(JointBoost, TheLossFallsWithManyClasses) {
+    for (const std::size_t classes : {9u, 17u, 64u}) {  // several panels of lanes
+        const Data data = make_data(classes * 25, 20, classes, 0.3, classes);
+        BoostOptions options;
+        options.rounds = 60;
+        const BoostResult result = train_jointboost(data.training(), classes, nullptr, options);
+        PlainJointBoost plain(data);
+        double before = 1.0;
+        for (std::size_t m = 0; m < result.curve.size(); ++m) {
+            const double loss = plain.update(result.classifier.stumps[m], constants(result.classifier, m));
+            ASSERT_NEAR(result.curve[m].train_loss, loss, 2e-5 * loss) << classes << " " << m;
+            EXPECT_LT(loss, before);
+            before = loss;
+        }
+        EXPECT_GT(training_accuracy(result.classifier, data), 3.0 / static_cast<double>(classes));
+    }
+}
+
+TEST(JointBoost, LearnsWhatIsSeparable) {
+    const Data data = make_data(600, 12, 5, 0.02, 7);
+    BoostOptions options;
+    options.rounds = 400;  // the loss falls far below what a float can hold
+    const BoostResult result = train_jointboost(data.training(), 5, nullptr, options);
+    EXPECT_EQ(training_accuracy(result.classifier, data), 1.0);
+    EXPECT_LT(result.curve.back().train_loss, 1e-12);
+    for (const Stump& stump : result.classifier.stumps) {
+        EXPECT_TRUE(std::isfinite(stump.above) && std::isfinite(stump.below));
+        EXPECT_LE(std::abs(stump.above), 1.0001f);
+        EXPECT_LE(std::abs(stump.below), 1.0001f);
+    }
+    for (const float k : result.classifier.elsewhere) EXPECT_TRUE(std::isfinite(k));
+}
+
+TEST(JointBoost, AnAbsentClassIsNeverSharedAndNeverLikely) {
+    Data data = make_data(300, 6, 4, 0.5, 8);
+    data.classes = 6;                                                        // labels 4 and 5 do not occur, and
+    for (std::int32_t& label : data.labels) label = label == 1 ? 2 : label;  // neither does 1
+    BoostOptions options;
+    options.rounds = 120;
+    const BoostResult result = train_jointboost(data.training(), 6, nullptr, options);
+    for (std::size_t m = 0; m < 120; ++m) {
+        for (const std::size_t absent : {1u, 4u, 5u}) {
+            EXPECT_EQ(result.classifier.stumps[m].classes >> absent & 1, 0u);
+            EXPECT_NEAR(constants(result.classifier, m)[absent], -1.0f, 1e-5f);
+        }
+    }
+    std::vector<float> p(300 * 6);
+    CpuStumpScorer().probabilities(result.classifier, data.features, Link::softmax, 1.0f, p);
+    for (std::size_t i = 0; i < 300; ++i) EXPECT_LT(p[i * 6 + 4], 1e-6f);
+}
+
+TEST(JointBoost, ConstantFeaturesLeaveTheClassShares) {
+    Data data = make_data(100, 2, 3, 0.5, 9);
+    std::fill(data.features.values.begin(), data.features.values.end(), 1.0f);
+    data.weights.assign(100, 1.0f);
+    data.quantized = quantize(data.features, {}, {});
+    BoostOptions options;
+    options.rounds = 60;
+    const BoostResult result = train_jointboost(data.training(), 3, nullptr, options);
+    for (const Stump& stump : result.classifier.stumps) EXPECT_EQ(stump.classes, 0u);
+    // With nothing but constants, boosting converges to H_c with sigma(2 H_c) = the share of class c.
+    const std::vector<float> h = result.classifier.constant();
+    for (std::int32_t c = 0; c < 3; ++c) {
+        const auto count = std::count(data.labels.begin(), data.labels.end(), c);
+        EXPECT_NEAR(1.0 / (1.0 + std::exp(-2.0 * static_cast<double>(h[static_cast<std::size_t>(c)]))),
+                    static_cast<double>(count) / 100.0, 1e-4);
+    }
+}
+
+TEST(JointBoost, StopsEarlyAndKeepsTheBestPrefix) {
+    const Data data = make_data(60, 30, 3, 2.5, 10), held_out = make_data(400, 30, 3, 2.5, 11);
+    const ValidationSet validation = held_out.validation();
+    BoostOptions options;
+    options.rounds = 300;
+    options.patience = 20;
+    const BoostResult result = train_jointboost(data.training(), 3, &validation, options);
+    ASSERT_LT(result.curve.size(), 300u);  // noise is soon learned by heart
+    EXPECT_EQ(result.curve.size(), result.best_rounds + 20);
+    EXPECT_EQ(result.classifier.stumps.size(), result.best_rounds);
+    for (std::size_t m = 0; m < result.curve.size(); ++m) {
+        EXPECT_GE(result.curve[m].validation_loss, result.curve[result.best_rounds - 1].validation_loss);
+    }
+
+    options.patience = 0;
+    options.keep_best = false;
+    options.rounds = result.curve.size() + 5;
+    const BoostResult all = train_jointboost(data.training(), 3, &validation, options);
+    EXPECT_EQ(all.curve.size(), options.rounds);
+    EXPECT_EQ(all.classifier.stumps.size(), options.rounds);
+    EXPECT_TRUE(same_bytes(truncate(all.classifier, result.best_rounds), result.classifier));
+    EXPECT_EQ(truncate(all.classifier, 10000).stumps.size(), options.rounds);
+}
+
+TEST(JointBoost, TheValidationCurveCanBeHadAfterwards) {
+    const Data data = make_data(200, 6, 4, 1.0, 12), held_out = make_data(1500, 6, 4, 1.0, 13);
+    const ValidationSet validation = held_out.validation();
+    BoostOptions options;
+    options.rounds = 25;
+    options.patience = 0;
+    options.keep_best = false;
+    const BoostResult with = train_jointboost(data.training(), 4, &validation, options);
+    const BoostResult without = train_jointboost(data.training(), 4, nullptr, options);
+    EXPECT_TRUE(same_bytes(with.classifier, without.classifier));
+    EXPECT_TRUE(std::isnan(without.curve.back().validation_loss));
+    const std::vector<BoostRound> curve = validation_curve(without.classifier, validation);
+    ASSERT_EQ(curve.size(), 25u);
+    PlainJointBoost plain(held_out);
+    for (std::size_t m = 0; m < 25; ++m) {
+        EXPECT_EQ(curve[m].validation_loss, with.curve[m].validation_loss);
+        EXPECT_EQ(curve[m].validation_error, with.curve[m].validation_error);
+        const double loss = plain.update(with.classifier.stumps[m], constants(with.classifier, m));
+        EXPECT_NEAR(curve[m].validation_loss, loss, 1e-6 * loss);
+    }
+    std::vector<float> p(1500 * 4);
+    CpuStumpScorer().probabilities(with.classifier, held_out.features, Link::softmax, 1.0f, p);
+    double wrong = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < 1500; ++i) {
+        const auto row = p.begin() + static_cast<std::ptrdiff_t>(i * 4);
+        wrong += std::max_element(row, row + 4) - row == held_out.labels[i] ? 0.0 : held_out.weights[i];
+        all += held_out.weights[i];
+    }
+    EXPECT_NEAR(curve.back().validation_error, wrong / all, 1e-9);
+}
+
+TEST(JointBoost, ChosenRowsAreAllThatCounts) {
+    const Data all = make_data(300, 5, 3, 1.0, 14);
+    std::vector<std::uint32_t> rows, others;
+    for (std::uint32_t i = 0; i < 300; ++i) (i % 3 == 0 ? others : rows).push_back(i);
+    Data few{all.features, all.quantized, {}, {}, 3};
+    few.quantized.rows = few.features.rows = rows.size();
+    few.quantized.bins.clear();
+    few.features.values.clear();
+    for (std::size_t f = 0; f < 5; ++f) {
+        for (const std::uint32_t row : rows) {
+            few.quantized.bins.push_back(all.quantized.column(f)[row]);
+            few.features.values.push_back(all.features.column(f)[row]);
+        }
+    }
+    for (const std::uint32_t row : rows) few.labels.push_back(all.labels[row]);
+    for (const std::uint32_t row : rows) few.weights.push_back(all.weights[row]);
+    BoostOptions options;
+    options.rounds = 15;
+    const ValidationSet held_out = all.validation(others), held_in = few.validation();
+    const BoostResult chosen = train_jointboost(all.training(rows), 3, &held_out, options);
+    const BoostResult copied = train_jointboost(few.training(), 3, &held_in, options);
+    const std::size_t common = std::min(chosen.classifier.stumps.size(), copied.classifier.stumps.size());
+    EXPECT_TRUE(same_bytes(truncate(chosen.classifier, common), truncate(copied.classifier, common)));
+    // On the training rows themselves the validation loss is the training loss.
+    for (const BoostRound& round : copied.curve) EXPECT_NEAR(round.validation_loss, round.train_loss, 1e-5);
+}
+
+TEST(JointBoost, TheSameSeedGivesTheSameBytesOnAnyThreads) {
+    const Data data = make_data(3000, 37, 5, 1.0, 15);
+    BoostOptions options;
+    options.rounds = 10;
+    options.feature_fraction = 0.4;
+    options.row_fraction = 0.5;
+    const BoostResult many = train_jointboost(data.training(), 5, nullptr, options);
+    {
+        const ThreadLimit limit(1);
+        EXPECT_TRUE(same_bytes(train_jointboost(data.training(), 5, nullptr, options).classifier, many.classifier));
+    }
+    options.seed = 2;
+    EXPECT_FALSE(same_bytes(train_jointboost(data.training(), 5, nullptr, options).classifier, many.classifier));
+}
+
+TEST(JointBoost, SamplingStillLearns) {
+    const Data data = make_data(6000, 20, 4, 0.8, 16);
+    BoostOptions options;
+    options.rounds = 40;
+    const double full = train_jointboost(data.training(), 4, nullptr, options).curve.back().train_loss;
+    options.feature_fraction = 0.5;
+    options.row_fraction = 0.25;
+    const BoostResult sampled = train_jointboost(data.training(), 4, nullptr, options);
+    EXPECT_LT(sampled.curve.back().train_loss, 1.25 * full);
+    EXPECT_GE(sampled.curve.back().train_loss, 0.95 * full);
+}
+
+TEST(JointBoost, CallsBackAfterEveryRoundAndCanBeStopped) {
+    const Data data = make_data(100, 4, 3, 1.0, 17);
+    BoostOptions options;
+    options.rounds = 30;
+    std::size_t calls = 0;
+    train_jointboost(data.training(), 3, nullptr, options, [&](const BoostRound& round, const BoostedStumps& so_far) {
+        EXPECT_EQ(so_far.stumps.size(), ++calls);
+        EXPECT_GT(round.train_loss, 0.0);
+    });
+    EXPECT_EQ(calls, 30u);
+    const auto stop = [](const BoostRound&, const BoostedStumps&) { throw Interrupted(); };
+    EXPECT_THROW(train_jointboost(data.training(), 3, nullptr, options, stop), Interrupted);
+}
+
+TEST(JointBoost, RefusesWhatItCannotLearnFrom) {
+    const Data good = make_data(20, 2, 3, 1.0, 18);
+    const auto train = [](const Data& data, const BoostOptions& options = {}) {
+        train_jointboost(data.training(), data.classes, nullptr, options);
+    };
+    Data bad = good;
+    bad.labels[3] = 3;
+    EXPECT_THROW(train(bad), UsageError);
+    bad.labels[3] = -1;
+    EXPECT_THROW(train(bad), UsageError);
+    bad = good;
+    bad.weights[0] = -1.0f;
+    EXPECT_THROW(train(bad), DataError);
+    bad.weights[0] = std::nanf("");
+    EXPECT_THROW(train(bad), DataError);
+    bad.weights.assign(20, 0.0f);
+    EXPECT_THROW(train(bad), DataError);
+    bad.weights.resize(7);
+    EXPECT_THROW(train(bad), UsageError);
+    bad = good;
+    bad.classes = 1;
+    EXPECT_THROW(train(bad), UsageError);
+    bad.classes = 65;
+    EXPECT_THROW(train(bad), UsageError);
+    bad = good;
+    bad.quantized = {20, {}, {}};
+    EXPECT_THROW(train(bad), UsageError);
+    BoostOptions options;
+    options.feature_fraction = 0.0;
+    EXPECT_THROW(train(good, options), UsageError);
+    options = {};
+    options.exhaustive_classes = 11;
+    EXPECT_THROW(train(good, options), UsageError);
+    const std::vector<std::uint32_t> beyond{20};
+    EXPECT_THROW(train_jointboost(good.training(beyond), 3, nullptr, {}), UsageError);
+}
+
+}  // namespace
+}  // namespace exemplar

@@ -23,17 +23,19 @@ std::vector<Split> make_splits(std::size_t count, std::size_t train_count, std::
 struct MeshScore {
     double recognition_rate = 0;           ///< share of the area labeled right (one minus Eq. 3.8), in [0, 1]
     double segment_weighted_accuracy = 0;  ///< one minus Eq. 3.9, mean over the labels present
-    double rand_error = 0;                 ///< mean over human segmentations of one minus the Rand index; NaN without any
-    std::vector<double> confusion;         ///< classes x classes, row = truth, share of the mesh's area
+    double rand_error = 0;          ///< mean over human segmentations of one minus the Rand index; NaN without any
+    std::vector<double> confusion;  ///< classes x classes, row = truth, share of the mesh's area
 };
 
 /// Scores predicted against true labels; faces whose truth is -1 are left out. Segments for the Rand index are the
 /// connected pieces of equal label, compared with each of the human segmentations (thesis Sec. 3.4).
-MeshScore score_labeling(const MeshFeatures& features, std::span<const std::int32_t> truth, std::span<const std::int32_t> predicted,
-                         std::size_t classes, std::span<const std::vector<std::int32_t>> human_segmentations);
+MeshScore score_labeling(const MeshFeatures& features, std::span<const std::int32_t> truth,
+                         std::span<const std::int32_t> predicted, std::size_t classes,
+                         std::span<const std::vector<std::int32_t>> human_segmentations);
 
-/// The human segmentations of a mesh in the benchmark's layout: FOLDER/NAME/*.seg, in name order; empty if there are none.
-std::vector<std::vector<std::int32_t>> read_human_segmentations(const std::filesystem::path& folder, const std::string& name,
-                                                                std::size_t faces);
+/// The human segmentations of a mesh in the benchmark's layout: FOLDER/NAME/*.seg, in name order; empty if there are
+/// none.
+std::vector<std::vector<std::int32_t>> read_human_segmentations(const std::filesystem::path& folder,
+                                                                const std::string& name, std::size_t faces);
 
 }  // namespace exemplar

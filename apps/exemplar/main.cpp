@@ -33,6 +33,11 @@ const CLI::App& deepest(const CLI::App& app) {
     return parsed.empty() ? app : deepest(*parsed.back());
 }
 
+/// "exemplar label train": the words that lead to a subcommand.
+std::string command_path(const CLI::App& app) {
+    return app.get_parent() ? command_path(*app.get_parent()) + " " + app.get_name() : app.get_name();
+}
+
 /// The first argument that no known word explains, for a suggestion.
 std::string hint(const CLI::App& app, int argc, char** argv) {
     const CLI::App& command = deepest(app);
@@ -51,9 +56,8 @@ std::string hint(const CLI::App& app, int argc, char** argv) {
 
 int report_usage_error(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
-    fmt::print(
-        stderr, "error: {}{}; see '{} --help'\n", error.what(), hint(app, argc, argv),
-        app.get_name() == deepest(app).get_name() ? app.get_name() : app.get_name() + " " + deepest(app).get_name());
+    fmt::print(stderr, "error: {}{}; see '{} --help'\n", error.what(), hint(app, argc, argv),
+               command_path(deepest(app)));
     return 2;
 }
 

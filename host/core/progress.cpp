@@ -30,6 +30,10 @@ Progress::Progress(std::string what, std::size_t total)
       on_terminal_(isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
+    if (!finished_ && done_ < total_) {  // abandoned by an error: leave its line, claim nothing
+        if (on_terminal_ && !quiet_output) fmt::print(stderr, "\n");
+        finished_ = true;
+    }
     finish();
 }
 

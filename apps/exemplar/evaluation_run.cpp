@@ -129,7 +129,9 @@ Json EvaluationRun::test_mesh(const EvaluationTask& task, const fs::path& mesh, 
     MeshFeatures features = cached_features(item.mesh, model.feature_options, cache_);
     const double feature_seconds = watch.wall();
     const FaceLabeling labeling = label_faces(model, features, backend_.labeling());
-    write_labeled_files(stem, item.mesh, make_labeled_output(item.mesh, model, labeling), false);
+    const LabeledOutput output = make_labeled_output(item.mesh, model, labeling);
+    write_labels_txt(stem.string() + "_labels.txt", output.labels);
+    write_ply(stem.string() + ".ply", item.mesh, &output.labels, output.confidence);
     const MeshScore score = score_labeling(features, item.label, labeling.label, names.size(),
                                            read_human_segmentations(task.humans, item.name, item.mesh.face_count()));
     Json json{{"key", key},

@@ -21,7 +21,7 @@ struct EvaluationTask {
 };
 
 /// Works through tasks and keeps what is finished on disk, so that a run that was interrupted goes on from there:
-/// OUT/CATEGORY/SPLIT/model.safetensors and, per test mesh, NAME_labels.txt, NAME.ply, NAME.seg and NAME.json (its
+/// OUT/CATEGORY/SPLIT/model.safetensors and, per test mesh, NAME_labels.txt, NAME.ply and NAME.json (its
 /// scores).
 class EvaluationRun {
   public:

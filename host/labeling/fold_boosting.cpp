@@ -83,7 +83,7 @@ std::vector<double> mean_curve(const std::vector<std::vector<BoostRound>>& curve
     std::vector<double> mean(rounds, 0);
     for (const auto& curve : curves)
         for (std::size_t r = 0; r < rounds && !curve.empty(); ++r)
-            mean[r] += curve[std::min(r, curve.size() - 1)].validation_loss / static_cast<double>(curves.size());
+            mean[r] += curve[std::min(r, curve.size() - 1)].validation_error / static_cast<double>(curves.size());
     return mean;
 }
 
@@ -106,6 +106,7 @@ FoldModels train_folds(const Pool& pool, const QuantizedFeatures& quantized, con
     BoostOptions boost_options;
     boost_options.rounds = options.rounds, boost_options.patience = options.patience, boost_options.seed = options.seed;
     boost_options.keep_best = false;
+    boost_options.monitor = BoostMonitor::error;
     for (std::size_t fold = 0; fold < options.folds && options.folds > 1; ++fold) {
         check_interrupt();
         std::vector<std::uint32_t> inside, outside;

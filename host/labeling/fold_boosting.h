@@ -34,7 +34,7 @@ struct FoldBoostingResult {
     CalibratedStumps classifier;  ///< trained on all items
     std::vector<std::vector<float>>
         out_of_fold;            ///< per mesh: items x classes, from the classifier that never saw the item
-    std::vector<double> curve;  ///< mean validation cost after each round
+    std::vector<double> curve;  ///< mean held-out error after each round
     double loss = 0;            ///< weighted mean -log P(truth), out of fold
     double error = 0;           ///< weighted share of wrong labels, out of fold
 };

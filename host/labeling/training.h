@@ -14,7 +14,7 @@ namespace exemplar {
 struct TrainOptions {
     std::uint64_t seed = 1;
     std::size_t rounds = 300;       ///< most stumps per classifier (thesis Sec. 3.3.1)
-    std::size_t patience = 50;      ///< rounds without a better validation loss that end boosting
+    std::size_t patience = 50;      ///< rounds without fewer errors on held-out meshes that end boosting
     std::size_t max_stages = 4;     ///< most classifiers of the unary cascade (the thesis usually stops at 3)
     std::size_t bins = 128;         ///< quantization of each feature
     std::size_t rows_per_mesh = 0;  ///< faces (and edges) of each mesh used for boosting, drawn at random; 0 = all
@@ -28,7 +28,7 @@ struct StageReport {
     double validation_loss = 0;   ///< weighted mean -log P of the truth, out of fold
     double validation_error = 0;  ///< weighted share of wrong labels, out of fold
     bool kept = true;             ///< false for a last stage that did not improve
-    std::vector<double> curve;    ///< boosting cost (Eq. 3.5) on held-out meshes after each round, mean over folds
+    std::vector<double> curve;    ///< share of wrong labels on held-out meshes after each round, mean over folds
     double seconds = 0;
 };
 

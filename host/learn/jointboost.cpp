@@ -158,7 +158,7 @@ BoostResult train(const TrainingSet& training, std::size_t class_count, bool gen
         validation ? std::make_unique<HoldOut>(*validation, class_count, gentle) : nullptr;
     BoostResult result;
     result.classifier.class_count = static_cast<std::uint32_t>(class_count);
-    double best_loss = std::numeric_limits<double>::infinity();
+    double best = std::numeric_limits<double>::infinity();
     for (std::size_t round = 0; round < options.rounds; ++round) {
         check_interrupt();
         BoostRound measured{booster.add_stump(round, result.classifier), k_nan, k_nan};
@@ -168,8 +168,10 @@ BoostResult train(const TrainingSet& training, std::size_t class_count, bool gen
         }
         result.curve.push_back(measured);
         if (callback) callback(measured, result.classifier);
-        if (!held_out || measured.validation_loss < best_loss) {
-            best_loss = measured.validation_loss;
+        const double watched =
+            options.monitor == BoostMonitor::loss ? measured.validation_loss : measured.validation_error;
+        if (!held_out || watched < best) {
+            best = watched;
             result.best_rounds = round + 1;
         }
         if (options.patience != 0 && round + 1 >= result.best_rounds + options.patience) break;

@@ -12,11 +12,16 @@
 
 namespace exemplar {
 
+/// Which held-out measure decides when to stop: the boosting cost itself (Eq. 3.5, Sec. 3.3.1), or the share of wrong
+/// labels (Sec. 2.4.2), which a few items that are confidently wrong cannot dominate.
+enum class BoostMonitor { loss, error };
+
 /// How JointBoost trains (thesis Sec. 3.3.1).
 struct BoostOptions {
     std::size_t rounds = 300;   ///< most stumps
-    std::size_t patience = 50;  ///< stop after so many rounds without a lower validation loss; 0 = run all
-    bool keep_best = true;      ///< drop the stumps after the lowest validation loss
+    std::size_t patience = 50;  ///< stop after so many rounds without a lower validation measure; 0 = run all
+    BoostMonitor monitor = BoostMonitor::loss;
+    bool keep_best = true;  ///< drop the stumps after the lowest validation measure
     std::size_t exhaustive_classes =
         6;                          ///< all class subsets are tried up to so many classes (at most 10), greedy above
     double feature_fraction = 1.0;  ///< share of the features tried each round, drawn at random, in (0, 1]
@@ -50,7 +55,7 @@ struct BoostRound {
 struct BoostResult {
     BoostedStumps classifier;
     std::vector<BoostRound> curve;  ///< all rounds that ran, also those whose stumps were dropped
-    std::size_t best_rounds = 0;    ///< rounds of the lowest validation loss (all rounds without a validation set)
+    std::size_t best_rounds = 0;    ///< rounds of the lowest monitored measure (all rounds without a validation set)
 };
 
 /// Called after each round with what the round gave and the classifier so far.

@@ -53,20 +53,20 @@ class SlowTraining : public testing::Test {
 };
 
 TEST_F(SlowTraining, LabelsUnseenShapes) {
-    const LabeledCorpus corpus = generated("fourleg", 1, 5, 2000);
+    const LabeledCorpus corpus = generated("human", 1, 5, 2000);
     TrainOptions options = quick_options();
     options.rounds = 80;
     const LabelingModel model = train(corpus, options);
     EXPECT_LT(report_.crf.error, report_.crf.error_without_cut) << "the cut helps on the training meshes, out of fold";
 
-    const LabeledCorpus unseen = generated("fourleg", 100, 3, 2000);
+    const LabeledCorpus unseen = generated("human", 100, 3, 2000);
     double rate = 0;
     for (const LabeledMesh& mesh : unseen.meshes) {
         MeshFeatures features = compute_features(mesh.mesh, options.features);
         const FaceLabeling labeling = label_faces(model, features, {scorer_, context_});
         rate += score_labeling(features, mesh.label, labeling.label, model.class_count(), {}).recognition_rate / 3;
     }
-    EXPECT_GT(rate, 0.85) << "stated accuracy on generated animals";
+    EXPECT_GT(rate, 0.85) << "stated accuracy on generated humans";
 }
 
 TEST_F(SlowTraining, EqualSeedsGiveEqualBytesForAnyThreadCount) {

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <map>
-
+#include "apps/exemplar/arguments.h"
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/labeled_output.h"
@@ -28,7 +27,7 @@ struct ApplyOptions {
 
 /// Labels one mesh and writes all of its files; returns its part of the report.
 nlohmann::json apply_to(const std::filesystem::path& path, const LabelingModel& model, DeviceBackend& backend,
-                        const ApplyOptions& options) {
+                        const std::filesystem::path& cache, const ApplyOptions& options) {
     const Stopwatch watch;
     const MeshFile file = read_mesh(path);
     const MeshReport report = require_usable(file.mesh, path.string());
@@ -37,7 +36,7 @@ nlohmann::json apply_to(const std::filesystem::path& path, const LabelingModel& 
     if (!options.common.quiet)
         for (const std::string& message : warnings) fmt::print(stderr, "warning: {}: {}\n", path.string(), message);
 
-    MeshFeatures features = cached_features(file.mesh, model.feature_options, options.cache);
+    MeshFeatures features = cached_features(file.mesh, model.feature_options, cache);
     const double feature_seconds = watch.wall();
     const FaceLabeling labeling = label_faces(model, features, backend.labeling());
     const LabeledOutput output = make_labeled_output(file.mesh, model, labeling);
@@ -53,25 +52,15 @@ nlohmann::json apply_to(const std::filesystem::path& path, const LabelingModel& 
     return json;
 }
 
-/// Two inputs of one name would overwrite each other's results.
-void require_distinct_names(const std::vector<std::filesystem::path>& meshes) {
-    std::map<std::string, std::filesystem::path> seen;
-    for (const auto& path : meshes) {
-        const auto [it, fresh] = seen.emplace(path.stem().string(), path);
-        if (!fresh)
-            throw UsageError(
-                fmt::format("{} and {} would write the same files; label them into different --out folders",
-                            it->second.string(), path.string()));
-    }
-}
-
 void run_apply(const ApplyOptions& options) {
     const auto limits = apply_common_options(options.common);
-    const LabelingModel model = load_model(options.model);
+    require_output_folder(options.out);
+    const LabelingModel model = model_of_argument(options.model);
     std::vector<std::filesystem::path> meshes;
     for (const auto& source : options.meshes)
-        for (const auto& path : list_meshes(source)) meshes.push_back(path);
+        for (const auto& path : meshes_of_argument(source)) meshes.push_back(path);
     require_distinct_names(meshes);
+    const std::filesystem::path cache = usable_cache(options.cache, options.common.quiet);
     DeviceBackend backend(options.common.device);
 
     Progress progress("labeling", meshes.size());
@@ -80,7 +69,7 @@ void run_apply(const ApplyOptions& options) {
     for (const auto& path : meshes) {
         check_interrupt();
         try {
-            results.push_back(apply_to(path, model, backend, options));
+            results.push_back(apply_to(path, model, backend, cache, options));
         } catch (const MeshError& error) {  // one bad mesh is no reason to leave the others unlabeled
             failures.emplace_back(error.what());
             results.push_back({{"mesh", path.string()}, {"error", error.what()}});
@@ -88,11 +77,13 @@ void run_apply(const ApplyOptions& options) {
         progress.advance(1, path.filename().string());
     }
     progress.finish();
-    for (const std::string& failure : failures) fmt::print(stderr, "error: {}\n", failure);
+    if (meshes.size() > 1)
+        for (const std::string& failure : failures) fmt::print(stderr, "error: {}\n", failure);
     fmt::print("{} of {} meshes labeled into {}\n", meshes.size() - failures.size(), meshes.size(),
                options.out.string());
     write_report(options.common,
                  {{"model", options.model.string()}, {"device", backend.device_name()}, {"meshes", results}});
+    if (meshes.size() == 1 && !failures.empty()) throw MeshError(failures.front());
     if (!failures.empty())
         throw MeshError(fmt::format("{} of {} meshes could not be labeled", failures.size(), meshes.size()));
 }
@@ -105,14 +96,16 @@ void add_apply_command(CLI::App& label) {
     command->footer(
         "Writes for each mesh NAME_labels.txt, NAME.ply (label and color per face) and NAME.seg.\n\nExample:\n"
         "  exemplar label apply human.safetensors a.off b.obj --out labeled --gltf --png --json labeled/report.json");
-    command->add_option("MODEL", options->model, "model file of 'exemplar label train'")->required();
+    command->add_option("MODEL", options->model, "model file of 'exemplar label train'")->required()->type_name("");
     command->add_option("MESH", options->meshes, "meshes, folders of meshes, or lists (.txt, a path a line)")
-        ->required();
-    command->add_option("--out", options->out, "folder to write to")->required();
+        ->required()
+        ->type_name("");
+    command->add_option("--out", options->out, "folder to write to")->required()->type_name("FOLDER");
     command->add_flag("--gltf", options->gltf, "also write NAME.glb with a material per part");
     command->add_flag("--png", options->png, "also write NAME.png, an image rendered through Vulkan");
     command->add_option("--cache", options->cache, "folder that remembers features; '' remembers none")
-        ->capture_default_str();
+        ->capture_default_str()
+        ->type_name("FOLDER");
     add_common_options(*command, options->common);
     command->callback([options] { run_apply(*options); });
 }

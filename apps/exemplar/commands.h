@@ -20,6 +20,8 @@ struct CommonOptions {
 void add_common_options(CLI::App& command, CommonOptions& options);
 /// Puts --threads and --quiet into effect; called first by every subcommand. The result holds the thread limit.
 std::shared_ptr<void> apply_common_options(const CommonOptions& options);
+/// Writes a JSON file whole; text that is not UTF-8 is replaced, not refused.
+void write_json(const std::filesystem::path& path, const nlohmann::json& json);
 /// Writes a report where --json asks for it.
 void write_report(const CommonOptions& options, const nlohmann::json& report);
 

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include "apps/exemplar/arguments.h"
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/evaluation_run.h"
 #include "host/core/interrupt.h"
 #include "host/core/stopwatch.h"
+#include "host/core/text.h"
 #include "host/mesh/io.h"
 #include "host/synth/shapes.h"
 
@@ -19,14 +21,21 @@ struct DemoOptions {
     CommonOptions common;
     fs::path out = "out/demo";
     std::vector<std::string> kinds;
-    std::size_t train_count = 6, test_count = 4, faces = 5000;
+    std::size_t train_count = 0, test_count = 4, faces = 5000;
     std::uint64_t seed = 1;
 };
+
+/// Training shapes of a kind: what the user says, else six; the quadrupeds are of nine species, so six cannot show all.
+std::size_t train_count(const DemoOptions& options, const std::string& kind) {
+    if (options.train_count > 0) return options.train_count;
+    return kind == "fourleg" ? 12 : 6;
+}
 
 /// Generates the shapes of one kind as labeled files, unless they are there from an earlier run.
 EvaluationTask generate(const DemoOptions& options, const std::string& kind, Progress& progress) {
     EvaluationTask task{kind, "demo", {}, {}, {}};
-    for (std::size_t i = 0; i < options.train_count + options.test_count; ++i) {
+    const std::size_t examples = train_count(options, kind);
+    for (std::size_t i = 0; i < examples + options.test_count; ++i) {
         check_interrupt();
         const fs::path stem =
             options.out / "shapes" / kind / fmt::format("{}_{}_{}", kind, options.faces, options.seed + i);
@@ -36,7 +45,7 @@ EvaluationTask generate(const DemoOptions& options, const std::string& kind, Pro
             write_labels_txt(stem.string() + "_labels.txt", shape.labels);
             write_off(mesh, shape.mesh);
         }
-        (i < options.train_count ? task.train : task.test).push_back(mesh);
+        (i < examples ? task.train : task.test).push_back(mesh);
         progress.advance(1, kind);
     }
     return task;
@@ -44,6 +53,7 @@ EvaluationTask generate(const DemoOptions& options, const std::string& kind, Pro
 
 void run_demo(const DemoOptions& options) {
     const auto limits = apply_common_options(options.common);
+    require_output_folder(options.out);
     const Stopwatch watch;
     std::vector<std::string> kinds = options.kinds;
     if (kinds.empty())
@@ -51,20 +61,22 @@ void run_demo(const DemoOptions& options) {
     DeviceBackend backend(options.common.device);
     std::vector<EvaluationTask> tasks;
     {
-        Progress progress("generating shapes", kinds.size() * (options.train_count + options.test_count));
+        std::size_t shapes = 0;
+        for (const std::string& kind : kinds) shapes += train_count(options, kind) + options.test_count;
+        Progress progress("generating shapes", shapes);
         for (const std::string& kind : kinds) tasks.push_back(generate(options, kind, progress));
     }
     TrainOptions train;
     train.seed = options.seed;
     train.rounds = 120, train.patience = 20, train.rows_per_mesh = 1500;  // a demonstration, in minutes
-    EvaluationRun run(backend, train, options.out / "features", options.out, true);
+    EvaluationRun run(backend, train, options.out / "features", options.out, {.quiet = true});
     const nlohmann::json report =
         run.evaluate(tasks, "demo", "Exemplar: parts of unseen shapes, learned from examples");
     for (const auto& category : report["categories"])
         fmt::print("{:>12}: {:.1f} % of the surface of {} unseen shapes labeled right\n",
                    category["category"].get<std::string>(), 100 * rate_of(category, "recognition_rate"),
                    category["meshes"].get<std::size_t>());
-    fmt::print("{} in {:.0f} s on {}\nopen {}\n", "done", watch.wall(), backend.device_name(),
+    fmt::print("done in {} on {}\nopen {}\n", format_seconds(watch.wall()), backend.device_name(),
                fs::absolute(options.out / "index.html").string());
     write_report(options.common, report);
 }
@@ -76,18 +88,23 @@ void add_demo_command(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("demo", "Generates shapes, trains, labels unseen ones, and shows it all in a page");
     command->footer("Example:\n  exemplar demo --out out/demo");
-    command->add_option("--out", options->out, "folder to write to")->capture_default_str();
-    command->add_option("--kinds", options->kinds, "kinds of shapes (see 'exemplar synth --help'); all by default");
-    command->add_option("--train", options->train_count, "training shapes per kind")
+    command->add_option("--out", options->out, "folder to write to")->capture_default_str()->type_name("FOLDER");
+    command->add_option("--kinds", options->kinds, "kinds of shapes (see 'exemplar synth --help'); all by default")
+        ->type_name("KIND");
+    command
+        ->add_option("--train", options->train_count,
+                     "training shapes per kind; 0 takes 6, and 12 of fourleg, which is nine species")
         ->capture_default_str()
-        ->check(CLI::Range(1, 1000));
+        ->check(whole_number(0, 1000));
     command->add_option("--test", options->test_count, "unseen shapes per kind")
         ->capture_default_str()
-        ->check(CLI::Range(1, 1000));
+        ->check(whole_number(1, 1000));
     command->add_option("--faces", options->faces, "faces per shape, about")
         ->capture_default_str()
-        ->check(CLI::Range(500, 200000));
-    command->add_option("--seed", options->seed, "seed of the shapes and the training")->capture_default_str();
+        ->check(whole_number(500, 200000));
+    command->add_option("--seed", options->seed, "seed of the shapes and the training")
+        ->capture_default_str()
+        ->check(whole_number(0));
     add_common_options(*command, options->common);
     command->callback([options] { run_demo(*options); });
 }

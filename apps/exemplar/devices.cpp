@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <tuple>
 #include <vector>
 
 #include "apps/exemplar/commands.h"
@@ -26,12 +25,6 @@ using Row = std::array<std::string, k_columns>;
 const Row k_header{"",       "#",           "name",      "type",     "driver",     "Vulkan",
                    "memory", "max storage", "workgroup", "subgroup", "copy, GB/s", "FMA, GFLOP/s"};
 constexpr std::size_t k_first_number = 6;  // from here on columns are aligned to the right
-
-// The devices in the order in which they would be chosen.
-std::vector<DeviceInfo> in_selection_order(std::vector<DeviceInfo> devices) {
-    std::ranges::stable_sort(devices, {}, [](const DeviceInfo& d) { return std::tuple(!d.unusable.empty(), d.type); });
-    return devices;
-}
 
 std::string wanted_device(const DevicesOptions& options) {
     if (!options.common.device.empty()) return options.common.device;
@@ -87,13 +80,14 @@ void print_table(const std::vector<Row>& rows) {
 
 void run_devices(const DevicesOptions& options) {
     const auto limits = apply_common_options(options.common);
-    const std::vector<DeviceInfo> devices = list_devices();
+    std::vector<DeviceInfo> devices = list_devices();
     const std::size_t chosen = select_device(devices, wanted_device(options));
 
     std::vector<Row> rows{k_header};
     std::vector<std::string> remarks;
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const DeviceInfo& info : in_selection_order(devices)) {
+    std::ranges::stable_sort(devices, is_better);  // the order in which they would be chosen
+    for (const DeviceInfo& info : devices) {
         const DeviceReport report = make_report(info, options, remarks);
         rows.push_back(table_row(report, info.index == chosen));
         list.push_back(to_json(report));

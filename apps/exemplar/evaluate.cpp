@@ -6,11 +6,11 @@
 #include <cmath>
 #include <set>
 
+#include "apps/exemplar/arguments.h"
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/evaluation_run.h"
 #include "host/core/errors.h"
-#include "host/core/files.h"
 #include "host/core/text.h"
 
 namespace exemplar {
@@ -24,6 +24,7 @@ struct EvaluateCommand {
     fs::path cache = default_feature_folder();
     std::string protocol;
     std::size_t splits = 1;
+    bool fresh = false;
     TrainOptions train;
 };
 
@@ -38,7 +39,9 @@ std::size_t protocol_size(const std::string& protocol) {
 /// The folders below `folder` that hold labeled meshes, or the folder itself.
 std::vector<fs::path> category_folders(const fs::path& folder) {
     std::set<fs::path> categories;
-    if (!fs::is_directory(folder)) throw DataError(fmt::format("{}: no such folder", folder.string()));
+    if (folder.empty()) throw UsageError("--protocol needs the folder of a category, or of several");
+    require_input(folder);
+    if (!fs::is_directory(folder)) throw UsageError(fmt::format("{}: is no folder", folder.string()));
     for (const auto& entry : fs::directory_iterator(folder)) {
         if (!entry.is_directory()) continue;
         for (const auto& file : fs::directory_iterator(entry.path()))
@@ -48,9 +51,18 @@ std::vector<fs::path> category_folders(const fs::path& folder) {
     return {categories.begin(), categories.end()};
 }
 
+/// An absolute path whose last part is a name.
+fs::path without_trailing_slash(const fs::path& path) {
+    const fs::path absolute = fs::absolute(path).lexically_normal();
+    return absolute.has_filename() ? absolute : absolute.parent_path();
+}
+
 /// The benchmark keeps human segmentations in seg/ beside labeled/, or the user says where they are.
 fs::path human_folder(const EvaluateCommand& options, const fs::path& category) {
-    if (!options.humans.empty()) return options.humans;
+    if (!options.humans.empty()) {
+        require_input(options.humans);
+        return options.humans;
+    }
     for (const fs::path& candidate : {category.parent_path().parent_path() / "seg", category.parent_path() / "seg"})
         if (fs::is_directory(candidate)) return candidate;
     return {};
@@ -59,8 +71,7 @@ fs::path human_folder(const EvaluateCommand& options, const fs::path& category) 
 std::vector<EvaluationTask> protocol_tasks(const EvaluateCommand& options) {
     std::vector<EvaluationTask> tasks;
     for (const fs::path& folder : category_folders(options.folder)) {
-        const fs::path absolute = fs::absolute(folder).lexically_normal();
-        const fs::path category = absolute.has_filename() ? absolute : absolute.parent_path();
+        const fs::path category = without_trailing_slash(folder);
         const std::vector<fs::path> meshes = list_meshes(category);
         const std::size_t size = protocol_size(options.protocol);
         const std::vector<Split> splits = make_splits(meshes.size(), size ? size : meshes.size() - 1,
@@ -83,11 +94,12 @@ std::vector<EvaluationTask> make_tasks(const EvaluateCommand& options) {
     if (!options.protocol.empty()) return protocol_tasks(options);
     if (options.train_list.empty() || options.test_list.empty())
         throw UsageError("give --train LIST and --test LIST, or --protocol sb3|sb6|sb12|sb19 DIR");
-    EvaluationTask task{options.train_list.stem().string(),
+    EvaluationTask task{without_trailing_slash(options.train_list).stem().string(),
                         "lists",
-                        list_meshes(options.train_list),
-                        list_meshes(options.test_list),
+                        meshes_of_argument(options.train_list),
+                        meshes_of_argument(options.test_list),
                         {}};
+    require_distinct_names(task.test);
     task.humans = human_folder(options, fs::absolute(task.test.front()).parent_path());
     return {task};
 }
@@ -98,9 +110,11 @@ std::string percent(double rate) {
 
 void run_evaluate(const EvaluateCommand& options) {
     const auto limits = apply_common_options(options.common);
+    require_output_folder(options.out);
     const std::vector<EvaluationTask> tasks = make_tasks(options);
     DeviceBackend backend(options.common.device);
-    EvaluationRun run(backend, options.train, options.cache, options.out, options.common.quiet);
+    EvaluationRun run(backend, options.train, usable_cache(options.cache, options.common.quiet), options.out,
+                      {.quiet = options.common.quiet, .fresh = options.fresh});
     const nlohmann::json report =
         run.evaluate(tasks, options.protocol.empty() ? "lists" : options.protocol, "Mesh labeling on unseen shapes");
 
@@ -110,7 +124,7 @@ void run_evaluate(const EvaluateCommand& options) {
                    category["meshes"].get<std::size_t>(), percent(rate_of(category, "recognition_rate")),
                    percent(rate_of(category, "segment_weighted_accuracy")), percent(rate_of(category, "rand_error")));
     fmt::print("report: {}\n", (options.out / "index.html").string());
-    write_file_atomically(options.out / "report.json", [&](std::ostream& out) { out << report.dump(2) << '\n'; });
+    write_json(options.out / "report.json", report);
     write_report(options.common, report);
 }
 
@@ -124,19 +138,26 @@ void add_evaluate_command(CLI::App& label) {
         "Interrupted, it goes on where it stopped when called again with the same options.\n\nExamples:\n"
         "  exemplar label evaluate --train train.txt --test test.txt --out report\n"
         "  exemplar label evaluate --protocol sb6 psb/labeled/Cup --splits 2 --out report");
-    command->add_option("--train", options->train_list, "training meshes: folder or list");
-    command->add_option("--test", options->test_list, "test meshes: folder or list");
+    CLI::Option* train =
+        command->add_option("--train", options->train_list, "training meshes: folder or list")->type_name("");
+    CLI::Option* test = command->add_option("--test", options->test_list, "test meshes: folder or list")->type_name("");
     CLI::Option* protocol =
         command->add_option("--protocol", options->protocol,
                             "train on 3, 6 or 12 random meshes of each category, or on all but one (sb19)");
-    protocol->check(CLI::IsMember({"sb3", "sb6", "sb12", "sb19"}));
+    protocol->check(CLI::IsMember({"sb3", "sb6", "sb12", "sb19"}))->type_name("")->excludes(train)->excludes(test);
     command->add_option("DIR", options->folder, "category folder, or folder of category folders, for --protocol")
-        ->needs(protocol);
+        ->needs(protocol)
+        ->type_name("");
     command->add_option("--splits", options->splits, "random splits per category")
         ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    command->add_option("--humans", options->humans, "folder of human segmentations, NAME/*.seg, for the Rand index");
-    command->add_option("--out", options->out, "folder for models, labels and the report")->required();
+        ->check(whole_number(1, 1000))
+        ->needs(protocol);
+    command->add_option("--humans", options->humans, "folder of human segmentations, NAME/*.seg, for the Rand index")
+        ->type_name("FOLDER");
+    command->add_option("--out", options->out, "folder for models, labels and the report")
+        ->required()
+        ->type_name("FOLDER");
+    command->add_flag("--fresh", options->fresh, "start over instead of going on from what is in --out");
     add_training_options(*command, options->train, options->cache);
     add_common_options(*command, options->common);
     command->callback([options] { run_evaluate(*options); });

@@ -1,17 +1,21 @@
 #include "apps/exemplar/evaluation_run.h"
 
+#define XXH_INLINE_ALL
 #include <fmt/format.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "apps/exemplar/commands.h"
 #include "apps/exemplar/labeled_output.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
 #include "host/core/stopwatch.h"
+#include "host/core/text.h"
 #include "host/labeling/report_page.h"
 
 namespace exemplar {
@@ -23,7 +27,14 @@ using Json = nlohmann::json;
 constexpr std::size_t k_shown_meshes = 6;  ///< of each category in the page
 constexpr const char* k_rates[] = {"recognition_rate", "segment_weighted_accuracy", "rand_error"};
 
-/// Everything that a finished result depends on: results of another run are not mixed into this one.
+/// The content of a mesh file and of the labels beside it, as 16 hexadecimal digits.
+std::string digest(const fs::path& mesh) {
+    const fs::path labels = mesh.parent_path() / (mesh.stem().string() + "_labels.txt");
+    const std::string content = read_file(mesh) + (fs::exists(labels) ? read_file(labels) : std::string());
+    return fmt::format("{:016x}", XXH3_64bits(content.data(), content.size()));
+}
+
+/// Everything that a model depends on: results of another run are not mixed into this one.
 std::string run_key(const EvaluationTask& task, const TrainOptions& train) {
     Json key{{"seed", train.seed},
              {"rounds", train.rounds},
@@ -31,22 +42,21 @@ std::string run_key(const EvaluationTask& task, const TrainOptions& train) {
              {"stages", train.max_stages},
              {"bins", train.bins},
              {"rows", train.rows_per_mesh},
+             {"feature_fraction", train.feature_fraction},
+             {"shrinkage", train.shrinkage},
              {"samples", train.features.samples},
              {"orientation", train.features.orientation},
              {"features", k_feature_version},
              {"format", k_model_format_version}};
-    for (const fs::path& path : task.train) key["train"].push_back(path.string());
-    return key.dump();
+    for (const fs::path& path : task.train) key["train"].push_back({path.stem().string(), digest(path)});
+    return key.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 /// The JSON of a file; null if it is missing or damaged.
 Json read_json(const fs::path& path) {
     if (!fs::exists(path)) return nullptr;
-    return Json::parse(read_file(path), nullptr, false);
-}
-
-void write_json(const fs::path& path, const Json& json) {
-    write_file_atomically(path, [&](std::ostream& out) { out << json.dump(1) << '\n'; });
+    Json json = Json::parse(read_file(path), nullptr, false);
+    return json.is_object() ? json : Json(nullptr);
 }
 
 Json rate_json(double rate) {
@@ -88,10 +98,21 @@ double rate_of(const Json& json, const char* key) {
                                                        : std::numeric_limits<double>::quiet_NaN();
 }
 
-LabelingModel EvaluationRun::model_for(const EvaluationTask& task, const fs::path& folder) {
+/// The JSON of an earlier run if it was about the same; else null.
+Json EvaluationRun::finished(const fs::path& path, const std::string& key) const {
+    if (behavior_.fresh) return nullptr;
+    Json done = read_json(path);
+    return done.is_object() && done.contains("key") && done["key"] == key ? done : Json(nullptr);
+}
+
+void EvaluationRun::warn(const std::vector<std::string>& warnings) const {
+    if (behavior_.quiet) return;
+    for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+}
+
+LabelingModel EvaluationRun::model_for(const EvaluationTask& task, const fs::path& folder, const std::string& key) {
     const fs::path path = folder / "model.safetensors", run = folder / "run.json";
-    const std::string key = run_key(task, train_);
-    if (const Json done = read_json(run); done.is_object() && done.value("key", "") == key && fs::exists(path)) {
+    if (!finished(run, key).is_null() && fs::exists(path)) {
         try {
             return load_model(path);
         } catch (const ModelError&) {
@@ -100,11 +121,12 @@ LabelingModel EvaluationRun::model_for(const EvaluationTask& task, const fs::pat
     }
     const Stopwatch watch;
     const LabeledCorpus corpus = load_corpus(task.train);
+    warn(corpus.warnings);
     std::vector<MeshFeatures> features = features_of(corpus, train_.features, cache_);
     const double feature_seconds = watch.wall();
     TrainReport report;
     LabelingModel model = train_labeling(corpus, features, train_, backend_.labeling(), report);
-    if (!quiet_) print_training(model, report);
+    if (!behavior_.quiet) print_training(model, report);
     save_model(path, model);
     Json json = describe_training(model, report);
     json["key"] = key;
@@ -116,13 +138,22 @@ LabelingModel EvaluationRun::model_for(const EvaluationTask& task, const fs::pat
 Json EvaluationRun::test_mesh(const EvaluationTask& task, const fs::path& mesh, const fs::path& folder,
                               const LabelingModel& model, const std::string& key) {
     const fs::path stem = folder / mesh.stem(), scores = stem.string() + ".json";
-    if (Json done = read_json(scores); done.is_object() && done.value("key", "") == key) return done;
+    const std::string mesh_key = fmt::format("{} {} {}", key, digest(mesh), task.humans.string());
+    if (Json done = finished(scores, mesh_key); !done.is_null()) {
+        done["path"] = mesh.string();  // the same mesh may have moved
+        return done;
+    }
     const Stopwatch watch;
     // A test mesh may have labels that the training meshes lack; they can only be wrong, but they count.
     const LabeledCorpus own = load_corpus({mesh});
+    warn(own.warnings);
     std::vector<std::string> names = model.label_names;
-    for (const std::string& name : own.names)
-        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    for (const std::string& name : own.names) {
+        if (std::find(model.label_names.begin(), model.label_names.end(), name) != model.label_names.end()) continue;
+        warn({fmt::format("{}: no training mesh has the label '{}'{}: its faces will count as wrong", mesh.string(),
+                          name, suggestion(name, model.label_names))});
+        names.push_back(name);
+    }
     const LabeledCorpus corpus = load_corpus({mesh}, names);
     const LabeledMesh& item = corpus.meshes.front();
 
@@ -134,7 +165,7 @@ Json EvaluationRun::test_mesh(const EvaluationTask& task, const fs::path& mesh, 
     write_ply(stem.string() + ".ply", item.mesh, &output.labels, output.confidence);
     const MeshScore score = score_labeling(features, item.label, labeling.label, names.size(),
                                            read_human_segmentations(task.humans, item.name, item.mesh.face_count()));
-    Json json{{"key", key},
+    Json json{{"key", mesh_key},
               {"mesh", item.name},
               {"path", mesh.string()},
               {"names", names},
@@ -149,8 +180,8 @@ Json EvaluationRun::test_mesh(const EvaluationTask& task, const fs::path& mesh, 
 
 Json EvaluationRun::run_task(const EvaluationTask& task, Progress& progress) {
     const fs::path folder = folder_of(out_, task);
-    const LabelingModel model = model_for(task, folder);
     const std::string key = run_key(task, train_);
+    const LabelingModel model = model_for(task, folder, key);
     progress.advance(1, task.category + " trained");
     Json result{{"split", task.split}, {"train", Json::array()}, {"meshes", Json::array()}};
     for (const fs::path& path : task.train) result["train"].push_back(path.stem().string());

@@ -21,20 +21,26 @@ struct EvaluationTask {
 };
 
 /// Works through tasks and keeps what is finished on disk, so that a run that was interrupted goes on from there:
-/// OUT/CATEGORY/SPLIT/model.safetensors and, per test mesh, NAME_labels.txt, NAME.ply and NAME.json (its
-/// scores).
+/// OUT/CATEGORY/SPLIT/model.safetensors and, per test mesh, NAME_labels.txt, NAME.ply and NAME.json (its scores). What
+/// is found there counts as finished if options, training meshes and labels, and the test mesh are still the same.
 class EvaluationRun {
   public:
+    struct Behavior {
+        bool quiet = false;  ///< no tables, no warnings
+        bool fresh = false;  ///< take nothing over from an earlier run
+    };
     EvaluationRun(DeviceBackend& backend, const TrainOptions& train, std::filesystem::path cache,
-                  std::filesystem::path out, bool quiet)
-        : backend_(backend), train_(train), cache_(std::move(cache)), out_(std::move(out)), quiet_(quiet) {}
+                  std::filesystem::path out, Behavior behavior)
+        : backend_(backend), train_(train), cache_(std::move(cache)), out_(std::move(out)), behavior_(behavior) {}
 
     /// Runs everything and writes OUT/index.html; returns the report (docs/formats.md).
     nlohmann::json evaluate(const std::vector<EvaluationTask>& tasks, const std::string& protocol,
                             const std::string& title);
 
   private:
-    LabelingModel model_for(const EvaluationTask& task, const std::filesystem::path& folder);
+    LabelingModel model_for(const EvaluationTask& task, const std::filesystem::path& folder, const std::string& key);
+    nlohmann::json finished(const std::filesystem::path& path, const std::string& key) const;
+    void warn(const std::vector<std::string>& warnings) const;
     nlohmann::json test_mesh(const EvaluationTask& task, const std::filesystem::path& mesh,
                              const std::filesystem::path& folder, const LabelingModel& model, const std::string& key);
     nlohmann::json run_task(const EvaluationTask& task, Progress& progress);
@@ -44,7 +50,7 @@ class EvaluationRun {
     DeviceBackend& backend_;
     TrainOptions train_;
     std::filesystem::path cache_, out_;
-    bool quiet_;
+    Behavior behavior_;
 };
 
 /// A rate of a report; NaN where it is null.

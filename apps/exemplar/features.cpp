@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "apps/exemplar/arguments.h"
 #include "apps/exemplar/commands.h"
-#include "host/core/files.h"
 #include "host/core/stopwatch.h"
 #include "host/data/npy.h"
 #include "host/labeling/features.h"
@@ -22,18 +22,21 @@ struct FeaturesOptions {
 
 void run_features(const FeaturesOptions& options) {
     const auto limits = apply_common_options(options.common);
+    require_output_file(options.out);
+    require_output_file(options.names);
+    require_input(options.mesh);
     const MeshFile file = read_mesh(options.mesh);
     const MeshReport report = require_usable(file.mesh, options.mesh.string());
+    std::vector<std::string> warnings = file.warnings;
+    for (const std::string& message : report.messages()) warnings.push_back(message);
     if (!options.common.quiet)
-        for (const std::string& message : report.messages())
+        for (const std::string& message : warnings)
             fmt::print(stderr, "warning: {}: {}\n", options.mesh.string(), message);
     const Stopwatch watch;
     const MeshFeatures features = compute_features(file.mesh, options.features);
     const FeatureMatrix& matrix = options.pairwise ? features.pairwise : features.unary;
     write_npy(options.out, matrix);
-    if (!options.names.empty())
-        write_file_atomically(options.names,
-                              [&](std::ostream& out) { out << nlohmann::json(matrix.names).dump(1) << '\n'; });
+    if (!options.names.empty()) write_json(options.names, matrix.names);
 
     nlohmann::json seconds;
     for (const auto& [family, time] : features.seconds) {
@@ -45,6 +48,7 @@ void run_features(const FeaturesOptions& options) {
                                   {"rows", matrix.rows},
                                   {"features", matrix.cols()},
                                   {"names", matrix.names},
+                                  {"warnings", warnings},
                                   {"seconds", watch.wall()},
                                   {"cpu_seconds", watch.cpu()},
                                   {"seconds_per_family", seconds}});
@@ -57,14 +61,14 @@ void add_features_command(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("features", "Computes the features of a mesh (faces x features, float32 .npy)");
     command->footer("Example:\n  exemplar features horse.off --out horse.npy --names horse.json");
-    command->add_option("MESH", options->mesh, "mesh file: OFF, OBJ, PLY, STL or glTF")->required();
-    command->add_option("--out", options->out, "array to write, NumPy format")->required();
-    command->add_option("--names", options->names, "also write the feature names, a JSON list");
+    command->add_option("MESH", options->mesh, "mesh file: OFF, OBJ, PLY, STL or glTF")->required()->type_name("");
+    command->add_option("--out", options->out, "array to write, NumPy format")->required()->type_name("FILE");
+    command->add_option("--names", options->names, "also write the feature names, a JSON list")->type_name("FILE");
     command->add_flag("--pairwise", options->pairwise, "features of the interior edges instead of the faces");
     command
         ->add_option("--samples", options->features.samples, "faces that stand for the surface in distance statistics")
         ->capture_default_str()
-        ->check(CLI::PositiveNumber);
+        ->check(whole_number(1));
     command->add_flag("--orientation", options->features.orientation,
                       "add coordinates, for shapes that share an orientation");
     add_common_options(*command, options->common);

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 
+#include "apps/exemplar/arguments.h"
 #include "apps/exemplar/commands.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
@@ -17,11 +19,18 @@
 namespace exemplar {
 namespace {
 
+std::vector<const CLI::App*> subcommands(const CLI::App& app) {
+    return app.get_subcommands([](const CLI::App*) { return true; });
+}
+
+bool has_subcommands(const CLI::App& app) {
+    return !subcommands(app).empty();
+}
+
 /// All option and subcommand names that `app` knows at its level.
 std::vector<std::string> known_words(const CLI::App& app) {
     std::vector<std::string> words;
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-        words.push_back(command->get_name());
+    for (const CLI::App* command : subcommands(app)) words.push_back(command->get_name());
     for (const CLI::Option* option : app.get_options())
         for (const std::string& name : option->get_lnames()) words.push_back("--" + name);
     return words;
@@ -38,32 +47,33 @@ std::string command_path(const CLI::App& app) {
     return app.get_parent() ? command_path(*app.get_parent()) + " " + app.get_name() : app.get_name();
 }
 
-/// The first argument that no known word explains, for a suggestion.
-std::string hint(const CLI::App& app, int argc, char** argv) {
+/// What no option or subcommand explains, named with the nearest word that would; empty if all is known.
+std::string unknown_argument(const CLI::App& app) {
+    std::vector<std::string> unknown = app.remaining(true);
+    if (unknown.empty()) return {};
+    const auto option = std::find_if(unknown.begin(), unknown.end(), [](const auto& w) { return w.starts_with('-'); });
+    std::string word = option == unknown.end() ? unknown.front() : *option;
+    word.erase(std::min(word.find('='), word.size()));
     const CLI::App& command = deepest(app);
     const std::vector<std::string> words = known_words(command);
-    for (int i = 1; i < argc; ++i) {
-        const std::string word = std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
-        const bool option = word.size() > 2 && word.starts_with("--");
-        const bool misplaced_command =
-            !command.get_subcommands([](const CLI::App*) { return true; }).empty() && !option;
-        if (!option && !misplaced_command) continue;
-        if (std::find(words.begin(), words.end(), word) != words.end()) continue;
-        if (std::string text = suggestion(word, words); !text.empty()) return text;
-    }
-    return {};
+    if (word.starts_with('-')) return fmt::format("unknown option '{}'{}", word, suggestion(word, words));
+    if (!has_subcommands(command)) return fmt::format("unexpected argument '{}'", word);
+    return fmt::format("unknown subcommand '{}'{}", word, suggestion(word, words));
 }
 
-int report_usage_error(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+int report_usage_error(const CLI::App& app, const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
-    fmt::print(stderr, "error: {}{}; see '{} --help'\n", error.what(), hint(app, argc, argv),
-               command_path(deepest(app)));
+    std::string what = unknown_argument(app);
+    if (what.empty()) what = error.what();
+    fmt::print(stderr, "error: {}; see '{} --help'\n", what, command_path(deepest(app)));
     return 2;
 }
 
 int run(int argc, char** argv) {
-    CLI::App app(
-        "Learns geometry processing from examples and runs what it learned on the GPU.\n\nFor example:\n"
+    CLI::App app("Learns geometry processing from examples and runs what it learned on the GPU.");
+    app.footer(
+        "'exemplar SUBCOMMAND --help' shows the options of each.\n"
+        "Exit codes: 0 done, 1 error (one line says what), 2 wrong usage, 130 interrupted.\n\nExample:\n"
         "  exemplar synth human --count 8 --seed 1 --out shapes\n"
         "  exemplar label train shapes --out human.safetensors\n"
         "  exemplar label apply human.safetensors mesh.obj --out labeled");
@@ -78,7 +88,7 @@ int run(int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return report_usage_error(app, error, argc, argv);
+        return report_usage_error(app, error);
     }
     return 0;
 }
@@ -86,20 +96,29 @@ int run(int argc, char** argv) {
 }  // namespace
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
-    command.add_option("--device", options.device, "Vulkan device: index or part of its name (see 'exemplar devices')");
-    command.add_option("--threads", options.threads, "CPU threads; 0 uses all cores")->capture_default_str();
+    command.add_option("--device", options.device, "Vulkan device: index or part of its name (see 'exemplar devices')")
+        ->type_name("NAME");
+    command.add_option("--threads", options.threads, "CPU threads; 0 uses all cores")
+        ->capture_default_str()
+        ->check(whole_number(0, 4096));
     command.add_flag("--quiet", options.quiet, "no progress and no remarks");
-    command.add_option("--json", options.json, "also write the report as JSON to this file");
+    command.add_option("--json", options.json, "also write the report as JSON to this file")->type_name("FILE");
 }
 
 std::shared_ptr<void> apply_common_options(const CommonOptions& options) {
+    require_output_file(options.json);
     Progress::set_quiet(options.quiet);
     return std::make_shared<ThreadLimit>(options.threads);
 }
 
+void write_json(const std::filesystem::path& path, const nlohmann::json& json) {
+    // Names of files may be in any encoding; JSON is UTF-8, so what is not becomes U+FFFD.
+    const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+    write_file_atomically(path, [&](std::ostream& out) { out << text << '\n'; });
+}
+
 void write_report(const CommonOptions& options, const nlohmann::json& report) {
-    if (options.json.empty()) return;
-    write_file_atomically(options.json, [&](std::ostream& out) { out << report.dump(2) << '\n'; });
+    if (!options.json.empty()) write_json(options.json, report);
 }
 
 }  // namespace exemplar

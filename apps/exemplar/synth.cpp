@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/exemplar/arguments.h"
 #include "apps/exemplar/commands.h"
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
@@ -21,6 +22,8 @@ struct SynthOptions {
 
 void run_synth(const SynthOptions& options) {
     const auto limits = apply_common_options(options.common);
+    require_output_folder(options.out);
+    synth_labels(options.kind);  // an unknown kind is an error before anything is counted
     Progress progress("generating " + options.kind, options.count);
     nlohmann::json shapes = nlohmann::json::array();
     for (std::size_t i = 0; i < options.count; ++i) {
@@ -33,7 +36,7 @@ void run_synth(const SynthOptions& options) {
         progress.advance();
     }
     progress.finish();
-    fmt::print("{} shapes in {}\n", options.count, options.out.string());
+    fmt::print("{} {} in {}\n", options.count, options.count == 1 ? "shape" : "shapes", options.out.string());
     write_report(options.common, {{"kind", options.kind}, {"seed", options.seed}, {"shapes", shapes}});
 }
 
@@ -44,16 +47,15 @@ void add_synth_command(CLI::App& app) {
     CLI::App* command = app.add_subcommand("synth", "Generates labeled shapes (NAME.off and NAME_labels.txt)");
     command->footer(fmt::format("Kinds: {}\n\nExample:\n  exemplar synth human --count 8 --seed 1 --out shapes",
                                 fmt::join(synth_kinds(), " ")));
-    command->add_option("KIND", options->kind, "what to generate")->required();
-    command->add_option("--count", options->count, "number of shapes")
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
+    command->add_option("KIND", options->kind, "what to generate")->required()->type_name("");
+    command->add_option("--count", options->count, "number of shapes")->capture_default_str()->check(whole_number(1));
     command->add_option("--seed", options->seed, "seed of the first shape; the next ones count up")
-        ->capture_default_str();
+        ->capture_default_str()
+        ->check(whole_number(0));
     command->add_option("--faces", options->faces, "faces per shape, about")
         ->capture_default_str()
-        ->check(CLI::Range(500, 200000));
-    command->add_option("--out", options->out, "folder to write to")->required();
+        ->check(whole_number(500, 200000));
+    command->add_option("--out", options->out, "folder to write to")->required()->type_name("FOLDER");
     add_common_options(*command, options->common);
     command->callback([options] { run_synth(*options); });
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/exemplar/arguments.h"
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/training_run.h"
@@ -20,19 +21,22 @@ struct TrainCommand {
 void run_train(const TrainCommand& options) {
     const auto limits = apply_common_options(options.common);
     const Stopwatch watch;
-    const LabeledCorpus corpus = load_corpus(list_meshes(options.source));
+    require_output_file(options.out);
+    const std::filesystem::path cache = usable_cache(options.cache, options.common.quiet);
+    const LabeledCorpus corpus = load_corpus(meshes_of_argument(options.source));
     if (!options.common.quiet)
         for (const std::string& warning : corpus.warnings) fmt::print(stderr, "warning: {}\n", warning);
     DeviceBackend backend(options.common.device);
-    std::vector<MeshFeatures> features = features_of(corpus, options.train.features, options.cache);
+    std::vector<MeshFeatures> features = features_of(corpus, options.train.features, cache);
     const double feature_seconds = watch.wall();
     TrainReport report;
     const LabelingModel model = train_labeling(corpus, features, options.train, backend.labeling(), report);
     save_model(options.out, model);
 
     print_training(model, report);
-    fmt::print("{} meshes, {} labels: {} in {:.1f} s (features {:.1f} s)\n", corpus.meshes.size(), corpus.names.size(),
-               options.out.string(), watch.wall(), feature_seconds);
+    fmt::print("{} {}, {} labels: {} in {:.1f} s (features {:.1f} s)\n", corpus.meshes.size(),
+               corpus.meshes.size() == 1 ? "mesh" : "meshes", corpus.names.size(), options.out.string(), watch.wall(),
+               feature_seconds);
     nlohmann::json json = describe_training(model, report);
     json["model"] = options.out.string();
     json["device"] = backend.device_name();
@@ -44,27 +48,40 @@ void run_train(const TrainCommand& options) {
 
 void add_training_options(CLI::App& command, TrainOptions& options, std::filesystem::path& cache) {
     command.add_option("--seed", options.seed, "seed of all random choices; equal seeds give equal model files")
-        ->capture_default_str();
+        ->capture_default_str()
+        ->check(whole_number(0));
     command.add_option("--rounds", options.rounds, "most boosting rounds per classifier")
         ->capture_default_str()
-        ->check(CLI::Range(1, 100000));
+        ->check(whole_number(1, 100000));
     command.add_option("--patience", options.patience, "rounds without improvement that end boosting")
-        ->capture_default_str();
+        ->capture_default_str()
+        ->check(whole_number(1));
     command.add_option("--stages", options.max_stages, "most classifiers of the cascade")
         ->capture_default_str()
-        ->check(CLI::Range(1, 64));
+        ->check(whole_number(1, 64));
     command.add_option("--bins", options.bins, "histogram bins per feature")
         ->capture_default_str()
-        ->check(CLI::Range(2, 256));
+        ->check(whole_number(2, 256));
     command.add_option("--rows", options.rows_per_mesh, "faces of each mesh to boost on, drawn at random; 0 takes all")
-        ->capture_default_str();
+        ->capture_default_str()
+        ->check(whole_number(0));
+    command
+        .add_option("--feature-fraction", options.feature_fraction,
+                    "share of the features that each boosting round looks at, drawn at random")
+        ->capture_default_str()
+        ->check(CLI::Range(0.001, 1.0));
+    command.add_option("--shrinkage", options.shrinkage, "what each stump's response is multiplied with")
+        ->capture_default_str()
+        ->check(CLI::Range(0.01, 1.0));
     command
         .add_option("--samples", options.features.samples, "faces that stand for the surface in distance statistics")
         ->capture_default_str()
-        ->check(CLI::PositiveNumber);
+        ->check(whole_number(1));
     command.add_flag("--orientation", options.features.orientation,
                      "add coordinates, for shapes that share an orientation");
-    command.add_option("--cache", cache, "folder that remembers features; '' remembers none")->capture_default_str();
+    command.add_option("--cache", cache, "folder that remembers features; '' remembers none")
+        ->capture_default_str()
+        ->type_name("FOLDER");
 }
 
 void add_train_command(CLI::App& label) {
@@ -75,8 +92,9 @@ void add_train_command(CLI::App& label) {
         "or a PLY with a per-face 'label' property.\n\nExample:\n"
         "  exemplar label train shapes --out human.safetensors --seed 1");
     command->add_option("SOURCE", options->source, "folder of labeled meshes, or a list (.txt, a path a line)")
-        ->required();
-    command->add_option("--out", options->out, "model file to write, .safetensors")->required();
+        ->required()
+        ->type_name("");
+    command->add_option("--out", options->out, "model file to write, .safetensors")->required()->type_name("FILE");
     add_training_options(*command, options->train, options->cache);
     add_common_options(*command, options->common);
     command->callback([options] { run_train(*options); });

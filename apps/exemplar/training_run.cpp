@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "host/core/interrupt.h"
@@ -47,11 +48,20 @@ std::vector<std::string> first_features(const LabelingModel& model, std::size_t 
     return names;
 }
 
+namespace {
+
+std::string number_or_dash(double value, int digits) {
+    return std::isnan(value) ? std::string("-") : fmt::format("{:.{}f}", value, digits);
+}
+
+}  // namespace
+
 void print_training(const LabelingModel& model, const TrainReport& report) {
     fmt::print("{:>14} {:>7} {:>9} {:>9} {:>8}\n", "classifier", "stumps", "log loss", "error %", "seconds");
     for (const StageReport& stage : report.stages)
-        fmt::print("{:>14} {:>7} {:>9.4f} {:>9.2f} {:>8.1f}{}\n", stage.what, stage.rounds, stage.validation_loss,
-                   100 * stage.validation_error, stage.seconds, stage.kept ? "" : "  (no gain, left out)");
+        fmt::print("{:>14} {:>7} {:>9} {:>9} {:>8.1f}{}\n", stage.what, stage.rounds,
+                   number_or_dash(stage.validation_loss, 4), number_or_dash(100 * stage.validation_error, 2),
+                   stage.seconds, stage.kept ? "" : "  (no gain, left out)");
     fmt::print(
         "CRF: kappa {:.3g}, lambda {:.3g}, mu {:.3g}; segment-weighted error {:.2f} % without, {:.2f} % with the cut "
         "({} settings in {:.1f} s)\n",
@@ -61,14 +71,18 @@ void print_training(const LabelingModel& model, const TrainReport& report) {
 
 nlohmann::json describe_training(const LabelingModel& model, const TrainReport& report) {
     nlohmann::json stages = nlohmann::json::array();
-    for (const StageReport& stage : report.stages)
+    for (const StageReport& stage : report.stages) {
+        nlohmann::json curve = nlohmann::json::array();
+        for (const HeldOutPoint& point : stage.curve)
+            curve.push_back({{"rounds", point.rounds}, {"loss", point.loss}, {"error", point.error}});
         stages.push_back({{"classifier", stage.what},
                           {"stumps", stage.rounds},
                           {"validation_loss", stage.validation_loss},
                           {"validation_error", stage.validation_error},
                           {"kept", stage.kept},
-                          {"curve", stage.curve},
+                          {"curve", std::move(curve)},
                           {"seconds", stage.seconds}});
+    }
     nlohmann::json families;
     for (const auto& [family, count] : stumps_per_family(model)) families[family] = count;
     return {{"labels", model.label_names},

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "gpu/imaging/unique_handle.h"
+#include "gpu/runtime/unique_handle.h"
 
 namespace exemplar {
 

@@ -8,6 +8,8 @@
 #include "embedded/imaging_mesh_vert.h"
 #include "gpu/runtime/device.h"
 #include "gpu/runtime/errors.h"
+#include "gpu/runtime/instance.h"
+#include "gpu/runtime/reflection.h"
 #include "shaders/shared/render.h"
 
 namespace exemplar {
@@ -17,18 +19,18 @@ constexpr const char* k_what = "make the pipeline that draws meshes";
 constexpr VkShaderStageFlags k_stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 
 void require_graphics(const Device& device) {
-    std::uint32_t count = 0;
-    vkGetPhysicalDeviceQueueFamilyProperties(device.physical(), &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    vkGetPhysicalDeviceQueueFamilyProperties(device.physical(), &count, families.data());
-    if (!(families.at(device.queue_family()).queueFlags & VK_QUEUE_GRAPHICS_BIT))
+    if (!(queue_families(device.physical()).at(device.queue_family()).queueFlags & VK_QUEUE_GRAPHICS_BIT))
         throw DeviceError(
             fmt::format("device '{}' computes but cannot draw; choose another with --device or "
                         "EXEMPLAR_DEVICE (mesa-vulkan-drivers has one for any CPU)",
                         device.info().name));
 }
 
+// Both stages see the same push constants, those of C++.
 UniqueShaderModule make_module(const Device& device, const Shader& shader) {
+    const Reflection reflection = reflect(shader);
+    check_layout(shader, "the push constants", layout_of<shared::RenderParameters>(), reflection.push_bytes,
+                 reflection.push_fields);
     auto info = empty_structure<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
     info.codeSize = shader.words.size_bytes();
     info.pCode = shader.words.data();

@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "gpu/imaging/unique_handle.h"
 #include "gpu/runtime/buffer.h"
+#include "gpu/runtime/unique_handle.h"
 
 namespace exemplar {
 

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "embedded/imaging_resolve_comp.h"
+#include "gpu/imaging/image_layout.h"
 #include "gpu/runtime/errors.h"
 #include "shaders/shared/render.h"
 
@@ -15,8 +15,7 @@ namespace exemplar {
 struct MeshDraw {
     Eigen::Matrix4f view_projection;
     shared::vec4 eye;
-    std::uint32_t corners;  // 3 per face
-    int width, height;      // of the picture
+    int width, height;  // of the picture
     RenderOptions options;
     std::array<float, 4> background;  // linear
 };
@@ -76,7 +75,7 @@ shared::RenderParameters tile_parameters(const MeshDraw& draw, const Tile& tile)
 }
 
 // x, y, z of one vector after the other.
-std::span<const float> coordinates(const std::vector<Vec3>& vectors) {
+std::span<const float> coordinates(std::span<const Vec3> vectors) {
     static_assert(sizeof(Vec3) == 3 * sizeof(float));
     if (vectors.empty()) return {};
     return {vectors.front().data(), 3 * vectors.size()};
@@ -91,12 +90,12 @@ std::vector<std::uint32_t> packed_colors(std::span<const Color> colors) {
 }
 
 VkRenderingAttachmentInfo attachment_info(const Attachment& attachment, VkImageLayout layout, VkClearValue clear,
-                                          VkAttachmentStoreOp store) {
+                                          bool clears, bool stores) {
     auto info = empty_structure<VkRenderingAttachmentInfo>(VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO);
     info.imageView = attachment.view();
     info.imageLayout = layout;
-    info.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-    info.storeOp = store;
+    info.loadOp = clears ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
+    info.storeOp = stores ? VK_ATTACHMENT_STORE_OP_STORE : VK_ATTACHMENT_STORE_OP_DONT_CARE;
     info.clearValue = clear;
     return info;
 }
@@ -110,9 +109,11 @@ void check_arguments(const TriangleMesh& mesh, std::span<const Color> face_color
 
 }  // namespace
 
-MeshRenderer::MeshRenderer(Device& device, int tile_size)
+MeshRenderer::MeshRenderer(Device& device, int tile_size, std::size_t part_bytes)
     : device_(device),
       tile_size_(tile_size),
+      part_bytes_(std::min<std::size_t>(
+          {part_bytes, device.info().max_storage_range, device.info().max_allocation, device.info().memory / 8})),
       depth_format_(depth_format(device)),
       pipeline_(device, k_color_format, depth_format_),
       resolve_(device, shaders::imaging_resolve_comp, {.push_constants = layout_of<shared::ResolveParameters>()}),
@@ -124,11 +125,13 @@ MeshRenderer::MeshRenderer(Device& device, int tile_size)
 Image MeshRenderer::render(const TriangleMesh& mesh, std::span<const Color> face_colors, const Camera& camera,
                            int width, int height, const RenderOptions& options) {
     check_arguments(mesh, face_colors, width, height);
-    upload(mesh, face_colors, options);
+    const std::vector<Vec3> normals = options.smooth ? vertex_normals(mesh) : face_normals(mesh);
+    const MeshSurface surface{mesh.faces, mesh.vertices, normals, face_colors, options.smooth};
+    const bool whole = fits(surface, part_bytes_);
+    if (whole) upload(surface);
     reserve_tile(std::min(width, tile_size_), std::min(height, tile_size_));
     MeshDraw draw{.view_projection = camera.view_projection(),
                   .eye = homogeneous_eye(camera),
-                  .corners = static_cast<std::uint32_t>(3 * mesh.face_count()),
                   .width = width,
                   .height = height,
                   .options = options,
@@ -137,21 +140,35 @@ Image MeshRenderer::render(const TriangleMesh& mesh, std::span<const Color> face
         draw.background[c] = srgb_to_linear(static_cast<float>(options.background[c]) / 255);
     Image image(width, height, 3);
     for (int y = 0; y < height; y += tile_size_)
-        for (int x = 0; x < width; x += tile_size_)
-            render_tile({x, y, std::min(tile_size_, width - x), std::min(tile_size_, height - y)}, draw, image);
+        for (int x = 0; x < width; x += tile_size_) {
+            const Tile tile{x, y, std::min(tile_size_, width - x), std::min(tile_size_, height - y)};
+            if (whole)
+                draw_part(tile, draw, {.first = true, .last = true});
+            else
+                draw_parts(tile, draw, surface);
+            resolve_tile(tile, image);
+        }
     return image;
 }
 
-void MeshRenderer::upload(const TriangleMesh& mesh, std::span<const Color> face_colors, const RenderOptions& options) {
-    if (constexpr std::uint64_t k_limit = std::numeric_limits<std::uint32_t>::max() / 3; mesh.face_count() > k_limit)
-        throw DeviceLimitError(fmt::format("{} faces are over the limit of {} in one picture; simplify the mesh",
-                                           mesh.face_count(), k_limit),
-                               mesh.face_count(), k_limit);
-    const std::vector<Vec3> normals = options.smooth ? vertex_normals(mesh) : face_normals(mesh);
-    corners_ = Buffer::of<Face>(device_, mesh.faces);
-    positions_ = Buffer::of(device_, coordinates(mesh.vertices));
-    normals_ = Buffer::of(device_, coordinates(normals));
-    colors_ = Buffer::of<std::uint32_t>(device_, packed_colors(face_colors));
+// A surface over the limits goes through the same buffers, part by part; depth decides between the parts.
+void MeshRenderer::draw_parts(const Tile& tile, const MeshDraw& draw, const MeshSurface& surface) {
+    const std::size_t faces = surface.faces.size(), step = faces_per_part(part_bytes_);
+    std::size_t first = 0;
+    do {
+        const std::size_t count = std::min(step, faces - first);
+        upload(cut_part(surface, first, count).surface(surface.vertex_normals));
+        draw_part(tile, draw, {.first = first == 0, .last = first + count == faces});
+        first += count;
+    } while (first < faces);
+}
+
+void MeshRenderer::upload(const MeshSurface& surface) {
+    corners_ = Buffer::of<Face>(device_, surface.faces);
+    positions_ = Buffer::of(device_, coordinates(surface.vertices));
+    normals_ = Buffer::of(device_, coordinates(surface.normals));
+    colors_ = Buffer::of<std::uint32_t>(device_, packed_colors(surface.colors));
+    corner_count_ = static_cast<std::uint32_t>(3 * surface.faces.size());
     pipeline_.bind({&corners_, &positions_, &normals_, &colors_});
 }
 
@@ -173,14 +190,12 @@ void MeshRenderer::reserve_tile(int width, int height) {
     tile_height_ = height;
 }
 
-void MeshRenderer::draw(VkCommandBuffer commands, const Tile& tile, const MeshDraw& draw) const {
+void MeshRenderer::record_draw(VkCommandBuffer commands, const Tile& tile, const MeshDraw& draw, Turn turn) const {
     VkClearValue background{}, far{};
     std::ranges::copy(draw.background, background.color.float32);
     far.depthStencil.depth = 1.0f;
-    const auto color =
-        attachment_info(color_, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, background, VK_ATTACHMENT_STORE_OP_STORE);
-    const auto depth =
-        attachment_info(depth_, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, far, VK_ATTACHMENT_STORE_OP_DONT_CARE);
+    const auto color = attachment_info(color_, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, background, turn.first, true);
+    const auto depth = attachment_info(depth_, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, far, turn.first, !turn.last);
     const VkExtent2D extent = sample_extent(tile);
     auto rendering = empty_structure<VkRenderingInfo>(VK_STRUCTURE_TYPE_RENDERING_INFO);
     rendering.renderArea = {{0, 0}, extent};
@@ -198,25 +213,35 @@ void MeshRenderer::draw(VkCommandBuffer commands, const Tile& tile, const MeshDr
     const shared::RenderParameters parameters = tile_parameters(draw, tile);
     vkCmdPushConstants(commands, pipeline_.layout(), VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                        sizeof parameters, &parameters);
-    if (draw.corners > 0) vkCmdDraw(commands, draw.corners, 1, 0, 0);
+    if (corner_count_ > 0) vkCmdDraw(commands, corner_count_, 1, 0, 0);
     vkCmdEndRendering(commands);
 }
 
-void MeshRenderer::render_tile(const Tile& tile, const MeshDraw& mesh_draw, Image& image) {
-    commands_.run([&](VkCommandBuffer commands) {
-        change_layout(commands, color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+void MeshRenderer::draw_part(const Tile& tile, const MeshDraw& draw, Turn turn) {
+    commands_.begin();
+    if (turn.first) {
+        change_layout(commands_.handle(), color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                       VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, k_color_begins);
-        change_layout(commands, depth_.image(), VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+        change_layout(commands_.handle(), depth_.image(), VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                       VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, k_depth_begins);
-        draw(commands, tile, mesh_draw);
-        change_layout(commands, color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                      VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, k_color_drawn);
-        VkBufferImageCopy region{};
-        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-        region.imageExtent = {sample_extent(tile).width, sample_extent(tile).height, 1};
-        vkCmdCopyImageToBuffer(commands, color_.image(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, samples_.handle(), 1,
-                               &region);
-    });
+    }
+    record_draw(commands_.handle(), tile, draw, turn);
+    if (turn.last) record_copy(commands_.handle(), tile);
+    commands_.submit();
+    commands_.wait();
+}
+
+void MeshRenderer::record_copy(VkCommandBuffer commands, const Tile& tile) const {
+    change_layout(commands, color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, k_color_drawn);
+    VkBufferImageCopy region{};
+    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.imageExtent = {sample_extent(tile).width, sample_extent(tile).height, 1};
+    vkCmdCopyImageToBuffer(commands, color_.image(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, samples_.handle(), 1,
+                           &region);
+}
+
+void MeshRenderer::resolve_tile(const Tile& tile, Image& image) {
     const shared::ResolveParameters size{static_cast<std::uint32_t>(tile.width),
                                          static_cast<std::uint32_t>(tile.height)};
     tile_pixels_.resize(std::size_t{size.width} * size.height);

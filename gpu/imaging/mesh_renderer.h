@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "gpu/imaging/attachment.h"
-#include "gpu/imaging/draw_commands.h"
+#include "gpu/imaging/mesh_part.h"
 #include "gpu/imaging/mesh_pipeline.h"
 #include "gpu/runtime/buffer.h"
+#include "gpu/runtime/commands.h"
 #include "gpu/runtime/device.h"
 #include "gpu/runtime/kernel.h"
 #include "gpu/runtime/stream.h"
@@ -28,11 +29,12 @@ namespace exemplar {
 class MeshRenderer {
   public:
     /// `tile_size` is the largest width and height, in pixels, that is drawn at once; it bounds the memory, not the
-    /// picture. Throws DeviceError if the device cannot draw, DeviceLimitError if its images are too small for a tile.
-    explicit MeshRenderer(Device& device, int tile_size = 1024);
+    /// picture. `part_bytes` bounds each of a mesh's buffers below the device's own limits; larger meshes are drawn in
+    /// parts. Throws DeviceError if the device cannot draw.
+    explicit MeshRenderer(Device& device, int tile_size = 1024, std::size_t part_bytes = std::size_t{1} << 30);
 
     /// An RGB image. `face_colors` holds one sRGB color per face. Throws UsageError if the image is empty or the number
-    /// of colors is not the number of faces, DeviceLimitError if the mesh is over the device's limits.
+    /// of colors is not the number of faces, DeviceLimitError if the device's images are too small for a tile.
     Image render(const TriangleMesh& mesh, std::span<const Color> face_colors, const Camera& camera, int width,
                  int height, const RenderOptions& options = {});
 
@@ -41,19 +43,28 @@ class MeshRenderer {
         int x, y;           // of its upper left pixel
         int width, height;  // pixels
     };
-    void upload(const TriangleMesh& mesh, std::span<const Color> face_colors, const RenderOptions& options);
+    // Which of the parts of a tile's surface is drawn.
+    struct Turn {
+        bool first, last;
+    };
+    void upload(const MeshSurface& surface);
     void reserve_tile(int width, int height);
-    void draw(VkCommandBuffer commands, const Tile& tile, const struct MeshDraw& draw) const;
-    void render_tile(const Tile& tile, const struct MeshDraw& draw, Image& image);
+    void draw_parts(const Tile& tile, const struct MeshDraw& draw, const MeshSurface& surface);
+    void draw_part(const Tile& tile, const struct MeshDraw& draw, Turn turn);
+    void record_draw(VkCommandBuffer commands, const Tile& tile, const struct MeshDraw& draw, Turn turn) const;
+    void record_copy(VkCommandBuffer commands, const Tile& tile) const;
+    void resolve_tile(const Tile& tile, Image& image);
 
     Device& device_;
     int tile_size_;
+    std::size_t part_bytes_;
     VkFormat depth_format_;
     MeshPipeline pipeline_;
     Kernel resolve_;
-    DrawCommands commands_;
+    Commands commands_;
     Stream stream_;
     Buffer corners_, positions_, normals_, colors_;
+    std::uint32_t corner_count_ = 0;
     // For tiles of up to this many pixels a side; kept between calls.
     int tile_width_ = 0, tile_height_ = 0;
     Attachment color_, depth_;

@@ -14,13 +14,16 @@ namespace {
 
 using shared::AxisContextParameters;
 using shared::GeodesicContextParameters;
+using shared::uvec4;
 using shared::vec4;
 
 constexpr std::size_t k_columns_per_class = k_context_measures * k_context_bins;
+constexpr std::size_t k_block = shared::k_context_sample_block;
+constexpr std::size_t k_class_block = 4;
 
 // On a CPU every load of a kernel is expensive, so that a sample, once loaded, serves many faces; a GPU wants many
 // invocations.
-constexpr std::uint32_t k_faces_on_cpu = 2;
+constexpr std::uint32_t k_faces_on_cpu = 4;
 
 vec4 to_vec4(const std::array<float, k_context_bins - 1>& edges) {
     return {edges[0], edges[1], edges[2], edges[3]};
@@ -43,80 +46,88 @@ struct Masses {
     }
 };
 
-std::size_t quads(std::size_t samples) {
-    return (samples + 3) / 4;
+std::size_t sample_blocks(std::size_t samples) {
+    return (samples + k_block - 1) / k_block;
 }
 
-// Class blocks x samples, padded to whole quads; the lanes beyond the last class and the samples beyond the last are
-// zero.
-std::vector<vec4> mass_blocks(const Masses& masses, std::size_t samples) {
-    const std::size_t row = 4 * quads(samples);
-    std::vector<vec4> blocks((masses.classes + 3) / 4 * row, vec4{});
-    for (std::size_t l = 0; l < masses.classes; ++l)
+std::size_t class_blocks(std::size_t classes) {
+    return (classes + k_class_block - 1) / k_class_block;
+}
+
+// Class blocks x samples, padded to whole sample blocks, of classes [first, first + count); the lanes beyond the last
+// class and the samples beyond the last are zero.
+std::vector<vec4> mass_blocks(const Masses& masses, std::size_t first, std::size_t count) {
+    const std::size_t samples = masses.sample_face.size(), row = k_block * sample_blocks(samples);
+    std::vector<vec4> blocks(class_blocks(count) * row, vec4{});
+    for (std::size_t l = 0; l < count; ++l)
         for (std::size_t j = 0; j < samples; ++j)
-            set_lane(blocks[l / 4 * row + j], l % 4, static_cast<float>(masses(j, l)));
+            set_lane(blocks[l / k_class_block * row + j], l % k_class_block, static_cast<float>(masses(j, first + l)));
     return blocks;
-}
-
-// One quad of samples: the ranges of each of the tile's faces seen from four samples, the first in the lowest byte.
-// What stands in the place of missing samples does not matter: they have no mass.
-void pack_ranges(const ContextGeometry& geometry, std::size_t quad, std::size_t first_face,
-                 std::span<std::uint32_t> words) {
-    const std::size_t samples = geometry.sample_face.size();
-    std::ranges::fill(words, 0u);
-    for (std::size_t j = 4 * quad; j < std::min(samples, 4 * quad + 4); ++j) {
-        const std::size_t shift = 8 * (j % 4);
-        const std::uint8_t* row = geometry.geodesic_bin.data() + j * geometry.faces + first_face;
-        for (std::size_t i = 0; i < words.size(); ++i) words[i] |= static_cast<std::uint32_t>(row[i]) << shift;
-    }
 }
 
 // Axes x class blocks x (samples + 1): sums of the masses in each axis' order, taken in double precision.
 std::vector<vec4> mass_prefixes(const Masses& masses, std::span<const std::vector<std::uint32_t>> orders,
-                                std::size_t samples) {
-    const std::size_t blocks = (masses.classes + 3) / 4;
+                                std::size_t first, std::size_t count) {
+    const std::size_t samples = masses.sample_face.size(), blocks = class_blocks(count);
     std::vector<vec4> prefixes(orders.size() * blocks * (samples + 1), vec4{});
     for (std::size_t axis = 0; axis < orders.size(); ++axis)
-        for (std::size_t l = 0; l < masses.classes; ++l) {
-            vec4* row = prefixes.data() + (axis * blocks + l / 4) * (samples + 1);
+        for (std::size_t l = 0; l < count; ++l) {
+            vec4* row = prefixes.data() + (axis * blocks + l / k_class_block) * (samples + 1);
             double sum = 0.0;
             for (std::size_t j = 0; j < samples; ++j) {
-                sum += masses(orders[axis][j], l);
-                set_lane(row[j + 1], l % 4, static_cast<float>(sum));
+                sum += masses(orders[axis][j], first + l);
+                set_lane(row[j + 1], l % k_class_block, static_cast<float>(sum));
             }
         }
     return prefixes;
 }
 
-// Faces per tile so that neither the ranges nor the histograms of the most classes pass the limit.
-std::size_t faces_per_tile(std::size_t limit, std::size_t samples) {
-    return std::max<std::size_t>(
-        limit / (std::max(quads(samples), k_columns_per_class * k_max_classes) * sizeof(float)), 1);
+// One block of samples: the ranges of faces seen from 16 samples, the first in the lowest byte of x. What stands in the
+// place of missing samples does not matter: they have no mass.
+void pack_ranges(const ContextGeometry& geometry, std::size_t block, std::size_t first_face, std::span<uvec4> texels) {
+    std::ranges::fill(texels, uvec4{});
+    const std::size_t samples = geometry.sample_face.size();
+    for (std::size_t j = k_block * block; j < std::min(samples, k_block * (block + 1)); ++j) {
+        const std::size_t word = j % k_block / 4, shift = 8 * (j % 4);
+        const std::uint8_t* row = geometry.geodesic_bin.data() + j * geometry.faces + first_face;
+        for (std::size_t i = 0; i < texels.size(); ++i) (&texels[i].x)[word] |= std::uint32_t{row[i]} << shift;
+    }
+}
+
+// Bytes that one of several buffers may take.
+std::size_t buffer_limit(const DeviceInfo& info, std::size_t wanted) {
+    return std::min<std::size_t>({wanted, info.max_storage_range, info.max_allocation, info.memory / 8});
+}
+
+std::size_t histogram_bytes(std::size_t faces, std::size_t classes) {
+    return k_columns_per_class * classes * faces * sizeof(float);
+}
+
+// Faces per tile so that neither the ranges nor the positions nor the histograms of one class block pass the limits.
+std::size_t faces_per_tile(const DeviceInfo& info, std::size_t tile_bytes, std::size_t samples) {
+    const std::size_t limit = buffer_limit(info, tile_bytes), blocks = std::max<std::size_t>(sample_blocks(samples), 1);
+    const std::size_t by_bytes =
+        limit / std::max({blocks * sizeof(uvec4), histogram_bytes(1, k_class_block), k_context_axes * sizeof(float)});
+    const std::size_t by_texels = info.max_texels / std::max(blocks, k_context_axes);
+    return std::max<std::size_t>(std::min(by_bytes, by_texels), 1);
+}
+
+template <typename Make>
+void for_each_tile(std::size_t faces, std::size_t tile_faces, Make&& make) {
+    for (std::size_t first = 0; first < faces; first += tile_faces) make(first, std::min(tile_faces, faces - first));
 }
 
 }  // namespace
 
-DeviceContextGeometry::DeviceContextGeometry(Device& device, const ContextGeometry& geometry, std::size_t tile_bytes)
-    : faces_(geometry.faces),
-      sample_face_(geometry.sample_face),
-      sample_area_(geometry.sample_area),
-      axis_edges_(geometry.axis_edges) {
+DeviceContextSamples::DeviceContextSamples(Device& device, const ContextGeometry& geometry)
+    : face_(geometry.sample_face), area_(geometry.sample_area), axis_edges_(geometry.axis_edges) {
     check_context_geometry(geometry);
-    sort_samples(device, geometry);
-    const std::size_t limit =
-        std::min<std::size_t>({tile_bytes, device.info().max_storage_range, device.info().max_allocation});
-    const std::size_t tile_faces = faces_per_tile(limit, samples());
-    for (std::size_t first = 0; first < faces_; first += tile_faces)
-        add_tile(device, geometry, first, std::min(tile_faces, faces_ - first));
-}
-
-void DeviceContextGeometry::sort_samples(Device& device, const ContextGeometry& geometry) {
     std::vector<float> sorted;
     for (std::size_t axis = 0; axis < k_context_axes; ++axis) {
         const auto position = [&](std::uint32_t sample) {
-            return geometry.axis_position[axis * geometry.faces + geometry.sample_face[sample]];
+            return geometry.axis_position[axis * geometry.faces + face_[sample]];
         };
-        order_[axis].resize(samples());
+        order_[axis].resize(count());
         std::iota(order_[axis].begin(), order_[axis].end(), 0u);
         std::ranges::stable_sort(order_[axis], {}, position);
         std::ranges::transform(order_[axis], std::back_inserter(sorted), position);
@@ -124,30 +135,38 @@ void DeviceContextGeometry::sort_samples(Device& device, const ContextGeometry& 
     sorted_ = Buffer::of<float>(device, sorted);
 }
 
-void DeviceContextGeometry::add_tile(Device& device, const ContextGeometry& geometry, std::size_t first,
-                                     std::size_t faces) {
-    const std::size_t row_bytes = faces * sizeof(float);
-    Tile tile{first, faces, Buffer(device, quads(samples()) * row_bytes), Buffer(device, k_context_axes * row_bytes)};
+DeviceContextTile::DeviceContextTile(Device& device, const ContextGeometry& geometry, std::size_t first_face,
+                                     std::size_t face_count)
+    : first(first_face),
+      faces(face_count),
+      ranges(device, sample_blocks(geometry.sample_face.size()) * faces * sizeof(uvec4)),
+      positions(device, k_context_axes * faces * sizeof(float)) {
     Stream stream(device);
-    std::vector<std::uint32_t> words(faces);
-    for (std::size_t quad = 0; quad < quads(samples()); ++quad) {
-        pack_ranges(geometry, quad, first, words);
-        stream.upload<std::uint32_t>(tile.ranges, words, quad * row_bytes);
+    std::vector<uvec4> texels(faces);
+    for (std::size_t block = 0; block < sample_blocks(geometry.sample_face.size()); ++block) {
+        pack_ranges(geometry, block, first, texels);
+        stream.upload<uvec4>(ranges, texels, block * faces * sizeof(uvec4));
     }
     for (std::size_t axis = 0; axis < k_context_axes; ++axis)
-        stream.upload<float>(tile.positions, std::span(geometry.axis_position).subspan(axis * faces_ + first, faces),
-                             axis * row_bytes);
+        stream.upload<float>(positions, std::span(geometry.axis_position).subspan(axis * geometry.faces + first, faces),
+                             axis * faces * sizeof(float));
     stream.finish();
-    tiles_.push_back(std::move(tile));
 }
 
-GpuContextHistograms::GpuContextHistograms(Device& device, Profiler* profiler)
+DeviceContextGeometry::DeviceContextGeometry(Device& device, const ContextGeometry& geometry, std::size_t tile_bytes)
+    : faces_(geometry.faces), samples_(device, geometry) {
+    for_each_tile(faces_, faces_per_tile(device.info(), tile_bytes, samples()),
+                  [&](std::size_t first, std::size_t faces) { tiles_.emplace_back(device, geometry, first, faces); });
+}
+
+GpuContextHistograms::GpuContextHistograms(Device& device, Profiler* profiler, std::size_t tile_bytes)
     : device_(device),
+      tile_bytes_(tile_bytes),
       faces_per_thread_(device.info().type == DeviceType::cpu ? k_faces_on_cpu : 1),
       stream_(device, profiler),
       geodesic_kernel_(device, shaders::labeling_context_geodesic_comp,
                        {.push_constants = layout_of<GeodesicContextParameters>(),
-                        .elements = {layout_of<std::uint32_t>(), layout_of<vec4>(), layout_of<float>()},
+                        .elements = {layout_of<uvec4>(), layout_of<vec4>(), layout_of<float>()},
                         .constants = {{0, faces_per_thread_}}}),
       axes_kernel_(device, shaders::labeling_context_axes_comp,
                    {.push_constants = layout_of<AxisContextParameters>(),
@@ -155,44 +174,71 @@ GpuContextHistograms::GpuContextHistograms(Device& device, Profiler* profiler)
 
 void GpuContextHistograms::accumulate(const ContextGeometry& geometry, std::span<const float> probabilities,
                                       std::size_t classes, std::span<float> out) {
-    accumulate(DeviceContextGeometry(device_, geometry), probabilities, classes, out);
+    const DeviceContextSamples samples(device_, geometry);
+    check_context_sizes(geometry.faces, probabilities, classes, out);
+    const std::size_t tile_faces =
+        std::min(faces_per_tile(device_.info(), tile_bytes_, samples.count()), geometry.faces);
+    const std::vector<ClassChunk> chunks = class_chunks(samples, probabilities, classes, tile_faces);
+    for_each_tile(geometry.faces, tile_faces, [&](std::size_t first, std::size_t faces) {
+        const DeviceContextTile tile(device_, geometry, first, faces);
+        for (const ClassChunk& chunk : chunks) accumulate_tile(samples, tile, chunk, {out, geometry.faces, classes});
+    });
 }
 
 void GpuContextHistograms::accumulate(const DeviceContextGeometry& geometry, std::span<const float> probabilities,
                                       std::size_t classes, std::span<float> out) {
     check_context_sizes(geometry.faces(), probabilities, classes, out);
-    if (classes > k_max_classes) throw UsageError("contextual histograms are limited to 64 classes");
-    const Masses mass{geometry.sample_face_, geometry.sample_area_, probabilities, classes};
-    const Buffer masses = Buffer::of<vec4>(device_, mass_blocks(mass, geometry.samples()));
-    const Buffer prefixes = Buffer::of<vec4>(device_, mass_prefixes(mass, geometry.order_, geometry.samples()));
-    for (const DeviceContextGeometry::Tile& tile : geometry.tiles_)
-        accumulate_tile(geometry, tile, classes, masses, prefixes, out);
+    if (geometry.faces() == 0) return;
+    const std::vector<ClassChunk> chunks =
+        class_chunks(geometry.samples_, probabilities, classes, geometry.tiles_.front().faces);
+    for (const DeviceContextTile& tile : geometry.tiles_)
+        for (const ClassChunk& chunk : chunks)
+            accumulate_tile(geometry.samples_, tile, chunk, {out, geometry.faces(), classes});
 }
 
-void GpuContextHistograms::accumulate_tile(const DeviceContextGeometry& geometry,
-                                           const DeviceContextGeometry::Tile& tile, std::size_t classes,
-                                           const Buffer& masses, const Buffer& prefixes, std::span<float> out) {
-    const std::size_t columns = k_columns_per_class * classes;
-    const std::size_t bytes = columns * tile.faces * sizeof(float);
+std::vector<GpuContextHistograms::ClassChunk> GpuContextHistograms::class_chunks(const DeviceContextSamples& samples,
+                                                                                 std::span<const float> probabilities,
+                                                                                 std::size_t classes,
+                                                                                 std::size_t tile_faces) {
+    const std::size_t limit = buffer_limit(device_.info(), tile_bytes_);
+    const std::size_t prefixes_per_block = k_context_axes * (samples.count() + 1);
+    const std::size_t most_blocks =
+        std::min({limit / histogram_bytes(std::max<std::size_t>(tile_faces, 1), k_class_block),
+                  limit / (prefixes_per_block * sizeof(vec4)), device_.info().max_texels / prefixes_per_block});
+    const std::size_t step = k_class_block * std::max<std::size_t>(most_blocks, 1);
+    const Masses masses{samples.face_, samples.area_, probabilities, classes};
+    std::vector<ClassChunk> chunks;
+    for (std::size_t first = 0; first < classes; first += step) {
+        const std::size_t count = std::min(step, classes - first);
+        chunks.push_back({first, count, Buffer::of<vec4>(device_, mass_blocks(masses, first, count)),
+                          Buffer::of<vec4>(device_, mass_prefixes(masses, samples.order_, first, count))});
+    }
+    return chunks;
+}
+
+void GpuContextHistograms::accumulate_tile(const DeviceContextSamples& samples, const DeviceContextTile& tile,
+                                           const ClassChunk& chunk, const Output& out) {
+    const std::size_t bytes = histogram_bytes(tile.faces, chunk.count);
     if (!histograms_ || histograms_.bytes() < bytes) histograms_ = Buffer(device_, bytes);
     const BufferRange histograms(histograms_, 0, bytes);
     const auto faces = static_cast<std::uint32_t>(tile.faces);
-    const auto samples = static_cast<std::uint32_t>(geometry.samples());
-    const auto class_count = static_cast<std::uint32_t>(classes);
+    const auto sample_count = static_cast<std::uint32_t>(samples.count());
+    const auto classes = static_cast<std::uint32_t>(chunk.count);
     const std::uint32_t threads = (faces + faces_per_thread_ - 1) / faces_per_thread_;
     stream_.dispatch(
-        geodesic_kernel_, Threads(threads, (classes + 3) / 4), {tile.ranges, masses, histograms},
-        GeodesicContextParameters{faces, static_cast<std::uint32_t>(quads(samples)), class_count, threads});
-    AxisContextParameters axes{.edges = {}, .faces = faces, .samples = samples, .classes = class_count, .padding = 0};
-    for (std::size_t axis = 0; axis < k_context_axes; ++axis) axes.edges[axis] = to_vec4(geometry.axis_edges_[axis]);
+        geodesic_kernel_, Threads(threads, class_blocks(classes)), {tile.ranges, chunk.masses, histograms},
+        GeodesicContextParameters{faces, static_cast<std::uint32_t>(sample_blocks(sample_count)), classes, threads});
+    AxisContextParameters axes{.edges = {}, .faces = faces, .samples = sample_count, .classes = classes, .padding = 0};
+    for (std::size_t axis = 0; axis < k_context_axes; ++axis) axes.edges[axis] = to_vec4(samples.axis_edges_[axis]);
     stream_.dispatch(axes_kernel_, Threads(tile.faces, k_context_axes),
-                     {tile.positions, geometry.sorted_, prefixes, histograms}, axes);
+                     {tile.positions, samples.sorted_, chunk.prefixes, histograms}, axes);
     stream_.finish();
-    tile_.resize(columns * tile.faces);
+    tile_.resize(bytes / sizeof(float));
     histograms_.download<float>(tile_);
-    for (std::size_t column = 0; column < columns; ++column)
-        std::copy_n(tile_.data() + column * tile.faces, tile.faces,
-                    out.data() + column * geometry.faces() + tile.first);
+    for (std::size_t bin = 0; bin < k_columns_per_class; ++bin)
+        for (std::size_t c = 0; c < chunk.count; ++c)
+            std::copy_n(tile_.data() + (bin * chunk.count + c) * tile.faces, tile.faces,
+                        out.values.data() + (bin * out.classes + chunk.first + c) * out.faces + tile.first);
 }
 
 }  // namespace exemplar

@@ -1,13 +1,10 @@
 #include "gpu/learn/stump_scorer.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <numeric>
+#include <limits>
 #include <vector>
 
 #include "embedded/learn_stumps_comp.h"
-#include "host/core/errors.h"
 #include "shaders/shared/stumps.h"
 
 namespace exemplar {
@@ -22,7 +19,7 @@ static_assert(sizeof(GroupedStump) == 16 && sizeof(StumpGroup) == 16);
 
 // On a CPU every load of a kernel is expensive, so that a stump, once loaded, serves many items; a GPU wants many
 // invocations.
-constexpr std::uint32_t k_quads_on_cpu = 2;
+constexpr std::uint32_t k_quads_on_cpu = 4;
 
 // A classifier as the kernel wants it.
 struct GroupedStumps {
@@ -32,33 +29,11 @@ struct GroupedStumps {
     std::vector<float> constant;
 };
 
-void check(const BoostedStumps& classifier, const FeatureMatrix& features, float scale, std::span<const float> out) {
-    const std::size_t classes = classifier.class_count;
-    if (classes == 0 || classes > k_max_classes)
-        throw ModelError(fmt::format("the classifier has {} classes, but 1 to {} are possible; train it again", classes,
-                                     k_max_classes));
-    if (classifier.elsewhere.size() != classifier.stumps.size() * classes)
-        throw ModelError("the classifier does not have one constant k_c per stump and class; train it again");
-    for (const Stump& stump : classifier.stumps) {
-        if (stump.feature >= features.cols())
-            throw ModelError(
-                fmt::format("a stump needs feature {}, but there are {}; use the features it was trained on",
-                            stump.feature, features.cols()));
-        if (classes < 64 && (stump.classes >> classes) != 0)
-            throw ModelError(
-                fmt::format("a stump is shared by a class beyond the classifier's {}; train it again", classes));
-    }
-    if (out.size() != features.rows * classes)
-        throw UsageError(fmt::format("the output holds {} values, but {} rows x {} classes are needed", out.size(),
-                                     features.rows, classes));
-    if (!(scale > 0.0f)) throw UsageError(fmt::format("the link's scale is {}; it must be above zero", scale));
-}
-
 std::vector<std::uint32_t> used_features(const BoostedStumps& classifier) {
     std::vector<std::uint32_t> used;
     for (const Stump& stump : classifier.stumps) used.push_back(stump.feature);
     std::ranges::sort(used);
-    used.erase(std::ranges::unique(used).begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
     return used;
 }
 
@@ -85,10 +60,20 @@ void reserve(Device& device, Buffer& buffer, std::size_t bytes) {
     if (!buffer || buffer.bytes() < bytes) buffer = Buffer(device, bytes);
 }
 
-// Rows per tile, a multiple of `unit`, so that neither features nor probabilities pass the limit.
-std::size_t rows_per_tile(std::size_t limit, std::size_t columns, std::size_t classes, std::size_t unit) {
-    const std::size_t row_bytes = std::max({columns, classes, std::size_t{1}}) * sizeof(float);
-    return std::max<std::size_t>(limit / row_bytes / unit * unit, unit);
+// Bytes of a tile's largest buffer: several tiles' worth must fit into the device's memory.
+std::size_t largest_tile(const DeviceInfo& info, std::size_t wanted) {
+    return std::min<std::size_t>({wanted, info.max_storage_range, info.max_allocation, info.memory / 8});
+}
+
+// Shaders may take NaN and infinity for what never occurs, so none reaches them. The smallest number is above no
+// threshold, as NaN; the largest is above all, as infinity.
+void copy_finite(std::span<const float> values, std::span<std::byte> memory) {
+    constexpr float k_largest = std::numeric_limits<float>::max();
+    auto* out = reinterpret_cast<float*>(memory.data());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const float above = values[i] > -k_largest ? values[i] : -k_largest;
+        out[i] = above < k_largest ? above : k_largest;
+    }
 }
 
 }  // namespace
@@ -96,8 +81,22 @@ std::size_t rows_per_tile(std::size_t limit, std::size_t columns, std::size_t cl
 GpuStumpScorer::GpuStumpScorer(Device& device, Profiler* profiler, std::size_t tile_bytes)
     : device_(device),
       quads_(device.info().type == DeviceType::cpu ? k_quads_on_cpu : 1),
-      tile_bytes_(std::min<std::size_t>({tile_bytes, device.info().max_storage_range, device.info().max_allocation})),
+      tile_bytes_(largest_tile(device.info(), tile_bytes)),
       stream_(device, profiler) {}
+
+// Rows of the smallest tile: neighboring invocations work side by side.
+std::size_t GpuStumpScorer::tile_unit() const {
+    return std::size_t{4} * quads_ * shared::k_stump_neighbors;
+}
+
+// A multiple of tile_unit(), so that neither features nor probabilities pass the limits.
+std::size_t GpuStumpScorer::rows_per_tile(std::size_t rows, std::size_t columns, std::size_t classes) const {
+    const std::size_t unit = tile_unit();
+    const std::size_t feature_bytes = std::min<std::size_t>(tile_bytes_, 16 * device_.info().max_texels);
+    const std::size_t most = std::min(feature_bytes / (std::max<std::size_t>(columns, 1) * sizeof(float)),
+                                      tile_bytes_ / (classes * sizeof(float)));
+    return std::min(std::max(most / unit * unit, unit), (rows + unit - 1) / unit * unit);
+}
 
 const Kernel& GpuStumpScorer::kernel(std::uint32_t classes) {
     Kernel& kernel = kernels_[classes];
@@ -112,7 +111,7 @@ const Kernel& GpuStumpScorer::kernel(std::uint32_t classes) {
 
 void GpuStumpScorer::probabilities(const BoostedStumps& classifier, const FeatureMatrix& features, Link link,
                                    float scale, std::span<float> out) {
-    check(classifier, features, scale, out);
+    check_scoring(classifier, features, scale, out);
     if (features.rows == 0) return;
     const std::size_t classes = classifier.class_count;
     const GroupedStumps grouped = group(classifier);
@@ -120,18 +119,17 @@ void GpuStumpScorer::probabilities(const BoostedStumps& classifier, const Featur
     const Buffer groups = Buffer::of<StumpGroup>(device_, grouped.groups);
     const Buffer constant = Buffer::of<float>(device_, grouped.constant);
 
-    const std::size_t unit = std::size_t{4} * quads_;  // items per invocation
-    const std::size_t tile_rows = std::min(rows_per_tile(tile_bytes_, grouped.columns.size(), classes, unit),
-                                           (features.rows + unit - 1) / unit * unit);
+    const std::size_t tile_rows = rows_per_tile(features.rows, grouped.columns.size(), classes);
     const std::size_t column_bytes = tile_rows * sizeof(float);
     reserve(device_, features_, grouped.columns.size() * column_bytes);
     reserve(device_, probabilities_, tile_rows * classes * sizeof(float));
     for (std::size_t first = 0; first < features.rows; first += tile_rows) {
         const std::size_t rows = std::min(tile_rows, features.rows - first);
         for (std::size_t c = 0; c < grouped.columns.size(); ++c)
-            stream_.upload<float>(features_, features.column(grouped.columns[c]).subspan(first, rows),
-                                  c * column_bytes);
-        const std::size_t threads = (rows + unit - 1) / unit;
+            stream_.upload_with(features_, rows * sizeof(float), c * column_bytes, [&](std::span<std::byte> memory) {
+                copy_finite(features.column(grouped.columns[c]).subspan(first, rows), memory);
+            });
+        const std::size_t threads = (rows + tile_unit() - 1) / tile_unit() * shared::k_stump_neighbors;
         const StumpParameters parameters{.rows = static_cast<std::uint32_t>(rows),
                                          .stride = static_cast<std::uint32_t>(tile_rows / 4),
                                          .threads = static_cast<std::uint32_t>(threads),

@@ -26,6 +26,8 @@ class GpuStumpScorer final : public StumpScorer {
 
   private:
     const Kernel& kernel(std::uint32_t classes);
+    std::size_t tile_unit() const;
+    std::size_t rows_per_tile(std::size_t rows, std::size_t columns, std::size_t classes) const;
     Device& device_;
     std::uint32_t quads_;  // of items per invocation
     std::size_t tile_bytes_;

@@ -43,43 +43,30 @@ constexpr std::size_t k_piece_bytes = std::size_t{64} << 20;
 
 }  // namespace
 
-Buffer::Resource::Resource(Device& owner, std::size_t capacity, BufferMemory memory) : device(owner) {
+Buffer::Resource::Resource(Device& owner, std::size_t capacity, BufferMemory memory)
+    : device(owner), allocation(owner.handle()), buffer(owner.handle()) {
     const std::string what = fmt::format("allocate a buffer of {} on '{}'", format_bytes(capacity), device.info().name);
-    const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-                                  .pNext = nullptr,
-                                  .flags = 0,
-                                  .size = capacity,
-                                  .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
-                                           VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_VERTEX_BUFFER_BIT |
-                                           VK_BUFFER_USAGE_INDEX_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
-                                  .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
-                                  .queueFamilyIndexCount = 0,
-                                  .pQueueFamilyIndices = nullptr};
-    check(vkCreateBuffer(device.handle(), &info, nullptr, &buffer), what);
+    auto info = empty_structure<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
+    info.size = capacity;
+    info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
+                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                 VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
+                 VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+    check(vkCreateBuffer(device.handle(), &info, nullptr, buffer.put()), what);
     VkMemoryRequirements needs{};
-    vkGetBufferMemoryRequirements(device.handle(), buffer, &needs);
+    vkGetBufferMemoryRequirements(device.handle(), buffer.get(), &needs);
     const MemoryWish wish = wish_for(memory);
     const VkMemoryAllocateInfo allocate{
         .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
         .pNext = nullptr,
         .allocationSize = needs.size,
         .memoryTypeIndex = device.memory_type(needs.memoryTypeBits, wish.required, wish.preferred)};
-    VkResult result = vkAllocateMemory(device.handle(), &allocate, nullptr, &allocation);
-    if (result == VK_SUCCESS) result = vkBindBufferMemory(device.handle(), buffer, allocation, 0);
-    if (result == VK_SUCCESS && can_map(device.memory_properties(allocate.memoryTypeIndex), memory)) {
-        void* address = nullptr;
-        result = vkMapMemory(device.handle(), allocation, 0, VK_WHOLE_SIZE, 0, &address);
-        mapped = static_cast<std::byte*>(address);
-    }
-    if (result == VK_SUCCESS) return;
-    vkDestroyBuffer(device.handle(), buffer, nullptr);
-    vkFreeMemory(device.handle(), allocation, nullptr);
-    check(result, what);
-}
-
-Buffer::Resource::~Resource() {
-    vkDestroyBuffer(device.handle(), buffer, nullptr);
-    vkFreeMemory(device.handle(), allocation, nullptr);
+    check(vkAllocateMemory(device.handle(), &allocate, nullptr, allocation.put()), what);
+    check(vkBindBufferMemory(device.handle(), buffer.get(), allocation.get(), 0), what);
+    if (!can_map(device.memory_properties(allocate.memoryTypeIndex), memory)) return;
+    void* address = nullptr;
+    check(vkMapMemory(device.handle(), allocation.get(), 0, VK_WHOLE_SIZE, 0, &address), what);
+    mapped = static_cast<std::byte*>(address);
 }
 
 Buffer::Buffer(Device& device, std::size_t bytes, BufferMemory memory) : bytes_(bytes) {

@@ -8,6 +8,8 @@
 #include <span>
 #include <type_traits>
 
+#include "gpu/runtime/unique_handle.h"
+
 namespace exemplar {
 
 class Device;
@@ -19,12 +21,12 @@ enum class BufferMemory {
     readback,  ///< cached host memory for reading what the device wrote
 };
 
-/// A storage buffer. Streams that use a buffer keep its memory alive until they are done.
+/// A storage and texel buffer. Streams that use a buffer keep its memory alive until they are done.
 /// Contents are undefined until written. Movable, not copyable; a default-constructed buffer has no memory.
 class Buffer {
   public:
     Buffer() = default;
-    /// Throws DeviceLimitError if the device cannot allocate that much at once, DeviceError if memory is used up.
+    /// Throws DeviceLimitError if the device cannot allocate that much at once, DeviceMemoryError if memory is used up.
     Buffer(Device& device, std::size_t bytes, BufferMemory memory = BufferMemory::device);
     Buffer(Buffer&&) = default;
     Buffer& operator=(Buffer&&) = default;
@@ -40,11 +42,11 @@ class Buffer {
     }
 
     std::size_t bytes() const { return bytes_; }
-    VkBuffer handle() const { return resource_ ? resource_->buffer : VK_NULL_HANDLE; }
+    VkBuffer handle() const { return resource_ ? resource_->buffer.get() : VK_NULL_HANDLE; }
     explicit operator bool() const { return resource_ != nullptr; }
 
     /// Writes `values` at byte `offset`, after all submitted work that uses the buffer is done; returns when they are
-    /// there.
+    /// there. Work that is recorded but not submitted sees them too.
     template <typename T>
     void upload(std::span<const T> values, std::size_t offset = 0) {
         static_assert(std::is_trivially_copyable_v<T>);
@@ -62,12 +64,11 @@ class Buffer {
     /// The Vulkan objects behind a buffer.
     struct Resource {
         Resource(Device& owner, std::size_t capacity, BufferMemory memory);
-        ~Resource();
         Resource(const Resource&) = delete;
         Resource& operator=(const Resource&) = delete;
         Device& device;
-        VkBuffer buffer = VK_NULL_HANDLE;
-        VkDeviceMemory allocation = VK_NULL_HANDLE;
+        UniqueMemory allocation;  // ends after the buffer in it
+        UniqueBuffer buffer;
         std::byte* mapped = nullptr;             ///< null if the host cannot see the memory
         std::atomic<std::uint32_t> streams = 0;  ///< streams that have recorded a use and are not done
     };
@@ -83,7 +84,7 @@ class Buffer {
 struct BufferRange {
     BufferRange(const Buffer& whole)
         : buffer(&whole), offset(0), bytes(whole.bytes()) {}  // NOLINT: a buffer is its whole range
-    /// `first` is a multiple of DeviceInfo::storage_alignment.
+    /// `first` is a multiple of DeviceInfo::storage_alignment, or of texel_alignment where it is bound as texels.
     BufferRange(const Buffer& part_of, std::size_t first, std::size_t size)
         : buffer(&part_of), offset(first), bytes(size) {}
     const Buffer* buffer;

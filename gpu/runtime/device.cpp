@@ -34,7 +34,12 @@ Device::Device(const DeviceOptions& options)
     vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
     create(options);
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
-    pipeline_cache_ = std::make_unique<PipelineCache>(device_, info_);
+    try {
+        pipeline_cache_ = std::make_unique<PipelineCache>(device_, info_);
+    } catch (const DeviceError&) {
+        vkDestroyDevice(device_, nullptr);
+        throw;
+    }
 }
 
 void Device::create(const DeviceOptions& options) {

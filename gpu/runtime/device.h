@@ -34,7 +34,9 @@ class Device {
 
     const DeviceInfo& info() const { return info_; }
     /// What the validation layer has complained about since the device was opened; empty without EXEMPLAR_VALIDATION=1.
-    std::vector<std::string> validation_messages() const { return instance_.validation_messages(); }
+    std::vector<std::string> validation_messages() const { return validation_log()->messages(); }
+    /// The same, to be read after the device has ended too: objects that were left over are reported then.
+    std::shared_ptr<const ValidationLog> validation_log() const { return instance_.validation_log(); }
     bool validating() const { return validating_; }
 
     VkInstance instance() const { return instance_.handle(); }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <tuple>
 
 #include "gpu/runtime/device.h"
 #include "gpu/runtime/errors.h"
@@ -65,7 +66,18 @@ void copy_limits(const VkPhysicalDeviceLimits& limits, DeviceInfo& info) {
     std::copy_n(limits.maxComputeWorkGroupCount, 3, info.max_groups.begin());
     info.max_shared_memory = limits.maxComputeSharedMemorySize;
     info.max_push_constants = limits.maxPushConstantsSize;
-    info.timestamp_period = limits.timestampComputeAndGraphics ? limits.timestampPeriod : 0.0f;
+    info.max_texels = limits.maxTexelBufferElements;
+    info.texel_alignment = limits.minTexelBufferOffsetAlignment;
+    info.max_storage_buffers =
+        std::min(limits.maxPerStageDescriptorStorageBuffers, limits.maxDescriptorSetStorageBuffers);
+    std::copy_n(limits.maxComputeWorkGroupSize, 3, info.max_group_size.begin());
+}
+
+void copy_timestamps(VkPhysicalDevice device, float period, DeviceInfo& info) {
+    const std::optional<std::uint32_t> family = find_compute_queue(device);
+    if (!family) return;
+    info.timestamp_bits = queue_families(device)[*family].timestampValidBits;
+    info.timestamp_period = info.timestamp_bits ? period : 0.0f;
 }
 
 std::string lower(std::string_view text) {
@@ -98,10 +110,8 @@ std::string suggest_name(std::span<const DeviceInfo> devices, std::string_view w
 }
 
 std::size_t best_device(std::span<const DeviceInfo> devices) {
-    const DeviceInfo* best = nullptr;
-    for (const DeviceInfo& device : devices)
-        if (device.unusable.empty() && (!best || device.type < best->type)) best = &device;
-    if (!best)
+    const auto best = std::ranges::min_element(devices, is_better);
+    if (!best->unusable.empty())
         throw NoDeviceError(
             fmt::format("no usable Vulkan device among: {}; update the driver or install mesa-vulkan-drivers",
                         device_list(devices)));
@@ -114,28 +124,37 @@ const DeviceInfo* find_device(std::span<const DeviceInfo> devices, std::string_v
     if (error == std::errc{} && end == wanted.data() + wanted.size())
         return index < devices.size() ? &devices[index] : nullptr;
     const std::string part = lower(wanted);
-    const auto found = std::ranges::find_if(
-        devices, [&](const DeviceInfo& d) { return lower(d.name).find(part) != std::string::npos; });
-    return found == devices.end() ? nullptr : &*found;
+    const DeviceInfo* best = nullptr;
+    for (const DeviceInfo& device : devices)
+        if (lower(device.name).find(part) != std::string::npos && (!best || is_better(device, *best))) best = &device;
+    return best;
 }
 
 }  // namespace
 
-std::optional<std::uint32_t> find_compute_queue(VkPhysicalDevice device) {
+std::vector<VkQueueFamilyProperties> queue_families(VkPhysicalDevice device) {
     std::uint32_t count = 0;
     vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
     vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+    return families;
+}
+
+std::optional<std::uint32_t> find_compute_queue(VkPhysicalDevice device) {
+    const std::vector<VkQueueFamilyProperties> families = queue_families(device);
     // One queue serves compute and drawing; a device that only computes is fine too.
     for (const VkQueueFlags wanted : {VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT, VK_QUEUE_COMPUTE_BIT + 0})
-        for (std::uint32_t i = 0; i < count; ++i)
+        for (std::uint32_t i = 0; i < families.size(); ++i)
             if ((families[i].queueFlags & wanted) == wanted) return i;
     return std::nullopt;
 }
 
 DeviceInfo describe(VkPhysicalDevice device, std::size_t index) {
+    // Only Vulkan 1.3 knows the largest buffer; older devices leave the structure alone.
+    auto buffers = empty_structure<VkPhysicalDeviceMaintenance4Properties>(
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_4_PROPERTIES);
     auto maintenance = empty_structure<VkPhysicalDeviceMaintenance3Properties>(
-        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES);
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES, &buffers);
     auto subgroup = empty_structure<VkPhysicalDeviceSubgroupProperties>(
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES, &maintenance);
     auto driver = empty_structure<VkPhysicalDeviceDriverProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES,
@@ -157,9 +176,20 @@ DeviceInfo describe(VkPhysicalDevice device, std::size_t index) {
     std::copy_n(core.pipelineCacheUUID, VK_UUID_SIZE, info.cache_uuid.begin());
     info.memory = local_memory(device);
     info.max_allocation = maintenance.maxMemoryAllocationSize;
+    if (buffers.maxBufferSize) info.max_allocation = std::min(info.max_allocation, buffers.maxBufferSize);
     info.subgroup_size = subgroup.subgroupSize;
     copy_limits(core.limits, info);
+    copy_timestamps(device, core.limits.timestampPeriod, info);
     return info;
+}
+
+bool is_better(const DeviceInfo& a, const DeviceInfo& b) {
+    // Among CPU drivers lavapipe is the fastest; among GPUs of one type, the one with more memory is the larger one.
+    const auto rank = [](const DeviceInfo& d) {
+        const bool other_cpu_driver = d.type == DeviceType::cpu && lower(d.name).find("llvmpipe") == std::string::npos;
+        return std::tuple(!d.unusable.empty(), d.type, other_cpu_driver, ~d.memory);
+    };
+    return rank(a) < rank(b);
 }
 
 std::vector<DeviceInfo> list_devices() {
@@ -218,6 +248,7 @@ nlohmann::ordered_json to_json(const DeviceReport& report) {
                                    {"max_allocation_bytes", info.max_allocation},
                                    {"max_storage_range_bytes", info.max_storage_range},
                                    {"storage_alignment_bytes", info.storage_alignment},
+                                   {"max_texels", info.max_texels},
                                    {"max_workgroup_invocations", info.max_invocations},
                                    {"max_workgroups", info.max_groups},
                                    {"max_shared_memory_bytes", info.max_shared_memory},

@@ -49,8 +49,8 @@ void check(VkResult result, std::string_view what) {
     if (result == VK_ERROR_DEVICE_LOST)
         throw DeviceLostError(fmt::format("cannot {}: the device was lost (it hung or was reset); start again", what));
     if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
-        throw DeviceError(fmt::format("cannot {}: the {} memory is used up; use smaller inputs or another device", what,
-                                      result == VK_ERROR_OUT_OF_DEVICE_MEMORY ? "device's" : "host's"));
+        throw DeviceMemoryError(fmt::format("cannot {}: the {} memory is used up; use smaller inputs or another device",
+                                            what, result == VK_ERROR_OUT_OF_DEVICE_MEMORY ? "device's" : "host's"));
     throw DeviceError(fmt::format("cannot {}: {}", what, result_name(result)));
 }
 

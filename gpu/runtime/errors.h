@@ -22,6 +22,12 @@ class DeviceLostError : public DeviceError {
     using DeviceError::DeviceError;
 };
 
+/// The device's or the host's memory is used up.
+class DeviceMemoryError : public DeviceError {
+  public:
+    using DeviceError::DeviceError;
+};
+
 /// Something larger than the device allows.
 class DeviceLimitError : public DeviceError {
   public:

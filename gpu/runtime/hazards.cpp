@@ -25,21 +25,19 @@ std::vector<Access> merge(std::span<const Access> accesses) {
 
 bool HazardTracker::needs_barrier(const State& state, const Access& access) {
     if (access.writes) return state.write_stage || state.read_stages;
-    const bool visible =
-        (state.visible_stages & access.stage) == access.stage && (state.visible_access & access.reads) == access.reads;
-    return state.write_stage && !visible;
+    const auto covers = [&](const Sight& sight) {
+        return (sight.stages & access.stage) == access.stage && (sight.reads & access.reads) == access.reads;
+    };
+    return state.write_stage && std::ranges::none_of(state.visible, covers);
 }
 
 void HazardTracker::remember(State& state, const Access& access, bool barrier) {
     if (access.writes) {
-        state = {.write_stage = access.stage, .write_access = access.writes};
+        state = {.write_stage = access.stage, .write_access = access.writes, .read_stages = 0, .visible = {}};
         return;
     }
     state.read_stages |= access.stage;
-    if (barrier) {
-        state.visible_stages |= access.stage;
-        state.visible_access |= access.reads;
-    }
+    if (barrier) state.visible.push_back({access.stage, access.reads});
 }
 
 std::vector<Barrier> HazardTracker::before(std::span<const Access> accesses) {

@@ -38,12 +38,16 @@ class HazardTracker {
     void reset() { states_.clear(); }
 
   private:
+    // A barrier makes a write visible to these accesses in these stages, and not to others of two barriers mixed.
+    struct Sight {
+        VkPipelineStageFlags2 stages;
+        VkAccessFlags2 reads;
+    };
     struct State {
         VkPipelineStageFlags2 write_stage = 0;
         VkAccessFlags2 write_access = 0;
-        VkPipelineStageFlags2 read_stages = 0;     // since the write
-        VkPipelineStageFlags2 visible_stages = 0;  // where the write can be seen already
-        VkAccessFlags2 visible_access = 0;
+        VkPipelineStageFlags2 read_stages = 0;  // since the write
+        std::vector<Sight> visible;             // who can see the write already
     };
     static bool needs_barrier(const State& state, const Access& access);
     static void remember(State& state, const Access& access, bool barrier);

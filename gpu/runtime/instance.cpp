@@ -65,7 +65,7 @@ void Instance::create(const InstanceOptions& options) {
         layers.push_back(k_validation_layer);
         extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     }
-    VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(&Instance::collect, &messages_);
+    VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(&Instance::collect, log_.get());
     const VkValidationFeatureEnableEXT enabled = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
     const VkValidationFeaturesEXT features{.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
                                            .pNext = &messenger,
@@ -111,15 +111,8 @@ Instance::~Instance() {
 
 VkBool32 Instance::collect(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                            const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
-    auto* messages = static_cast<Messages*>(user);
-    const std::lock_guard lock(messages->mutex);
-    messages->texts.emplace_back(data->pMessage);
+    static_cast<ValidationLog*>(user)->add(data->pMessage);
     return VK_FALSE;
-}
-
-std::vector<std::string> Instance::validation_messages() const {
-    const std::lock_guard lock(messages_.mutex);
-    return messages_.texts;
 }
 
 std::vector<VkPhysicalDevice> Instance::physical_devices() const {

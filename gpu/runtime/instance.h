@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gpu/runtime/device_info.h"
@@ -15,6 +16,24 @@ namespace exemplar {
 struct InstanceOptions {
     bool validation = false;                ///< load VK_LAYER_KHRONOS_validation with synchronization validation
     std::vector<std::string> extensions{};  ///< e.g. the surface extensions of a window system
+};
+
+/// Warnings and errors of the validation layer; outlives the instance, which may still complain while it ends. Any
+/// thread may use it.
+class ValidationLog {
+  public:
+    void add(std::string message) {
+        const std::lock_guard lock(mutex_);
+        messages_.push_back(std::move(message));
+    }
+    std::vector<std::string> messages() const {
+        const std::lock_guard lock(mutex_);
+        return messages_;
+    }
+
+  private:
+    mutable std::mutex mutex_;
+    std::vector<std::string> messages_;
 };
 
 /// The connection to the Vulkan loader. Collects what the validation layer says.
@@ -29,22 +48,19 @@ class Instance {
     VkInstance handle() const { return instance_; }
     std::vector<VkPhysicalDevice> physical_devices() const;
     std::vector<DeviceInfo> devices() const;
-    /// Warnings and errors of the validation layer so far; any thread may call it.
-    std::vector<std::string> validation_messages() const;
+    const std::shared_ptr<ValidationLog>& validation_log() const { return log_; }
 
   private:
-    struct Messages {
-        mutable std::mutex mutex;
-        std::vector<std::string> texts;
-    };
     static VKAPI_ATTR VkBool32 VKAPI_CALL collect(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                                   VkDebugUtilsMessageTypeFlagsEXT,
                                                   const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
     void create(const InstanceOptions& options);
     VkInstance instance_ = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
-    Messages messages_;
+    std::shared_ptr<ValidationLog> log_ = std::make_shared<ValidationLog>();
 };
+
+std::vector<VkQueueFamilyProperties> queue_families(VkPhysicalDevice device);
 
 /// The queue family Exemplar uses: compute, and graphics too where one family has both.
 std::optional<std::uint32_t> find_compute_queue(VkPhysicalDevice device);

@@ -23,7 +23,8 @@ class Device;
 struct KernelInterface {
     /// layout_of<Parameters>(); without it the shader may have no push constants.
     std::optional<StructLayout> push_constants{};
-    /// Per storage buffer in binding order, the layout of an element of its array; may stop early.
+    /// Per buffer in binding order, the layout of an element of its array; may stop early, but not before texels: the
+    /// size of their C++ type, 4 or 16 bytes, is their format.
     std::vector<StructLayout> elements{};
     /// Specialization constants: id and the bits of its value (std::bit_cast<uint32_t> for floats).
     std::vector<std::pair<std::uint32_t, std::uint32_t>> constants{};

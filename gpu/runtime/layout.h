@@ -35,7 +35,7 @@ StructLayout layout_of() {
 
 // EXEMPLAR_LAYOUT(Struct, field, ...) beside a shared structure lets Kernel compare it with what the shader declares.
 #define EXEMPLAR_LAYOUT_FIELD(Struct, field) \
-    ::exemplar::FieldLayout{#field, offsetof(Struct, field), sizeof(static_cast<Struct*>(nullptr)->field)},
+    ::exemplar::FieldLayout{#field, offsetof(Struct, field), sizeof(Struct::field)},
 #define EXEMPLAR_PARENTHESES ()
 #define EXEMPLAR_EXPAND(...) EXEMPLAR_EXPAND2(EXEMPLAR_EXPAND2(EXEMPLAR_EXPAND2(__VA_ARGS__)))
 #define EXEMPLAR_EXPAND2(...) EXEMPLAR_EXPAND1(EXEMPLAR_EXPAND1(EXEMPLAR_EXPAND1(__VA_ARGS__)))

@@ -68,10 +68,36 @@ class Module {
     spvc_resources resources_ = nullptr;
 };
 
-ReflectedBinding reflect_binding(const Module& module, const spvc_reflected_resource& resource) {
+// What all types of bindings have.
+ReflectedBinding reflect_place(const Shader& shader, const Module& module, const spvc_reflected_resource& resource) {
+    if (spvc_compiler_get_decoration(module.compiler(), resource.id, SpvDecorationDescriptorSet) != 0)
+        throw ShaderError(fmt::format("shader {}: '{}' is not in descriptor set 0", shader.name, resource.name));
+    if (spvc_type_get_num_array_dimensions(module.type(resource.type_id)) != 0)
+        throw ShaderError(fmt::format("shader {}: '{}' is an array of buffers; kernels bind one buffer per binding",
+                                      shader.name, resource.name));
     ReflectedBinding binding;
     binding.binding = spvc_compiler_get_decoration(module.compiler(), resource.id, SpvDecorationBinding);
     binding.name = resource.name;
+    return binding;
+}
+
+ReflectedBinding reflect_texels(const Shader& shader, const Module& module, const spvc_reflected_resource& resource) {
+    const spvc_type type = module.type(resource.base_type_id);
+    const spvc_basetype values = spvc_type_get_basetype(module.type(spvc_type_get_image_sampled_type(type)));
+    if (spvc_type_get_image_dimension(type) != SpvDimBuffer ||
+        (values != SPVC_BASETYPE_FP32 && values != SPVC_BASETYPE_UINT32))
+        throw ShaderError(
+            fmt::format("shader {}: '{}' is neither a storage buffer nor a buffer of float or uint texels", shader.name,
+                        resource.name));
+    ReflectedBinding binding = reflect_place(shader, module, resource);
+    binding.type = BindingType::texels;
+    binding.integers = values == SPVC_BASETYPE_UINT32;
+    binding.writes = false;
+    return binding;
+}
+
+ReflectedBinding reflect_storage(const Shader& shader, const Module& module, const spvc_reflected_resource& resource) {
+    ReflectedBinding binding = reflect_place(shader, module, resource);
     const SpvDecoration* decorations = nullptr;
     std::size_t count = 0;
     module.require(spvc_compiler_get_buffer_block_decorations(module.compiler(), resource.id, &decorations, &count));
@@ -92,17 +118,16 @@ ReflectedBinding reflect_binding(const Module& module, const spvc_reflected_reso
 }
 
 void reflect_bindings(const Shader& shader, const Module& module, Reflection& result) {
-    for (const spvc_resource_type other :
-         {SPVC_RESOURCE_TYPE_UNIFORM_BUFFER, SPVC_RESOURCE_TYPE_STORAGE_IMAGE, SPVC_RESOURCE_TYPE_SAMPLED_IMAGE,
-          SPVC_RESOURCE_TYPE_SEPARATE_IMAGE, SPVC_RESOURCE_TYPE_SEPARATE_SAMPLERS})
+    for (const spvc_resource_type other : {SPVC_RESOURCE_TYPE_UNIFORM_BUFFER, SPVC_RESOURCE_TYPE_STORAGE_IMAGE,
+                                           SPVC_RESOURCE_TYPE_SEPARATE_IMAGE, SPVC_RESOURCE_TYPE_SEPARATE_SAMPLERS})
         for (const spvc_reflected_resource& resource : module.resources(other))
-            throw ShaderError(fmt::format("shader {}: '{}' is no storage buffer; kernels bind storage buffers only",
-                                          shader.name, resource.name));
-    for (const spvc_reflected_resource& resource : module.resources(SPVC_RESOURCE_TYPE_STORAGE_BUFFER)) {
-        if (spvc_compiler_get_decoration(module.compiler(), resource.id, SpvDecorationDescriptorSet) != 0)
-            throw ShaderError(fmt::format("shader {}: '{}' is not in descriptor set 0", shader.name, resource.name));
-        result.bindings.push_back(reflect_binding(module, resource));
-    }
+            throw ShaderError(
+                fmt::format("shader {}: '{}' is neither a storage buffer nor a buffer of float or uint texels",
+                            shader.name, resource.name));
+    for (const spvc_reflected_resource& resource : module.resources(SPVC_RESOURCE_TYPE_STORAGE_BUFFER))
+        result.bindings.push_back(reflect_storage(shader, module, resource));
+    for (const spvc_reflected_resource& resource : module.resources(SPVC_RESOURCE_TYPE_SAMPLED_IMAGE))
+        result.bindings.push_back(reflect_texels(shader, module, resource));
     std::ranges::sort(result.bindings, {}, &ReflectedBinding::binding);
 }
 
@@ -137,6 +162,10 @@ void reflect_constants(const Module& module, Reflection& result) {
 }
 
 }  // namespace
+
+VkDescriptorType descriptor_type(BindingType type) {
+    return type == BindingType::texels ? VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+}
 
 Reflection reflect(const Shader& shader) {
     const Module module(shader);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <volk.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -18,13 +20,23 @@ struct ReflectedField {
     std::size_t bytes;
 };
 
-/// A storage buffer binding of descriptor set 0.
+enum class BindingType {
+    storage,  ///< a storage buffer
+    texels,   ///< a samplerBuffer or usamplerBuffer: read by texelFetch() only, through the texture units
+};
+
+VkDescriptorType descriptor_type(BindingType type);
+
+/// A buffer binding of descriptor set 0.
 struct ReflectedBinding {
     std::uint32_t binding = 0;
     std::string name;
+    BindingType type = BindingType::storage;
+    bool integers = false;                  ///< what texels are made of: uint, else float
+    VkFormat format = VK_FORMAT_UNDEFINED;  ///< of texels; no shader says it, so Kernel sets it from their C++ type
     bool reads = true;
     bool writes = true;
-    std::size_t stride = 0;              ///< of the array that ends the block; 0 if there is none
+    std::size_t stride = 0;              ///< of the array that ends the block; 0 if there is none; of texels as format
     std::vector<ReflectedField> fields;  ///< of an element, if it is a structure
 };
 
@@ -40,7 +52,7 @@ struct Reflection {
 };
 
 /// Reads a compute shader's interface. Throws ShaderError if it is no valid SPIR-V, uses another descriptor set than 0
-/// or binds anything but storage buffers.
+/// or binds anything but storage buffers and texel buffers.
 Reflection reflect(const Shader& shader);
 
 /// Throws ShaderError naming the first difference between a structure of C++ and the shader's.

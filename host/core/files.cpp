@@ -38,33 +38,59 @@ struct RemoveUnlessKept {
     }
 };
 
-}  // namespace
-
-void write_file_atomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
-    std::error_code error;
-    if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
-    if (error) fail(path, error.value());
-
-    RemoveUnlessKept temporary{temporary_beside(path)};
+/// Fills the file `opened`; errors name `path`.
+void write_stream(const fs::path& opened, const fs::path& path, const std::function<void(std::ostream&)>& write) {
     errno = 0;
-    std::ofstream stream(temporary.path, std::ios::binary | std::ios::trunc);
+    std::ofstream stream(opened, std::ios::binary | std::ios::trunc);
     if (!stream) fail(path, errno);
     write(stream);
     stream.close();
     if (!stream) fail(path, errno ? errno : EIO);
-    fs::rename(temporary.path, path, error);
+}
+
+/// Terminals, pipes and /dev/null take what is written, but must not be replaced by a file.
+bool takes_a_stream(const fs::path& path) {
+    std::error_code ignored;
+    const fs::file_status status = fs::status(path, ignored);
+    return fs::is_character_file(status) || fs::is_fifo(status);
+}
+
+/// Where the file itself lies: the target of a link, so that the link stays.
+fs::path link_target(const fs::path& path) {
+    std::error_code error;
+    if (!fs::is_symlink(path, error)) return path;
+    const fs::path target = fs::canonical(path, error);
+    return error ? path : target;
+}
+
+}  // namespace
+
+void write_file_atomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
+    if (takes_a_stream(path)) return write_stream(path, path, write);
+    std::error_code error;
+    if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
+    if (error) fail(path, error.value());
+
+    const fs::path target = link_target(path);
+    RemoveUnlessKept temporary{temporary_beside(target)};
+    write_stream(temporary.path, path, write);
+    fs::rename(temporary.path, target, error);
     if (error) fail(path, error.value());
     temporary.kept = true;
 }
 
 std::string read_file(const fs::path& path) {
-    if (fs::is_directory(path)) throw DataError(path.string() + ": is a folder, not a file");
+    std::error_code ignored;  // opening says more
+    if (fs::is_directory(path, ignored)) throw DataError(path.string() + ": is a folder, not a file");
     errno = 0;
     std::ifstream stream(path, std::ios::binary);
     if (!stream) throw DataError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
     std::ostringstream content;
+    errno = 0;
     content << stream.rdbuf();
-    if (stream.bad()) throw DataError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
+    const bool failed = content.fail() && errno != 0;  // an empty file fails too, without a reason
+    if (stream.bad() || failed)
+        throw DataError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
     return std::move(content).str();
 }
 

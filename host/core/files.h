@@ -11,7 +11,8 @@ namespace exemplar {
 
 /// Writes a whole file so that readers never see half of it: `write` fills a stream to a temporary file beside `path`,
 /// which is renamed over `path` when the stream closed without an error and removed otherwise.
-/// Creates missing parent folders. Throws DataError naming the path and the system's reason.
+/// A link is followed; a terminal or pipe is written to directly. Creates missing parent folders. Throws DataError
+/// naming the path and the system's reason.
 void write_file_atomically(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
 /// The whole content of a file; throws DataError naming the path if it cannot be read.

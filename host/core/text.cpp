@@ -50,6 +50,25 @@ std::string suggestion(std::string_view word, std::span<const std::string> candi
     return nearest.empty() ? std::string() : fmt::format(" (did you mean '{}'?)", nearest);
 }
 
+bool is_utf8(std::string_view text) {
+    for (std::size_t i = 0; i < text.size();) {
+        const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
+        const unsigned char lead = byte(i);
+        if (lead >= 0x80 && (lead < 0xc2 || lead > 0xf4)) return false;
+        const std::size_t length = lead < 0x80 ? 1 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : 4;
+        if (length > text.size() - i) return false;
+        for (std::size_t k = 1; k < length; ++k)
+            if ((byte(i + k) & 0xc0) != 0x80) return false;
+        // Overlong forms, surrogates, and what lies beyond the last code point show in the second byte.
+        const bool bad_second =
+            length > 2 && ((lead == 0xe0 && byte(i + 1) < 0xa0) || (lead == 0xed && byte(i + 1) > 0x9f) ||
+                           (lead == 0xf0 && byte(i + 1) < 0x90) || (lead == 0xf4 && byte(i + 1) > 0x8f));
+        if (bad_second) return false;
+        i += length;
+    }
+    return true;
+}
+
 std::string format_seconds(double seconds) {
     if (seconds < 9.95) return fmt::format("{:.{}f} s", seconds, seconds < 0.995 ? 2 : 1);
     const long whole = std::lround(seconds);

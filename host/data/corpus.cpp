@@ -58,13 +58,20 @@ std::vector<fs::path> meshes_of_folder(const fs::path& folder) {
     return paths;
 }
 
+/// Where the comment of a line begins: at a # that no name could hold, first in the line or after a space.
+std::size_t comment_begin(const std::string& line) {
+    for (std::size_t i = 0; i < line.size(); ++i)
+        if (line[i] == '#' && (i == 0 || line[i - 1] == ' ' || line[i - 1] == '\t')) return i;
+    return line.size();
+}
+
 std::vector<fs::path> meshes_of_list(const fs::path& list) {
     std::vector<fs::path> paths;
     std::istringstream lines(read_file(list));
     std::string line;
     for (int number = 1; std::getline(lines, line); ++number) {
-        line.erase(std::min(line.find('#'), line.size()));
         line.erase(0, line.find_first_not_of(" \t\r"));
+        line.erase(comment_begin(line));
         line.erase(line.find_last_not_of(" \t\r") + 1);
         if (line.empty()) continue;
         fs::path path = line;
@@ -164,6 +171,20 @@ LabeledCorpus load_corpus(const std::vector<fs::path>& paths, const std::vector<
     return corpus;
 }
 
+namespace {
+
+/// Polygons without a triangle (of fewer than three corners) take the label of the polygon before them in the file,
+/// the first ones that of the one after: the label files of the benchmark cannot leave a face out.
+template <typename Votes>
+void label_cornerless(const std::vector<Votes>& votes, std::vector<std::int32_t>& label) {
+    for (std::size_t s = 1; s < label.size(); ++s)
+        if (votes[s].empty()) label[s] = label[s - 1];
+    for (std::size_t s = label.size(); s-- > 1;)
+        if (votes[s - 1].empty() && label[s - 1] < 0) label[s - 1] = label[s];
+}
+
+}  // namespace
+
 std::vector<std::int32_t> to_source_faces(const TriangleMesh& mesh, std::span<const std::int32_t> triangle_label) {
     if (mesh.source_face.empty()) return {triangle_label.begin(), triangle_label.end()};
     const std::vector<float> area = face_areas(mesh);
@@ -174,6 +195,7 @@ std::vector<std::int32_t> to_source_faces(const TriangleMesh& mesh, std::span<co
     for (std::size_t s = 0; s < votes.size(); ++s)
         for (float best = -1; const auto& [candidate, weight] : votes[s])
             if (weight > best) best = weight, label[s] = candidate;
+    label_cornerless(votes, label);
     return label;
 }
 

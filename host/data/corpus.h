@@ -25,8 +25,8 @@ struct LabeledCorpus {
 };
 
 /// Mesh paths of `source`: a folder (its mesh files in natural order, not below) or a text file with a path a line
-/// (relative to the list's folder or to the working folder; '#' starts a comment). Throws DataError when there are
-/// none.
+/// (relative to the working folder or to the list's; a '#' at the start or after a space begins a comment). Throws
+/// DataError when there are none.
 std::vector<std::filesystem::path> list_meshes(const std::filesystem::path& source);
 
 /// Reads meshes with their labels: from NAME_labels.txt beside NAME.off (any mesh format), else from the PLY's own
@@ -34,7 +34,8 @@ std::vector<std::filesystem::path> list_meshes(const std::filesystem::path& sour
 /// labels (a label that is not among them is an error with the nearest suggestion, unless names is empty).
 LabeledCorpus load_corpus(const std::vector<std::filesystem::path>& paths, const std::vector<std::string>& names = {});
 
-/// Labels of the source faces from labels of their triangles (each polygon gets the label with the most area).
+/// Labels of the source faces from labels of their triangles (each polygon gets the label with the most area; one
+/// without triangles that of its neighbor in the file).
 std::vector<std::int32_t> to_source_faces(const TriangleMesh& mesh, std::span<const std::int32_t> triangle_label);
 
 }  // namespace exemplar

@@ -150,7 +150,8 @@ void write_safetensors(const std::filesystem::path& path, const TensorFile& file
             {"dtype", tensor.type}, {"shape", tensor.shape}, {"data_offsets", {offset, offset + tensor.bytes.size()}}};
         offset += tensor.bytes.size();
     }
-    std::string text = header.dump();
+    // Names of files in the metadata may be in any encoding; JSON is UTF-8, so what is not becomes U+FFFD.
+    std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
     text.resize((text.size() + 7) / 8 * 8, ' ');  // keeps the arrays aligned for readers that map the file
     const std::uint64_t size = text.size();
     write_file_atomically(path, [&](std::ostream& out) {

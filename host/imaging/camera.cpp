@@ -84,7 +84,9 @@ Camera fit_camera(const TriangleMesh& mesh, const Vec3& direction, float aspect,
         high = high.cwiseMax(p);
     }
     const Vec3 center = (low + high) / 2;
-    const float depth = std::max((high - low).norm(), 1e-6f);
+    // A mesh of one point gets some room, enough that eye and target differ wherever it lies.
+    float depth = (high - low).norm();
+    if (!(depth > 1e-5f * center.norm())) depth = center.norm() > 0 ? 1e-5f * center.norm() : 1;
     const float room = 1 - options.margin;
 
     // The widest ratio of a vertex' offset to the room it has decides the size, or the distance in perspective.

@@ -22,8 +22,10 @@ struct ContextGeometry {
     /// S x faces: the geodesic distance range of each face seen from each sample, 0 .. k_context_bins - 1, or k_no_bin
     /// where there is no path. Only the range matters, so a byte replaces the distance: a quarter of the traffic.
     std::vector<std::uint8_t> geodesic_bin;
-    std::vector<float> axis_position;  ///< k_context_axes x faces: |position along the axis|, centered
-    /// k_context_axes x (k_context_bins - 1): the inner range edges of each axis distance ||x_i| - |x_j||, rising.
+    /// k_context_axes x faces: position x along a principal axis, centered, whose sign is arbitrary as only distances
+    /// count; distance |x| from a symmetry plane, as its two sides are alike.
+    std::vector<float> axis_position;
+    /// k_context_axes x (k_context_bins - 1): the inner range edges of each difference of positions, rising.
     /// Range = number of edges <= distance.
     std::array<std::array<float, k_context_bins - 1>, k_context_axes> axis_edges{};
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <nlopt.hpp>
 
 #include "host/core/interrupt.h"
@@ -15,6 +16,7 @@ constexpr std::array<double, 5> k_grid{0.01, 0.04, 0.17, 0.7, 3.0};  ///< per we
 constexpr double k_least = 0.002, k_largest = 30;                    ///< bounds of the continuous search
 constexpr std::array<double, 3> k_prohibitive{100.0, 10.0, 2.0};     ///< tried for labels that never touch
 constexpr std::array<double, 4> k_merge_fractions{0.0, 0.1, 0.2, 0.5};
+constexpr double k_pair_cost = 0.002;     ///< a compatibility of 2 for every pair must save a tenth of a percent
 constexpr int k_weight_evaluations = 40;  ///< of the search over kappa, lambda, mu
 constexpr int k_pair_evaluations = 12;    ///< per touching pair, of the search over everything
 
@@ -52,8 +54,8 @@ std::vector<std::int32_t> most_probable(const CrfTerms& terms, std::size_t faces
 class Search {
   public:
     Search(std::span<const CrfExample> examples, std::size_t classes, const std::vector<bool>& touching,
-           std::span<const float> smallest_component, const std::function<void()>& progress)
-        : examples_(examples), classes_(classes), smallest_component_(smallest_component), progress_(progress) {
+           const std::function<void()>& progress)
+        : examples_(examples), classes_(classes), progress_(progress) {
         best_.compatibility.assign(classes * classes, k_prohibitive[0]);
         best_.merge_fraction = 0;
         for (std::size_t a = 0; a < classes; ++a) {
@@ -146,30 +148,37 @@ class Search {
         return parameters;
     }
 
+    /// Mean of log^2 L over the touching pairs: a few meshes cannot tell every pair's compatibility from noise.
+    double spread_of_pairs(const CrfParameters& parameters) const {
+        double sum = 0;
+        for (const auto& [a, b] : pairs_) sum += std::pow(std::log(parameters.compatibility[a * classes_ + b]), 2);
+        return pairs_.empty() ? 0 : sum / static_cast<double>(pairs_.size());
+    }
+
     double judge(const CrfParameters& parameters) {
         check_interrupt();
         std::vector<double> errors(examples_.size());
         parallel_for(examples_.size(), [&](std::size_t i) {
             const CrfExample& example = examples_[i];
             std::vector<std::int32_t> labels = solve_crf(*example.features, example.terms, parameters);
-            merge_small_components(*example.features, parameters, smallest_component_, labels);
+            merge_small_components(*example.features, parameters, example.smallest_component, labels);
             errors[i] = labeling_error(example, labels, classes_);
         });
         double mean = 0;
         for (const double error : errors) mean += error / static_cast<double>(errors.size());
-        if (mean < best_error_) best_error_ = mean, best_ = parameters;
+        const double cost = mean + k_pair_cost * spread_of_pairs(parameters);
+        if (cost < best_cost_) best_cost_ = cost, best_error_ = mean, best_ = parameters;
         ++evaluations_;
         if (progress_) progress_();
-        return mean;
+        return cost;
     }
 
     std::span<const CrfExample> examples_;
     std::size_t classes_;
-    std::span<const float> smallest_component_;
     const std::function<void()>& progress_;
     std::vector<Pair> pairs_, apart_;
     CrfParameters best_;
-    double best_error_ = 1e30;
+    double best_cost_ = std::numeric_limits<double>::infinity(), best_error_ = 0;
     std::size_t evaluations_ = 0;
 };
 
@@ -188,9 +197,8 @@ std::size_t crf_search_evaluations(std::size_t classes, const std::vector<bool>&
 }
 
 CrfParameters learn_crf(std::span<const CrfExample> examples, std::size_t classes, const std::vector<bool>& touching,
-                        std::span<const float> smallest_component, const std::function<void()>& progress,
-                        CrfSearchReport& report) {
-    Search search(examples, classes, touching, smallest_component, progress);
+                        const std::function<void()>& progress, CrfSearchReport& report) {
+    Search search(examples, classes, touching, progress);
     report.error_without_cut = search.error_without_cut();
     search.search_grid();
     search.search_prohibitive();

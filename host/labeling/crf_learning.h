@@ -13,7 +13,8 @@ namespace exemplar {
 struct CrfExample {
     const MeshFeatures* features;
     CrfTerms terms;
-    std::span<const std::int32_t> truth;  ///< per face; -1 is left out
+    std::span<const std::int32_t> truth;    ///< per face; -1 is left out
+    std::vector<float> smallest_component;  ///< per label, of the other meshes (see merge_small_components)
 };
 
 /// What learning the CRF's parameters cost and reached.
@@ -26,10 +27,10 @@ struct CrfSearchReport {
 /// Learns kappa, lambda, mu, L and the merging of small pieces (thesis Sec. 3.3.2): minimizes the mean segment-weighted
 /// error (Eq. 3.9) over the examples, first on a coarse grid with L = 1 for labels that touch in `touching` (classes x
 /// classes) and a prohibitive value for others, then without derivatives (NLopt) over all parameters.
-/// Deterministic. `progress` is called after each evaluation.
+/// A compatibility far from 1 costs a little, so that it moves only where it helps. Deterministic. `progress` is called
+/// after each evaluation.
 CrfParameters learn_crf(std::span<const CrfExample> examples, std::size_t classes, const std::vector<bool>& touching,
-                        std::span<const float> smallest_component, const std::function<void()>& progress,
-                        CrfSearchReport& report);
+                        const std::function<void()>& progress, CrfSearchReport& report);
 
 /// An upper bound on the evaluations that learn_crf makes, for progress.
 std::size_t crf_search_evaluations(std::size_t classes, const std::vector<bool>& touching);

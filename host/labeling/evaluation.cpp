@@ -72,6 +72,7 @@ std::vector<std::vector<std::int32_t>> read_human_segmentations(const std::files
         if (entry.path().extension() == ".seg") paths.push_back(entry.path());
     std::sort(paths.begin(), paths.end());
     std::vector<std::vector<std::int32_t>> segmentations;
+    segmentations.reserve(paths.size());
     for (const auto& path : paths) segmentations.push_back(read_seg(path, faces));
     return segmentations;
 }

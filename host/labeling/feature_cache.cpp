@@ -6,6 +6,10 @@
 #include <cstdlib>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <utility>
 
 #include "host/core/errors.h"
 #include "host/data/safetensors.h"
@@ -26,6 +30,7 @@ std::vector<T> flatten(const std::vector<std::array<T, 2>>& pairs) {
 
 TensorFile to_file(const MeshFeatures& features) {
     TensorFile file;
+    file.metadata["version"] = std::to_string(k_feature_version);
     file.metadata["unary"] = Json(features.unary.names).dump();
     file.metadata["pairwise"] = Json(features.pairwise.names).dump();
     file.metadata["seconds"] = Json(features.seconds).dump();
@@ -115,24 +120,43 @@ fs::path default_feature_folder() {
     return {};
 }
 
+namespace {
+
+/// The features in a cache entry; nothing if there is no entry, or one that is damaged or of another version.
+std::optional<MeshFeatures> read_entry(const fs::path& path, std::size_t faces) {
+    std::error_code unreadable;
+    if (!fs::is_regular_file(path, unreadable)) return std::nullopt;
+    try {
+        const TensorFile file = read_safetensors(path);
+        if (file.meta("version") != std::to_string(k_feature_version)) return std::nullopt;
+        if (file.meta("checksum") != checksum(file)) return std::nullopt;
+        return from_file(file, faces);
+    } catch (const ModelError&) {
+        return std::nullopt;
+    } catch (const Json::exception&) {
+        return std::nullopt;
+    }
+}
+
+void write_entry(const fs::path& path, const MeshFeatures& features) {
+    TensorFile file = to_file(features);
+    file.metadata["checksum"] = checksum(file);
+    try {
+        write_safetensors(path, file);
+    } catch (const DataError&) {
+        // A read-only folder or a full disk must not cost the result: next time it is computed again.
+    }
+}
+
+}  // namespace
+
 MeshFeatures cached_features(const TriangleMesh& mesh, const FeatureOptions& options, const fs::path& folder) {
     if (folder.empty()) return compute_features(mesh, options);
     const fs::path path = folder / fmt::format("{}-v{}-s{}{}.safetensors", content_hash(mesh), k_feature_version,
                                                options.samples, options.orientation ? "-oriented" : "");
-    if (fs::exists(path)) {
-        try {
-            const TensorFile file = read_safetensors(path);
-            if (file.meta("checksum") == checksum(file)) return from_file(file, mesh.face_count());
-        } catch (const ModelError&) {
-            // Damaged: computed again below.
-        } catch (const Json::exception&) {
-            // The same, in its metadata.
-        }
-    }
+    if (std::optional<MeshFeatures> kept = read_entry(path, mesh.face_count())) return std::move(*kept);
     MeshFeatures features = compute_features(mesh, options);
-    TensorFile file = to_file(features);
-    file.metadata["checksum"] = checksum(file);
-    write_safetensors(path, file);
+    write_entry(path, features);
     return features;
 }
 

@@ -94,8 +94,8 @@ FeatureMatrix medial_features(const PreparedMesh& prepared, const RayScene& scen
 FeatureMatrix orientation_features(const PreparedMesh& prepared);
 
 /// What the contextual label features need (A.1i): geodesic ranges over [0, the largest finite distance between samples
-/// and faces], and distances along three principal axes and the normals of three symmetry planes over [0, the largest
-/// difference between a sample and a face]. Ranges are those of log_bin_edges.
+/// and faces], distances |x_i - x_j| along three principal axes, and differences ||x_i| - |x_j|| of the distances from
+/// three symmetry planes, each over [0, the largest between a sample and a face]. Ranges are those of log_bin_edges.
 ContextGeometry context_geometry(const PreparedMesh& prepared);
 
 /// The interior edges of a mesh and the graph of their midpoints: two edges of a face are joined by the segment between

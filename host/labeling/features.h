@@ -46,14 +46,14 @@ struct MeshFeatures {
 
 /// Computes all features of a mesh, on all cores; the result does not depend on their number. Lengths are in units of
 /// the 30th percentile of all geodesic distances, so values do not change when the mesh is moved, turned or scaled; a
-/// closed mesh that is inside out is turned outward. Sums over all faces are taken over options.samples cells of the
-/// surface, and over all faces where few samples are near. feature_families.h documents each family. Errors: UsageError
-/// if options.samples is 0, Interrupted at Ctrl-C. Unusable meshes (empty or non-finite) throw MeshError. Any other
-/// defect degrades gracefully: distances stay inside components, boundary edges are left out, degenerate faces take
-/// their neighbors' geometry; every value is finite.
+/// mesh that is inside out, closed or with small holes, is turned outward. Sums over all faces are taken over
+/// options.samples cells of the surface, and over all faces where few samples are near. feature_families.h documents
+/// each family. Errors: UsageError if options.samples is 0, Interrupted at Ctrl-C. Unusable meshes (empty or
+/// non-finite) throw MeshError. Any other defect degrades gracefully: distances stay inside components, boundary edges
+/// are left out, degenerate faces take their neighbors' geometry; every value is finite.
 MeshFeatures compute_features(const TriangleMesh& mesh, const FeatureOptions& options = {});
 
 /// Identifies the meaning of the values; changes whenever they change. Part of model files and cache keys.
-constexpr int k_feature_version = 1;
+constexpr int k_feature_version = 2;
 
 }  // namespace exemplar

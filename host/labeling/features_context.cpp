@@ -19,7 +19,7 @@ InnerEdges inner_edges(float maximum) {
     return inner;
 }
 
-/// Largest difference between a sample's and a face's position.
+/// Largest distance between a sample and a face along an axis.
 float largest_difference(std::span<const float> position, std::span<const std::uint32_t> samples) {
     const auto [low, high] = std::ranges::minmax(position);
     float largest = 0.0F;
@@ -54,17 +54,18 @@ ContextGeometry context_geometry(const PreparedMesh& prepared) {
     context.sample_area = prepared.samples.area_share;
     context.geodesic_bin = geodesic_bins(prepared);
     context.axis_position.resize(k_context_axes * context.faces);
-    const auto set_axis = [&](std::size_t axis, const Vec3& origin, const Vec3& direction) {
+    const auto set_axis = [&](std::size_t axis, const Vec3& origin, const Vec3& direction, bool sides_alike) {
         const std::span<float> position(context.axis_position.data() + axis * context.faces, context.faces);
         for (std::size_t f = 0; f < context.faces; ++f) {
-            position[f] = std::abs(direction.dot(prepared.center[f] - origin));
+            const float x = direction.dot(prepared.center[f] - origin);
+            position[f] = sides_alike ? std::abs(x) : x;
         }
         context.axis_edges[axis] = inner_edges(largest_difference(position, context.sample_face));
     };
     const PrincipalAxes axes = principal_axes(prepared.mesh);
-    for (std::size_t k = 0; k < 3; ++k) set_axis(k, axes.center, axes.axis[k]);
+    for (std::size_t k = 0; k < 3; ++k) set_axis(k, axes.center, axes.axis[k], false);
     const std::vector<SymmetryPlane> planes = symmetry_planes(prepared.mesh, 3);
-    for (std::size_t k = 0; k < 3; ++k) set_axis(3 + k, planes[k].point, planes[k].normal);
+    for (std::size_t k = 0; k < 3; ++k) set_axis(3 + k, planes[k].point, planes[k].normal, true);
     return context;
 }
 

@@ -3,7 +3,7 @@
 
 namespace exemplar {
 
-/// A cone none of whose rays counts takes the widest cone that has one; faces without any ray are left to
+/// A cone none of whose rays counts takes the next wider cone that has one; faces without any ray are left to
 /// cone_features.
 FeatureMatrix diameter_features(const PreparedMesh& prepared, const InwardRays& rays) {
     const InwardRayPattern& pattern = inward_ray_pattern();

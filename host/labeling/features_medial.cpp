@@ -10,16 +10,25 @@
 namespace exemplar {
 namespace {
 
+constexpr std::array<std::size_t, 5> k_ring_directions{4, 8, 8, 8, 4};
 constexpr std::size_t k_directions = 32;
 
-/// Directions spread evenly over the unit sphere (a Fibonacci lattice).
+/// Directions spread evenly over the unit sphere: rings in bands whose areas are as their numbers of rays. Even numbers
+/// make them their own mirror image along every axis, so that the two sides of a symmetric shape measure the same.
 std::array<Vec3, k_directions> sphere_directions() {
     std::array<Vec3, k_directions> directions;
-    for (std::size_t k = 0; k < k_directions; ++k) {
-        const double z = 1.0 - (2.0 * static_cast<double>(k) + 1.0) / static_cast<double>(k_directions);
-        const double side = std::sqrt(1.0 - z * z),
-                     turn = std::numbers::pi * (3.0 - std::sqrt(5.0)) * static_cast<double>(k);
-        directions[k] = Vec3d(side * std::cos(turn), side * std::sin(turn), z).cast<float>();
+    double passed = 0.0;
+    std::size_t next = 0;
+    for (std::size_t ring = 0; ring < k_ring_directions.size(); ++ring) {
+        const auto count = static_cast<double>(k_ring_directions[ring]);
+        const double z = 1.0 - (2.0 * passed + count) / static_cast<double>(k_directions),
+                     side = std::sqrt(1.0 - z * z);
+        for (std::size_t k = 0; k < k_ring_directions[ring]; ++k) {
+            const double turn =
+                2.0 * std::numbers::pi * (static_cast<double>(k) + 0.5 * static_cast<double>(ring % 2)) / count;
+            directions[next++] = Vec3d(side * std::cos(turn), side * std::sin(turn), z).cast<float>();
+        }
+        passed += count;
     }
     return directions;
 }
@@ -58,19 +67,20 @@ std::optional<RayStatistics> measure_around(const PreparedMesh& prepared, const 
 
 }  // namespace
 
+/// As with the shape diameter, a cone none of whose rays counts takes the next wider cone that has one.
 FeatureMatrix medial_features(const PreparedMesh& prepared, const RayScene& scene, const InwardRays& rays) {
     const InwardRayPattern& pattern = inward_ray_pattern();
     ConeStatistics statistics(prepared.face_count());
     const auto measure = [&](std::size_t f) {
         float measured = std::numeric_limits<float>::infinity();
-        for (std::size_t cone = 0; cone < k_cones; ++cone) {
+        for (std::size_t cone = k_cones; cone-- > 0;) {
             const std::size_t count = pattern.cone_end[cone];
             const float radius = inscribed_radius(rays.of_face(f).first(count), std::span(pattern.angle).first(count));
-            if (radius == measured) {  // wider cones often find the same sphere
-                if (cone > 0) statistics[f][cone] = statistics[f][cone - 1];
-            } else {
+            if (std::isfinite(radius) && radius != measured) {
                 statistics[f][cone] = measure_around(prepared, scene, f, radius);
                 measured = radius;
+            } else if (cone + 1 < k_cones) {  // narrower cones often find the same sphere, or no ray counts in them
+                statistics[f][cone] = statistics[f][cone + 1];
             }
         }
     };

@@ -1,21 +1,22 @@
 #include "host/labeling/fold_boosting.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
 #include "host/core/random.h"
+#include "host/learn/calibration.h"
 #include "host/learn/jointboost.h"
 #include "host/learn/quantize.h"
 
 namespace exemplar {
 namespace {
 
-constexpr float k_least_probability = 1e-6F;
+constexpr std::size_t k_judged_rounds = 10;  // after the first ten, held-out rows are judged every so many rounds
+constexpr std::size_t k_blind_rounds = 50;   // where nothing can be held out
 
 /// The rows of all meshes that boosting uses, side by side.
 struct Pool {
@@ -67,122 +68,113 @@ Pool make_pool(std::span<const BoostingItems> meshes, const FoldBoostingOptions&
     return pool;
 }
 
-BoostResult boost(const Pool& pool, const QuantizedFeatures& quantized, std::span<const std::uint32_t> rows,
-                  const ValidationSet* validation, const BoostOptions& boost_options,
-                  const FoldBoostingOptions& options, const std::function<void()>& round_done) {
+BoostedStumps boost(const Pool& pool, const QuantizedFeatures& quantized, std::span<const std::uint32_t> rows,
+                    std::size_t rounds, const FoldBoostingOptions& options, const std::function<void()>& round_done) {
+    BoostOptions boost_options;
+    boost_options.rounds = rounds, boost_options.patience = 0, boost_options.seed = options.seed;
+    boost_options.feature_fraction = options.feature_fraction, boost_options.shrinkage = options.shrinkage;
     const TrainingSet training{quantized, pool.label, pool.weight, rows};
     const BoostCallback callback = [&](const BoostRound&, const BoostedStumps&) { round_done(); };
-    return options.binary ? train_gentleboost(training, validation, boost_options, callback)
-                          : train_jointboost(training, options.classes, validation, boost_options, callback);
+    BoostResult result = options.binary ? train_gentleboost(training, nullptr, boost_options, callback)
+                                        : train_jointboost(training, options.classes, nullptr, boost_options, callback);
+    return std::move(result.classifier);
 }
 
-/// Mean over the folds; one that stopped early counts on with its last value.
-std::vector<double> mean_curve(const std::vector<std::vector<BoostRound>>& curves) {
-    std::size_t rounds = 0;
-    for (const auto& curve : curves) rounds = std::max(rounds, curve.size());
-    std::vector<double> mean(rounds, 0);
-    for (const auto& curve : curves)
-        for (std::size_t r = 0; r < rounds && !curve.empty(); ++r)
-            mean[r] += curve[std::min(r, curve.size() - 1)].validation_error / static_cast<double>(curves.size());
-    return mean;
+/// One classifier per fold, trained on the rows of the others; empty where one side of the split has no rows.
+std::vector<BoostedStumps> boost_folds(const Pool& pool, const QuantizedFeatures& quantized,
+                                       const FoldBoostingOptions& options, const std::function<void()>& round_done) {
+    std::vector<BoostedStumps> of_fold(options.folds);
+    for (std::size_t fold = 0; fold < options.folds; ++fold) {
+        check_interrupt();
+        std::vector<std::uint32_t> inside;
+        for (std::uint32_t row = 0; row < pool.fold.size(); ++row)
+            if (pool.fold[row] != fold) inside.push_back(row);
+        if (inside.empty() || inside.size() == pool.fold.size()) continue;
+        of_fold[fold] = boost(pool, quantized, inside, options.rounds, options, round_done);
+    }
+    return of_fold;
 }
 
-/// Whether both sides of a fold have rows to learn from and to judge by.
-bool splits(const std::vector<std::uint32_t>& inside, const std::vector<std::uint32_t>& outside) {
-    return !inside.empty() && !outside.empty();
-}
+/// H of every row from the classifier of the fold that held it out, grown round by round.
+class HeldOutScores {
+  public:
+    HeldOutScores(const Pool& pool, const std::vector<BoostedStumps>& of_fold, std::size_t classes)
+        : pool_(pool), of_fold_(of_fold), classes_(classes), scores_(pool.label.size() * classes, 0.0F) {
+        for (std::size_t i = 0; i < pool.label.size(); ++i)
+            weight_.push_back(of_fold[pool.fold[i]].class_count ? pool.weight[i] : 0);
+    }
 
-struct FoldModels {
-    std::vector<BoostedStumps> of_fold;  ///< empty where a fold could not be trained
-    std::vector<double> curve;
-    std::size_t rounds = 0;
+    void add_round(std::size_t round) {
+        parallel_for(pool_.label.size(), [&](std::size_t i) {
+            const BoostedStumps& classifier = of_fold_[pool_.fold[i]];
+            if (round >= classifier.stumps.size()) return;
+            const Stump& stump = classifier.stumps[round];
+            const bool above = pool_.features.column(stump.feature)[i] > stump.threshold;
+            for (std::size_t c = 0; c < classes_; ++c)
+                scores_[i * classes_ + c] += (stump.classes >> c & 1) ? (above ? stump.above : stump.below)
+                                                                      : classifier.elsewhere[round * classes_ + c];
+        });
+    }
+
+    Calibration judge(std::span<const Link> links) const {
+        return calibrate(scores_, pool_.label, weight_, classes_, links);
+    }
+
+  private:
+    const Pool& pool_;
+    const std::vector<BoostedStumps>& of_fold_;
+    std::size_t classes_;
+    std::vector<float> scores_, weight_;
 };
 
-FoldModels train_folds(const Pool& pool, const QuantizedFeatures& quantized, const FoldBoostingOptions& options,
-                       const std::function<void()>& round_done) {
-    FoldModels models;
-    models.of_fold.resize(options.folds);
-    std::vector<std::vector<BoostRound>> curves;
-    BoostOptions boost_options;
-    boost_options.rounds = options.rounds, boost_options.patience = options.patience, boost_options.seed = options.seed;
-    boost_options.keep_best = false;
-    boost_options.monitor = BoostMonitor::error;
-    for (std::size_t fold = 0; fold < options.folds && options.folds > 1; ++fold) {
+/// The number of rounds after which the held-out rows are labeled best, and their calibration there.
+struct RoundChoice {
+    std::size_t rounds = 0;
+    Calibration calibration;
+    std::vector<HeldOutPoint> curve;
+};
+
+RoundChoice choose_rounds(const Pool& pool, const std::vector<BoostedStumps>& of_fold,
+                          const FoldBoostingOptions& options) {
+    constexpr std::array<Link, 2> k_links{Link::softmax, Link::sigmoid};
+    // GentleBoost's class 0 has no score of its own, so sigmoids do not apply.
+    const std::span<const Link> usable = std::span(k_links).first(options.binary ? 1 : 2);
+    HeldOutScores scores(pool, of_fold, options.classes);
+    RoundChoice choice;
+    for (std::size_t round = 1; round <= options.rounds; ++round) {
         check_interrupt();
-        std::vector<std::uint32_t> inside, outside;
-        for (std::uint32_t row = 0; row < pool.fold.size(); ++row)
-            (pool.fold[row] == fold ? outside : inside).push_back(row);
-        if (!splits(inside, outside)) continue;
-        const ValidationSet validation{pool.features, pool.label, pool.weight, outside};
-        BoostResult result = boost(pool, quantized, inside, &validation, boost_options, options, round_done);
-        models.of_fold[fold] = std::move(result.classifier);
-        curves.push_back(std::move(result.curve));
+        scores.add_round(round - 1);
+        if (round > 10 && round % k_judged_rounds != 0 && round != options.rounds) continue;
+        const Calibration now = scores.judge(usable);
+        choice.curve.push_back({round, now.loss, now.error});
+        if (choice.rounds == 0 || now.loss < choice.calibration.loss) choice.rounds = round, choice.calibration = now;
+        if (options.patience > 0 && round >= choice.rounds + options.patience) break;
     }
-    models.curve = mean_curve(curves);
-    models.rounds = std::min<std::size_t>(options.rounds, 50);  // nothing could be held out: stay cautious
-    if (!models.curve.empty())
-        models.rounds = static_cast<std::size_t>(std::min_element(models.curve.begin(), models.curve.end()) -
-                                                 models.curve.begin()) +
-                        1;
-    return models;
+    if (std::isnan(choice.calibration.loss))  // nothing could be held out: stay cautious
+        choice.rounds = std::min(options.rounds, k_blind_rounds), choice.curve.clear();
+    return choice;
 }
 
-/// Probabilities of every item of every mesh from the classifier of the fold that held it out, for one link.
-std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems> meshes, const FoldModels& models,
-                                                  const BoostedStumps& fallback, std::size_t classes, Link link,
-                                                  float scale, StumpScorer& scorer) {
+/// Probabilities of every item of every mesh from the classifier of the fold that held it out.
+std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems> meshes,
+                                                  const std::vector<BoostedStumps>& of_fold,
+                                                  const CalibratedStumps& everywhere, std::size_t classes,
+                                                  StumpScorer& scorer) {
     std::vector<std::vector<float>> result;
     for (const BoostingItems& mesh : meshes) {
-        std::vector<float> scores(mesh.fold.size() * classes);
-        std::vector<float> of_fold(scores.size());
-        for (std::size_t fold = 0; fold < models.of_fold.size(); ++fold) {
+        std::vector<float> scores(mesh.fold.size() * classes), from_fold(mesh.fold.size() * classes);
+        for (std::size_t fold = 0; fold < of_fold.size(); ++fold) {
             const auto holds = [&](std::uint8_t f) { return f == fold; };
             if (std::none_of(mesh.fold.begin(), mesh.fold.end(), holds)) continue;
-            const BoostedStumps& classifier = models.of_fold[fold].class_count ? models.of_fold[fold] : fallback;
-            scorer.probabilities(classifier, *mesh.features, link, scale, of_fold);
+            const BoostedStumps& classifier = of_fold[fold].class_count ? of_fold[fold] : everywhere.stumps;
+            scorer.probabilities(classifier, *mesh.features, everywhere.link, everywhere.scale, from_fold);
             for (std::size_t i = 0; i < mesh.fold.size(); ++i)
                 if (mesh.fold[i] == fold)
-                    std::copy_n(of_fold.begin() + i * classes, classes, scores.begin() + i * classes);
+                    std::copy_n(from_fold.begin() + i * classes, classes, scores.begin() + i * classes);
         }
         result.push_back(std::move(scores));
     }
     return result;
-}
-
-/// Weighted mean of -log P(truth) and weighted share of wrong labels.
-std::pair<double, double> judge(std::span<const BoostingItems> meshes,
-                                const std::vector<std::vector<float>>& probabilities, std::size_t classes) {
-    double loss = 0, wrong = 0, total = 0;
-    for (std::size_t m = 0; m < meshes.size(); ++m)
-        for (std::size_t i = 0; i < meshes[m].label.size(); ++i) {
-            const std::int32_t truth = meshes[m].label[i];
-            if (truth < 0) continue;
-            const float* p = probabilities[m].data() + i * classes;
-            const double weight = meshes[m].weight[i];
-            loss -= weight * std::log(std::max(p[truth], k_least_probability));
-            wrong += std::max_element(p, p + classes) - p == truth ? 0 : weight;
-            total += weight;
-        }
-    return total > 0 ? std::pair{loss / total, wrong / total} : std::pair{0.0, 0.0};
-}
-
-/// Chooses the link and its scale by the out-of-fold loss, and keeps the probabilities of the best.
-void calibrate(std::span<const BoostingItems> meshes, const FoldModels& models, const FoldBoostingOptions& options,
-               StumpScorer& scorer, FoldBoostingResult& result) {
-    result.loss = std::numeric_limits<double>::infinity();
-    for (const Link link : {Link::softmax, Link::sigmoid}) {
-        if (options.binary && link == Link::sigmoid) continue;  // GentleBoost's class 0 has no score of its own
-        for (const float scale : {0.5F, 0.7F, 1.0F, 1.4F, 2.0F, 2.8F}) {
-            check_interrupt();
-            auto scores =
-                score_out_of_fold(meshes, models, result.classifier.stumps, options.classes, link, scale, scorer);
-            const auto [loss, error] = judge(meshes, scores, options.classes);
-            if (loss >= result.loss) continue;
-            result.loss = loss, result.error = error;
-            result.classifier.link = link, result.classifier.scale = scale;
-            result.out_of_fold = std::move(scores);
-        }
-    }
 }
 
 }  // namespace
@@ -194,16 +186,18 @@ FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const
     QuantizeOptions quantize_options;
     quantize_options.bins = options.bins;
     const QuantizedFeatures quantized = quantize(pool.features, pool.weight, quantize_options);
-    FoldModels models = train_folds(pool, quantized, options, round_done);
-    for (BoostedStumps& model : models.of_fold)
-        if (model.class_count) model = truncate(model, models.rounds);
+    std::vector<BoostedStumps> of_fold = boost_folds(pool, quantized, options, round_done);
+    RoundChoice choice = choose_rounds(pool, of_fold, options);
+    for (BoostedStumps& model : of_fold)
+        if (model.class_count) model = truncate(model, choice.rounds);
 
-    BoostOptions all;
-    all.rounds = models.rounds, all.patience = 0, all.seed = options.seed;
     FoldBoostingResult result;
-    result.classifier.stumps = boost(pool, quantized, {}, nullptr, all, options, round_done).classifier;
-    result.curve = models.curve;
-    calibrate(meshes, models, options, scorer, result);
+    result.classifier.stumps = boost(pool, quantized, {}, choice.rounds, options, round_done);
+    result.classifier.link = choice.calibration.link;
+    result.classifier.scale = choice.calibration.scale;
+    result.loss = choice.calibration.loss, result.error = choice.calibration.error;
+    result.curve = std::move(choice.curve);
+    result.out_of_fold = score_out_of_fold(meshes, of_fold, result.classifier, options.classes, scorer);
     return result;
 }
 

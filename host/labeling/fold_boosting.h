@@ -26,21 +26,30 @@ struct FoldBoostingOptions {
     std::size_t folds = 1;
     std::size_t rounds = 300, patience = 50, bins = 128;
     std::size_t rows_per_mesh = 0;  ///< 0 = all
+    double feature_fraction = 1;    ///< share of the features that each round looks at
+    double shrinkage = 1;           ///< see BoostOptions
     bool binary = false;            ///< GentleBoost for two classes instead of JointBoost
     std::uint64_t seed = 1;
+};
+
+/// How well held-out items are labeled after so many rounds (see calibrate).
+struct HeldOutPoint {
+    std::size_t rounds;
+    double loss, error;
 };
 
 struct FoldBoostingResult {
     CalibratedStumps classifier;  ///< trained on all items
     std::vector<std::vector<float>>
-        out_of_fold;            ///< per mesh: items x classes, from the classifier that never saw the item
-    std::vector<double> curve;  ///< mean held-out error after each round
-    double loss = 0;            ///< weighted mean -log P(truth), out of fold
-    double error = 0;           ///< weighted share of wrong labels, out of fold
+        out_of_fold;                  ///< per mesh: items x classes, from the classifier that never saw the item
+    std::vector<HeldOutPoint> curve;  ///< up to where the search for the number of rounds ended
+    double loss = 0;                  ///< weighted log loss of held-out items; NaN if nothing could be held out
+    double error = 0;                 ///< weighted share of wrong labels; likewise
 };
 
-/// Boosts one classifier per fold and one on everything (see train_labeling). `round_done` is called after every round
-/// of every classifier.
+/// Boosts one classifier per fold and one on everything (see train_labeling). The log loss of the held-out items, after
+/// calibration, chooses the number of rounds (the search ends `patience` rounds after the lowest), the link and its
+/// scale. `round_done` is called after every round of every classifier.
 FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const FoldBoostingOptions& options,
                                     StumpScorer& scorer, const std::function<void()>& round_done);
 

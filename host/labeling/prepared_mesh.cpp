@@ -44,6 +44,24 @@ Vec3d surface_centroid(const TriangleMesh& mesh) {
     return total > 0.0 ? Vec3d(weighted / total) : Vec3d(plain / static_cast<double>(mesh.face_count()));
 }
 
+/// Whether the normals of a centered mesh of unit diagonal point inward. A surface with holes is judged where they are
+/// too small to matter: the cones from the centroid over them hold less than the signed volume of the rest.
+bool faces_inward(const TriangleMesh& mesh) {
+    const MeshReport report = validate_mesh(mesh);
+    if (report.inside_out) return true;
+    if (!report.inconsistent_edges.empty() || !report.non_manifold_edges.empty()) return false;
+    Vec3d area = Vec3d::Zero();
+    double volume = 0.0;
+    for (const Face& face : mesh.faces) {
+        const Vec3d a = corner(mesh, face, 0);
+        const Vec3d vector = 0.5 * (corner(mesh, face, 1) - a).cross(corner(mesh, face, 2) - a);
+        area += vector;
+        volume += vector.dot(a) / 3.0;
+    }
+    constexpr double k_rounding = 1e-6;
+    return report.boundary_edges > 0 && volume < -(area.norm() / 3.0 + k_rounding);
+}
+
 /// The mesh with its centroid at the origin and unit size: later steps may work in single precision at any scale.
 TriangleMesh centered_mesh(const TriangleMesh& mesh) {
     const double diagonal = referenced_diagonal(mesh);
@@ -58,10 +76,35 @@ TriangleMesh centered_mesh(const TriangleMesh& mesh) {
             centered.vertices[v] = ((mesh.vertices[v].cast<double>() - centroid) * scale).cast<float>();
         }
     }
-    if (validate_mesh(centered).inside_out) {
+    if (faces_inward(centered)) {
         for (Face& face : centered.faces) std::swap(face[1], face[2]);
     }
     return centered;
+}
+
+/// Face normals without the noise of the tessellation: twice the mean over the faces that share a vertex (once per
+/// shared vertex), weighted by area and by the cosine between the normals. Faces at a right angle to each other do not
+/// mix, so that the edges of a box stay sharp.
+std::vector<Vec3> smoothed_normals(const TriangleMesh& mesh, const Topology& topology,
+                                   const std::vector<float>& areas) {
+    constexpr int k_passes = 2;
+    std::vector<Vec3> normals = face_normals(mesh);
+    for (int pass = 0; pass < k_passes; ++pass) {
+        const std::vector<Vec3> previous = normals;
+        const auto smooth = [&](std::size_t f) {
+            Vec3d sum = Vec3d::Zero();
+            for (const std::uint32_t v : mesh.faces[f]) {
+                for (const std::uint32_t near : topology.faces_of_vertex(v)) {
+                    const float weight = areas[near] * std::max(previous[near].dot(previous[f]), 0.0F);
+                    sum += static_cast<double>(weight) * previous[near].cast<double>();
+                }
+            }
+            const double length = sum.norm();
+            if (length > 0.0) normals[f] = (sum / length).cast<float>();
+        };
+        parallel_for(normals.size(), smooth, 1024);
+    }
+    return normals;
 }
 
 /// Shares of the total area; equal shares where there is no area.
@@ -133,8 +176,8 @@ PreparedMesh prepare_mesh(const TriangleMesh& mesh, std::size_t samples) {
     prepared.total_area = static_cast<float>(total);
     prepared.area_share = area_shares(areas, total);
     prepared.center = face_centers(prepared.mesh);
-    prepared.normal = face_normals(prepared.mesh);
     prepared.topology = build_topology(prepared.mesh);
+    prepared.normal = smoothed_normals(prepared.mesh, prepared.topology, areas);
     prepared.graph = build_dual_graph(prepared.mesh, prepared.topology);
     prepared.component_size = component_sizes(prepared.mesh, prepared.topology);
     prepared.samples = sample_faces(prepared.mesh, prepared.graph, samples);

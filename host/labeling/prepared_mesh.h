@@ -19,7 +19,7 @@ struct PreparedMesh {
     DualGraph graph;
     std::vector<float> area_share;  ///< F, sums to 1
     float total_area = 0.0F;
-    std::vector<Vec3> center, normal;           ///< F each; normals are unit
+    std::vector<Vec3> center, normal;           ///< F each; normals are unit and smoothed over their neighbors
     std::vector<std::uint32_t> component_size;  ///< F: number of faces in the face's component
     FaceSamples samples;
     std::vector<float> distance;   ///< S x F geodesic distances from the samples; infinity in other components

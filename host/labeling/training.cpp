@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <deque>
+#include <functional>
+#include <limits>
 #include <numeric>
 
 #include "host/core/errors.h"
@@ -21,6 +23,11 @@ namespace {
 constexpr std::size_t k_most_folds = 5;       ///< one in five held out: the thesis' 4 : 1
 constexpr std::size_t k_patches = 25;         ///< of a single training mesh, dealt to the folds
 constexpr std::size_t k_pairwise_stages = 2;  ///< base features, then with the contextual ones (App. A.2e)
+/// A stage may be so much worse than the one before it, out of fold, and still be kept: with few meshes the classifiers
+/// of the folds learn less from the context, which is different in every mesh, than the one that sees all meshes.
+constexpr double k_worse_loss = 1.05;
+constexpr float k_sliver = 0.02F;  ///< of a label's largest piece in the mesh
+constexpr std::size_t k_none = static_cast<std::size_t>(-1);
 constexpr std::uint64_t k_unary_task = 1000, k_pairwise_task = 2000, k_fold_task = 1;
 
 using PerMesh = std::vector<std::vector<float>>;
@@ -103,6 +110,7 @@ FoldBoostingResult run_stage(const std::string& what, std::span<const BoostingIt
                              const TrainOptions& train, StumpScorer& scorer, TrainReport& report) {
     options.rounds = train.rounds, options.patience = train.patience, options.bins = train.bins;
     options.rows_per_mesh = train.rows_per_mesh;
+    options.feature_fraction = train.feature_fraction, options.shrinkage = train.shrinkage;
     Progress progress("training " + what + " (rounds)", (options.folds + 1) * options.rounds);
     const Stopwatch watch;
     FoldBoostingResult result = boost_with_folds(items, options, scorer, [&] { progress.advance(); });
@@ -112,41 +120,63 @@ FoldBoostingResult run_stage(const std::string& what, std::span<const BoostingIt
     return result;
 }
 
+/// A cascade to train: classifiers of which each later one also sees what the one before it said about the
+/// surroundings.
+struct Cascade {
+    std::string name;
+    std::size_t most_stages;
+    FoldBoostingOptions task;  ///< its number of features and seed are set per stage
+    std::size_t base_features, context_features;
+    std::vector<BoostingItems> items;  ///< per mesh
+    /// Fills the contextual columns of a mesh from the out-of-fold probabilities (items x classes) of the last stage.
+    std::function<void(std::size_t mesh, std::span<const float> probabilities)> add_context;
+};
+
+/// Trains stage after stage until the out-of-fold loss rises; returns the out-of-fold probabilities of the last kept
+/// one.
+PerMesh train_cascade(Cascade cascade, const TrainOptions& options, StumpScorer& scorer,
+                      std::vector<CalibratedStumps>& classifiers, TrainReport& report) {
+    PerMesh kept;
+    double last_loss = std::numeric_limits<double>::infinity();
+    const std::uint64_t first_seed = cascade.task.seed;
+    for (std::size_t stage = 0; stage < cascade.most_stages; ++stage) {
+        for (std::size_t m = 0; m < kept.size(); ++m) cascade.add_context(m, kept[m]);
+        cascade.task.features = cascade.base_features + (stage > 0 ? cascade.context_features : 0);
+        cascade.task.seed = first_seed + stage;
+        FoldBoostingResult result =
+            run_stage(fmt::format("{} {}", cascade.name, stage), cascade.items, cascade.task, options, scorer, report);
+        if (stage > 0 && !(result.loss < k_worse_loss * last_loss)) {
+            report.stages.back().kept = false;
+            break;
+        }
+        last_loss = result.loss;
+        kept = std::move(result.out_of_fold);
+        classifiers.push_back(std::move(result.classifier));
+    }
+    return kept;
+}
+
 /// Trains the unary cascade; returns the out-of-fold probabilities of its last kept stage.
 PerMesh train_unary(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features, const Folds& folds,
                     const TrainOptions& options, const LabelingBackend& backend, LabelingModel& model,
                     TrainReport& report) {
-    const std::size_t base = model.unary_names.size();
+    const std::size_t classes = corpus.names.size();
     const std::vector<std::string> context = context_names(corpus.names);
     std::vector<std::vector<float>> weights;
+    weights.reserve(features.size());
     for (const MeshFeatures& mesh : features) weights.push_back(normalized(mesh.face_area));
 
-    PerMesh kept;
-    double best_loss = 1e30;
-    for (std::size_t stage = 0; stage < options.max_stages; ++stage) {
-        std::vector<BoostingItems> items;
-        for (std::size_t m = 0; m < features.size(); ++m) {
-            if (stage > 0)
-                backend.context.accumulate(features[m].context, kept[m], corpus.names.size(),
-                                           context_columns(features[m].unary, base, context));
-            items.push_back({&features[m].unary, corpus.meshes[m].label, weights[m], folds.of_face[m]});
-        }
-        FoldBoostingOptions task;
-        task.classes = corpus.names.size();
-        task.features = base + (stage > 0 ? context.size() : 0);
-        task.folds = folds.count;
-        task.seed = options.seed + k_unary_task + stage;
-        FoldBoostingResult result =
-            run_stage(fmt::format("unary {}", stage), items, task, options, backend.scorer, report);
-        if (stage > 0 && result.loss >= best_loss) {
-            report.stages.back().kept = false;
-            break;
-        }
-        best_loss = result.loss;
-        kept = std::move(result.out_of_fold);
-        model.unary.push_back(std::move(result.classifier));
-    }
-    return kept;
+    Cascade cascade{"unary", options.max_stages, {}, model.unary_names.size(), context.size(), {}, {}};
+    cascade.task.classes = classes;
+    cascade.task.folds = folds.count;
+    cascade.task.seed = options.seed + k_unary_task;
+    for (std::size_t m = 0; m < features.size(); ++m)
+        cascade.items.push_back({&features[m].unary, corpus.meshes[m].label, weights[m], folds.of_face[m]});
+    cascade.add_context = [&](std::size_t m, std::span<const float> probabilities) {
+        backend.context.accumulate(features[m].context, probabilities, classes,
+                                   context_columns(features[m].unary, model.unary_names.size(), context));
+    };
+    return train_cascade(std::move(cascade), options, backend.scorer, model.unary, report);
 }
 
 /// What the boundary classifiers learn from: per mesh and edge 0 = same label, 1 = boundary, -1 = unknown, and a weight
@@ -187,48 +217,45 @@ EdgeTargets make_edge_targets(const LabeledCorpus& corpus, const std::vector<Mes
 PerMesh train_pairwise(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features, const Folds& folds,
                        const TrainOptions& options, const LabelingBackend& backend, LabelingModel& model,
                        TrainReport& report) {
-    const std::size_t base = model.pairwise_names.size();
     const EdgeTargets targets = make_edge_targets(corpus, features, folds);
-    PerMesh boundary(features.size());
-    double best_loss = 1e30;
-    for (std::size_t stage = 0; stage < k_pairwise_stages; ++stage) {
-        std::vector<BoostingItems> items;
-        for (std::size_t m = 0; m < features.size(); ++m) {
-            if (stage > 0)
-                accumulate_edge_context(features[m], boundary[m],
-                                        context_columns(features[m].pairwise, base, edge_context_names()));
-            items.push_back({&features[m].pairwise, targets.label[m], targets.weight[m], targets.fold[m]});
-        }
-        FoldBoostingOptions task;
-        task.classes = 2;
-        task.binary = true;
-        task.features = base + (stage > 0 ? EdgeNeighborhood::k_bins : 0);
-        task.folds = folds.count;
-        task.seed = options.seed + k_pairwise_task + stage;
-        FoldBoostingResult result =
-            run_stage(fmt::format("pairwise {}", stage), items, task, options, backend.scorer, report);
-        if (stage > 0 && result.loss >= best_loss) {
-            report.stages.back().kept = false;
-            break;
-        }
-        best_loss = result.loss;
-        for (std::size_t m = 0; m < features.size(); ++m) boundary[m] = boundary_column(result.out_of_fold[m]);
-        model.pairwise.push_back(std::move(result.classifier));
-    }
+    Cascade cascade{"pairwise", k_pairwise_stages, {}, model.pairwise_names.size(), EdgeNeighborhood::k_bins, {}, {}};
+    cascade.task.binary = true;
+    cascade.task.folds = folds.count;
+    cascade.task.seed = options.seed + k_pairwise_task;
+    for (std::size_t m = 0; m < features.size(); ++m)
+        cascade.items.push_back({&features[m].pairwise, targets.label[m], targets.weight[m], targets.fold[m]});
+    cascade.add_context = [&](std::size_t m, std::span<const float> probabilities) {
+        accumulate_edge_context(
+            features[m], boundary_column(probabilities),
+            context_columns(features[m].pairwise, model.pairwise_names.size(), edge_context_names()));
+    };
+    PerMesh boundary = train_cascade(std::move(cascade), options, backend.scorer, model.pairwise, report);
+    for (std::vector<float>& probabilities : boundary) probabilities = boundary_column(probabilities);
     return boundary;
 }
 
-/// Area share of the smallest connected piece of each label; 0 for labels that never occur.
-std::vector<float> smallest_components(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& features) {
-    std::vector<float> smallest(corpus.names.size(), 0);
-    for (std::size_t m = 0; m < features.size(); ++m) {
-        const LabelComponents pieces = label_components(features[m], corpus.meshes[m].label);
-        for (std::size_t p = 0; p < pieces.label.size(); ++p) {
-            if (pieces.label[p] < 0) continue;
-            float& least = smallest[pieces.label[p]];
-            if (least == 0 || pieces.area_share[p] < least) least = pieces.area_share[p];
-        }
+/// Area share of the smallest connected piece of each label in one mesh; 0 for labels that do not occur. Slivers of a
+/// label, far smaller than its largest piece, are slips of the annotator: they say nothing about its size.
+std::vector<float> smallest_pieces(const MeshFeatures& features, std::span<const std::int32_t> labels,
+                                   std::size_t classes) {
+    const LabelComponents pieces = label_components(features, labels);
+    std::vector<float> largest(classes, 0), smallest(classes, 0);
+    for (std::size_t p = 0; p < pieces.label.size(); ++p)
+        if (pieces.label[p] >= 0) largest[pieces.label[p]] = std::max(largest[pieces.label[p]], pieces.area_share[p]);
+    for (std::size_t p = 0; p < pieces.label.size(); ++p) {
+        const std::int32_t label = pieces.label[p];
+        if (label < 0 || pieces.area_share[p] < k_sliver * largest[label]) continue;
+        if (smallest[label] == 0 || pieces.area_share[p] < smallest[label]) smallest[label] = pieces.area_share[p];
     }
+    return smallest;
+}
+
+/// Per label the smallest over all meshes but `left_out`.
+std::vector<float> smallest_of_others(const PerMesh& of_mesh, std::size_t left_out) {
+    std::vector<float> smallest(of_mesh.front().size(), 0);
+    for (std::size_t m = 0; m < of_mesh.size(); ++m)
+        for (std::size_t c = 0; c < smallest.size() && m != left_out; ++c)
+            if (of_mesh[m][c] > 0 && (smallest[c] == 0 || of_mesh[m][c] < smallest[c])) smallest[c] = of_mesh[m][c];
     return smallest;
 }
 
@@ -246,15 +273,20 @@ std::vector<bool> touching_labels(const LabeledCorpus& corpus, const std::vector
 void train_crf(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& features, const PerMesh& probabilities,
                const PerMesh& boundary, LabelingModel& model, TrainReport& report) {
     const std::size_t classes = corpus.names.size();
-    const std::vector<bool> touching = touching_labels(corpus, features);
+    PerMesh smallest;
+    for (std::size_t m = 0; m < features.size(); ++m)
+        smallest.push_back(smallest_pieces(features[m], corpus.meshes[m].label, classes));
+    model.smallest_component = smallest_of_others(smallest, k_none);
+
     std::vector<CrfExample> examples;
     for (std::size_t m = 0; m < features.size(); ++m)
         examples.push_back({&features[m], make_crf_terms(features[m], probabilities[m], classes, boundary[m]),
-                            corpus.meshes[m].label});
+                            corpus.meshes[m].label, smallest_of_others(smallest, features.size() > 1 ? m : k_none)});
+    const std::vector<bool> touching = touching_labels(corpus, features);
     Progress progress("searching CRF parameters", crf_search_evaluations(classes, touching));
     const Stopwatch watch;
     model.crf = learn_crf(
-        examples, classes, touching, model.smallest_component, [&] { progress.advance(); }, report.crf);
+        examples, classes, touching, [&] { progress.advance(); }, report.crf);
     report.crf_seconds = watch.wall();
 }
 
@@ -273,7 +305,6 @@ LabelingModel train_labeling(const LabeledCorpus& corpus, std::vector<MeshFeatur
     model.pairwise_names = features.front().pairwise.names;
     model.seed = options.seed;
     for (const LabeledMesh& mesh : corpus.meshes) model.provenance.push_back(mesh.name + " " + content_hash(mesh.mesh));
-    model.smallest_component = smallest_components(corpus, features);
 
     const Folds folds = make_folds(corpus, features, options.seed, report);
     const PerMesh probabilities = train_unary(corpus, features, folds, options, backend, model, report);

@@ -6,6 +6,7 @@
 
 #include "host/data/corpus.h"
 #include "host/labeling/crf_learning.h"
+#include "host/labeling/fold_boosting.h"
 #include "host/labeling/labeler.h"
 #include "host/labeling/model.h"
 
@@ -13,11 +14,13 @@ namespace exemplar {
 
 struct TrainOptions {
     std::uint64_t seed = 1;
-    std::size_t rounds = 300;       ///< most stumps per classifier (thesis Sec. 3.3.1)
-    std::size_t patience = 50;      ///< rounds without fewer errors on held-out meshes that end boosting
-    std::size_t max_stages = 4;     ///< most classifiers of the unary cascade (the thesis usually stops at 3)
-    std::size_t bins = 128;         ///< quantization of each feature
-    std::size_t rows_per_mesh = 0;  ///< faces (and edges) of each mesh used for boosting, drawn at random; 0 = all
+    std::size_t rounds = 300;        ///< most stumps per classifier (thesis Sec. 3.3.1)
+    std::size_t patience = 50;       ///< rounds without a lower held-out loss that end boosting
+    std::size_t max_stages = 3;      ///< most classifiers of the unary cascade (thesis Sec. 3.3.1: usually 3)
+    std::size_t bins = 128;          ///< quantization of each feature
+    std::size_t rows_per_mesh = 0;   ///< faces (and edges) of each mesh used for boosting, drawn at random; 0 = all
+    double feature_fraction = 0.25;  ///< share of the features that each round looks at, drawn at random
+    double shrinkage = 0.5;          ///< what each stump's response is multiplied with
     FeatureOptions features;
 };
 
@@ -25,10 +28,10 @@ struct TrainOptions {
 struct StageReport {
     std::string what;             ///< "unary 0", "pairwise 1", ...
     std::size_t rounds = 0;       ///< stumps kept
-    double validation_loss = 0;   ///< weighted mean -log P of the truth, out of fold
+    double validation_loss = 0;   ///< weighted log loss, out of fold (see calibrate); NaN if nothing could be held out
     double validation_error = 0;  ///< weighted share of wrong labels, out of fold
     bool kept = true;             ///< false for a last stage that did not improve
-    std::vector<double> curve;    ///< share of wrong labels on held-out meshes after each round, mean over folds
+    std::vector<HeldOutPoint> curve;  ///< of the held-out items, over the rounds
     double seconds = 0;
 };
 
@@ -42,8 +45,8 @@ struct TrainReport {
 /// Trains a labeler from labeled meshes and their features (one per mesh, same order; they gain contextual columns).
 ///
 /// The exemplar/validation split of thesis Sec. 3.3 (4 : 1) is rotated: the meshes fall at random (by seed) into up to
-/// five folds; for each fold a classifier is trained on the others and validated on it. The mean of the validation
-/// curves chooses the number of rounds; the probabilities that each mesh gets from the classifier that never saw it
+/// five folds; for each fold a classifier is trained on the others and validated on it. The held-out log loss
+/// chooses the number of rounds; the probabilities that each mesh gets from the classifier that never saw it
 /// feed the contextual features of the next stage, the choice of the number of stages, the link between score and
 /// probability, and the CRF's parameters. The final classifiers are trained on all meshes. With 2 to 4 meshes there are
 /// as many folds as meshes; a single mesh is cut into patches of faces that serve as folds.

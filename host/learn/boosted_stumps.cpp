@@ -14,31 +14,6 @@ namespace {
 
 constexpr std::size_t k_block = 256;  // rows scored together: H of a block stays in the first-level cache
 
-void check(const BoostedStumps& classifier, const FeatureMatrix& features) {
-    const std::size_t classes = classifier.class_count;
-    if (classes == 0 || classes > k_max_classes) {
-        throw ModelError("the classifier has " + std::to_string(classes) + " classes, but 1 to " +
-                         std::to_string(k_max_classes) + " are possible; train it again");
-    }
-    if (classifier.elsewhere.size() != classifier.stumps.size() * classes) {
-        throw ModelError("the classifier has " + std::to_string(classifier.elsewhere.size()) +
-                         " constants k_c, but its " + std::to_string(classifier.stumps.size()) + " stumps of " +
-                         std::to_string(classes) + " classes need one each; train it again");
-    }
-    for (std::size_t m = 0; m < classifier.stumps.size(); ++m) {
-        const Stump& stump = classifier.stumps[m];
-        if (stump.feature >= features.cols()) {
-            throw ModelError("stump " + std::to_string(m) + " needs feature " + std::to_string(stump.feature) +
-                             ", but there are " + std::to_string(features.cols()) +
-                             "; use the features it was trained on");
-        }
-        if (classes < 64 && (stump.classes >> classes) != 0) {
-            throw ModelError("stump " + std::to_string(m) + " is shared by a class beyond the classifier's " +
-                             std::to_string(classes) + "; train it again");
-        }
-    }
-}
-
 /// H of rows [begin, begin + count), class-major with stride k_block.
 void sum_stumps(const BoostedStumps& classifier, std::span<const float> constant, const FeatureMatrix& features,
                 std::size_t begin, std::size_t count, std::span<float> h) {
@@ -78,15 +53,41 @@ std::vector<float> BoostedStumps::constant() const {
     return std::vector<float>(sum.begin(), sum.end());
 }
 
-void CpuStumpScorer::probabilities(const BoostedStumps& classifier, const FeatureMatrix& features, Link link,
-                                   float scale, std::span<float> out) {
-    check(classifier, features);
+void check_scoring(const BoostedStumps& classifier, const FeatureMatrix& features, float scale,
+                   std::span<const float> out) {
     const std::size_t classes = classifier.class_count;
+    if (classes == 0 || classes > k_max_classes) {
+        throw ModelError("the classifier has " + std::to_string(classes) + " classes, but 1 to " +
+                         std::to_string(k_max_classes) + " are possible; train it again");
+    }
+    if (classifier.elsewhere.size() != classifier.stumps.size() * classes) {
+        throw ModelError("the classifier has " + std::to_string(classifier.elsewhere.size()) +
+                         " constants k_c, but its " + std::to_string(classifier.stumps.size()) + " stumps of " +
+                         std::to_string(classes) + " classes need one each; train it again");
+    }
+    for (std::size_t m = 0; m < classifier.stumps.size(); ++m) {
+        const Stump& stump = classifier.stumps[m];
+        if (stump.feature >= features.cols()) {
+            throw ModelError("stump " + std::to_string(m) + " needs feature " + std::to_string(stump.feature) +
+                             ", but there are " + std::to_string(features.cols()) +
+                             "; use the features it was trained on");
+        }
+        if (classes < 64 && (stump.classes >> classes) != 0) {
+            throw ModelError("stump " + std::to_string(m) + " is shared by a class beyond the classifier's " +
+                             std::to_string(classes) + "; train it again");
+        }
+    }
     if (out.size() != features.rows * classes) {
         throw UsageError("the output holds " + std::to_string(out.size()) + " values, but " +
                          std::to_string(features.rows) + " rows x " + std::to_string(classes) + " classes are needed");
     }
     if (!(scale > 0.0f)) throw UsageError("the link's scale is " + std::to_string(scale) + "; it must be above zero");
+}
+
+void CpuStumpScorer::probabilities(const BoostedStumps& classifier, const FeatureMatrix& features, Link link,
+                                   float scale, std::span<float> out) {
+    check_scoring(classifier, features, scale, out);
+    const std::size_t classes = classifier.class_count;
     const std::vector<float> constant = classifier.constant();
     const std::size_t blocks = (features.rows + k_block - 1) / k_block;
     parallel_ranges(blocks, 1, [&](std::size_t first, std::size_t last) {

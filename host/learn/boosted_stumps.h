@@ -42,10 +42,15 @@ class StumpScorer {
   public:
     virtual ~StumpScorer() = default;
     /// Class probabilities, rows x class_count, item-major. A NaN feature compares as not above.
-    /// `scale` is the link's s (> 0). Throws ModelError if a stump names a feature the matrix lacks.
+    /// `scale` is the link's s (> 0). Throws ModelError if a stump names a feature that the matrix lacks or a class
+    /// that the classifier lacks, UsageError if `out` has another size or the scale is not above zero.
     virtual void probabilities(const BoostedStumps& classifier, const FeatureMatrix& features, Link link, float scale,
                                std::span<float> out) = 0;
 };
+
+/// Throws what StumpScorer::probabilities says of arguments that do not fit together: ModelError or UsageError.
+void check_scoring(const BoostedStumps& classifier, const FeatureMatrix& features, float scale,
+                   std::span<const float> out);
 
 class CpuStumpScorer final : public StumpScorer {
   public:

@@ -1,5 +1,6 @@
 #include "host/learn/boosting_weights.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -47,17 +48,26 @@ struct Sums {
     double mean() const { return s / (w + k_tiny); }
 };
 
-/// The factors exp(-z h) of one chunk's rows: z is -1 but for the chunk's own lane.
-void make_factors(const LaneLayout& layout, const RowChunk& chunk, const SplitCandidate& split,
-                  const StumpResponse& response, int exponent, AlignedFloats& below, AlignedFloats& above) {
+/// exp(-z h) of all lanes on one side, times 2^exponent, as floats (which the weights are). Padding lanes get 1.
+LaneFactors make_factors(const LaneLayout& layout, const SplitCandidate& split, float shared_response,
+                         const std::vector<float>& elsewhere, int exponent) {
+    LaneFactors factors{std::vector<double>(layout.padded(), 1.0), std::vector<double>(layout.padded(), 1.0)};
     for (std::size_t l = 0; l < layout.lanes; ++l) {
-        const bool shared = split.lanes >> l & 1;
-        const double sign = static_cast<std::int32_t>(l) == chunk.lane ? -1.0 : 1.0;
-        const float low = shared ? response.below : response.elsewhere[l];
-        const float high = shared ? response.above : response.elsewhere[l];
-        below[l] = static_cast<float>(std::ldexp(std::exp(sign * static_cast<double>(low)), exponent));
-        above[l] = static_cast<float>(std::ldexp(std::exp(sign * static_cast<double>(high)), exponent));
+        const auto h = static_cast<double>(split.lanes >> l & 1 ? shared_response : elsewhere[l]);
+        factors.own[l] = static_cast<double>(static_cast<float>(std::ldexp(std::exp(-h), exponent)));
+        factors.other[l] = static_cast<double>(static_cast<float>(std::ldexp(std::exp(h), exponent)));
     }
+    return factors;
+}
+
+/// The factors of a chunk's rows: z is -1 but for the chunk's own lane.
+AlignedFloats chunk_factors(const RowChunk& chunk, const LaneFactors& factors) {
+    AlignedFloats out(factors.other.begin(), factors.other.end());
+    if (chunk.lane != k_no_lane) {
+        const auto own = static_cast<std::size_t>(chunk.lane);
+        out[own] = static_cast<float>(factors.own[own]);
+    }
+    return out;
 }
 
 /// Multiplies the weights of rows and returns their new sum.
@@ -80,10 +90,10 @@ double scale_rows(LaneFloats<width>* weights, const std::uint8_t* bins, std::siz
 }
 
 double scale_chunk(BoostingRows& rows, const RowChunk& chunk, const SplitCandidate& split,
-                   const StumpResponse& response, int exponent) {
+                   const WeightFactors& factors) {
     const LaneLayout& layout = rows.layout;
-    AlignedFloats below(layout.padded(), 0.0f), above(layout.padded(), 0.0f), least(layout.padded(), 0.0f);
-    make_factors(layout, chunk, split, response, exponent, below, above);
+    const AlignedFloats below = chunk_factors(chunk, factors.below), above = chunk_factors(chunk, factors.above);
+    AlignedFloats least(layout.padded(), 0.0f);
     std::fill_n(least.begin(), layout.lanes, k_least_weight);
     double total = 0.0;
     with_width(layout, [&]<int width>() {
@@ -98,6 +108,12 @@ double scale_chunk(BoostingRows& rows, const RowChunk& chunk, const SplitCandida
 }
 
 }  // namespace
+
+StumpResponse StumpResponse::scaled(float factor) const {
+    StumpResponse out{factor * above, factor * below, elsewhere};
+    for (float& k : out.elsewhere) k *= factor;
+    return out;
+}
 
 StumpResponse fit_response(const BoostingRows& rows, const SplitCandidate& split) {
     std::vector<SideSums> of_chunk(rows.chunks.size());
@@ -127,9 +143,11 @@ WeightUpdate::WeightUpdate(BoostingRows& rows) {
 double WeightUpdate::apply(BoostingRows& rows, const SplitCandidate& split, const StumpResponse& response) {
     const int step = total_ < 0x1p-10 ? -std::ilogb(total_) : 0;
     exponent_ += step;
+    factors_.below = make_factors(rows.layout, split, response.below, response.elsewhere, step);
+    factors_.above = make_factors(rows.layout, split, response.above, response.elsewhere, step);
     std::vector<double> of_chunk(rows.chunks.size());
     parallel_for(of_chunk.size(),
-                 [&](std::size_t i) { of_chunk[i] = scale_chunk(rows, rows.chunks[i], split, response, step); });
+                 [&](std::size_t i) { of_chunk[i] = scale_chunk(rows, rows.chunks[i], split, factors_); });
     total_ = std::accumulate(of_chunk.begin(), of_chunk.end(), 0.0);
     return std::ldexp(total_, -exponent_);
 }

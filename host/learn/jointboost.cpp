@@ -34,9 +34,9 @@ void check_options(const TrainingSet& training, std::size_t class_count, const B
         throw UsageError("an exhaustive search over subsets of " + std::to_string(options.exhaustive_classes) +
                          " classes takes too long; at most " + std::to_string(k_most_exhaustive) + " are possible");
     }
-    for (const double fraction : {options.feature_fraction, options.row_fraction}) {
+    for (const double fraction : {options.shrinkage, options.feature_fraction, options.row_fraction}) {
         if (!(fraction > 0.0 && fraction <= 1.0)) {
-            throw UsageError("a fraction of features or rows is " + std::to_string(fraction) +
+            throw UsageError("the shrinkage or a fraction of features or rows is " + std::to_string(fraction) +
                              "; it must be above 0 and at most 1");
         }
     }
@@ -98,56 +98,62 @@ std::vector<RowChunk> draw_chunks(const std::vector<RowChunk>& chunks, double sh
     return drawn;
 }
 
+/// The lanes that have rows of their own: only they may share a split.
+SubsetSearch subsets_of(const BoostingRows& rows, std::size_t exhaustive_classes) {
+    SubsetSearch subsets;
+    for (const RowChunk& chunk : rows.chunks) {
+        if (chunk.lane == k_no_lane) continue;
+        const auto lane = static_cast<std::uint32_t>(chunk.lane);
+        if (subsets.candidates.empty() || subsets.candidates.back() != lane) subsets.candidates.push_back(lane);
+    }
+    subsets.exhaustive = subsets.candidates.size() <= std::max<std::size_t>(exhaustive_classes, 1);
+    return subsets;
+}
+
 /// One training run: the rows and their weights, and one stump per call of add_stump.
 class Booster {
   public:
     Booster(const TrainingSet& training, std::size_t class_count, std::size_t first_class, const BoostOptions& options)
         : features_(training.features),
           options_(options),
+          sampled_(options.feature_fraction < 1.0 || options.row_fraction < 1.0),
           first_class_(first_class),
           rows_(prepare_rows(training, class_count, first_class, options)),
-          weights_(rows_) {
-        for (std::uint32_t f = 0; f < features_.cols(); ++f) {
-            if (!features_.thresholds[f].empty()) usable_.push_back(f);
-        }
-        for (const RowChunk& chunk : rows_.chunks) {
-            if (chunk.lane == k_no_lane) continue;
-            const auto lane = static_cast<std::uint32_t>(chunk.lane);
-            if (candidates_.empty() || candidates_.back() != lane) candidates_.push_back(lane);
-        }
-    }
+          weights_(rows_),
+          search_(rows_, features_, subsets_of(rows_, options.exhaustive_classes), !sampled_) {}
 
     /// Adds the best stump and returns the training loss after it.
     double add_stump(std::size_t round, BoostedStumps& classifier) {
         const SplitCandidate split = find_split(round);
-        const StumpResponse response = fit_response(rows_, split);
+        const StumpResponse response = fit_response(rows_, split).scaled(static_cast<float>(options_.shrinkage));
         Stump stump{split.feature, 0.0f, response.above, response.below, split.lanes << first_class_};
         if (split.lanes != 0) stump.threshold = features_.thresholds[split.feature][split.threshold];
         classifier.stumps.push_back(stump);
         classifier.elsewhere.insert(classifier.elsewhere.end(), first_class_, 0.0f);
         classifier.elsewhere.insert(classifier.elsewhere.end(), response.elsewhere.begin(), response.elsewhere.end());
-        return weights_.apply(rows_, split, response);
+        const double loss = weights_.apply(rows_, split, response);
+        search_.weights_changed(split, weights_.factors());
+        return loss;
     }
 
   private:
-    SplitCandidate find_split(std::size_t round) const {
+    SplitCandidate find_split(std::size_t round) {
+        if (!sampled_) return search_.best();
         Random random = Random(options_.seed).fork(k_round_task).fork(round);
         std::vector<std::uint32_t> list;
-        for (const std::uint32_t pick : draw(usable_.size(), options_.feature_fraction, random)) {
-            list.push_back(usable_[pick]);
+        for (const std::uint32_t pick : draw(search_.features().size(), options_.feature_fraction, random)) {
+            list.push_back(search_.features()[pick]);
         }
-        const bool exhaustive = candidates_.size() <= std::max<std::size_t>(options_.exhaustive_classes, 1);
-        return find_best_split(rows_, draw_chunks(rows_.chunks, options_.row_fraction, random), features_, list,
-                               {candidates_, exhaustive});
+        return search_.best(draw_chunks(rows_.chunks, options_.row_fraction, random), list);
     }
 
     const QuantizedFeatures& features_;
     BoostOptions options_;
+    bool sampled_;
     std::size_t first_class_;
     BoostingRows rows_;
     WeightUpdate weights_;
-    std::vector<std::uint32_t> usable_;      // features with more than one bin
-    std::vector<std::uint32_t> candidates_;  // lanes with rows of their own
+    StumpSearch search_;
 };
 
 BoostResult train(const TrainingSet& training, std::size_t class_count, bool gentle, const ValidationSet* validation,

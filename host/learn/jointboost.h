@@ -23,7 +23,10 @@ struct BoostOptions {
     BoostMonitor monitor = BoostMonitor::loss;
     bool keep_best = true;  ///< drop the stumps after the lowest validation measure
     std::size_t exhaustive_classes =
-        6;                          ///< all class subsets are tried up to so many classes (at most 10), greedy above
+        6;  ///< all class subsets are tried up to so many classes (at most 10), greedy above
+    /// What each stump's a, b and k_c are multiplied with, in (0, 1]: smaller steps need more rounds and generalize
+    /// better where the training rows are few and alike (Friedman 2001).
+    double shrinkage = 1.0;
     double feature_fraction = 1.0;  ///< share of the features tried each round, drawn at random, in (0, 1]
     double row_fraction = 1.0;      ///< share of the rows that choose the stump each round, in (0, 1]
     std::uint64_t seed = 1;

@@ -14,7 +14,7 @@ namespace exemplar {
 template <int width>
 struct LaneTypes {
     using Floats [[gnu::vector_size(width * 4), gnu::may_alias]] = float;
-    using Doubles [[gnu::vector_size(width * 8)]] = double;
+    using Doubles [[gnu::vector_size(width * 8), gnu::may_alias]] = double;
 };
 template <int width>
 using LaneFloats = typename LaneTypes<width>::Floats;
@@ -25,6 +25,12 @@ constexpr std::size_t k_most_lanes = 8;
 
 /// Floats that start on a cache line, as LaneFloats need.
 using AlignedFloats = std::vector<float, tbb::cache_aligned_allocator<float>>;
+using AlignedDoubles = std::vector<double, tbb::cache_aligned_allocator<double>>;
+
+/// Factors per lane (padded), for rows whose own lane it is and for others.
+struct LaneFactors {
+    std::vector<double> own, other;
+};
 
 /// Lanes of the classes are padded to a power of two up to 8; more classes take several panels of 8 lanes.
 struct LaneLayout {

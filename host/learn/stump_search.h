@@ -2,29 +2,53 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "host/learn/boosting_rows.h"
+#include "host/learn/boosting_weights.h"
+#include "host/learn/split_histograms.h"
 
 namespace exemplar {
 
-/// A split of one feature and the lanes that share it.
-struct SplitCandidate {
-    float gain = 0;  ///< how much Eq. 3.6 falls below that of constants k_c alone
-    std::uint32_t feature = 0;
-    std::uint32_t threshold = 0;  ///< index: "above" is bin > threshold
-    std::uint64_t lanes = 0;      ///< bit l: lane l shares the split; zero if no split gains anything
-};
-
 /// Which subsets of lanes the search may share a split between.
 struct SubsetSearch {
-    std::span<const std::uint32_t> candidates;  ///< lanes that may share
-    bool exhaustive = true;                     ///< all subsets, else greedily grown (Torralba et al. 2007)
+    std::vector<std::uint32_t> candidates;  ///< lanes that may share
+    bool exhaustive = true;                 ///< all subsets, else greedily grown (Torralba et al. 2007)
 };
 
-/// The best split over `features` (thesis Eq. 3.6 with a, b, k_c in closed form), from the histograms of the weights of
-/// the rows in `chunks`. Ties go to the lower feature, threshold and subset, so the result does not depend on threads.
-SplitCandidate find_best_split(const BoostingRows& rows, std::span<const RowChunk> chunks,
-                               const QuantizedFeatures& features, std::span<const std::uint32_t> feature_list,
-                               const SubsetSearch& subsets);
+/// Finds best splits (thesis Eq. 3.6 with a, b, k_c in closed form) from histograms of the rows' weights. Ties go to
+/// the lower feature, threshold and subset, so the result does not depend on threads.
+class StumpSearch {
+  public:
+    /// Keeps references to the data, and searches the features that have a threshold. Where every round reads all rows
+    /// and features (`carry`), it keeps the histograms: after a split only the rows of its smaller side are read, as
+    /// the weights of all others change by one factor per lane. Every few rounds they are made anew, so that rounding
+    /// does not build up.
+    StumpSearch(const BoostingRows& rows, const QuantizedFeatures& features, SubsetSearch subsets, bool carry);
+
+    const std::vector<std::uint32_t>& features() const { return usable_; }
+    /// The best split over all features and rows.
+    SplitCandidate best();
+    /// The best split over `list`, from the rows in `chunks`.
+    SplitCandidate best(std::span<const RowChunk> chunks, std::span<const std::uint32_t> list) const;
+    /// The weights of the rows changed by `factors`, by this split.
+    void weights_changed(const SplitCandidate& split, const WeightFactors& factors);
+
+  private:
+    SplitCandidate best_of(const SplitHistograms& histograms) const;
+    WeightedRows all_rows(std::span<const RowChunk> chunks) const;
+    void refresh(SplitHistograms& histograms, const RowSelection* selection) const;
+
+    const BoostingRows& rows_;
+    const QuantizedFeatures& features_;
+    SubsetSearch subsets_;
+    std::vector<std::uint32_t> usable_;
+    bool carry_;
+    LaneFactors ones_;
+    std::vector<SplitHistograms> kept_;
+    std::size_t carried_ = 0;  // rounds since the histograms were made anew
+    SplitCandidate last_split_;
+    WeightFactors last_factors_;
+};
 
 }  // namespace exemplar

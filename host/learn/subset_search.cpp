@@ -76,6 +76,15 @@ struct GrowingSubset {
     }
 };
 
+/// Whether any of k_step thresholds may gain more than `floor` (with room for rounding).
+bool may_gain(const std::vector<StepSums>& of_class, const std::vector<float>& constant_gain, float floor) {
+    Floats bound{};
+    for (std::size_t c = 0; c < constant_gain.size(); ++c) bound += of_class[c].gain() - constant_gain[c];
+    bool any = false;
+    for (std::size_t i = 0; i < k_step; ++i) any |= 1.001f * bound[i] + 1e-6f > floor;
+    return any;
+}
+
 }  // namespace
 
 void SplitSums::resize(std::size_t class_count, std::size_t thresholds) {
@@ -85,17 +94,19 @@ void SplitSums::resize(std::size_t class_count, std::size_t thresholds) {
     constant_gain.assign(classes, 0.0f);
 }
 
-SubsetChoice best_subset_exhaustive(const SplitSums& sums) {
+SubsetChoice best_subset_exhaustive(const SplitSums& sums, float floor) {
     const std::uint32_t subsets = 1u << sums.classes;
     std::vector<float> constant(subsets, 0.0f);
     for (std::uint32_t s = 1; s < subsets; ++s) {
         constant[s] = constant[s & (s - 1)] + sums.constant_gain[static_cast<std::size_t>(std::countr_zero(s))];
     }
     // A subset's sums are those of the subset without its lowest class, plus that class.
-    std::vector<StepSums> of_subset(subsets);
-    SubsetChoice best;
+    std::vector<StepSums> of_subset(subsets), of_class(sums.classes);
+    SubsetChoice best{floor, 0, 0};
     for (std::size_t threshold = 0; threshold < sums.stride; threshold += k_step) {
-        for (std::size_t c = 0; c < sums.classes; ++c) of_subset[1u << c] = load_sums(sums, c, threshold);
+        for (std::size_t c = 0; c < sums.classes; ++c) of_class[c] = load_sums(sums, c, threshold);
+        if (!may_gain(of_class, sums.constant_gain, best.gain)) continue;
+        for (std::size_t c = 0; c < sums.classes; ++c) of_subset[1u << c] = of_class[c];
         Floats best_gain{};
         Mask best_set{};
         for (std::uint32_t s = 1; s < subsets; ++s) {
@@ -113,13 +124,14 @@ SubsetChoice best_subset_exhaustive(const SplitSums& sums) {
     return best;
 }
 
-SubsetChoice best_subset_greedy(const SplitSums& sums) {
+SubsetChoice best_subset_greedy(const SplitSums& sums, float floor) {
     std::vector<StepSums> of_class(sums.classes);
     std::vector<Mask> taken(sums.classes);
     std::vector<Mask> picked(sums.classes);  // per size: the class taken at each threshold
-    SubsetChoice best;
+    SubsetChoice best{floor, 0, 0};
     for (std::size_t threshold = 0; threshold < sums.stride; threshold += k_step) {
         for (std::size_t c = 0; c < sums.classes; ++c) of_class[c] = load_sums(sums, c, threshold), taken[c] = Mask{};
+        if (!may_gain(of_class, sums.constant_gain, best.gain)) continue;
         GrowingSubset subset;
         Floats best_gain{};
         Mask best_size{};

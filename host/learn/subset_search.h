@@ -20,18 +20,19 @@ struct SplitSums {
 };
 
 /// The best threshold and subset of classes: gain = S_b^2 / W_b + S_a^2 / W_a, summed over the subset first, less the
-/// subset's constant gains. Subset bit c is class c of the sums. No subset (0) if nothing gains.
+/// subset's constant gains. Subset bit c is class c of the sums. No subset (0) if nothing gains more than the floor.
 struct SubsetChoice {
     float gain = 0;
     std::uint32_t threshold = 0;
     std::uint64_t subset = 0;
 };
 
-/// Tries all subsets; at most k_most_exhaustive classes.
+/// Tries all subsets; at most k_most_exhaustive classes. Thresholds that cannot gain more than `floor` are passed over:
+/// a subset that shares a and b gains at most what its classes gain with an a and b of their own.
 constexpr std::size_t k_most_exhaustive = 10;
-SubsetChoice best_subset_exhaustive(const SplitSums& sums);
+SubsetChoice best_subset_exhaustive(const SplitSums& sums, float floor = 0);
 
 /// For each threshold grows the subset by the class that gains most until it holds all, and takes the best on the way.
-SubsetChoice best_subset_greedy(const SplitSums& sums);
+SubsetChoice best_subset_greedy(const SplitSums& sums, float floor = 0);
 
 }  // namespace exemplar

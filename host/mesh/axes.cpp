@@ -73,6 +73,7 @@ std::vector<std::uint32_t> faces_along_curve(const TriangleMesh& mesh, const Pri
         std::uint32_t code, face;
         float along;
     };
+    if (!(reach > 0)) reach = 1;  // all centers in one place, as of a single face
     std::vector<Key> keys(centers.size());
     for (std::uint32_t f = 0; f < keys.size(); ++f) {
         const Vec3 p = centers[f] - axes.center;
@@ -287,6 +288,7 @@ std::vector<SymmetryPlane> symmetry_planes(const TriangleMesh& mesh, int count) 
         std::ranges::stable_sort(chosen, {}, [](const Candidate& c) { return c.asymmetry.distance; });
     }
     std::vector<SymmetryPlane> planes;
+    planes.reserve(wanted);
     for (const Candidate& c : chosen) planes.push_back({axes.center, c.normal, c.asymmetry.distance});
     for (std::size_t i = 0; planes.size() < wanted; ++i)
         planes.push_back({axes.center, axes.axis[i % 3], planes.empty() ? 0.0f : planes.back().error});

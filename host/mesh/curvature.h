@@ -18,7 +18,8 @@ struct VertexCurvature {
     std::vector<std::array<float, 4>> derivative;
 };
 /// Rusinkiewicz 2004 ("Estimating Curvatures and Their Derivatives on Triangle Meshes"): per-face tensors by least
-/// squares from vertex normals, averaged to vertices with Voronoi areas. Degenerate faces are left out.
+/// squares from vertex normals, averaged to vertices with Voronoi areas. Degenerate faces (lower
+/// than 1e-7 of their longest edge) are left out.
 VertexCurvature estimate_curvature(const TriangleMesh& mesh, bool with_derivatives);
 
 }  // namespace exemplar

@@ -92,14 +92,19 @@ std::vector<float> distances_from_sources(const DualGraph& graph, std::span<cons
 
 namespace {
 
-/// Area of the component that each face belongs to.
-std::vector<float> component_areas(const DualGraph& graph, const std::vector<float>& areas) {
+struct Components {
+    std::vector<float> area;  ///< per face, of the component it belongs to
+    std::size_t count = 0;
+};
+
+Components find_components(const DualGraph& graph, const std::vector<float>& areas) {
     const std::size_t faces = graph.face_count();
-    std::vector<float> result(faces);
+    Components result{std::vector<float>(faces)};
     std::vector<bool> seen(faces);
     std::vector<std::uint32_t> members;
     for (std::uint32_t first = 0; first < faces; ++first) {
         if (seen[first]) continue;
+        ++result.count;
         members.assign(1, first);
         seen[first] = true;
         double sum = 0;
@@ -111,16 +116,15 @@ std::vector<float> component_areas(const DualGraph& graph, const std::vector<flo
                 seen[neighbor] = true;
             }
         }
-        for (std::uint32_t f : members) result[f] = static_cast<float>(sum);
+        for (std::uint32_t f : members) result.area[f] = static_cast<float>(sum);
     }
     return result;
 }
 
 /// Position of each face in the order in which equally distant faces are sampled: large components first, then far from
 /// the area centroid, then by coordinates, so that the index decides only between coinciding faces.
-std::vector<std::uint32_t> sampling_ranks(const TriangleMesh& mesh, const DualGraph& graph,
-                                          const std::vector<float>& from_centroid, const std::vector<float>& areas) {
-    const std::vector<float> component = component_areas(graph, areas);
+std::vector<std::uint32_t> sampling_ranks(const TriangleMesh& mesh, const std::vector<float>& component,
+                                          const std::vector<float>& from_centroid) {
     const std::vector<Vec3> centers = face_centers(mesh);
     std::vector<std::uint32_t> order(mesh.face_count()), rank(mesh.face_count());
     for (std::uint32_t f = 0; f < order.size(); ++f) order[f] = f;
@@ -218,13 +222,17 @@ FaceSamples sample_faces(const TriangleMesh& mesh, const DualGraph& graph, std::
     const Vec3 centroid = area_centroid(mesh);
     std::vector<float> from_centroid;
     for (const Vec3& center : face_centers(mesh)) from_centroid.push_back((center - centroid).norm());
-    const std::vector<std::uint32_t> rank = sampling_ranks(mesh, graph, from_centroid, areas);
+    const Components components = find_components(graph, areas);
+    const std::vector<std::uint32_t> rank = sampling_ranks(mesh, components.area, from_centroid);
 
+    // Where not every component gets a sample, the largest must, or the sampled ones might have no area at all.
+    const bool every_component = count >= components.count;
     std::uint32_t first = 0;
-    for (std::uint32_t f = 1; f < faces; ++f)
-        if (from_centroid[f] > from_centroid[first] ||
-            (from_centroid[f] == from_centroid[first] && rank[f] < rank[first]))
-            first = f;
+    for (std::uint32_t f = 1; f < faces; ++f) {
+        const bool farther = every_component && from_centroid[f] > from_centroid[first];
+        const bool level = !every_component || from_centroid[f] == from_centroid[first];
+        if (farther || (level && rank[f] < rank[first])) first = f;
+    }
     FarthestPointSampler sampler(graph, rank);
     sampler.add(first);
     while (sampler.samples().size() < count) sampler.add(sampler.take_farthest());

@@ -54,7 +54,8 @@ struct FaceSamples {
 };
 /// Farthest-point samples under geodesic distance (started at the face farthest from the area centroid, so the result
 /// does not depend on face order), each weighted by the area of its geodesic Voronoi cell. Every component gets a
-/// sample, or, with fewer samples than components, the largest do and the others are left out of the shares. With count
+/// sample, or, with fewer samples than components, the largest do and the others are left out of the shares. A
+/// component without area has a share of 0. With count
 /// >= F every face is its own sample, in order, and sums are exact. Faces count equally if all areas are zero.
 FaceSamples sample_faces(const TriangleMesh& mesh, const DualGraph& graph, std::size_t count);
 

@@ -12,19 +12,14 @@
 namespace exemplar::mesh_io {
 namespace {
 
-/// Elements of an accessor in memory, all within their buffer.
-struct ElementBytes {
-    const unsigned char* first;
-    std::size_t count, stride;
-};
+using Bytes = std::vector<unsigned char>;
 
 /// Walks the nodes of a model and collects its triangles.
 class SceneReader {
   public:
     SceneReader(const tinygltf::Model& model, const std::string& name) : model_(model), name_(name) {
-        std::uint64_t bytes = 0;
-        for (const tinygltf::Buffer& buffer : model.buffers) bytes += buffer.data.size();
-        corners_left_ = k_free_corners + k_corners_per_byte * bytes;
+        for (const tinygltf::Buffer& buffer : model.buffers) bytes_ += buffer.data.size();
+        corners_left_ = k_free_corners + k_corners_per_byte * bytes_;
     }
 
     MeshFile read() {
@@ -34,6 +29,8 @@ class SceneReader {
         MeshFile file;
         file.mesh = std::move(polygons_).triangulate(file.warnings);
         if (skipped_) file.warnings.push_back(fmt::format("{} primitives of points or lines were left out", skipped_));
+        if (placeless_)
+            file.warnings.push_back(fmt::format("{} primitives without POSITION were left out", placeless_));
         if (skinned_)
             file.warnings.push_back(
                 fmt::format("the skins of {} nodes were left out; the mesh is in its rest pose", skinned_));
@@ -95,8 +92,8 @@ class SceneReader {
         if (check(node.translation, 3, "translation"))
             transform.translate(Vec3d(node.translation[0], node.translation[1], node.translation[2]));
         if (check(node.rotation, 4, "rotation"))
-            transform.rotate(
-                Eigen::Quaterniond(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]));
+            transform.rotate(Eigen::Quaterniond(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2])
+                                 .normalized());
         if (check(node.scale, 3, "scale")) transform.scale(Vec3d(node.scale[0], node.scale[1], node.scale[2]));
         return transform;
     }
@@ -112,7 +109,10 @@ class SceneReader {
 
     void read_primitive(const tinygltf::Primitive& primitive, const Eigen::Affine3d& transform) {
         const auto position = primitive.attributes.find("POSITION");
-        if (position == primitive.attributes.end()) fail("a primitive has no POSITION");
+        if (position == primitive.attributes.end()) {
+            ++placeless_;
+            return;
+        }
         const std::vector<std::uint32_t> vertices = read_positions(position->second, transform);
         std::vector<std::uint32_t> corners = vertices;
         if (primitive.indices >= 0) {
@@ -147,27 +147,63 @@ class SceneReader {
         }
     }
 
-    /// The bytes of an accessor, checked to lie within its buffer view and buffer.
-    ElementBytes element_bytes(int index, int type, std::size_t element_size) {
-        const tinygltf::Accessor& accessor = item(model_.accessors, index, "accessor");
-        if (accessor.sparse.isSparse || accessor.bufferView < 0)
-            fail(fmt::format("accessor {} is sparse, which is not supported; export it without", index));
-        if (accessor.type != type) fail(fmt::format("accessor {} has the wrong type for positions or indices", index));
-        const tinygltf::BufferView& view = item(model_.bufferViews, accessor.bufferView, "buffer view");
+    /// `count` elements of accessor `index` from a buffer view, one right after the other; checked to lie within the
+    /// view and its buffer.
+    Bytes view_elements(int index, int view_index, std::size_t offset, std::size_t count, std::size_t size) const {
+        const tinygltf::BufferView& view = item(model_.bufferViews, view_index, "buffer view");
         const tinygltf::Buffer& buffer = item(model_.buffers, view.buffer, "buffer");
-        const std::size_t stride = view.byteStride ? view.byteStride : element_size;
+        const std::size_t stride = view.byteStride ? view.byteStride : size;
         const bool view_fits =
             view.byteOffset <= buffer.data.size() && view.byteLength <= buffer.data.size() - view.byteOffset;
-        if (!view_fits) fail(fmt::format("buffer view {} reaches past the end of its buffer", accessor.bufferView));
-        const bool fits = accessor.byteOffset <= view.byteLength && accessor.count > 0 &&
-                          accessor.count - 1 <= (view.byteLength - accessor.byteOffset) / stride &&
-                          element_size <= view.byteLength - accessor.byteOffset - (accessor.count - 1) * stride;
-        if (!fits)
-            fail(fmt::format("the {} elements of accessor {} are not within its buffer view", accessor.count, index));
+        if (!view_fits) fail(fmt::format("buffer view {} reaches past the end of its buffer", view_index));
+        const bool fits = offset <= view.byteLength && count > 0 && count - 1 <= (view.byteLength - offset) / stride &&
+                          size <= view.byteLength - offset - (count - 1) * stride;
+        if (!fits) fail(fmt::format("the {} elements of accessor {} are not within its buffer view", count, index));
+        Bytes elements(count * size);
+        const unsigned char* const first = buffer.data.data() + view.byteOffset + offset;
+        for (std::size_t i = 0; i < count; ++i) std::memcpy(elements.data() + i * size, first + i * stride, size);
+        return elements;
+    }
+
+    /// The elements of an accessor, one right after the other, with those that its sparse part replaces.
+    Bytes accessor_elements(int index, int type, std::size_t size) {
+        const tinygltf::Accessor& accessor = item(model_.accessors, index, "accessor");
+        if (accessor.type != type) fail(fmt::format("accessor {} has the wrong type for positions or indices", index));
         if (accessor.count > corners_left_)
-            fail("the scene repeats its meshes to far more triangles than the file holds; merge or remove copies");
+            fail(
+                fmt::format("the {} elements of accessor {} are far more than the file holds; its count is wrong, or "
+                            "the scene repeats its meshes: merge or remove copies",
+                            accessor.count, index));
         corners_left_ -= accessor.count;
-        return {buffer.data.data() + view.byteOffset + accessor.byteOffset, accessor.count, stride};
+        Bytes elements;
+        if (accessor.bufferView >= 0)
+            elements = view_elements(index, accessor.bufferView, accessor.byteOffset, accessor.count, size);
+        else if (accessor.sparse.isSparse && accessor.count <= bytes_)
+            elements.resize(accessor.count * size, 0);
+        else
+            fail(fmt::format("accessor {} has neither a buffer view nor sparse values for its elements", index));
+        if (accessor.sparse.isSparse) replace_sparse(accessor, index, size, elements);
+        return elements;
+    }
+
+    void replace_sparse(const tinygltf::Accessor& accessor, int index, std::size_t size, Bytes& elements) {
+        const auto& [count, is_sparse, indices, values] = accessor.sparse;
+        if (count < 0 || indices.byteOffset < 0 || values.byteOffset < 0)
+            fail(fmt::format("the sparse part of accessor {} has a negative count or offset", index));
+        if (count == 0) return;
+        const auto number = static_cast<std::size_t>(count);
+        const std::size_t index_size = index_bytes(indices.componentType, index);
+        const std::vector<std::uint32_t> places = unpacked(
+            view_elements(index, indices.bufferView, static_cast<std::size_t>(indices.byteOffset), number, index_size),
+            index_size);
+        const Bytes replacements =
+            view_elements(index, values.bufferView, static_cast<std::size_t>(values.byteOffset), number, size);
+        for (std::size_t i = 0; i < number; ++i) {
+            if (places[i] >= accessor.count)
+                fail(fmt::format("the sparse part of accessor {} names element {}, but there are {}", index, places[i],
+                                 accessor.count));
+            std::memcpy(elements.data() + places[i] * size, replacements.data() + i * size, size);
+        }
     }
 
     /// Vertices of the mesh, one per element of the accessor.
@@ -175,13 +211,13 @@ class SceneReader {
         const tinygltf::Accessor& accessor = item(model_.accessors, index, "accessor");
         if (accessor.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
             fail(fmt::format("accessor {} holds positions that are no floats, which is not supported", index));
-        const ElementBytes elements = element_bytes(index, TINYGLTF_TYPE_VEC3, sizeof(Vec3));
+        const Bytes elements = accessor_elements(index, TINYGLTF_TYPE_VEC3, sizeof(Vec3));
         const bool moves = !transform.matrix().isIdentity(0);
         std::vector<std::uint32_t> vertices;
-        vertices.reserve(elements.count);
-        for (std::size_t i = 0; i < elements.count; ++i) {
+        vertices.reserve(accessor.count);
+        for (std::size_t i = 0; i < accessor.count; ++i) {
             std::array<float, 3> p;
-            std::memcpy(p.data(), elements.first + i * elements.stride, sizeof(p));
+            std::memcpy(p.data(), elements.data() + i * sizeof(p), sizeof(p));
             Vec3 position(p[0], p[1], p[2]);
             if (moves) position = (transform * position.cast<double>()).cast<float>();
             vertices.push_back(welder_.add(position, polygons_.vertices));
@@ -190,28 +226,26 @@ class SceneReader {
     }
 
     std::vector<std::uint32_t> read_indices(int index) {
-        switch (item(model_.accessors, index, "accessor").componentType) {
+        const std::size_t size = index_bytes(item(model_.accessors, index, "accessor").componentType, index);
+        return unpacked(accessor_elements(index, TINYGLTF_TYPE_SCALAR, size), size);
+    }
+    std::size_t index_bytes(int component_type, int index) const {
+        switch (component_type) {
             case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-                return read_indices_as<std::uint8_t>(index);
+                return 1;
             case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-                return read_indices_as<std::uint16_t>(index);
+                return 2;
             case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-                return read_indices_as<std::uint32_t>(index);
+                return 4;
             default:
                 fail(fmt::format("accessor {} holds indices that are no unsigned integers", index));
         }
     }
-    template <typename T>
-    std::vector<std::uint32_t> read_indices_as(int index) {
-        const ElementBytes elements = element_bytes(index, TINYGLTF_TYPE_SCALAR, sizeof(T));
-        std::vector<std::uint32_t> indices;
-        indices.reserve(elements.count);
-        for (std::size_t i = 0; i < elements.count; ++i) {
-            T value;
-            std::memcpy(&value, elements.first + i * elements.stride, sizeof(T));
-            indices.push_back(value);
-        }
-        return indices;
+    /// Little-endian unsigned integers of `size` bytes.
+    static std::vector<std::uint32_t> unpacked(const Bytes& bytes, std::size_t size) {
+        std::vector<std::uint32_t> values(bytes.size() / size, 0);
+        for (std::size_t i = 0; i < bytes.size(); ++i) values[i / size] |= std::uint32_t{bytes[i]} << (8 * (i % size));
+        return values;
     }
 
     /// A label per named material, in the order of the materials.
@@ -239,8 +273,8 @@ class SceneReader {
     VertexWelder welder_;
     std::vector<int> materials_;  ///< per polygon; -1 for none
     std::vector<bool> visited_;
-    std::uint64_t corners_left_ = 0;
-    std::size_t skipped_ = 0, skinned_ = 0;
+    std::uint64_t bytes_ = 0, corners_left_ = 0;
+    std::size_t skipped_ = 0, placeless_ = 0, skinned_ = 0;
     int depth_ = 0;
 };
 

@@ -27,7 +27,7 @@ std::vector<Part> parts_by_label(const TriangleMesh& mesh, const FaceLabels& lab
     std::vector<Part> parts(labels.names.size() + 1);
     for (std::size_t i = 0; i < parts.size(); ++i) parts[i].label = static_cast<std::int32_t>(i) - 1;
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
-        parts[static_cast<std::size_t>(labels.label[mesh.source_of(f)] + 1)].faces.push_back(mesh.faces[f]);
+        parts[std::size_t{1} + labels.label[mesh.source_of(f)]].faces.push_back(mesh.faces[f]);
     std::erase_if(parts, [](const Part& part) { return part.faces.empty(); });
     return parts;
 }

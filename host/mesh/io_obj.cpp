@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <istream>
 #include <limits>
+#include <span>
 #include <streambuf>
 
 #include "host/core/errors.h"
@@ -30,6 +31,10 @@ struct ObjContent {
     std::size_t line = 0;
     std::string name;
 
+    void add(std::span<const std::uint32_t> face) {
+        polygons.add(face);
+        face_line.push_back(line);
+    }
     [[noreturn]] void fail(std::size_t at_line, const std::string& message) const {
         mesh_io::fail(fmt::format("{}:{}", name, at_line), message);
     }
@@ -68,6 +73,10 @@ class CheckedLines : public std::streambuf {
                 line_ = "v 0 0 0";  // its numbers are known; the library's own parser overflows on long exponents
             } else {
                 check_face(std::string_view(line_).substr(1));
+                if (trimmed(line_) == "f") {  // the library would not count it
+                    obj_.add({});
+                    continue;
+                }
                 std::ranges::replace_if(line_, is_space, ' ');  // the library knows fewer kinds of space
             }
             line_ += '\n';
@@ -135,8 +144,7 @@ void on_face(void* user_data, tinyobj::index_t* indices, int count) {
             obj.fail(obj.line, fmt::format("a face names vertex {}, but only {} come before it", index, vertex_count));
         obj.corners.push_back(static_cast<std::uint32_t>(corner));
     }
-    obj.polygons.add(obj.corners);
-    obj.face_line.push_back(obj.line);
+    obj.add(obj.corners);
 }
 
 void check_corners(const ObjContent& obj) {

@@ -13,10 +13,21 @@ namespace exemplar {
 namespace mesh_io {
 namespace {
 
+bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
 /// Header words are [ST][C][N][4][n]OFF. Texture, color and normal follow the position on a vertex line and are passed
-/// over; 4 and n change the number of coordinates and are not read.
+/// over; 4 and n change the number of coordinates and are not read. Some large collections have files in which the
+/// counts follow without a space, as in OFF490 518 0.
 void check_header(TextCursor& cursor) {
-    std::string_view word = cursor.word(), prefix = word;
+    std::string_view word = cursor.word();
+    const std::size_t end = word.find("OFF") + 3;
+    if (word.find("OFF") != std::string_view::npos && end < word.size() && is_digit(word[end])) {
+        cursor.put_back(word.substr(end));
+        word = word.substr(0, end);
+    }
+    std::string_view prefix = word;
     if (!word.ends_with("OFF"))
         cursor.fail(fmt::format("an OFF file begins with the word OFF, not with {}", quote(word)));
     prefix.remove_suffix(3);

@@ -145,6 +145,10 @@ class BodyReader {
     void check_declarations() {
         for (const PlyElement& element : header_.elements) {
             const std::vector<Role> roles = roles_of(element);
+            for (Role role : {Role::x, Role::y, Role::z, Role::corners, Role::label})
+                if (std::ranges::count(roles, role) > 1)
+                    mesh_io::fail(name_, fmt::format("element {} declares coordinates, vertex indices or labels twice",
+                                                     element.name));
             const auto need = [&](Role role, const char* what) {
                 if (std::ranges::find(roles, role) == roles.end())
                     mesh_io::fail(name_, fmt::format("element {} has no property {}", element.name, what));

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "host/core/text.h"
 #include "host/mesh/io_ply.h"
 #include "host/mesh/io_text.h"
 
@@ -88,7 +89,9 @@ void read_comment(TextCursor& cursor, PlyHeader& header) {
     if (cursor.word() != "label") return;
     const auto index = parse_integer(cursor.word());
     const std::string_view name = trimmed(cursor.rest());
-    if (index && !name.empty()) header.label_names[*index] = name;
+    if (!index || name.empty()) return;
+    if (!is_utf8(name)) cursor.fail("label name " + quote(name) + " is not UTF-8; save the file in that encoding");
+    header.label_names[*index] = name;
 }
 
 }  // namespace

@@ -19,12 +19,14 @@ std::uint32_t triangle_count_field(std::string_view content) {
     return b[0] | std::uint32_t{b[1]} << 8 | std::uint32_t{b[2]} << 16 | std::uint32_t{b[3]} << 24;
 }
 
-/// Binary files may begin with "solid" too, so the size that the count field calls for goes first.
+/// Binary files may begin with "solid" too, so the size that the count field calls for goes first; with another size,
+/// a zero byte tells that the file is no text.
 bool is_binary(std::string_view content) {
     const bool has_count = content.size() >= k_count_end;
     if (has_count && content.size() == k_count_end + k_triangle_bytes * std::uint64_t{triangle_count_field(content)})
         return true;
-    return !lower_case(trimmed(content.substr(0, 512))).starts_with("solid");
+    const std::string_view start = content.substr(0, 512);
+    return !lower_case(trimmed(start)).starts_with("solid") || start.find('\0') != std::string_view::npos;
 }
 
 /// Reads the triangles of text files; lines are as `vertex 1 0 0`, in any case.

@@ -49,6 +49,10 @@ class TextCursor {
 
     /// Takes the next word of the line; empty at the line's end.
     std::string_view word() { return take_word(line_); }
+    /// Makes the end `tail` of the latest word the next one.
+    void put_back(std::string_view tail) {
+        line_ = {tail.data(), static_cast<std::size_t>(line_.data() + line_.size() - tail.data())};
+    }
     /// Takes a number or throws an error that names `what`.
     float number(std::string_view what);
     std::int64_t integer(std::string_view what);

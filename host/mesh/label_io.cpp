@@ -7,6 +7,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/core/text.h"
 #include "host/mesh/io_formats.h"
 #include "host/mesh/io_text.h"
 #include "host/mesh/io_write_text.h"
@@ -24,9 +25,9 @@ void check_label_names(const FaceLabels& labels) {
     for (std::size_t i = 0; i < labels.names.size(); ++i) {
         const std::string& name = labels.names[i];
         const bool has_control = std::ranges::any_of(name, [](char c) { return static_cast<unsigned char>(c) < ' '; });
-        if (name.empty() || has_control || trimmed(name).size() != name.size())
+        if (name.empty() || has_control || trimmed(name).size() != name.size() || !is_utf8(name))
             throw DataError(
-                fmt::format("label {} has the name {}, which a file cannot hold; give it a name in one line, "
+                fmt::format("label {} has the name {}, which a file cannot hold; give it a name in one line of UTF-8, "
                             "without spaces around it",
                             i, quote(name)));
     }
@@ -51,7 +52,9 @@ namespace {
 /// The lines of a file in memory, blank ones included; errors are DataError "PATH:LINE: MESSAGE".
 class DataLines {
   public:
-    explicit DataLines(const std::filesystem::path& path) : name_(path.string()), content_(read_file(path)) {}
+    explicit DataLines(const std::filesystem::path& path) : name_(path.string()), content_(read_file(path)) {
+        if (content_.starts_with("\xef\xbb\xbf")) at_ = 3;  // byte order mark
+    }
     bool next() {
         if (at_ >= content_.size()) return false;
         const std::size_t end = std::min(content_.find('\n', at_), content_.size());
@@ -78,11 +81,15 @@ std::int32_t label_of_name(std::string_view name, FaceLabels& labels) {
     return static_cast<std::int32_t>(index);
 }
 
-/// Two numbers or more where a name should be are the face indices of a block whose name is missing.
+/// Names end up in model and JSON files, which hold UTF-8 only. Two numbers or more where a name should be are the face
+/// indices of a block whose name is missing.
 void check_name_line(const DataLines& lines) {
     std::string_view rest = lines.line();
     const bool two_numbers =
         mesh_io::parse_integer(mesh_io::take_word(rest)) && mesh_io::parse_integer(mesh_io::take_word(rest));
+    if (!is_utf8(lines.line()))
+        lines.fail(
+            fmt::format("label name {} is not UTF-8; save the file in that encoding", mesh_io::quote(lines.line())));
     if (two_numbers) lines.fail("a label name is expected, not face indices; each label has one line of indices");
 }
 

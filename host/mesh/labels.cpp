@@ -5,12 +5,12 @@
 namespace exemplar {
 namespace {
 
-/// Greedy farthest points in CIE L*a*b* among saturated colors of middle lightness, away from black, white and gray:
-/// any two are at least 37 apart there (1 is barely visible).
+/// Greedy farthest points in CIE L*a*b*, away from black, white and gray; the first nine of moderate chroma, as most
+/// meshes have no more labels. Any two are at least 38 apart there (1 is barely visible).
 constexpr std::array<Color, 20> k_palette{
-    {{212, 68, 56},   {56, 116, 200}, {20, 248, 20},  {248, 20, 248},  {248, 212, 32}, {20, 248, 200},  {20, 92, 20},
-     {248, 128, 200}, {20, 68, 236},  {68, 212, 248}, {188, 200, 128}, {104, 68, 20},  {248, 176, 164}, {140, 20, 152},
-     {92, 176, 20},   {116, 56, 92},  {248, 140, 20}, {248, 20, 116},  {20, 128, 116}, {200, 188, 248}}};
+    {{212, 80, 64},  {64, 120, 200},  {56, 212, 128}, {200, 176, 56}, {176, 44, 140},  {20, 212, 236}, {248, 176, 224},
+     {80, 116, 56},  {248, 176, 140}, {32, 20, 248},  {32, 236, 20},  {248, 20, 248},  {128, 92, 236}, {116, 68, 80},
+     {248, 140, 20}, {20, 104, 116},  {248, 20, 116}, {176, 224, 20}, {176, 212, 176}, {128, 80, 20}}};
 
 }  // namespace
 

@@ -9,9 +9,9 @@
 // binary search, and their masses are differences of prefix sums.
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push { AxisContextParameters parameters; };
-layout(set = 0, binding = 0, std430) readonly buffer Positions { float positions[]; };  // axes x faces
-layout(set = 0, binding = 1, std430) readonly buffer Sorted { float sorted[]; };        // axes x samples, rising
-layout(set = 0, binding = 2, std430) readonly buffer Prefixes { vec4 prefixes[]; };     // axes x class blocks x (samples + 1)
+layout(set = 0, binding = 0) uniform samplerBuffer positions;  // axes x faces
+layout(set = 0, binding = 1) uniform samplerBuffer sorted;     // axes x samples, rising
+layout(set = 0, binding = 2) uniform samplerBuffer prefixes;   // axes x class blocks x (samples + 1)
 layout(set = 0, binding = 3, std430) writeonly buffer Histograms { float histograms[]; };
 
 // The searches repeat the reference's own float expression |p - s|, which is monotonic on either side of p: a sample on a
@@ -22,7 +22,7 @@ uint count_before(uint first, float p, float edge) {
     uint low = 0, high = parameters.samples;
     while (low < high) {
         const uint middle = (low + high) / 2;
-        if (p - sorted[first + middle] >= edge) low = middle + 1;
+        if (p - texelFetch(sorted, int(first + middle)).x >= edge) low = middle + 1;
         else high = middle;
     }
     return low;
@@ -33,17 +33,19 @@ uint first_behind(uint first, float p, float edge) {
     uint low = 0, high = parameters.samples;
     while (low < high) {
         const uint middle = (low + high) / 2;
-        if (sorted[first + middle] - p >= edge) high = middle;
+        if (texelFetch(sorted, int(first + middle)).x - p >= edge) high = middle;
         else low = middle + 1;
     }
     return low;
 }
 
+vec4 prefix(uint index) { return texelFetch(prefixes, int(index)); }
+
 void main() {
     const uint face = gl_GlobalInvocationID.x;
     const uint axis = gl_GlobalInvocationID.y;
     if (face >= parameters.faces) return;
-    const float p = positions[axis * parameters.faces + face];
+    const float p = texelFetch(positions, int(axis * parameters.faces + face)).x;
 
     // Samples [before[b], behind[b]) are nearer than edge b; bounds 0 and k_bins are the empty and the whole range.
     uint before[k_bins + 1], behind[k_bins + 1];
@@ -59,8 +61,8 @@ void main() {
     for (uint block = 0; block < blocks; ++block) {
         const uint first = (axis * blocks + block) * (parameters.samples + 1);
         [[dont_unroll]] for (uint b = 0; b < k_bins; ++b) {
-            const vec4 mass = (prefixes[first + behind[b + 1]] - prefixes[first + behind[b]]) +
-                              (prefixes[first + before[b]] - prefixes[first + before[b + 1]]);
+            const vec4 mass = (prefix(first + behind[b + 1]) - prefix(first + behind[b])) +
+                              (prefix(first + before[b]) - prefix(first + before[b + 1]));
             [[dont_unroll]] for (uint c = 0; c < min(4u, parameters.classes - 4 * block); ++c)
                 histograms[histogram_column(axis + 1, b, parameters.classes, 4 * block + c) * parameters.faces + face] = mass[c];
         }

@@ -6,27 +6,27 @@
 
 // Boosted stumps up to the probabilities (thesis Eq. 2.64 to 2.66), of k_quads x 4 items per invocation. Stumps come grouped
 // by the set of classes that share them: a group is summed once and then added to its classes, so that the cost of a stump
-// does not depend on the number of classes. Loops that run once per invocation stay loops: unrolled for many classes, they
-// took a CPU driver longer to compile than to run. An invocation's quads are far apart, so that neighbors read neighboring quads.
+// does not depend on the number of classes. Loops over classes stay loops: unrolled for many classes, they took a CPU
+// driver longer to compile than to run. Inputs are texels, which a CPU driver fetches six times as fast as storage buffers.
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const uint k_classes = 1;
 layout(constant_id = 1) const uint k_quads = 1;
 layout(push_constant) uniform Push { StumpParameters parameters; };
-layout(set = 0, binding = 0, std430) readonly buffer Features { vec4 features[]; };
-layout(set = 0, binding = 1, std430) readonly buffer Stumps { vec4 stumps[]; };   // GroupedStump, fetched by one load
-layout(set = 0, binding = 2, std430) readonly buffer Groups { uvec4 groups[]; };  // StumpGroup, fetched by one load
+layout(set = 0, binding = 0) uniform samplerBuffer features;  // columns x stride, four items each
+layout(set = 0, binding = 1) uniform samplerBuffer stumps;    // GroupedStump
+layout(set = 0, binding = 2) uniform usamplerBuffer groups;   // StumpGroup
 layout(set = 0, binding = 3, std430) readonly buffer Constants { float constants[]; };
 layout(set = 0, binding = 4, std430) writeonly buffer Probabilities { float probabilities[]; };
 
 const uint k_link_softmax = 0;
 
 GroupedStump fetch_stump(uint index) {
-    const vec4 s = stumps[index];
+    const vec4 s = texelFetch(stumps, int(index));
     return GroupedStump(floatBitsToUint(s.x), s.y, s.z, s.w);
 }
 
 StumpGroup fetch_group(uint index) {
-    const uvec4 g = groups[index];
+    const uvec4 g = texelFetch(groups, int(index));
     return StumpGroup(g.x, g.y, g.z, g.w);
 }
 
@@ -36,21 +36,24 @@ vec4 log_weight(vec4 scaled) {
     return min(scaled, 0.0) - log(1.0 + exp(-abs(scaled)));
 }
 
-// Turns H of one quad into probabilities and stores them, item-major.
-void store_quad(uint quad, vec4 h[k_classes]) {
+// H of an invocation's quads, quads x classes.
+vec4 h[k_quads * k_classes];
+
+// Turns H of one quad, from h[first] on, into probabilities and stores them, item-major.
+void store_quad(uint quad, uint first) {
     vec4 largest = vec4(-3.4e38);
     [[dont_unroll]] for (uint c = 0; c < k_classes; ++c) {
-        h[c] = log_weight(parameters.scale * h[c]);
-        largest = max(largest, h[c]);
+        h[first + c] = log_weight(parameters.scale * h[first + c]);
+        largest = max(largest, h[first + c]);
     }
     vec4 total = vec4(0.0);
     [[dont_unroll]] for (uint c = 0; c < k_classes; ++c) {
-        h[c] = exp(h[c] - largest);
-        total += h[c];
+        h[first + c] = exp(h[first + c] - largest);
+        total += h[first + c];
     }
     const uint items = 4 * quad < parameters.rows ? min(4u, parameters.rows - 4 * quad) : 0;
     [[dont_unroll]] for (uint c = 0; c < k_classes; ++c) {
-        const vec4 probability = h[c] / total;
+        const vec4 probability = h[first + c] / total;
         [[dont_unroll]] for (uint item = 0; item < items; ++item) probabilities[(4 * quad + item) * k_classes + c] = probability[item];
     }
 }
@@ -59,26 +62,27 @@ void main() {
     const uint thread = linear_thread();
     if (thread >= parameters.threads) return;
 
-    vec4 h[k_quads][k_classes];
+    const uint quad = (thread / k_stump_neighbors) * k_stump_neighbors * k_quads + thread % k_stump_neighbors;
     [[dont_unroll]] for (uint c = 0; c < k_classes; ++c)
-        for (uint q = 0; q < k_quads; ++q) h[q][c] = vec4(constants[c]);
+        for (uint q = 0; q < k_quads; ++q) h[q * k_classes + c] = vec4(constants[c]);
+    const uint stride = parameters.stride;
     for (uint g = 0; g < parameters.groups; ++g) {
         const StumpGroup group = fetch_group(g);
         vec4 sum[k_quads];
         for (uint q = 0; q < k_quads; ++q) sum[q] = vec4(0.0);
         for (uint s = group.first; s < group.end; ++s) {
             const GroupedStump stump = fetch_stump(s);
-            const uint first = stump.column * parameters.stride + thread;
+            const uint first = stump.column * stride + quad;
             for (uint q = 0; q < k_quads; ++q) {
-                // A comparison with NaN is false.
-                const bvec4 above = greaterThan(features[first + q * parameters.threads], vec4(stump.threshold));
+                const bvec4 above = greaterThan(texelFetch(features, int(first + q * k_stump_neighbors)), vec4(stump.threshold));
                 sum[q] += mix(vec4(stump.below), vec4(stump.above), above);
             }
         }
-        [[dont_unroll]] for (uint c = 0; c < k_classes; ++c) {
-            const uint bit = (c < 32 ? group.classes_low >> c : group.classes_high >> (c - 32)) & 1u;
-            for (uint q = 0; q < k_quads; ++q) h[q][c] += bit != 0 ? sum[q] : vec4(0.0);
-        }
+        [[dont_unroll]] for (uint word = 0; word < 2; ++word)
+            for (uint bits = word == 0 ? group.classes_low : group.classes_high; bits != 0; bits &= bits - 1) {
+                const uint c = 32 * word + findLSB(bits);
+                for (uint q = 0; q < k_quads; ++q) h[q * k_classes + c] += sum[q];
+            }
     }
-    [[dont_unroll]] for (uint q = 0; q < k_quads; ++q) store_quad(thread + q * parameters.threads, h[q]);
+    [[dont_unroll]] for (uint q = 0; q < k_quads; ++q) store_quad(quad + q * k_stump_neighbors, q * k_classes);
 }

@@ -5,11 +5,14 @@
 SHARED_BEGIN
 
 struct GeodesicContextParameters {
-    uint faces;         // of the tile, also the distance from one output column to the next
-    uint sample_quads;  // groups of four samples
+    uint faces;          // of the tile, also the distance from one output column to the next
+    uint sample_blocks;  // of k_context_sample_block samples
     uint classes;
     uint threads;  // invocations along x that have work
 };
+
+// Samples whose ranges one texel holds, a byte each.
+const uint k_context_sample_block = 16;
 
 struct AxisContextParameters {
     vec4 edges[6];  // per axis the inner bin edges, rising
@@ -20,7 +23,7 @@ struct AxisContextParameters {
 };
 
 #ifdef __cplusplus
-EXEMPLAR_LAYOUT(GeodesicContextParameters, faces, sample_quads, classes, threads)
+EXEMPLAR_LAYOUT(GeodesicContextParameters, faces, sample_blocks, classes, threads)
 EXEMPLAR_LAYOUT(AxisContextParameters, edges, faces, samples, classes, padding)
 #endif
 

@@ -22,12 +22,15 @@ struct StumpGroup {
 
 struct StumpParameters {
     uint rows;
-    uint stride;   // vec4s from one feature column to the next: at least threads x quads per thread
-    uint threads;  // invocations that have work
+    uint stride;   // quads of items from one feature column to the next: at least threads x quads per thread
+    uint threads;  // invocations that have work, a multiple of k_stump_neighbors
     uint groups;
     uint link;  // the values of exemplar::Link
     float scale;
 };
+
+// Invocations that stand side by side read neighboring quads.
+const uint k_stump_neighbors = 8;
 
 #ifdef __cplusplus
 EXEMPLAR_LAYOUT(GroupedStump, column, threshold, above, below)

@@ -41,6 +41,19 @@ TEST(Files, AFailedWriteLeavesTheOldFileAndNoTemporary) {
     EXPECT_EQ(std::distance(fs::directory_iterator(path.parent_path()), fs::directory_iterator()), 1);
 }
 
+TEST(Files, LinksStayAndPipesAreNotReplaced) {
+    const fs::path folder = fresh_folder("links");
+    write_file_atomically(folder / "real" / "b.txt", [](std::ostream& out) { out << "old"; });
+    fs::create_symlink("real/b.txt", folder / "link.txt");
+    write_file_atomically(folder / "link.txt", [](std::ostream& out) { out << "new"; });
+    EXPECT_TRUE(fs::is_symlink(folder / "link.txt"));
+    EXPECT_EQ(read_file(folder / "real" / "b.txt"), "new");
+    fs::create_symlink("/dev/null", folder / "null.txt");
+    write_file_atomically(folder / "null.txt", [](std::ostream& out) { out << "gone"; });
+    EXPECT_TRUE(fs::is_symlink(folder / "null.txt"));
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
 TEST(Files, PlacesThatCannotBeWrittenAreNamed) {
     try {
         write_file_atomically("/proc/exemplar/none.txt", [](std::ostream&) {});
@@ -58,6 +71,11 @@ TEST(Files, MissingFilesAndFoldersAreNamed) {
         EXPECT_THAT(error.what(), testing::HasSubstr("/nowhere/model.bin"));
     }
     EXPECT_THROW(read_file("/tmp"), DataError);
+    EXPECT_THROW(read_file("/etc/passwd/below"), DataError);
+    EXPECT_THROW(read_file("/" + std::string(5000, 'x')), DataError);
+    if (fs::exists("/proc/self/mem")) {  // opens, but cannot be read
+        EXPECT_THROW(read_file("/proc/self/mem"), DataError);
+    }
 }
 
 TEST(Text, SuggestsTheNearestWord) {
@@ -68,6 +86,16 @@ TEST(Text, SuggestsTheNearestWord) {
     EXPECT_EQ(nearest_word("wheel", words), "");
     EXPECT_EQ(suggestion("torsso", words), " (did you mean 'torso'?)");
     EXPECT_EQ(suggestion("anything", {}), "");
+}
+
+TEST(Text, TellsUtf8FromOtherEncodings) {
+    for (const char* good :
+         {"", "leg", "Fl\xc3\xbcgel", "\xe2\x82\xac", "\xf0\x9f\xa6\xb5", "\xed\x9f\xbf", "\xf4\x8f\xbf\xbf"})
+        EXPECT_TRUE(is_utf8(good)) << good;
+    // Latin-1; cut off; lone continuation; overlong; surrogate; beyond the last code point.
+    for (const char* bad : {"Fl\xfcgel", "\xe2\x82", "\xc3", "a\x80", "\xc0\xaf", "\xe0\x80\xaf", "\xf0\x80\x80\x80",
+                            "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xf8\x88\x80\x80\x80", "\xc3("})
+        EXPECT_FALSE(is_utf8(bad)) << bad;
 }
 
 TEST(Text, FormatsSeconds) {

@@ -7,6 +7,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/mesh/io.h"
 
 namespace exemplar {
 namespace {
@@ -50,6 +51,11 @@ TEST_F(CorpusFolder, ReadsListsRelativeToThemselves) {
     write("m.off", k_quad_and_triangle);
     write("list.txt", "# meshes\n  m.off   # the only one\n\n");
     EXPECT_THAT(list_meshes(folder_ / "list.txt"), ElementsAre(folder_ / "m.off"));
+    write("odd.txt", "m.off\r\n m.off\t# and\r\n#m.off\r\n");
+    EXPECT_THAT(list_meshes(folder_ / "odd.txt"), ElementsAre(folder_ / "m.off", folder_ / "m.off"));
+    write("a#1.off", k_quad_and_triangle);
+    write("hash.txt", "a#1.off\n");
+    EXPECT_THAT(list_meshes(folder_ / "hash.txt"), ElementsAre(folder_ / "a#1.off"));
     write("bad.txt", "m.off\nn.off\n");
     try {
         list_meshes(folder_ / "bad.txt");
@@ -74,6 +80,15 @@ TEST_F(CorpusFolder, LabelsOfPolygonsReachTheirTriangles) {
     EXPECT_THAT(to_source_faces(corpus.meshes[0].mesh, corpus.meshes[0].label), ElementsAre(1, 0));
     const std::vector<std::int32_t> torn{0, 1, 0};
     EXPECT_EQ(to_source_faces(corpus.meshes[0].mesh, torn).size(), 2U);
+}
+
+TEST_F(CorpusFolder, PolygonsWithoutTrianglesTakeTheLabelBesideThem) {
+    write("m.off", "OFF\n4 6 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n1 0\n0\n3 0 1 2\n2 0 1\n3 0 2 3\n1 3\n");
+    const TriangleMesh mesh = read_mesh(folder_ / "m.off").mesh;
+    EXPECT_THAT(to_source_faces(mesh, std::vector<std::int32_t>{2, 5}), ElementsAre(2, 2, 2, 2, 5, 5));
+    FaceLabels labels{{"a", "b", "c", "d", "e", "f"}, to_source_faces(mesh, std::vector<std::int32_t>{2, 5})};
+    write_labels_txt(folder_ / "m_labels.txt", labels);
+    EXPECT_THAT(load_corpus({folder_ / "m.off"}).meshes[0].label, ElementsAre(0, 1));
 }
 
 TEST_F(CorpusFolder, UnknownLabelsSuggestTheNearest) {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "embedded/tests_affine_comp.h"
 #include "gpu/runtime/buffer.h"
@@ -56,6 +57,30 @@ TEST(DeviceSelection, TakesTheBestUnlessNamed) {
     devices[2].unusable = "Vulkan 1.1.0 is older than 1.3";
     EXPECT_EQ(select_device(devices, ""), 1u);
     EXPECT_THAT(no_device_message([&] { select_device(devices, "nvidia"); }), HasSubstr("older than 1.3"));
+}
+
+TEST(DeviceSelection, AmongSeveralTheBest) {
+    std::vector<DeviceInfo> devices = three_devices();
+    devices.push_back(devices[2]);
+    devices[3].index = 3;
+    devices[2].memory = std::uint64_t{80} << 30;
+    devices[3].memory = std::uint64_t{139} << 30;
+    EXPECT_EQ(select_device(devices, ""), 3u);
+    EXPECT_EQ(select_device(devices, "nvidia"), 3u);
+    EXPECT_EQ(select_device(devices, "2"), 2u);
+    devices[3].unusable = "it lacks synchronization2";
+    EXPECT_EQ(select_device(devices, "nvidia"), 2u);
+}
+
+TEST(DeviceSelection, LavapipeBeforeOtherCpuDrivers) {
+    std::vector<DeviceInfo> devices = three_devices();
+    devices.resize(2);
+    std::swap(devices[0].name, devices[1].name);
+    devices[0].name = "SwiftShader Device (Subzero)";
+    devices[0].memory = std::uint64_t{1} << 40;
+    devices[1].type = DeviceType::cpu;
+    EXPECT_EQ(select_device(devices, ""), 1u);
+    EXPECT_EQ(select_device(devices, "swift"), 0u);
 }
 
 TEST(DeviceSelection, WrongNameListsDevicesAndSuggestsTheNearest) {
@@ -118,6 +143,19 @@ TEST(Buffer, RoundTripsAtOffsets) {
     empty.upload<int>(std::span<const int>());
 }
 
+// Leaked objects are reported when their device ends.
+TEST(Validation, TheLogOutlivesTheDevice) {
+    if (!shared_device().validating()) GTEST_SKIP() << "EXEMPLAR_VALIDATION is not set";
+    auto device = std::make_unique<Device>(DeviceOptions{.name = std::to_string(shared_device().info().index)});
+    const auto log = device->validation_log();
+    auto info = empty_structure<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
+    VkFence fence = VK_NULL_HANDLE;
+    ASSERT_EQ(vkCreateFence(device->handle(), &info, nullptr, &fence), VK_SUCCESS);
+    EXPECT_TRUE(log->messages().empty());
+    device.reset();
+    EXPECT_FALSE(log->messages().empty());
+}
+
 // The messages a test provokes belong to a device of its own.
 TEST(Validation, CollectsWhatTheLayerSays) {
     if (!shared_device().validating()) GTEST_SKIP() << "EXEMPLAR_VALIDATION is not set";
@@ -147,10 +185,15 @@ class PipelineCacheTest : public ::testing::Test {
     }
     // Opens a device, compiles a kernel and returns how much of a cache file it could use.
     static std::size_t run() {
-        Device device({.name = std::to_string(shared_device().info().index)});
-        const Kernel kernel(device, shaders::tests_affine_comp,
-                            {.push_constants = layout_of<shared::AffineParameters>()});
-        return device.pipeline_cache().loaded_bytes();
+        auto device = std::make_unique<Device>(DeviceOptions{.name = std::to_string(shared_device().info().index)});
+        const auto log = device->validation_log();
+        std::optional<Kernel> kernel(std::in_place, *device, shaders::tests_affine_comp,
+                                     KernelInterface{.push_constants = layout_of<shared::AffineParameters>()});
+        kernel.reset();
+        const std::size_t loaded = device->pipeline_cache().loaded_bytes();
+        device.reset();
+        EXPECT_THAT(log->messages(), ::testing::IsEmpty());
+        return loaded;
     }
     std::filesystem::path folder_;
     std::optional<std::string> old_;

@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host/core/random.h"
 
 // The validation layer does not see a missing barrier between two dispatches of one pipeline on one buffer, so the
 // rules are tested here by themselves.
@@ -108,6 +112,77 @@ TEST(Hazards, OneBufferBoundTwiceInOneCommandIsReadAndWritten) {
     const auto barriers = after(tracker, {reading(1)});
     ASSERT_EQ(barriers.size(), 1u);
     EXPECT_EQ(barriers[0].source_access, k_write);
+}
+
+// Two barriers that make a write visible, one to loads of vertex shaders and one to index fetches of compute shaders,
+// leave it invisible to loads of compute shaders.
+TEST(Hazards, VisibilityIsNotMixedFromTwoBarriers) {
+    constexpr VkPipelineStageFlags2 k_vertex = VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT;
+    HazardTracker tracker;
+    after(tracker, {writing(1)});
+    EXPECT_EQ(after(tracker, {{.buffer = buffer(1), .stage = k_vertex, .reads = k_read}}).size(), 1u);
+    EXPECT_EQ(
+        after(tracker, {{.buffer = buffer(1), .stage = k_compute, .reads = VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT}})
+            .size(),
+        1u);
+    EXPECT_EQ(after(tracker, {reading(1)}).size(), 1u);
+    EXPECT_TRUE(after(tracker, {reading(1)}).empty());
+}
+
+struct Command {
+    Access access;
+    std::vector<Barrier> barriers;  // recorded before it
+};
+
+// Whether a barrier of the buffer between two commands orders the second behind the first: for a first that writes, its
+// writes are made available, and visible to the second.
+bool ordered(std::span<const Command> commands, std::size_t first, std::size_t second) {
+    const Access &a = commands[first].access, &b = commands[second].access;
+    for (std::size_t i = first + 1; i <= second; ++i)
+        for (const Barrier& barrier : commands[i].barriers) {
+            const VkAccessFlags2 needed = a.writes ? b.reads | b.writes : 0;
+            if (barrier.buffer == a.buffer && (barrier.source_stage & a.stage) == a.stage &&
+                (barrier.source_access & a.writes) == a.writes && (barrier.target_stage & b.stage) == b.stage &&
+                (barrier.target_access & needed) == needed)
+                return true;
+        }
+    return false;
+}
+
+// In any sequence each access is ordered behind the last write and, if it writes, behind all reads since then; what
+// lies before is ordered through that write. No command has a barrier that none of these pairs needs.
+TEST(Hazards, RandomSequencesAreOrdered) {
+    constexpr VkAccessFlags2 k_copy_read = VK_ACCESS_2_TRANSFER_READ_BIT, k_copy_write = VK_ACCESS_2_TRANSFER_WRITE_BIT;
+    const std::vector<Access> kinds = {
+        {.stage = k_compute, .reads = k_read},
+        {.stage = k_compute, .reads = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT},
+        {.stage = k_compute, .writes = k_write},
+        {.stage = k_compute, .reads = k_read, .writes = k_write},
+        {.stage = k_transfer, .reads = k_copy_read},
+        {.stage = k_transfer, .writes = k_copy_write},
+        {.stage = VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT, .reads = k_read},
+    };
+    Random random(1);
+    for (int round = 0; round < 300; ++round) {
+        HazardTracker tracker;
+        std::vector<Command> commands;
+        for (std::size_t j = 0; j < 25; ++j) {
+            Access access = kinds[random.index(kinds.size())];
+            access.buffer = buffer(1 + random.index(2));
+            commands.push_back({access, after(tracker, {access})});
+            bool hazard = false;
+            for (std::size_t i = j; i-- > 0;) {
+                const Access& earlier = commands[i].access;
+                if (earlier.buffer != access.buffer) continue;
+                if (earlier.writes || access.writes) {
+                    hazard = true;
+                    ASSERT_TRUE(ordered(commands, i, j)) << "round " << round << ", commands " << i << " and " << j;
+                }
+                if (earlier.writes) break;
+            }
+            ASSERT_TRUE(hazard || commands[j].barriers.empty()) << "round " << round << ", command " << j;
+        }
+    }
 }
 
 TEST(Hazards, ResetForgets) {

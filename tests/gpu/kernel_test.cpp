@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "embedded/tests_affine_comp.h"
+#include "embedded/tests_gather_comp.h"
 #include "embedded/tests_weigh_comp.h"
 #include "embedded/tests_wrong_set_comp.h"
 #include "gpu/runtime/errors.h"
@@ -51,6 +52,15 @@ TEST(Reflection, ReadsTheInterface) {
     EXPECT_TRUE(affine.bindings.at(0).reads && affine.bindings.at(0).writes);
 }
 
+TEST(Reflection, ReadsTexelBuffers) {
+    const Reflection gather = reflect(shaders::tests_gather_comp);
+    ASSERT_EQ(gather.bindings.size(), 3u);
+    EXPECT_TRUE(gather.bindings[0].type == BindingType::texels && gather.bindings[0].integers);
+    EXPECT_TRUE(gather.bindings[1].type == BindingType::texels && !gather.bindings[1].integers);
+    EXPECT_TRUE(gather.bindings[1].reads && !gather.bindings[1].writes);
+    EXPECT_EQ(gather.bindings[2].type, BindingType::storage);
+}
+
 TEST(Reflection, RefusesDamagedModules) {
     const std::vector<std::uint32_t> words = {0x07230203u, 0x00010500u, 0u};
     EXPECT_THROW(reflect({"damaged", words}), ShaderError);
@@ -75,6 +85,43 @@ TEST(Kernel, RunsWithSharedStructuresAndConstants) {
     std::vector<float> weights(particles.size());
     output.download<float>(weights);
     for (std::size_t i = 0; i < weights.size(); ++i) EXPECT_EQ(weights[i], 12.25f + 3.0f * static_cast<float>(i));
+}
+
+TEST(Kernel, ReadsTexelsOfTheirCppTypes) {
+    const Kernel kernel(shared_device(), shaders::tests_gather_comp,
+                        {.elements = {layout_of<std::uint32_t>(), layout_of<shared::vec4>()}});
+    EXPECT_EQ(kernel.reflection().bindings[0].format, VK_FORMAT_R32_UINT);
+    EXPECT_EQ(kernel.reflection().bindings[1].format, VK_FORMAT_R32G32B32A32_SFLOAT);
+    constexpr std::size_t k_count = 36;  // fills whole vec4s: the shader asks for the length
+    std::vector<shared::vec4> vectors(17);
+    std::vector<std::uint32_t> indices(k_count);
+    for (std::size_t i = 0; i < vectors.size(); ++i) vectors[i] = {static_cast<float>(i), 1.0f, 2.0f, 3.0f};
+    for (std::size_t i = 0; i < k_count; ++i) indices[i] = static_cast<std::uint32_t>(5 * i % vectors.size());
+    // The vectors are the tail of their buffer.
+    const std::size_t front = std::max<std::size_t>(shared_device().info().texel_alignment, 16);
+    Buffer input(shared_device(), front + vectors.size() * sizeof(shared::vec4));
+    input.upload<shared::vec4>(vectors, front);
+    const Buffer places = Buffer::of<std::uint32_t>(shared_device(), indices);
+    Buffer output(shared_device(), k_count * sizeof(float));
+    Stream stream(shared_device());
+    // Written and read as texels in one stream: the barrier is for sampled reads.
+    stream.copy(input, front, input, 0, sizeof(shared::vec4));
+    stream.dispatch(kernel, k_count,
+                    {places, BufferRange(input, front, vectors.size() * sizeof(shared::vec4)), output});
+    stream.finish();
+    ASSERT_EQ(stream.barriers().size(), 1u);
+    EXPECT_EQ(stream.barriers()[0].target_access, VK_ACCESS_2_SHADER_SAMPLED_READ_BIT);
+    std::vector<float> sums(k_count);
+    output.download<float>(sums);
+    for (std::size_t i = 0; i < k_count; ++i) EXPECT_EQ(sums[i], 6.0f + static_cast<float>(indices[i])) << i;
+}
+
+TEST(Kernel, RefusesTexelsWithoutAFormat) {
+    EXPECT_THAT(shader_error(shaders::tests_gather_comp, {}),
+                AllOf(HasSubstr("'indices'"), HasSubstr("4 or 16 bytes")));
+    EXPECT_THAT(
+        shader_error(shaders::tests_gather_comp, {.elements = {layout_of<std::uint32_t>(), layout_of<shared::vec2>()}}),
+        AllOf(HasSubstr("'vectors'"), HasSubstr("not 8")));
 }
 
 TEST(Kernel, RefusesOtherPushConstants) {
@@ -106,7 +153,7 @@ TEST(Kernel, RefusesOtherElements) {
                 HasSubstr("4 bytes there and 8 here"));
     EXPECT_THAT(shader_error(shaders::tests_weigh_comp,
                              {.elements = {layout_of<Particle>(), layout_of<float>(), layout_of<float>()}}),
-                HasSubstr("2 storage buffers"));
+                HasSubstr("it has 2 buffers"));
 }
 
 TEST(Kernel, RefusesUnknownConstantsAndOtherSets) {
@@ -125,6 +172,8 @@ TEST(Kernel, RefusesWorkgroupsOverTheLimit) {
         EXPECT_EQ(error.requested, limit + 1u);
         EXPECT_EQ(error.limit, limit);
     }
+    // Every device allows some workgroup, and only so many invocations along one axis.
+    EXPECT_LE(shared_device().info().max_group_size[0], limit);
     EXPECT_THROW(Kernel(shared_device(), shaders::tests_affine_comp,
                         {.push_constants = layout_of<AffineParameters>(), .constants = {{0, 0}}}),
                  ShaderError);

@@ -216,6 +216,40 @@ TEST_F(Render, TilesJoinWithoutSeams) {
     EXPECT_EQ(result.silhouette, 0u);
 }
 
+// Parts of 7 faces, each with copies of the vertices it uses.
+TEST_F(Render, MeshesOverTheLimitAreDrawnInParts) {
+    const TriangleMesh mesh = shapes::torus(2.0f, 0.7f, 24, 12);
+    const std::vector<Color> colors = random_colors(mesh.face_count(), 2);
+    const Camera camera = fit_camera(mesh, Vec3(0.6f, 0.5f, 1.0f), 1.0f);
+    MeshRenderer in_parts(shared_device(), 40, 7 * 36 + 5);
+    MeshRenderer whole(shared_device(), 40);
+    for (const bool smooth : {true, false}) {
+        RenderOptions options;
+        options.smooth = smooth;
+        EXPECT_EQ(in_parts.render(mesh, colors, camera, 64, 64, options),
+                  whole.render(mesh, colors, camera, 64, 64, options));
+    }
+}
+
+TEST(MeshPart, HoldsTheFacesAndTheVerticesTheyUse) {
+    const TriangleMesh mesh = shapes::grid(3, 3, 1.0f);
+    const std::vector<Color> colors = random_colors(mesh.face_count(), 3);
+    const std::vector<Vec3> normals(mesh.vertices.size(), Vec3::UnitZ());
+    const MeshSurface surface{mesh.faces, mesh.vertices, normals, colors, true};
+    const MeshPart part = cut_part(surface, 5, 2);
+    ASSERT_EQ(part.faces.size(), 2u);
+    EXPECT_LE(part.vertices.size(), 6u);
+    EXPECT_EQ(part.normals.size(), part.vertices.size());
+    for (std::size_t f = 0; f < 2; ++f) {
+        EXPECT_EQ(part.colors[f], colors[5 + f]);
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_EQ(part.vertices.at(part.faces[f][c]), mesh.vertices[mesh.faces[5 + f][c]]);
+    }
+    EXPECT_TRUE(fits(surface, mesh.face_count() * 12));
+    EXPECT_FALSE(fits(surface, mesh.face_count() * 12 - 1));
+    EXPECT_EQ(faces_per_part(1), 1u);
+}
+
 TEST_F(Render, RerunsAndOtherSizesBetweenThemChangeNothing) {
     const TriangleMesh mesh = shapes::icosphere(3, 1.0f);
     const std::vector<Color> colors = random_colors(mesh.face_count(), 1);

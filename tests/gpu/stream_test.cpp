@@ -155,6 +155,41 @@ TEST(Stream, BindsRangesOfABuffer) {
     for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(values[i], i / floats == 1 ? 2.0f : 1.0f);
 }
 
+TEST(Stream, EmptyRangesAreBoundAnywhere) {
+    const Kernel kernel = affine_kernel();
+    Buffer buffer(shared_device(), 1024), empty(shared_device(), 0);
+    Stream stream(shared_device());
+    stream.dispatch(kernel, 1, {BufferRange(buffer, 1024, 0)}, AffineParameters{0, 1.0f, 0.0f});
+    stream.dispatch(kernel, 1, {BufferRange(buffer, 0, 0)}, AffineParameters{0, 1.0f, 0.0f});
+    stream.dispatch(kernel, 1, {empty}, AffineParameters{0, 1.0f, 0.0f});
+    EXPECT_NO_THROW(stream.finish());
+}
+
+TEST(Stream, CopiesWithinABufferUnlessTheyOverlap) {
+    Buffer buffer = Buffer::of<float>(shared_device(), iota(8));
+    Stream stream(shared_device());
+    stream.copy(buffer, 0, buffer, 16, 16);
+    EXPECT_THROW(stream.copy(buffer, 0, buffer, 12, 16), DeviceError);
+    EXPECT_THROW(stream.copy(buffer, 12, buffer, 0, 16), DeviceError);
+    stream.finish();
+    std::vector<float> values(8);
+    buffer.download<float>(values);
+    EXPECT_THAT(values, ::testing::ElementsAre(0, 1, 2, 3, 0, 1, 2, 3));
+}
+
+TEST(Stream, UploadsWhatIsComputedOnTheWay) {
+    Buffer buffer(shared_device(), 16);
+    Stream stream(shared_device());
+    for (const std::byte value : {std::byte{1}, std::byte{2}})  // first into the buffer itself where it is mapped
+        stream.upload_with(buffer, 8, 8, [&](std::span<std::byte> memory) { std::ranges::fill(memory, value); });
+    stream.fill(buffer, 0);
+    stream.upload_with(buffer, 4, 4, [](std::span<std::byte> memory) { std::ranges::fill(memory, std::byte{3}); });
+    stream.finish();
+    std::vector<std::uint32_t> words(4);
+    buffer.download<std::uint32_t>(words);
+    EXPECT_THAT(words, ::testing::ElementsAre(0, 0x03030303u, 0, 0));
+}
+
 TEST(Stream, RefusesWrongArguments) {
     const Kernel kernel = affine_kernel();
     Buffer buffer(shared_device(), 4096);
@@ -164,7 +199,8 @@ TEST(Stream, RefusesWrongArguments) {
     EXPECT_THROW(stream.dispatch(kernel, 1, {Buffer()}, AffineParameters{}), ShaderError);
     EXPECT_THROW(stream.dispatch(kernel, 1, {BufferRange(buffer, 0, 8192)}, AffineParameters{}), ShaderError);
     EXPECT_THROW(stream.dispatch(kernel, 1, {BufferRange(buffer, 1, 4)}, AffineParameters{}), DeviceLimitError);
-    EXPECT_THROW(stream.dispatch(kernel, std::uint64_t{1} << 33, {buffer}, AffineParameters{}), DeviceLimitError);
+    for (const std::uint64_t threads : {std::uint64_t{1} << 33, ~std::uint64_t{0}})
+        EXPECT_THROW(stream.dispatch(kernel, threads, {buffer}, AffineParameters{}), DeviceLimitError);
     EXPECT_THROW(stream.copy(buffer, 4000, buffer, 0, 100), DeviceError);
     stream.finish();
 }
@@ -193,6 +229,10 @@ TEST(Profiler, TimesEveryDispatch) {
     EXPECT_GT(profiler.milliseconds("tests/affine.comp"), 0.0);
     EXPECT_LT(profiler.milliseconds("tests/affine.comp"), 60'000.0);
     EXPECT_EQ(profiler.milliseconds("other"), 0.0);
+    // More than a query pool holds, and again in the next submission.
+    for (int i = 0; i < 1100; ++i) stream.dispatch(kernel, 1, {buffer}, AffineParameters{1, 1.0f, 1.0f});
+    stream.finish();
+    EXPECT_EQ(profiler.entries().begin()->second.dispatches, 1103u);
 }
 
 }  // namespace

@@ -105,6 +105,61 @@ TEST(AlphaExpansion, IsWithinTwiceTheOptimumForPotts) {
     EXPECT_LT(excess / 60, 0.01);  // the bound is loose: in practice nearly all are optimal
 }
 
+/// The lowest energy of the labelings in which any set of nodes takes alpha.
+double best_expansion(const Instance& instance, const AlphaExpansion& solver, const std::vector<std::int32_t>& labels,
+                      std::int32_t alpha) {
+    double best = k_infinity;
+    for (std::uint32_t set = 0; set < 1u << instance.nodes; ++set) {
+        std::vector<std::int32_t> moved = labels;
+        for (std::size_t i = 0; i < instance.nodes; ++i) {
+            if (set >> i & 1) moved[i] = alpha;
+        }
+        best = std::min(best, solver.evaluate(instance.energy(), instance.labels, moved));
+    }
+    return best;
+}
+
+TEST(AlphaExpansion, NoExpansionMoveImprovesTheResultForAMetric) {
+    Random random(7);
+    for (int trial = 0; trial < 60; ++trial) {
+        const std::size_t labels = 3 + random.index(3);
+        Instance instance = random_instance(7, labels, 6 + random.index(12), random);
+        std::vector<std::array<double, 2>> points(labels);  // distances in a plane are a metric
+        for (auto& point : points) point = {random.uniform(0.0, 2.0), random.uniform(0.0, 2.0)};
+        for (std::size_t a = 0; a < labels; ++a) {
+            for (std::size_t b = 0; b < labels; ++b) {
+                instance.v[a * labels + b] = std::hypot(points[a][0] - points[b][0], points[a][1] - points[b][1]);
+            }
+        }
+        AlphaExpansion solver(instance.nodes, instance.edges);
+        const ExpansionResult result = solver.solve(instance.energy(), labels);
+        const double energy = solver.evaluate(instance.energy(), labels, result.labels);
+        for (std::size_t alpha = 0; alpha < labels; ++alpha) {
+            EXPECT_GE(best_expansion(instance, solver, result.labels, static_cast<std::int32_t>(alpha)), energy - 1e-9)
+                << trial << " " << alpha;
+        }
+    }
+}
+
+TEST(AlphaExpansion, ATruncatedMoveIsNeverWorseThanStayingOrTakingAlphaEverywhere) {
+    // Truncation raises the cost of one-sided changes only: staying and all nodes changing keep their true energies, so
+    // a result that a uniform labeling beats would show a wrong cut.
+    Random random(8);
+    for (int trial = 0; trial < 100; ++trial) {
+        const std::size_t labels = 3 + random.index(3);
+        Instance instance = random_instance(9, labels, 20, random);
+        for (double& weight : instance.weight) weight *= 3.0;
+        instance.v = random_compatibility(labels, 0.2, random);
+        AlphaExpansion solver(instance.nodes, instance.edges);
+        const double energy =
+            solver.evaluate(instance.energy(), labels, solver.solve(instance.energy(), labels).labels);
+        for (std::size_t label = 0; label < labels; ++label) {
+            const std::vector<std::int32_t> uniform(instance.nodes, static_cast<std::int32_t>(label));
+            EXPECT_LE(energy, solver.evaluate(instance.energy(), labels, uniform) + 1e-9) << trial;
+        }
+    }
+}
+
 TEST(AlphaExpansion, NeverRisesWithoutTriangleInequality) {
     Random random(3);
     double excess = 0.0;

@@ -142,6 +142,22 @@ TEST(Camera, FitShowsAllOfTheMeshAsLargeAsItFits) {
             EXPECT_NEAR(reach, 0.95f, 1e-3);
         }
     }
+    for (const float unit : {1e-9f, 1e-6f, 1e6f}) {
+        TriangleMesh scaled = mesh;
+        for (Vec3& v : scaled.vertices) v *= unit;
+        const Camera camera = fit_camera(scaled, Vec3(1, 0.3f, 2), 1.5f);
+        float reach = 0;
+        for (const Vec3& v : scaled.vertices) {
+            const Vec3 p = camera.project(v, 2, 2) - Vec3(1, 1, 0);
+            reach = std::max({reach, std::abs(p.x()), std::abs(p.y())});
+        }
+        EXPECT_NEAR(reach, 0.95f, 1e-3) << unit;
+    }
+    for (const Vec3& place : {Vec3(0, 0, 0), Vec3(1e6f, 5, -3e4f), Vec3(1e-7f, 0, 0)}) {
+        TriangleMesh point;
+        point.vertices = {place, place, place};
+        EXPECT_TRUE(fit_camera(point, Vec3(1, 0.3f, 2), 1).view_projection().allFinite()) << place;
+    }
     EXPECT_THROW(fit_camera(TriangleMesh{}, Vec3::UnitX(), 1), MeshError);
     EXPECT_THROW(fit_camera(mesh, Vec3::Zero(), 1), UsageError);
 }

@@ -112,13 +112,15 @@ TEST(LearnCrf, FindsParametersThatRemoveNoise) {
         probabilities.push_back(truth[f] == 0 ? right : 1 - right);
         probabilities.push_back(truth[f] == 1 ? right : 1 - right);
     }
-    const CrfExample example{&features, make_crf_terms(features, probabilities, 2, std::vector<float>(faces - 1, 0.5F)),
-                             truth};
+    const CrfExample example{&features,
+                             make_crf_terms(features, probabilities, 2, std::vector<float>(faces - 1, 0.5F)),
+                             truth,
+                             {0.5F, 0.5F}};
     CrfSearchReport report;
     std::size_t calls = 0;
     const std::vector<bool> touching{false, true, true, false};
     const CrfParameters best = learn_crf(
-        std::span(&example, 1), 2, touching, std::vector<float>{0.5F, 0.5F}, [&] { ++calls; }, report);
+        std::span(&example, 1), 2, touching, [&] { ++calls; }, report);
     EXPECT_GT(report.error_without_cut, 0.1);
     EXPECT_EQ(report.error, 0);
     EXPECT_EQ(solve_crf(features, example.terms, best), truth);

@@ -173,6 +173,38 @@ TEST(ContextGeometryOfAMesh, HoldsRangesAndPositions) {
     }
 }
 
+// Axis signs are arbitrary, yet the two ends of a rod are far apart along a principal axis: distances there are
+// |x_i - x_j|. The sides of a symmetry plane are alike: its positions are distances.
+TEST(ContextGeometryOfAMesh, TellsTheEndsOfARodApart) {
+    const TriangleMesh rod = shapes::cylinder(0.1F, 4.0F, 8, 60, true);
+    const PreparedMesh prepared = prepare_mesh(rod, 200);
+    const ContextGeometry context = context_geometry(prepared);
+    std::vector<float> at_top(context.faces);  // one class: P = 1 in the top tenth of the rod
+    for (std::size_t i = 3 * context.faces; i < context.axis_position.size(); ++i) {
+        ASSERT_GE(context.axis_position[i], 0.0F);
+    }
+    const float top = 0.8F * prepared.mesh.vertices[0].cwiseAbs().maxCoeff();
+    std::size_t bottom_face = 0, top_face = 0;
+    for (std::size_t f = 0; f < context.faces; ++f) {
+        const float z = prepared.center[f].z();
+        at_top[f] = z > top ? 1.0F : 0.0F;
+        if (z < prepared.center[bottom_face].z()) bottom_face = f;
+        if (z > prepared.center[top_face].z()) top_face = f;
+    }
+    std::vector<float> out(k_context_measures * k_context_bins * context.faces);
+    CpuContextHistograms().accumulate(context, at_top, 1, out);
+    for (const std::size_t measure : {0U, 1U}) {  // the geodesic distance and the first principal axis
+        const auto value = [&](std::size_t bin, std::size_t face) {
+            return out[(measure * k_context_bins + bin) * context.faces + face];
+        };
+        double all = 0.0;
+        for (std::size_t b = 0; b < k_context_bins; ++b) all += static_cast<double>(value(b, bottom_face));
+        EXPECT_NEAR(all, 0.1, 0.03);
+        EXPECT_NEAR(value(k_context_bins - 1, bottom_face), all, 1e-6);
+        EXPECT_NEAR(value(k_context_bins - 1, top_face), 0.0, 1e-6);
+    }
+}
+
 TEST(ContextGeometryOfAMesh, HasNoRangeBetweenParts) {
     const TriangleMesh sphere = shapes::icosphere(1, 1.0F);
     const PreparedMesh prepared = prepare_mesh(shapes::joined(sphere, shapes::translated(sphere, Vec3(5, 0, 0))), 1000);

@@ -48,7 +48,7 @@ TEST(CurvatureFeatures, OfASphereAreItsInverseRadius) {
     const float truth = 1.0F / normalized_radius(sphere, 1000);
     // The smallest patches hold eight faces; their centers lie at slightly different depths below the sphere.
     for (const auto& [radius, error] :
-         {std::pair("@0.01", 0.1F), std::pair("@0.02", 0.1F), std::pair("@0.05", 0.07F), std::pair("@0.1", 0.05F)}) {
+         {std::pair("@0.01", 0.1F), std::pair("@0.02", 0.1F), std::pair("@0.05", 0.1F), std::pair("@0.1", 0.07F)}) {
         for (const char* function : {"k1", "k2", "mean", "|k1|"}) {
             for (const float k : column(features.unary, std::string("curvature.") + function + radius)) {
                 ASSERT_NEAR(k, truth, error * truth) << function << radius;
@@ -80,6 +80,16 @@ TEST(CurvatureFeatures, OfACylinderAndATorus) {
         const float from_axis = p.head<2>().norm();
         EXPECT_NEAR(column(features.unary, "curvature.k1@0.1")[f] * unit, 1.0F / 0.4F, 0.25F);
         EXPECT_NEAR(column(features.unary, "curvature.k2@0.1")[f] * unit, (from_axis - 1.0F) / 0.4F / from_axis, 0.25F);
+    }
+}
+
+TEST(CurvatureFeatures, OfAPlaneAreZero) {
+    const MeshFeatures features = compute_features(shapes::grid(20, 20, 1.0F));
+    for (const FeatureMatrix* matrix : {&features.unary, &features.pairwise}) {
+        for (std::size_t k = 0; k < matrix->cols(); ++k) {
+            if (!matrix->names[k].starts_with("curvature.")) continue;
+            for (const float value : matrix->column(k)) ASSERT_NEAR(value, 0.0F, 1e-4F) << matrix->names[k];
+        }
     }
 }
 

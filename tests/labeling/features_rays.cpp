@@ -59,6 +59,40 @@ TEST(InwardRays, OfASphereAreItsChords) {
     }
 }
 
+TEST(InwardRays, OfATorusAndACylinderCrossTheTube) {
+    for (const TriangleMesh& mesh : {shapes::torus(1.0F, 0.3F, 80, 40), shapes::cylinder(0.3F, 10.0F, 40, 100, true)}) {
+        const PreparedMesh prepared = prepare_mesh(mesh, 200);
+        const float unit = prepared.mesh.vertices[0].norm() / mesh.vertices[0].norm();  // both are centered
+        const RayScene scene(prepared.mesh);
+        const InwardRays rays = cast_inward_rays(prepared, scene);
+        const FeatureMatrix diameter = diameter_features(prepared, rays),
+                            medial = medial_features(prepared, scene, rays);
+        // A tube is equally thick everywhere, but for the cylinder's ends.
+        std::size_t crossing = 0, level = 0;
+        for (std::size_t f = 0; f < mesh.face_count(); ++f) {
+            const float length = rays.of_face(f)[0];
+            crossing += length != k_missed && std::abs(length - 0.6F * unit) < 0.02F * unit;
+            level += column(diameter, "diameter.median@30")[f] > 0.8F && column(medial, "medial.median@30")[f] > 0.8F;
+        }
+        EXPECT_GT(crossing, mesh.face_count() * 9 / 10);
+        EXPECT_GT(level, mesh.face_count() * 9 / 10);
+    }
+}
+
+TEST(MedialFeatures, OfACubeShrinkTowardItsEdges) {
+    const PreparedMesh prepared = prepare_mesh(shapes::box(1, 1, 1, 9), 200);
+    const RayScene scene(prepared.mesh);
+    const FeatureMatrix medial = medial_features(prepared, scene, cast_inward_rays(prepared, scene));
+    const std::span<const float> values = column(medial, "medial.median@120");
+    // Halfway along each side the sphere is the cube's own; toward the cube's edges it shrinks.
+    std::size_t center = 0, corner = 0;
+    for (std::size_t f = 0; f < prepared.face_count(); ++f) {
+        if (prepared.center[f].norm() < prepared.center[center].norm()) center = f;
+        if (prepared.center[f].norm() > prepared.center[corner].norm()) corner = f;
+    }
+    EXPECT_GT(values[center], 1.3F * values[corner]);
+}
+
 TEST(InwardRays, LeaveAnOpenMeshWithoutLength) {
     const PreparedMesh prepared = prepare_mesh(shapes::grid(8, 8, 1.0F), 200);
     for (const float length : cast_inward_rays(prepared, RayScene(prepared.mesh)).length) EXPECT_EQ(length, k_missed);

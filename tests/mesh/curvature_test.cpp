@@ -64,39 +64,44 @@ void expect_second_order(const std::function<TriangleMesh(std::uint32_t)>& mesh,
 }
 
 TEST(Curvature, OfATorusConvergesToTheTruth) {
-    constexpr double R = 3, r = 1;
-    expect_second_order([](std::uint32_t n) { return shapes::torus(R, r, 2 * n, n); },
+    constexpr double k_ring = 3, k_tube = 1;
+    expect_second_order([](std::uint32_t n) { return shapes::torus(k_ring, k_tube, 2 * n, n); },
                         [](const Vec3d& p) -> std::optional<Truth> {
-                            // Around the tube 1 / r; along the ring cos(v) / w. Only the latter changes, along the
-                            // tube.
-                            const double w = std::hypot(p.x(), p.y()), cosine = (w - R) / r, sine = p.z() / r;
+                            // Around the tube 1 / its radius; along the ring cos(v) / w. Only the latter changes, along
+                            // the tube.
+                            const double w = std::hypot(p.x(), p.y()), cosine = (w - k_ring) / k_tube,
+                                         sine = p.z() / k_tube;
                             const Vec3d tube(-sine * p.x() / w, -sine * p.y() / w, cosine);
-                            return Truth{1 / r, cosine / w, tube, {0, 0, -R * sine / (r * w * w), 0}};
+                            return Truth{1 / k_tube, cosine / w, tube, {0, 0, -k_ring * sine / (k_tube * w * w), 0}};
                         },
                         {4e-3, 1e-5, 6e-3});
 }
 
 TEST(Curvature, OfAnEllipsoidConvergesToTheTruth) {
     // Of revolution, radius 1, half-height 1.6, without the poles: parallels are curved most.
-    constexpr double a = 1, c = 1.6;
+    constexpr double k_radius = 1, k_half_height = 1.6;
     const auto mesh = [](std::uint32_t n) {
         const TriangleMesh cylinder = shapes::cylinder(1, 2, 3 * n, n, false);
         return shapes::transformed(cylinder, [](const Vec3& p) {
             const double latitude = p.z();
-            return shapes::detail::vec3(a * std::cos(latitude) * double(p.x()), a * std::cos(latitude) * double(p.y()),
-                                        c * std::sin(latitude));
+            return shapes::detail::vec3(k_radius * std::cos(latitude) * double(p.x()),
+                                        k_radius * std::cos(latitude) * double(p.y()),
+                                        k_half_height * std::sin(latitude));
         });
     };
     const auto truth_at = [](const Vec3d& p) -> std::optional<Truth> {
-        const double sine = p.z() / c, cosine = std::sqrt(1 - sine * sine);
+        const double sine = p.z() / k_half_height, cosine = std::sqrt(1 - sine * sine);
         if (std::abs(sine) > 0.6) return std::nullopt;
-        const double speed = std::sqrt(a * a * sine * sine + c * c * cosine * cosine);  // ds over d latitude
-        const double stretch = (a * a - c * c) * sine * cosine / (speed * speed);       // d speed over ds
+        const double speed = std::sqrt(k_radius * k_radius * sine * sine +
+                                       k_half_height * k_half_height * cosine * cosine);  // ds over d latitude
+        const double stretch =
+            (k_radius * k_radius - k_half_height * k_half_height) * sine * cosine / (speed * speed);  // d speed over ds
         const Vec3d parallel = Vec3d(-p.y(), p.x(), 0).normalized();  // with the outward normal, e2 runs to the north
-        return Truth{c / (a * speed),
-                     a * c / (speed * speed * speed),
+        return Truth{k_half_height / (k_radius * speed),
+                     k_radius * k_half_height / (speed * speed * speed),
                      parallel,
-                     {0, -c / (a * speed * speed) * stretch, 0, -3 * a * c / std::pow(speed, 4) * stretch}};
+                     {0, -k_half_height / (k_radius * speed * speed) * stretch, 0,
+                      -3 * k_radius * k_half_height / std::pow(speed, 4) * stretch}};
     };
     expect_second_order(mesh, truth_at, {4e-3, 1e-5, 6e-3});
 }
@@ -229,20 +234,22 @@ TEST(Curvature, WeighsFacesByVoronoiArea) {
     // Two isosceles triangles on the edge V W, one acute, one obtuse at its far corner, bent about the edge. The
     // normals at V and W are equal, so each face bends only across the edge: by the sine between that normal and its
     // own, over its height. V takes their mean by its cells.
-    constexpr double acute = 1.5, obtuse = 0.4, half_edge = 1;
+    constexpr double k_acute = 1.5, k_obtuse = 0.4, k_half_edge = 1;
     TriangleMesh mesh;
-    mesh.vertices = {
-        {0, half_edge, 0}, {0, -half_edge, 0}, {-acute, 0, 0}, shapes::detail::vec3(obtuse * 0.96, 0, -obtuse * 0.28)};
+    mesh.vertices = {{0, k_half_edge, 0},
+                     {0, -k_half_edge, 0},
+                     {-k_acute, 0, 0},
+                     shapes::detail::vec3(k_obtuse * 0.96, 0, -k_obtuse * 0.28)};
     mesh.faces = {{0, 2, 1}, {1, 3, 0}};
     const Vec3d at_edge = vertex_normals(mesh)[0].cast<double>();
-    const double bend[] = {at_edge.cross(Vec3d(0, 0, 1)).norm() / acute,
-                           at_edge.cross(Vec3d(0.28, 0, 0.96)).norm() / obtuse};
-    const auto leg_squared = [](double height) { return half_edge * half_edge + height * height; };
+    const double bend[] = {at_edge.cross(Vec3d(0, 0, 1)).norm() / k_acute,
+                           at_edge.cross(Vec3d(0.28, 0, 0.96)).norm() / k_obtuse};
+    const auto leg_squared = [](double height) { return k_half_edge * k_half_edge + height * height; };
     // Acute: V, W share what the far corner's cell, two right triangles on half a leg, leaves them.
-    const double circumradius = leg_squared(acute) / (2 * acute);
+    const double circumradius = leg_squared(k_acute) / (2 * k_acute);
     const double far_cell =
-        std::sqrt(leg_squared(acute)) / 2 * std::sqrt(circumradius * circumradius - leg_squared(acute) / 4);
-    const double cell[] = {(half_edge * acute - far_cell) / 2, leg_squared(obtuse) / 8 * obtuse / half_edge};
+        std::sqrt(leg_squared(k_acute)) / 2 * std::sqrt(circumradius * circumradius - leg_squared(k_acute) / 4);
+    const double cell[] = {(k_half_edge * k_acute - far_cell) / 2, leg_squared(k_obtuse) / 8 * k_obtuse / k_half_edge};
     const double expected = (cell[0] * bend[0] + cell[1] * bend[1]) / (cell[0] + cell[1]);
     const VertexCurvature c = estimate_curvature(mesh, false);
     for (std::size_t v : {0, 1}) {
@@ -268,6 +275,27 @@ TEST(Curvature, LeavesDegenerateFacesOut) {
     for (std::size_t i = lone; i < lone + 3; ++i) {
         EXPECT_EQ(junk.k1[i], 0);
         EXPECT_EQ(junk.derivative[i], (std::array<float, 4>{}));
+    }
+}
+
+TEST(Curvature, IsFiniteOnSliversOfEveryWidth) {
+    const TriangleMesh mesh = lumpy();
+    for (float width = 1; width > 1e-13f; width *= 0.6f) {
+        TriangleMesh with_sliver = mesh;
+        const auto first = static_cast<std::uint32_t>(mesh.vertex_count());
+        const Vec3 corner = mesh.vertices[0];
+        with_sliver.vertices.insert(with_sliver.vertices.end(),
+                                    {{0, 0, 0}, {1, width, 0}, {1, 0, 0}, {1, width, width}});
+        with_sliver.vertices.push_back(corner + Vec3(width, 0, 0));
+        with_sliver.faces.insert(with_sliver.faces.end(), {{first, first + 1, first + 2},
+                                                           {first, first + 2, first + 3},
+                                                           {first + 1, first + 3, first + 2},
+                                                           {0, 1, first + 4}});
+        const VertexCurvature c = estimate_curvature(with_sliver, true);
+        for (std::size_t i = 0; i < with_sliver.vertex_count(); ++i) {
+            ASSERT_TRUE(std::isfinite(c.k1[i]) && std::isfinite(c.k2[i])) << width << " at " << i;
+            for (float d : c.derivative[i]) ASSERT_TRUE(std::isfinite(d)) << width << " at " << i;
+        }
     }
 }
 

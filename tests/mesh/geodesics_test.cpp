@@ -237,12 +237,32 @@ TEST(FaceSamples, EveryComponentGetsOneTheLargestFirst) {
     std::set<std::uint32_t> hit;
     for (std::uint32_t f : samples.face) hit.insert(component[f]);
     EXPECT_EQ(hit.size(), 7u);
-    // Too few for all: after the farthest one comes the largest.
+    // Too few for all: the largest first.
     const FaceSamples two = sample_faces(mesh, graph_of(mesh), 2);
-    EXPECT_EQ(component[two.face[0]], 6u);
-    EXPECT_EQ(component[two.face[1]], 0u);
-    EXPECT_GT(two.area_share[1], 0.8f);
+    EXPECT_EQ(component[two.face[0]], 0u);
+    EXPECT_NE(component[two.face[1]], 0u);
+    EXPECT_GT(two.area_share[0], 0.8f);
     EXPECT_NEAR(two.area_share[0] + two.area_share[1], 1, 1e-6);
+}
+
+TEST(FaceSamples, ComponentsWithoutAreaHaveNoShare) {
+    // A needle far away would be sampled first, and has no area to share.
+    TriangleMesh needle;
+    needle.vertices = {{50, 0, 0}, {51, 0, 0}, {52, 0, 0}};
+    needle.faces = {{0, 1, 2}};
+    const TriangleMesh mesh = shapes::joined(needle, shapes::icosphere(1, 1));
+    for (std::size_t count : {1, 2, 3, 81}) {
+        const FaceSamples samples = sample_faces(mesh, graph_of(mesh), count);
+        ASSERT_EQ(samples.face.size(), count);
+        float total = 0;
+        for (std::size_t s = 0; s < count; ++s) {
+            total += samples.area_share[s];
+            if (samples.face[s] == 0) {
+                EXPECT_EQ(samples.area_share[s], 0);
+            }
+        }
+        EXPECT_NEAR(total, 1, 1e-6) << count;
+    }
 }
 
 TEST(FaceSamples, OfOddCountsAreSound) {

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 std::string read_error(const std::string& file_name, const std::string& bytes) {
-    const std::string message = error_of<MeshError>([&] { read_as(file_name, bytes); });
+    std::string message = error_of<MeshError>([&] { read_as(file_name, bytes); });
     EXPECT_THAT(message, AllOf(HasSubstr(file_name), Not(HasSubstr("\n"))));
     EXPECT_LT(message.size(), 400u) << message;
     return message;
@@ -77,6 +77,9 @@ TEST(BadFile, Off) {
                             {"4OFF\n3 1 0\n", ":1: ", "4OFF"},
                             {"nOFF\n3\n3 1 0\n", ":1: ", "nOFF"},
                             {"OFF\n", ":1: ", "counts"},
+                            {"OFFx 3 1 0\n", ":1: ", "'OFFx'"},
+                            {"nOFF3 3 1 0\n", ":1: ", "nOFF"},
+                            {"OFF3000000000 1 0\n", ":1: ", "3000000000"},
                             {"OFF\n3\n", ":2: ", "number of faces"},
                             {"OFF\nthree 1 0\n", ":2: ", "'three'"},
                             {"OFF\n-3 1 0\n" + vertices, ":2: ", "-3"},
@@ -145,6 +148,12 @@ TEST(BadFile, PlyHeader) {
          {ascii_ply("elements vertex 0\n", ""), ":3: ", "'elements'"},
          {ascii_ply("element vertex 0\n" + xyz + "element vertex 0\n", ""), ":7: ", "twice"},
          {ascii_ply("", ""), ": ", "no vertices"},
+         {ascii_ply("comment label 0 Fl\xfcgel\n", ""), ":3: ", "UTF-8"},
+         {ascii_ply("element vertex 0\n" + xyz + "property float y\n", ""), ": ", "twice"},
+         {ascii_ply("element vertex 0\n" + xyz + "element face 0\nproperty list uchar int vertex_indices\n" +
+                        "property int label\nproperty float label\n",
+                    ""),
+          ": ", "labels twice"},
          {ascii_ply("element vertex 0\nproperty float x\nproperty float y\n", ""), ": ", "no property z"},
          {ascii_ply("element vertex 0\n" + xyz + "element face 0\nproperty int label\n", ""), ": ", "vertex_indices"},
          {ascii_ply("element vertex 0\n" + xyz + "element face 0\nproperty list uchar float vertex_indices\n", ""),
@@ -234,6 +243,12 @@ std::string edited_glb(const std::string& from, const std::string& to) {
     return glb_of(json, buffer_bytes());
 }
 
+/// A sparse part of `count` elements whose places are in a buffer view of the tetrahedron, and its values in the first.
+std::string sparse_part(int count, int view, int type) {
+    return "'sparse':{'count':" + std::to_string(count) + ",'indices':{'bufferView':" + std::to_string(view) +
+           ",'componentType':" + std::to_string(type) + "},'values':{'bufferView':0}}";
+}
+
 TEST(BadFile, GltfIndicesAndLengths) {
     expect_errors(
         "a.glb",
@@ -246,7 +261,6 @@ TEST(BadFile, GltfIndicesAndLengths) {
          {edited_glb("'mesh':0", "'children':[5]"), ": ", "node 5"},
          {edited_glb("'mesh':0", "'mesh':0,'matrix':[1,2,3]"), ": ", "matrix of 3"},
          {edited_glb("'mesh':0", "'mesh':0,'rotation':[1,2,3]"), ": ", "rotation of 3"},
-         {edited_glb("'POSITION':0", "'NORMAL':0"), ": ", "no POSITION"},
          {edited_glb("'POSITION':0", "'POSITION':9"), ": ", "accessor 9"},
          {edited_glb("'POSITION':0", "'POSITION':1"), ": ", "accessor 1"},
          {edited_glb("'POSITION':0", "'POSITION':-3"), ": ", "accessor -3"},
@@ -261,7 +275,19 @@ TEST(BadFile, GltfIndicesAndLengths) {
          {edited_glb("'count':4", "'count':18446744073709551615"), ": ", "accessor 0"},
          {edited_glb("'count':12", "'count':11"), ": ", "whole triangles"},
          {edited_glb("'bufferView':0", "'bufferView':0,'byteOffset':18446744073709551615"), ": ", "accessor 0"},
-         {edited_glb("'bufferView':0,", ""), ": ", "sparse"},
+         {edited_glb("'bufferView':0,", ""), ": ", "accessor 0 has neither"},
+         {edited_glb("'bufferView':0,'componentType':5126,'count':4",
+                     sparse_part(1, 1, 5123) + ",'componentType':5126,'count':4000"),
+          ": ", "accessor 0 has neither"},
+         {edited_glb("'componentType':5126,", sparse_part(-1, 1, 5123) + ",'componentType':5126,"), ": ", "negative"},
+         {edited_glb("'componentType':5126,", sparse_part(1, 7, 5123) + ",'componentType':5126,"), ": ",
+          "buffer view 7"},
+         {edited_glb("'componentType':5126,", sparse_part(13, 1, 5123) + ",'componentType':5126,"), ": ",
+          "13 elements of accessor 0"},
+         {edited_glb("'componentType':5126,", sparse_part(1, 0, 5126) + ",'componentType':5126,"), ": ",
+          "no unsigned integers"},
+         {edited_glb("'componentType':5126,", sparse_part(4, 0, 5125) + ",'componentType':5126,"), ": ",
+          "names element"},
          {edited_glb("'bufferView':0", "'bufferView':9"), ": ", "buffer view 9"},
          {edited_glb("'buffer':0,'byteLength':48", "'buffer':1,'byteLength':48"), ": ", "buffer 1"},
          {edited_glb("'byteLength':48", "'byteLength':4800"), ": ", "past the end"},

@@ -141,6 +141,47 @@ TEST(ReadGltf, InterleavedPositionsUseTheirStride) {
     EXPECT_EQ(read_as("a.glb", glb_of(json, binary)).mesh.vertices, (V{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
 }
 
+TEST(ReadGltf, SparseAccessorsReplaceElements) {
+    // The last corner moves; and, without a buffer view, all other corners are at the origin.
+    std::string binary = tetrahedron_positions() + tetrahedron_indices();
+    binary += bytes_of(std::uint16_t{3}) + bytes_of(std::uint16_t{0});
+    for (float x : {7.f, 8.f, 9.f}) binary += bytes_of(x);
+    std::string json = tetrahedron_gltf("");
+    const auto replace = [&](const std::string& from, const std::string& to) {
+        ASSERT_NE(json.find(json_text(from)), std::string::npos) << from;
+        json.replace(json.find(json_text(from)), from.size(), json_text(to));
+    };
+    replace("'byteLength':24}",
+            "'byteLength':24},{'buffer':0,'byteOffset':72,'byteLength':2},"
+            "{'buffer':0,'byteOffset':76,'byteLength':12}");
+    replace("'byteLength':72}", "'byteLength':88}");
+    replace("'count':4",
+            "'count':4,'sparse':{'count':1,'indices':{'bufferView':2,'componentType':5123},"
+            "'values':{'bufferView':3}}");
+    EXPECT_EQ(read_as("a.glb", glb_of(json, binary)).mesh.vertices, (V{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {7, 8, 9}}));
+    replace("'bufferView':0,", "");
+    const TriangleMesh welded = read_as("a.glb", glb_of(json, binary)).mesh;
+    EXPECT_EQ(welded.vertices, (V{{0, 0, 0}, {7, 8, 9}}));
+    EXPECT_THAT(welded.faces, ElementsAre(Face{0, 0, 0}, Face{0, 0, 1}, Face{0, 1, 0}, Face{0, 0, 1}));
+}
+
+TEST(ReadGltf, SeveralPrimitivesShareOneMeshAndPlacelessOnesAreLeftOut) {
+    std::string json = tetrahedron_gltf("");
+    const std::string primitive = json_text("{'attributes':{'POSITION':0},'indices':1}");
+    json.replace(json.find(primitive), primitive.size(),
+                 primitive + json_text(",{'attributes':{'NORMAL':0}},") + primitive);
+    const MeshFile file = read_as("a.glb", glb_of(json, tetrahedron_positions() + tetrahedron_indices()));
+    EXPECT_THAT(file.mesh.vertices, SizeIs(4));
+    EXPECT_THAT(file.mesh.faces, SizeIs(8));
+    EXPECT_EQ(file.mesh.source_face_count, 8u);
+    EXPECT_THAT(file.warnings, ElementsAre(HasSubstr("1 primitives without POSITION")));
+}
+
+TEST(ReadGltf, RotationsNeedNotBeUnit) {
+    const MeshFile file = read_as("a.glb", tetrahedron_glb("[{'mesh':0,'rotation':[0,0,3,3]}]"));
+    EXPECT_LT((file.mesh.vertices[1] - Vec3(0, 1, 0)).norm(), 1e-6f);
+}
+
 TEST(ReadGltf, ImagesExtrasAndOptionalExtensionsDoNotMatter) {
     std::string json = tetrahedron_gltf("");
     json.insert(

@@ -46,10 +46,11 @@ TEST(ReadOff, TrianglesKeepOrderAndNeedNoSourceMap) {
 
 TEST(ReadOff, TakesEveryFormOfHeaderSpacingAndComment) {
     const std::string body = "0 0 0 9 9\n1 0 0 9 9\n0 1 0 9 9\n3 0 1 2 255 0 0\n";
-    for (const std::string& text : {"OFF\n3 1 0\n" + body, "OFF 3 1 0\n" + body,
-                                    "# made by hand\n\nOFF # header\n # counts\n3 1 0 # that many\n\n" + body,
-                                    "COFF\n3 1\n" + body, "NOFF\n3 1 3\n" + body, "CNOFF\n3 1 3\n" + body,
-                                    "STCNOFF 3 1 3\n" + body, "\xef\xbb\xbfOFF\n3 1 3\n" + body}) {
+    for (const std::string& text :
+         {"OFF\n3 1 0\n" + body, "OFF 3 1 0\n" + body,
+          "# made by hand\n\nOFF # header\n # counts\n3 1 0 # that many\n\n" + body, "COFF\n3 1\n" + body,
+          "NOFF\n3 1 3\n" + body, "CNOFF\n3 1 3\n" + body, "STCNOFF 3 1 3\n" + body, "OFF3 1 0\n" + body,
+          "COFF3\t1\n" + body, "\xef\xbb\xbfOFF\n3 1 3\n" + body}) {
         const MeshFile file = read_as("a.off", text);
         EXPECT_EQ(file.mesh.vertices, (V{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << text;
         EXPECT_THAT(file.mesh.faces, ElementsAre(Face{0, 1, 2})) << text;
@@ -173,6 +174,18 @@ TEST(ReadObj, PolygonsNegativeIndicesAndContinuedLines) {
     EXPECT_EQ(file.mesh.source_face_count, 3u);
 }
 
+TEST(ReadObj, FacesOfFewCornersAndFilesOfOtherThings) {
+    const std::string vertices = "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\n";
+    for (const char* small : {"f", "f 1", "f 1 2", "f \\\r\n", "f 1 2 \\"}) {
+        const MeshFile file = read_as("a.obj", vertices + "f 1 2 3\r\n" + small);
+        EXPECT_THAT(file.mesh.faces, ElementsAre(Face{0, 1, 2})) << small;
+        EXPECT_THAT(file.mesh.source_face, ElementsAre(0u)) << small;
+        EXPECT_EQ(file.mesh.source_face_count, 2u) << small;
+        EXPECT_THAT(file.warnings, SizeIs(1)) << small;
+    }
+    EXPECT_THAT(read_as("a.obj", vertices + "vp 1\ncstype bezier\nend\nfo 1 2 3\n\x01\x02\n").mesh.faces, SizeIs(0));
+}
+
 TEST(ReadObj, NotANumberIsReadAndFloatsAreExact) {
     const MeshFile file = read_as("a.obj", "v nan -inf 16777217\nv 0.1 1.17549435e-38 3.4028235e38\n");
     EXPECT_TRUE(std::isnan(file.mesh.vertices[0][0]));
@@ -247,6 +260,7 @@ TEST(ReadStl, BinaryMayBeginWithSolidAndHaveBytesLeftOver) {
     std::string bytes = mesh_files::binary_stl({{0, 0, 0, 1, 0, 0, 0, 1, 0}});
     bytes.replace(0, 6, "solid ");
     EXPECT_THAT(read_as("a.stl", bytes).mesh.faces, SizeIs(1));
+    EXPECT_THAT(read_as("a.stl", bytes + "tail").mesh.faces, SizeIs(1));  // no text has zero bytes
     bytes.replace(0, 6, "SOLIX ");
     const MeshFile file = read_as("a.stl", bytes + "tail");
     EXPECT_THAT(file.mesh.faces, SizeIs(1));

@@ -70,7 +70,7 @@ TEST(WriteGolden, PlyWithLabelsAndConfidence) {
     const TemporaryFolder folder;
     const FaceLabels labels = small_labels();
     write_ply(folder / "a.ply", small_mesh(), &labels, std::vector<float>{0.5f, 0, 1});
-    const std::string quad_rest = words({1}) + "\x38\x74\xc8" + floats({0.5f});  // label 1 is (56, 116, 200)
+    const std::string quad_rest = words({1}) + "\x40\x78\xc8" + floats({0.5f});  // label 1 is (64, 120, 200)
     EXPECT_EQ(read_file(folder / "a.ply"),
               "ply\nformat binary_little_endian 1.0\ncomment made by Exemplar\ncomment label 0 leg\n"
               "comment label 1 upper arm\ncomment label 2 none has it\nelement vertex 4\nproperty float x\n"
@@ -78,7 +78,7 @@ TEST(WriteGolden, PlyWithLabelsAndConfidence) {
               "property int label\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
               "property float confidence\nend_header\n" +
                   floats(k_positions) + "\3" + words({0, 1, 2}) + quad_rest + "\3" + words({0, 2, 3}) + quad_rest +
-                  "\3" + words({1, 3, 2}) + words({0}) + "\xd4\x44\x38" + floats({1}));  // label 0 is (212, 68, 56)
+                  "\3" + words({1, 3, 2}) + words({0}) + "\xd4\x50\x40" + floats({1}));  // label 0 is (212, 80, 64)
 }
 
 TEST(WriteGolden, Gltf) {

@@ -64,6 +64,12 @@ TEST(LabelsTxt, BlankLinesSpacesAndRepeatedNamesAreFine) {
     EXPECT_THAT(labels.label, ElementsAre(0, 0, 2, 0));
 }
 
+TEST(LabelsTxt, NamesAreUtf8) {
+    const std::string wing = "Fl\xc3\xbcgel";
+    EXPECT_THAT(read_labels("\xef\xbb\xbf" + wing + "\n1 2\n", 2).names, ElementsAre(wing));
+    EXPECT_THAT(labels_error("leg\n1\nFl\xfcgel\n2\n", 2), AllOf(HasSubstr(":3: "), HasSubstr("UTF-8")));
+}
+
 TEST(LabelsTxt, NamesMayBeNumbers) {
     EXPECT_THAT(read_labels("0\n1\n1\n2 3\n", 3).names, ElementsAre("0", "1"));
 }
@@ -132,9 +138,11 @@ TEST(Seg, ErrorsNameFileAndLine) {
 /// Reads every mesh, label and segment file of the benchmark, if there is one.
 TEST(SlowBenchmarkFiles, AllCanBeRead) {
     const char* const data = std::getenv("EXEMPLAR_DATA");
-    if (!data) GTEST_SKIP() << "EXEMPLAR_DATA does not name the folder of the benchmark";
+    if (!data) GTEST_SKIP() << "EXEMPLAR_DATA does not name a folder that holds labeled/CATEGORY/NAME.off";
+    const std::filesystem::path labeled = std::filesystem::path(data) / "labeled";
+    ASSERT_TRUE(std::filesystem::is_directory(labeled)) << labeled << " is no folder of meshes with labels";
     std::size_t meshes = 0;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(data) / "labeled")) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(labeled)) {
         if (entry.path().extension() != ".off") continue;
         const MeshFile file = read_mesh(entry.path());
         EXPECT_THAT(file.warnings, testing::IsEmpty()) << entry.path();

@@ -82,7 +82,7 @@ TEST(ContextParity, OddNumbersOfFaces) {
 TEST(ContextParity, OddNumbersOfSamples) {
     GpuContextHistograms histograms(testing::shared_device());
     Random random(2);
-    for (const std::size_t samples : {0u, 1u, 2u, 255u, 256u, 257u, 1000u}) {
+    for (const std::size_t samples : {0u, 1u, 2u, 15u, 16u, 17u, 255u, 256u, 257u, 1000u}) {
         SCOPED_TRACE(samples);
         expect_parity(histograms, random_geometry(50, samples, random), 5, random);
     }
@@ -102,7 +102,7 @@ TEST(ContextParity, FacesAreTiledAndTheGeometryIsReused) {
     Random random(4);
     const ContextGeometry geometry = random_geometry(301, 60, random);
     const DeviceContextGeometry resident(testing::shared_device(), geometry,
-                                         100 * k_context_measures * k_context_bins * 64 * sizeof(float));
+                                         100 * k_context_measures * k_context_bins * 4 * sizeof(float));
     EXPECT_EQ(resident.tiles(), 4u);
     GpuContextHistograms histograms(testing::shared_device());
     for (const std::size_t classes : {4u, 6u, 2u}) {
@@ -111,6 +111,20 @@ TEST(ContextParity, FacesAreTiledAndTheGeometryIsReused) {
         CpuContextHistograms().accumulate(geometry, probabilities, classes, expected);
         histograms.accumulate(resident, probabilities, classes, actual);
         expect_near(actual, expected, 301, classes);
+    }
+}
+
+// Neither the faces nor the classes fit at once, and no tile is kept.
+TEST(ContextParity, FacesAndClassesAreTiledOnTheWay) {
+    Random random(8);
+    const ContextGeometry geometry = random_geometry(70, 60, random);
+    for (const std::size_t tile_bytes :
+         {std::size_t{1}, 30 * k_context_measures * k_context_bins * 4 * sizeof(float)}) {
+        GpuContextHistograms histograms(testing::shared_device(), nullptr, tile_bytes);
+        for (const std::size_t classes : {4u, 6u, 13u}) {
+            SCOPED_TRACE(classes);
+            expect_parity(histograms, geometry, classes, random);
+        }
     }
 }
 

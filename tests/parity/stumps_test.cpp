@@ -27,6 +27,7 @@ FeatureMatrix random_features(std::size_t rows, std::size_t columns, Random& ran
             value = static_cast<float>(random.normal());
             if (random.uniform() < 0.02) value = std::numeric_limits<float>::quiet_NaN();
             if (random.uniform() < 0.02) value = std::numeric_limits<float>::infinity();
+            if (random.uniform() < 0.02) value = -std::numeric_limits<float>::infinity();
         }
     return features;
 }
@@ -107,12 +108,17 @@ TEST(StumpParity, RowsAreTiledToTheLimit) {
     }
 }
 
+// All sums are multiples of 1/64 below 2^11, which floats hold exactly, in any order.
 TEST(StumpParity, LargeScoresStayFinite) {
     GpuStumpScorer scorer(testing::shared_device());
     Random random(5);
     const FeatureMatrix features = random_features(65, 10, random);
     BoostedStumps classifier = random_stumps(4, 20, 10, random);
-    for (Stump& stump : classifier.stumps) stump.above = stump.above > 0.0f ? 64.0f : -64.0f;
+    for (Stump& stump : classifier.stumps) {
+        stump.above = stump.above > 0.0f ? 64.0f : -64.0f;
+        stump.below = std::round(64.0f * stump.below) / 64.0f;
+    }
+    for (float& constant : classifier.elsewhere) constant = std::round(64.0f * constant) / 64.0f;
     for (const Link link : {Link::softmax, Link::sigmoid}) expect_parity(scorer, classifier, features, link, 4.0f);
 }
 

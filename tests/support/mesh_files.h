@@ -122,7 +122,7 @@ inline std::string binary_ply(bool big_endian) {
                         "element face 2\nproperty list ushort float weights\nproperty list uchar uint vertex_index\n"
                         "property uchar label\nend_header\n";
     for (int v = 0; v < 4; ++v)
-        bytes += bytes_of(double(v % 2), big_endian) + bytes_of(float(v / 2), big_endian) +
+        bytes += bytes_of(double(v % 2), big_endian) + bytes_of(v < 2 ? 0.0f : 1.0f, big_endian) +
                  bytes_of(std::int16_t(-v), big_endian) + bytes_of(std::uint8_t(v));
     for (int f = 0; f < 2; ++f) {
         bytes += bytes_of(std::uint16_t(f), big_endian);
@@ -180,6 +180,14 @@ inline std::vector<Sample> samples() {
                                               "[{'children':[1],'rotation':[0,0,1,0]},{'mesh':0,'scale':[1,-1,2],"
                                               "'translation':[1,2,3]}]"),
                              tetrahedron_positions() + tetrahedron_indices())},
+        {"sparse.glb",
+         glb_of(
+             json_text("{'asset':{'version':'2.0'},'scene':0,'scenes':[{'nodes':[0]}],'nodes':[{'mesh':0}],"
+                       "'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}],'accessors':[{'componentType':5126,"
+                       "'count':3,'type':'VEC3','sparse':{'count':2,'indices':{'bufferView':0,'componentType':5121},"
+                       "'values':{'bufferView':1}}}],'bufferViews':[{'buffer':0,'byteLength':2},"
+                       "{'buffer':0,'byteOffset':4,'byteLength':24}],'buffers':[{'byteLength':28}]}"),
+             std::string("\1\2\0\0", 4) + tetrahedron_positions().substr(12, 24))},
         {"embedded.gltf",
          tetrahedron_gltf(
              "'uri':'data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAA"

@@ -83,14 +83,14 @@ inline TriangleMesh icosphere(int subdivisions, float radius) {
     return detail::finished(std::move(mesh));
 }
 
-/// A torus around z: tube of radius `r` around a circle of radius `R`; n quads along the circle, m around the tube.
-inline TriangleMesh torus(float R, float r, std::uint32_t n, std::uint32_t m) {
+/// A torus around z: a tube around a circle, of these radii; n quads along the circle, m around the tube.
+inline TriangleMesh torus(float ring, float tube, std::uint32_t n, std::uint32_t m) {
     TriangleMesh mesh;
     for (std::uint32_t i = 0; i < n; ++i)
         for (std::uint32_t j = 0; j < m; ++j) {
             const double u = 2 * std::numbers::pi * i / n, v = 2 * std::numbers::pi * j / m;
-            const double w = R + r * std::cos(v);
-            mesh.vertices.push_back(detail::vec3(w * std::cos(u), w * std::sin(u), r * std::sin(v)));
+            const double w = ring + tube * std::cos(v);
+            mesh.vertices.push_back(detail::vec3(w * std::cos(u), w * std::sin(u), tube * std::sin(v)));
             const auto at = [&](std::uint32_t a, std::uint32_t b) { return (a % n) * m + b % m; };
             detail::add_quad(mesh, at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
         }

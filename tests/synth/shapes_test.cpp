@@ -192,6 +192,12 @@ TEST(Shapes, RandomOrientationTurnsTheSameShape) {
     EXPECT_GT(moved, 0.05);
 }
 
+TEST(Shapes, AbsurdFaceCountsAreUsageErrors) {
+    for (const std::size_t faces : {std::size_t{0}, std::size_t{99}, std::size_t{1} << 20, ~std::size_t{0}})
+        EXPECT_THROW(make_shape("cup", 1, faces), UsageError) << faces;
+    EXPECT_GT(make_shape("cup", 1, 100).mesh.face_count(), 50u);
+}
+
 TEST(Shapes, UnknownKindIsAUsageErrorWithASuggestion) {
     try {
         make_shape("chiar", 1);

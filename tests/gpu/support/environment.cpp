@@ -24,8 +24,10 @@ class GpuEnvironment : public ::testing::Environment {
     void SetUp() override { prepare_folders(); }
     void TearDown() override {
         if (!device) return;
-        for (const std::string& message : device->validation_messages()) ADD_FAILURE() << message;
+        // The layer reports objects that were left over when the device ends.
+        const std::shared_ptr<const ValidationLog> log = device->validation_log();
         device.reset();
+        for (const std::string& message : log->messages()) ADD_FAILURE() << message;
     }
 };
 

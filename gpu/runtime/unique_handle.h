@@ -34,6 +34,8 @@ class UniqueHandle {
     Handle handle_ = VK_NULL_HANDLE;
 };
 
+using UniqueBuffer = UniqueHandle<VkBuffer, &vkDestroyBuffer>;
+using UniqueBufferView = UniqueHandle<VkBufferView, &vkDestroyBufferView>;
 using UniqueImage = UniqueHandle<VkImage, &vkDestroyImage>;
 using UniqueImageView = UniqueHandle<VkImageView, &vkDestroyImageView>;
 using UniqueMemory = UniqueHandle<VkDeviceMemory, &vkFreeMemory>;
@@ -44,5 +46,6 @@ using UniquePipelineLayout = UniqueHandle<VkPipelineLayout, &vkDestroyPipelineLa
 using UniquePipeline = UniqueHandle<VkPipeline, &vkDestroyPipeline>;
 using UniqueCommandPool = UniqueHandle<VkCommandPool, &vkDestroyCommandPool>;
 using UniqueFence = UniqueHandle<VkFence, &vkDestroyFence>;
+using UniqueQueryPool = UniqueHandle<VkQueryPool, &vkDestroyQueryPool>;
 
 }  // namespace exemplar

@@ -1,0 +1,185 @@
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "gpu/labeling/context_histograms.h"
+#include "gpu/learn/stump_scorer.h"
+#include "gpu/runtime/device.h"
+#include "host/core/random.h"
+#include "host/core/stopwatch.h"
+
+// The kernels of labeling on the device of EXEMPLAR_DEVICE, else the best: each is compared with its CPU reference
+// once, then timed by the device's own timestamps. The argument is the number of faces. Counters, per call:
+//   MB       what must cross the memory at least: every input once, every output once
+//   Mop      additions, comparisons and selections that the result needs, 10^6
+//   GB/s, Gop/s       these by device time
+//   copy, fma         and as shares of the device's measured ceilings (one multiply-add counts as two operations)
+//   call, call_cpu    milliseconds of the whole call with its transfers: wall clock, and CPU of this process
+//   reference_cpu     milliseconds of CPU of the reference
+
+namespace exemplar {
+namespace {
+
+constexpr float k_tolerance = 1e-5f;
+constexpr std::uint32_t k_classes = 8;
+
+struct Bench {
+    Device device;
+    Ceilings ceilings = measure_ceilings(device);
+};
+
+Bench& bench() {
+    static Bench instance;
+    return instance;
+}
+
+// The least work of one call.
+struct Work {
+    double bytes = 0.0;
+    double operations = 0.0;
+};
+
+// Whether device and reference agree; if not, the benchmark reports it instead of a time.
+bool verified(benchmark::State& state, const std::vector<float>& actual, const std::vector<float>& expected) {
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        if (std::abs(actual[i] - expected[i]) <= k_tolerance) continue;
+        state.SkipWithError(fmt::format("value {} is {}, but the reference has {}", i, actual[i], expected[i]).c_str());
+        return false;
+    }
+    return true;
+}
+
+// Times `call`, whose dispatches `profiler` sees, by the device's clock.
+template <typename Call>
+void time_call(benchmark::State& state, Profiler& profiler, const Work& work, Call&& call) {
+    double device_ms = 0.0;
+    const Stopwatch watch;
+    for (auto _ : state) {
+        profiler.reset();
+        call();
+        double milliseconds = 0.0;
+        for (const auto& [kernel, entry] : profiler.entries()) milliseconds += entry.milliseconds;
+        state.SetIterationTime(1e-3 * milliseconds);
+        device_ms += milliseconds;
+    }
+    const auto calls = static_cast<double>(state.iterations());
+    const double seconds = 1e-3 * device_ms / calls;
+    const Ceilings& ceilings = bench().ceilings;
+    state.counters["MB"] = 1e-6 * work.bytes;
+    state.counters["Mop"] = 1e-6 * work.operations;
+    state.counters["GB/s"] = 1e-9 * work.bytes / seconds;
+    state.counters["Gop/s"] = 1e-9 * work.operations / seconds;
+    state.counters["copy"] = 1e-9 * work.bytes / seconds / ceilings.copy_gb_per_s;
+    state.counters["fma"] = 1e-9 * work.operations / seconds / ceilings.fma_gflop_per_s;
+    state.counters["call"] = 1e3 * watch.wall() / calls;
+    state.counters["call_cpu"] = 1e3 * watch.cpu() / calls;
+}
+
+// CPU milliseconds of the second of two calls: the first fills caches.
+template <typename Call>
+double reference_cpu(Call&& call) {
+    call();
+    const Stopwatch watch;
+    call();
+    return 1e3 * watch.cpu();
+}
+
+FeatureMatrix random_features(std::size_t rows, std::size_t columns, Random& random) {
+    FeatureMatrix features;
+    features.rows = rows;
+    features.values.reserve(rows * columns);
+    for (std::size_t c = 0; c < columns; ++c)
+        for (float& value : features.add(std::to_string(c))) value = static_cast<float>(random.normal());
+    return features;
+}
+
+// 300 stumps on 150 of the features, shared by 40 sets of classes: the size of a trained classifier.
+BoostedStumps random_stumps(std::size_t columns, Random& random) {
+    BoostedStumps classifier{.class_count = k_classes, .stumps = {}, .elsewhere = {}};
+    std::array<std::uint64_t, 40> sets;
+    for (std::uint64_t& set : sets) set = 1 + random.index((1u << k_classes) - 1);
+    for (std::size_t m = 0; m < 300; ++m)
+        classifier.stumps.push_back({static_cast<std::uint32_t>(random.index(columns)),
+                                     static_cast<float>(random.normal()), static_cast<float>(random.uniform(-0.2, 0.2)),
+                                     static_cast<float>(random.uniform(-0.2, 0.2)), sets[random.index(sets.size())]});
+    classifier.elsewhere.assign(classifier.stumps.size() * k_classes, 0.0f);
+    return classifier;
+}
+
+void score_stumps(benchmark::State& state) {
+    constexpr std::size_t k_columns = 150;
+    Random random(1);
+    const FeatureMatrix features = random_features(static_cast<std::size_t>(state.range(0)), k_columns, random);
+    const BoostedStumps classifier = random_stumps(k_columns, random);
+    std::vector<float> expected(features.rows * k_classes), actual(expected.size());
+    CpuStumpScorer reference;
+    const double reference_ms =
+        reference_cpu([&] { reference.probabilities(classifier, features, Link::softmax, 1.0f, expected); });
+    Profiler profiler;
+    GpuStumpScorer scorer(bench().device, &profiler);
+    const auto call = [&] { scorer.probabilities(classifier, features, Link::softmax, 1.0f, actual); };
+    call();
+    if (!verified(state, actual, expected)) return;
+
+    const auto rows = static_cast<double>(features.rows), stumps = static_cast<double>(classifier.stumps.size());
+    // Per stump a comparison, a selection and a sum; per class a maximum, a difference, exp, a sum and a quotient.
+    time_call(
+        state, profiler,
+        {.bytes = 4 * rows * (k_columns + k_classes) + 16 * stumps, .operations = rows * (3 * stumps + 5 * k_classes)},
+        call);
+    state.counters["reference_cpu"] = reference_ms;
+}
+BENCHMARK(score_stumps)->Arg(5'000)->Arg(20'000)->Arg(100'000)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+ContextGeometry random_geometry(std::size_t faces, std::size_t samples, Random& random) {
+    ContextGeometry geometry;
+    geometry.faces = faces;
+    for (std::size_t j = 0; j < samples; ++j)
+        geometry.sample_face.push_back(static_cast<std::uint32_t>(random.index(faces)));
+    geometry.sample_area.assign(samples, 1.0f / static_cast<float>(samples));
+    geometry.geodesic_bin.resize(samples * faces);
+    for (std::uint8_t& bin : geometry.geodesic_bin) bin = static_cast<std::uint8_t>(random.next() % k_context_bins);
+    geometry.axis_position.resize(k_context_axes * faces);
+    for (float& position : geometry.axis_position) position = static_cast<float>(random.uniform(0.0, 2.0));
+    for (auto& edges : geometry.axis_edges) edges = {0.2f, 0.5f, 0.95f, 1.5f};
+    return geometry;
+}
+
+void context_histograms(benchmark::State& state) {
+    constexpr std::size_t k_samples = 1000;
+    const auto face_count = static_cast<std::size_t>(state.range(0));
+    Random random(2);
+    const ContextGeometry geometry = random_geometry(face_count, k_samples, random);
+    const std::vector<float> probabilities(face_count * k_classes, 1.0f / k_classes);
+    constexpr std::size_t k_columns = k_context_measures * k_context_bins * k_classes;
+    std::vector<float> expected(k_columns * face_count), actual(expected.size());
+    CpuContextHistograms reference;
+    const double reference_ms =
+        reference_cpu([&] { reference.accumulate(geometry, probabilities, k_classes, expected); });
+    Profiler profiler;
+    GpuContextHistograms histograms(bench().device, &profiler);
+    const DeviceContextGeometry resident(bench().device, geometry);
+    const auto call = [&] { histograms.accumulate(resident, probabilities, k_classes, actual); };
+    call();
+    if (!verified(state, actual, expected)) return;
+
+    // Geodesic ranges: a sum per sample and class. Axes: two binary searches per inner edge, three sums per bin and
+    // class.
+    const auto faces = static_cast<double>(face_count);
+    const double searches = k_context_axes * 2 * (k_context_bins - 1) * std::log2(k_samples);
+    time_call(state, profiler,
+              {.bytes = faces * (k_samples + 4 * k_context_axes + 4 * k_columns),
+               .operations =
+                   faces * (k_samples * k_classes + 2 * searches + k_context_axes * k_context_bins * k_classes * 3)},
+              call);
+    state.counters["reference_cpu"] = reference_ms;
+}
+BENCHMARK(context_histograms)->Arg(5'000)->Arg(20'000)->Arg(100'000)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace exemplar

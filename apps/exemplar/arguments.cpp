@@ -1,0 +1,130 @@
+#include "apps/exemplar/arguments.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <fstream>
+#include <map>
+#include <string>
+#include <string_view>
+
+#include "host/core/errors.h"
+#include "host/core/text.h"
+#include "host/data/corpus.h"
+
+namespace exemplar {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The first bytes of a file; fewer if it is shorter, none if it cannot be read.
+std::string first_bytes(const fs::path& path) {
+    std::array<char, 4096> bytes{};
+    std::ifstream stream(path, std::ios::binary);
+    stream.read(bytes.data(), bytes.size());
+    return {bytes.data(), static_cast<std::size_t>(stream.gcount())};
+}
+
+/// What is wrong with a folder to write into, or "".
+std::string why_not_writable(fs::path folder) {
+    if (folder.empty()) folder = ".";
+    std::error_code error;
+    while (!fs::exists(folder, error)) {  // missing folders are made in the nearest one that exists
+        const fs::path parent = folder.parent_path();
+        if (parent == folder) break;
+        folder = parent.empty() ? fs::path(".") : parent;
+    }
+    if (!fs::is_directory(folder, error)) return fmt::format("'{}' is no folder", folder.string());
+    if (access(folder.c_str(), W_OK | X_OK) != 0) return fmt::format("folder '{}' is not writable", folder.string());
+    return {};
+}
+
+}  // namespace
+
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
+    const bool open = most == std::numeric_limits<std::uint64_t>::max();
+    const std::string range = open ? fmt::format("from {}", least) : fmt::format("from {} to {}", least, most);
+    const auto check = [=](const std::string& text) {
+        std::uint64_t value = 0;
+        const char* end = text.data() + text.size();
+        const auto [stop, error] = std::from_chars(text.data(), end, value);
+        if (error == std::errc() && stop == end && value >= least && value <= most) return std::string();
+        return fmt::format("'{}' is no whole number {}", text, range);
+    };
+    return {check, least == 0 && open ? "" : range};
+}
+
+void require_input(const fs::path& path) {
+    if (fs::exists(path)) return;
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    std::vector<std::string> names;
+    std::error_code error;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+        names.push_back(it->path().filename().string());
+    std::sort(names.begin(), names.end());
+    std::string nearest = nearest_word(path.filename().string(), names);
+    if (!nearest.empty()) nearest = fmt::format(" (did you mean '{}'?)", (path.parent_path() / nearest).string());
+    throw DataError(fmt::format("{}: no such file or folder{}", path.string(), nearest));
+}
+
+std::vector<fs::path> meshes_of_argument(const fs::path& source) {
+    require_input(source);
+    const auto known = mesh_extensions();
+    std::string extension = source.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const bool mesh = std::find(known.begin(), known.end(), extension) != known.end();
+    if (!mesh && fs::is_regular_file(source) && first_bytes(source).find('\0') != std::string::npos)
+        throw DataError(fmt::format("{}: is neither a mesh ({}) nor a list of meshes (text, a path a line)",
+                                    source.string(), fmt::join(known, " ")));
+    return list_meshes(source);
+}
+
+LabelingModel model_of_argument(const fs::path& path) {
+    require_input(path);
+    // A safetensors file is the length of a JSON object, 8 bytes, and that object; the length is checked by the reader.
+    if (const std::string begin = first_bytes(path); fs::is_directory(path) || begin.size() < 9 || begin[8] != '{')
+        throw ModelError(
+            fmt::format("{}: is no Exemplar model; make one with 'exemplar label train', and give it before the meshes",
+                        path.string()));
+    return load_model(path);
+}
+
+void require_output_file(const fs::path& path) {
+    if (path.empty()) return;
+    if (fs::is_directory(path) || !path.has_filename())
+        throw UsageError(fmt::format("{}: is a folder; give the name of a file to write", path.string()));
+    if (const std::string why = why_not_writable(path.parent_path()); !why.empty())
+        throw UsageError(fmt::format("{}: cannot be written: {}", path.string(), why));
+}
+
+void require_output_folder(const fs::path& path) {
+    if (path.empty()) throw UsageError("--out is empty; give a folder to write to");
+    if (const std::string why = why_not_writable(path); !why.empty())
+        throw UsageError(fmt::format("{}: cannot be written to: {}", path.string(), why));
+}
+
+fs::path usable_cache(const fs::path& cache, bool quiet) {
+    if (cache.empty()) return cache;
+    const std::string why = why_not_writable(cache);
+    if (why.empty()) return cache;
+    if (!quiet) fmt::print(stderr, "warning: features are not remembered: {}; --cache FOLDER gives another\n", why);
+    return {};
+}
+
+void require_distinct_names(const std::vector<fs::path>& meshes) {
+    std::map<std::string, fs::path> seen;
+    for (const auto& path : meshes) {
+        const auto [it, fresh] = seen.emplace(path.stem().string(), path);
+        if (!fresh)
+            throw UsageError(
+                fmt::format("{} and {} would write the same files; rename one, or give them to different calls",
+                            it->second.string(), path.string()));
+    }
+}
+
+}  // namespace exemplar

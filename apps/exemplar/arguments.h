@@ -1,0 +1,32 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <vector>
+
+#include "host/labeling/model.h"
+
+namespace exemplar {
+
+// What the user typed, checked before any long work: a wrong name should not cost the minutes of a training.
+
+/// A check for options: a whole number from `least` to `most`.
+CLI::Validator whole_number(std::uint64_t least, std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
+
+/// Throws DataError if nothing is at `path`, with the nearest name in its folder.
+void require_input(const std::filesystem::path& path);
+/// The meshes of a folder, a list or a mesh file (see list_meshes). Throws DataError if it is none of them.
+std::vector<std::filesystem::path> meshes_of_argument(const std::filesystem::path& source);
+/// load_model for a file that may be anything; throws ModelError saying what makes a model.
+LabelingModel model_of_argument(const std::filesystem::path& path);
+/// Throws UsageError if a file, or a folder of files, cannot be written at `path`. An empty path is no output.
+void require_output_file(const std::filesystem::path& path);
+void require_output_folder(const std::filesystem::path& path);
+/// The folder that remembers features; empty, with a warning, where it cannot be written.
+std::filesystem::path usable_cache(const std::filesystem::path& cache, bool quiet);
+/// Results are named after the mesh: throws UsageError naming two meshes that would write the same files.
+void require_distinct_names(const std::vector<std::filesystem::path>& meshes);
+
+}  // namespace exemplar

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <volk.h>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "gpu/runtime/kernel.h"
+#include "gpu/runtime/profiler.h"
+#include "gpu/runtime/unique_handle.h"
+
+namespace exemplar {
+
+class Device;
+
+/// Timestamps around the dispatches of one command sequence: start() and stop() are recorded, collect() reads them when
+/// the work is done. Does nothing without a profiler or on a device without timestamps.
+class Timestamps {
+  public:
+    Timestamps(Device& device, Profiler* profiler) : device_(device), profiler_(profiler) {}
+
+    void start(VkCommandBuffer commands, const Kernel& kernel);
+    void stop(VkCommandBuffer commands);
+    /// Adds the recorded times to the profiler; call it when the commands are done.
+    void collect();
+    /// Forgets what was recorded.
+    void clear() { dispatches_.clear(); }
+
+  private:
+    bool enabled() const;
+    void add_pool();
+    std::uint64_t elapsed_ticks(std::size_t dispatch) const;
+    Device& device_;
+    Profiler* profiler_;
+    std::vector<UniqueQueryPool> pools_;
+    std::vector<std::shared_ptr<const Kernel::Program>> dispatches_;
+};
+
+}  // namespace exemplar

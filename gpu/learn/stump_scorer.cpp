@@ -103,7 +103,7 @@ const Kernel& GpuStumpScorer::kernel(std::uint32_t classes) {
     if (!kernel)
         kernel = Kernel(device_, shaders::learn_stumps_comp,
                         {.push_constants = layout_of<StumpParameters>(),
-                         .elements = {layout_of<shared::vec4>(), layout_of<shared::vec4>(), layout_of<shared::uvec4>(),
+                         .elements = {layout_of<shared::vec4>(), layout_of<shared::uvec4>(), layout_of<shared::uvec4>(),
                                       layout_of<float>(), layout_of<float>()},
                          .constants = {{0, classes}, {1, quads_}}});
     return kernel;

@@ -13,7 +13,7 @@ layout(constant_id = 0) const uint k_classes = 1;
 layout(constant_id = 1) const uint k_quads = 1;
 layout(push_constant) uniform Push { StumpParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer features;  // columns x stride, four items each
-layout(set = 0, binding = 1) uniform samplerBuffer stumps;    // GroupedStump
+layout(set = 0, binding = 1) uniform usamplerBuffer stumps;   // GroupedStump; as floats, small integers might be flushed
 layout(set = 0, binding = 2) uniform usamplerBuffer groups;   // StumpGroup
 layout(set = 0, binding = 3, std430) readonly buffer Constants { float constants[]; };
 layout(set = 0, binding = 4, std430) writeonly buffer Probabilities { float probabilities[]; };
@@ -21,8 +21,8 @@ layout(set = 0, binding = 4, std430) writeonly buffer Probabilities { float prob
 const uint k_link_softmax = 0;
 
 GroupedStump fetch_stump(uint index) {
-    const vec4 s = texelFetch(stumps, int(index));
-    return GroupedStump(floatBitsToUint(s.x), s.y, s.z, s.w);
+    const uvec4 s = texelFetch(stumps, int(index));
+    return GroupedStump(s.x, uintBitsToFloat(s.y), uintBitsToFloat(s.z), uintBitsToFloat(s.w));
 }
 
 StumpGroup fetch_group(uint index) {

@@ -19,8 +19,8 @@ constexpr VkAccessFlags2 k_read = VK_ACCESS_2_SHADER_STORAGE_READ_BIT;
 constexpr VkAccessFlags2 k_write = VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
 
 VkBuffer buffer(std::uintptr_t id) {
-    return reinterpret_cast<VkBuffer>(id);
-}  // NOLINT: a name, never used as an address
+    return reinterpret_cast<VkBuffer>(id);  // NOLINT(performance-no-int-to-ptr): a name, never used as an address
+}
 
 Access reading(std::uintptr_t id) {
     return {.buffer = buffer(id), .stage = k_compute, .reads = k_read};

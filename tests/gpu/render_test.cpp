@@ -23,11 +23,11 @@ constexpr Color k_white{255, 255, 255};
 
 class Render : public ::testing::Test {
   protected:
-    static void SetUpTestSuite() { renderer_ = std::make_unique<MeshRenderer>(shared_device()); }
-    static void TearDownTestSuite() { renderer_.reset(); }
-    static std::unique_ptr<MeshRenderer> renderer_;
+    static void SetUpTestSuite() { shared_renderer = std::make_unique<MeshRenderer>(shared_device()); }
+    static void TearDownTestSuite() { shared_renderer.reset(); }
+    static std::unique_ptr<MeshRenderer> shared_renderer;
 };
-std::unique_ptr<MeshRenderer> Render::renderer_;
+std::unique_ptr<MeshRenderer> Render::shared_renderer;
 
 std::vector<Color> random_colors(std::size_t count, std::uint64_t seed) {
     Random random(seed);
@@ -134,7 +134,7 @@ TEST_F(Render, AgreesWithTheReference) {
                                static_cast<float>(c.width) / static_cast<float>(c.height), {.vertical_fov = fov});
                 RenderOptions options;
                 options.smooth = smooth;
-                expect_same_picture(c.mesh, camera, c.width, c.height, *renderer_, options);
+                expect_same_picture(c.mesh, camera, c.width, c.height, *shared_renderer, options);
             }
 }
 
@@ -144,7 +144,7 @@ TEST_F(Render, AgreesWithTheReferenceInsideAMesh) {
     Camera camera;
     camera.view = look_at({2.0f, 0.1f, 0.05f}, {1.8f, 1.5f, 0.0f});
     camera.projection = perspective(1.2f, 1.5f, 0.05f, 10.0f);
-    expect_same_picture(mesh, camera, 150, 100, *renderer_);
+    expect_same_picture(mesh, camera, 150, 100, *shared_renderer);
 }
 
 TEST_F(Render, EveryFaceHasItsOwnColor) {
@@ -156,7 +156,7 @@ TEST_F(Render, EveryFaceHasItsOwnColor) {
     options.ground = 1.0f;
     options.headlight = 0.0f;
     const Camera camera = fit_camera(mesh, Vec3::UnitZ(), 1.0f, {.vertical_fov = 0.0f, .margin = 0.0f});
-    const Image image = renderer_->render(mesh, colors, camera, 128, 128, options);
+    const Image image = shared_renderer->render(mesh, colors, camera, 128, 128, options);
     for (std::size_t face = 0; face < mesh.face_count(); ++face) {
         const Vec3 center = camera.project(face_centers(mesh)[face], image.width, image.height);
         EXPECT_LE(difference(color_at(image, static_cast<int>(center.x()), static_cast<int>(center.y())), colors[face]),
@@ -171,7 +171,7 @@ TEST_F(Render, LightFollowsTheFormula) {
     const Color gray{128, 128, 128};
     const Camera camera = fit_camera(mesh, Vec3::UnitZ(), 1.0f, {.vertical_fov = 0.0f});
     const RenderOptions options;
-    const Image image = renderer_->render(mesh, std::vector(2, gray), camera, 32, 32, options);
+    const Image image = shared_renderer->render(mesh, std::vector(2, gray), camera, 32, 32, options);
     const float light = options.ambient * (options.ground + (1 - options.ground) * 0.5f) + options.headlight;
     const auto expected =
         static_cast<std::uint8_t>(std::lround(linear_to_srgb(srgb_to_linear(128.0f / 255) * light) * 255));
@@ -188,7 +188,7 @@ TEST_F(Render, TheNearestSurfaceIsSeenInAnyOrderOfFaces) {
         const TriangleMesh mesh = near_first ? shapes::joined(square, behind) : shapes::joined(behind, square);
         std::vector<Color> colors(4, blue);
         for (std::size_t i : {0u, 1u}) colors[near_first ? i : i + 2] = red;
-        const Color seen = color_at(renderer_->render(mesh, colors, camera, 16, 16), 8, 8);
+        const Color seen = color_at(shared_renderer->render(mesh, colors, camera, 16, 16), 8, 8);
         EXPECT_GT(seen[0], 150);
         EXPECT_EQ(seen[2], 0);
     }
@@ -199,8 +199,8 @@ TEST_F(Render, SurfacesHaveTwoSides) {
     TriangleMesh inside_out = mesh;
     for (Face& face : inside_out.faces) std::swap(face[1], face[2]);
     const Camera camera = fit_camera(mesh, {1, 1, 1}, 1.0f);
-    const Comparison result = compare(renderer_->render(mesh, halves(mesh), camera, 90, 90),
-                                      renderer_->render(inside_out, halves(mesh), camera, 90, 90));
+    const Comparison result = compare(shared_renderer->render(mesh, halves(mesh), camera, 90, 90),
+                                      shared_renderer->render(inside_out, halves(mesh), camera, 90, 90));
     EXPECT_LT(result.mean, 0.05);
     EXPECT_EQ(result.silhouette, 0u);
 }
@@ -209,7 +209,7 @@ TEST_F(Render, TilesJoinWithoutSeams) {
     const TriangleMesh mesh = shapes::torus(2.0f, 0.7f, 48, 24);
     const Camera camera = fit_camera(mesh, Vec3(0.6f, 0.5f, 1.0f), 150.0f / 101.0f);
     MeshRenderer tiled(shared_device(), 32);
-    const Comparison result = compare(renderer_->render(mesh, halves(mesh), camera, 150, 101),
+    const Comparison result = compare(shared_renderer->render(mesh, halves(mesh), camera, 150, 101),
                                       tiled.render(mesh, halves(mesh), camera, 150, 101));
     EXPECT_LT(result.mean, 0.1);
     EXPECT_LE(result.largest_inside, 1);
@@ -254,22 +254,22 @@ TEST_F(Render, RerunsAndOtherSizesBetweenThemChangeNothing) {
     const TriangleMesh mesh = shapes::icosphere(3, 1.0f);
     const std::vector<Color> colors = random_colors(mesh.face_count(), 1);
     const Camera camera = fit_camera(mesh, {1, 2, 3}, 1.0f);
-    const Image first = renderer_->render(mesh, colors, camera, 75, 75);
+    const Image first = shared_renderer->render(mesh, colors, camera, 75, 75);
     // Odd sizes: edges are most of these pictures, so only the mean says something.
     const TriangleMesh box = shapes::box(1, 1, 1, 3);
     for (const auto& [width, height] : {std::pair(1, 1), std::pair(300, 2), std::pair(7, 200)}) {
         const Camera view = fit_camera(box, {1, 1, 2}, static_cast<float>(width) / static_cast<float>(height));
         const Comparison result = compare(render_mesh(box, halves(box), view, width, height),
-                                          renderer_->render(box, halves(box), view, width, height));
+                                          shared_renderer->render(box, halves(box), view, width, height));
         EXPECT_LT(result.mean, 3) << width << " x " << height;
     }
-    EXPECT_EQ(renderer_->render(mesh, colors, camera, 75, 75), first);
+    EXPECT_EQ(shared_renderer->render(mesh, colors, camera, 75, 75), first);
 }
 
 TEST_F(Render, AMeshWithoutFacesIsBackground) {
     RenderOptions options;
     options.background = {10, 200, 90};
-    const Image image = renderer_->render({}, {}, Camera{}, 9, 5, options);
+    const Image image = shared_renderer->render({}, {}, Camera{}, 9, 5, options);
     for (int y = 0; y < 5; ++y)
         for (int x = 0; x < 9; ++x) EXPECT_LE(difference(color_at(image, x, y), options.background), 1);
 }
@@ -278,9 +278,9 @@ TEST_F(Render, WrongArgumentsAreErrors) {
     const TriangleMesh mesh = shapes::icosphere(0, 1.0f);
     const Camera camera = fit_camera(mesh, {0, 0, 1}, 1.0f);
     const std::vector<Color> colors(mesh.face_count()), too_few(mesh.face_count() - 1);
-    EXPECT_THROW(renderer_->render(mesh, colors, camera, 0, 8), UsageError);
-    EXPECT_THROW(renderer_->render(mesh, colors, camera, 8, -1), UsageError);
-    EXPECT_THROW(renderer_->render(mesh, too_few, camera, 8, 8), UsageError);
+    EXPECT_THROW(shared_renderer->render(mesh, colors, camera, 0, 8), UsageError);
+    EXPECT_THROW(shared_renderer->render(mesh, colors, camera, 8, -1), UsageError);
+    EXPECT_THROW(shared_renderer->render(mesh, too_few, camera, 8, 8), UsageError);
     EXPECT_THROW(MeshRenderer(shared_device(), 0), UsageError);
 }
 

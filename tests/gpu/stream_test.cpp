@@ -16,7 +16,6 @@ namespace exemplar {
 namespace {
 
 using shared::AffineParameters;
-using ::testing::HasSubstr;
 using testing::shared_device;
 
 Kernel affine_kernel(std::uint32_t local_size = 64) {

@@ -90,7 +90,7 @@ TEST(WriteGolden, Gltf) {
         "{'attributes':{'POSITION':0},'indices':2,'material':1,'mode':4}]}],"
         "'materials':[{'doubleSided':true,'pbrMetallicRoughness':{'baseColorFactor':[0.21586,0.21586,0.21586,1.0],"
         "'metallicFactor':0.0,'roughnessFactor':1.0}},"
-        "{'name':'arm','doubleSided':true,'pbrMetallicRoughness':{'baseColorFactor':[0.03955,0.17465,0.57758,1.0],"
+        "{'name':'arm','doubleSided':true,'pbrMetallicRoughness':{'baseColorFactor':[0.05127,0.18782,0.57758,1.0],"
         "'metallicFactor':0.0,'roughnessFactor':1.0}}],"
         "'accessors':[{'bufferView':0,'componentType':5126,'count':4,'type':'VEC3','min':[0.0,-1.5,0.0],'max':[1.0,"
         "1.0000000116860974e-07,2.0]},"

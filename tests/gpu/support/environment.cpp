@@ -31,7 +31,7 @@ class GpuEnvironment : public ::testing::Environment {
     }
 };
 
-const ::testing::Environment* const registered = ::testing::AddGlobalTestEnvironment(new GpuEnvironment);
+const ::testing::Environment* const k_registered = ::testing::AddGlobalTestEnvironment(new GpuEnvironment);
 
 }  // namespace
 

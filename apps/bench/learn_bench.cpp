@@ -53,9 +53,9 @@ BENCHMARK(quantize_features)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTi
 
 /// Arguments: classes, rounds, percent of zeros; 60,000 rows x 650 features.
 void jointboost(benchmark::State& state) {
-    constexpr std::size_t rows = 60'000, cols = 650;
+    constexpr std::size_t k_rows = 60'000, k_cols = 650;
     const auto classes = static_cast<std::size_t>(state.range(0));
-    const Data data = make_data(rows, cols, classes, static_cast<double>(state.range(2)) / 100.0);
+    const Data data = make_data(k_rows, k_cols, classes, static_cast<double>(state.range(2)) / 100.0);
     const QuantizedFeatures quantized = quantize(data.features, data.areas, {});
     BoostOptions options;
     options.rounds = static_cast<std::size_t>(state.range(1));
@@ -65,7 +65,7 @@ void jointboost(benchmark::State& state) {
     }
     const double cpu = watch.cpu() / static_cast<double>(state.iterations() * options.rounds);
     state.counters["cpu_s_per_round"] = cpu;
-    state.counters["cpu_ns_per_value"] = 1e9 * cpu / static_cast<double>(rows * cols);
+    state.counters["cpu_ns_per_value"] = 1e9 * cpu / static_cast<double>(k_rows * k_cols);
 }
 BENCHMARK(jointboost)
     ->Args({8, 20, 30})
@@ -100,23 +100,23 @@ BENCHMARK(score_stumps)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 /// A grid of hexagonal connectivity (three neighbors, as faces of a mesh have) with smooth, noisy unary costs.
 void expand_labels(benchmark::State& state) {
-    constexpr std::uint32_t width = 200, height = 100, labels = 8;
+    constexpr std::uint32_t k_width = 200, k_height = 100, k_labels = 8;
     Random random(1);
     std::vector<std::array<std::uint32_t, 2>> edges;
     std::vector<float> unary;
-    for (std::uint32_t i = 0; i < width * height; ++i) {
-        const std::uint32_t x = i % width, y = i / width, truth = x * 4 / width + 4 * (y * 2 / height);
-        for (std::uint32_t l = 0; l < labels; ++l) {
+    for (std::uint32_t i = 0; i < k_width * k_height; ++i) {
+        const std::uint32_t x = i % k_width, y = i / k_width, truth = x * 4 / k_width + 4 * (y * 2 / k_height);
+        for (std::uint32_t l = 0; l < k_labels; ++l) {
             unary.push_back(static_cast<float>((l == truth ? 0.0 : 1.0) + 2.0 * random.uniform()));
         }
-        if (x + 1 < width) edges.push_back({i, i + 1});
-        if (y + 1 < height && (x + y) % 2 == 0) edges.push_back({i, i + width});
+        if (x + 1 < k_width) edges.push_back({i, i + 1});
+        if (y + 1 < k_height && (x + y) % 2 == 0) edges.push_back({i, i + k_width});
     }
-    std::vector<double> weight(edges.size()), v(labels * labels, 1.0);
+    std::vector<double> weight(edges.size()), v(k_labels * k_labels, 1.0);
     for (double& w : weight) w = random.uniform(0.1, static_cast<double>(state.range(0)) / 10.0);
-    for (std::size_t l = 0; l < labels; ++l) v[l * labels + l] = 0.0;
+    for (std::size_t l = 0; l < k_labels; ++l) v[l * k_labels + l] = 0.0;
     for (auto _ : state) {
-        const ExpansionResult result = alpha_expansion(unary, labels, edges, weight, v);
+        const ExpansionResult result = alpha_expansion(unary, k_labels, edges, weight, v);
         state.counters["sweeps"] = static_cast<double>(result.sweeps);
         state.counters["edges"] = static_cast<double>(edges.size());
     }

@@ -23,9 +23,9 @@ namespace {
 constexpr std::size_t k_most_folds = 5;       ///< one in five held out: the thesis' 4 : 1
 constexpr std::size_t k_patches = 25;         ///< of a single training mesh, dealt to the folds
 constexpr std::size_t k_pairwise_stages = 2;  ///< base features, then with the contextual ones (App. A.2e)
-/// A stage may be so much worse than the one before it, out of fold, and still be kept: with few meshes the classifiers
-/// of the folds learn less from the context, which is different in every mesh, than the one that sees all meshes.
-constexpr double k_worse_loss = 1.05;
+/// A unary stage may be so much worse than the one before it, out of fold, and still be kept: with few meshes the
+/// classifiers of the folds learn less from the context, which differs from mesh to mesh, than the one that sees all.
+constexpr double k_kept_unary_loss = 1.05, k_kept_pairwise_loss = 1;
 constexpr float k_sliver = 0.02F;  ///< of a label's largest piece in the mesh
 constexpr std::size_t k_none = static_cast<std::size_t>(-1);
 constexpr std::uint64_t k_unary_task = 1000, k_pairwise_task = 2000, k_fold_task = 1;
@@ -125,6 +125,7 @@ FoldBoostingResult run_stage(const std::string& what, std::span<const BoostingIt
 struct Cascade {
     std::string name;
     std::size_t most_stages;
+    double kept_loss;          ///< a stage is kept if its loss is below so many times that of the stage before it
     FoldBoostingOptions task;  ///< its number of features and seed are set per stage
     std::size_t base_features, context_features;
     std::vector<BoostingItems> items;  ///< per mesh
@@ -145,7 +146,7 @@ PerMesh train_cascade(Cascade cascade, const TrainOptions& options, StumpScorer&
         cascade.task.seed = first_seed + stage;
         FoldBoostingResult result =
             run_stage(fmt::format("{} {}", cascade.name, stage), cascade.items, cascade.task, options, scorer, report);
-        if (stage > 0 && !(result.loss < k_worse_loss * last_loss)) {
+        if (stage > 0 && !(result.loss < cascade.kept_loss * last_loss)) {
             report.stages.back().kept = false;
             break;
         }
@@ -166,7 +167,8 @@ PerMesh train_unary(const LabeledCorpus& corpus, std::vector<MeshFeatures>& feat
     weights.reserve(features.size());
     for (const MeshFeatures& mesh : features) weights.push_back(normalized(mesh.face_area));
 
-    Cascade cascade{"unary", options.max_stages, {}, model.unary_names.size(), context.size(), {}, {}};
+    Cascade cascade{"unary", options.max_stages, k_kept_unary_loss, {}, model.unary_names.size(), context.size(), {},
+                    {}};
     cascade.task.classes = classes;
     cascade.task.folds = folds.count;
     cascade.task.seed = options.seed + k_unary_task;
@@ -218,7 +220,14 @@ PerMesh train_pairwise(const LabeledCorpus& corpus, std::vector<MeshFeatures>& f
                        const TrainOptions& options, const LabelingBackend& backend, LabelingModel& model,
                        TrainReport& report) {
     const EdgeTargets targets = make_edge_targets(corpus, features, folds);
-    Cascade cascade{"pairwise", k_pairwise_stages, {}, model.pairwise_names.size(), EdgeNeighborhood::k_bins, {}, {}};
+    Cascade cascade{"pairwise",
+                    k_pairwise_stages,
+                    k_kept_pairwise_loss,
+                    {},
+                    model.pairwise_names.size(),
+                    EdgeNeighborhood::k_bins,
+                    {},
+                    {}};
     cascade.task.binary = true;
     cascade.task.folds = folds.count;
     cascade.task.seed = options.seed + k_pairwise_task;

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <memory>
+#include <span>
 
 #include "host/core/errors.h"
 
@@ -88,8 +89,8 @@ void RayScene::Impl::attach(const TriangleMesh& mesh) {
     void* faces =
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(Face), mesh.face_count());
     if (vertices && faces) {
-        std::memcpy(vertices, mesh.vertices.data(), mesh.vertex_count() * sizeof(Vec3));
-        std::memcpy(faces, mesh.faces.data(), mesh.face_count() * sizeof(Face));
+        std::ranges::uninitialized_copy(mesh.vertices, std::span(static_cast<Vec3*>(vertices), mesh.vertex_count()));
+        std::ranges::uninitialized_copy(mesh.faces, std::span(static_cast<Face*>(faces), mesh.face_count()));
         rtcCommitGeometry(geometry);
         rtcAttachGeometry(scene, geometry);
     }

@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "host/core/errors.h"
-#include "host/core/text.h"
+#include "host/core/files.h"
 #include "host/data/corpus.h"
 
 namespace exemplar {
@@ -60,15 +60,7 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
 
 void require_input(const fs::path& path) {
     if (fs::exists(path)) return;
-    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-    std::vector<std::string> names;
-    std::error_code error;
-    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-        names.push_back(it->path().filename().string());
-    std::sort(names.begin(), names.end());
-    std::string nearest = nearest_word(path.filename().string(), names);
-    if (!nearest.empty()) nearest = fmt::format(" (did you mean '{}'?)", (path.parent_path() / nearest).string());
-    throw DataError(fmt::format("{}: no such file or folder{}", path.string(), nearest));
+    throw DataError(fmt::format("{}: no such file or folder{}", path.string(), suggest_file(path)));
 }
 
 std::vector<fs::path> meshes_of_argument(const fs::path& source) {

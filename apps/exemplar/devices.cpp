@@ -81,7 +81,9 @@ void print_table(const std::vector<Row>& rows) {
 void run_devices(const DevicesOptions& options) {
     const auto limits = apply_common_options(options.common);
     std::vector<DeviceInfo> devices = list_devices();
-    const std::size_t chosen = select_device(devices, wanted_device(options));
+    // Where none can be used the table says why, and the error of choosing comes after it.
+    const bool choice = std::ranges::any_of(devices, [](const DeviceInfo& info) { return info.unusable.empty(); });
+    const std::size_t chosen = choice ? select_device(devices, wanted_device(options)) : devices.size();
 
     std::vector<Row> rows{k_header};
     std::vector<std::string> remarks;
@@ -93,10 +95,11 @@ void run_devices(const DevicesOptions& options) {
         list.push_back(to_json(report));
         list.back()["chosen"] = info.index == chosen;
     }
-    print_table(rows);
+    if (!devices.empty()) print_table(rows);
     if (!options.common.quiet)
         for (const std::string& remark : remarks) fmt::print(stderr, "warning: {}\n", remark);
     write_report(options.common, {{"devices", list}});
+    if (!choice) select_device(devices, wanted_device(options));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 namespace exemplar {
 namespace {
 
+using Range = GpuContextHistograms::Range;
 using shared::AxisContextParameters;
 using shared::GeodesicContextParameters;
 using shared::uvec4;
@@ -84,12 +85,11 @@ std::vector<vec4> mass_prefixes(const Masses& masses, std::span<const std::vecto
 
 // One block of samples: the ranges of faces seen from 16 samples, the first in the lowest byte of x. What stands in the
 // place of missing samples does not matter: they have no mass.
-void pack_ranges(const ContextGeometry& geometry, std::size_t block, std::size_t first_face, std::span<uvec4> texels) {
+void pack_ranges(const ContextGeometry& geometry, Range samples, std::size_t first_face, std::span<uvec4> texels) {
     std::ranges::fill(texels, uvec4{});
-    const std::size_t samples = geometry.sample_face.size();
-    for (std::size_t j = k_block * block; j < std::min(samples, k_block * (block + 1)); ++j) {
-        const std::size_t word = j % k_block / 4, shift = 8 * (j % 4);
-        const std::uint8_t* row = geometry.geodesic_bin.data() + j * geometry.faces + first_face;
+    for (std::size_t j = 0; j < samples.count; ++j) {
+        const std::size_t word = j / 4, shift = 8 * (j % 4);
+        const std::uint8_t* row = geometry.geodesic_bin.data() + (samples.first + j) * geometry.faces + first_face;
         for (std::size_t i = 0; i < texels.size(); ++i) (&texels[i].x)[word] |= std::uint32_t{row[i]} << shift;
     }
 }
@@ -103,6 +103,12 @@ std::size_t histogram_bytes(std::size_t faces, std::size_t classes) {
     return k_columns_per_class * classes * faces * sizeof(float);
 }
 
+// Samples per pass so that the prefix sums of one class block pass no limit; whole blocks.
+std::size_t samples_per_pass(const DeviceInfo& info, std::size_t tile_bytes) {
+    const std::size_t prefixes = std::min<std::size_t>(buffer_limit(info, tile_bytes) / sizeof(vec4), info.max_texels);
+    return std::max<std::size_t>(prefixes / k_context_axes / k_block, 1) * k_block - 1;
+}
+
 // Faces per tile so that neither the ranges nor the positions nor the histograms of one class block pass the limits.
 std::size_t faces_per_tile(const DeviceInfo& info, std::size_t tile_bytes, std::size_t samples) {
     const std::size_t limit = buffer_limit(info, tile_bytes), blocks = std::max<std::size_t>(sample_blocks(samples), 1);
@@ -112,51 +118,46 @@ std::size_t faces_per_tile(const DeviceInfo& info, std::size_t tile_bytes, std::
     return std::max<std::size_t>(std::min(by_bytes, by_texels), 1);
 }
 
-template <typename Make>
-void for_each_tile(std::size_t faces, std::size_t tile_faces, Make&& make) {
-    for (std::size_t first = 0; first < faces; first += tile_faces) make(first, std::min(tile_faces, faces - first));
+template <typename Use>
+void for_each_range(std::size_t count, std::size_t step, Use&& use) {
+    for (std::size_t first = 0; first < count; first += step) use(Range{first, std::min(step, count - first)});
 }
 
 }  // namespace
 
-DeviceContextSamples::DeviceContextSamples(Device& device, const ContextGeometry& geometry)
-    : face_(geometry.sample_face), area_(geometry.sample_area), axis_edges_(geometry.axis_edges) {
-    check_context_geometry(geometry);
-    std::vector<float> sorted;
+GpuContextHistograms::Samples::Samples(Device& device, const ContextGeometry& geometry, Range part)
+    : range(part),
+      face(std::span(geometry.sample_face).subspan(part.first, part.count)),
+      area(std::span(geometry.sample_area).subspan(part.first, part.count)) {
+    std::vector<float> sorted_positions;
     for (std::size_t axis = 0; axis < k_context_axes; ++axis) {
         const auto position = [&](std::uint32_t sample) {
-            return geometry.axis_position[axis * geometry.faces + face_[sample]];
+            return geometry.axis_position[axis * geometry.faces + face[sample]];
         };
-        order_[axis].resize(count());
-        std::iota(order_[axis].begin(), order_[axis].end(), 0u);
-        std::ranges::stable_sort(order_[axis], {}, position);
-        std::ranges::transform(order_[axis], std::back_inserter(sorted), position);
+        order[axis].resize(part.count);
+        std::iota(order[axis].begin(), order[axis].end(), 0u);
+        std::ranges::stable_sort(order[axis], {}, position);
+        std::ranges::transform(order[axis], std::back_inserter(sorted_positions), position);
     }
-    sorted_ = Buffer::of<float>(device, sorted);
+    sorted = Buffer::of<float>(device, sorted_positions);
 }
 
-DeviceContextTile::DeviceContextTile(Device& device, const ContextGeometry& geometry, std::size_t first_face,
-                                     std::size_t face_count)
-    : first(first_face),
-      faces(face_count),
-      ranges(device, sample_blocks(geometry.sample_face.size()) * faces * sizeof(uvec4)),
-      positions(device, k_context_axes * faces * sizeof(float)) {
+GpuContextHistograms::Tile::Tile(Device& device, const ContextGeometry& geometry, Range samples, Range part)
+    : faces(part),
+      ranges(device, sample_blocks(samples.count) * faces.count * sizeof(uvec4)),
+      positions(device, k_context_axes * faces.count * sizeof(float)) {
     Stream stream(device);
-    std::vector<uvec4> texels(faces);
-    for (std::size_t block = 0; block < sample_blocks(geometry.sample_face.size()); ++block) {
-        pack_ranges(geometry, block, first, texels);
-        stream.upload<uvec4>(ranges, texels, block * faces * sizeof(uvec4));
-    }
+    std::vector<uvec4> texels(faces.count);
+    std::size_t block = 0;
+    for_each_range(samples.count, k_block, [&](Range rows) {
+        pack_ranges(geometry, {samples.first + rows.first, rows.count}, faces.first, texels);
+        stream.upload<uvec4>(ranges, texels, block++ * faces.count * sizeof(uvec4));
+    });
     for (std::size_t axis = 0; axis < k_context_axes; ++axis)
-        stream.upload<float>(positions, std::span(geometry.axis_position).subspan(axis * geometry.faces + first, faces),
-                             axis * faces * sizeof(float));
+        stream.upload<float>(
+            positions, std::span(geometry.axis_position).subspan(axis * geometry.faces + faces.first, faces.count),
+            axis * faces.count * sizeof(float));
     stream.finish();
-}
-
-DeviceContextGeometry::DeviceContextGeometry(Device& device, const ContextGeometry& geometry, std::size_t tile_bytes)
-    : faces_(geometry.faces), samples_(device, geometry) {
-    for_each_tile(faces_, faces_per_tile(device.info(), tile_bytes, samples()),
-                  [&](std::size_t first, std::size_t faces) { tiles_.emplace_back(device, geometry, first, faces); });
 }
 
 GpuContextHistograms::GpuContextHistograms(Device& device, Profiler* profiler, std::size_t tile_bytes)
@@ -174,71 +175,61 @@ GpuContextHistograms::GpuContextHistograms(Device& device, Profiler* profiler, s
 
 void GpuContextHistograms::accumulate(const ContextGeometry& geometry, std::span<const float> probabilities,
                                       std::size_t classes, std::span<float> out) {
-    const DeviceContextSamples samples(device_, geometry);
+    check_context_geometry(geometry);
     check_context_sizes(geometry.faces, probabilities, classes, out);
-    const std::size_t tile_faces =
-        std::min(faces_per_tile(device_.info(), tile_bytes_, samples.count()), geometry.faces);
-    const std::vector<ClassChunk> chunks = class_chunks(samples, probabilities, classes, tile_faces);
-    for_each_tile(geometry.faces, tile_faces, [&](std::size_t first, std::size_t faces) {
-        const DeviceContextTile tile(device_, geometry, first, faces);
-        for (const ClassChunk& chunk : chunks) accumulate_tile(samples, tile, chunk, {out, geometry.faces, classes});
+    std::ranges::fill(out, 0.0f);
+    const Job job{geometry, probabilities, classes, out};
+    for_each_range(geometry.sample_face.size(), samples_per_pass(device_.info(), tile_bytes_), [&](Range range) {
+        const Samples samples(device_, geometry, range);
+        const std::size_t step = std::min(faces_per_tile(device_.info(), tile_bytes_, range.count), geometry.faces);
+        const std::vector<ClassChunk> chunks = class_chunks(job, samples, step);
+        for_each_range(geometry.faces, step, [&](Range faces) {
+            const Tile tile(device_, geometry, range, faces);
+            for (const ClassChunk& chunk : chunks) add_tile(job, samples, tile, chunk);
+        });
     });
 }
 
-void GpuContextHistograms::accumulate(const DeviceContextGeometry& geometry, std::span<const float> probabilities,
-                                      std::size_t classes, std::span<float> out) {
-    check_context_sizes(geometry.faces(), probabilities, classes, out);
-    if (geometry.faces() == 0) return;
-    const std::vector<ClassChunk> chunks =
-        class_chunks(geometry.samples_, probabilities, classes, geometry.tiles_.front().faces);
-    for (const DeviceContextTile& tile : geometry.tiles_)
-        for (const ClassChunk& chunk : chunks)
-            accumulate_tile(geometry.samples_, tile, chunk, {out, geometry.faces(), classes});
-}
-
-std::vector<GpuContextHistograms::ClassChunk> GpuContextHistograms::class_chunks(const DeviceContextSamples& samples,
-                                                                                 std::span<const float> probabilities,
-                                                                                 std::size_t classes,
+std::vector<GpuContextHistograms::ClassChunk> GpuContextHistograms::class_chunks(const Job& job, const Samples& samples,
                                                                                  std::size_t tile_faces) {
     const std::size_t limit = buffer_limit(device_.info(), tile_bytes_);
-    const std::size_t prefixes_per_block = k_context_axes * (samples.count() + 1);
+    const std::size_t prefixes_per_block = k_context_axes * (samples.range.count + 1);
     const std::size_t most_blocks =
-        std::min({limit / histogram_bytes(std::max<std::size_t>(tile_faces, 1), k_class_block),
-                  limit / (prefixes_per_block * sizeof(vec4)), device_.info().max_texels / prefixes_per_block});
-    const std::size_t step = k_class_block * std::max<std::size_t>(most_blocks, 1);
-    const Masses masses{samples.face_, samples.area_, probabilities, classes};
+        std::min({limit / histogram_bytes(tile_faces, k_class_block), limit / (prefixes_per_block * sizeof(vec4)),
+                  device_.info().max_texels / prefixes_per_block});
+    const Masses masses{samples.face, samples.area, job.probabilities, job.classes};
     std::vector<ClassChunk> chunks;
-    for (std::size_t first = 0; first < classes; first += step) {
-        const std::size_t count = std::min(step, classes - first);
-        chunks.push_back({first, count, Buffer::of<vec4>(device_, mass_blocks(masses, first, count)),
-                          Buffer::of<vec4>(device_, mass_prefixes(masses, samples.order_, first, count))});
-    }
+    for_each_range(job.classes, k_class_block * std::max<std::size_t>(most_blocks, 1), [&](Range classes) {
+        chunks.push_back(
+            {classes, Buffer::of<vec4>(device_, mass_blocks(masses, classes.first, classes.count)),
+             Buffer::of<vec4>(device_, mass_prefixes(masses, samples.order, classes.first, classes.count))});
+    });
     return chunks;
 }
 
-void GpuContextHistograms::accumulate_tile(const DeviceContextSamples& samples, const DeviceContextTile& tile,
-                                           const ClassChunk& chunk, const Output& out) {
-    const std::size_t bytes = histogram_bytes(tile.faces, chunk.count);
+void GpuContextHistograms::add_tile(const Job& job, const Samples& samples, const Tile& tile, const ClassChunk& chunk) {
+    const std::size_t bytes = histogram_bytes(tile.faces.count, chunk.classes.count);
     if (!histograms_ || histograms_.bytes() < bytes) histograms_ = Buffer(device_, bytes);
     const BufferRange histograms(histograms_, 0, bytes);
-    const auto faces = static_cast<std::uint32_t>(tile.faces);
-    const auto sample_count = static_cast<std::uint32_t>(samples.count());
-    const auto classes = static_cast<std::uint32_t>(chunk.count);
+    const auto faces = static_cast<std::uint32_t>(tile.faces.count);
+    const auto sample_count = static_cast<std::uint32_t>(samples.range.count);
+    const auto classes = static_cast<std::uint32_t>(chunk.classes.count);
     const std::uint32_t threads = (faces + faces_per_thread_ - 1) / faces_per_thread_;
     stream_.dispatch(
         geodesic_kernel_, Threads(threads, class_blocks(classes)), {tile.ranges, chunk.masses, histograms},
         GeodesicContextParameters{faces, static_cast<std::uint32_t>(sample_blocks(sample_count)), classes, threads});
     AxisContextParameters axes{.edges = {}, .faces = faces, .samples = sample_count, .classes = classes, .padding = 0};
-    for (std::size_t axis = 0; axis < k_context_axes; ++axis) axes.edges[axis] = to_vec4(samples.axis_edges_[axis]);
-    stream_.dispatch(axes_kernel_, Threads(tile.faces, k_context_axes),
-                     {tile.positions, samples.sorted_, chunk.prefixes, histograms}, axes);
+    for (std::size_t axis = 0; axis < k_context_axes; ++axis) axes.edges[axis] = to_vec4(job.geometry.axis_edges[axis]);
+    stream_.dispatch(axes_kernel_, Threads(faces, k_context_axes),
+                     {tile.positions, samples.sorted, chunk.prefixes, histograms}, axes);
     stream_.finish();
     tile_.resize(bytes / sizeof(float));
     histograms_.download<float>(tile_);
-    for (std::size_t bin = 0; bin < k_columns_per_class; ++bin)
-        for (std::size_t c = 0; c < chunk.count; ++c)
-            std::copy_n(tile_.data() + (bin * chunk.count + c) * tile.faces, tile.faces,
-                        out.values.data() + (bin * out.classes + chunk.first + c) * out.faces + tile.first);
+    for (std::size_t row = 0; row < tile_.size() / faces; ++row) {
+        const std::size_t bin = row / classes, label = chunk.classes.first + row % classes;
+        float* out = job.out.data() + (bin * job.classes + label) * job.geometry.faces + tile.faces.first;
+        for (std::size_t f = 0; f < faces; ++f) out[f] += tile_[row * faces + f];
+    }
 }
 
 }  // namespace exemplar

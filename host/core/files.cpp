@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <vector>
 
 #include "host/core/errors.h"
+#include "host/core/text.h"
 
 namespace exemplar {
 namespace {
@@ -92,6 +95,18 @@ std::string read_file(const fs::path& path) {
     if (stream.bad() || failed)
         throw DataError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
     return std::move(content).str();
+}
+
+std::string suggest_file(const fs::path& path) {
+    std::vector<std::string> names;
+    std::error_code error;
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+        names.push_back(it->path().filename().string());
+    std::sort(names.begin(), names.end());
+    const std::string nearest = nearest_word(path.filename().string(), names);
+    if (nearest.empty()) return {};
+    return fmt::format(" (did you mean '{}'?)", (path.parent_path() / nearest).string());
 }
 
 }  // namespace exemplar

@@ -18,4 +18,7 @@ void write_file_atomically(const std::filesystem::path& path, const std::functio
 /// The whole content of a file; throws DataError naming the path if it cannot be read.
 std::string read_file(const std::filesystem::path& path);
 
+/// " (did you mean 'FOLDER/NAME'?)" with the name in the folder of `path` that is most like its own; empty if none is.
+std::string suggest_file(const std::filesystem::path& path);
+
 }  // namespace exemplar

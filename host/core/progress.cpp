@@ -62,10 +62,11 @@ void Progress::print(bool last) {
     printed_ = Clock::now();
     if (quiet_output) return;
     const double elapsed = seconds_since(start_);
-    std::string line = fmt::format("{}: {}/{}", what_, done_, total_);
-    if (last) {
-        line += " in " + format_seconds(elapsed);
-    } else if (done_ > 0) {
+    // Some tasks end early because nothing is left to gain: the last line tells what was done, not what might have
+    // been.
+    std::string line = last ? fmt::format("{}: {} in {}", what_, done_, format_seconds(elapsed))
+                            : fmt::format("{}: {}/{}", what_, done_, total_);
+    if (!last && done_ > 0) {
         const double left =
             elapsed * static_cast<double>(total_ - std::min(done_, total_)) / static_cast<double>(done_);
         line += ", " + format_seconds(left) + " left";

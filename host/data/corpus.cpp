@@ -76,7 +76,8 @@ std::vector<fs::path> meshes_of_list(const fs::path& list) {
         if (line.empty()) continue;
         fs::path path = line;
         if (path.is_relative() && !fs::exists(path)) path = list.parent_path() / path;
-        if (!fs::exists(path)) throw DataError(fmt::format("{}:{}: no such mesh: {}", list.string(), number, line));
+        if (!fs::exists(path))
+            throw DataError(fmt::format("{}:{}: no such mesh: {}{}", list.string(), number, line, suggest_file(path)));
         paths.push_back(path);
     }
     return paths;
@@ -131,7 +132,8 @@ Loaded load_one(const fs::path& path) {
 }  // namespace
 
 std::vector<fs::path> list_meshes(const fs::path& source) {
-    if (!fs::exists(source)) throw DataError(fmt::format("{}: no such folder or list", source.string()));
+    if (!fs::exists(source))
+        throw DataError(fmt::format("{}: no such folder or list{}", source.string(), suggest_file(source)));
     std::vector<fs::path> paths;
     if (fs::is_directory(source))
         paths = meshes_of_folder(source);

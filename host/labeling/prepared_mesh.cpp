@@ -82,23 +82,51 @@ TriangleMesh centered_mesh(const TriangleMesh& mesh) {
     return centered;
 }
 
-/// Face normals without the noise of the tessellation: twice the mean over the faces that share a vertex (once per
-/// shared vertex), weighted by area and by the cosine between the normals. Faces at a right angle to each other do not
-/// mix, so that the edges of a box stay sharp.
-std::vector<Vec3> smoothed_normals(const TriangleMesh& mesh, const Topology& topology,
-                                   const std::vector<float>& areas) {
+/// Offset of a face's center from another's within the tangent plane of the other, in an arbitrary frame.
+struct TangentFrame {
+    TangentFrame(const Vec3& center, const Vec3& normal)
+        : origin(center), x(normal.unitOrthogonal()), y(normal.cross(x)) {}
+    Eigen::Vector2d offset(const Vec3& point) const {
+        const Vec3 from = point - origin;
+        return {static_cast<double>(from.dot(x)), static_cast<double>(from.dot(y))};
+    }
+    Vec3 origin, x, y;
+};
+
+/// Face normals without the noise of the tessellation: twice the local linear regression, at the face's own center, of
+/// the normals of the faces that share a vertex (once per shared vertex), weighted by area and by the cosine between
+/// the normals. Faces at a right angle to each other do not mix, so that the edges of a box stay sharp. A plain mean
+/// would lean to where the larger faces are.
+std::vector<Vec3> smoothed_normals(const TriangleMesh& mesh, const Topology& topology, const std::vector<float>& areas,
+                                   const std::vector<Vec3>& centers) {
     constexpr int k_passes = 2;
+    constexpr double k_ridge = 1e-3;  // a neighborhood on one line has no slope across it
     std::vector<Vec3> normals = face_normals(mesh);
     for (int pass = 0; pass < k_passes; ++pass) {
         const std::vector<Vec3> previous = normals;
-        const auto smooth = [&](std::size_t f) {
-            Vec3d sum = Vec3d::Zero();
+        const auto for_each_near = [&](std::size_t f, const auto& use) {
             for (const std::uint32_t v : mesh.faces[f]) {
                 for (const std::uint32_t near : topology.faces_of_vertex(v)) {
-                    const float weight = areas[near] * std::max(previous[near].dot(previous[f]), 0.0F);
-                    sum += static_cast<double>(weight) * previous[near].cast<double>();
+                    use(near, static_cast<double>(areas[near] * std::max(previous[near].dot(previous[f]), 0.0F)));
                 }
             }
+        };
+        const auto smooth = [&](std::size_t f) {
+            const TangentFrame frame(centers[f], previous[f]);
+            Eigen::Vector2d moment = Eigen::Vector2d::Zero();
+            Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+            for_each_near(f, [&](std::uint32_t near, double weight) {
+                const Eigen::Vector2d offset = frame.offset(centers[near]);
+                moment += weight * offset;
+                spread += weight * offset * offset.transpose();
+            });
+            spread.diagonal().array() += k_ridge * spread.trace();
+            const Eigen::Vector2d slope = spread.trace() > 0.0 ? Eigen::Vector2d(spread.inverse() * moment) : moment;
+            Vec3d sum = Vec3d::Zero();
+            for_each_near(f, [&](std::uint32_t near, double weight) {
+                const double balanced = weight * (1.0 - slope.dot(frame.offset(centers[near])));
+                sum += balanced * previous[near].cast<double>();
+            });
             const double length = sum.norm();
             if (length > 0.0) normals[f] = (sum / length).cast<float>();
         };
@@ -177,7 +205,7 @@ PreparedMesh prepare_mesh(const TriangleMesh& mesh, std::size_t samples) {
     prepared.area_share = area_shares(areas, total);
     prepared.center = face_centers(prepared.mesh);
     prepared.topology = build_topology(prepared.mesh);
-    prepared.normal = smoothed_normals(prepared.mesh, prepared.topology, areas);
+    prepared.normal = smoothed_normals(prepared.mesh, prepared.topology, areas, prepared.center);
     prepared.graph = build_dual_graph(prepared.mesh, prepared.topology);
     prepared.component_size = component_sizes(prepared.mesh, prepared.topology);
     prepared.samples = sample_faces(prepared.mesh, prepared.graph, samples);

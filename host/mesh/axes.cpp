@@ -31,6 +31,17 @@ Eigen::Matrix3d surface_covariance(const TriangleMesh& mesh, const Vec3d& center
     return total > 0 ? Eigen::Matrix3d(sum / total) : sum;
 }
 
+/// Whether the surface reaches farther against `axis` than along it, by the third moment of its faces' centers.
+bool skewed_backward(const TriangleMesh& mesh, const Vec3& center, const Vec3& axis) {
+    double moment = 0;
+    for (const Face& face : mesh.faces) {
+        const Vec3 a = mesh.vertices[face[0]], b = mesh.vertices[face[1]], c = mesh.vertices[face[2]];
+        const double area = 0.5 * static_cast<double>((b - a).cross(c - a).norm());
+        moment += area * std::pow(static_cast<double>(axis.dot((a + b + c) / 3 - center)), 3);
+    }
+    return moment < 0;
+}
+
 }  // namespace
 
 PrincipalAxes principal_axes(const TriangleMesh& mesh) {
@@ -39,7 +50,8 @@ PrincipalAxes principal_axes(const TriangleMesh& mesh) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(surface_covariance(mesh, result.center.cast<double>()));
     for (int i = 0; i < 3; ++i) {
         const int source = 2 - i;  // eigenvalues come in rising order
-        result.axis[i] = solver.eigenvectors().col(source).cast<float>();
+        const Vec3 axis = solver.eigenvectors().col(source).cast<float>();
+        result.axis[i] = skewed_backward(mesh, result.center, axis) ? Vec3(-axis) : axis;
         result.sigma[i] = static_cast<float>(std::sqrt(std::max(0.0, solver.eigenvalues()[source])));
     }
     return result;
@@ -94,7 +106,13 @@ std::vector<std::uint32_t> faces_along_curve(const TriangleMesh& mesh, const Pri
     return order;
 }
 
-/// Points spread evenly over a surface, with the unit normals there, relative to a given origin.
+/// The axes as columns.
+Eigen::Matrix3f frame(const PrincipalAxes& axes) {
+    return (Eigen::Matrix3f() << axes.axis[0], axes.axis[1], axes.axis[2]).finished();
+}
+
+/// Points spread evenly over a surface, with the unit normals there, in the frame of its principal axes: what is found
+/// from them turns with the mesh.
 struct SurfaceSamples {
     std::vector<Vec3> point, normal;
 
@@ -112,6 +130,7 @@ struct SurfaceSamples {
 SurfaceSamples sample_surface(const TriangleMesh& mesh, const PrincipalAxes& axes, std::size_t count) {
     const std::vector<float> areas = face_areas(mesh);
     const std::vector<Vec3> normals = face_normals(mesh);
+    const Eigen::Matrix3f to_frame = frame(axes).transpose();
     double total = 0;
     for (float area : areas) total += static_cast<double>(area);
     SurfaceSamples samples;
@@ -125,10 +144,11 @@ SurfaceSamples sample_surface(const TriangleMesh& mesh, const PrincipalAxes& axe
             const auto i = static_cast<double>(samples.point.size() + 1);
             double s = std::fmod(i * 0.7548776662466927, 1.0), t = std::fmod(i * 0.5698402909980532, 1.0);
             if (s + t > 1) s = 1 - s, t = 1 - t;
-            const Vec3 a = mesh.vertices[face[0]] - axes.center;
-            samples.point.push_back(a + static_cast<float>(s) * (mesh.vertices[face[1]] - mesh.vertices[face[0]]) +
-                                    static_cast<float>(t) * (mesh.vertices[face[2]] - mesh.vertices[face[0]]));
-            samples.normal.push_back(normals[f]);
+            const Vec3 a = mesh.vertices[face[0]];
+            const Vec3 point = a + static_cast<float>(s) * (mesh.vertices[face[1]] - a) +
+                               static_cast<float>(t) * (mesh.vertices[face[2]] - a);
+            samples.point.push_back(to_frame * (point - axes.center));
+            samples.normal.push_back(to_frame * normals[f]);
         }
     }
     return samples;
@@ -201,16 +221,14 @@ struct Candidate {
 };
 
 /// Half of the integer points on an octahedron, as directions: the set does not depend on the signs of the axes.
-std::vector<Vec3> hemisphere_directions(const PrincipalAxes& axes) {
+std::vector<Vec3> hemisphere_directions() {
     std::vector<Vec3> directions;
     const int n = k_direction_steps;
     for (int x = -n; x <= n; ++x)
         for (int y = -n; y <= n; ++y) {
             const int z = n - std::abs(x) - std::abs(y);
             if (z < 0 || (z == 0 && (y < 0 || (y == 0 && x < 0)))) continue;
-            const Vec3 d = static_cast<float>(x) * axes.axis[2] + static_cast<float>(y) * axes.axis[1] +
-                           static_cast<float>(z) * axes.axis[0];
-            directions.push_back(d.normalized());
+            directions.push_back(Eigen::Vector3i(z, y, x).cast<float>().normalized());
         }
     return directions;
 }
@@ -250,8 +268,8 @@ Candidate refined(const MirrorTest& test, const Vec3& start, std::size_t queries
 }
 
 /// Candidates for all planes: the coarse ones, with the most promising refined.
-std::vector<Candidate> search_planes(const MirrorTest& test, const PrincipalAxes& axes) {
-    const std::vector<Vec3> directions = hemisphere_directions(axes);
+std::vector<Candidate> search_planes(const MirrorTest& test) {
+    const std::vector<Vec3> directions = hemisphere_directions();
     std::vector<Candidate> coarse(directions.size());
     parallel_for(
         directions.size(),
@@ -260,14 +278,14 @@ std::vector<Candidate> search_planes(const MirrorTest& test, const PrincipalAxes
         },
         8);
     std::vector<Candidate> starts = best_separated(coarse, k_refined_count, 0.5f * k_separation);
-    for (const Vec3& axis : axes.axis) starts.push_back({axis, {}});
+    for (int i = 0; i < 3; ++i) starts.push_back({Vec3::Unit(i), {}});
     std::vector<Candidate> result(starts.size());
     parallel_for(starts.size(), [&](std::size_t i) {
         result[i] = refined(test, starts[i].normal, k_fine_queries);
         result[i].asymmetry = test.measure(result[i].normal, k_final_queries);
     });
     // A search may end beside its principal plane although that is exact, and coarse planes fill up the rest.
-    for (const Vec3& axis : axes.axis) result.push_back({axis, test.measure(axis, k_final_queries)});
+    for (int i = 0; i < 3; ++i) result.push_back({Vec3::Unit(i), test.measure(Vec3::Unit(i), k_final_queries)});
     result.insert(result.end(), coarse.begin(), coarse.end());
     return result;
 }
@@ -283,13 +301,13 @@ std::vector<SymmetryPlane> symmetry_planes(const TriangleMesh& mesh, int count) 
         double area = 0;
         for (float a : face_areas(mesh)) area += static_cast<double>(a);
         const MirrorTest test(std::move(samples), bounding_box_diagonal(mesh), static_cast<float>(area));
-        chosen = best_separated(search_planes(test, axes), wanted, k_separation);
+        chosen = best_separated(search_planes(test), wanted, k_separation);
         for (Candidate& c : chosen) c.asymmetry = test.measure(c.normal, k_final_queries);
         std::ranges::stable_sort(chosen, {}, [](const Candidate& c) { return c.asymmetry.distance; });
     }
     std::vector<SymmetryPlane> planes;
     planes.reserve(wanted);
-    for (const Candidate& c : chosen) planes.push_back({axes.center, c.normal, c.asymmetry.distance});
+    for (const Candidate& c : chosen) planes.push_back({axes.center, frame(axes) * c.normal, c.asymmetry.distance});
     for (std::size_t i = 0; planes.size() < wanted; ++i)
         planes.push_back({axes.center, axes.axis[i % 3], planes.empty() ? 0.0f : planes.back().error});
     return planes;

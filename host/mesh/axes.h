@@ -10,7 +10,8 @@ namespace exemplar {
 /// Center and axes of the surface seen as a thin shell.
 struct PrincipalAxes {
     Vec3 center;                 ///< area centroid
-    std::array<Vec3, 3> axis;    ///< orthonormal, by falling variance; signs are arbitrary
+    std::array<Vec3, 3> axis;    ///< orthonormal, by falling variance; the surface's third moment along each is
+                                 ///< positive (where it is zero the sign is arbitrary)
     std::array<float, 3> sigma;  ///< standard deviation along each axis, in mesh units
 };
 /// Area-weighted principal axes of the surface (exact integral over each triangle).

@@ -98,7 +98,12 @@ class BinaryValues {
 };
 
 /// What a property means to a mesh.
-enum class Role { none, x, y, z, corners, label };
+enum class Role { none, x, y, z, corners, strips, label };
+
+bool is_index_list(const PlyProperty& property) {
+    const bool named = property.name == "vertex_indices" || property.name == "vertex_index";
+    return named && property.count_type && is_integer(property.type);
+}
 
 Role role_of(const PlyElement& element, const PlyProperty& property) {
     if (element.name == "vertex" && !property.count_type) {
@@ -107,10 +112,10 @@ Role role_of(const PlyElement& element, const PlyProperty& property) {
         if (property.name == "z") return Role::z;
     }
     if (element.name == "face") {
-        const bool is_corners = property.name == "vertex_indices" || property.name == "vertex_index";
-        if (is_corners && property.count_type && is_integer(property.type)) return Role::corners;
+        if (is_index_list(property)) return Role::corners;
         if (property.name == "label" && !property.count_type) return Role::label;
     }
+    if (element.name == "tristrips" && is_index_list(property)) return Role::strips;
     return Role::none;
 }
 
@@ -145,7 +150,7 @@ class BodyReader {
     void check_declarations() {
         for (const PlyElement& element : header_.elements) {
             const std::vector<Role> roles = roles_of(element);
-            for (Role role : {Role::x, Role::y, Role::z, Role::corners, Role::label})
+            for (Role role : {Role::x, Role::y, Role::z, Role::corners, Role::strips, Role::label})
                 if (std::ranges::count(roles, role) > 1)
                     mesh_io::fail(name_, fmt::format("element {} declares coordinates, vertex indices or labels twice",
                                                      element.name));
@@ -161,6 +166,8 @@ class BodyReader {
             } else if (element.name == "face") {
                 need(Role::corners, "vertex_indices that is a list of integers");
                 content_.has_labels = std::ranges::find(roles, Role::label) != roles.end();
+            } else if (element.name == "tristrips") {
+                need(Role::strips, "vertex_indices that is a list of integers");
             }
         }
         if (!vertex_count_) mesh_io::fail(name_, "the header declares no vertices");
@@ -181,7 +188,22 @@ class BodyReader {
             for (std::size_t p = 0; p < roles.size(); ++p) read_property(element.properties[p], roles[p]);
             if (element.name == "vertex") content_.polygons.vertices.push_back(position_);
             if (element.name == "face") content_.polygons.add(corners_);
+            if (element.name == "tristrips") end_strip();
         }
+    }
+
+    /// Adds the triangles of a strip: every other one is turned around, and those that only join two parts of the strip
+    /// (a vertex twice) count but are left out.
+    void end_strip() {
+        for (std::size_t i = 2; i < corners_.size(); ++i) {
+            std::array<std::uint32_t, 3> triangle{corners_[i - 2], corners_[i - 1], corners_[i]};
+            if (i % 2) std::swap(triangle[0], triangle[1]);
+            const auto [a, b, c] = triangle;
+            if (a == b || b == c || c == a) continue;
+            content_.polygons.add(triangle);
+            if (content_.has_labels) content_.labels.push_back(-1);
+        }
+        corners_.clear();
     }
 
     void read_property(const PlyProperty& property, Role role) {
@@ -213,13 +235,18 @@ class BodyReader {
         if (count < 0 || count > static_cast<double>(values_.most_values(property.type)))
             values_.fail(fmt::format(
                 "a list of {} items cannot be in what is left; the count is wrong or the file is cut off", count));
-        if (role == Role::corners) corners_.clear();
+        const bool wanted = role == Role::corners || role == Role::strips;
+        if (wanted) corners_.clear();
         for (auto i = static_cast<std::uint64_t>(count); i > 0; --i) {
             const double value = values_.value(property.type, property.name);
-            if (role != Role::corners) continue;
+            if (!wanted) continue;
+            if (role == Role::strips && value == -1) {
+                end_strip();
+                continue;
+            }
             if (value < 0 || value >= static_cast<double>(*vertex_count_))
-                values_.fail(fmt::format("face {} names vertex {}, but the file has {} vertices, counted from 0", row_,
-                                         value, *vertex_count_));
+                values_.fail(fmt::format("{} {} names vertex {}, but the file has {} vertices, counted from 0",
+                                         role == Role::strips ? "strip" : "face", row_, value, *vertex_count_));
             corners_.push_back(static_cast<std::uint32_t>(value));
         }
     }

@@ -13,6 +13,7 @@ namespace exemplar {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -100,6 +101,18 @@ TEST_F(CorpusFolder, UnknownLabelsSuggestTheNearest) {
 TEST_F(CorpusFolder, MissingLabelsNameWhatIsAccepted) {
     write("m.off", k_quad_and_triangle);
     EXPECT_THAT(error_of({folder_ / "m.off"}), HasSubstr("m_labels.txt"));
+}
+
+TEST_F(CorpusFolder, MissingMeshesOfAListNameTheLineAndTheNearestFile) {
+    write("chair.off", k_quad_and_triangle);
+    write("list.txt", "chair.off\n\nchiar.off\n");
+    try {
+        list_meshes(folder_ / "list.txt");
+        FAIL() << "a missing mesh was accepted";
+    } catch (const DataError& error) {
+        EXPECT_THAT(error.what(), AllOf(HasSubstr("list.txt:3: no such mesh: chiar.off"),
+                                        HasSubstr("did you mean '" + (folder_ / "chair.off").string() + "'")));
+    }
 }
 
 TEST_F(CorpusFolder, EmptyMeshesAreRefused) {

@@ -46,19 +46,18 @@ TEST(CurvatureFeatures, OfASphereAreItsInverseRadius) {
     const TriangleMesh sphere = shapes::icosphere(4, 3.0F);
     const MeshFeatures features = compute_features(sphere);
     const float truth = 1.0F / normalized_radius(sphere, 1000);
-    // The smallest patches hold eight faces; their centers lie at slightly different depths below the sphere.
-    for (const auto& [radius, error] :
-         {std::pair("@0.01", 0.1F), std::pair("@0.02", 0.1F), std::pair("@0.05", 0.1F), std::pair("@0.1", 0.07F)}) {
+    constexpr float k_error = 0.02F;
+    for (const char* radius : {"@0.01", "@0.02", "@0.05", "@0.1"}) {
         for (const char* function : {"k1", "k2", "mean", "|k1|"}) {
             for (const float k : column(features.unary, std::string("curvature.") + function + radius)) {
-                ASSERT_NEAR(k, truth, error * truth) << function << radius;
+                ASSERT_NEAR(k, truth, k_error * truth) << function << radius;
             }
         }
         for (const float k : column(features.unary, std::string("curvature.k1*k2") + radius)) {
-            ASSERT_NEAR(k, truth * truth, 2.0F * error * truth * truth) << radius;
+            ASSERT_NEAR(k, truth * truth, 2.0F * k_error * truth * truth) << radius;
         }
     }
-    for (const float k : column(features.pairwise, "curvature.k1@0.04")) EXPECT_NEAR(k, truth, 0.1F * truth);
+    for (const float k : column(features.pairwise, "curvature.k1@0.04")) EXPECT_NEAR(k, truth, k_error * truth);
 }
 
 TEST(CurvatureFeatures, OfACylinderAndATorus) {
@@ -68,8 +67,8 @@ TEST(CurvatureFeatures, OfACylinderAndATorus) {
     const std::span<const float> k1 = column(tube.unary, "curvature.k1@0.1"),
                                  k2 = column(tube.unary, "curvature.k2@0.1");
     for (std::size_t f = k1.size() / 3; f < 2 * k1.size() / 3; ++f) {
-        EXPECT_NEAR(k1[f], 1.0F / radius, 0.05F / radius);
-        EXPECT_NEAR(k2[f], 0.0F, 0.05F / radius);
+        EXPECT_NEAR(k1[f], 1.0F / radius, 0.03F / radius);
+        EXPECT_NEAR(k2[f], 0.0F, 0.03F / radius);
     }
     const TriangleMesh ring = shapes::torus(1.0F, 0.4F, 96, 48);
     const PreparedMesh ring_prepared = prepare_mesh(ring, 1000);
@@ -78,8 +77,12 @@ TEST(CurvatureFeatures, OfACylinderAndATorus) {
     for (std::size_t f = 0; f < ring.face_count(); ++f) {
         const Vec3 p = ring_prepared.center[f] / unit;
         const float from_axis = p.head<2>().norm();
-        EXPECT_NEAR(column(features.unary, "curvature.k1@0.1")[f] * unit, 1.0F / 0.4F, 0.25F);
-        EXPECT_NEAR(column(features.unary, "curvature.k2@0.1")[f] * unit, (from_axis - 1.0F) / 0.4F / from_axis, 0.25F);
+        const float k2_truth = (from_axis - 1.0F) / 0.4F / from_axis;
+        // The wider patch spans half of the tube's radius, where a cubic height field no longer follows it closely.
+        for (const auto& [radius, error] : {std::pair("@0.05", 0.06F), std::pair("@0.1", 0.18F)}) {
+            EXPECT_NEAR(column(features.unary, std::string("curvature.k1") + radius)[f] * unit, 1.0F / 0.4F, error);
+            EXPECT_NEAR(column(features.unary, std::string("curvature.k2") + radius)[f] * unit, k2_truth, error);
+        }
     }
 }
 

@@ -157,7 +157,15 @@ TEST(BadFile, PlyHeader) {
          {ascii_ply("element vertex 0\nproperty float x\nproperty float y\n", ""), ": ", "no property z"},
          {ascii_ply("element vertex 0\n" + xyz + "element face 0\nproperty int label\n", ""), ": ", "vertex_indices"},
          {ascii_ply("element vertex 0\n" + xyz + "element face 0\nproperty list uchar float vertex_indices\n", ""),
-          ": ", "integers"}});
+          ": ", "integers"},
+         {ascii_ply("element vertex 0\n" + xyz + "element tristrips 0\nproperty int length\n", ""), ": ",
+          "tristrips has no property vertex_indices"},
+         {ascii_ply("element vertex 1\n" + xyz + "element tristrips 1\nproperty list int int vertex_indices\n",
+                    "0 0 0\n3 0 -1 1\n"),
+          ":11: ", "strip 0 names vertex 1"},
+         {ascii_ply("element vertex 1\n" + xyz + "element tristrips 1\nproperty list int int vertex_indices\n",
+                    "0 0 0\n3 0 -2 0\n"),
+          ":11: ", "vertex -2"}});
 }
 
 TEST(BadFile, PlyAsciiBody) {

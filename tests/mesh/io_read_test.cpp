@@ -219,6 +219,20 @@ TEST(ReadPly, BinaryInBothByteOrders) {
     }
 }
 
+TEST(ReadPly, TriangleStripsTurnEveryOtherTriangle) {
+    // Two strips in one list; the first repeats a vertex to turn a corner.
+    const MeshFile file = read_as("a.ply",
+                                  "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
+                                  "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                                  "property int label\nelement tristrips 1\nproperty list int int vertex_indices\n"
+                                  "end_header\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n3 3 4 5 7\n"
+                                  "10 0 1 2 3 3 4 -1 5 4 3\n");
+    EXPECT_THAT(file.mesh.faces, ElementsAre(Face{3, 4, 5}, Face{0, 1, 2}, Face{2, 1, 3}, Face{5, 4, 3}));
+    ASSERT_TRUE(file.labels.has_value());
+    EXPECT_THAT(file.labels->label, ElementsAre(0, -1, -1, -1));
+    EXPECT_THAT(file.warnings, IsEmpty());
+}
+
 std::string labeled_ply(const std::string& comments, const std::string& type, const std::vector<std::string>& labels) {
     std::string text = "ply\nformat ascii 1.0\n" + comments +
                        "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face " +

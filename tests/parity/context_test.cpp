@@ -98,24 +98,8 @@ TEST(ContextParity, AllNumbersOfClasses) {
     }
 }
 
-TEST(ContextParity, FacesAreTiledAndTheGeometryIsReused) {
-    Random random(4);
-    const ContextGeometry geometry = random_geometry(301, 60, random);
-    const DeviceContextGeometry resident(testing::shared_device(), geometry,
-                                         100 * k_context_measures * k_context_bins * 4 * sizeof(float));
-    EXPECT_EQ(resident.tiles(), 4u);
-    GpuContextHistograms histograms(testing::shared_device());
-    for (const std::size_t classes : {4u, 6u, 2u}) {
-        const std::vector<float> probabilities = random_probabilities(301, classes, random);
-        std::vector<float> expected(output_size(301, classes)), actual(expected.size());
-        CpuContextHistograms().accumulate(geometry, probabilities, classes, expected);
-        histograms.accumulate(resident, probabilities, classes, actual);
-        expect_near(actual, expected, 301, classes);
-    }
-}
-
-// Neither the faces nor the classes fit at once, and no tile is kept.
-TEST(ContextParity, FacesAndClassesAreTiledOnTheWay) {
+// Neither the faces nor the classes nor, with the least limit, the samples fit at once.
+TEST(ContextParity, WorkOverTheLimitsIsTiled) {
     Random random(8);
     const ContextGeometry geometry = random_geometry(70, 60, random);
     for (const std::size_t tile_bytes :

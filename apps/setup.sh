@@ -1,4 +1,5 @@
-# Sourced by apps/demo.sh and tests/run.sh: makes sure that the packages are there, then configures and builds Release.
+# Sourced by apps/demo.sh, tests/run.sh and .ci/lint. Defines how to install missing packages and how to configure and
+# build, as Release unless the build folder says otherwise; sets XDG_RUNTIME_DIR where it is not set.
 # shellcheck shell=bash
 
 exemplar_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -35,17 +36,15 @@ exemplar_install() {
 }
 
 exemplar_build() {
-    local generator=()
-    [ -e "$exemplar_build/CMakeCache.txt" ] || generator=(-G Ninja)
-    cmake -S "$exemplar_root" -B "$exemplar_build" "${generator[@]}" -DCMAKE_BUILD_TYPE=Release "$@" >"${TMPDIR:-/tmp}/exemplar-cmake.$$" ||
-        { cat "${TMPDIR:-/tmp}/exemplar-cmake.$$"; return 1; }
-    rm -f "${TMPDIR:-/tmp}/exemplar-cmake.$$"
+    local first=() log
+    [ -e "$exemplar_build/CMakeCache.txt" ] || first=(-G Ninja -DCMAKE_BUILD_TYPE=Release)
+    log=$(cmake -S "$exemplar_root" -B "$exemplar_build" "${first[@]}" "$@") || { echo "$log"; return 1; }
     cmake --build "$exemplar_build"
 }
 
-# Vulkan's software driver wants a private folder for its sockets.
+# Vulkan's software driver wants a private folder for its sockets: one of the user's that all runs share.
 if [ -z "${XDG_RUNTIME_DIR:-}" ]; then
-    XDG_RUNTIME_DIR=$(mktemp -d)
-    chmod 700 "$XDG_RUNTIME_DIR"
+    XDG_RUNTIME_DIR=${TMPDIR:-/tmp}/exemplar-$(id -u)
+    mkdir -m 700 "$XDG_RUNTIME_DIR" 2>/dev/null || [ -O "$XDG_RUNTIME_DIR" ] || XDG_RUNTIME_DIR=$(mktemp -d)
     export XDG_RUNTIME_DIR
 fi

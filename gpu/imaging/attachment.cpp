@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "gpu/runtime/device.h"
 #include "gpu/runtime/errors.h"
@@ -27,8 +28,9 @@ Attachment::Attachment(Device& device, VkFormat format, VkExtent2D extent, VkIma
                        VkImageAspectFlags aspect)
     : memory_(device.handle()), image_(device.handle()), view_(device.handle()) {
     check_extent(device, extent);
-    const std::string what =
-        fmt::format("make an image of {} x {} on '{}'", extent.width, extent.height, device.info().name);
+    const auto what = [&] {
+        return fmt::format("make an image of {} x {} on '{}'", extent.width, extent.height, device.info().name);
+    };
     auto image = empty_structure<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
     image.imageType = VK_IMAGE_TYPE_2D;
     image.format = format;

@@ -2,8 +2,6 @@
 
 #include <volk.h>
 
-#include <cstdint>
-
 #include "gpu/runtime/unique_handle.h"
 
 namespace exemplar {

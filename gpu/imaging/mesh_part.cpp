@@ -1,6 +1,7 @@
 #include "gpu/imaging/mesh_part.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 
 namespace exemplar {

@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <vector>
-
 #include "embedded/imaging_mesh_frag.h"
 #include "embedded/imaging_mesh_vert.h"
 #include "gpu/runtime/device.h"
 #include "gpu/runtime/errors.h"
 #include "gpu/runtime/instance.h"
+#include "gpu/runtime/kernel.h"
 #include "gpu/runtime/reflection.h"
 #include "shaders/shared/render.h"
 
@@ -27,16 +26,10 @@ void require_graphics(const Device& device) {
 }
 
 // Both stages see the same push constants, those of C++.
-UniqueShaderModule make_module(const Device& device, const Shader& shader) {
+void check_parameters(const Shader& shader) {
     const Reflection reflection = reflect(shader);
     check_layout(shader, "the push constants", layout_of<shared::RenderParameters>(), reflection.push_bytes,
                  reflection.push_fields);
-    auto info = empty_structure<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
-    info.codeSize = shader.words.size_bytes();
-    info.pCode = shader.words.data();
-    UniqueShaderModule module(device.handle());
-    check(vkCreateShaderModule(device.handle(), &info, nullptr, module.put()), k_what);
-    return module;
 }
 
 VkPipelineShaderStageCreateInfo stage_info(VkShaderStageFlagBits stage, const UniqueShaderModule& module) {
@@ -140,6 +133,8 @@ void MeshPipeline::create_set() {
 }
 
 void MeshPipeline::create_pipeline(VkFormat color, VkFormat depth) {
+    check_parameters(shaders::imaging_mesh_vert);
+    check_parameters(shaders::imaging_mesh_frag);
     const UniqueShaderModule vertex = make_module(device_, shaders::imaging_mesh_vert);
     const UniqueShaderModule fragment = make_module(device_, shaders::imaging_mesh_frag);
     const std::array stages{stage_info(VK_SHADER_STAGE_VERTEX_BIT, vertex),

@@ -39,8 +39,7 @@ constexpr Transition k_color_drawn{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_B
                                    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
                                    VK_ACCESS_2_TRANSFER_READ_BIT};
 
-template <typename Tile>
-VkExtent2D sample_extent(const Tile& tile) {
+VkExtent2D sample_extent(const PictureTile& tile) {
     return {static_cast<std::uint32_t>(tile.width * k_samples), static_cast<std::uint32_t>(tile.height * k_samples)};
 }
 
@@ -58,8 +57,7 @@ void zoom(Eigen::Matrix4f& matrix, int axis, int begin, int size, int whole) {
         (matrix.row(axis) - center * matrix.row(3)) * (static_cast<float>(whole) / static_cast<float>(size));
 }
 
-template <typename Tile>
-shared::RenderParameters tile_parameters(const MeshDraw& draw, const Tile& tile) {
+shared::RenderParameters tile_parameters(const MeshDraw& draw, const PictureTile& tile) {
     Eigen::Matrix4f matrix = draw.view_projection;
     zoom(matrix, 0, tile.x, tile.width, draw.width);
     zoom(matrix, 1, tile.y, tile.height, draw.height);
@@ -112,8 +110,7 @@ void check_arguments(const TriangleMesh& mesh, std::span<const Color> face_color
 MeshRenderer::MeshRenderer(Device& device, int tile_size, std::size_t part_bytes)
     : device_(device),
       tile_size_(tile_size),
-      part_bytes_(std::min<std::size_t>(
-          {part_bytes, device.info().max_storage_range, device.info().max_allocation, device.info().memory / 8})),
+      part_bytes_(buffer_limit(device.info(), part_bytes)),
       depth_format_(depth_format(device)),
       pipeline_(device, k_color_format, depth_format_),
       resolve_(device, shaders::imaging_resolve_comp, {.push_constants = layout_of<shared::ResolveParameters>()}),
@@ -141,7 +138,7 @@ Image MeshRenderer::render(const TriangleMesh& mesh, std::span<const Color> face
     Image image(width, height, 3);
     for (int y = 0; y < height; y += tile_size_)
         for (int x = 0; x < width; x += tile_size_) {
-            const Tile tile{x, y, std::min(tile_size_, width - x), std::min(tile_size_, height - y)};
+            const PictureTile tile{x, y, std::min(tile_size_, width - x), std::min(tile_size_, height - y)};
             if (whole)
                 draw_part(tile, draw, {.first = true, .last = true});
             else
@@ -152,7 +149,7 @@ Image MeshRenderer::render(const TriangleMesh& mesh, std::span<const Color> face
 }
 
 // A surface over the limits goes through the same buffers, part by part; depth decides between the parts.
-void MeshRenderer::draw_parts(const Tile& tile, const MeshDraw& draw, const MeshSurface& surface) {
+void MeshRenderer::draw_parts(const PictureTile& tile, const MeshDraw& draw, const MeshSurface& surface) {
     const std::size_t faces = surface.faces.size(), step = faces_per_part(part_bytes_);
     std::size_t first = 0;
     do {
@@ -177,7 +174,7 @@ void MeshRenderer::reserve_tile(int width, int height) {
     width = std::max(width, tile_width_);
     height = std::max(height, tile_height_);
     tile_width_ = tile_height_ = 0;  // until all of it is there
-    const VkExtent2D extent = sample_extent(Tile{0, 0, width, height});
+    const VkExtent2D extent = sample_extent(PictureTile{0, 0, width, height});
     color_ =
         Attachment(device_, k_color_format, extent,
                    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
@@ -190,7 +187,8 @@ void MeshRenderer::reserve_tile(int width, int height) {
     tile_height_ = height;
 }
 
-void MeshRenderer::record_draw(VkCommandBuffer commands, const Tile& tile, const MeshDraw& draw, Turn turn) const {
+void MeshRenderer::record_draw(VkCommandBuffer commands, const PictureTile& tile, const MeshDraw& draw,
+                               Turn turn) const {
     VkClearValue background{}, far{};
     std::ranges::copy(draw.background, background.color.float32);
     far.depthStencil.depth = 1.0f;
@@ -217,7 +215,7 @@ void MeshRenderer::record_draw(VkCommandBuffer commands, const Tile& tile, const
     vkCmdEndRendering(commands);
 }
 
-void MeshRenderer::draw_part(const Tile& tile, const MeshDraw& draw, Turn turn) {
+void MeshRenderer::draw_part(const PictureTile& tile, const MeshDraw& draw, Turn turn) {
     commands_.begin();
     if (turn.first) {
         change_layout(commands_.handle(), color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
@@ -231,7 +229,7 @@ void MeshRenderer::draw_part(const Tile& tile, const MeshDraw& draw, Turn turn) 
     commands_.wait();
 }
 
-void MeshRenderer::record_copy(VkCommandBuffer commands, const Tile& tile) const {
+void MeshRenderer::record_copy(VkCommandBuffer commands, const PictureTile& tile) const {
     change_layout(commands, color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                   VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, k_color_drawn);
     VkBufferImageCopy region{};
@@ -241,13 +239,12 @@ void MeshRenderer::record_copy(VkCommandBuffer commands, const Tile& tile) const
                            &region);
 }
 
-void MeshRenderer::resolve_tile(const Tile& tile, Image& image) {
+void MeshRenderer::resolve_tile(const PictureTile& tile, Image& image) {
     const shared::ResolveParameters size{static_cast<std::uint32_t>(tile.width),
                                          static_cast<std::uint32_t>(tile.height)};
     tile_pixels_.resize(std::size_t{size.width} * size.height);
     stream_.dispatch(resolve_, Threads(size.width, size.height), {samples_, pixels_}, size);
-    stream_.download(pixels_, std::span(tile_pixels_));
-    stream_.finish();
+    stream_.fetch(pixels_, std::span(tile_pixels_));
     for (int y = 0; y < tile.height; ++y)
         for (int x = 0; x < tile.width; ++x) {
             const std::uint32_t packed =

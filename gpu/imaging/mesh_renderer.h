@@ -22,6 +22,12 @@
 
 namespace exemplar {
 
+/// A part of a picture that is drawn at once, in pixels.
+struct PictureTile {
+    int x, y;  ///< of its upper left pixel
+    int width, height;
+};
+
 /// Draws meshes with a color per face, without a window. The picture is render_mesh's of host/imaging: the same 2 x 2
 /// samples per pixel, light and averaging in linear color. Inside surfaces they agree within 2 of 255; samples near
 /// edges may fall to the other side, for devices round vertex positions to 1/16 to 1/256 of a sample. Reruns on one
@@ -39,21 +45,17 @@ class MeshRenderer {
                  int height, const RenderOptions& options = {});
 
   private:
-    struct Tile {
-        int x, y;           // of its upper left pixel
-        int width, height;  // pixels
-    };
     // Which of the parts of a tile's surface is drawn.
     struct Turn {
         bool first, last;
     };
     void upload(const MeshSurface& surface);
     void reserve_tile(int width, int height);
-    void draw_parts(const Tile& tile, const struct MeshDraw& draw, const MeshSurface& surface);
-    void draw_part(const Tile& tile, const struct MeshDraw& draw, Turn turn);
-    void record_draw(VkCommandBuffer commands, const Tile& tile, const struct MeshDraw& draw, Turn turn) const;
-    void record_copy(VkCommandBuffer commands, const Tile& tile) const;
-    void resolve_tile(const Tile& tile, Image& image);
+    void draw_parts(const PictureTile& tile, const struct MeshDraw& draw, const MeshSurface& surface);
+    void draw_part(const PictureTile& tile, const struct MeshDraw& draw, Turn turn);
+    void record_draw(VkCommandBuffer commands, const PictureTile& tile, const struct MeshDraw& draw, Turn turn) const;
+    void record_copy(VkCommandBuffer commands, const PictureTile& tile) const;
+    void resolve_tile(const PictureTile& tile, Image& image);
 
     Device& device_;
     int tile_size_;

@@ -1,12 +1,11 @@
 #include "gpu/labeling/context_histograms.h"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 
 #include "embedded/labeling_context_axes_comp.h"
 #include "embedded/labeling_context_geodesic_comp.h"
-#include "host/core/errors.h"
-#include "host/learn/boosted_stumps.h"
 #include "shaders/shared/context.h"
 
 namespace exemplar {
@@ -20,7 +19,10 @@ using shared::vec4;
 
 constexpr std::size_t k_columns_per_class = k_context_measures * k_context_bins;
 constexpr std::size_t k_block = shared::k_context_sample_block;
-constexpr std::size_t k_class_block = 4;
+constexpr std::size_t k_class_block = shared::k_context_class_block;
+static_assert(shared::k_context_bins == k_context_bins && shared::k_context_axes == k_context_axes);
+// A texel's lanes: the inner bin edges of an axis, and the classes of a block.
+static_assert(k_context_bins - 1 == 4 && k_class_block == 4);
 
 // On a CPU every load of a kernel is expensive, so that a sample, once loaded, serves many faces; a GPU wants many
 // invocations.
@@ -94,16 +96,12 @@ void pack_ranges(const ContextGeometry& geometry, Range samples, std::size_t fir
     }
 }
 
-// Bytes that one of several buffers may take.
-std::size_t buffer_limit(const DeviceInfo& info, std::size_t wanted) {
-    return std::min<std::size_t>({wanted, info.max_storage_range, info.max_allocation, info.memory / 8});
-}
-
 std::size_t histogram_bytes(std::size_t faces, std::size_t classes) {
     return k_columns_per_class * classes * faces * sizeof(float);
 }
 
-// Samples per pass so that the prefix sums of one class block pass no limit; whole blocks.
+// Samples per pass so that the prefix sums of one class block pass no limit. One less than whole blocks: the prefix
+// sums, one more than samples, then are.
 std::size_t samples_per_pass(const DeviceInfo& info, std::size_t tile_bytes) {
     const std::size_t prefixes = std::min<std::size_t>(buffer_limit(info, tile_bytes) / sizeof(vec4), info.max_texels);
     return std::max<std::size_t>(prefixes / k_context_axes / k_block, 1) * k_block - 1;
@@ -111,7 +109,7 @@ std::size_t samples_per_pass(const DeviceInfo& info, std::size_t tile_bytes) {
 
 // Faces per tile so that neither the ranges nor the positions nor the histograms of one class block pass the limits.
 std::size_t faces_per_tile(const DeviceInfo& info, std::size_t tile_bytes, std::size_t samples) {
-    const std::size_t limit = buffer_limit(info, tile_bytes), blocks = std::max<std::size_t>(sample_blocks(samples), 1);
+    const std::size_t limit = buffer_limit(info, tile_bytes), blocks = sample_blocks(samples);
     const std::size_t by_bytes =
         limit / std::max({blocks * sizeof(uvec4), histogram_bytes(1, k_class_block), k_context_axes * sizeof(float)});
     const std::size_t by_texels = info.max_texels / std::max(blocks, k_context_axes);
@@ -142,11 +140,11 @@ GpuContextHistograms::Samples::Samples(Device& device, const ContextGeometry& ge
     sorted = Buffer::of<float>(device, sorted_positions);
 }
 
-GpuContextHistograms::Tile::Tile(Device& device, const ContextGeometry& geometry, Range samples, Range part)
+GpuContextHistograms::Tile::Tile(Device& device, Stream& stream, const ContextGeometry& geometry, Range samples,
+                                 Range part)
     : faces(part),
       ranges(device, sample_blocks(samples.count) * faces.count * sizeof(uvec4)),
       positions(device, k_context_axes * faces.count * sizeof(float)) {
-    Stream stream(device);
     std::vector<uvec4> texels(faces.count);
     std::size_t block = 0;
     for_each_range(samples.count, k_block, [&](Range rows) {
@@ -157,7 +155,6 @@ GpuContextHistograms::Tile::Tile(Device& device, const ContextGeometry& geometry
         stream.upload<float>(
             positions, std::span(geometry.axis_position).subspan(axis * geometry.faces + faces.first, faces.count),
             axis * faces.count * sizeof(float));
-    stream.finish();
 }
 
 GpuContextHistograms::GpuContextHistograms(Device& device, Profiler* profiler, std::size_t tile_bytes)
@@ -184,7 +181,7 @@ void GpuContextHistograms::accumulate(const ContextGeometry& geometry, std::span
         const std::size_t step = std::min(faces_per_tile(device_.info(), tile_bytes_, range.count), geometry.faces);
         const std::vector<ClassChunk> chunks = class_chunks(job, samples, step);
         for_each_range(geometry.faces, step, [&](Range faces) {
-            const Tile tile(device_, geometry, range, faces);
+            const Tile tile(device_, stream_, geometry, range, faces);
             for (const ClassChunk& chunk : chunks) add_tile(job, samples, tile, chunk);
         });
     });
@@ -209,7 +206,7 @@ std::vector<GpuContextHistograms::ClassChunk> GpuContextHistograms::class_chunks
 
 void GpuContextHistograms::add_tile(const Job& job, const Samples& samples, const Tile& tile, const ClassChunk& chunk) {
     const std::size_t bytes = histogram_bytes(tile.faces.count, chunk.classes.count);
-    if (!histograms_ || histograms_.bytes() < bytes) histograms_ = Buffer(device_, bytes);
+    reserve(device_, histograms_, bytes);
     const BufferRange histograms(histograms_, 0, bytes);
     const auto faces = static_cast<std::uint32_t>(tile.faces.count);
     const auto sample_count = static_cast<std::uint32_t>(samples.range.count);
@@ -222,9 +219,8 @@ void GpuContextHistograms::add_tile(const Job& job, const Samples& samples, cons
     for (std::size_t axis = 0; axis < k_context_axes; ++axis) axes.edges[axis] = to_vec4(job.geometry.axis_edges[axis]);
     stream_.dispatch(axes_kernel_, Threads(faces, k_context_axes),
                      {tile.positions, samples.sorted, chunk.prefixes, histograms}, axes);
-    stream_.finish();
     tile_.resize(bytes / sizeof(float));
-    histograms_.download<float>(tile_);
+    stream_.fetch(histograms_, std::span(tile_));
     for (std::size_t row = 0; row < tile_.size() / faces; ++row) {
         const std::size_t bin = row / classes, label = chunk.classes.first + row % classes;
         float* out = job.out.data() + (bin * job.classes + label) * job.geometry.faces + tile.faces.first;

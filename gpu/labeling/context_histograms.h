@@ -52,7 +52,8 @@ class GpuContextHistograms final : public ContextHistograms {
     };
     // As many faces as fit at once.
     struct Tile {
-        Tile(Device& device, const ContextGeometry& geometry, Range samples, Range faces);
+        // Uploads by the stream, before what it records next.
+        Tile(Device& device, Stream& stream, const ContextGeometry& geometry, Range samples, Range faces);
         Range faces;
         Buffer ranges;     // blocks of 16 samples x faces x 16 samples, a byte each
         Buffer positions;  // axes x faces

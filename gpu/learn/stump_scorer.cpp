@@ -16,6 +16,8 @@ using shared::StumpParameters;
 
 // The kernel fetches each as one four-component vector.
 static_assert(sizeof(GroupedStump) == 16 && sizeof(StumpGroup) == 16);
+static_assert(shared::k_link_softmax == static_cast<std::uint32_t>(Link::softmax) &&
+              shared::k_link_sigmoid == static_cast<std::uint32_t>(Link::sigmoid));
 
 // On a CPU every load of a kernel is expensive, so that a stump, once loaded, serves many items; a GPU wants many
 // invocations.
@@ -56,15 +58,6 @@ GroupedStumps group(const BoostedStumps& classifier) {
     return result;
 }
 
-void reserve(Device& device, Buffer& buffer, std::size_t bytes) {
-    if (!buffer || buffer.bytes() < bytes) buffer = Buffer(device, bytes);
-}
-
-// Bytes of a tile's largest buffer: several tiles' worth must fit into the device's memory.
-std::size_t largest_tile(const DeviceInfo& info, std::size_t wanted) {
-    return std::min<std::size_t>({wanted, info.max_storage_range, info.max_allocation, info.memory / 8});
-}
-
 // Shaders may take NaN and infinity for what never occurs, so none reaches them. The smallest number is above no
 // threshold, as NaN; the largest is above all, as infinity.
 void copy_finite(std::span<const float> values, std::span<std::byte> memory) {
@@ -81,7 +74,7 @@ void copy_finite(std::span<const float> values, std::span<std::byte> memory) {
 GpuStumpScorer::GpuStumpScorer(Device& device, Profiler* profiler, std::size_t tile_bytes)
     : device_(device),
       quads_(device.info().type == DeviceType::cpu ? k_quads_on_cpu : 1),
-      tile_bytes_(largest_tile(device.info(), tile_bytes)),
+      tile_bytes_(buffer_limit(device.info(), tile_bytes)),
       stream_(device, profiler) {}
 
 // Rows of the smallest tile: neighboring invocations work side by side.
@@ -140,8 +133,7 @@ void GpuStumpScorer::probabilities(const BoostedStumps& classifier, const Featur
                          {BufferRange(features_, 0, grouped.columns.size() * column_bytes), stumps, groups, constant,
                           BufferRange(probabilities_, 0, tile_rows * classes * sizeof(float))},
                          parameters);
-        stream_.finish();
-        probabilities_.download(out.subspan(first * classes, rows * classes));
+        stream_.fetch(probabilities_, out.subspan(first * classes, rows * classes));
     }
 }
 

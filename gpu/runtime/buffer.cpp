@@ -45,13 +45,13 @@ constexpr std::size_t k_piece_bytes = std::size_t{64} << 20;
 
 Buffer::Resource::Resource(Device& owner, std::size_t capacity, BufferMemory memory)
     : device(owner), allocation(owner.handle()), buffer(owner.handle()) {
-    const std::string what = fmt::format("allocate a buffer of {} on '{}'", format_bytes(capacity), device.info().name);
+    const auto what = [&] {
+        return fmt::format("allocate a buffer of {} on '{}'", format_bytes(capacity), device.info().name);
+    };
     auto info = empty_structure<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
     info.size = capacity;
     info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT |
-                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                 VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | VK_BUFFER_USAGE_INDEX_BUFFER_BIT |
-                 VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+                 VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     check(vkCreateBuffer(device.handle(), &info, nullptr, buffer.put()), what);
     VkMemoryRequirements needs{};
     vkGetBufferMemoryRequirements(device.handle(), buffer.get(), &needs);
@@ -113,6 +113,10 @@ void Buffer::read(std::span<std::byte> data, std::size_t offset) const {
         stream.download(*this, data.subspan(begin, std::min(k_piece_bytes, data.size() - begin)), offset + begin);
         stream.finish();
     }
+}
+
+void reserve(Device& device, Buffer& buffer, std::size_t bytes) {
+    if (!buffer || buffer.bytes() < bytes) buffer = Buffer(device, bytes);
 }
 
 }  // namespace exemplar

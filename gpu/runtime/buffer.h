@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <type_traits>
@@ -79,6 +80,9 @@ class Buffer {
     std::shared_ptr<Resource> resource_;
     std::size_t bytes_ = 0;
 };
+
+/// Replaces the buffer by a new one unless it has `bytes` bytes; only then its contents survive.
+void reserve(Device& device, Buffer& buffer, std::size_t bytes);
 
 /// A part of a buffer, as a kernel's binding sees it.
 struct BufferRange {

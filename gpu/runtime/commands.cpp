@@ -73,7 +73,7 @@ void Commands::submit() {
 void Commands::wait() {
     if (state_ != State::submitted) return;
     const VkFence fence = fence_.get();
-    const std::string what = fmt::format("finish the work on device '{}'", device_.info().name);
+    const auto what = [&] { return fmt::format("finish the work on device '{}'", device_.info().name); };
     check(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX), what);
     check(vkResetFences(device_.handle(), 1, &fence), what);
     reset();

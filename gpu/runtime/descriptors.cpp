@@ -30,19 +30,19 @@ RangeLimits limits_of(const ReflectedBinding& binding, const DeviceInfo& info) {
 
 void check_binding(const Kernel& kernel, const ReflectedBinding& binding, const BufferRange& range,
                    const DeviceInfo& info) {
-    const std::string start = fmt::format("kernel {}: buffer '{}': ", kernel.name(), binding.name);
-    if (!*range.buffer) throw ShaderError(start + "it has no memory");
+    const auto start = [&] { return fmt::format("kernel {}: buffer '{}': ", kernel.name(), binding.name); };
+    if (!*range.buffer) throw ShaderError(start() + "it has no memory");
     if (range.offset > range.buffer->bytes() || range.bytes > range.buffer->bytes() - range.offset)
-        throw ShaderError(fmt::format("{}bytes {} to {} are outside its {} bytes", start, range.offset,
+        throw ShaderError(fmt::format("{}bytes {} to {} are outside its {} bytes", start(), range.offset,
                                       range.offset + range.bytes, range.buffer->bytes()));
     const RangeLimits limits = limits_of(binding, info);
     if (range.offset % limits.alignment != 0)
-        throw DeviceLimitError(fmt::format("{}offset {} is no multiple of {}, as device '{}' needs it", start,
+        throw DeviceLimitError(fmt::format("{}offset {} is no multiple of {}, as device '{}' needs it", start(),
                                            range.offset, limits.alignment, info.name),
                                range.offset, limits.alignment);
     if (range.bytes > limits.bytes)
         throw DeviceLimitError(fmt::format("{}{} are over the limit of {} per binding of device '{}'; tile the work",
-                                           start, format_bytes(range.bytes), format_bytes(limits.bytes), info.name),
+                                           start(), format_bytes(range.bytes), format_bytes(limits.bytes), info.name),
                                range.bytes, limits.bytes);
 }
 
@@ -69,7 +69,7 @@ void Descriptors::check_bindings(const Kernel& kernel, std::span<const BufferRan
 
 void Descriptors::bind(VkCommandBuffer commands, const Kernel& kernel, std::span<const BufferRange> ranges) {
     if (ranges.empty()) return;
-    const VkDescriptorSet set = allocate(kernel.program()->set_layout);
+    const VkDescriptorSet set = allocate(kernel.program()->set_layout.get());
     std::vector<VkDescriptorBufferInfo> infos(ranges.size());
     std::vector<VkBufferView> views(ranges.size());
     std::vector<VkWriteDescriptorSet> writes(ranges.size());
@@ -89,7 +89,8 @@ void Descriptors::bind(VkCommandBuffer commands, const Kernel& kernel, std::span
         }
     }
     vkUpdateDescriptorSets(device_.handle(), static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.program()->layout, 0, 1, &set, 0, nullptr);
+    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.program()->layout.get(), 0, 1, &set, 0,
+                            nullptr);
 }
 
 VkBufferView Descriptors::texel_view(const ReflectedBinding& binding, const VkDescriptorBufferInfo& range) {

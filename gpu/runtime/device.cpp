@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
-#include <string_view>
 
 #include "gpu/runtime/errors.h"
 
@@ -22,9 +21,7 @@ bool wants_validation() {
 
 }  // namespace
 
-Device::Device(const DeviceOptions& options)
-    : validating_(wants_validation()),
-      instance_({.validation = validating_, .extensions = options.instance_extensions}) {
+Device::Device(const DeviceOptions& options) : validating_(wants_validation()), instance_(validating_) {
     const std::vector<DeviceInfo> devices = instance_.devices();
     const std::size_t index =
         select_device(devices, options.name.empty() ? environment("EXEMPLAR_DEVICE") : options.name);
@@ -32,17 +29,17 @@ Device::Device(const DeviceOptions& options)
     physical_ = instance_.physical_devices()[index];
     queue_family_ = find_compute_queue(physical_).value();
     vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
-    create(options);
+    create();
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
     try {
         pipeline_cache_ = std::make_unique<PipelineCache>(device_, info_);
-    } catch (const DeviceError&) {
+    } catch (...) {
         vkDestroyDevice(device_, nullptr);
         throw;
     }
 }
 
-void Device::create(const DeviceOptions& options) {
+void Device::create() {
     const float priority = 1.0f;
     const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                         .pNext = nullptr,
@@ -56,8 +53,6 @@ void Device::create(const DeviceOptions& options) {
     features13.dynamicRendering = VK_TRUE;
     auto features =
         empty_structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &features13);
-    std::vector<const char*> extensions;
-    for (const std::string& extension : options.device_extensions) extensions.push_back(extension.c_str());
     const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                   .pNext = &features,
                                   .flags = 0,
@@ -65,10 +60,11 @@ void Device::create(const DeviceOptions& options) {
                                   .pQueueCreateInfos = &queue,
                                   .enabledLayerCount = 0,
                                   .ppEnabledLayerNames = nullptr,
-                                  .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
-                                  .ppEnabledExtensionNames = extensions.data(),
+                                  .enabledExtensionCount = 0,
+                                  .ppEnabledExtensionNames = nullptr,
                                   .pEnabledFeatures = nullptr};
-    check(vkCreateDevice(physical_, &info, nullptr, &device_), fmt::format("open device '{}'", info_.name));
+    check(vkCreateDevice(physical_, &info, nullptr, &device_),
+          [&] { return fmt::format("open device '{}'", info_.name); });
 }
 
 Device::~Device() {
@@ -87,12 +83,13 @@ void Device::submit(VkCommandBuffer commands, VkFence fence) {
     info.commandBufferInfoCount = 1;
     info.pCommandBufferInfos = &command_info;
     const std::lock_guard lock(queue_mutex_);
-    check(vkQueueSubmit2(queue_, 1, &info, fence), fmt::format("submit work to device '{}'", info_.name));
+    check(vkQueueSubmit2(queue_, 1, &info, fence),
+          [&] { return fmt::format("submit work to device '{}'", info_.name); });
 }
 
 void Device::wait_idle() {
     const std::lock_guard lock(queue_mutex_);
-    check(vkDeviceWaitIdle(device_), fmt::format("wait for device '{}'", info_.name));
+    check(vkDeviceWaitIdle(device_), [&] { return fmt::format("wait for device '{}'", info_.name); });
 }
 
 std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,

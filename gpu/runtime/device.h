@@ -18,8 +18,6 @@ struct DeviceOptions {
     /// An index of list_devices() or a part of a name in any case; empty: the environment's EXEMPLAR_DEVICE, else the
     /// best.
     std::string name{};
-    std::vector<std::string> instance_extensions{};  ///< beyond compute, e.g. for a window
-    std::vector<std::string> device_extensions{};
 };
 
 /// An opened Vulkan device with one queue for compute, copies and drawing. Everything made from it must end before it.
@@ -39,7 +37,6 @@ class Device {
     std::shared_ptr<const ValidationLog> validation_log() const { return instance_.validation_log(); }
     bool validating() const { return validating_; }
 
-    VkInstance instance() const { return instance_.handle(); }
     VkPhysicalDevice physical() const { return physical_; }
     VkDevice handle() const { return device_; }
     VkQueue queue() const { return queue_; }
@@ -60,7 +57,7 @@ class Device {
     }
 
   private:
-    void create(const DeviceOptions& options);
+    void create();
     bool validating_;
     Instance instance_;
     DeviceInfo info_;

@@ -121,8 +121,8 @@ std::size_t best_device(std::span<const DeviceInfo> devices) {
 const DeviceInfo* find_device(std::span<const DeviceInfo> devices, std::string_view wanted) {
     std::size_t index = 0;
     const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
-    if (error == std::errc{} && end == wanted.data() + wanted.size())
-        return index < devices.size() ? &devices[index] : nullptr;
+    const bool number = error == std::errc{} && end == wanted.data() + wanted.size();
+    if (number && index < devices.size()) return &devices[index];
     const std::string part = lower(wanted);
     const DeviceInfo* best = nullptr;
     for (const DeviceInfo& device : devices)
@@ -183,6 +183,10 @@ DeviceInfo describe(VkPhysicalDevice device, std::size_t index) {
     return info;
 }
 
+std::uint64_t buffer_limit(const DeviceInfo& info, std::uint64_t wanted) {
+    return std::min({wanted, info.max_storage_range, info.max_allocation, info.memory / 8});
+}
+
 bool is_better(const DeviceInfo& a, const DeviceInfo& b) {
     // Among CPU drivers lavapipe is the fastest; among GPUs of one type, the one with more memory is the larger one.
     const auto rank = [](const DeviceInfo& d) {
@@ -194,7 +198,7 @@ bool is_better(const DeviceInfo& a, const DeviceInfo& b) {
 
 std::vector<DeviceInfo> list_devices() {
     try {
-        const Instance instance({.validation = false});
+        const Instance instance(false);
         return instance.devices();
     } catch (const NoDeviceError&) {
         return {};

@@ -59,6 +59,10 @@ struct DeviceReport {
     std::optional<Ceilings> ceilings{};
 };
 
+/// `wanted` bytes for each of a task's largest buffers, or less: what one binding can see, one allocation can hold and
+/// several fit into the device's memory.
+std::uint64_t buffer_limit(const DeviceInfo& info, std::uint64_t wanted);
+
 /// All Vulkan devices of this machine, unusable ones too; empty if there is no Vulkan loader or driver.
 std::vector<DeviceInfo> list_devices();
 
@@ -66,9 +70,9 @@ std::vector<DeviceInfo> list_devices();
 /// others), then the one with more memory.
 bool is_better(const DeviceInfo& a, const DeviceInfo& b);
 
-/// The index of the wanted device: `wanted` is an index, a part of a name in any case (the best that has it), or empty
-/// for the best usable device. Throws NoDeviceError with the list of devices, and for a wrong name the nearest, if
-/// there is none.
+/// The index of the wanted device: `wanted` is an index, a part of a name in any case (the best that has it; a number
+/// that is no index may be one too), or empty for the best usable device. Throws NoDeviceError with the list of
+/// devices, and for a wrong name the nearest, if there is none.
 std::size_t select_device(std::span<const DeviceInfo> devices, std::string_view wanted);
 
 /// Opens the device, measures its ceilings (about a second) and returns all there is to say.

@@ -2,6 +2,7 @@
 
 #include <volk.h>
 
+#include <concepts>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -39,6 +40,10 @@ class DeviceLimitError : public DeviceError {
 
 /// Throws the DeviceError that belongs to a failed Vulkan call; `what` completes "cannot ...".
 void check(VkResult result, std::string_view what);
+/// As above; `what` makes the text, which takes longer than most calls, only when it is needed.
+void check(VkResult result, std::invocable auto&& what) {
+    if (result != VK_SUCCESS) check(result, std::string_view(what()));
+}
 
 /// An empty Vulkan structure of its type, for those of which only a few members are set.
 template <typename T>

@@ -2,7 +2,6 @@
 
 #include <volk.h>
 
-#include <cstdint>
 #include <span>
 #include <unordered_map>
 #include <vector>

@@ -50,18 +50,18 @@ VkDebugUtilsMessengerCreateInfoEXT messenger_info(PFN_vkDebugUtilsMessengerCallb
 
 }  // namespace
 
-Instance::Instance(const InstanceOptions& options) {
+// Delegates, so that the destructor ends what is there when the rest fails.
+Instance::Instance(bool validation) : Instance() {
     load_loader();
-    create(options);
+    create(validation);
 }
 
-void Instance::create(const InstanceOptions& options) {
-    if (options.validation && !has_layer(k_validation_layer))
+void Instance::create(bool validation) {
+    if (validation && !has_layer(k_validation_layer))
         throw DeviceError(
             "EXEMPLAR_VALIDATION is set but the validation layer is missing; install vulkan-validationlayers");
     std::vector<const char*> layers, extensions;
-    for (const std::string& extension : options.extensions) extensions.push_back(extension.c_str());
-    if (options.validation) {
+    if (validation) {
         layers.push_back(k_validation_layer);
         extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     }
@@ -81,7 +81,7 @@ void Instance::create(const InstanceOptions& options) {
                                         .engineVersion = 1,
                                         .apiVersion = VK_API_VERSION_1_3};
     const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                    .pNext = options.validation ? &features : nullptr,
+                                    .pNext = validation ? &features : nullptr,
                                     .flags = 0,
                                     .pApplicationInfo = &application,
                                     .enabledLayerCount = static_cast<std::uint32_t>(layers.size()),
@@ -93,7 +93,7 @@ void Instance::create(const InstanceOptions& options) {
         throw NoDeviceError("no Vulkan driver found; install one (mesa-vulkan-drivers has one for any CPU)");
     check(result, "create a Vulkan instance");
     load_functions(instance_);
-    if (!options.validation) return;
+    if (!validation) return;
     const auto create_messenger = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
         vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
     if (create_messenger)

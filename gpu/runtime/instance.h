@@ -13,11 +13,6 @@
 
 namespace exemplar {
 
-struct InstanceOptions {
-    bool validation = false;                ///< load VK_LAYER_KHRONOS_validation with synchronization validation
-    std::vector<std::string> extensions{};  ///< e.g. the surface extensions of a window system
-};
-
 /// Warnings and errors of the validation layer; outlives the instance, which may still complain while it ends. Any
 /// thread may use it.
 class ValidationLog {
@@ -39,8 +34,9 @@ class ValidationLog {
 /// The connection to the Vulkan loader. Collects what the validation layer says.
 class Instance {
   public:
-    /// Throws NoDeviceError if there is no loader, DeviceError if the validation layer or an extension is missing.
-    explicit Instance(const InstanceOptions& options);
+    /// `validation` loads VK_LAYER_KHRONOS_validation with synchronization validation. Throws NoDeviceError if there is
+    /// no loader, DeviceError if the layer is missing.
+    explicit Instance(bool validation);
     ~Instance();
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
@@ -51,10 +47,11 @@ class Instance {
     const std::shared_ptr<ValidationLog>& validation_log() const { return log_; }
 
   private:
+    Instance() = default;
     static VKAPI_ATTR VkBool32 VKAPI_CALL collect(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                                   VkDebugUtilsMessageTypeFlagsEXT,
                                                   const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
-    void create(const InstanceOptions& options);
+    void create(bool validation);
     VkInstance instance_ = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     std::shared_ptr<ValidationLog> log_ = std::make_shared<ValidationLog>();

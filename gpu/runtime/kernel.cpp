@@ -83,7 +83,7 @@ void check_limits(const Shader& shader, const Reflection& reflection, const Devi
             reflection.push_bytes, info.max_push_constants);
 }
 
-void create_layouts(Kernel::Program& program) {
+void create_layouts(const Device& device, Kernel::Program& program) {
     std::vector<VkDescriptorSetLayoutBinding> bindings;
     for (const ReflectedBinding& binding : program.reflection.bindings)
         bindings.push_back({binding.binding, descriptor_type(binding.type), 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr});
@@ -92,21 +92,22 @@ void create_layouts(Kernel::Program& program) {
                                               .flags = 0,
                                               .bindingCount = static_cast<std::uint32_t>(bindings.size()),
                                               .pBindings = bindings.data()};
-    const std::string what = fmt::format("make the layout of kernel {}", program.name);
-    check(vkCreateDescriptorSetLayout(program.device.handle(), &set, nullptr, &program.set_layout), what);
+    const auto what = [&] { return fmt::format("make the layout of kernel {}", program.name); };
+    check(vkCreateDescriptorSetLayout(device.handle(), &set, nullptr, program.set_layout.put()), what);
+    const VkDescriptorSetLayout set_layout = program.set_layout.get();
     const VkPushConstantRange push{VK_SHADER_STAGE_COMPUTE_BIT, 0,
                                    static_cast<std::uint32_t>(program.reflection.push_bytes)};
     const VkPipelineLayoutCreateInfo layout{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
                                             .pNext = nullptr,
                                             .flags = 0,
                                             .setLayoutCount = 1,
-                                            .pSetLayouts = &program.set_layout,
+                                            .pSetLayouts = &set_layout,
                                             .pushConstantRangeCount = push.size ? 1u : 0u,
                                             .pPushConstantRanges = &push};
-    check(vkCreatePipelineLayout(program.device.handle(), &layout, nullptr, &program.layout), what);
+    check(vkCreatePipelineLayout(device.handle(), &layout, nullptr, program.layout.put()), what);
 }
 
-void create_pipeline(Kernel::Program& program, const Shader& shader, const KernelInterface& interface) {
+void create_pipeline(Device& device, Kernel::Program& program, const Shader& shader, const KernelInterface& interface) {
     std::vector<VkSpecializationMapEntry> entries;
     std::vector<std::uint32_t> values;
     for (const auto& [id, value] : interface.constants) {
@@ -115,14 +116,7 @@ void create_pipeline(Kernel::Program& program, const Shader& shader, const Kerne
     }
     const VkSpecializationInfo constants{static_cast<std::uint32_t>(entries.size()), entries.data(),
                                          values.size() * sizeof(std::uint32_t), values.data()};
-    const VkShaderModuleCreateInfo module_info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                               .pNext = nullptr,
-                                               .flags = 0,
-                                               .codeSize = shader.words.size_bytes(),
-                                               .pCode = shader.words.data()};
-    const std::string what = fmt::format("compile kernel {}", program.name);
-    VkShaderModule module = VK_NULL_HANDLE;
-    check(vkCreateShaderModule(program.device.handle(), &module_info, nullptr, &module), what);
+    const UniqueShaderModule module = make_module(device, shader);
     const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
                                            .pNext = nullptr,
                                            .flags = 0,
@@ -130,37 +124,42 @@ void create_pipeline(Kernel::Program& program, const Shader& shader, const Kerne
                                                      .pNext = nullptr,
                                                      .flags = 0,
                                                      .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                                                     .module = module,
+                                                     .module = module.get(),
                                                      .pName = "main",
                                                      .pSpecializationInfo = &constants},
-                                           .layout = program.layout,
+                                           .layout = program.layout.get(),
                                            .basePipelineHandle = VK_NULL_HANDLE,
                                            .basePipelineIndex = -1};
-    const VkResult result = vkCreateComputePipelines(program.device.handle(), program.device.pipeline_cache().handle(),
-                                                     1, &info, nullptr, &program.pipeline);
-    vkDestroyShaderModule(program.device.handle(), module, nullptr);
-    check(result, what);
+    check(vkCreateComputePipelines(device.handle(), device.pipeline_cache().handle(), 1, &info, nullptr,
+                                   program.pipeline.put()),
+          [&] { return fmt::format("compile kernel {}", program.name); });
 }
 
 }  // namespace
 
-Kernel::Program::~Program() {
-    vkDestroyPipeline(device.handle(), pipeline, nullptr);
-    vkDestroyPipelineLayout(device.handle(), layout, nullptr);
-    vkDestroyDescriptorSetLayout(device.handle(), set_layout, nullptr);
-}
-
 Kernel::Kernel(Device& device, const Shader& shader, const KernelInterface& interface) {
-    const auto program = std::make_shared<Program>(device);
-    program->name = shader.name;
-    program->reflection = reflect(shader);
+    const auto program = std::make_shared<Program>(Program{.name = std::string(shader.name),
+                                                           .reflection = reflect(shader),
+                                                           .set_layout = UniqueSetLayout(device.handle()),
+                                                           .layout = UniquePipelineLayout(device.handle()),
+                                                           .pipeline = UniquePipeline(device.handle())});
     check_interface(shader, program->reflection, interface);
     set_texel_formats(shader, interface, program->reflection);
     specialize_local_size(program->reflection, interface);
     check_limits(shader, program->reflection, device.info());
-    create_layouts(*program);
-    create_pipeline(*program, shader, interface);
+    create_layouts(device, *program);
+    create_pipeline(device, *program, shader, interface);
     program_ = program;
+}
+
+UniqueShaderModule make_module(const Device& device, const Shader& shader) {
+    auto info = empty_structure<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+    info.codeSize = shader.words.size_bytes();
+    info.pCode = shader.words.data();
+    UniqueShaderModule module(device.handle());
+    check(vkCreateShaderModule(device.handle(), &info, nullptr, module.put()),
+          [&] { return fmt::format("load shader {}", shader.name); });
+    return module;
 }
 
 }  // namespace exemplar

@@ -14,6 +14,7 @@
 #include "gpu/runtime/layout.h"
 #include "gpu/runtime/reflection.h"
 #include "gpu/runtime/shader.h"
+#include "gpu/runtime/unique_handle.h"
 
 namespace exemplar {
 
@@ -52,21 +53,19 @@ class Kernel {
 
     /// The Vulkan objects behind a kernel.
     struct Program {
-        explicit Program(Device& owner) : device(owner) {}
-        ~Program();
-        Program(const Program&) = delete;
-        Program& operator=(const Program&) = delete;
-        Device& device;
         std::string name;
         Reflection reflection;
-        VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
-        VkPipelineLayout layout = VK_NULL_HANDLE;
-        VkPipeline pipeline = VK_NULL_HANDLE;
+        UniqueSetLayout set_layout;
+        UniquePipelineLayout layout;
+        UniquePipeline pipeline;
     };
     const std::shared_ptr<const Program>& program() const { return program_; }
 
   private:
     std::shared_ptr<const Program> program_;
 };
+
+/// A shader as pipelines take it; it may end when they are made.
+UniqueShaderModule make_module(const Device& device, const Shader& shader);
 
 }  // namespace exemplar

@@ -10,7 +10,6 @@
 #include <ostream>
 #include <string>
 #include <system_error>
-#include <vector>
 
 #include "gpu/runtime/errors.h"
 #include "host/core/files.h"
@@ -67,7 +66,7 @@ std::filesystem::path pipeline_cache_path(const DeviceInfo& info) {
 PipelineCache::PipelineCache(VkDevice device, const DeviceInfo& info)
     : device_(device), path_(pipeline_cache_path(info)) {
     const std::string data = load(path_);
-    loaded_bytes_ = saved_bytes_ = data.size();
+    loaded_bytes_ = data.size();
     VkPipelineCacheCreateInfo create{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
                                      .pNext = nullptr,
                                      .flags = 0,
@@ -79,28 +78,26 @@ PipelineCache::PipelineCache(VkDevice device, const DeviceInfo& info)
 }
 
 PipelineCache::~PipelineCache() {
-    save();
+    try {
+        save();
+    } catch (const std::exception&) {
+        // Without the file the next run compiles again; nothing else is lost.
+    }
     vkDestroyPipelineCache(device_, cache_, nullptr);
 }
 
-void PipelineCache::save() noexcept {
+void PipelineCache::save() const {
     std::size_t size = 0;
-    if (path_.empty() || vkGetPipelineCacheData(device_, cache_, &size, nullptr) != VK_SUCCESS || size == saved_bytes_)
+    if (path_.empty() || vkGetPipelineCacheData(device_, cache_, &size, nullptr) != VK_SUCCESS || size == loaded_bytes_)
         return;
-    try {
-        std::string data(size, '\0');
-        if (vkGetPipelineCacheData(device_, cache_, &size, data.data()) != VK_SUCCESS) return;
-        data.resize(size);
-        const Header header = header_of(data);
-        write_file_atomically(path_, [&](std::ostream& out) {
-            out.write(reinterpret_cast<const char*>(&header), sizeof header);
-            out.write(data.data(), static_cast<std::streamsize>(data.size()));
-        });
-        saved_bytes_ = size;
-    } catch (const std::exception&) {
-        // Without the file the next run compiles again; nothing else is lost.
-        saved_bytes_ = size;
-    }
+    std::string data(size, '\0');
+    if (vkGetPipelineCacheData(device_, cache_, &size, data.data()) != VK_SUCCESS) return;
+    data.resize(size);
+    const Header header = header_of(data);
+    write_file_atomically(path_, [&](std::ostream& out) {
+        out.write(reinterpret_cast<const char*>(&header), sizeof header);
+        out.write(data.data(), static_cast<std::streamsize>(data.size()));
+    });
 }
 
 }  // namespace exemplar

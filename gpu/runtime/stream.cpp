@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
-#include <limits>
 
 #include "gpu/runtime/device.h"
 #include "gpu/runtime/errors.h"
@@ -107,10 +107,10 @@ void Stream::dispatch_bytes(const Kernel& kernel, Threads threads, std::span<con
     }
     programs_.insert(kernel.program());
     order(accesses);
-    vkCmdBindPipeline(commands_.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, kernel.program()->pipeline);
+    vkCmdBindPipeline(commands_.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, kernel.program()->pipeline.get());
     descriptors_.bind(commands_.handle(), kernel, ranges);
     if (!push.empty())
-        vkCmdPushConstants(commands_.handle(), kernel.program()->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+        vkCmdPushConstants(commands_.handle(), kernel.program()->layout.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
                            static_cast<std::uint32_t>(push.size()), push.data());
     timestamps_.start(commands_.handle(), kernel);
     vkCmdDispatch(commands_.handle(), groups[0], groups[1], groups[2]);
@@ -204,6 +204,13 @@ void Stream::wait() {
 void Stream::finish() {
     submit();
     wait();
+}
+
+void Stream::fetch_bytes(const Buffer& source, std::span<std::byte> data) {
+    const bool mapped = source && source.resource()->mapped;
+    if (!mapped) download_bytes(source, data, 0);
+    finish();
+    if (mapped) source.read(data, 0);
 }
 
 // Lets go of everything that finished work used.

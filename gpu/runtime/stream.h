@@ -7,8 +7,8 @@
 #include <memory>
 #include <set>
 #include <span>
-#include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "gpu/runtime/buffer.h"
@@ -81,8 +81,14 @@ class Stream {
     void wait();
     /// submit() and wait().
     void finish();
+    /// download() and finish(), without a copy between where the host sees the buffer's memory.
+    template <typename T>
+    void fetch(const Buffer& source, std::span<T> values) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        fetch_bytes(source, std::as_writable_bytes(values));
+    }
 
-    /// All barriers recorded since the stream was last submitted and waited for.
+    /// All barriers of the current recording, or of the last one while there is none.
     const std::vector<Barrier>& barriers() const { return barriers_; }
 
   private:
@@ -107,6 +113,7 @@ class Stream {
     void order(std::span<const Access> accesses);
     void upload_bytes(Buffer& target, std::span<const std::byte> data, std::size_t offset);
     void download_bytes(const Buffer& source, std::span<std::byte> data, std::size_t offset);
+    void fetch_bytes(const Buffer& source, std::span<std::byte> data);
     std::pair<Staging*, std::size_t> stage(std::vector<Staging>& blocks, std::size_t bytes, BufferMemory memory);
     UploadPlace begin_upload(const Buffer& target, std::size_t offset, std::size_t bytes);
     void end_upload(const UploadPlace& place, Buffer& target, std::size_t offset);

@@ -20,8 +20,9 @@ struct Threads {
     bool foldable = false;
 };
 
-/// The smallest box of at least `groups` workgroups in rows of equal length, within `limit` per axis if any box is.
-/// \pre groups is at least 1 and below 2^33.
+/// A box of at least `groups` workgroups: the fewest slices (z) that `limit` allows, of the fewest rows (y), which are
+/// as short (x) as that leaves. Within `limit` per axis if any box is; less than one workgroup per row is too many.
+/// \pre groups is at least 1.
 std::array<std::uint64_t, 3> fold_groups(std::uint64_t groups, const std::array<std::uint32_t, 3>& limit);
 
 /// The workgroups of a dispatch, at least one thread along each axis. Throws DeviceLimitError if they are over the

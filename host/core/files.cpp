@@ -98,11 +98,12 @@ std::string read_file(const fs::path& path) {
 }
 
 std::string suggest_file(const fs::path& path) {
+    if (!path.has_filename() && path.has_relative_path()) return suggest_file(path.parent_path());  // ends in a slash
     std::vector<std::string> names;
     std::error_code error;
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-        names.push_back(it->path().filename().string());
+        if (std::error_code gone; fs::exists(it->path(), gone)) names.push_back(it->path().filename().string());
     std::sort(names.begin(), names.end());
     const std::string nearest = nearest_word(path.filename().string(), names);
     if (nearest.empty()) return {};

@@ -3,9 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <iosfwd>
-#include <span>
 #include <string>
-#include <string_view>
 
 namespace exemplar {
 

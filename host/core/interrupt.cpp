@@ -1,6 +1,7 @@
 #include "host/core/interrupt.h"
 
 #include <unistd.h>
+#include <atomic>
 #include <csignal>
 
 #include "host/core/errors.h"
@@ -8,7 +9,9 @@
 namespace exemplar {
 namespace {
 
-volatile std::sig_atomic_t end_requested = 0;
+// Set by a signal handler and read by all threads.
+std::atomic<int> end_requested = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
 
 extern "C" void request_end(int signal) {
     if (end_requested) _exit(128 + signal);

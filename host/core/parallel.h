@@ -21,7 +21,7 @@ void parallel_ranges(std::size_t count, std::size_t grain, Body&& body) {
                       });
 }
 
-/// Calls body(i) for i in [0, count) on all cores; at least `grain` neighboring indices run on one thread.
+/// Calls body(i) for i in [0, count) on all cores; at least half of `grain` neighboring indices run on one thread.
 /// Each index runs exactly once and writes only what belongs to it, so results do not depend on the thread count.
 /// Throws Interrupted as parallel_ranges does.
 template <typename Body>

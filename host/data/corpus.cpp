@@ -18,6 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Names that the system refuses, say because they are too long, are names of nothing.
+bool is_there(const fs::path& path) {
+    std::error_code ignored;
+    return fs::exists(path, ignored);
+}
+
 bool is_mesh_file(const fs::path& path) {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -75,8 +81,8 @@ std::vector<fs::path> meshes_of_list(const fs::path& list) {
         line.erase(line.find_last_not_of(" \t\r") + 1);
         if (line.empty()) continue;
         fs::path path = line;
-        if (path.is_relative() && !fs::exists(path)) path = list.parent_path() / path;
-        if (!fs::exists(path))
+        if (path.is_relative() && !is_there(path)) path = list.parent_path() / path;
+        if (!is_there(path))
             throw DataError(fmt::format("{}:{}: no such mesh: {}{}", list.string(), number, line, suggest_file(path)));
         paths.push_back(path);
     }
@@ -90,7 +96,7 @@ fs::path labels_beside(const fs::path& mesh) {
 /// Labels of a mesh file's source faces, wherever they are kept.
 FaceLabels find_labels(const fs::path& path, const MeshFile& file) {
     const fs::path beside = labels_beside(path);
-    if (fs::exists(beside)) return read_labels_txt(beside, file.mesh.source_face_count);
+    if (is_there(beside)) return read_labels_txt(beside, file.mesh.source_face_count);
     if (file.labels) return *file.labels;
     throw DataError(fmt::format("{}: no labels: give {} beside it, or a PLY with a per-face 'label' property",
                                 path.string(), beside.filename().string()));
@@ -132,7 +138,7 @@ Loaded load_one(const fs::path& path) {
 }  // namespace
 
 std::vector<fs::path> list_meshes(const fs::path& source) {
-    if (!fs::exists(source))
+    if (!is_there(source))
         throw DataError(fmt::format("{}: no such folder or list{}", source.string(), suggest_file(source)));
     std::vector<fs::path> paths;
     if (fs::is_directory(source))

@@ -19,14 +19,14 @@ struct LabeledMesh {
 };
 
 struct LabeledCorpus {
-    std::vector<std::string> names;  ///< label names, sorted
+    std::vector<std::string> names;  ///< label names: those given, else sorted
     std::vector<LabeledMesh> meshes;
     std::vector<std::string> warnings;
 };
 
-/// Mesh paths of `source`: a folder (its mesh files in natural order, not below) or a text file with a path a line
-/// (relative to the working folder or to the list's; a '#' at the start or after a space begins a comment). Throws
-/// DataError when there are none.
+/// Mesh paths of `source`: a mesh file itself, a folder (its mesh files in natural order, not below) or a text file
+/// with a path a line (relative to the working folder or to the list's; a '#' at the start or after a space begins a
+/// comment). Throws DataError when there are none.
 std::vector<std::filesystem::path> list_meshes(const std::filesystem::path& source);
 
 /// Reads meshes with their labels: from NAME_labels.txt beside NAME.off (any mesh format), else from the PLY's own

@@ -66,6 +66,21 @@ Tensor parse_tensor(const std::string& path, const std::string& name, const Json
     return tensor;
 }
 
+/// Tensors that overlapped could describe more memory than the file is large; bytes of no tensor would be lost.
+void check_tiling(const std::string& path, const Json& header, std::size_t bytes) {
+    std::vector<std::pair<std::size_t, std::size_t>> ranges;
+    for (const auto& [name, entry] : header.items())
+        if (name != "__metadata__")
+            ranges.push_back(entry.at("data_offsets").get<std::pair<std::size_t, std::size_t>>());
+    std::ranges::sort(ranges);
+    std::size_t end = 0;
+    for (const auto& [first, last] : ranges) {
+        if (first != end) damaged(path, fmt::format("its arrays overlap or leave a gap at byte {} of the data", end));
+        end = last;
+    }
+    if (end != bytes) damaged(path, fmt::format("it has {} bytes of data where {} are described", bytes, end));
+}
+
 TensorFile parse(const std::string& path, std::string_view content) {
     std::uint64_t header_size = 0;
     if (content.size() < sizeof(header_size)) damaged(path, "it is too short for a header");
@@ -78,16 +93,14 @@ TensorFile parse(const std::string& path, std::string_view content) {
     if (!json.is_object()) damaged(path, "the header is no object");
     TensorFile file;
     file.path = path;
-    std::size_t total = 0;
+    check_tiling(path, json, data.size());
     for (const auto& [name, entry] : json.items()) {
         if (name == "__metadata__") {
             file.metadata = entry.get<std::map<std::string, std::string>>();
             continue;
         }
-        total += (file.tensors[name] = parse_tensor(path, name, entry, data)).bytes.size();
+        file.tensors[name] = parse_tensor(path, name, entry, data);
     }
-    if (total != data.size())
-        damaged(path, fmt::format("it has {} bytes of data where {} are described", data.size(), total));
     return file;
 }
 

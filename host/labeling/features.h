@@ -54,6 +54,6 @@ struct MeshFeatures {
 MeshFeatures compute_features(const TriangleMesh& mesh, const FeatureOptions& options = {});
 
 /// Identifies the meaning of the values; changes whenever they change. Part of model files and cache keys.
-constexpr int k_feature_version = 3;
+constexpr int k_feature_version = 4;
 
 }  // namespace exemplar

@@ -82,7 +82,7 @@ TriangleMesh centered_mesh(const TriangleMesh& mesh) {
     return centered;
 }
 
-/// Offset of a face's center from another's within the tangent plane of the other, in an arbitrary frame.
+/// Coordinates in a tangent plane, about a point of it and along arbitrary axes.
 struct TangentFrame {
     TangentFrame(const Vec3& center, const Vec3& normal)
         : origin(center), x(normal.unitOrthogonal()), y(normal.cross(x)) {}
@@ -121,10 +121,15 @@ std::vector<Vec3> smoothed_normals(const TriangleMesh& mesh, const Topology& top
                 spread += weight * offset * offset.transpose();
             });
             spread.diagonal().array() += k_ridge * spread.trace();
-            const Eigen::Vector2d slope = spread.trace() > 0.0 ? Eigen::Vector2d(spread.inverse() * moment) : moment;
+            Eigen::Vector2d slope = Eigen::Vector2d::Zero();
+            if (spread.trace() > 0.0) slope = spread.inverse() * moment;
+            double steepest = 1.0;  // no weight falls below zero: at a border the mean stays a mean
+            for_each_near(f, [&](std::uint32_t near, double) {
+                steepest = std::max(steepest, slope.dot(frame.offset(centers[near])));
+            });
             Vec3d sum = Vec3d::Zero();
             for_each_near(f, [&](std::uint32_t near, double weight) {
-                const double balanced = weight * (1.0 - slope.dot(frame.offset(centers[near])));
+                const double balanced = weight * (1.0 - slope.dot(frame.offset(centers[near])) / steepest);
                 sum += balanced * previous[near].cast<double>();
             });
             const double length = sum.norm();

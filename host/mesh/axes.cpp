@@ -31,15 +31,18 @@ Eigen::Matrix3d surface_covariance(const TriangleMesh& mesh, const Vec3d& center
     return total > 0 ? Eigen::Matrix3d(sum / total) : sum;
 }
 
-/// Whether the surface reaches farther against `axis` than along it, by the third moment of its faces' centers.
-bool skewed_backward(const TriangleMesh& mesh, const Vec3& center, const Vec3& axis) {
-    double moment = 0;
+/// Third moment of the surface along each column of `axes`: over a triangle whose corners lie at a, b, c along an axis,
+/// the integral of t^3 is area / 10 times the sum of the ten products of three of a, b, c.
+Vec3d third_moments(const TriangleMesh& mesh, const Vec3d& center, const Eigen::Matrix3d& axes) {
+    Eigen::Array3d sum = Eigen::Array3d::Zero();
     for (const Face& face : mesh.faces) {
-        const Vec3 a = mesh.vertices[face[0]], b = mesh.vertices[face[1]], c = mesh.vertices[face[2]];
-        const double area = 0.5 * static_cast<double>((b - a).cross(c - a).norm());
-        moment += area * std::pow(static_cast<double>(axis.dot((a + b + c) / 3 - center)), 3);
+        std::array<Vec3d, 3> p;
+        for (std::size_t i = 0; i < 3; ++i) p[i] = mesh.vertices[face[i]].cast<double>() - center;
+        const double area = 0.5 * (p[1] - p[0]).cross(p[2] - p[0]).norm();
+        const Eigen::Array3d a = axes.transpose() * p[0], b = axes.transpose() * p[1], c = axes.transpose() * p[2];
+        sum += area / 10 * (a * a * (a + b + c) + b * b * (a + b + c) + c * c * (a + b + c) + a * b * c);
     }
-    return moment < 0;
+    return sum;
 }
 
 }  // namespace
@@ -48,10 +51,10 @@ PrincipalAxes principal_axes(const TriangleMesh& mesh) {
     PrincipalAxes result;
     result.center = area_centroid(mesh);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(surface_covariance(mesh, result.center.cast<double>()));
+    const Vec3d skew = third_moments(mesh, result.center.cast<double>(), solver.eigenvectors());
     for (int i = 0; i < 3; ++i) {
         const int source = 2 - i;  // eigenvalues come in rising order
-        const Vec3 axis = solver.eigenvectors().col(source).cast<float>();
-        result.axis[i] = skewed_backward(mesh, result.center, axis) ? Vec3(-axis) : axis;
+        result.axis[i] = (skew[source] < 0 ? -1.0F : 1.0F) * solver.eigenvectors().col(source).cast<float>();
         result.sigma[i] = static_cast<float>(std::sqrt(std::max(0.0, solver.eigenvalues()[source])));
     }
     return result;

@@ -24,9 +24,10 @@ struct MeshFile {
 
 /// Reads OFF, OBJ, PLY (ascii, binary little and big endian), STL (ascii, binary) or glTF 2.0 (.gltf, .glb), by
 /// extension and checked against content. Polygons are cut into triangles. Vertices of STL and of glTF seams are welded
-/// by exact position; of glTF the triangles of the default scene are read, with the transforms of their nodes.
-/// Coordinates that are not finite are read as they are (see validate_mesh). Throws MeshError with file and line (or
-/// byte) for anything malformed; never allocates more than a small multiple of the file's size.
+/// by exact position; each triangle of a PLY triangle strip is a source face, without a label; of glTF the triangles of
+/// the default scene are read, with the transforms of their nodes. Coordinates that are not finite are read as they are
+/// (see validate_mesh). Throws MeshError with file and line (or byte) for anything malformed; never allocates more than
+/// a small multiple of the file's size.
 MeshFile read_mesh(const std::filesystem::path& path);
 
 /// Extensions that read_mesh takes, lower case with dot.

@@ -4,9 +4,10 @@
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <charconv>
 #include <cstring>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -129,6 +130,25 @@ void check_extensions(const Json& document, const std::string& name) {
     }
 }
 
+/// The file in the folder of the glTF file that an address names once the library has decoded it (%20 and +), in a form
+/// that is the same for the same file; empty if it lies elsewhere.
+std::string file_of_uri(const std::string& uri) {
+    std::string decoded;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        unsigned char value = 0;
+        const char* digits = uri.data() + i + 1;
+        if (uri[i] == '%' && uri.size() > i + 2 && std::from_chars(digits, digits + 2, value, 16).ptr == digits + 2) {
+            decoded += static_cast<char>(value);
+            i += 2;
+        } else {
+            decoded += uri[i] == '+' ? ' ' : uri[i];
+        }
+    }
+    const fs::path path = fs::path(decoded).lexically_normal();
+    const bool inside = path.is_relative() && !path.empty() && *path.begin() != "..";
+    return inside ? path.string() : std::string();
+}
+
 /// Every buffer has bytes of its own: the first may be the binary chunk, each other has an address that no other has.
 void check_buffers(const Json& document, const GltfChunks& chunks, const std::string& name) {
     const auto buffers = document.find("buffers");
@@ -142,7 +162,10 @@ void check_buffers(const Json& document, const GltfChunks& chunks, const std::st
                 fail(name, fmt::format("buffer {} has no bytes: neither uri nor binary chunk", i));
             continue;
         }
-        if (!seen.insert(buffer["uri"].get<std::string>()).second)
+        const auto uri = buffer["uri"].get<std::string>();
+        const std::string place = uri.starts_with("data:") ? uri : file_of_uri(uri);
+        if (place.empty()) fail(name, fmt::format("buffer {} is not in the folder of the file: {}", i, quote(uri)));
+        if (!seen.insert(place).second)
             fail(name, fmt::format("buffer {} has the same uri as another; merge the two", i));
     }
 }

@@ -117,8 +117,9 @@ class CheckedLines : public std::streambuf {
         }
     }
     static bool is_index(std::string_view word) {
+        constexpr std::int64_t k_most = std::numeric_limits<int>::max();
         const auto value = parse_integer(word);
-        return value && *value != 0 && std::abs(*value) <= std::numeric_limits<int>::max();
+        return value && *value != 0 && *value >= -k_most && *value <= k_most;
     }
 
     TextCursor cursor_;

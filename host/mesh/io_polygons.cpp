@@ -13,7 +13,7 @@ namespace {
 
 using Point = Eigen::Vector2d;
 
-/// Clipping ears takes quadratic time; longer polygons than this are cut into a fan.
+/// Clipping ears takes quadratic time at least; longer polygons than this are cut into a fan.
 constexpr std::size_t k_most_ear_corners = 4000;
 
 /// The polygon in the plane of its area vector (Newell), counter-clockwise; empty if it has no area.
@@ -60,14 +60,15 @@ class EarClipper {
     /// Corner numbers of the next ear, which is then removed; of any corner where no proper ear is left.
     std::array<std::size_t, 3> clip() {
         const std::size_t n = left_.size();
-        std::size_t at = n - 1;  // no ear: the polygon crosses itself or is flat
-        for (std::size_t i = 0; i < n; ++i)
-            if (is_ear(i)) {
+        std::size_t at = n - 1;              // no ear: the polygon crosses itself or is flat
+        for (std::size_t k = 0; k < n; ++k)  // the corner before the last ear is often one now
+            if (const std::size_t i = (start_ + k) % n; is_ear(i)) {
                 at = i;
                 break;
             }
         const std::array<std::size_t, 3> ear{left_[(at + n - 1) % n], left_[at], left_[(at + 1) % n]};
         left_.erase(left_.begin() + static_cast<std::ptrdiff_t>(at));
+        start_ = at > 0 ? at - 1 : 0;
         return ear;
     }
     std::size_t size() const { return left_.size(); }
@@ -86,6 +87,7 @@ class EarClipper {
     }
     std::vector<Point> points_;
     std::vector<std::size_t> left_;
+    std::size_t start_ = 0;  ///< where the search for the next ear begins
 };
 
 }  // namespace

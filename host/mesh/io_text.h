@@ -44,7 +44,6 @@ class TextCursor {
     std::string_view rest() const { return line_; }
     std::size_t line_number() const { return line_number_; }
     /// Byte just after the current line.
-    std::size_t offset() const { return next_; }
     std::size_t bytes_left() const { return text_.size() - next_; }
 
     /// Takes the next word of the line; empty at the line's end.

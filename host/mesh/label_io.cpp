@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "host/core/errors.h"
@@ -73,13 +74,6 @@ class DataLines {
     std::string_view line_;
     std::size_t at_ = 0, line_number_ = 0;
 };
-
-/// Number of a label name; new names are appended.
-std::int32_t label_of_name(std::string_view name, FaceLabels& labels) {
-    const auto index = std::ranges::find(labels.names, name) - labels.names.begin();
-    if (static_cast<std::size_t>(index) == labels.names.size()) labels.names.emplace_back(name);
-    return static_cast<std::int32_t>(index);
-}
 
 /// Names end up in model and JSON files, which hold UTF-8 only. Two numbers or more where a name should be are the face
 /// indices of a block whose name is missing.
@@ -152,11 +146,14 @@ FaceLabels read_labels_txt(const std::filesystem::path& path, std::size_t face_c
     DataLines lines(path);
     FaceLabels labels;
     labels.label.assign(face_count, -1);
+    std::map<std::string, std::int32_t, std::less<>> number;
     while (lines.next()) {
         if (lines.line().empty()) continue;
         check_name_line(lines);
-        const std::int32_t label = label_of_name(lines.line(), labels);
-        if (lines.next()) read_face_indices(lines, label, labels);
+        const auto [entry, is_new] =
+            number.try_emplace(std::string(lines.line()), static_cast<std::int32_t>(labels.names.size()));
+        if (is_new) labels.names.push_back(entry->first);
+        if (lines.next()) read_face_indices(lines, entry->second, labels);
     }
     const auto unlabeled = std::ranges::find(labels.label, -1);
     if (unlabeled != labels.label.end())

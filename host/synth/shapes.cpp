@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <string>
 #include <vector>
 
 #include "host/core/errors.h"
 #include "host/core/random.h"
 #include "host/core/text.h"
+#include "host/mesh/topology.h"
 #include "host/synth/field.h"
 #include "host/synth/models.h"
 #include "host/synth/part_labels.h"
@@ -23,7 +23,7 @@ namespace exemplar {
 namespace {
 
 constexpr int k_any_genus = -1;
-constexpr std::uint64_t k_attempts = 12;
+constexpr std::uint64_t k_attempts = 100;
 constexpr std::size_t k_fewest_faces = 100, k_most_faces = 200'000;  // beyond, the grid takes gigabytes
 constexpr std::uint64_t k_orientation_task = 1000;
 
@@ -64,22 +64,7 @@ int genus_of(const TriangleMesh& mesh) {
 }
 
 bool is_one_component(const TriangleMesh& mesh) {
-    std::vector<std::uint32_t> parent(mesh.vertex_count());
-    std::iota(parent.begin(), parent.end(), 0u);
-    const auto root = [&](std::uint32_t v) {
-        while (parent[v] != v) v = parent[v] = parent[parent[v]];
-        return v;
-    };
-    std::size_t components = parent.size();
-    for (const Face& face : mesh.faces) {
-        for (std::size_t i = 1; i < 3; ++i) {
-            const std::uint32_t a = root(face[0]), b = root(face[i]);
-            if (a == b) continue;
-            parent[b] = a;
-            --components;
-        }
-    }
-    return components == 1;
+    return std::ranges::max(face_components(mesh, build_topology(mesh))) == 0;
 }
 
 /// Polygonizes finely enough that coarsening to `faces` leaves no trace of the grid.
@@ -127,12 +112,13 @@ SynthShape make_shape(std::string_view kind_name, std::uint64_t seed, std::size_
         const ShapeModel model = kind.sculpt(random);
         const ImplicitField field(model.primitives);
         const TriangleMesh fine = fine_mesh(field, model.detail, faces);
-        const bool last = attempt + 1 == k_attempts;
-        if (!last && ((kind.genus != k_any_genus && genus_of(fine) != kind.genus) || !is_one_component(fine))) continue;
+        if ((kind.genus != k_any_genus && genus_of(fine) != kind.genus) || !is_one_component(fine)) continue;
         shape.mesh = remesh(fine, field, faces);
         shape.labels.label = label_faces(shape.mesh, field);
         break;
     }
+    if (shape.mesh.faces.empty())
+        throw UsageError(fmt::format("no {} of seed {} came out in one piece; take another seed", kind_name, seed));
     shape.labels.names.assign(kind.parts.begin(), kind.parts.end());
     if (random_orientation) turn_randomly(shape.mesh, root.fork(k_orientation_task));
     return shape;

@@ -47,24 +47,26 @@ void main() {
     if (face >= parameters.faces) return;
     const float p = texelFetch(positions, int(axis * parameters.faces + face)).x;
 
-    // Samples [before[b], behind[b]) are nearer than edge b; bounds 0 and k_bins are the empty and the whole range.
-    uint before[k_bins + 1], behind[k_bins + 1];
-    before[k_bins] = 0;
-    behind[k_bins] = parameters.samples;
-    [[dont_unroll]] for (uint b = k_bins - 1; b > 0; --b) {
+    // Samples [before[b], behind[b]) are nearer than edge b; bounds 0 and k_context_bins are the empty and the whole range.
+    uint before[k_context_bins + 1], behind[k_context_bins + 1];
+    before[k_context_bins] = 0;
+    behind[k_context_bins] = parameters.samples;
+    [[dont_unroll]] for (uint b = k_context_bins - 1; b > 0; --b) {
         before[b] = count_before(axis * parameters.samples, p, parameters.edges[axis][b - 1]);
         behind[b] = max(first_behind(axis * parameters.samples, p, parameters.edges[axis][b - 1]), before[b]);
     }
     before[0] = behind[0] = before[1];
 
-    const uint blocks = (parameters.classes + 3) / 4;
+    const uint blocks = (parameters.classes + k_context_class_block - 1) / k_context_class_block;
     for (uint block = 0; block < blocks; ++block) {
         const uint first = (axis * blocks + block) * (parameters.samples + 1);
-        [[dont_unroll]] for (uint b = 0; b < k_bins; ++b) {
+        const uint first_class = k_context_class_block * block;
+        const uint classes = min(k_context_class_block, parameters.classes - first_class);
+        [[dont_unroll]] for (uint b = 0; b < k_context_bins; ++b) {
             const vec4 mass = (prefix(first + behind[b + 1]) - prefix(first + behind[b])) +
                               (prefix(first + before[b]) - prefix(first + before[b + 1]));
-            [[dont_unroll]] for (uint c = 0; c < min(4u, parameters.classes - 4 * block); ++c)
-                histograms[histogram_column(axis + 1, b, parameters.classes, 4 * block + c) * parameters.faces + face] = mass[c];
+            [[dont_unroll]] for (uint c = 0; c < classes; ++c)
+                histograms[histogram_column(axis + 1, b, parameters.classes, first_class + c) * parameters.faces + face] = mass[c];
         }
     }
 }

@@ -21,9 +21,9 @@ void main() {
     const uint faces = parameters.faces, threads = parameters.threads, sample_blocks = parameters.sample_blocks;
     if (thread >= threads) return;
 
-    vec4 bins[k_faces][k_bins];
+    vec4 bins[k_faces][k_context_bins];
     for (uint f = 0; f < k_faces; ++f)
-        for (uint b = 0; b < k_bins; ++b) bins[f][b] = vec4(0.0);
+        for (uint b = 0; b < k_context_bins; ++b) bins[f][b] = vec4(0.0);
     for (uint block = 0; block < sample_blocks; ++block) {
         uvec4 sixteen[k_faces];
         for (uint f = 0; f < k_faces; ++f)
@@ -33,21 +33,22 @@ void main() {
             const vec4 mass = texelFetch(masses, int(first + j));
             for (uint f = 0; f < k_faces; ++f) {
                 const uint range = (sixteen[f][j / 4] >> (8 * (j % 4))) & 255u;
-                for (uint b = 0; b < k_bins; ++b) bins[f][b] += range == b ? mass : vec4(0.0);
+                for (uint b = 0; b < k_context_bins; ++b) bins[f][b] += range == b ? mass : vec4(0.0);
             }
         }
     }
 
     // The loops below index at run time; only this copy then has to lie in memory.
-    vec4 result[k_faces * k_bins];
+    vec4 result[k_faces * k_context_bins];
     for (uint f = 0; f < k_faces; ++f)
-        for (uint b = 0; b < k_bins; ++b) result[f * k_bins + b] = bins[f][b];
-    const uint classes = min(4u, parameters.classes - 4 * class_block);
+        for (uint b = 0; b < k_context_bins; ++b) result[f * k_context_bins + b] = bins[f][b];
+    const uint first_class = k_context_class_block * class_block;
+    const uint classes = min(k_context_class_block, parameters.classes - first_class);
     [[dont_unroll]] for (uint f = 0; f < k_faces; ++f) {
         const uint face = thread + f * threads;
-        [[dont_unroll]] for (uint b = 0; b < k_bins; ++b)
+        [[dont_unroll]] for (uint b = 0; b < k_context_bins; ++b)
             [[dont_unroll]] for (uint c = 0; c < classes; ++c)
                 if (face < faces)
-                    histograms[histogram_column(0, b, parameters.classes, 4 * class_block + c) * faces + face] = result[f * k_bins + b][c];
+                    histograms[histogram_column(0, b, parameters.classes, first_class + c) * faces + face] = result[f * k_context_bins + b][c];
     }
 }

@@ -18,8 +18,6 @@ layout(set = 0, binding = 2) uniform usamplerBuffer groups;   // StumpGroup
 layout(set = 0, binding = 3, std430) readonly buffer Constants { float constants[]; };
 layout(set = 0, binding = 4, std430) writeonly buffer Probabilities { float probabilities[]; };
 
-const uint k_link_softmax = 0;
-
 GroupedStump fetch_stump(uint index) {
     const uvec4 s = texelFetch(stumps, int(index));
     return GroupedStump(s.x, uintBitsToFloat(s.y), uintBitsToFloat(s.z), uintBitsToFloat(s.w));

@@ -4,6 +4,13 @@
 
 SHARED_BEGIN
 
+const uint k_context_bins = 5;  // distance ranges
+const uint k_context_axes = 6;
+// Samples whose ranges one texel holds, a byte each.
+const uint k_context_sample_block = 16;
+// Classes whose masses one texel holds.
+const uint k_context_class_block = 4;
+
 struct GeodesicContextParameters {
     uint faces;          // of the tile, also the distance from one output column to the next
     uint sample_blocks;  // of k_context_sample_block samples
@@ -11,11 +18,8 @@ struct GeodesicContextParameters {
     uint threads;  // invocations along x that have work
 };
 
-// Samples whose ranges one texel holds, a byte each.
-const uint k_context_sample_block = 16;
-
 struct AxisContextParameters {
-    vec4 edges[6];  // per axis the inner bin edges, rising
+    vec4 edges[k_context_axes];  // the inner bin edges of each, rising
     uint faces;
     uint samples;
     uint classes;

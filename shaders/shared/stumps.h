@@ -25,9 +25,13 @@ struct StumpParameters {
     uint stride;   // quads of items from one feature column to the next: at least threads x quads per thread
     uint threads;  // invocations that have work, a multiple of k_stump_neighbors
     uint groups;
-    uint link;  // the values of exemplar::Link
+    uint link;  // k_link_softmax or k_link_sigmoid
     float scale;
 };
+
+// The values of exemplar::Link.
+const uint k_link_softmax = 0;
+const uint k_link_sigmoid = 1;
 
 // Invocations that stand side by side read neighboring quads.
 const uint k_stump_neighbors = 8;

@@ -10,26 +10,23 @@
 #include "host/core/parallel.h"
 #include "host/core/random.h"
 #include "host/core/text.h"
+#include "tests/support/temporary_folder.h"
 
 namespace exemplar {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path fresh_folder(const std::string& name) {
-    fs::path folder = fs::path(testing::TempDir()) / ("exemplar_core_" + name);
-    fs::remove_all(folder);
-    return folder;
-}
-
 TEST(Files, WritesWholeFilesAndCreatesFolders) {
-    const fs::path path = fresh_folder("write") / "a" / "b.txt";
+    const TemporaryFolder folder;
+    const fs::path path = folder / "a" / "b.txt";
     write_file_atomically(path, [](std::ostream& out) { out << "hello"; });
     EXPECT_EQ(read_file(path), "hello");
 }
 
 TEST(Files, AFailedWriteLeavesTheOldFileAndNoTemporary) {
-    const fs::path path = fresh_folder("fail") / "b.txt";
+    const TemporaryFolder folder;
+    const fs::path path = folder / "b.txt";
     write_file_atomically(path, [](std::ostream& out) { out << "old"; });
     EXPECT_THROW(write_file_atomically(path,
                                        [](std::ostream& out) {
@@ -42,7 +39,7 @@ TEST(Files, AFailedWriteLeavesTheOldFileAndNoTemporary) {
 }
 
 TEST(Files, LinksStayAndPipesAreNotReplaced) {
-    const fs::path folder = fresh_folder("links");
+    const TemporaryFolder folder;
     write_file_atomically(folder / "real" / "b.txt", [](std::ostream& out) { out << "old"; });
     fs::create_symlink("real/b.txt", folder / "link.txt");
     write_file_atomically(folder / "link.txt", [](std::ostream& out) { out << "new"; });

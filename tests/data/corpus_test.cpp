@@ -8,6 +8,7 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/mesh/io.h"
+#include "tests/support/temporary_folder.h"
 
 namespace exemplar {
 namespace {
@@ -19,12 +20,6 @@ using testing::HasSubstr;
 
 class CorpusFolder : public testing::Test {
   protected:
-    void SetUp() override {
-        folder_ = fs::path(testing::TempDir()) /
-                  ("exemplar_corpus_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
     void write(const std::string& name, const std::string& content) const {
         write_file_atomically(folder_ / name, [&](std::ostream& out) { out << content; });
     }
@@ -36,7 +31,7 @@ class CorpusFolder : public testing::Test {
         }
         return "no error";
     }
-    fs::path folder_;
+    TemporaryFolder folder_;
     static constexpr const char* k_quad_and_triangle =
         "OFF\n5 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 0\n4 0 1 2 3\n3 1 4 2\n";
 };
@@ -44,7 +39,7 @@ class CorpusFolder : public testing::Test {
 TEST_F(CorpusFolder, ListsFoldersInNaturalOrder) {
     for (const char* name : {"10.off", "9.off", "a2.obj", "notes.txt", "a10.PLY"}) write(name, "");
     std::vector<std::string> names;
-    for (const fs::path& path : list_meshes(folder_)) names.push_back(path.filename().string());
+    for (const fs::path& path : list_meshes(folder_.path())) names.push_back(path.filename().string());
     EXPECT_THAT(names, ElementsAre("9.off", "10.off", "a2.obj", "a10.PLY"));
 }
 
@@ -68,7 +63,7 @@ TEST_F(CorpusFolder, ReadsListsRelativeToThemselves) {
 }
 
 TEST_F(CorpusFolder, EmptyAndMissingSourcesAreErrors) {
-    EXPECT_THROW(list_meshes(folder_), DataError);
+    EXPECT_THROW(list_meshes(folder_.path()), DataError);
     EXPECT_THROW(list_meshes(folder_ / "none"), DataError);
 }
 

@@ -8,13 +8,10 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace exemplar {
 namespace {
-
-std::filesystem::path scratch(const std::string& name) {
-    return std::filesystem::temp_directory_path() / ("exemplar_npy_" + std::to_string(::getpid())) / name;
-}
 
 TEST(Npy, WritesTheBytesOfTheFormat) {
     FeatureMatrix matrix;
@@ -24,7 +21,8 @@ TEST(Npy, WritesTheBytesOfTheFormat) {
         column[0] = first;
         column[1] = 10.0F * first;
     }
-    const std::filesystem::path path = scratch("golden.npy");
+    const TemporaryFolder folder;
+    const std::filesystem::path path = folder / "golden.npy";
     write_npy(path, matrix);
     std::string expected("\x93NUMPY\x01\x00\x76\x00{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }",
                          10 + 59);
@@ -42,7 +40,8 @@ TEST(Npy, DataBeginAtAMultipleOf64Bytes) {
         FeatureMatrix matrix;
         matrix.rows = rows;
         matrix.add("f.x");
-        const std::filesystem::path path = scratch("aligned.npy");
+        const TemporaryFolder folder;
+        const std::filesystem::path path = folder / "aligned.npy";
         write_npy(path, matrix);
         const std::string bytes = read_file(path);
         EXPECT_EQ((bytes.size() - rows * sizeof(float)) % 64, 0U);

@@ -9,15 +9,12 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/random.h"
+#include "tests/support/temporary_folder.h"
 
 namespace exemplar {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path temporary(const std::string& name) {
-    return fs::path(testing::TempDir()) / ("exemplar_" + name);
-}
 
 void write_bytes(const fs::path& path, const std::string& bytes) {
     write_file_atomically(path, [&](std::ostream& out) { out << bytes; });
@@ -40,7 +37,8 @@ TensorFile small_file() {
 }
 
 TEST(Safetensors, GoldenBytes) {
-    const fs::path path = temporary("golden.safetensors");
+    const TemporaryFolder folder;
+    const fs::path path = folder / "golden.safetensors";
     write_safetensors(path, small_file());
     const std::string header =
         R"({"__metadata__":{"kind":"test"},"index":{"data_offsets":[0,12],"dtype":"U32","shape":[3]},)"
@@ -51,7 +49,8 @@ TEST(Safetensors, GoldenBytes) {
 }
 
 TEST(Safetensors, RoundTripWithEmptyArrays) {
-    const fs::path path = temporary("round.safetensors");
+    const TemporaryFolder folder;
+    const fs::path path = folder / "round.safetensors";
     TensorFile file = small_file();
     file.add("nothing", {0, 5}, std::vector<float>{});
     write_safetensors(path, file);
@@ -79,6 +78,10 @@ TEST(Safetensors, DamagedFilesAreModelErrors) {
         file_of(good, "abc"),
         file_of(good, "abcde"),
         file_of(R"({"a":{"dtype":"F32","shape":[2],"data_offsets":[0,4]}})", "abcd"),
+        file_of(R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[0,4]},)"
+                R"("b":{"dtype":"F32","shape":[1],"data_offsets":[0,4]}})",
+                "abcdabcd"),
+        file_of(R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[4,8]}})", "abcdabcd"),
         file_of(R"({"a":{"dtype":"F99","shape":[1],"data_offsets":[0,4]}})", "abcd"),
         file_of(R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[4,0]}})", "abcd"),
         file_of(R"({"a":{"dtype":"F32","shape":[4611686018427387905],"data_offsets":[0,4]}})", "abcd"),
@@ -86,7 +89,8 @@ TEST(Safetensors, DamagedFilesAreModelErrors) {
         file_of(R"({"a":{"dtype":"F32","shape":"x","data_offsets":[0,4]}})", "abcd"),
         file_of(R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[0,4]},"__metadata__":{"k":5}})", "abcd"),
     };
-    const fs::path path = temporary("bad.safetensors");
+    const TemporaryFolder folder;
+    const fs::path path = folder / "bad.safetensors";
     for (const std::string& bytes : bad) {
         write_bytes(path, bytes);
         EXPECT_THROW(read_safetensors(path), ModelError) << bytes;
@@ -95,7 +99,8 @@ TEST(Safetensors, DamagedFilesAreModelErrors) {
 }
 
 TEST(Safetensors, MutationsNeverCrash) {
-    const fs::path path = temporary("fuzz.safetensors");
+    const TemporaryFolder folder;
+    const fs::path path = folder / "fuzz.safetensors";
     write_safetensors(path, small_file());
     const std::string good = read_file(path);
     Random random(5);

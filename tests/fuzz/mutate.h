@@ -37,9 +37,21 @@ inline std::string damaged(std::string bytes, Random& random) {
             break;
     }
     constexpr std::string_view k_digits = "0123456789";
-    constexpr std::array<std::string_view, 14> k_numbers{
-        "0",     "-1",  "1",    "3",   "255", "2147483647", "-2147483648", "4294967295", "18446744073709551615",
-        "1e999", "nan", "-inf", "0.5", ""};
+    constexpr std::array<std::string_view, 15> k_numbers{"0",
+                                                         "-1",
+                                                         "1",
+                                                         "3",
+                                                         "255",
+                                                         "2147483647",
+                                                         "-2147483648",
+                                                         "4294967295",
+                                                         "18446744073709551615",
+                                                         "-9223372036854775808",
+                                                         "1e999",
+                                                         "nan",
+                                                         "-inf",
+                                                         "0.5",
+                                                         ""};
     const std::size_t begin = bytes.find_first_of(k_digits, at);
     if (begin == std::string::npos) return bytes;
     const std::size_t end = std::min(bytes.find_first_not_of(k_digits, begin), bytes.size());

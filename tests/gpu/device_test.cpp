@@ -2,12 +2,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "embedded/tests_affine_comp.h"
@@ -54,6 +56,7 @@ TEST(DeviceSelection, TakesTheBestUnlessNamed) {
     EXPECT_EQ(select_device(devices, "1"), 1u);
     EXPECT_EQ(select_device(devices, "LLVMpipe"), 0u);
     EXPECT_EQ(select_device(devices, "h200"), 2u);
+    EXPECT_EQ(select_device(devices, "200"), 2u);  // no index: a part of a name
     devices[2].unusable = "Vulkan 1.1.0 is older than 1.3";
     EXPECT_EQ(select_device(devices, ""), 1u);
     EXPECT_THAT(no_device_message([&] { select_device(devices, "nvidia"); }), HasSubstr("older than 1.3"));
@@ -172,6 +175,7 @@ TEST(Validation, CollectsWhatTheLayerSays) {
 class PipelineCacheTest : public ::testing::Test {
   protected:
     void SetUp() override {
+        shared_device();  // keeps its own cache elsewhere
         if (const char* old = std::getenv("XDG_CACHE_HOME")) old_ = old;
         folder_ = std::filesystem::temp_directory_path() / ("exemplar-cache-test-" + std::to_string(getpid()));
         setenv("XDG_CACHE_HOME", folder_.c_str(), 1);

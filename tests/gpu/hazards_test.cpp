@@ -114,17 +114,16 @@ TEST(Hazards, OneBufferBoundTwiceInOneCommandIsReadAndWritten) {
     EXPECT_EQ(barriers[0].source_access, k_write);
 }
 
-// Two barriers that make a write visible, one to loads of vertex shaders and one to index fetches of compute shaders,
+// Two barriers that make a write visible, one to loads of vertex shaders and one to texel fetches of compute shaders,
 // leave it invisible to loads of compute shaders.
 TEST(Hazards, VisibilityIsNotMixedFromTwoBarriers) {
     constexpr VkPipelineStageFlags2 k_vertex = VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT;
     HazardTracker tracker;
     after(tracker, {writing(1)});
     EXPECT_EQ(after(tracker, {{.buffer = buffer(1), .stage = k_vertex, .reads = k_read}}).size(), 1u);
-    EXPECT_EQ(
-        after(tracker, {{.buffer = buffer(1), .stage = k_compute, .reads = VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT}})
-            .size(),
-        1u);
+    EXPECT_EQ(after(tracker, {{.buffer = buffer(1), .stage = k_compute, .reads = VK_ACCESS_2_SHADER_SAMPLED_READ_BIT}})
+                  .size(),
+              1u);
     EXPECT_EQ(after(tracker, {reading(1)}).size(), 1u);
     EXPECT_TRUE(after(tracker, {reading(1)}).empty());
 }

@@ -149,8 +149,7 @@ TEST(Stream, BindsRangesOfABuffer) {
     Stream stream(shared_device());
     stream.dispatch(kernel, floats, {BufferRange(buffer, floats * sizeof(float), floats * sizeof(float))},
                     AffineParameters{count, 1.0f, 1.0f});
-    stream.finish();
-    buffer.download<float>(values);
+    stream.fetch<float>(buffer, values);
     for (std::size_t i = 0; i < values.size(); ++i) ASSERT_EQ(values[i], i / floats == 1 ? 2.0f : 1.0f);
 }
 
@@ -201,6 +200,8 @@ TEST(Stream, RefusesWrongArguments) {
     for (const std::uint64_t threads : {std::uint64_t{1} << 33, ~std::uint64_t{0}})
         EXPECT_THROW(stream.dispatch(kernel, threads, {buffer}, AffineParameters{}), DeviceLimitError);
     EXPECT_THROW(stream.copy(buffer, 4000, buffer, 0, 100), DeviceError);
+    std::vector<float> more(buffer.bytes() / sizeof(float) + 1);
+    EXPECT_THROW(stream.fetch<float>(buffer, more), DeviceError);
     stream.finish();
 }
 

@@ -18,6 +18,7 @@
 #include "host/imaging/camera.h"
 #include "host/imaging/png.h"
 #include "host/imaging/raster.h"
+#include "tests/support/temporary_folder.h"
 
 namespace exemplar {
 namespace {
@@ -26,9 +27,7 @@ namespace fs = std::filesystem;
 
 class PngFile : public testing::Test {
   protected:
-    void SetUp() override { fs::create_directories(folder_); }
-    void TearDown() override { fs::remove_all(folder_); }
-    const fs::path folder_ = fs::temp_directory_path() / ("exemplar_png_" + std::to_string(getpid()));
+    const TemporaryFolder folder_;
 };
 
 Image random_image(int width, int height, int channels, std::uint64_t seed) {
@@ -53,7 +52,7 @@ TEST_F(PngFile, SameImageGivesSameBytesAndNoLeftovers) {
     write_png(folder_ / "a.png", image);
     write_png(folder_ / "b.png", image);
     EXPECT_EQ(read_file(folder_ / "a.png"), read_file(folder_ / "b.png"));
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 2);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()), 2);
 }
 
 TEST_F(PngFile, RefusesDamagedFilesNamingThem) {

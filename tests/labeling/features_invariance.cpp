@@ -235,6 +235,20 @@ TEST(PreparedMesh, NormalsAreSmoothButKeepEdges) {
     EXPECT_LT(error, raw_error / 9.0);  // a third of the angle
 }
 
+// Where all neighbors lie on one side the normal must not be extrapolated from their noise.
+TEST(PreparedMesh, NormalsAreSmoothAtBordersToo) {
+    Random random(5);
+    const TriangleMesh rough = shapes::transformed(shapes::grid(40, 4, 1.0F), [&](const Vec3& p) -> Vec3 {
+        return p + Vec3(0, 0, static_cast<float>(random.uniform(-0.003, 0.003)));
+    });
+    const std::vector<Vec3> raw = face_normals(rough);
+    const PreparedMesh prepared = prepare_mesh(rough, 50);
+    const auto tilt = [](const Vec3& normal) { return static_cast<double>(normal.head<2>().squaredNorm()); };
+    double raw_error = 0.0, error = 0.0;
+    for (std::size_t f = 0; f < raw.size(); ++f) raw_error += tilt(raw[f]), error += tilt(prepared.normal[f]);
+    EXPECT_LT(error, raw_error / 4.0);
+}
+
 TEST(PreparedMesh, UnitIsTheThirtiethPercentileOfDistances) {
     const PreparedMesh prepared = prepare_mesh(shapes::icosphere(4, 7.0F), 400);
     // On a sphere of radius r a cap of geodesic radius d holds (1 - cos(d / r)) / 2 of the area.

@@ -79,9 +79,9 @@ TEST(CurvatureFeatures, OfACylinderAndATorus) {
         const float from_axis = p.head<2>().norm();
         const float k2_truth = (from_axis - 1.0F) / 0.4F / from_axis;
         // The wider patch spans half of the tube's radius, where a cubic height field no longer follows it closely.
-        for (const auto& [radius, error] : {std::pair("@0.05", 0.06F), std::pair("@0.1", 0.18F)}) {
-            EXPECT_NEAR(column(features.unary, std::string("curvature.k1") + radius)[f] * unit, 1.0F / 0.4F, error);
-            EXPECT_NEAR(column(features.unary, std::string("curvature.k2") + radius)[f] * unit, k2_truth, error);
+        for (const auto& [patch, error] : {std::pair("@0.05", 0.06F), std::pair("@0.1", 0.18F)}) {
+            EXPECT_NEAR(column(features.unary, std::string("curvature.k1") + patch)[f] * unit, 1.0F / 0.4F, error);
+            EXPECT_NEAR(column(features.unary, std::string("curvature.k2") + patch)[f] * unit, k2_truth, error);
         }
     }
 }

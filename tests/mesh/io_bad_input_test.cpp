@@ -121,7 +121,8 @@ TEST(BadFile, Obj) {
                             {vertices + "f /1 2 3\n", ":4: ", "'/1'"},
                             {vertices + "f 1 2 99999999999\n", ":4: ", "99999999999"},
                             {vertices + "f 1 2 \\\n 2147483647\n", ":4: ", "2147483647"},
-                            {vertices + "f 1 2 -2147483648\n", ":4: ", "-2147483648"}});
+                            {vertices + "f 1 2 -2147483648\n", ":4: ", "-2147483648"},
+                            {vertices + "f 1 2 -9223372036854775808\n", ":4: ", "-9223372036854775808"}});
 }
 
 std::string ascii_ply(const std::string& elements, const std::string& body) {
@@ -304,7 +305,11 @@ TEST(BadFile, GltfIndicesAndLengths) {
          {edited_glb("'byteLength':72", "'byteLength':7200"), ": ", ""},
          {edited_glb("'byteLength':72", "'byteLength':0"), ": ", ""},
          {edited_glb("'byteLength':72}", "'byteLength':72},{'byteLength':72}"), ": ", "buffer 1 has no bytes"},
-         {edited_glb("'byteLength':72}", "'uri':'/etc/hostname','byteLength':72}"), ": ", "not found"},
+         {edited_glb("'byteLength':72}", "'uri':'/etc/hostname','byteLength':72}"), ": ", "not in the folder"},
+         {edited_glb("'byteLength':72}", "'uri':'../x','byteLength':72}"), ": ", "not in the folder"},
+         {edited_glb("'byteLength':72}", "'uri':'y/%2e%2E/%2e./x','byteLength':72}"), ": ", "not in the folder"},
+         {edited_glb("'byteLength':72}", "'uri':'x','byteLength':72},{'uri':'./%78','byteLength':72}"), ": ",
+          "same uri"},
          {edited_glb("'byteLength':72}", "'uri':'x','byteLength':72},{'uri':'x','byteLength':72}"), ": ", "same uri"},
          {edited_glb("'scene':0", "'extensionsRequired':['KHR_draco_mesh_compression'],'scene':0"), ": ",
           "KHR_draco"}});

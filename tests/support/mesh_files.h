@@ -14,30 +14,12 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/mesh/io.h"
+#include "tests/support/temporary_folder.h"
 
 /// Files and file contents for the tests of readers and writers.
 namespace exemplar::mesh_files {
 
-/// A folder of its own that disappears with the object.
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        static int count = 0;
-        path_ = std::filesystem::path(testing::TempDir()) /
-                ("exemplar_files_" + std::to_string(getpid()) + "_" + std::to_string(count++));
-        std::filesystem::create_directories(path_);
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-
-  private:
-    std::filesystem::path path_;
-};
+using exemplar::TemporaryFolder;
 
 inline void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
     std::ofstream(path, std::ios::binary) << bytes;
@@ -171,6 +153,11 @@ inline std::vector<Sample> samples() {
          "4 0 1 2 3 3\n3 0 1 2 -1\n0 1\n"},
         {"little.ply", binary_ply(false)},
         {"big.ply", binary_ply(true)},
+        {"strips.ply",
+         "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+         "property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n" +
+             tetrahedron_positions() + bytes_of(8) + bytes_of(0) + bytes_of(1) + bytes_of(2) + bytes_of(3) +
+             bytes_of(-1) + bytes_of(2) + bytes_of(1) + bytes_of(0)},
         {"ascii.stl",
          "solid part one\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 1 0\n"
          "  endloop\n endfacet\n facet normal 0 0 1\n  outer loop\n   vertex 1 0 0\n   vertex 1.0 1.0e0 0\n"

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/core/parallel.h"
 #include "host/core/random.h"
 #include "host/core/stopwatch.h"
 #include "host/graphcut/alpha_expansion.h"
@@ -61,7 +60,7 @@ void jointboost(benchmark::State& state) {
     options.rounds = static_cast<std::size_t>(state.range(1));
     const Stopwatch watch;
     for (auto _ : state) {
-        train_jointboost({quantized, data.labels, data.areas, {}}, classes, nullptr, options);
+        train_jointboost({quantized, data.labels, data.areas, {}}, classes, options);
     }
     const double cpu = watch.cpu() / static_cast<double>(state.iterations() * options.rounds);
     state.counters["cpu_s_per_round"] = cpu;
@@ -82,7 +81,7 @@ void gentleboost(benchmark::State& state) {
     const QuantizedFeatures quantized = quantize(data.features, data.areas, {});
     BoostOptions options;
     options.rounds = 20;
-    for (auto _ : state) train_gentleboost({quantized, data.labels, data.areas, {}}, nullptr, options);
+    for (auto _ : state) train_gentleboost({quantized, data.labels, data.areas, {}}, options);
 }
 BENCHMARK(gentleboost)->Iterations(1)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
@@ -91,7 +90,7 @@ void score_stumps(benchmark::State& state) {
     const QuantizedFeatures quantized = quantize(data.features, data.areas, {});
     BoostOptions options;
     options.rounds = 100;
-    const BoostResult model = train_jointboost({quantized, data.labels, data.areas, {}}, 8, nullptr, options);
+    const BoostResult model = train_jointboost({quantized, data.labels, data.areas, {}}, 8, options);
     std::vector<float> out(20'000 * 8);
     CpuStumpScorer scorer;
     for (auto _ : state) scorer.probabilities(model.classifier, data.features, Link::softmax, 1.0f, out);

@@ -22,7 +22,7 @@ struct ApplyOptions {
     std::filesystem::path model, out;
     std::filesystem::path cache = default_feature_folder();
     std::vector<std::filesystem::path> meshes;
-    bool gltf = false, png = false;
+    bool gltf = false, png = false, keep_small = false;
 };
 
 /// Labels one mesh and writes all of its files; returns its part of the report.
@@ -55,11 +55,13 @@ nlohmann::json apply_to(const std::filesystem::path& path, const LabelingModel& 
 void run_apply(const ApplyOptions& options) {
     const auto limits = apply_common_options(options.common);
     require_output_folder(options.out);
-    const LabelingModel model = model_of_argument(options.model);
+    LabelingModel model = model_of_argument(options.model);
+    if (options.keep_small) model.crf.merge_fraction = 0;
     std::vector<std::filesystem::path> meshes;
     for (const auto& source : options.meshes)
         for (const auto& path : meshes_of_argument(source)) meshes.push_back(path);
     require_distinct_names(meshes);
+    require_other_folder(options.out, meshes);
     const std::filesystem::path cache = usable_cache(options.cache, options.common.quiet);
     DeviceBackend backend(options.common.device);
 
@@ -103,6 +105,8 @@ void add_apply_command(CLI::App& label) {
     command->add_option("--out", options->out, "folder to write to")->required()->type_name("FOLDER");
     command->add_flag("--gltf", options->gltf, "also write NAME.glb with a material per part");
     command->add_flag("--png", options->png, "also write NAME.png, an image rendered through Vulkan");
+    command->add_flag("--keep-small", options->keep_small,
+                      "leave pieces that are much smaller than any in training as they are, instead of merging them");
     command->add_option("--cache", options->cache, "folder that remembers features; '' remembers none")
         ->capture_default_str()
         ->type_name("FOLDER");

@@ -10,7 +10,6 @@
 #include <fstream>
 #include <map>
 #include <string>
-#include <string_view>
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
@@ -106,6 +105,16 @@ fs::path usable_cache(const fs::path& cache, bool quiet) {
     if (why.empty()) return cache;
     if (!quiet) fmt::print(stderr, "warning: features are not remembered: {}; --cache FOLDER gives another\n", why);
     return {};
+}
+
+void require_other_folder(const fs::path& out, const std::vector<fs::path>& meshes) {
+    for (const auto& path : meshes) {
+        std::error_code ignored;  // a folder that does not exist yet holds no mesh
+        if (fs::equivalent(out, fs::absolute(path).parent_path(), ignored))
+            throw UsageError(
+                fmt::format("{}: is the folder of {}, whose labels could be replaced; give another folder to write to",
+                            out.string(), path.filename().string()));
+    }
 }
 
 void require_distinct_names(const std::vector<fs::path>& meshes) {

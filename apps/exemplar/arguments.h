@@ -26,6 +26,9 @@ void require_output_file(const std::filesystem::path& path);
 void require_output_folder(const std::filesystem::path& path);
 /// The folder that remembers features; empty, with a warning, where it cannot be written.
 std::filesystem::path usable_cache(const std::filesystem::path& cache, bool quiet);
+/// Results beside a mesh could replace the labels, or the mesh, that they were made from: throws UsageError if a mesh
+/// lies in the folder `out`.
+void require_other_folder(const std::filesystem::path& out, const std::vector<std::filesystem::path>& meshes);
 /// Results are named after the mesh: throws UsageError naming two meshes that would write the same files.
 void require_distinct_names(const std::vector<std::filesystem::path>& meshes);
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "apps/exemplar/arguments.h"
@@ -11,7 +11,6 @@
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/evaluation_run.h"
 #include "host/core/errors.h"
-#include "host/core/text.h"
 
 namespace exemplar {
 namespace {
@@ -23,7 +22,7 @@ struct EvaluateCommand {
     fs::path train_list, test_list, folder, out, humans;
     fs::path cache = default_feature_folder();
     std::string protocol;
-    std::size_t splits = 1;
+    std::optional<std::size_t> splits;
     bool fresh = false;
     TrainOptions train;
 };
@@ -36,6 +35,12 @@ std::size_t protocol_size(const std::string& protocol) {
     return 0;
 }
 
+/// Labels lie beside a mesh, or in the mesh file itself.
+bool may_be_labeled(const fs::path& file) {
+    const std::string extension = file.extension().string();
+    return file.filename().string().ends_with("_labels.txt") || extension == ".ply" || extension == ".glb";
+}
+
 /// The folders below `folder` that hold labeled meshes, or the folder itself.
 std::vector<fs::path> category_folders(const fs::path& folder) {
     std::set<fs::path> categories;
@@ -45,7 +50,7 @@ std::vector<fs::path> category_folders(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(folder)) {
         if (!entry.is_directory()) continue;
         for (const auto& file : fs::directory_iterator(entry.path()))
-            if (file.path().filename().string().ends_with("_labels.txt")) categories.insert(entry.path());
+            if (may_be_labeled(file.path())) categories.insert(entry.path());
     }
     if (categories.empty()) categories.insert(folder);
     return {categories.begin(), categories.end()};
@@ -70,12 +75,16 @@ fs::path human_folder(const EvaluateCommand& options, const fs::path& category) 
 
 std::vector<EvaluationTask> protocol_tasks(const EvaluateCommand& options) {
     std::vector<EvaluationTask> tasks;
+    if (options.protocol == "sb19" && options.splits)
+        throw UsageError("--splits does not apply to sb19, which leaves out each mesh in turn");
     for (const fs::path& folder : category_folders(options.folder)) {
         const fs::path category = without_trailing_slash(folder);
         const std::vector<fs::path> meshes = list_meshes(category);
+        require_distinct_names(meshes);
         const std::size_t size = protocol_size(options.protocol);
-        const std::vector<Split> splits = make_splits(meshes.size(), size ? size : meshes.size() - 1,
-                                                      size ? options.splits : meshes.size(), options.train.seed);
+        const std::vector<Split> splits =
+            make_splits(meshes.size(), size ? size : meshes.size() - 1,
+                        size ? options.splits.value_or(1) : meshes.size(), options.train.seed);
         for (std::size_t k = 0; k < splits.size(); ++k) {
             EvaluationTask task{category.filename().string(),
                                 fmt::format("{}-{}", options.protocol, k),
@@ -90,6 +99,17 @@ std::vector<EvaluationTask> protocol_tasks(const EvaluateCommand& options) {
     return tasks;
 }
 
+/// Meshes that were trained on are labeled too well.
+void warn_of_common(const std::vector<fs::path>& train, const std::vector<fs::path>& test) {
+    std::set<fs::path> trained;
+    for (const fs::path& path : train) trained.insert(fs::weakly_canonical(path));
+    for (const fs::path& path : test)
+        if (trained.contains(fs::weakly_canonical(path)))
+            fmt::print(stderr,
+                       "warning: {}: is among the training meshes too; its rates are not those of an unseen mesh\n",
+                       path.string());
+}
+
 std::vector<EvaluationTask> make_tasks(const EvaluateCommand& options) {
     if (!options.protocol.empty()) return protocol_tasks(options);
     if (options.train_list.empty() || options.test_list.empty())
@@ -100,6 +120,7 @@ std::vector<EvaluationTask> make_tasks(const EvaluateCommand& options) {
                         meshes_of_argument(options.test_list),
                         {}};
     require_distinct_names(task.test);
+    if (!options.common.quiet) warn_of_common(task.train, task.test);
     task.humans = human_folder(options, fs::absolute(task.test.front()).parent_path());
     return {task};
 }
@@ -148,8 +169,7 @@ void add_evaluate_command(CLI::App& label) {
     command->add_option("DIR", options->folder, "category folder, or folder of category folders, for --protocol")
         ->needs(protocol)
         ->type_name("");
-    command->add_option("--splits", options->splits, "random splits per category")
-        ->capture_default_str()
+    command->add_option("--splits", options->splits, "random splits per category, one unless given; not for sb19")
         ->check(whole_number(1, 1000))
         ->needs(protocol);
     command->add_option("--humans", options->humans, "folder of human segmentations, NAME/*.seg, for the Rand index")

@@ -80,6 +80,18 @@ fs::path folder_of(const fs::path& out, const EvaluationTask& task) {
     return out / task.category / task.split;
 }
 
+/// Human segmentations are per face of the file; here they are wanted per triangle.
+std::vector<std::vector<std::int32_t>> human_segmentations(const fs::path& folder, const LabeledMesh& item) {
+    auto segmentations = read_human_segmentations(folder, item.name, item.mesh.source_face_count);
+    for (std::vector<std::int32_t>& segments : segmentations) {
+        std::vector<std::int32_t> of_triangle;
+        for (std::uint32_t f = 0; f < item.mesh.face_count(); ++f)
+            of_triangle.push_back(segments[item.mesh.source_of(f)]);
+        segments = std::move(of_triangle);
+    }
+    return segmentations;
+}
+
 /// Confusion summed over meshes and divided by their number.
 std::vector<double> mean_confusion(const Json& meshes) {
     std::vector<double> sum;
@@ -163,14 +175,14 @@ Json EvaluationRun::test_mesh(const EvaluationTask& task, const fs::path& mesh, 
     const LabeledOutput output = make_labeled_output(item.mesh, model, labeling);
     write_labels_txt(stem.string() + "_labels.txt", output.labels);
     write_ply(stem.string() + ".ply", item.mesh, &output.labels, output.confidence);
-    const MeshScore score = score_labeling(features, item.label, labeling.label, names.size(),
-                                           read_human_segmentations(task.humans, item.name, item.mesh.face_count()));
+    const MeshScore score =
+        score_labeling(features, item.label, labeling.label, names.size(), human_segmentations(task.humans, item));
     Json json{{"key", mesh_key},
               {"mesh", item.name},
               {"path", mesh.string()},
               {"names", names},
-              {"recognition_rate", score.recognition_rate},
-              {"segment_weighted_accuracy", score.segment_weighted_accuracy},
+              {"recognition_rate", rate_json(score.recognition_rate)},
+              {"segment_weighted_accuracy", rate_json(score.segment_weighted_accuracy)},
               {"rand_error", rate_json(score.rand_error)},
               {"confusion", score.confusion},
               {"seconds", {{"features", feature_seconds}, {"all", watch.wall()}}}};
@@ -228,6 +240,9 @@ ReportData EvaluationRun::report_group(const EvaluationTask& task, const Json& c
     group.title = category["category"];
     group.subtitle =
         fmt::format("{} training meshes, {} unseen meshes", category["splits"][0]["train"].size(), meshes.size());
+    if (const std::size_t splits = category["splits"].size(); splits > 1)
+        group.subtitle += fmt::format("; {} splits, of which the first is shown and the rates are the mean", splits);
+    group.recognition_rate = rate_of(category, "recognition_rate");
     group.label_names = shown.names;
     for (std::size_t c = 0; c < shown.names.size(); ++c) group.label_colors.push_back(label_color(c));
     for (std::size_t i = 0; i < shown.meshes.size(); ++i) {
@@ -235,7 +250,7 @@ ReportData EvaluationRun::report_group(const EvaluationTask& task, const Json& c
         MeshFeatures features = cached_features(mesh.mesh, model.feature_options, cache_);
         FaceLabeling labeling = label_faces(model, features, backend_.labeling());
         group.meshes.push_back({mesh.name, &mesh.mesh, std::move(labeling.label), mesh.label,
-                                std::move(labeling.confidence), meshes[i]["recognition_rate"]});
+                                std::move(labeling.confidence), rate_of(meshes[i], "recognition_rate")});
     }
     const auto same_names = [&](const Json& mesh) { return mesh["names"].size() == model.class_count(); };
     if (std::all_of(meshes.begin(), meshes.end(), same_names)) group.confusion = mean_confusion(meshes);

@@ -68,7 +68,7 @@ void add_features_command(CLI::App& app) {
     command
         ->add_option("--samples", options->features.samples, "faces that stand for the surface in distance statistics")
         ->capture_default_str()
-        ->check(whole_number(1));
+        ->check(whole_number(1, k_most_samples));
     command->add_flag("--orientation", options->features.orientation,
                       "add coordinates, for shapes that share an orientation");
     add_common_options(*command, options->common);

@@ -22,7 +22,7 @@ void write_labeled_files(const std::filesystem::path& stem, const TriangleMesh& 
 /// The color of each triangle's label.
 std::vector<Color> triangle_colors(const LabelingModel& model, const FaceLabeling& labeling);
 
-/// Per label that occurs: area share, number of faces and of pieces, mean confidence; and the mesh's mean confidence.
+/// Per label that occurs: area share, number of faces, mean confidence; and the mesh's mean confidence.
 nlohmann::json describe_output(const TriangleMesh& mesh, const LabelingModel& model, const FaceLabeling& labeling);
 
 }  // namespace exemplar

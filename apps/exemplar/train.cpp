@@ -53,7 +53,9 @@ void add_training_options(CLI::App& command, TrainOptions& options, std::filesys
     command.add_option("--rounds", options.rounds, "most boosting rounds per classifier")
         ->capture_default_str()
         ->check(whole_number(1, 100000));
-    command.add_option("--patience", options.patience, "rounds without improvement that end boosting")
+    command
+        .add_option("--patience", options.patience,
+                    "boosting ends after so many rounds without better labels of held-out meshes")
         ->capture_default_str()
         ->check(whole_number(1));
     command.add_option("--stages", options.max_stages, "most classifiers of the cascade")
@@ -76,7 +78,7 @@ void add_training_options(CLI::App& command, TrainOptions& options, std::filesys
     command
         .add_option("--samples", options.features.samples, "faces that stand for the surface in distance statistics")
         ->capture_default_str()
-        ->check(whole_number(1));
+        ->check(whole_number(1, k_most_samples));
     command.add_flag("--orientation", options.features.orientation,
                      "add coordinates, for shapes that share an orientation");
     command.add_option("--cache", cache, "folder that remembers features; '' remembers none")

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
+#include "host/core/disjoint_sets.h"
 #include "host/graphcut/alpha_expansion.h"
 
 namespace exemplar {
@@ -16,20 +16,6 @@ constexpr float k_epsilon = 1e-3F;            ///< the epsilon of Eq. 3.4
 float negative_log(float probability) {
     return -std::log(std::max(probability, k_least_probability));
 }
-
-/// Disjoint sets of faces with path halving.
-class FaceSets {
-  public:
-    explicit FaceSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
-    std::uint32_t find(std::uint32_t face) {
-        while (parent_[face] != face) face = parent_[face] = parent_[parent_[face]];
-        return face;
-    }
-    void join(std::uint32_t a, std::uint32_t b) { parent_[std::max(find(a), find(b))] = std::min(find(a), find(b)); }
-
-  private:
-    std::vector<std::uint32_t> parent_;
-};
 
 /// For one piece the neighboring label with the longest common border; -1 if it has no neighbors.
 std::int32_t most_touched_label(const std::map<std::int32_t, float>& border) {
@@ -67,7 +53,7 @@ std::vector<std::int32_t> solve_crf(const MeshFeatures& features, const CrfTerms
 }
 
 LabelComponents label_components(const MeshFeatures& features, std::span<const std::int32_t> labels) {
-    FaceSets sets(labels.size());
+    DisjointSets sets(labels.size());
     for (const auto& [a, b] : features.edges)
         if (labels[a] == labels[b]) sets.join(a, b);
 

@@ -1,6 +1,5 @@
 #include "host/labeling/edge_context.h"
 
-#include <algorithm>
 #include <array>
 
 #include "host/core/parallel.h"

@@ -1,5 +1,7 @@
 #include "host/labeling/features.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 #include <utility>
@@ -84,8 +86,9 @@ void add_pairwise(const PreparedMesh& prepared, const CurvatureFamily::FaceValue
 
 MeshFeatures compute_features(const TriangleMesh& mesh, const FeatureOptions& options) {
     require_usable(mesh, "mesh");
-    if (options.samples == 0)
-        throw UsageError("features need at least one sample; set FeatureOptions::samples to 1 or more");
+    if (options.samples == 0 || options.samples > k_most_samples)
+        throw UsageError(fmt::format("features of {} samples; FeatureOptions::samples takes 1 to {}", options.samples,
+                                     k_most_samples));
     MeshFeatures features;
     StepClock clock(features);
     const PreparedMesh prepared = prepare_mesh(mesh, options.samples);

@@ -13,6 +13,9 @@
 
 namespace exemplar {
 
+/// So many samples stand for any surface; more would only cost memory.
+constexpr std::size_t k_most_samples = 1'000'000;
+
 struct FeatureOptions {
     /// Faces that stand for the surface in distance statistics, shape contexts, spin images and contextual features;
     /// all faces if the mesh has fewer. Sums converge as it grows.
@@ -48,7 +51,7 @@ struct MeshFeatures {
 /// the 30th percentile of all geodesic distances, so values do not change when the mesh is moved, turned or scaled; a
 /// mesh that is inside out, closed or with small holes, is turned outward. Sums over all faces are taken over
 /// options.samples cells of the surface, and over all faces where few samples are near. feature_families.h documents
-/// each family. Errors: UsageError if options.samples is 0, Interrupted at Ctrl-C. Unusable meshes (empty or
+/// each family. Errors: UsageError if options.samples is out of range, Interrupted at Ctrl-C. Unusable meshes (empty or
 /// non-finite) throw MeshError. Any other defect degrades gracefully: distances stay inside components, boundary edges
 /// are left out, degenerate faces take their neighbors' geometry; every value is finite.
 MeshFeatures compute_features(const TriangleMesh& mesh, const FeatureOptions& options = {});

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
@@ -68,51 +69,68 @@ Pool make_pool(std::span<const BoostingItems> meshes, const FoldBoostingOptions&
     return pool;
 }
 
-BoostedStumps boost(const Pool& pool, const QuantizedFeatures& quantized, std::span<const std::uint32_t> rows,
-                    std::size_t rounds, const FoldBoostingOptions& options, const std::function<void()>& round_done) {
-    BoostOptions boost_options;
-    boost_options.rounds = rounds, boost_options.patience = 0, boost_options.seed = options.seed;
-    boost_options.feature_fraction = options.feature_fraction, boost_options.shrinkage = options.shrinkage;
+Booster start(const Pool& pool, const QuantizedFeatures& quantized, std::span<const std::uint32_t> rows,
+              const FoldBoostingOptions& options) {
+    BoostOptions boost;
+    boost.seed = options.seed;
+    boost.feature_fraction = options.feature_fraction, boost.shrinkage = options.shrinkage;
     const TrainingSet training{quantized, pool.label, pool.weight, rows};
-    const BoostCallback callback = [&](const BoostRound&, const BoostedStumps&) { round_done(); };
-    BoostResult result = options.binary ? train_gentleboost(training, nullptr, boost_options, callback)
-                                        : train_jointboost(training, options.classes, nullptr, boost_options, callback);
-    return std::move(result.classifier);
+    return options.binary ? Booster::gentle(training, boost) : Booster(training, options.classes, boost);
 }
 
-/// One classifier per fold, trained on the rows of the others; empty where one side of the split has no rows.
-std::vector<BoostedStumps> boost_folds(const Pool& pool, const QuantizedFeatures& quantized,
-                                       const FoldBoostingOptions& options, const std::function<void()>& round_done) {
-    std::vector<BoostedStumps> of_fold(options.folds);
-    for (std::size_t fold = 0; fold < options.folds; ++fold) {
+void grow(Booster& booster, std::size_t rounds, const std::function<void()>& round_done) {
+    while (booster.classifier().stumps.size() < rounds) {
         check_interrupt();
-        std::vector<std::uint32_t> inside;
-        for (std::uint32_t row = 0; row < pool.fold.size(); ++row)
-            if (pool.fold[row] != fold) inside.push_back(row);
-        if (inside.empty() || inside.size() == pool.fold.size()) continue;
-        of_fold[fold] = boost(pool, quantized, inside, options.rounds, options, round_done);
+        booster.add_stump();
+        round_done();
     }
-    return of_fold;
 }
+
+/// One classifier per fold, trained on the rows of the others; none where one side of the split has no rows.
+class FoldBoosters {
+  public:
+    FoldBoosters(const Pool& pool, const QuantizedFeatures& quantized, const FoldBoostingOptions& options)
+        : of_fold_(options.folds) {
+        for (std::size_t fold = 0; fold < options.folds; ++fold) {
+            std::vector<std::uint32_t> inside;
+            for (std::uint32_t row = 0; row < pool.fold.size(); ++row)
+                if (pool.fold[row] != fold) inside.push_back(row);
+            if (inside.empty() || inside.size() == pool.fold.size()) continue;
+            of_fold_[fold] = start(pool, quantized, inside, options);
+        }
+    }
+    /// Grows all classifiers to so many rounds.
+    void grow_to(std::size_t rounds, const std::function<void()>& round_done) {
+        for (std::optional<Booster>& booster : of_fold_)
+            if (booster) grow(*booster, rounds, round_done);
+    }
+    /// The classifier that never saw a fold; null if there is none.
+    const BoostedStumps* without(std::size_t fold) const {
+        return of_fold_[fold] ? &of_fold_[fold]->classifier() : nullptr;
+    }
+
+  private:
+    std::vector<std::optional<Booster>> of_fold_;
+};
 
 /// H of every row from the classifier of the fold that held it out, grown round by round.
 class HeldOutScores {
   public:
-    HeldOutScores(const Pool& pool, const std::vector<BoostedStumps>& of_fold, std::size_t classes)
-        : pool_(pool), of_fold_(of_fold), classes_(classes), scores_(pool.label.size() * classes, 0.0F) {
+    HeldOutScores(const Pool& pool, const FoldBoosters& boosters, std::size_t classes)
+        : pool_(pool), boosters_(boosters), classes_(classes), scores_(pool.label.size() * classes, 0.0F) {
         for (std::size_t i = 0; i < pool.label.size(); ++i)
-            weight_.push_back(of_fold[pool.fold[i]].class_count ? pool.weight[i] : 0);
+            weight_.push_back(boosters.without(pool.fold[i]) ? pool.weight[i] : 0);
     }
 
     void add_round(std::size_t round) {
         parallel_for(pool_.label.size(), [&](std::size_t i) {
-            const BoostedStumps& classifier = of_fold_[pool_.fold[i]];
-            if (round >= classifier.stumps.size()) return;
-            const Stump& stump = classifier.stumps[round];
+            const BoostedStumps* classifier = boosters_.without(pool_.fold[i]);
+            if (!classifier) return;
+            const Stump& stump = classifier->stumps[round];
             const bool above = pool_.features.column(stump.feature)[i] > stump.threshold;
             for (std::size_t c = 0; c < classes_; ++c)
                 scores_[i * classes_ + c] += (stump.classes >> c & 1) ? (above ? stump.above : stump.below)
-                                                                      : classifier.elsewhere[round * classes_ + c];
+                                                                      : classifier->elsewhere[round * classes_ + c];
         });
     }
 
@@ -122,7 +140,7 @@ class HeldOutScores {
 
   private:
     const Pool& pool_;
-    const std::vector<BoostedStumps>& of_fold_;
+    const FoldBoosters& boosters_;
     std::size_t classes_;
     std::vector<float> scores_, weight_;
 };
@@ -134,15 +152,16 @@ struct RoundChoice {
     std::vector<HeldOutPoint> curve;
 };
 
-RoundChoice choose_rounds(const Pool& pool, const std::vector<BoostedStumps>& of_fold,
-                          const FoldBoostingOptions& options) {
+/// Grows the classifiers until the held-out loss has not fallen for `patience` rounds.
+RoundChoice choose_rounds(const Pool& pool, FoldBoosters& boosters, const FoldBoostingOptions& options,
+                          const std::function<void()>& round_done) {
     constexpr std::array<Link, 2> k_links{Link::softmax, Link::sigmoid};
     // GentleBoost's class 0 has no score of its own, so sigmoids do not apply.
     const std::span<const Link> usable = std::span(k_links).first(options.binary ? 1 : 2);
-    HeldOutScores scores(pool, of_fold, options.classes);
+    HeldOutScores scores(pool, boosters, options.classes);
     RoundChoice choice;
     for (std::size_t round = 1; round <= options.rounds; ++round) {
-        check_interrupt();
+        boosters.grow_to(round, round_done);
         scores.add_round(round - 1);
         if (round > 10 && round % k_judged_rounds != 0 && round != options.rounds) continue;
         const Calibration now = scores.judge(usable);
@@ -156,18 +175,22 @@ RoundChoice choose_rounds(const Pool& pool, const std::vector<BoostedStumps>& of
 }
 
 /// Probabilities of every item of every mesh from the classifier of the fold that held it out.
-std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems> meshes,
-                                                  const std::vector<BoostedStumps>& of_fold,
-                                                  const CalibratedStumps& everywhere, std::size_t classes,
-                                                  StumpScorer& scorer) {
+std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems> meshes, const FoldBoosters& boosters,
+                                                  std::size_t folds, const CalibratedStumps& everywhere,
+                                                  std::size_t classes, StumpScorer& scorer) {
+    const std::size_t rounds = everywhere.stumps.stumps.size();
+    std::vector<BoostedStumps> of_fold;
+    for (std::size_t fold = 0; fold < folds; ++fold) {
+        const BoostedStumps* grown = boosters.without(fold);
+        of_fold.push_back(grown ? truncate(*grown, rounds) : everywhere.stumps);
+    }
     std::vector<std::vector<float>> result;
     for (const BoostingItems& mesh : meshes) {
         std::vector<float> scores(mesh.fold.size() * classes), from_fold(mesh.fold.size() * classes);
         for (std::size_t fold = 0; fold < of_fold.size(); ++fold) {
             const auto holds = [&](std::uint8_t f) { return f == fold; };
             if (std::none_of(mesh.fold.begin(), mesh.fold.end(), holds)) continue;
-            const BoostedStumps& classifier = of_fold[fold].class_count ? of_fold[fold] : everywhere.stumps;
-            scorer.probabilities(classifier, *mesh.features, everywhere.link, everywhere.scale, from_fold);
+            scorer.probabilities(of_fold[fold], *mesh.features, everywhere.link, everywhere.scale, from_fold);
             for (std::size_t i = 0; i < mesh.fold.size(); ++i)
                 if (mesh.fold[i] == fold)
                     std::copy_n(from_fold.begin() + i * classes, classes, scores.begin() + i * classes);
@@ -186,18 +209,18 @@ FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const
     QuantizeOptions quantize_options;
     quantize_options.bins = options.bins;
     const QuantizedFeatures quantized = quantize(pool.features, pool.weight, quantize_options);
-    std::vector<BoostedStumps> of_fold = boost_folds(pool, quantized, options, round_done);
-    RoundChoice choice = choose_rounds(pool, of_fold, options);
-    for (BoostedStumps& model : of_fold)
-        if (model.class_count) model = truncate(model, choice.rounds);
+    FoldBoosters boosters(pool, quantized, options);
+    RoundChoice choice = choose_rounds(pool, boosters, options, round_done);
+    Booster everywhere = start(pool, quantized, {}, options);
+    grow(everywhere, choice.rounds, round_done);
 
     FoldBoostingResult result;
-    result.classifier.stumps = boost(pool, quantized, {}, choice.rounds, options, round_done);
+    result.classifier.stumps = everywhere.classifier();
     result.classifier.link = choice.calibration.link;
     result.classifier.scale = choice.calibration.scale;
     result.loss = choice.calibration.loss, result.error = choice.calibration.error;
     result.curve = std::move(choice.curve);
-    result.out_of_fold = score_out_of_fold(meshes, of_fold, result.classifier, options.classes, scorer);
+    result.out_of_fold = score_out_of_fold(meshes, boosters, options.folds, result.classifier, options.classes, scorer);
     return result;
 }
 

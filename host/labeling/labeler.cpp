@@ -84,7 +84,7 @@ std::vector<float> unary_probabilities(const LabelingModel& model, MeshFeatures&
 
 std::vector<float> boundary_probabilities(const LabelingModel& model, MeshFeatures& features,
                                           const LabelingBackend& backend) {
-    if (model.pairwise.empty()) return std::vector<float>(features.edges.size(), 0.5F);
+    if (model.pairwise.empty()) return std::vector<float>(features.edges.size(), k_even_odds);
     require_features(features.pairwise, model.pairwise_names, "edge");
     std::vector<float> boundary = boundary_column(score(model.pairwise.front(), features.pairwise, backend.scorer));
     for (std::size_t stage = 1; stage < model.pairwise.size(); ++stage) {

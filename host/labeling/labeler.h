@@ -27,6 +27,9 @@ struct FaceLabeling {
 
 /// Names of the contextual columns that a cascade's later stages see, "context.MEASURE.BIN.LABEL".
 std::vector<std::string> context_names(const std::vector<std::string>& label_names);
+/// The boundary probability of every edge where training saw no boundary.
+constexpr float k_even_odds = 0.5F;
+
 /// Names of the pairwise contextual columns (thesis App. A.2e).
 std::vector<std::string> edge_context_names();
 /// P(boundary) per edge from two-class probabilities (edges x 2).

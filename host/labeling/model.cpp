@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "host/core/errors.h"
@@ -65,6 +64,8 @@ CalibratedStumps get_classifier(const TensorFile& file, const std::string& name,
     for (std::size_t m = 0; m < count; ++m) {
         if (feature[m] >= feature_count)
             inconsistent(file, fmt::format("{} uses feature {} of {}", name, feature[m], feature_count));
+        if (class_count < 64 && classes[m] >> class_count != 0)
+            inconsistent(file, fmt::format("{} has a stump of more than {} classes", name, class_count));
         classifier.stumps.stumps.push_back(
             {feature[m], values[3 * m], values[3 * m + 1], values[3 * m + 2], classes[m]});
     }
@@ -130,6 +131,10 @@ void check_description(const TensorFile& file, const LabelingModel& model) {
         inconsistent(file, "the label compatibility has the wrong size");
     for (const double value : model.crf.compatibility)
         if (!(value >= 0)) inconsistent(file, "the label compatibility is negative");
+    for (const double weight : {model.crf.kappa, model.crf.lambda, model.crf.mu, model.crf.merge_fraction})
+        if (!(weight >= 0) || !std::isfinite(weight)) inconsistent(file, "a weight of the label cut is negative");
+    if (model.feature_options.samples == 0 || model.feature_options.samples > k_most_samples)
+        inconsistent(file, fmt::format("its features are of {} samples", model.feature_options.samples));
     if (model.unary.empty()) inconsistent(file, "it has no classifier");
 }
 
@@ -172,6 +177,7 @@ LabelingModel load_model(const std::filesystem::path& path) {
         model.pairwise[s] = get_classifier(file, fmt::format("pairwise.{}", s), 2,
                                            model.pairwise_names.size() + (s ? EdgeNeighborhood::k_bins : 0));
     model.smallest_component = file.get<float>("smallest_component", {classes});
+    require_finite(file, "smallest_component", model.smallest_component);
     return model;
 }
 

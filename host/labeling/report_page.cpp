@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -193,6 +192,7 @@ Json describe_group(const ReportData& group) {
     for (const auto& [what, seconds] : group.timings) timings.push_back(Json::array({what, number_or_null(seconds)}));
     return {{"title", group.title},
             {"subtitle", group.subtitle},
+            {"rate", number_or_null(group.recognition_rate)},
             {"labels", group.label_names},
             {"colors", colors},
             {"confusion", group.confusion},

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -30,11 +31,12 @@ struct ReportData {
     std::vector<std::string> label_names;  ///< C names, C <= 255
     std::vector<Color> label_colors;       ///< C sRGB colors
     std::vector<ReportMesh> meshes;
-    std::vector<double> confusion;                                      ///< C x C, row = truth, share of area
-    std::vector<std::pair<std::string, std::size_t>> feature_families;  ///< family, number of stumps
-    std::vector<std::string> first_features;                            ///< in the order they were chosen
-    std::vector<std::pair<std::string, double>> timings;                ///< what, seconds
-    std::vector<std::pair<std::string, std::string>> summary;           ///< key, value; shown in large type
+    double recognition_rate = std::numeric_limits<double>::quiet_NaN();  ///< of the group, in [0, 1]; NaN if unknown
+    std::vector<double> confusion;                                       ///< C x C, row = truth, share of area
+    std::vector<std::pair<std::string, std::size_t>> feature_families;   ///< family, number of stumps
+    std::vector<std::string> first_features;                             ///< in the order they were chosen
+    std::vector<std::pair<std::string, double>> timings;                 ///< what, seconds
+    std::vector<std::pair<std::string, std::string>> summary;            ///< key, value; shown in large type
 };
 
 /// Writes one HTML file that shows the groups: a turnable view of every labeled mesh (predicted labels, ground truth,

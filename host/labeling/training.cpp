@@ -9,7 +9,6 @@
 #include <numeric>
 
 #include "host/core/errors.h"
-#include "host/core/interrupt.h"
 #include "host/core/progress.h"
 #include "host/core/random.h"
 #include "host/core/stopwatch.h"
@@ -187,6 +186,7 @@ struct EdgeTargets {
     std::vector<std::vector<std::int32_t>> label;
     std::vector<std::vector<float>> weight;
     std::vector<std::vector<std::uint8_t>> fold;
+    bool both = false;  ///< whether there are boundaries and edges that are none
 };
 
 EdgeTargets make_edge_targets(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& features,
@@ -207,6 +207,7 @@ EdgeTargets make_edge_targets(const LabeledCorpus& corpus, const std::vector<Mes
         targets.fold.push_back(std::move(fold));
         targets.weight.push_back(normalized(features[m].edge_length));
     }
+    targets.both = count[0] > 0 && count[1] > 0;
     const double total = std::max(count[0] + count[1], 1.0);
     for (std::size_t m = 0; m < features.size(); ++m)
         for (std::size_t e = 0; e < targets.label[m].size(); ++e)
@@ -215,11 +216,18 @@ EdgeTargets make_edge_targets(const LabeledCorpus& corpus, const std::vector<Mes
     return targets;
 }
 
-/// Trains the boundary classifiers; returns the out-of-fold boundary probability per edge.
+/// Trains the boundary classifiers; returns the out-of-fold boundary probability per edge. Where the parts of all
+/// meshes lie in separate pieces there is nothing to learn about boundaries: no classifier, and even odds as in
+/// label_faces.
 PerMesh train_pairwise(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features, const Folds& folds,
                        const TrainOptions& options, const LabelingBackend& backend, LabelingModel& model,
                        TrainReport& report) {
     const EdgeTargets targets = make_edge_targets(corpus, features, folds);
+    if (!targets.both) {
+        PerMesh even;
+        for (const MeshFeatures& mesh : features) even.emplace_back(mesh.edges.size(), k_even_odds);
+        return even;
+    }
     Cascade cascade{"pairwise",
                     k_pairwise_stages,
                     k_kept_pairwise_loss,

@@ -16,7 +16,6 @@ constexpr std::int32_t k_no_lane = -1;
 struct RowChunk {
     std::uint32_t begin, end;
     std::int32_t lane;  ///< the rows' own class, k_no_lane if it has no lane
-    float scale = 1;    ///< what the chunk counts for when it stands for others that are left out
 };
 
 /// The training rows in the order that boosting reads them: sorted by class, shuffled within a class (so that neighbors

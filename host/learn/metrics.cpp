@@ -45,12 +45,6 @@ double pairs_within(std::vector<Key> keys) {
 
 }  // namespace
 
-void ConfusionMatrix::add(const ConfusionMatrix& other) {
-    if (other.classes != classes) throw UsageError("confusion matrices of different classes cannot be added");
-    for (std::size_t i = 0; i < area.size(); ++i) area[i] += other.area[i];
-    for (std::size_t c = 0; c < classes; ++c) counts[c] += other.counts[c];
-}
-
 ConfusionMatrix confusion_matrix(std::span<const std::int32_t> truth, std::span<const std::int32_t> predicted,
                                  std::span<const float> areas, std::size_t classes) {
     check_items(truth, areas, classes);
@@ -99,24 +93,6 @@ double rand_index_error(std::span<const std::int32_t> a, std::span<const std::in
     const double in_a = pairs_within(std::vector<std::int32_t>(a.begin(), a.end()));
     const double in_b = pairs_within(std::vector<std::int32_t>(b.begin(), b.end()));
     return (in_a + in_b - 2.0 * pairs_within(std::move(both))) / pairs(static_cast<double>(a.size()));
-}
-
-double log_loss(std::span<const float> probabilities, std::span<const std::int32_t> truth, std::span<const float> areas,
-                std::size_t classes) {
-    check_items(truth, areas, classes);
-    if (probabilities.size() != truth.size() * classes) {
-        throw UsageError("there are " + std::to_string(probabilities.size()) + " probabilities for " +
-                         std::to_string(truth.size()) + " items x " + std::to_string(classes) + " classes");
-    }
-    double sum = 0.0, all = 0.0;
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-        if (truth[i] < 0) continue;
-        const auto area = static_cast<double>(areas[i]);
-        const auto p = static_cast<double>(probabilities[i * classes + static_cast<std::size_t>(truth[i])]);
-        sum -= area * std::log(std::max(p, k_least_probability));
-        all += area;
-    }
-    return all > 0.0 ? sum / all : k_nan;
 }
 
 }  // namespace exemplar

@@ -14,8 +14,6 @@ struct ConfusionMatrix {
     std::vector<std::size_t> counts;  ///< items per true class, so that a class without area still counts as present
 
     double at(std::size_t truth, std::size_t predicted) const { return area[truth * (classes + 1) + predicted]; }
-    /// Adds the counts of another matrix of as many classes.
-    void add(const ConfusionMatrix& other);
 };
 
 /// Items whose truth is -1 are left out; a prediction outside of 0 .. classes - 1 is wrong for every truth.
@@ -36,10 +34,5 @@ double segment_weighted_accuracy(const ConfusionMatrix& confusion);
 /// that one puts together and the other does not, in [0, 1]. Segment ids are arbitrary. Zero for fewer than two items.
 /// Throws UsageError for sizes that differ.
 double rand_index_error(std::span<const std::int32_t> a, std::span<const std::int32_t> b);
-
-/// Mean of -log P(truth), weighted by area; items whose truth is -1 are left out. `probabilities` is items x classes.
-/// Probabilities below 1e-12 count as that. NaN without any area. Throws UsageError as confusion_matrix.
-double log_loss(std::span<const float> probabilities, std::span<const std::int32_t> truth, std::span<const float> areas,
-                std::size_t classes);
 
 }  // namespace exemplar

@@ -147,14 +147,4 @@ QuantizedFeatures quantize(const FeatureMatrix& features, std::span<const float>
     return out;
 }
 
-QuantizedFeatures quantize_like(const QuantizedFeatures& like, const FeatureMatrix& features) {
-    if (like.cols() != features.cols()) {
-        throw UsageError("the rows have " + std::to_string(features.cols()) + " features, but the bins were made for " +
-                         std::to_string(like.cols()));
-    }
-    QuantizedFeatures out{features.rows, like.thresholds, std::vector<std::uint8_t>(features.rows * features.cols())};
-    parallel_for(features.cols(), [&](std::size_t feature) { fill_bins(out, features, feature); });
-    return out;
-}
-
 }  // namespace exemplar

@@ -39,7 +39,4 @@ std::vector<float> quantile_thresholds(std::span<const float> values, std::span<
 QuantizedFeatures quantize(const FeatureMatrix& features, std::span<const float> weights,
                            const QuantizeOptions& options);
 
-/// Sorts the values of other rows into the bins of `like`. Throws UsageError if the number of features differs.
-QuantizedFeatures quantize_like(const QuantizedFeatures& like, const FeatureMatrix& features);
-
 }  // namespace exemplar

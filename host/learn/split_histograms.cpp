@@ -129,11 +129,10 @@ template <int width>
 void SplitHistograms::flush(const RowChunk& chunk, std::size_t panel, const LaneFactors& factors,
                             AlignedFloats& partial, Group& totals) {
     const std::size_t bins = totals.bins * k_together, offset = panel * bins * width;
-    const auto scale = static_cast<double>(chunk.scale);
-    LaneDoubles<width> factor = scale * load_lanes<width>(factors.other, panel);
+    LaneDoubles<width> factor = load_lanes<width>(factors.other, panel);
     const auto own = static_cast<std::size_t>(chunk.lane) - panel * width;  // wraps beyond width for other panels
     if (chunk.lane != k_no_lane && own < width) {
-        const double own_factor = scale * factors.own[static_cast<std::size_t>(chunk.lane)];
+        const double own_factor = factors.own[static_cast<std::size_t>(chunk.lane)];
         double* sums = totals.own.data() + offset + own;
         for (std::size_t b = 0; b < bins; ++b) {
             sums[b * width] += own_factor * static_cast<double>(partial[b * width + own]);

@@ -42,7 +42,7 @@ class SplitHistograms {
     SplitHistograms(const BoostingRows& rows, const QuantizedFeatures& features, std::span<const std::uint32_t> list);
 
     void clear();
-    /// Adds the weights of `added`, times the factors and their chunk's scale.
+    /// Adds the weights of `added`, times the factors.
     void add(const WeightedRows& added, const LaneFactors& factors);
     /// Follows a change of weights: `large` are the factors of most rows, `small` those of `few`, which have their new
     /// weights. With N the new sum of the few, the old sum H becomes (H - N / small) large + N.

@@ -41,23 +41,23 @@ StumpSearch::StumpSearch(const BoostingRows& rows, const QuantizedFeatures& feat
     }
 }
 
-WeightedRows StumpSearch::all_rows(std::span<const RowChunk> chunks) const {
-    return {{}, rows_.weights, chunks};
+WeightedRows StumpSearch::all_rows() const {
+    return {{}, rows_.weights, rows_.chunks};
 }
 
-SplitCandidate StumpSearch::best(std::span<const RowChunk> chunks, std::span<const std::uint32_t> list) const {
+SplitCandidate StumpSearch::best(std::span<const std::uint32_t> list) const {
     const std::vector<std::span<const std::uint32_t>> tasks = tasks_of(list);
     std::vector<SplitCandidate> of_task(tasks.size());
     parallel_for(tasks.size(), [&](std::size_t t) {
         SplitHistograms histograms(rows_, features_, tasks[t]);
-        histograms.add(all_rows(chunks), ones_);
+        histograms.add(all_rows(), ones_);
         of_task[t] = best_of(histograms);
     });
     return better_of(of_task);
 }
 
 SplitCandidate StumpSearch::best() {
-    if (!carry_) return best(rows_.chunks, usable_);
+    if (!carry_) return best(usable_);
     const bool anew = kept_.empty() || carried_ >= k_carried_rounds;
     if (kept_.empty()) {
         for (const std::span<const std::uint32_t> task : tasks_of(usable_)) kept_.emplace_back(rows_, features_, task);
@@ -81,7 +81,7 @@ void StumpSearch::refresh(SplitHistograms& histograms, const RowSelection* selec
         histograms.follow(selection->view(), is_above ? above : below, is_above ? below : above);
     } else {
         histograms.clear();
-        histograms.add(all_rows(rows_.chunks), ones_);
+        histograms.add(all_rows(), ones_);
     }
 }
 

@@ -29,14 +29,14 @@ class StumpSearch {
     const std::vector<std::uint32_t>& features() const { return usable_; }
     /// The best split over all features and rows.
     SplitCandidate best();
-    /// The best split over `list`, from the rows in `chunks`.
-    SplitCandidate best(std::span<const RowChunk> chunks, std::span<const std::uint32_t> list) const;
+    /// The best split over the features of `list`.
+    SplitCandidate best(std::span<const std::uint32_t> list) const;
     /// The weights of the rows changed by `factors`, by this split.
     void weights_changed(const SplitCandidate& split, const WeightFactors& factors);
 
   private:
     SplitCandidate best_of(const SplitHistograms& histograms) const;
-    WeightedRows all_rows(std::span<const RowChunk> chunks) const;
+    WeightedRows all_rows() const;
     void refresh(SplitHistograms& histograms, const RowSelection* selection) const;
 
     const BoostingRows& rows_;

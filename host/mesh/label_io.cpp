@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "host/core/disjoint_sets.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/text.h"
@@ -105,24 +106,6 @@ void read_face_indices(const DataLines& lines, std::int32_t label, FaceLabels& l
         face = label;
     }
 }
-
-/// Joins faces into sets; the smallest member stands for a set.
-class DisjointSets {
-  public:
-    explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    std::uint32_t find(std::uint32_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = find(a);
-        b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::uint32_t> parent_;
-};
 
 }  // namespace
 

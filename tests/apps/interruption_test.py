@@ -81,8 +81,15 @@ class Interruption(ProgramTest):
         elif path.suffix == ".npy":
             head, rows, columns = content[:128], *map(int, content[:128].split(b"(")[1].split(b")")[0].split(b","))
             self.assertEqual(len(content), 10 + struct.unpack("<H", head[8:10])[0] + 4 * rows * columns, path)
-        elif path.suffix in (".ply", ".seg", ".html"):
-            self.assertGreater(len(content), 0, path)
+        elif path.suffix == ".ply":
+            head, body = content.split(b"end_header\n", 1)
+            vertices, faces = (int(head.split(b"element " + kind + b" ")[1].split()[0]) for kind in (b"vertex", b"face"))
+            self.assertEqual(len(body), 12 * vertices + struct.calcsize("<B3iiBBBf") * faces, path)
+        elif path.suffix == ".seg":
+            _, faces = read_off(self.folder / "cups" / f"{path.stem}.off")
+            self.assertEqual(len(content.splitlines()), len(faces), path)
+        elif path.suffix == ".html":
+            self.assertTrue(content.rstrip().endswith(b"</html>"), path)
         else:
             self.fail(f"unexpected file {path}")
 

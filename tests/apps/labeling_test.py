@@ -49,13 +49,15 @@ class Train(WithModel):
         (spaced / "list.txt").write_bytes("\r\n".join(lines).encode())
         self.assertEqual(self.train("my shapes/list.txt", "listed"), (self.folder / "cup.safetensors").read_bytes())
 
-    def test_labels_in_a_ply_train_the_same_model(self):
+    def test_labels_in_a_ply_are_those_beside_a_mesh(self):
         self.call("label", "apply", "cup.safetensors", "cups", "--out", "labeled")
-        alone = self.folder / "ply"
-        alone.mkdir()
+        within, beside = self.folder / "within", self.folder / "beside"
+        within.mkdir(), beside.mkdir()
         for ply in (self.folder / "labeled").glob("*.ply"):
-            shutil.copy(ply, alone)
-        self.train("ply", "from_ply")
+            shutil.copy(ply, within)
+            shutil.copy(self.folder / "cups" / f"{ply.stem}.off", beside)
+            shutil.copy(ply.with_name(f"{ply.stem}_labels.txt"), beside)
+        self.assertEqual(self.train("within", "from_ply"), self.train("beside", "from_text"))
 
     def test_one_mesh_is_enough_and_one_label_is_not(self):
         self.train(self.cup, "one")
@@ -194,6 +196,14 @@ class Apply(WithModel):
         self.assertEqual(len(list((self.folder / "rest").glob("*_labels.txt"))), 3)
         self.assertEqual([("error" in entry) for entry in self.json("rest.json")["meshes"]], [True, False, False, False])
 
+    def test_labels_beside_the_meshes_are_not_replaced(self):
+        for out in ["cups", "./cups/", "cups/../cups"]:
+            self.refused("label", "apply", "cup.safetensors", "cups", "--out", out, code=2, says=["cup_001.off", "another folder"])
+
+    def test_small_pieces_can_be_kept(self):
+        self.call("label", "apply", "cup.safetensors", "cups", "--out", "kept", "--keep-small")
+        self.assertEqual(len(list((self.folder / "kept").glob("*_labels.txt"))), 3)
+
     def test_two_meshes_of_one_name_are_refused(self):
         self.refused("label", "apply", "cup.safetensors", "cups", self.cup, "--out", "x", code=2, says="cup_001.off")
 
@@ -286,6 +296,31 @@ class Evaluate(WithModel):
         self.assertIn("'handel' (did you mean 'handle'?)", result.stderr)
         rates = [mesh["recognition_rate"] for mesh in self.json("r.json")["categories"][0]["splits"][0]["meshes"]]
         self.assertLess(rates[1], min(rates[0], rates[2]))
+
+    def test_meshes_that_were_trained_on_are_named(self):
+        self.assertIn("cup_002.off: is among the training meshes", self.evaluate("overlap").stderr)
+
+    def test_human_segmentations_are_per_face_of_the_file(self):
+        quads, people = self.folder / "quad_cups", self.folder / "people"
+        shutil.copytree(self.folder / "cups", quads)
+        vertices, faces = read_off(quads / "cup_001.off")
+        a, b, c = faces[0]  # a triangle and what it looks at across an edge, as one quadrilateral
+        other = next(i for i, face in enumerate(faces) if i and {a, b} <= set(face))
+        d = next(v for v in faces[other] if v not in (a, b))
+        rest = [face for i, face in enumerate(faces) if i not in (0, other)]
+        lines = [f"OFF\n{len(vertices)} {len(rest) + 1} 0", *(" ".join(map(str, v)) for v in vertices), f"4 {a} {d} {b} {c}",
+                 *(" ".join(map(str, (3, *face))) for face in rest)]
+        (quads / "cup_001.off").write_text("\n".join(lines) + "\n")
+        (quads / "cup_001_labels.txt").write_text("body\n" + " ".join(str(i + 1) for i in range(len(rest) + 1)) + "\n")
+        (people / "cup_001").mkdir(parents=True)
+        (people / "cup_001" / "1.seg").write_text("0\n" * (len(rest) + 1))
+        (self.folder / "quad.txt").write_text("quad_cups/cup_001.off\n")
+        self.call("label", "evaluate", "--train", "cups", "--test", "quad.txt", "--humans", "people", "--out", "q", "--json",
+                  "q.json", *QUICK)
+        self.assertIsNotNone(self.json("q.json")["rand_error"])
+
+    def test_splits_do_not_apply_to_leave_one_out(self):
+        self.refused("label", "evaluate", "--protocol", "sb19", "cups", "--splits", "2", "--out", "x", code=2, says="sb19")
 
     def test_two_test_meshes_of_one_name_are_refused(self):
         (self.folder / "twice.txt").write_text("cups/cup_001.off\ncups/cup_001.off\n")

@@ -93,8 +93,7 @@ TEST(Features, DoNotTellAMeshFromItsMirrorImage) {
 }
 
 /// Contextual features of a labeling by place on the original mesh, which a moved copy shares face by face.
-/// `measures` of them from the first: geodesic distance, three principal axes, three symmetry axes.
-FeatureMatrix contextual_features(const ContextGeometry& geometry, std::size_t measures = k_context_measures) {
+FeatureMatrix contextual_features(const ContextGeometry& geometry) {
     constexpr std::size_t k_classes = 2;
     std::vector<float> probabilities(geometry.faces * k_classes);
     const std::vector<Vec3> centers = face_centers(original());
@@ -108,8 +107,6 @@ FeatureMatrix contextual_features(const ContextGeometry& geometry, std::size_t m
         result.add("context." + std::to_string(k));
     }
     CpuContextHistograms().accumulate(geometry, probabilities, k_classes, result.values);
-    result.names.resize(measures * k_context_bins * k_classes);
-    result.values.resize(result.names.size() * result.rows);
     return result;
 }
 
@@ -118,10 +115,6 @@ TEST(Features, ContextualOnesDoNotDependOnRotationAndScale) {
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
         const TriangleMesh moved = shapes::scaled(shapes::rotated(original(), shapes::random_rotation(seed)), 0.02F);
         const ContextGeometry found = compute_features(moved, few_samples()).context;
-        constexpr std::size_t k_exact = 4;
-        EXPECT_LT(mismatched_share(contextual_features(context, k_exact), contextual_features(found, k_exact), 0.01F),
-                  0.002);
-        // Symmetry planes are searched for and agree to a degree or two, which changes the range of some samples.
         EXPECT_LT(mismatched_share(contextual_features(context), contextual_features(found), 0.01F), 0.002);
     }
 }

@@ -1,4 +1,3 @@
-#include <numbers>
 
 #include "host/labeling/cubic_patch.h"
 #include "host/labeling/feature_families.h"

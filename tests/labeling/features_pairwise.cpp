@@ -1,4 +1,3 @@
-#include <numbers>
 
 #include "host/labeling/feature_families.h"
 #include "host/labeling/log_bins.h"

@@ -85,6 +85,10 @@ TEST(LabelingModelFile, OtherVersionsAreRefusedWithTheMend) {
                 testing::HasSubstr("no number"));
 }
 
+void replace(std::string& text, const std::string& what, const std::string& by) {
+    text.replace(text.find(what), what.size(), by);
+}
+
 TEST(LabelingModelFile, InconsistentContentIsRefused) {
     using File = TensorFile;
     const std::vector<std::function<void(File&)>> changes{
@@ -100,6 +104,12 @@ TEST(LabelingModelFile, InconsistentContentIsRefused) {
         [](File& f) { f.add("unary.0.link", {1}, std::vector<std::uint32_t>{7}); },
         [](File& f) {
             f.add("unary.0.threshold_above_below", {1, 3}, std::vector<float>{0, NAN, 0});
+        },
+        [](File& f) { f.add("unary.0.classes", {1}, std::vector<std::uint64_t>{8}); },
+        [](File& f) { replace(f.metadata["model"], "\"kappa\":", "\"kappa\":-"); },
+        [](File& f) { replace(f.metadata["model"], "\"samples\":", "\"samples\":-"); },
+        [](File& f) {
+            f.add("smallest_component", {2}, std::vector<float>{NAN, 0});
         },
         [](File& f) {
             f.add("unary.0.elsewhere", {1, 3}, std::vector<float>{0, 0, 0});

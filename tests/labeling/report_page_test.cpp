@@ -22,7 +22,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 fs::path page_path(const std::string& name) {
-    const fs::path path = fs::path(testing::TempDir()) / "exemplar_report" / (name + ".html");
+    fs::path path = fs::path(testing::TempDir()) / "exemplar_report" / (name + ".html");
     fs::remove(path);
     return path;
 }

@@ -12,6 +12,7 @@
 #include "host/core/parallel.h"
 #include "host/labeling/evaluation.h"
 #include "host/synth/shapes.h"
+#include "tests/support/shapes.h"
 
 namespace exemplar {
 namespace {
@@ -100,6 +101,26 @@ TEST_F(SlowTraining, LabelsMissingFromSomeMeshesAndUnlabeledFacesAreFine) {
         if (label == 1) label = 0;
     for (std::size_t f = 0; f < corpus.meshes[1].label.size(); f += 3) corpus.meshes[1].label[f] = -1;
     EXPECT_NO_THROW(train(corpus, quick_options()));
+}
+
+TEST_F(SlowTraining, PartsInSeparatePiecesHaveNoBoundaries) {
+    LabeledCorpus corpus;
+    corpus.names = {"ball", "box"};
+    for (const float size : {1.0F, 1.2F, 1.4F}) {
+        TriangleMesh mesh = shapes::icosphere(2, size);
+        const auto offset = static_cast<std::uint32_t>(mesh.vertex_count());
+        const TriangleMesh box = shapes::translated(shapes::box(1, size, 1, 4), Vec3(4, 0, 0));
+        std::vector<std::int32_t> label(mesh.face_count(), 0);
+        mesh.vertices.insert(mesh.vertices.end(), box.vertices.begin(), box.vertices.end());
+        for (const Face& face : box.faces) mesh.faces.push_back({face[0] + offset, face[1] + offset, face[2] + offset});
+        mesh.source_face_count = static_cast<std::uint32_t>(mesh.face_count());
+        label.resize(mesh.face_count(), 1);
+        corpus.meshes.push_back({"piece", {}, std::move(mesh), std::move(label)});
+    }
+    const LabelingModel model = train(corpus, quick_options());
+    EXPECT_TRUE(model.pairwise.empty());
+    MeshFeatures features = compute_features(corpus.meshes[1].mesh, model.feature_options);
+    EXPECT_EQ(label_faces(model, features, {scorer_, context_}).label, corpus.meshes[1].label);
 }
 
 TEST_F(SlowTraining, AModelRefusesOtherFeatures) {

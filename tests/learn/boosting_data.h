@@ -22,9 +22,6 @@ struct Data {
     std::size_t classes = 0;
 
     TrainingSet training(std::span<const std::uint32_t> rows = {}) const { return {quantized, labels, weights, rows}; }
-    ValidationSet validation(std::span<const std::uint32_t> rows = {}) const {
-        return {features, labels, weights, rows};
-    }
 };
 
 /// Features that each tell some classes apart, with noise of the given spread.

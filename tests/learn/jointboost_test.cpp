@@ -100,7 +100,7 @@ bool same_bytes(const BoostedStumps& a, const BoostedStumps& b) {
 }
 
 void expect_every_round_optimal(const Data& data, const BoostOptions& options) {
-    const BoostResult result = train_jointboost(data.training(), data.classes, nullptr, options);
+    const BoostResult result = train_jointboost(data.training(), data.classes, options);
     ASSERT_EQ(result.classifier.stumps.size(), options.rounds);
     PlainJointBoost plain(data);
     for (std::size_t m = 0; m < options.rounds; ++m) {
@@ -110,7 +110,7 @@ void expect_every_round_optimal(const Data& data, const BoostOptions& options) {
         // a, b and k_c are the closed form of the split that was found.
         EXPECT_NEAR(found, plain.best_error(stump.feature, stump.threshold, stump.classes), 1e-6 * found);
         const double loss = plain.update(stump, constants(result.classifier, m));
-        EXPECT_NEAR(result.curve[m].train_loss, loss, 1e-5 * loss) << "round " << m;
+        EXPECT_NEAR(result.loss[m], loss, 1e-5 * loss) << "round " << m;
     }
 }
 
@@ -138,9 +138,9 @@ TEST(JointBoost, ShrinksEveryStep) {
     const Data data = make_data(120, 6, 3, 1.0, 23);
     BoostOptions options;
     options.rounds = 12;
-    const BoostResult full = train_jointboost(data.training(), 3, nullptr, options);
+    const BoostResult full = train_jointboost(data.training(), 3, options);
     options.shrinkage = 0.25;
-    const BoostResult small = train_jointboost(data.training(), 3, nullptr, options);
+    const BoostResult small = train_jointboost(data.training(), 3, options);
     EXPECT_EQ(small.classifier.stumps[0].feature, full.classifier.stumps[0].feature);
     PlainJointBoost plain(data);
     for (std::size_t m = 0; m < options.rounds; ++m) {
@@ -153,12 +153,12 @@ TEST(JointBoost, ShrinksEveryStep) {
         const double least = plain.least_error();
         EXPECT_NEAR(plain.error(grown, elsewhere), least, 1e-5 * least) << m;
         const double loss = plain.update(stump, constants(small.classifier, m));
-        EXPECT_NEAR(small.curve[m].train_loss, loss, 1e-5 * loss) << m;
-        EXPECT_GT(loss, full.curve[m].train_loss);
+        EXPECT_NEAR(small.loss[m], loss, 1e-5 * loss) << m;
+        EXPECT_GT(loss, full.loss[m]);
     }
     for (const double bad : {0.0, -0.5, 1.5, std::nan("")}) {
         options.shrinkage = bad;
-        EXPECT_THROW(train_jointboost(data.training(), 3, nullptr, options), UsageError);
+        EXPECT_THROW(train_jointboost(data.training(), 3, options), UsageError);
     }
 }
 
@@ -178,10 +178,10 @@ TEST(JointBoost, GreedySubsetsAreNearlyAsGood) {
     const Data data = make_data(400, 8, 6, 0.7, 6);
     BoostOptions options;
     options.rounds = 40;
-    const double exhaustive = train_jointboost(data.training(), 6, nullptr, options).curve.back().train_loss;
+    const double exhaustive = train_jointboost(data.training(), 6, options).loss.back();
     options.exhaustive_classes = 1;
-    const BoostResult greedy = train_jointboost(data.training(), 6, nullptr, options);
-    EXPECT_LT(greedy.curve.back().train_loss, 1.1 * exhaustive);
+    const BoostResult greedy = train_jointboost(data.training(), 6, options);
+    EXPECT_LT(greedy.loss.back(), 1.1 * exhaustive);
     // The greedy search starts with single classes, so it is never worse than stumps that share nothing.
     PlainJointBoost plain(data);
     for (std::size_t m = 0; m < 5; ++m) {
@@ -203,12 +203,12 @@ TEST(JointBoost, TheLossFallsWithManyClasses) {
         const Data data = make_data(classes * 25, 20, classes, 0.3, classes);
         BoostOptions options;
         options.rounds = 60;
-        const BoostResult result = train_jointboost(data.training(), classes, nullptr, options);
+        const BoostResult result = train_jointboost(data.training(), classes, options);
         PlainJointBoost plain(data);
         double before = 1.0;
-        for (std::size_t m = 0; m < result.curve.size(); ++m) {
+        for (std::size_t m = 0; m < result.loss.size(); ++m) {
             const double loss = plain.update(result.classifier.stumps[m], constants(result.classifier, m));
-            ASSERT_NEAR(result.curve[m].train_loss, loss, 2e-5 * loss) << classes << " " << m;
+            ASSERT_NEAR(result.loss[m], loss, 2e-5 * loss) << classes << " " << m;
             EXPECT_LT(loss, before);
             before = loss;
         }
@@ -220,9 +220,9 @@ TEST(JointBoost, LearnsWhatIsSeparable) {
     const Data data = make_data(600, 12, 5, 0.02, 7);
     BoostOptions options;
     options.rounds = 400;  // the loss falls far below what a float can hold
-    const BoostResult result = train_jointboost(data.training(), 5, nullptr, options);
+    const BoostResult result = train_jointboost(data.training(), 5, options);
     EXPECT_EQ(training_accuracy(result.classifier, data), 1.0);
-    EXPECT_LT(result.curve.back().train_loss, 1e-12);
+    EXPECT_LT(result.loss.back(), 1e-12);
     for (const Stump& stump : result.classifier.stumps) {
         EXPECT_TRUE(std::isfinite(stump.above) && std::isfinite(stump.below));
         EXPECT_LE(std::abs(stump.above), 1.0001f);
@@ -237,7 +237,7 @@ TEST(JointBoost, AnAbsentClassIsNeverSharedAndNeverLikely) {
     for (std::int32_t& label : data.labels) label = label == 1 ? 2 : label;  // neither does 1
     BoostOptions options;
     options.rounds = 120;
-    const BoostResult result = train_jointboost(data.training(), 6, nullptr, options);
+    const BoostResult result = train_jointboost(data.training(), 6, options);
     for (std::size_t m = 0; m < 120; ++m) {
         for (const std::size_t absent : {1u, 4u, 5u}) {
             EXPECT_EQ(result.classifier.stumps[m].classes >> absent & 1, 0u);
@@ -256,7 +256,7 @@ TEST(JointBoost, ConstantFeaturesLeaveTheClassShares) {
     data.quantized = quantize(data.features, {}, {});
     BoostOptions options;
     options.rounds = 60;
-    const BoostResult result = train_jointboost(data.training(), 3, nullptr, options);
+    const BoostResult result = train_jointboost(data.training(), 3, options);
     for (const Stump& stump : result.classifier.stumps) EXPECT_EQ(stump.classes, 0u);
     // With nothing but constants, boosting converges to H_c with sigma(2 H_c) = the share of class c.
     const std::vector<float> h = result.classifier.constant();
@@ -267,65 +267,11 @@ TEST(JointBoost, ConstantFeaturesLeaveTheClassShares) {
     }
 }
 
-TEST(JointBoost, StopsEarlyAndKeepsTheBestPrefix) {
-    const Data data = make_data(60, 30, 3, 2.5, 10), held_out = make_data(400, 30, 3, 2.5, 11);
-    const ValidationSet validation = held_out.validation();
-    BoostOptions options;
-    options.rounds = 300;
-    options.patience = 20;
-    const BoostResult result = train_jointboost(data.training(), 3, &validation, options);
-    ASSERT_LT(result.curve.size(), 300u);  // noise is soon learned by heart
-    EXPECT_EQ(result.curve.size(), result.best_rounds + 20);
-    EXPECT_EQ(result.classifier.stumps.size(), result.best_rounds);
-    for (std::size_t m = 0; m < result.curve.size(); ++m) {
-        EXPECT_GE(result.curve[m].validation_loss, result.curve[result.best_rounds - 1].validation_loss);
-    }
-
-    options.patience = 0;
-    options.keep_best = false;
-    options.rounds = result.curve.size() + 5;
-    const BoostResult all = train_jointboost(data.training(), 3, &validation, options);
-    EXPECT_EQ(all.curve.size(), options.rounds);
-    EXPECT_EQ(all.classifier.stumps.size(), options.rounds);
-    EXPECT_TRUE(same_bytes(truncate(all.classifier, result.best_rounds), result.classifier));
-    EXPECT_EQ(truncate(all.classifier, 10000).stumps.size(), options.rounds);
-}
-
-TEST(JointBoost, TheValidationCurveCanBeHadAfterwards) {
-    const Data data = make_data(200, 6, 4, 1.0, 12), held_out = make_data(1500, 6, 4, 1.0, 13);
-    const ValidationSet validation = held_out.validation();
-    BoostOptions options;
-    options.rounds = 25;
-    options.patience = 0;
-    options.keep_best = false;
-    const BoostResult with = train_jointboost(data.training(), 4, &validation, options);
-    const BoostResult without = train_jointboost(data.training(), 4, nullptr, options);
-    EXPECT_TRUE(same_bytes(with.classifier, without.classifier));
-    EXPECT_TRUE(std::isnan(without.curve.back().validation_loss));
-    const std::vector<BoostRound> curve = validation_curve(without.classifier, validation);
-    ASSERT_EQ(curve.size(), 25u);
-    PlainJointBoost plain(held_out);
-    for (std::size_t m = 0; m < 25; ++m) {
-        EXPECT_EQ(curve[m].validation_loss, with.curve[m].validation_loss);
-        EXPECT_EQ(curve[m].validation_error, with.curve[m].validation_error);
-        const double loss = plain.update(with.classifier.stumps[m], constants(with.classifier, m));
-        EXPECT_NEAR(curve[m].validation_loss, loss, 1e-6 * loss);
-    }
-    std::vector<float> p(1500 * 4);
-    CpuStumpScorer().probabilities(with.classifier, held_out.features, Link::softmax, 1.0f, p);
-    double wrong = 0.0, all = 0.0;
-    for (std::size_t i = 0; i < 1500; ++i) {
-        const auto row = p.begin() + static_cast<std::ptrdiff_t>(i * 4);
-        wrong += std::max_element(row, row + 4) - row == held_out.labels[i] ? 0.0 : held_out.weights[i];
-        all += held_out.weights[i];
-    }
-    EXPECT_NEAR(curve.back().validation_error, wrong / all, 1e-9);
-}
-
 TEST(JointBoost, ChosenRowsAreAllThatCounts) {
     const Data all = make_data(300, 5, 3, 1.0, 14);
-    std::vector<std::uint32_t> rows, others;
-    for (std::uint32_t i = 0; i < 300; ++i) (i % 3 == 0 ? others : rows).push_back(i);
+    std::vector<std::uint32_t> rows;
+    for (std::uint32_t i = 0; i < 300; ++i)
+        if (i % 3 != 0) rows.push_back(i);
     Data few{all.features, all.quantized, {}, {}, 3};
     few.quantized.rows = few.features.rows = rows.size();
     few.quantized.bins.clear();
@@ -340,13 +286,10 @@ TEST(JointBoost, ChosenRowsAreAllThatCounts) {
     for (const std::uint32_t row : rows) few.weights.push_back(all.weights[row]);
     BoostOptions options;
     options.rounds = 15;
-    const ValidationSet held_out = all.validation(others), held_in = few.validation();
-    const BoostResult chosen = train_jointboost(all.training(rows), 3, &held_out, options);
-    const BoostResult copied = train_jointboost(few.training(), 3, &held_in, options);
-    const std::size_t common = std::min(chosen.classifier.stumps.size(), copied.classifier.stumps.size());
-    EXPECT_TRUE(same_bytes(truncate(chosen.classifier, common), truncate(copied.classifier, common)));
-    // On the training rows themselves the validation loss is the training loss.
-    for (const BoostRound& round : copied.curve) EXPECT_NEAR(round.validation_loss, round.train_loss, 1e-5);
+    const BoostResult chosen = train_jointboost(all.training(rows), 3, options);
+    const BoostResult copied = train_jointboost(few.training(), 3, options);
+    EXPECT_TRUE(same_bytes(chosen.classifier, copied.classifier));
+    EXPECT_EQ(chosen.loss, copied.loss);
 }
 
 TEST(JointBoost, TheSameSeedGivesTheSameBytesOnAnyThreads) {
@@ -354,15 +297,15 @@ TEST(JointBoost, TheSameSeedGivesTheSameBytesOnAnyThreads) {
     BoostOptions options;
     options.rounds = 20;
     for (const double fraction : {1.0, 0.4}) {  // with carried histograms, and sampled
-        options.feature_fraction = options.row_fraction = fraction;
+        options.feature_fraction = fraction;
         options.seed = 1;
-        const BoostResult many = train_jointboost(data.training(), 5, nullptr, options);
+        const BoostResult many = train_jointboost(data.training(), 5, options);
         {
             const ThreadLimit limit(1);
-            EXPECT_TRUE(same_bytes(train_jointboost(data.training(), 5, nullptr, options).classifier, many.classifier));
+            EXPECT_TRUE(same_bytes(train_jointboost(data.training(), 5, options).classifier, many.classifier));
         }
         options.seed = 2;
-        const BoostResult other = train_jointboost(data.training(), 5, nullptr, options);
+        const BoostResult other = train_jointboost(data.training(), 5, options);
         if (fraction < 1.0) {
             EXPECT_FALSE(same_bytes(other.classifier, many.classifier));
         }
@@ -373,32 +316,30 @@ TEST(JointBoost, SamplingStillLearns) {
     const Data data = make_data(6000, 20, 4, 0.8, 16);
     BoostOptions options;
     options.rounds = 40;
-    const double full = train_jointboost(data.training(), 4, nullptr, options).curve.back().train_loss;
+    const double full = train_jointboost(data.training(), 4, options).loss.back();
     options.feature_fraction = 0.5;
-    options.row_fraction = 0.25;
-    const BoostResult sampled = train_jointboost(data.training(), 4, nullptr, options);
-    EXPECT_LT(sampled.curve.back().train_loss, 1.25 * full);
-    EXPECT_GE(sampled.curve.back().train_loss, 0.95 * full);
+    const BoostResult sampled = train_jointboost(data.training(), 4, options);
+    EXPECT_LT(sampled.loss.back(), 1.25 * full);
+    EXPECT_GE(sampled.loss.back(), 0.95 * full);
 }
 
-TEST(JointBoost, CallsBackAfterEveryRoundAndCanBeStopped) {
+TEST(JointBoost, GrowsStumpByStump) {
     const Data data = make_data(100, 4, 3, 1.0, 17);
     BoostOptions options;
     options.rounds = 30;
-    std::size_t calls = 0;
-    train_jointboost(data.training(), 3, nullptr, options, [&](const BoostRound& round, const BoostedStumps& so_far) {
-        EXPECT_EQ(so_far.stumps.size(), ++calls);
-        EXPECT_GT(round.train_loss, 0.0);
-    });
-    EXPECT_EQ(calls, 30u);
-    const auto stop = [](const BoostRound&, const BoostedStumps&) { throw Interrupted(); };
-    EXPECT_THROW(train_jointboost(data.training(), 3, nullptr, options, stop), Interrupted);
+    options.feature_fraction = 0.5;
+    const BoostResult all = train_jointboost(data.training(), 3, options);
+    Booster booster(data.training(), 3, options);
+    EXPECT_TRUE(booster.classifier().stumps.empty());
+    for (std::size_t m = 0; m < 12; ++m) EXPECT_EQ(booster.add_stump(), all.loss[m]);
+    EXPECT_TRUE(same_bytes(booster.classifier(), truncate(all.classifier, 12)));
+    EXPECT_EQ(truncate(all.classifier, 10000).stumps.size(), 30u);
 }
 
 TEST(JointBoost, RefusesWhatItCannotLearnFrom) {
     const Data good = make_data(20, 2, 3, 1.0, 18);
     const auto train = [](const Data& data, const BoostOptions& options = {}) {
-        train_jointboost(data.training(), data.classes, nullptr, options);
+        train_jointboost(data.training(), data.classes, options);
     };
     Data bad = good;
     bad.labels[3] = 3;
@@ -429,7 +370,7 @@ TEST(JointBoost, RefusesWhatItCannotLearnFrom) {
     options.exhaustive_classes = 11;
     EXPECT_THROW(train(good, options), UsageError);
     const std::vector<std::uint32_t> beyond{20};
-    EXPECT_THROW(train_jointboost(good.training(beyond), 3, nullptr, {}), UsageError);
+    EXPECT_THROW(train_jointboost(good.training(beyond), 3, {}), UsageError);
 }
 
 }  // namespace

@@ -25,15 +25,6 @@ TEST(Metrics, ConfusionIsWeightedByArea) {
     EXPECT_DOUBLE_EQ(segment_weighted_accuracy(confusion), (0.25 + 1.0 + 0.0) / 3.0);  // class 3 does not occur
 }
 
-TEST(Metrics, ConfusionsAdd) {
-    ConfusionMatrix twice = confusion_matrix(k_truth, k_predicted, k_areas, 4);
-    twice.add(twice);
-    EXPECT_EQ(twice.at(0, 1), 6.0);
-    EXPECT_EQ(twice.counts[1], 4u);
-    EXPECT_DOUBLE_EQ(recognition_rate(twice), 0.5);
-    EXPECT_THROW(twice.add(confusion_matrix(k_truth, k_predicted, k_areas, 3)), UsageError);
-}
-
 TEST(Metrics, AClassWithoutAreaCountsAsPresentAndWrong) {
     const std::vector<std::int32_t> labels{0, 1};
     const std::vector<float> areas{2.0f, 0.0f};
@@ -46,7 +37,6 @@ TEST(Metrics, NothingToMeasureIsNan) {
     const ConfusionMatrix empty = confusion_matrix({}, {}, {}, 3);
     EXPECT_TRUE(std::isnan(recognition_rate(empty)));
     EXPECT_TRUE(std::isnan(segment_weighted_accuracy(empty)));
-    EXPECT_TRUE(std::isnan(log_loss({}, {}, {}, 3)));
 }
 
 TEST(Metrics, RandIndexEqualsCountingPairs) {
@@ -73,21 +63,12 @@ TEST(Metrics, RandIndexEqualsCountingPairs) {
     EXPECT_EQ(rand_index_error(std::vector<std::int32_t>{0, 0}, std::vector<std::int32_t>{0, 1}), 1.0);
 }
 
-TEST(Metrics, LogLossIsTheWeightedMean) {
-    const std::vector<float> probabilities{0.5f, 0.5f, 0.1f, 0.9f, 1.0f, 0.0f, 0.0f, 1.0f};
-    const std::vector<std::int32_t> truth{0, 1, -1, 0};
-    const std::vector<float> areas{1, 3, 100, 1};
-    const double expected = (-std::log(0.5) - 3.0 * std::log(static_cast<double>(0.9f)) - std::log(1e-12)) / 5.0;
-    EXPECT_NEAR(log_loss(probabilities, truth, areas, 2), expected, 1e-12);
-}
-
 TEST(Metrics, RefuseSizesAndLabelsThatDoNotFit) {
     const std::vector<std::int32_t> bad{0, 0, 1, 1, 9, 0};
     EXPECT_THROW(confusion_matrix(bad, k_predicted, k_areas, 4), UsageError);
     EXPECT_THROW(confusion_matrix(k_truth, {}, k_areas, 4), UsageError);
     EXPECT_THROW(confusion_matrix(k_truth, k_predicted, {}, 4), UsageError);
     EXPECT_THROW(rand_index_error(k_truth, {}), UsageError);
-    EXPECT_THROW(log_loss({}, k_truth, k_areas, 4), UsageError);
 }
 
 }  // namespace

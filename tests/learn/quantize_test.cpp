@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
@@ -128,18 +127,6 @@ TEST(Quantize, SamplesRowsOfLargeSets) {
         const auto count = std::count(sampled.column(0).begin(), sampled.column(0).end(), bin);
         EXPECT_NEAR(static_cast<double>(count), 5000.0 / 64, 60.0);
     }
-}
-
-TEST(Quantize, OtherRowsUseTheSameThresholds) {
-    Random random(5);
-    const FeatureMatrix matrix = matrix_of({smooth_values(500, random)}),
-                        other = matrix_of({smooth_values(77, random)});
-    const QuantizedFeatures quantized = quantize(matrix, {}, {16}), like = quantize_like(quantized, other);
-    EXPECT_EQ(like.rows, 77u);
-    EXPECT_EQ(like.thresholds, quantized.thresholds);
-    expect_bins_match_floats(other, like);
-    EXPECT_EQ(quantize_like(quantized, matrix).bins, quantized.bins);
-    EXPECT_THROW(quantize_like(quantized, matrix_of({{1.0f}, {2.0f}})), UsageError);
 }
 
 TEST(Quantize, DoesNotDependOnThreads) {

@@ -98,17 +98,6 @@ TEST(SplitHistograms, FollowingAChangeEqualsStartingAnew) {
     }
 }
 
-TEST(SplitHistograms, ChunksCountByTheirScale) {
-    const Data data = make_data(400, 3, 4, 1.0, 50);
-    BoostingRows rows = rows_of(data, 100);
-    SplitHistograms once(rows, data.quantized, counting(3)), halves(rows, data.quantized, counting(3));
-    once.add({{}, rows.weights, rows.chunks}, ones(rows));
-    for (RowChunk& chunk : rows.chunks) chunk.scale = 0.5f;
-    halves.add({{}, rows.weights, rows.chunks}, ones(rows));
-    halves.add({{}, rows.weights, rows.chunks}, ones(rows));
-    expect_same(halves, once, 4, 1e-3);
-}
-
 /// Random sums with |S| <= W on both sides of each threshold.
 SplitSums random_sums(std::size_t classes, std::size_t thresholds, Random& random) {
     SplitSums sums;

@@ -1,0 +1,76 @@
+#include "host/labeling/fold_boosting.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/learn/boosting_data.h"
+
+namespace exemplar {
+namespace {
+
+struct Meshes {
+    std::vector<Data> data;
+    std::vector<std::vector<std::uint8_t>> fold;
+    std::vector<BoostingItems> items;
+};
+
+/// `count` meshes of two classes, each held out by a fold of its own.
+Meshes make_meshes(std::size_t count, std::size_t rows, double noise) {
+    Meshes meshes;
+    for (std::size_t m = 0; m < count; ++m) {
+        meshes.data.push_back(make_data(rows, 12, 2, noise, 100 + m));
+        meshes.fold.emplace_back(rows, static_cast<std::uint8_t>(m));
+    }
+    for (std::size_t m = 0; m < count; ++m)
+        meshes.items.push_back(
+            {&meshes.data[m].features, meshes.data[m].labels, meshes.data[m].weights, meshes.fold[m]});
+    return meshes;
+}
+
+FoldBoostingOptions options_for(std::size_t folds) {
+    FoldBoostingOptions options;
+    options.features = 12, options.folds = folds, options.rounds = 200, options.patience = 20;
+    return options;
+}
+
+TEST(FoldBoosting, EndsSoonAfterTheHeldOutLossIsLeast) {
+    const Meshes meshes = make_meshes(3, 60, 3.0);  // noise is soon learned by heart
+    const FoldBoostingOptions options = options_for(3);
+    CpuStumpScorer scorer;
+    std::size_t rounds = 0;
+    const FoldBoostingResult result = boost_with_folds(meshes.items, options, scorer, [&] { ++rounds; });
+    const std::size_t best = result.classifier.stumps.stumps.size();
+    ASSERT_LT(best, 150U);
+    for (const HeldOutPoint& point : result.curve) EXPECT_GE(point.loss, result.loss);
+    EXPECT_LE(result.curve.back().rounds, best + options.patience + 10);  // judged every ten rounds
+    EXPECT_EQ(rounds, 3 * result.curve.back().rounds + best) << "no fold went on after the search had ended";
+}
+
+TEST(FoldBoosting, ProbabilitiesAreOfTheClassifierThatNeverSawTheMesh) {
+    Meshes meshes = make_meshes(3, 80, 1.0);
+    FoldBoostingOptions options = options_for(3);
+    options.rounds = 1;
+    CpuStumpScorer scorer;
+    const auto likelier = [&] {
+        std::vector<bool> first;
+        const FoldBoostingResult result = boost_with_folds(meshes.items, options, scorer, [] {});
+        for (std::size_t i = 0; i < 80; ++i) first.push_back(result.out_of_fold[0][2 * i] > 0.5F);
+        return first;
+    };
+    const std::vector<bool> straight = likelier();
+    EXPECT_NE(straight, std::vector<bool>(80, straight[0]));
+    // Other labels of a held-out mesh change how it is judged, but not which class it is given.
+    for (std::int32_t& label : meshes.data[0].labels) label = 1 - label;
+    EXPECT_EQ(likelier(), straight);
+}
+
+TEST(FoldBoosting, WithoutAnythingHeldOutItStillTrains) {
+    const Meshes meshes = make_meshes(1, 60, 1.0);
+    CpuStumpScorer scorer;
+    const FoldBoostingResult result = boost_with_folds(meshes.items, options_for(1), scorer, [] {});
+    EXPECT_EQ(result.classifier.stumps.stumps.size(), 50U);
+    EXPECT_TRUE(result.curve.empty());
+    EXPECT_EQ(result.out_of_fold[0].size(), 120U);
+}
+
+}  // namespace
+}  // namespace exemplar

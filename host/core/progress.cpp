@@ -66,7 +66,7 @@ void Progress::print(bool last) {
     // been.
     std::string line = last ? fmt::format("{}: {} in {}", what_, done_, format_seconds(elapsed))
                             : fmt::format("{}: {}/{}", what_, done_, total_);
-    if (!last && done_ > 0) {
+    if (!last && done_ > total_ / 100) {  // the first step may include preparations, and tells little
         const double left =
             elapsed * static_cast<double>(total_ - std::min(done_, total_)) / static_cast<double>(done_);
         line += ", " + format_seconds(left) + " left";

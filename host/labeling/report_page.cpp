@@ -275,7 +275,8 @@ void write_report_page(const std::filesystem::path& path, const std::string& tit
                        std::span<const ReportData> groups) {
     if (groups.empty()) throw UsageError("report page: there is no group to show; give at least one");
     for (const ReportData& group : groups) check_group(group);
-    std::string_view rest(reinterpret_cast<const char*>(embedded::k_report_page_html), sizeof embedded::k_report_page_html);
+    std::string_view rest(reinterpret_cast<const char*>(embedded::k_report_page_html),
+                          sizeof embedded::k_report_page_html);
     write_file_atomically(path, [&](std::ostream& out) {
         out << cut_at(rest, "{{title}}") << escaped_html(title);
         out << cut_at(rest, "{{data}}");

@@ -58,7 +58,8 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
 }
 
 void require_input(const fs::path& path) {
-    if (fs::exists(path)) return;
+    std::error_code ignored;  // names that the system refuses are names of nothing
+    if (fs::exists(path, ignored)) return;
     throw DataError(fmt::format("{}: no such file or folder{}", path.string(), suggest_file(path)));
 }
 

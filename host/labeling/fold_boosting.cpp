@@ -108,6 +108,13 @@ class FoldBoosters {
     const BoostedStumps* without(std::size_t fold) const {
         return of_fold_[fold] ? &of_fold_[fold]->classifier() : nullptr;
     }
+    /// The first rounds of all classifiers; without any class where there is none.
+    std::vector<BoostedStumps> truncated(std::size_t rounds) const {
+        std::vector<BoostedStumps> stumps;
+        for (const std::optional<Booster>& booster : of_fold_)
+            stumps.push_back(booster ? truncate(booster->classifier(), rounds) : BoostedStumps());
+        return stumps;
+    }
 
   private:
     std::vector<std::optional<Booster>> of_fold_;
@@ -175,22 +182,18 @@ RoundChoice choose_rounds(const Pool& pool, FoldBoosters& boosters, const FoldBo
 }
 
 /// Probabilities of every item of every mesh from the classifier of the fold that held it out.
-std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems> meshes, const FoldBoosters& boosters,
-                                                  std::size_t folds, const CalibratedStumps& everywhere,
-                                                  std::size_t classes, StumpScorer& scorer) {
-    const std::size_t rounds = everywhere.stumps.stumps.size();
-    std::vector<BoostedStumps> of_fold;
-    for (std::size_t fold = 0; fold < folds; ++fold) {
-        const BoostedStumps* grown = boosters.without(fold);
-        of_fold.push_back(grown ? truncate(*grown, rounds) : everywhere.stumps);
-    }
+std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems> meshes,
+                                                  const std::vector<BoostedStumps>& of_fold,
+                                                  const CalibratedStumps& everywhere, std::size_t classes,
+                                                  StumpScorer& scorer) {
     std::vector<std::vector<float>> result;
     for (const BoostingItems& mesh : meshes) {
         std::vector<float> scores(mesh.fold.size() * classes), from_fold(mesh.fold.size() * classes);
         for (std::size_t fold = 0; fold < of_fold.size(); ++fold) {
             const auto holds = [&](std::uint8_t f) { return f == fold; };
             if (std::none_of(mesh.fold.begin(), mesh.fold.end(), holds)) continue;
-            scorer.probabilities(of_fold[fold], *mesh.features, everywhere.link, everywhere.scale, from_fold);
+            const BoostedStumps& classifier = of_fold[fold].class_count ? of_fold[fold] : everywhere.stumps;
+            scorer.probabilities(classifier, *mesh.features, everywhere.link, everywhere.scale, from_fold);
             for (std::size_t i = 0; i < mesh.fold.size(); ++i)
                 if (mesh.fold[i] == fold)
                     std::copy_n(from_fold.begin() + i * classes, classes, scores.begin() + i * classes);
@@ -209,8 +212,13 @@ FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const
     QuantizeOptions quantize_options;
     quantize_options.bins = options.bins;
     const QuantizedFeatures quantized = quantize(pool.features, pool.weight, quantize_options);
-    FoldBoosters boosters(pool, quantized, options);
-    RoundChoice choice = choose_rounds(pool, boosters, options, round_done);
+    RoundChoice choice;
+    std::vector<BoostedStumps> of_fold;
+    {
+        FoldBoosters boosters(pool, quantized, options);  // each holds a copy of its rows
+        choice = choose_rounds(pool, boosters, options, round_done);
+        of_fold = boosters.truncated(choice.rounds);
+    }
     Booster everywhere = start(pool, quantized, {}, options);
     grow(everywhere, choice.rounds, round_done);
 
@@ -220,7 +228,7 @@ FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const
     result.classifier.scale = choice.calibration.scale;
     result.loss = choice.calibration.loss, result.error = choice.calibration.error;
     result.curve = std::move(choice.curve);
-    result.out_of_fold = score_out_of_fold(meshes, boosters, options.folds, result.classifier, options.classes, scorer);
+    result.out_of_fold = score_out_of_fold(meshes, of_fold, result.classifier, options.classes, scorer);
     return result;
 }
 

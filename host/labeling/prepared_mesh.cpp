@@ -82,60 +82,66 @@ TriangleMesh centered_mesh(const TriangleMesh& mesh) {
     return centered;
 }
 
-/// Coordinates in a tangent plane, about a point of it and along arbitrary axes.
-struct TangentFrame {
-    TangentFrame(const Vec3& center, const Vec3& normal)
-        : origin(center), x(normal.unitOrthogonal()), y(normal.cross(x)) {}
-    Eigen::Vector2d offset(const Vec3& point) const {
-        const Vec3 from = point - origin;
-        return {static_cast<double>(from.dot(x)), static_cast<double>(from.dot(y))};
-    }
-    Vec3 origin, x, y;
+/// A face near another: its weight, and where its center lies in the tangent plane of the other.
+struct NearFace {
+    std::uint32_t face;
+    double weight;
+    Eigen::Vector2d offset;
 };
 
+/// The faces that share a vertex with `face`, itself included, once per shared vertex. Weights are areas times the
+/// cosine between the normals: faces at a right angle to each other do not mix, so that the edges of a box stay sharp.
+void find_near_faces(const PreparedMesh& prepared, const std::vector<float>& areas, const std::vector<Vec3>& normals,
+                     std::uint32_t face, std::vector<NearFace>& near) {
+    const Vec3 &center = prepared.center[face], &normal = normals[face];
+    const Vec3 x = normal.unitOrthogonal(), y = normal.cross(x);
+    near.clear();
+    for (const std::uint32_t v : prepared.mesh.faces[face]) {
+        for (const std::uint32_t f : prepared.topology.faces_of_vertex(v)) {
+            const Vec3 from = prepared.center[f] - center;
+            near.push_back({f,
+                            static_cast<double>(areas[f] * std::max(normals[f].dot(normal), 0.0F)),
+                            {static_cast<double>(from.dot(x)), static_cast<double>(from.dot(y))}});
+        }
+    }
+}
+
+/// The intercept of a weighted linear regression of the normals: the mean whose weights are balanced so that their
+/// center is the origin. Where all faces lie on one side the balance stops before a weight falls below zero: at a
+/// border the mean stays a mean. Zero where nothing weighs.
+Vec3d regressed_normal(const std::vector<NearFace>& near, const std::vector<Vec3>& normals) {
+    constexpr double k_ridge = 1e-3;  // faces on one line have no slope across it
+    Eigen::Vector2d moment = Eigen::Vector2d::Zero(), slope = moment;
+    Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+    for (const NearFace& n : near) {
+        moment += n.weight * n.offset;
+        spread += n.weight * n.offset * n.offset.transpose();
+    }
+    spread.diagonal().array() += k_ridge * spread.trace();
+    if (spread.trace() > 0.0) slope = spread.inverse() * moment;
+    double steepest = 1.0;
+    for (const NearFace& n : near) steepest = std::max(steepest, slope.dot(n.offset));
+    Vec3d sum = Vec3d::Zero();
+    for (const NearFace& n : near)
+        sum += n.weight * (1.0 - slope.dot(n.offset) / steepest) * normals[n.face].cast<double>();
+    return sum;
+}
+
 /// Face normals without the noise of the tessellation: twice the local linear regression, at the face's own center, of
-/// the normals of the faces that share a vertex (once per shared vertex), weighted by area and by the cosine between
-/// the normals. Faces at a right angle to each other do not mix, so that the edges of a box stay sharp. A plain mean
-/// would lean to where the larger faces are.
-std::vector<Vec3> smoothed_normals(const TriangleMesh& mesh, const Topology& topology, const std::vector<float>& areas,
-                                   const std::vector<Vec3>& centers) {
+/// the normals around it. A plain mean would lean to where the larger faces are.
+std::vector<Vec3> smoothed_normals(const PreparedMesh& prepared, const std::vector<float>& areas) {
     constexpr int k_passes = 2;
-    constexpr double k_ridge = 1e-3;  // a neighborhood on one line has no slope across it
-    std::vector<Vec3> normals = face_normals(mesh);
+    std::vector<Vec3> normals = face_normals(prepared.mesh);
     for (int pass = 0; pass < k_passes; ++pass) {
         const std::vector<Vec3> previous = normals;
-        const auto for_each_near = [&](std::size_t f, const auto& use) {
-            for (const std::uint32_t v : mesh.faces[f]) {
-                for (const std::uint32_t near : topology.faces_of_vertex(v)) {
-                    use(near, static_cast<double>(areas[near] * std::max(previous[near].dot(previous[f]), 0.0F)));
-                }
+        parallel_ranges(normals.size(), 1024, [&](std::size_t begin, std::size_t end) {
+            std::vector<NearFace> near;
+            for (std::size_t f = begin; f < end; ++f) {
+                find_near_faces(prepared, areas, previous, static_cast<std::uint32_t>(f), near);
+                const Vec3d sum = regressed_normal(near, previous);
+                if (const double length = sum.norm(); length > 0.0) normals[f] = (sum / length).cast<float>();
             }
-        };
-        const auto smooth = [&](std::size_t f) {
-            const TangentFrame frame(centers[f], previous[f]);
-            Eigen::Vector2d moment = Eigen::Vector2d::Zero();
-            Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
-            for_each_near(f, [&](std::uint32_t near, double weight) {
-                const Eigen::Vector2d offset = frame.offset(centers[near]);
-                moment += weight * offset;
-                spread += weight * offset * offset.transpose();
-            });
-            spread.diagonal().array() += k_ridge * spread.trace();
-            Eigen::Vector2d slope = Eigen::Vector2d::Zero();
-            if (spread.trace() > 0.0) slope = spread.inverse() * moment;
-            double steepest = 1.0;  // no weight falls below zero: at a border the mean stays a mean
-            for_each_near(f, [&](std::uint32_t near, double) {
-                steepest = std::max(steepest, slope.dot(frame.offset(centers[near])));
-            });
-            Vec3d sum = Vec3d::Zero();
-            for_each_near(f, [&](std::uint32_t near, double weight) {
-                const double balanced = weight * (1.0 - slope.dot(frame.offset(centers[near])) / steepest);
-                sum += balanced * previous[near].cast<double>();
-            });
-            const double length = sum.norm();
-            if (length > 0.0) normals[f] = (sum / length).cast<float>();
-        };
-        parallel_for(normals.size(), smooth, 1024);
+        });
     }
     return normals;
 }
@@ -210,7 +216,7 @@ PreparedMesh prepare_mesh(const TriangleMesh& mesh, std::size_t samples) {
     prepared.area_share = area_shares(areas, total);
     prepared.center = face_centers(prepared.mesh);
     prepared.topology = build_topology(prepared.mesh);
-    prepared.normal = smoothed_normals(prepared.mesh, prepared.topology, areas, prepared.center);
+    prepared.normal = smoothed_normals(prepared, areas);
     prepared.graph = build_dual_graph(prepared.mesh, prepared.topology);
     prepared.component_size = component_sizes(prepared.mesh, prepared.topology);
     prepared.samples = sample_faces(prepared.mesh, prepared.graph, samples);

@@ -131,18 +131,20 @@ void check_extensions(const Json& document, const std::string& name) {
 }
 
 /// The file in the folder of the glTF file that an address names once the library has decoded it (%20 and +), in a form
-/// that is the same for the same file; empty if it lies elsewhere.
+/// that is the same for the same file; empty if it lies elsewhere, or if the library would make anything of a % that
+/// two digits do not follow.
 std::string file_of_uri(const std::string& uri) {
     std::string decoded;
     for (std::size_t i = 0; i < uri.size(); ++i) {
-        unsigned char value = 0;
-        const char* digits = uri.data() + i + 1;
-        if (uri[i] == '%' && uri.size() > i + 2 && std::from_chars(digits, digits + 2, value, 16).ptr == digits + 2) {
-            decoded += static_cast<char>(value);
-            i += 2;
-        } else {
+        if (uri[i] != '%') {
             decoded += uri[i] == '+' ? ' ' : uri[i];
+            continue;
         }
+        unsigned char value = 0;
+        const char *digits = uri.data() + i + 1, *end = digits + 2;
+        if (uri.size() < i + 3 || std::from_chars(digits, end, value, 16).ptr != end || value == 0) return {};
+        decoded += static_cast<char>(value);
+        i += 2;
     }
     const fs::path path = fs::path(decoded).lexically_normal();
     const bool inside = path.is_relative() && !path.empty() && *path.begin() != "..";
@@ -164,7 +166,7 @@ void check_buffers(const Json& document, const GltfChunks& chunks, const std::st
         }
         const auto uri = buffer["uri"].get<std::string>();
         const std::string place = uri.starts_with("data:") ? uri : file_of_uri(uri);
-        if (place.empty()) fail(name, fmt::format("buffer {} is not in the folder of the file: {}", i, quote(uri)));
+        if (place.empty()) fail(name, fmt::format("buffer {} is no file in the folder of this one: {}", i, quote(uri)));
         if (!seen.insert(place).second)
             fail(name, fmt::format("buffer {} has the same uri as another; merge the two", i));
     }

@@ -64,7 +64,7 @@ int genus_of(const TriangleMesh& mesh) {
 }
 
 bool is_one_component(const TriangleMesh& mesh) {
-    return std::ranges::max(face_components(mesh, build_topology(mesh))) == 0;
+    return !mesh.faces.empty() && std::ranges::max(face_components(mesh, build_topology(mesh))) == 0;
 }
 
 /// Polygonizes finely enough that coarsening to `faces` leaves no trace of the grid.

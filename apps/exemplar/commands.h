@@ -34,5 +34,6 @@ void add_train_command(CLI::App& label);
 void add_apply_command(CLI::App& label);
 void add_evaluate_command(CLI::App& label);
 void add_demo_command(CLI::App& app);
+void add_bench_command(CLI::App& app);
 
 }  // namespace exemplar

@@ -1,8 +1,10 @@
 // exemplar label evaluate: trains on some labeled meshes, labels others, and reports how well that went.
 
 #include <fmt/format.h>
+#include <stdlib.h>  // mkdtemp
 
-#include <cmath>
+#include <cerrno>
+#include <cstring>
 #include <optional>
 #include <set>
 
@@ -19,12 +21,34 @@ namespace fs = std::filesystem;
 
 struct EvaluateCommand {
     CommonOptions common;
-    fs::path train_list, test_list, folder, out, humans;
+    std::vector<fs::path> train_sets, test_sets, train_on, test_on;
+    fs::path folder, out, report, humans, labels;
     fs::path cache = default_feature_folder();
     std::string protocol;
     std::optional<std::size_t> splits;
     bool fresh = false;
     TrainOptions train;
+};
+
+/// A folder for what nobody asked to keep; removed with all it holds.
+class ScratchFolder {
+  public:
+    ScratchFolder() {
+        std::string name = (fs::temp_directory_path() / "exemplar-XXXXXX").string();
+        if (mkdtemp(name.data()) == nullptr)
+            throw DataError(fmt::format("{}: no folder can be made ({}); give --out", name, std::strerror(errno)));
+        path_ = name;
+    }
+    ~ScratchFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+    const fs::path& path() const { return path_; }
+
+  private:
+    fs::path path_;
 };
 
 /// Training set size of a protocol; 0 for leave-one-out.
@@ -90,7 +114,8 @@ std::vector<EvaluationTask> protocol_tasks(const EvaluateCommand& options) {
                                 fmt::format("{}-{}", options.protocol, k),
                                 {},
                                 {},
-                                human_folder(options, category)};
+                                human_folder(options, category),
+                                options.labels};
             for (const std::size_t i : splits[k].train) task.train.push_back(meshes[i]);
             for (const std::size_t i : splits[k].test) task.test.push_back(meshes[i]);
             tasks.push_back(std::move(task));
@@ -110,43 +135,113 @@ void warn_of_common(const std::vector<fs::path>& train, const std::vector<fs::pa
                        path.string());
 }
 
-std::vector<EvaluationTask> make_tasks(const EvaluateCommand& options) {
-    if (!options.protocol.empty()) return protocol_tasks(options);
-    if (options.train_list.empty() || options.test_list.empty())
-        throw UsageError("give --train LIST and --test LIST, or --protocol sb3|sb6|sb12|sb19 DIR");
-    EvaluationTask task{without_trailing_slash(options.train_list).stem().string(),
-                        "lists",
-                        meshes_of_argument(options.train_list),
-                        meshes_of_argument(options.test_list),
-                        {}};
-    require_distinct_names(task.test);
-    if (!options.common.quiet) warn_of_common(task.train, task.test);
-    task.humans = human_folder(options, fs::absolute(task.test.front()).parent_path());
-    return {task};
+/// Mesh sets (folders, lists or mesh files) made one.
+struct MeshUnion {
+    std::string name;                  ///< of the sets, joined by +
+    std::vector<fs::path> meshes;      ///< a mesh that is in several sets once
+    std::vector<std::string> sources;  ///< per mesh the set it is from; empty if there is only one set
+};
+
+MeshUnion merge_sets(const std::vector<fs::path>& sets) {
+    MeshUnion result;
+    std::set<fs::path> known;
+    for (const fs::path& set : sets) {
+        const std::string name = without_trailing_slash(set).stem().string();
+        result.name += (result.name.empty() ? "" : "+") + name;
+        for (const fs::path& mesh : meshes_of_argument(set)) {
+            if (sets.size() > 1 && !known.insert(fs::weakly_canonical(mesh)).second) continue;
+            result.meshes.push_back(mesh);
+            if (sets.size() > 1) result.sources.push_back(name);
+        }
+    }
+    return result;
 }
 
-std::string percent(double rate) {
-    return std::isnan(rate) ? std::string("-") : fmt::format("{:.1f}", 100 * rate);
+/// The one task of --train and --test, or of --train-on and --test-on.
+EvaluationTask set_task(const EvaluateCommand& options) {
+    const bool other_category = !options.train_on.empty();
+    MeshUnion train = merge_sets(other_category ? options.train_on : options.train_sets);
+    MeshUnion test = merge_sets(other_category ? options.test_on : options.test_sets);
+    require_distinct_names(test.meshes);
+    if (!options.common.quiet) warn_of_common(train.meshes, test.meshes);
+    EvaluationTask task{other_category ? train.name + "-to-" + test.name : train.name,
+                        other_category ? "category" : "lists",
+                        std::move(train.meshes),
+                        std::move(test.meshes),
+                        {},
+                        options.labels,
+                        std::move(train.sources),
+                        other_category};
+    task.humans = human_folder(options, fs::absolute(task.test.front()).parent_path());
+    return task;
+}
+
+std::vector<EvaluationTask> make_tasks(const EvaluateCommand& options) {
+    if (!options.labels.empty()) require_input(options.labels);
+    if (!options.protocol.empty()) return protocol_tasks(options);
+    if (options.train_on.empty() != options.test_on.empty()) throw UsageError("--train-on and --test-on go together");
+    if (options.train_on.empty() && (options.train_sets.empty() || options.test_sets.empty()))
+        throw UsageError(
+            "give --train SET and --test SET, --train-on SET and --test-on SET, or --protocol sb3|sb6|sb12|sb19 DIR");
+    return {set_task(options)};
+}
+
+std::string protocol_name(const EvaluateCommand& options) {
+    if (!options.protocol.empty()) return options.protocol;
+    return options.train_on.empty() ? "lists" : "category";
 }
 
 void run_evaluate(const EvaluateCommand& options) {
     const auto limits = apply_common_options(options.common);
-    require_output_folder(options.out);
+    if (options.out.empty() && options.report.empty())
+        throw UsageError("give --out FOLDER for models, labels and the page, or --report FOLDER for the page alone");
+    for (const fs::path& folder : {options.out, options.report})
+        if (!folder.empty()) require_output_folder(folder);
     const std::vector<EvaluationTask> tasks = make_tasks(options);
+    std::optional<ScratchFolder> scratch;
+    if (options.out.empty()) scratch.emplace();
+    const fs::path out = scratch ? scratch->path() : options.out;
     DeviceBackend backend(options.common.device);
-    EvaluationRun run(backend, options.train, usable_cache(options.cache, options.common.quiet), options.out,
-                      {.quiet = options.common.quiet, .fresh = options.fresh});
-    const nlohmann::json report =
-        run.evaluate(tasks, options.protocol.empty() ? "lists" : options.protocol, "Mesh labeling on unseen shapes");
+    EvaluationRun run(backend, options.train, usable_cache(options.cache, options.common.quiet), out,
+                      {.quiet = options.common.quiet, .fresh = options.fresh, .report = options.report});
+    const nlohmann::json report = run.evaluate(tasks, protocol_name(options), "Mesh labeling on unseen shapes");
 
-    fmt::print("{:>12} {:>6} {:>7} {:>7} {:>7}\n", "category", "meshes", "RR", "SW", "RI err");
-    for (const auto& category : report["categories"])
-        fmt::print("{:>12} {:>6} {:>7} {:>7} {:>7}\n", category["category"].get<std::string>(),
-                   category["meshes"].get<std::size_t>(), percent(rate_of(category, "recognition_rate")),
-                   percent(rate_of(category, "segment_weighted_accuracy")), percent(rate_of(category, "rand_error")));
-    fmt::print("report: {}\n", (options.out / "index.html").string());
-    write_json(options.out / "report.json", report);
+    print_evaluation(report);
+    fmt::print("\nreport: {}\n", ((options.report.empty() ? out : options.report) / "index.html").string());
+    if (!scratch) write_json(out / "report.json", report);
     write_report(options.common, report);
+}
+
+/// --train and --test, or --train-on and --test-on, and the protocols that take their place.
+void add_mesh_options(CLI::App& command, EvaluateCommand& options) {
+    CLI::Option* train = command.add_option("--train", options.train_sets,
+                                            "training meshes: a folder or list, or several that are merged");
+    CLI::Option* test = command.add_option("--test", options.test_sets, "test meshes: folders or lists");
+    CLI::Option* train_on =
+        command.add_option("--train-on", options.train_on, "training meshes of another category than --test-on");
+    CLI::Option* test_on = command.add_option("--test-on", options.test_on,
+                                              "test meshes of it; rated by the label names that both categories have");
+    for (CLI::Option* option : {train_on, test_on}) option->excludes(train)->excludes(test);
+    CLI::Option* protocol = command.add_option(
+        "--protocol", options.protocol, "train on 3, 6 or 12 random meshes of each category, or on all but one (sb19)");
+    protocol->check(CLI::IsMember({"sb3", "sb6", "sb12", "sb19"}))->type_name("");
+    for (CLI::Option* option : {train, test, train_on, test_on}) {
+        option->type_name("SET");
+        protocol->excludes(option);
+    }
+    command.add_option("DIR", options.folder, "category folder, or folder of category folders, for --protocol")
+        ->needs(protocol)
+        ->type_name("");
+    command.add_option("--splits", options.splits, "random splits per category, one unless given; not for sb19")
+        ->check(whole_number(1, 1000))
+        ->needs(protocol);
+    command
+        .add_option("--humans", options.humans, "folder of human segmentations, NAME/*.seg, to compare segments with")
+        ->type_name("FOLDER");
+    command
+        .add_option("--labels", options.labels,
+                    "folder of NAME_labels.txt to learn and test, in place of those beside the meshes")
+        ->type_name("FOLDER");
 }
 
 }  // namespace
@@ -156,26 +251,20 @@ void add_evaluate_command(CLI::App& label) {
     CLI::App* command =
         label.add_subcommand("evaluate", "Trains on some labeled meshes, tests on others, reports the accuracy");
     command->footer(
-        "Interrupted, it goes on where it stopped when called again with the same options.\n\nExamples:\n"
+        "Interrupted, it goes on where it stopped when called again with the same options and --out.\n\nExamples:\n"
         "  exemplar label evaluate --train train.txt --test test.txt --out report\n"
-        "  exemplar label evaluate --protocol sb6 psb/labeled/Cup --splits 2 --out report");
-    CLI::Option* train =
-        command->add_option("--train", options->train_list, "training meshes: folder or list")->type_name("");
-    CLI::Option* test = command->add_option("--test", options->test_list, "test meshes: folder or list")->type_name("");
-    CLI::Option* protocol =
-        command->add_option("--protocol", options->protocol,
-                            "train on 3, 6 or 12 random meshes of each category, or on all but one (sb19)");
-    protocol->check(CLI::IsMember({"sb3", "sb6", "sb12", "sb19"}))->type_name("")->excludes(train)->excludes(test);
-    command->add_option("DIR", options->folder, "category folder, or folder of category folders, for --protocol")
-        ->needs(protocol)
-        ->type_name("");
-    command->add_option("--splits", options->splits, "random splits per category, one unless given; not for sb19")
-        ->check(whole_number(1, 1000))
-        ->needs(protocol);
-    command->add_option("--humans", options->humans, "folder of human segmentations, NAME/*.seg, for the Rand index")
+        "  exemplar label evaluate --protocol sb6 psb/labeled/Cup --splits 2 --out report\n"
+        "  exemplar label evaluate --train train.txt --test test.txt --report page     (only the page)\n"
+        "another category than the one learned:\n"
+        "  exemplar label evaluate --train-on psb/labeled/FourLeg --test-on psb/labeled/Human --out report\n"
+        "several categories as one, where equal label names are one label:\n"
+        "  exemplar label evaluate --train human.txt teddy.txt --test more-humans.txt more-teddies.txt --out report\n"
+        "labels of another style for the same meshes:\n"
+        "  exemplar label evaluate --train train.txt --test test.txt --labels three-torsos --out report");
+    add_mesh_options(*command, *options);
+    command->add_option("--out", options->out, "folder for models, labels, scores and, without --report, the page")
         ->type_name("FOLDER");
-    command->add_option("--out", options->out, "folder for models, labels and the report")
-        ->required()
+    command->add_option("--report", options->report, "folder for the page; without --out nothing else is kept")
         ->type_name("FOLDER");
     command->add_flag("--fresh", options->fresh, "start over instead of going on from what is in --out");
     add_training_options(*command, options->train, options->cache);

@@ -5,17 +5,19 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <deque>
+#include <optional>
 
 #include "apps/exemplar/commands.h"
+#include "apps/exemplar/evaluation_page.h"
 #include "apps/exemplar/labeled_output.h"
+#include "apps/exemplar/thesis_rates.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/interrupt.h"
-#include "host/core/progress.h"
 #include "host/core/stopwatch.h"
 #include "host/core/text.h"
+#include "host/labeling/evaluation.h"
 #include "host/labeling/report_page.h"
 
 namespace exemplar {
@@ -24,12 +26,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr std::size_t k_shown_meshes = 6;  ///< of each category in the page
-constexpr const char* k_rates[] = {"recognition_rate", "segment_weighted_accuracy", "rand_error"};
+constexpr int k_score_version = 2;  ///< what the scores of a mesh hold; those of another version are not taken over
 
-/// The content of a mesh file and of the labels beside it, as 16 hexadecimal digits.
-std::string digest(const fs::path& mesh) {
-    const fs::path labels = mesh.parent_path() / (mesh.stem().string() + "_labels.txt");
+/// The content of a mesh file and of its label file, as 16 hexadecimal digits.
+std::string digest(const fs::path& mesh, const fs::path& labels_folder) {
+    const fs::path labels = labels_path(mesh, labels_folder);
     const std::string content = read_file(mesh) + (fs::exists(labels) ? read_file(labels) : std::string());
     return fmt::format("{:016x}", XXH3_64bits(content.data(), content.size()));
 }
@@ -48,7 +49,7 @@ std::string run_key(const EvaluationTask& task, const TrainOptions& train) {
              {"orientation", train.features.orientation},
              {"features", k_feature_version},
              {"format", k_model_format_version}};
-    for (const fs::path& path : task.train) key["train"].push_back({path.stem().string(), digest(path)});
+    for (const fs::path& path : task.train) key["train"].push_back({path.stem().string(), digest(path, task.labels)});
     return key.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -57,23 +58,6 @@ Json read_json(const fs::path& path) {
     if (!fs::exists(path)) return nullptr;
     Json json = Json::parse(read_file(path), nullptr, false);
     return json.is_object() ? json : Json(nullptr);
-}
-
-Json rate_json(double rate) {
-    return std::isnan(rate) ? Json(nullptr) : Json(rate);
-}
-
-/// Mean of each rate over `items`, without those that lack it.
-Json mean_rates(const Json& items) {
-    Json means = Json::object();
-    for (const char* rate : k_rates) {
-        double sum = 0;
-        int count = 0;
-        for (const Json& item : items)
-            if (const double value = rate_of(item, rate); !std::isnan(value)) sum += value, ++count;
-        means[rate] = rate_json(count ? sum / count : std::numeric_limits<double>::quiet_NaN());
-    }
-    return means;
 }
 
 fs::path folder_of(const fs::path& out, const EvaluationTask& task) {
@@ -92,23 +76,70 @@ std::vector<std::vector<std::int32_t>> human_segmentations(const fs::path& folde
     return segmentations;
 }
 
-/// Confusion summed over meshes and divided by their number.
-std::vector<double> mean_confusion(const Json& meshes) {
-    std::vector<double> sum;
-    for (const Json& mesh : meshes) {
-        const auto confusion = mesh.at("confusion").get<std::vector<double>>();
-        sum.resize(confusion.size(), 0);
-        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += confusion[i] / static_cast<double>(meshes.size());
+/// For each label of merged training sets the sets that have it, in order of label.
+Json label_sources(const LabeledCorpus& corpus, const std::vector<std::string>& sources) {
+    std::vector<std::vector<std::string>> sets(corpus.names.size());
+    for (std::size_t i = 0; i < corpus.meshes.size(); ++i)
+        for (const std::int32_t label : corpus.meshes[i].label) {
+            if (label < 0) continue;
+            std::vector<std::string>& known = sets[static_cast<std::size_t>(label)];
+            if (std::find(known.begin(), known.end(), sources[i]) == known.end()) known.push_back(sources[i]);
+        }
+    Json result = Json::array();
+    for (std::size_t c = 0; c < sets.size(); ++c) result.push_back({{"label", corpus.names[c]}, {"sources", sets[c]}});
+    return result;
+}
+
+void print_label_sources(const Json& labels) {
+    fmt::print("labels of the merged training sets (equal names are one label):\n");
+    for (const Json& label : labels)
+        fmt::print("{:>20}  {}\n", label["label"].get<std::string>(),
+                   fmt::join(label["sources"].get<std::vector<std::string>>(), ", "));
+}
+
+/// The labels that the model knows and that some test mesh has.
+std::vector<std::string> shared_labels(const LabelingModel& model, const Json& meshes) {
+    std::vector<std::string> shared;
+    for (std::size_t c = 0; c < model.class_count(); ++c) {
+        const bool occurs = std::any_of(meshes.begin(), meshes.end(), [&](const Json& mesh) {
+            const std::size_t names = mesh["names"].size();
+            double row = 0;
+            for (std::size_t p = 0; p < names; ++p) row += mesh["confusion"][c * names + p].get<double>();
+            return row > 0;
+        });
+        if (occurs) shared.push_back(model.label_names[c]);
     }
-    return sum;
+    return shared;
+}
+
+/// What the page and the reader of the report want to know of a training.
+Json training_of(const Json& run) {
+    Json training = Json::object();
+    for (const char* key : {"labels", "classifiers", "crf", "first_features", "seconds"})
+        training[key] = run.contains(key) ? run[key] : Json(nullptr);
+    return training;
+}
+
+/// What to compare a task with, if it is one of the benchmark: other data may have categories of the same names.
+std::optional<ThesisRates> benchmark_rates(const EvaluationTask& task) {
+    if (task.humans.empty() || !task.labels.empty() || !task.sources.empty() || task.other_category) return {};
+    return thesis_rates(task.category, task.train.size());
+}
+
+/// Adds what is said of a category as a whole to its splits.
+void summarize(Json& category) {
+    Json meshes = Json::array(), models = Json::array();
+    for (const Json& split : category["splits"]) {
+        for (const Json& mesh : split["meshes"]) meshes.push_back(mesh);
+        models.push_back(split["features"]);
+    }
+    category.update(mean_rates(meshes));
+    category.update(confusion_of(meshes));
+    category["features"] = sum_chosen_features(models);
+    category["meshes"] = meshes.size();
 }
 
 }  // namespace
-
-double rate_of(const Json& json, const char* key) {
-    return json.contains(key) && json[key].is_number() ? json[key].get<double>()
-                                                       : std::numeric_limits<double>::quiet_NaN();
-}
 
 /// The JSON of an earlier run if it was about the same; else null.
 Json EvaluationRun::finished(const fs::path& path, const std::string& key) const {
@@ -132,7 +163,7 @@ LabelingModel EvaluationRun::model_for(const EvaluationTask& task, const fs::pat
         }
     }
     const Stopwatch watch;
-    const LabeledCorpus corpus = load_corpus(task.train);
+    const LabeledCorpus corpus = load_corpus(task.train, {}, task.labels);
     warn(corpus.warnings);
     std::vector<MeshFeatures> features = features_of(corpus, train_.features, cache_);
     const double feature_seconds = watch.wall();
@@ -142,50 +173,75 @@ LabelingModel EvaluationRun::model_for(const EvaluationTask& task, const fs::pat
     save_model(path, model);
     Json json = describe_training(model, report);
     json["key"] = key;
+    if (!task.sources.empty()) json["merged_labels"] = label_sources(corpus, task.sources);
     json["seconds"] = {{"features", feature_seconds}, {"all", watch.wall()}, {"cpu", watch.cpu()}};
     write_json(run, json);
     return model;
 }
 
+/// A test mesh may have labels that the training meshes lack: they follow those of the model. Unless the mesh is of
+/// another category they can only be wrong, but they count.
+LabeledCorpus EvaluationRun::load_test_mesh(const EvaluationTask& task, const fs::path& mesh,
+                                            const LabelingModel& model) const {
+    LabeledCorpus own = load_corpus({mesh}, {}, task.labels);
+    std::vector<std::string> names = model.label_names;
+    std::vector<std::int32_t> position;
+    for (const std::string& name : own.names) {
+        const auto found = std::find(names.begin(), names.end(), name);
+        position.push_back(static_cast<std::int32_t>(found - names.begin()));
+        if (found != names.end()) continue;
+        if (!task.other_category)
+            own.warnings.push_back(
+                fmt::format("{}: no training mesh has the label '{}'{}: its faces will count as wrong", mesh.string(),
+                            name, suggestion(name, model.label_names)));
+        names.push_back(name);
+    }
+    for (std::int32_t& label : own.meshes.front().label)
+        if (label >= 0) label = position[static_cast<std::size_t>(label)];
+    own.names = std::move(names);
+    return own;
+}
+
 Json EvaluationRun::test_mesh(const EvaluationTask& task, const fs::path& mesh, const fs::path& folder,
                               const LabelingModel& model, const std::string& key) {
     const fs::path stem = folder / mesh.stem(), scores = stem.string() + ".json";
-    const std::string mesh_key = fmt::format("{} {} {}", key, digest(mesh), task.humans.string());
+    const std::string mesh_key = fmt::format("{} {} {} scores {} {}", key, digest(mesh, task.labels),
+                                             task.humans.string(), k_score_version, task.other_category);
     if (Json done = finished(scores, mesh_key); !done.is_null()) {
         done["path"] = mesh.string();  // the same mesh may have moved
         return done;
     }
     const Stopwatch watch;
-    // A test mesh may have labels that the training meshes lack; they can only be wrong, but they count.
-    const LabeledCorpus own = load_corpus({mesh});
-    warn(own.warnings);
-    std::vector<std::string> names = model.label_names;
-    for (const std::string& name : own.names) {
-        if (std::find(model.label_names.begin(), model.label_names.end(), name) != model.label_names.end()) continue;
-        warn({fmt::format("{}: no training mesh has the label '{}'{}: its faces will count as wrong", mesh.string(),
-                          name, suggestion(name, model.label_names))});
-        names.push_back(name);
-    }
-    const LabeledCorpus corpus = load_corpus({mesh}, names);
+    const LabeledCorpus corpus = load_test_mesh(task, mesh, model);
+    warn(corpus.warnings);
     const LabeledMesh& item = corpus.meshes.front();
-
     MeshFeatures features = cached_features(item.mesh, model.feature_options, cache_);
-    const double feature_seconds = watch.wall();
+    Json seconds{{"features", watch.wall()}};
     const FaceLabeling labeling = label_faces(model, features, backend_.labeling());
+    for (const auto& [stage, time] : labeling.seconds) seconds[stage] = time;
     const LabeledOutput output = make_labeled_output(item.mesh, model, labeling);
     write_labels_txt(stem.string() + "_labels.txt", output.labels);
     write_ply(stem.string() + ".ply", item.mesh, &output.labels, output.confidence);
-    const MeshScore score =
-        score_labeling(features, item.label, labeling.label, names.size(), human_segmentations(task.humans, item));
-    Json json{{"key", mesh_key},
-              {"mesh", item.name},
-              {"path", mesh.string()},
-              {"names", names},
-              {"recognition_rate", rate_json(score.recognition_rate)},
-              {"segment_weighted_accuracy", rate_json(score.segment_weighted_accuracy)},
-              {"rand_error", rate_json(score.rand_error)},
-              {"confusion", score.confusion},
-              {"seconds", {{"features", feature_seconds}, {"all", watch.wall()}}}};
+
+    const Stopwatch scoring;
+    MeshScore score = score_labeling(features, item.label, labeling.label, corpus.names.size());
+    if (task.other_category) {  // all labels are compared, but only what both could name is rated
+        std::vector<std::int32_t> rated = item.label;
+        for (std::int32_t& label : rated)
+            if (label >= static_cast<std::int32_t>(model.class_count())) label = -1;
+        const MeshScore shared = score_labeling(features, rated, labeling.label, corpus.names.size());
+        score.recognition_rate = shared.recognition_rate;
+        score.segment_weighted_accuracy = shared.segment_weighted_accuracy;
+    }
+    Json json = describe_scores(
+        score, score_segmentation(item.mesh, features, labeling.label, human_segmentations(task.humans, item)));
+    seconds["scores"] = scoring.wall(), seconds["all"] = watch.wall();
+    json.update({{"key", mesh_key},
+                 {"mesh", item.name},
+                 {"path", mesh.string()},
+                 {"names", corpus.names},
+                 {"confusion", score.confusion},
+                 {"seconds", seconds}});
     write_json(scores, json);
     return json;
 }
@@ -195,14 +251,24 @@ Json EvaluationRun::run_task(const EvaluationTask& task, Progress& progress) {
     const std::string key = run_key(task, train_);
     const LabelingModel model = model_for(task, folder, key);
     progress.advance(1, task.category + " trained");
-    Json result{{"split", task.split}, {"train", Json::array()}, {"meshes", Json::array()}};
+    const Json run = read_json(folder / "run.json");
+    Json result{{"split", task.split},
+                {"train", Json::array()},
+                {"training", training_of(run)},
+                {"features", chosen_features(model)},
+                {"meshes", Json::array()}};
     for (const fs::path& path : task.train) result["train"].push_back(path.stem().string());
+    if (run.contains("merged_labels")) {
+        result["merged_labels"] = run["merged_labels"];
+        if (!behavior_.quiet) print_label_sources(result["merged_labels"]);
+    }
     for (const fs::path& mesh : task.test) {
         check_interrupt();
         result["meshes"].push_back(test_mesh(task, mesh, folder, model, key));
         result["meshes"].back().erase("key");
         progress.advance(1, task.category + "/" + mesh.stem().string());
     }
+    if (task.other_category) result["shared_labels"] = shared_labels(model, result["meshes"]);
     return result;
 }
 
@@ -211,87 +277,63 @@ Json EvaluationRun::evaluate(const std::vector<EvaluationTask>& tasks, const std
     std::size_t steps = 0;
     for (const EvaluationTask& task : tasks) steps += 1 + task.test.size();
     Progress progress("evaluating", steps);
-    Json report{{"protocol", protocol}, {"device", backend_.device_name()}, {"categories", Json::array()}};
+    Json categories = Json::array(), models = Json::array();
     for (const EvaluationTask& task : tasks) {
-        Json split = run_task(task, progress);
-        Json& categories = report["categories"];
         if (categories.empty() || categories.back()["category"] != task.category)
-            categories.push_back({{"category", task.category}, {"splits", Json::array()}, {"meshes", 0}});
-        Json& category = categories.back();
-        category["meshes"] = category["meshes"].get<std::size_t>() + split["meshes"].size();
-        category["splits"].push_back(std::move(split));
-        Json all = Json::array();
-        for (const Json& done : category["splits"])
-            for (const Json& mesh : done["meshes"]) all.push_back(mesh);
-        category.update(mean_rates(all));
+            categories.push_back({{"category", task.category}, {"splits", Json::array()}});
+        categories.back()["splits"].push_back(run_task(task, progress));
+        models.push_back(categories.back()["splits"].back()["features"]);
+        if (const auto thesis = benchmark_rates(task))
+            categories.back()["thesis"] = {{"recognition_rate", thesis->recognition_rate},
+                                           {"rand_error", thesis->rand_error}};
     }
+    for (Json& category : categories) summarize(category);
     progress.finish();
-    report.update(mean_rates(report["categories"]));
+    Json report{{"protocol", protocol}, {"device", backend_.device_name()}};
+    report.update(mean_rates(categories));
+    report["features"] = sum_chosen_features(models);
+    report["categories"] = std::move(categories);
     write_page(tasks, report, title);
     return report;
 }
 
-ReportData EvaluationRun::report_group(const EvaluationTask& task, const Json& category, const LabeledCorpus& shown) {
-    const fs::path folder = folder_of(out_, task);
-    const LabelingModel model = load_model(folder / "model.safetensors");
-    const Json run = read_json(folder / "run.json");
-    const Json& meshes = category["splits"][0]["meshes"];
-    ReportData group;
-    group.title = category["category"];
-    group.subtitle =
-        fmt::format("{} training meshes, {} unseen meshes", category["splits"][0]["train"].size(), meshes.size());
-    if (const std::size_t splits = category["splits"].size(); splits > 1)
-        group.subtitle += fmt::format("; {} splits, of which the first is shown and the rates are the mean", splits);
-    group.recognition_rate = rate_of(category, "recognition_rate");
-    group.label_names = shown.names;
-    for (std::size_t c = 0; c < shown.names.size(); ++c) group.label_colors.push_back(label_color(c));
-    for (std::size_t i = 0; i < shown.meshes.size(); ++i) {
-        const LabeledMesh& mesh = shown.meshes[i];
-        MeshFeatures features = cached_features(mesh.mesh, model.feature_options, cache_);
-        FaceLabeling labeling = label_faces(model, features, backend_.labeling());
-        group.meshes.push_back({mesh.name, &mesh.mesh, std::move(labeling.label), mesh.label,
-                                std::move(labeling.confidence), rate_of(meshes[i], "recognition_rate")});
-    }
-    const auto same_names = [&](const Json& mesh) { return mesh["names"].size() == model.class_count(); };
-    if (std::all_of(meshes.begin(), meshes.end(), same_names)) group.confusion = mean_confusion(meshes);
-    group.feature_families = stumps_per_family(model);
-    group.first_features = first_features(model, 10);
-    double label_seconds = 0;
-    for (const Json& mesh : meshes)
-        label_seconds += (mesh["seconds"]["all"].get<double>() - mesh["seconds"]["features"].get<double>()) /
-                         static_cast<double>(meshes.size());
-    group.timings = {{"features of the training meshes", run["seconds"]["features"]},
-                     {"training, all", run["seconds"]["all"]},
-                     {"labeling a mesh, features ready (mean)", label_seconds}};
-    const auto show = [&](const char* key, const char* title) {
-        if (const double rate = rate_of(category, key); !std::isnan(rate))
-            group.summary.emplace_back(title, fmt::format("{:.1f} %", 100 * rate));
-    };
-    show("recognition_rate", "recognition rate");
-    show("segment_weighted_accuracy", "segment-weighted accuracy");
-    show("rand_error", "Rand index error");
-    return group;
-}
-
 void EvaluationRun::write_page(const std::vector<EvaluationTask>& tasks, const Json& report, const std::string& title) {
-    std::vector<LabeledCorpus> shown;  // the page refers to the meshes
-    shown.reserve(report["categories"].size());
+    std::deque<LabeledCorpus> shown;  // the page refers to the meshes, so they must stay where they are
     std::vector<ReportData> groups;
     for (const Json& category : report["categories"]) {
+        const Json& split = category["splits"][0];
         const auto task =
             std::find_if(tasks.begin(), tasks.end(), [&](const auto& t) { return t.category == category["category"]; });
-        const Json& meshes = category["splits"][0]["meshes"];
-        std::vector<fs::path> paths;
-        std::vector<std::string> names = load_model(folder_of(out_, *task) / "model.safetensors").label_names;
-        for (const Json& mesh : meshes) {
-            if (paths.size() < k_shown_meshes) paths.emplace_back(mesh["path"].get<std::string>());
-            for (const std::string name : mesh["names"])
-                if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+        const LabelingModel model = load_model(folder_of(out_, *task) / "model.safetensors");
+        ReportData group = report_group(category);
+        for (const std::size_t i : shown_meshes(split)) {
+            shown.push_back(load_test_mesh(*task, split["meshes"][i]["path"].get<std::string>(), model));
+            group.meshes.push_back(report_mesh(model, shown.back(), group.label_names));
+            group.meshes.back().recognition_rate = rate_of(split["meshes"][i], "recognition_rate");
         }
-        shown.push_back(load_corpus(paths, names));
-        groups.push_back(report_group(*task, category, shown.back()));
+        groups.push_back(std::move(group));
     }
-    write_report_page(out_ / "index.html", title, groups);
+    write_report_page((behavior_.report.empty() ? out_ : behavior_.report) / "index.html", title, groups);
+}
+
+/// `names`: the page's, which begin with those of the first model.
+ReportMesh EvaluationRun::report_mesh(const LabelingModel& model, LabeledCorpus& shown,
+                                      const std::vector<std::string>& names) {
+    LabeledMesh& mesh = shown.meshes.front();
+    MeshFeatures features = cached_features(mesh.mesh, model.feature_options, cache_);
+    FaceLabeling labeling = label_faces(model, features, backend_.labeling());
+    for (std::int32_t& label : mesh.label) {
+        if (label < 0) continue;
+        const auto found = std::find(names.begin(), names.end(), shown.names[static_cast<std::size_t>(label)]);
+        label = static_cast<std::int32_t>(found - names.begin());
+    }
+    ReportMesh result;
+    result.name = mesh.name;
+    result.mesh = &mesh.mesh;
+    result.predicted = std::move(labeling.label);
+    result.truth = mesh.label;
+    result.confidence = std::move(labeling.confidence);
+    return result;
 }
 
 }  // namespace exemplar

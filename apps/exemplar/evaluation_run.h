@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "apps/exemplar/backend.h"
+#include "apps/exemplar/evaluation_summary.h"
 #include "apps/exemplar/training_run.h"
 #include "host/core/progress.h"
-#include "host/labeling/evaluation.h"
+#include "host/data/corpus.h"
 #include "host/labeling/report_page.h"
 
 namespace exemplar {
@@ -17,7 +18,10 @@ namespace exemplar {
 struct EvaluationTask {
     std::string category, split;  ///< name the output folder OUT/CATEGORY/SPLIT
     std::vector<std::filesystem::path> train, test;
-    std::filesystem::path humans;  ///< human segmentations; may be empty
+    std::filesystem::path humans;           ///< human segmentations; may be empty
+    std::filesystem::path labels = {};      ///< folder of the label files; empty: beside the meshes
+    std::vector<std::string> sources = {};  ///< where each training mesh is from, if several sets are merged
+    bool other_category = false;            ///< rates are of the labels that training and test meshes both have
 };
 
 /// Works through tasks and keeps what is finished on disk, so that a run that was interrupted goes on from there:
@@ -26,14 +30,19 @@ struct EvaluationTask {
 class EvaluationRun {
   public:
     struct Behavior {
-        bool quiet = false;  ///< no tables, no warnings
-        bool fresh = false;  ///< take nothing over from an earlier run
+        bool quiet = false;                 ///< no tables, no warnings
+        bool fresh = false;                 ///< take nothing over from an earlier run
+        std::filesystem::path report = {};  ///< the page's folder; empty: the output folder
     };
     EvaluationRun(DeviceBackend& backend, const TrainOptions& train, std::filesystem::path cache,
                   std::filesystem::path out, Behavior behavior)
-        : backend_(backend), train_(train), cache_(std::move(cache)), out_(std::move(out)), behavior_(behavior) {}
+        : backend_(backend),
+          train_(train),
+          cache_(std::move(cache)),
+          out_(std::move(out)),
+          behavior_(std::move(behavior)) {}
 
-    /// Runs everything and writes OUT/index.html; returns the report (docs/formats.md).
+    /// Runs everything and writes index.html; returns the report (docs/formats.md).
     nlohmann::json evaluate(const std::vector<EvaluationTask>& tasks, const std::string& protocol,
                             const std::string& title);
 
@@ -41,10 +50,12 @@ class EvaluationRun {
     LabelingModel model_for(const EvaluationTask& task, const std::filesystem::path& folder, const std::string& key);
     nlohmann::json finished(const std::filesystem::path& path, const std::string& key) const;
     void warn(const std::vector<std::string>& warnings) const;
+    LabeledCorpus load_test_mesh(const EvaluationTask& task, const std::filesystem::path& mesh,
+                                 const LabelingModel& model) const;
     nlohmann::json test_mesh(const EvaluationTask& task, const std::filesystem::path& mesh,
                              const std::filesystem::path& folder, const LabelingModel& model, const std::string& key);
     nlohmann::json run_task(const EvaluationTask& task, Progress& progress);
-    ReportData report_group(const EvaluationTask& task, const nlohmann::json& category, const LabeledCorpus& shown);
+    ReportMesh report_mesh(const LabelingModel& model, LabeledCorpus& shown, const std::vector<std::string>& names);
     void write_page(const std::vector<EvaluationTask>& tasks, const nlohmann::json& report, const std::string& title);
 
     DeviceBackend& backend_;
@@ -52,8 +63,5 @@ class EvaluationRun {
     std::filesystem::path cache_, out_;
     Behavior behavior_;
 };
-
-/// A rate of a report; NaN where it is null.
-double rate_of(const nlohmann::json& json, const char* key);
 
 }  // namespace exemplar

@@ -85,6 +85,7 @@ int run(int argc, char** argv) {
     add_synth_command(app);
     add_devices_command(app);
     add_demo_command(app);
+    add_bench_command(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

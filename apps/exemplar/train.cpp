@@ -50,12 +50,12 @@ void add_training_options(CLI::App& command, TrainOptions& options, std::filesys
     command.add_option("--seed", options.seed, "seed of all random choices; equal seeds give equal model files")
         ->capture_default_str()
         ->check(whole_number(0));
-    command.add_option("--rounds", options.rounds, "most boosting rounds per classifier")
+    command.add_option("--rounds", options.rounds, "boosting rounds per classifier (for boundaries at most)")
         ->capture_default_str()
         ->check(whole_number(1, 100000));
     command
         .add_option("--patience", options.patience,
-                    "boosting ends after so many rounds without better labels of held-out meshes")
+                    "the boundary classifiers end so many rounds after they are best on held-out meshes")
         ->capture_default_str()
         ->check(whole_number(1));
     command.add_option("--stages", options.max_stages, "most classifiers of the cascade")

@@ -23,16 +23,19 @@ std::vector<MeshFeatures> features_of(const LabeledCorpus& corpus, const Feature
     return features;
 }
 
-std::vector<std::pair<std::string, std::size_t>> stumps_per_family(const LabelingModel& model) {
+std::vector<std::pair<std::string, std::size_t>> stumps_per_family(const LabelingModel& model,
+                                                                   std::optional<std::size_t> stage) {
     const std::vector<std::string> context = context_names(model.label_names);
     std::map<std::string, std::size_t> count;
-    for (const CalibratedStumps& stage : model.unary)
-        for (const Stump& stump : stage.stumps.stumps) {
+    for (std::size_t k = 0; k < model.unary.size(); ++k) {
+        if (stage && k != *stage) continue;
+        for (const Stump& stump : model.unary[k].stumps.stumps) {
             const std::size_t base = model.unary_names.size();
             const std::string& name =
                 stump.feature < base ? model.unary_names[stump.feature] : context[stump.feature - base];
             ++count[name.substr(0, name.find('.'))];
         }
+    }
     std::vector<std::pair<std::string, std::size_t>> families(count.begin(), count.end());
     std::stable_sort(families.begin(), families.end(),
                      [](const auto& a, const auto& b) { return a.second > b.second; });

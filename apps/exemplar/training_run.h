@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,8 +20,9 @@ void add_training_options(CLI::App& command, TrainOptions& options, std::filesys
 std::vector<MeshFeatures> features_of(const LabeledCorpus& corpus, const FeatureOptions& options,
                                       const std::filesystem::path& cache);
 
-/// How many stumps of the unary cascade use each feature family, most used first.
-std::vector<std::pair<std::string, std::size_t>> stumps_per_family(const LabelingModel& model);
+/// How many stumps of the unary cascade, or of one classifier of it, use each feature family, most used first.
+std::vector<std::pair<std::string, std::size_t>> stumps_per_family(const LabelingModel& model,
+                                                                   std::optional<std::size_t> stage = {});
 /// Names of the features of the first `count` stumps of the first classifier.
 std::vector<std::string> first_features(const LabelingModel& model, std::size_t count);
 

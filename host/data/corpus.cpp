@@ -11,6 +11,7 @@
 #include "host/core/files.h"
 #include "host/core/parallel.h"
 #include "host/core/text.h"
+#include "host/mesh/io_text.h"
 #include "host/mesh/validate.h"
 
 namespace exemplar {
@@ -73,9 +74,11 @@ std::size_t comment_begin(const std::string& line) {
 
 std::vector<fs::path> meshes_of_list(const fs::path& list) {
     std::vector<fs::path> paths;
-    std::istringstream lines(read_file(list));
+    const std::string content = read_file(list);
+    std::istringstream lines(content);
+    const char line_end = content.find('\n') == std::string::npos ? '\r' : '\n';
     std::string line;
-    for (int number = 1; std::getline(lines, line); ++number) {
+    for (int number = 1; std::getline(lines, line, line_end); ++number) {
         line.erase(0, line.find_first_not_of(" \t\r"));
         line.erase(comment_begin(line));
         line.erase(line.find_last_not_of(" \t\r") + 1);
@@ -83,23 +86,23 @@ std::vector<fs::path> meshes_of_list(const fs::path& list) {
         fs::path path = line;
         if (path.is_relative() && !is_there(path)) path = list.parent_path() / path;
         if (!is_there(path))
-            throw DataError(fmt::format("{}:{}: no such mesh: {}{}", list.string(), number, line, suggest_file(path)));
+            throw DataError(fmt::format("{}:{}: no such mesh: {}{}", list.string(), number,
+                                        mesh_io::printable(line, 200), suggest_file(path)));
         paths.push_back(path);
     }
     return paths;
 }
 
-fs::path labels_beside(const fs::path& mesh) {
-    return mesh.parent_path() / (mesh.stem().string() + "_labels.txt");
-}
-
 /// Labels of a mesh file's source faces, wherever they are kept.
-FaceLabels find_labels(const fs::path& path, const MeshFile& file) {
-    const fs::path beside = labels_beside(path);
-    if (is_there(beside)) return read_labels_txt(beside, file.mesh.source_face_count);
+FaceLabels find_labels(const fs::path& path, const MeshFile& file, const fs::path& labels_folder) {
+    const fs::path labels = labels_path(path, labels_folder);
+    if (is_there(labels)) return read_labels_txt(labels, file.mesh.source_face_count);
+    if (!labels_folder.empty())
+        throw DataError(fmt::format("{}: no such file; it should hold the labels of {}{}", labels.string(),
+                                    path.string(), suggest_file(labels)));
     if (file.labels) return *file.labels;
     throw DataError(fmt::format("{}: no labels: give {} beside it, or a PLY with a per-face 'label' property",
-                                path.string(), beside.filename().string()));
+                                path.string(), labels.filename().string()));
 }
 
 /// For each name of `labels` that has faces its index in `names`; a name that is not among them is an error.
@@ -126,9 +129,9 @@ struct Loaded {
     std::vector<std::string> warnings;
 };
 
-Loaded load_one(const fs::path& path) {
+Loaded load_one(const fs::path& path, const fs::path& labels_folder) {
     Loaded loaded{read_mesh(path), {}, {}};
-    loaded.labels = find_labels(path, loaded.file);
+    loaded.labels = find_labels(path, loaded.file, labels_folder);
     const MeshReport report = require_usable(loaded.file.mesh, path.string());
     for (const std::string& message : loaded.file.warnings) loaded.warnings.push_back(path.string() + ": " + message);
     for (const std::string& message : report.messages()) loaded.warnings.push_back(path.string() + ": " + message);
@@ -152,9 +155,14 @@ std::vector<fs::path> list_meshes(const fs::path& source) {
     return paths;
 }
 
-LabeledCorpus load_corpus(const std::vector<fs::path>& paths, const std::vector<std::string>& names) {
+fs::path labels_path(const fs::path& mesh, const fs::path& labels_folder) {
+    return (labels_folder.empty() ? mesh.parent_path() : labels_folder) / (mesh.stem().string() + "_labels.txt");
+}
+
+LabeledCorpus load_corpus(const std::vector<fs::path>& paths, const std::vector<std::string>& names,
+                          const fs::path& labels_folder) {
     std::vector<Loaded> loaded(paths.size());
-    parallel_for(paths.size(), [&](std::size_t i) { loaded[i] = load_one(paths[i]); });
+    parallel_for(paths.size(), [&](std::size_t i) { loaded[i] = load_one(paths[i], labels_folder); });
 
     LabeledCorpus corpus;
     corpus.names = names;

@@ -29,10 +29,16 @@ struct LabeledCorpus {
 /// comment). Throws DataError when there are none.
 std::vector<std::filesystem::path> list_meshes(const std::filesystem::path& source);
 
+/// Where the labels of a mesh are: NAME_labels.txt beside it, or in `labels_folder` if one is given.
+std::filesystem::path labels_path(const std::filesystem::path& mesh, const std::filesystem::path& labels_folder = {});
+
 /// Reads meshes with their labels: from NAME_labels.txt beside NAME.off (any mesh format), else from the PLY's own
-/// label property. Throws DataError naming the mesh that has no labels and what would be accepted; `names` adds known
-/// labels (a label that is not among them is an error with the nearest suggestion, unless names is empty).
-LabeledCorpus load_corpus(const std::vector<std::filesystem::path>& paths, const std::vector<std::string>& names = {});
+/// label property; with a `labels_folder` only from NAME_labels.txt there, so that the same meshes can have labels of
+/// another style. Throws DataError naming the mesh that has no labels and what would be accepted; `names` adds known
+/// labels (a label that is not among them is an error with the nearest suggestion, unless names is empty). Labels of
+/// equal names are one label, whichever meshes they come from.
+LabeledCorpus load_corpus(const std::vector<std::filesystem::path>& paths, const std::vector<std::string>& names = {},
+                          const std::filesystem::path& labels_folder = {});
 
 /// Labels of the source faces from labels of their triangles (each polygon gets the label with the most area; one
 /// without triangles that of its neighbor in the file).

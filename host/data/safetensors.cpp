@@ -9,6 +9,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/mesh/io_text.h"
 
 namespace exemplar {
 namespace {
@@ -49,19 +50,31 @@ bool byte_count(const std::vector<std::size_t>& shape, std::size_t element, std:
     throw ModelError(fmt::format("{}: damaged file: {}; copy or train it again", path, what));
 }
 
+/// The library would turn what is no size (-1, 1e300, true) into one.
+std::vector<std::size_t> sizes_of(const std::string& path, const std::string& name, const Json& values) {
+    if (!values.is_array()) damaged(path, mesh_io::quote(name) + " has no list of sizes");
+    std::vector<std::size_t> sizes;
+    for (const Json& value : values) {
+        if (!value.is_number_unsigned()) damaged(path, mesh_io::quote(name) + " has a size that is no whole number");
+        sizes.push_back(value.get<std::size_t>());
+    }
+    return sizes;
+}
+
 Tensor parse_tensor(const std::string& path, const std::string& name, const Json& entry, std::string_view data) {
     if (!entry.is_object() || !entry.contains("dtype") || !entry.contains("shape") || !entry.contains("data_offsets"))
-        damaged(path, "the entry '" + name + "' is incomplete");
+        damaged(path, "the entry " + mesh_io::quote(name) + " is incomplete");
     Tensor tensor;
     tensor.type = entry["dtype"].get<std::string>();
-    tensor.shape = entry["shape"].get<std::vector<std::size_t>>();
-    const auto offsets = entry["data_offsets"].get<std::vector<std::size_t>>();
+    tensor.shape = sizes_of(path, name, entry["shape"]);
+    const std::vector<std::size_t> offsets = sizes_of(path, name, entry["data_offsets"]);
     const std::size_t element = element_size(tensor.type);
-    if (element == 0) damaged(path, fmt::format("'{}' has the unknown type {}", name, tensor.type));
+    if (element == 0)
+        damaged(path, fmt::format("{} has the unknown type {}", mesh_io::quote(name), mesh_io::quote(tensor.type)));
     std::size_t bytes = 0;
     if (offsets.size() != 2 || offsets[0] > offsets[1] || offsets[1] > data.size() ||
         !byte_count(tensor.shape, element, bytes) || bytes != offsets[1] - offsets[0])
-        damaged(path, fmt::format("'{}' does not fit the file", name));
+        damaged(path, fmt::format("{} does not fit the file", mesh_io::quote(name)));
     tensor.bytes.assign(data.begin() + offsets[0], data.begin() + offsets[1]);
     return tensor;
 }
@@ -71,7 +84,8 @@ void check_tiling(const std::string& path, const Json& header, std::size_t bytes
     std::vector<std::pair<std::size_t, std::size_t>> ranges;
     for (const auto& [name, entry] : header.items())
         if (name != "__metadata__")
-            ranges.push_back(entry.at("data_offsets").get<std::pair<std::size_t, std::size_t>>());
+            if (const auto ends = sizes_of(path, name, entry.at("data_offsets")); ends.size() == 2)
+                ranges.emplace_back(ends[0], ends[1]);
     std::ranges::sort(ranges);
     std::size_t end = 0;
     for (const auto& [first, last] : ranges) {
@@ -132,7 +146,8 @@ std::vector<T> TensorFile::get(const std::string& name, const std::vector<std::s
     if (tensor.type != k_type_name<T>)
         damaged(path, fmt::format("the array '{}' has type {} instead of {}", name, tensor.type, k_type_name<T>));
     if (!shape.empty() && !shape_matches(tensor.shape, shape))
-        damaged(path, fmt::format("the array '{}' has shape {}", name, shape_text(tensor.shape)));
+        damaged(path,
+                fmt::format("the array '{}' has shape {}", name, mesh_io::printable(shape_text(tensor.shape), 100)));
     std::vector<T> values(tensor.bytes.size() / sizeof(T));
     if (!values.empty()) std::memcpy(values.data(), tensor.bytes.data(), tensor.bytes.size());
     return values;

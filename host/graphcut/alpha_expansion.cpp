@@ -8,26 +8,6 @@
 
 namespace exemplar {
 
-/// The energy with its size, and a cost for infinities.
-struct AlphaExpansion::Problem {
-    std::size_t nodes, labels;
-    std::span<const float> unary;
-    std::span<const double> weight;
-    std::span<const double> v;
-    double forbidden_cost = 0;    ///< of one edge that breaks a forbidden pair, whatever its weight
-    double forbidden_factor = 0;  ///< if above zero, stands in for an infinite V instead
-
-    double unary_cost(std::size_t node, std::int32_t label) const {
-        return static_cast<double>(unary[node * labels + static_cast<std::size_t>(label)]);
-    }
-    double edge_cost(std::size_t e, std::int32_t a, std::int32_t b) const {
-        const double factor = v[static_cast<std::size_t>(a) * labels + static_cast<std::size_t>(b)];
-        if (weight[e] == 0.0) return 0.0;
-        if (!std::isinf(factor)) return weight[e] * factor;
-        return forbidden_factor > 0.0 ? weight[e] * forbidden_factor : forbidden_cost;
-    }
-};
-
 namespace {
 
 constexpr std::size_t k_forbidding_stages = 8;
@@ -110,7 +90,7 @@ std::vector<std::int32_t> cheapest_single_label(std::span<const float> unary, st
 }  // namespace
 
 AlphaExpansion::AlphaExpansion(std::size_t nodes, std::span<const std::array<std::uint32_t, 2>> edges)
-    : edges_(edges.begin(), edges.end()), flow_(nodes, edges), keep_(nodes), take_(nodes) {}
+    : edges_(edges.begin(), edges.end()), flow_(nodes, edges) {}
 
 double AlphaExpansion::evaluate(const LabelingEnergy& energy, std::size_t labels,
                                 std::span<const std::int32_t> labeling) const {
@@ -128,76 +108,21 @@ double AlphaExpansion::evaluate(const LabelingEnergy& energy, std::size_t labels
     return sum;
 }
 
-/// Adds one edge's costs: A if both keep, B if the second takes alpha, C if the first does, 0 if both do. They are
-/// A + (C - A) x_i - C x_j + (B + C - A) (1 - x_i) x_j with x = 1 for taking; the last term is an arc, whose capacity
-/// must not be negative.
-void AlphaExpansion::add_edge(const Problem& problem, std::span<const std::int32_t> labeling, std::int32_t alpha,
-                              std::size_t e) {
-    const auto [i, j] = edges_[e];
-    const double both_keep = problem.edge_cost(e, labeling[i], labeling[j]);
-    double second_takes = problem.edge_cost(e, labeling[i], alpha);
-    double first_takes = problem.edge_cost(e, alpha, labeling[j]);
-    const double lack = both_keep - second_takes - first_takes;
-    if (lack > 0.0) {
-        // The change that costs less by the unary terms keeps its true cost: it is the likelier one.
-        const double second = problem.unary_cost(j, alpha) - problem.unary_cost(j, labeling[j]);
-        const double first = problem.unary_cost(i, alpha) - problem.unary_cost(i, labeling[i]);
-        (second > first ? second_takes : first_takes) += lack;
-    }
-    keep_[i] += both_keep;
-    take_[i] += first_takes;
-    keep_[j] += first_takes;
-    flow_.set_edge(e, std::max(0.0, second_takes + first_takes - both_keep), 0.0);
-}
-
-/// Source side: keep; sink side: take alpha.
-void AlphaExpansion::build_move(const Problem& problem, std::span<const std::int32_t> labeling, std::int32_t alpha) {
-    flow_.clear();
-    for (std::size_t i = 0; i < problem.nodes; ++i) {
-        keep_[i] = problem.unary_cost(i, labeling[i]);
-        take_[i] = problem.unary_cost(i, alpha);
-    }
-    for (std::size_t e = 0; e < edges_.size(); ++e) {
-        const auto [i, j] = edges_[e];
-        if (i != j && (labeling[i] != alpha || labeling[j] != alpha)) add_edge(problem, labeling, alpha, e);
-    }
-    for (std::size_t i = 0; i < problem.nodes; ++i) {
-        const double difference = take_[i] - keep_[i];
-        flow_.add_terminals(i, std::max(difference, 0.0), std::max(-difference, 0.0));
-    }
-}
-
-ExpansionResult AlphaExpansion::descend(const Problem& problem, std::size_t most_sweeps,
+ExpansionResult AlphaExpansion::descend(const ExpansionProblem& problem, std::size_t most_sweeps,
                                         std::vector<std::int32_t> labeling) {
-    const auto cost = [&](const std::vector<std::int32_t>& of) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < of.size(); ++i) sum += problem.unary_cost(i, of[i]);
-        for (std::size_t e = 0; e < edges_.size(); ++e) sum += problem.edge_cost(e, of[edges_[e][0]], of[edges_[e][1]]);
-        return sum;
-    };
+    LabelExpansion expansion(problem, flow_, std::move(labeling));
     ExpansionResult result;
-    double energy = cost(labeling);
-    result.energies.push_back(energy);
+    result.energies.push_back(expansion.energy());
     std::size_t in_vain = 0;  // labels tried since the last change
     for (; result.sweeps < most_sweeps && in_vain < problem.labels; ++result.sweeps) {
-        for (std::size_t label = 0; label < problem.labels && in_vain < problem.labels; ++label) {
-            const auto alpha = static_cast<std::int32_t>(label);
-            build_move(problem, labeling, alpha);
-            flow_.solve();
-            std::vector<std::int32_t> moved = labeling;
-            for (std::size_t i = 0; i < moved.size(); ++i) {
-                if (flow_.on_sink_side(i)) moved[i] = alpha;
-            }
-            const double after = cost(moved);
+        for (std::size_t alpha = 0; alpha < problem.labels && in_vain < problem.labels; ++alpha) {
             ++in_vain;
-            if (after >= energy - 1e-12 * std::abs(energy)) continue;  // no gain, or one of rounding only
+            if (!expansion.expand(static_cast<std::int32_t>(alpha))) continue;
             in_vain = 0;
-            energy = after;
-            labeling = std::move(moved);
-            result.energies.push_back(energy);
+            result.energies.push_back(expansion.energy());
         }
     }
-    result.labels = std::move(labeling);
+    result.labels = std::move(expansion.labels());
     return result;
 }
 
@@ -205,10 +130,10 @@ ExpansionResult AlphaExpansion::solve(const LabelingEnergy& energy, std::size_t 
                                       std::span<const std::int32_t> initial) {
     const std::size_t nodes = flow_.nodes();
     check_energy(energy, nodes, edges_.size(), labels);
-    Problem problem{nodes, labels, energy.unary, energy.weight, energy.compatibility};
+    ExpansionProblem problem{nodes, labels, edges_, energy.unary, energy.weight, energy.compatibility};
     problem.forbidden_cost = cost_above_all(energy, labels);
     if (!initial.empty()) {
-        check_labels(initial, nodes, labels);
+        check_labels(initial, flow_.nodes(), labels);
         return descend(problem, most_sweeps, {initial.begin(), initial.end()});
     }
     const auto broken = [&](std::span<const std::int32_t> of) { return std::isinf(evaluate(energy, labels, of)); };
@@ -223,7 +148,7 @@ ExpansionResult AlphaExpansion::solve(const LabelingEnergy& energy, std::size_t 
     problem.forbidden_factor = 0.0;
     ExpansionResult result = descend(problem, most_sweeps, std::move(start));
     if (!broken(result.labels)) return result;
-    return descend(problem, most_sweeps, cheapest_single_label(energy.unary, nodes, labels));
+    return descend(problem, most_sweeps, cheapest_single_label(energy.unary, flow_.nodes(), labels));
 }
 
 ExpansionResult alpha_expansion(std::span<const float> unary, std::size_t labels,

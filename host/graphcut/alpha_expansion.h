@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "host/graphcut/expansion_move.h"
 #include "host/graphcut/max_flow.h"
 
 namespace exemplar {
@@ -46,14 +47,11 @@ class AlphaExpansion {
     double evaluate(const LabelingEnergy& energy, std::size_t labels, std::span<const std::int32_t> labeling) const;
 
   private:
-    struct Problem;
-    ExpansionResult descend(const Problem& problem, std::size_t most_sweeps, std::vector<std::int32_t> labeling);
-    void build_move(const Problem& problem, std::span<const std::int32_t> labeling, std::int32_t alpha);
-    void add_edge(const Problem& problem, std::span<const std::int32_t> labeling, std::int32_t alpha, std::size_t e);
+    ExpansionResult descend(const ExpansionProblem& problem, std::size_t most_sweeps,
+                            std::vector<std::int32_t> labeling);
 
     std::vector<std::array<std::uint32_t, 2>> edges_;
     MaxFlow flow_;
-    std::vector<double> keep_, take_;  // per node: what it costs to keep its label, and to take alpha
 };
 
 /// One-off form of AlphaExpansion::solve. The number of nodes is unary.size() / labels.

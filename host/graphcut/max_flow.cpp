@@ -10,7 +10,7 @@ namespace exemplar {
 namespace {
 
 // Marks in place of a parent's arc.
-constexpr std::uint32_t k_root = 0xffffffffu;    // the terminal itself is the parent
+constexpr std::uint32_t k_root = 0xffffffffu;    // the sink itself is the parent
 constexpr std::uint32_t k_orphan = 0xfffffffeu;  // the arc to the parent is saturated
 constexpr std::uint32_t k_no_arc = 0xfffffffdu;
 constexpr std::uint32_t k_unreachable = 0xffffffffu;  // a distance
@@ -21,26 +21,22 @@ bool is_arc(std::uint32_t parent) {
 
 }  // namespace
 
-MaxFlow::MaxFlow(std::size_t nodes, std::span<const std::array<std::uint32_t, 2>> edges)
-    : first_(nodes + 1, 0),
-      arc_of_edge_(edges.size(), k_no_arc),
-      terminal_(nodes, 0.0),
-      tree_(nodes, Tree::none),
-      parent_(nodes, k_no_arc),
-      distance_(nodes, 0),
-      stamp_(nodes, 0),
-      is_active_(nodes, 0) {
+MaxFlow::MaxFlow(std::size_t nodes, std::span<const std::array<Node, 2>> edges)
+    : vertices_(nodes + 1), arc_of_edge_(edges.size(), k_no_arc) {
     for (std::size_t e = 0; e < edges.size(); ++e) {
         const auto [a, b] = edges[e];
         if (a >= nodes || b >= nodes) {
             throw UsageError("edge " + std::to_string(e) + " joins nodes " + std::to_string(a) + " and " +
                              std::to_string(b) + ", but there are " + std::to_string(nodes));
         }
-        if (a != b) ++first_[a + 1], ++first_[b + 1];
+        if (a != b) ++vertices_[a + 1].first, ++vertices_[b + 1].first;
     }
-    for (std::size_t i = 0; i < nodes; ++i) first_[i + 1] += first_[i];
-    arcs_.resize(first_[nodes]);
-    std::vector<ArcIndex> next(first_.begin(), first_.end() - 1);
+    std::vector<ArcIndex> next(nodes);
+    for (std::size_t i = 0; i < nodes; ++i) {
+        next[i] = vertices_[i].first;
+        vertices_[i + 1].first += vertices_[i].first;
+    }
+    arcs_.resize(vertices_[nodes].first);
     for (std::size_t e = 0; e < edges.size(); ++e) {
         const auto [a, b] = edges[e];
         if (a == b) continue;
@@ -51,17 +47,22 @@ MaxFlow::MaxFlow(std::size_t nodes, std::span<const std::array<std::uint32_t, 2>
     }
 }
 
+std::array<MaxFlow::ArcIndex, 2> MaxFlow::arcs_of_edge(std::size_t edge) const {
+    const ArcIndex arc = arc_of_edge_[edge];
+    return {arc, arc == k_no_arc ? arc : arcs_[arc].sister};
+}
+
 void MaxFlow::clear() {
-    std::fill(terminal_.begin(), terminal_.end(), 0.0);
+    for (Vertex& vertex : vertices_) vertex.terminal = 0.0;
     for (Arc& arc : arcs_) arc.residual = 0.0;
     flow_ = 0.0;
 }
 
 void MaxFlow::add_terminals(std::size_t node, double from_source, double to_sink) {
-    const double before = terminal_[node];
-    const double in = from_source + std::max(before, 0.0), out = to_sink + std::max(-before, 0.0);
+    double& terminal = vertices_[node].terminal;
+    const double in = from_source + std::max(terminal, 0.0), out = to_sink + std::max(-terminal, 0.0);
     flow_ += std::min(in, out);  // goes straight through
-    terminal_[node] = in - out;
+    terminal = in - out;
 }
 
 void MaxFlow::set_edge(std::size_t edge, double forward, double backward) {
@@ -71,47 +72,74 @@ void MaxFlow::set_edge(std::size_t edge, double forward, double backward) {
     arcs_[arcs_[arc].sister].residual = backward;
 }
 
+void MaxFlow::forget() {
+    if (++problem_ == 0) {  // all numbers have been used
+        for (Vertex& vertex : vertices_) vertex.problem = 0;
+        problem_ = 1;
+    }
+    time_ = 0;
+    reached_.clear();
+    active_.clear();
+    next_active_ = 0;
+}
+
 double MaxFlow::solve() {
-    plant_trees();
+    forget();
+    reach_ = nullptr;
+    for (Node i = 0; i < nodes(); ++i) {
+        if (vertices_[i].terminal < 0.0) reach(i);
+    }
+    run();
+    return flow_;
+}
+
+void MaxFlow::solve(std::span<const Node> start, const std::function<void(Node)>& reach_node) {
+    forget();
+    reach_ = &reach_node;
+    for (const Node node : start) reach(node);
+    run();
+}
+
+void MaxFlow::run() {
     for (ArcIndex meeting = find_meeting_arc(); meeting != k_no_arc; meeting = find_meeting_arc()) {
         ++time_;
         augment(meeting);
         adopt_orphans();
     }
-    return flow_;
 }
 
-void MaxFlow::plant_trees() {
-    active_.clear();
-    orphans_.clear();
-    next_active_ = 0;
-    time_ = 0;
-    for (Node i = 0; i < terminal_.size(); ++i) {
-        stamp_[i] = 0;
-        distance_[i] = 1;
-        is_active_[i] = 0;
-        tree_[i] = terminal_[i] > 0.0 ? Tree::source : terminal_[i] < 0.0 ? Tree::sink : Tree::none;
-        parent_[i] = tree_[i] == Tree::none ? k_no_arc : k_root;
-        if (tree_[i] != Tree::none) activate(i);
-    }
+/// Makes a node part of the problem, unless it is; a sink is a root of the tree.
+void MaxFlow::reach(Node node) {
+    Vertex& vertex = vertices_[node];
+    if (vertex.problem == problem_) return;
+    vertex.problem = problem_;
+    if (reach_) (*reach_)(node);
+    reached_.push_back(node);
+    vertex.stamp = 0;
+    vertex.distance = 1;
+    vertex.is_active = false;
+    vertex.is_in_tree = vertex.terminal < 0.0;
+    vertex.parent = vertex.is_in_tree ? k_root : k_no_arc;
+    if (vertex.is_in_tree) activate(node);
 }
 
 void MaxFlow::activate(Node node) {
-    if (is_active_[node]) return;
-    is_active_[node] = 1;
+    if (vertices_[node].is_active) return;
+    vertices_[node].is_active = true;
     active_.push_back(node);
 }
 
-/// Grows the trees from their active nodes until they touch; returns the arc from the source's to the sink's tree.
+/// Grows the tree from its active nodes until it touches a node that the source can reach directly; returns the arc
+/// from that node into the tree.
 MaxFlow::ArcIndex MaxFlow::find_meeting_arc() {
     while (next_active_ < active_.size()) {
         const Node node = active_[next_active_];
-        if (tree_[node] != Tree::none) {
+        if (vertices_[node].is_in_tree) {
             const ArcIndex meeting = scan(node);
             if (meeting != k_no_arc) return meeting;  // the node stays active: it may touch elsewhere too
         }
-        is_active_[node] = 0;
-        if (++next_active_ > terminal_.size()) {
+        vertices_[node].is_active = false;
+        if (++next_active_ > nodes()) {
             active_.erase(active_.begin(), active_.begin() + static_cast<std::ptrdiff_t>(next_active_));
             next_active_ = 0;
         }
@@ -120,62 +148,56 @@ MaxFlow::ArcIndex MaxFlow::find_meeting_arc() {
 }
 
 MaxFlow::ArcIndex MaxFlow::scan(Node node) {
-    const Tree tree = tree_[node];
-    for (ArcIndex a = first_[node]; a < first_[node + 1]; ++a) {
-        const ArcIndex to_parent = arcs_[a].sister;  // from the neighbor, if this node becomes its parent
-        if (arcs_[along_flow(tree, to_parent)].residual <= 0.0) continue;
+    const Vertex& vertex = vertices_[node];
+    for (ArcIndex a = vertex.first; a < vertices_[node + 1].first; ++a) {
         const Node other = arcs_[a].head;
-        if (tree_[other] == Tree::none) {
-            tree_[other] = tree;
+        reach(other);
+        const ArcIndex to_parent = arcs_[a].sister;  // from the neighbor, if this node becomes its parent
+        if (arcs_[to_parent].residual <= 0.0) continue;
+        Vertex& neighbor = vertices_[other];
+        if (neighbor.terminal > 0.0) return to_parent;
+        if (!neighbor.is_in_tree) {
+            neighbor.is_in_tree = true;
             activate(other);
-        } else if (tree_[other] != tree) {
-            return along_flow(tree, to_parent);
-        } else if (stamp_[other] > stamp_[node] || distance_[other] <= distance_[node]) {
+        } else if (neighbor.stamp > vertex.stamp || neighbor.distance <= vertex.distance) {
             continue;
-        }  // else: this node is a shorter way to the root for one in its own tree
-        parent_[other] = to_parent;
-        stamp_[other] = stamp_[node];
-        distance_[other] = distance_[node] + 1;
+        }  // else: this node is a shorter way to the root for one that is in the tree
+        neighbor.parent = to_parent;
+        neighbor.stamp = vertex.stamp;
+        neighbor.distance = vertex.distance + 1;
     }
     return k_no_arc;
 }
 
 double MaxFlow::bottleneck(ArcIndex meeting) const {
-    double least = arcs_[meeting].residual;
-    for (Node node : {arcs_[arcs_[meeting].sister].head, arcs_[meeting].head}) {
-        for (; is_arc(parent_[node]); node = arcs_[parent_[node]].head) {
-            least = std::min(least, arcs_[along_flow(tree_[node], parent_[node])].residual);
-        }
-        least = std::min(least, tree_[node] == Tree::source ? terminal_[node] : -terminal_[node]);
-    }
-    return least;
+    double least = std::min(arcs_[meeting].residual, vertices_[arcs_[arcs_[meeting].sister].head].terminal);
+    Node node = arcs_[meeting].head;
+    for (; is_arc(vertices_[node].parent); node = arcs_[vertices_[node].parent].head)
+        least = std::min(least, arcs_[vertices_[node].parent].residual);
+    return std::min(least, -vertices_[node].terminal);
 }
 
-void MaxFlow::push_to_root(Node node, double flow) {
-    while (is_arc(parent_[node])) {
-        Arc& arc = arcs_[along_flow(tree_[node], parent_[node])];
-        const Node above = arcs_[parent_[node]].head;
+/// Sends what the path carries from the source over the meeting arc and up the tree.
+void MaxFlow::augment(ArcIndex meeting) {
+    const double flow = bottleneck(meeting);
+    flow_ += flow;
+    vertices_[arcs_[arcs_[meeting].sister].head].terminal -= flow;
+    arcs_[meeting].residual -= flow;
+    arcs_[arcs_[meeting].sister].residual += flow;
+    Node node = arcs_[meeting].head;
+    while (is_arc(vertices_[node].parent)) {
+        Arc& arc = arcs_[vertices_[node].parent];
         arc.residual -= flow;
         arcs_[arc.sister].residual += flow;
         if (arc.residual <= 0.0) make_orphan(node);
-        node = above;
+        node = arc.head;
     }
-    terminal_[node] += tree_[node] == Tree::source ? -flow : flow;
-    if (terminal_[node] == 0.0) make_orphan(node);
-}
-
-void MaxFlow::augment(ArcIndex meeting) {
-    const double flow = bottleneck(meeting);
-    Arc& arc = arcs_[meeting];
-    arc.residual -= flow;
-    arcs_[arc.sister].residual += flow;
-    push_to_root(arcs_[arc.sister].head, flow);
-    push_to_root(arc.head, flow);
-    flow_ += flow;
+    vertices_[node].terminal += flow;
+    if (vertices_[node].terminal == 0.0) make_orphan(node);
 }
 
 void MaxFlow::make_orphan(Node node) {
-    parent_[node] = k_orphan;
+    vertices_[node].parent = k_orphan;
     orphans_.push_back(node);
 }
 
@@ -186,60 +208,60 @@ void MaxFlow::adopt_orphans() {
         if (to_parent == k_no_arc) {
             set_free(orphan);
         } else {
-            parent_[orphan] = to_parent;
+            vertices_[orphan].parent = to_parent;
         }
     }
     orphans_.clear();
 }
 
-/// The arc to the neighbor in the same tree that is nearest to the root, and k_no_arc if none is connected to it.
+/// The arc to the neighbor in the tree that is nearest to the root, and k_no_arc if none is connected to it.
 MaxFlow::ArcIndex MaxFlow::find_parent(Node orphan) {
-    const Tree tree = tree_[orphan];
     ArcIndex best = k_no_arc;
     std::uint32_t least = k_unreachable;
-    for (ArcIndex a = first_[orphan]; a < first_[orphan + 1]; ++a) {
+    for (ArcIndex a = vertices_[orphan].first; a < vertices_[orphan + 1].first; ++a) {
         const Node other = arcs_[a].head;
-        if (tree_[other] != tree || arcs_[along_flow(tree, a)].residual <= 0.0) continue;
+        if (arcs_[a].residual <= 0.0 || !on_sink_side(other)) continue;
         const std::uint32_t distance = distance_to_root(other);
         if (distance < least) least = distance, best = a;
     }
-    if (best != k_no_arc) stamp_[orphan] = time_, distance_[orphan] = least + 1;
+    if (best != k_no_arc) vertices_[orphan].stamp = time_, vertices_[orphan].distance = least + 1;
     return best;
 }
 
 std::uint32_t MaxFlow::distance_to_root(Node node) {
     std::uint32_t distance = 0;
-    for (Node i = node;; i = arcs_[parent_[i]].head) {
-        if (stamp_[i] == time_) {
-            distance += distance_[i];
+    for (Node i = node;; i = arcs_[vertices_[i].parent].head) {
+        Vertex& vertex = vertices_[i];
+        if (vertex.stamp == time_) {
+            distance += vertex.distance;
             break;
         }
-        if (parent_[i] == k_orphan) return k_unreachable;
+        if (vertex.parent == k_orphan) return k_unreachable;
         ++distance;
-        if (parent_[i] == k_root) {
-            stamp_[i] = time_;
-            distance_[i] = 1;
+        if (vertex.parent == k_root) {
+            vertex.stamp = time_;
+            vertex.distance = 1;
             break;
         }
     }
     std::uint32_t left = distance;
-    for (Node i = node; stamp_[i] != time_; i = arcs_[parent_[i]].head) {
-        stamp_[i] = time_;
-        distance_[i] = left--;
+    for (Node i = node; vertices_[i].stamp != time_; i = arcs_[vertices_[i].parent].head) {
+        vertices_[i].stamp = time_;
+        vertices_[i].distance = left--;
     }
     return distance;
 }
 
 void MaxFlow::set_free(Node orphan) {
-    const Tree tree = tree_[orphan];
-    for (ArcIndex a = first_[orphan]; a < first_[orphan + 1]; ++a) {
+    for (ArcIndex a = vertices_[orphan].first; a < vertices_[orphan + 1].first; ++a) {
         const Node other = arcs_[a].head;
-        if (tree_[other] != tree) continue;
-        if (arcs_[along_flow(tree, a)].residual > 0.0) activate(other);  // it can grow back to here
-        if (is_arc(parent_[other]) && arcs_[parent_[other]].head == orphan) make_orphan(other);
+        if (!on_sink_side(other)) continue;
+        if (arcs_[a].residual > 0.0) activate(other);  // it can grow back to here
+        const ArcIndex parent = vertices_[other].parent;
+        if (is_arc(parent) && arcs_[parent].head == orphan) make_orphan(other);
     }
-    tree_[orphan] = Tree::none;
-    parent_[orphan] = k_no_arc;
+    vertices_[orphan].is_in_tree = false;
+    vertices_[orphan].parent = k_no_arc;
 }
 
 }  // namespace exemplar

@@ -3,22 +3,34 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
 namespace exemplar {
 
-/// Maximum flow and minimum cut between a source and a sink, for graphs that are grids or meshes: two search trees that
-/// are kept from one augmentation to the next (Boykov and Kolmogorov, PAMI 2004). The structure is fixed; capacities
-/// are set anew for each problem, so that a series of problems on one graph allocates nothing.
-/// Capacities are finite and not negative; integers below 2^53 give exact flows.
+/// Maximum flow and minimum cut between a source and a sink, for graphs that are grids or meshes and have most nodes
+/// tied to a terminal. A search tree grows from the sink and is kept from one augmentation to the next, as in Boykov
+/// and Kolmogorov (PAMI 2004), who grow a second one from the source: where sources are everywhere, one finds them
+/// soon, and what lies far from all that leads to the sink is never looked at. The structure is fixed; capacities are
+/// set anew for each problem, so that a series of problems on one graph allocates nothing. Capacities are finite and
+/// not negative; integers below 2^53 give exact flows.
 class MaxFlow {
   public:
+    using Node = std::uint32_t;
+    using ArcIndex = std::uint32_t;
+
     /// `edges`: pairs of nodes below `nodes`; each can carry flow in both directions. Parallel edges are allowed, an
     /// edge from a node to itself carries nothing. Throws UsageError for a node out of range.
-    MaxFlow(std::size_t nodes, std::span<const std::array<std::uint32_t, 2>> edges);
+    MaxFlow(std::size_t nodes, std::span<const std::array<Node, 2>> edges);
 
-    std::size_t nodes() const { return terminal_.size(); }
+    std::size_t nodes() const { return vertices_.size() - 1; }
+    std::size_t arcs() const { return arcs_.size(); }
+    /// The arcs that leave a node are neighbors: from first_arc(node) up to first_arc(node + 1).
+    ArcIndex first_arc(std::size_t node) const { return vertices_[node].first; }
+    Node head(ArcIndex arc) const { return arcs_[arc].head; }
+    /// The two arcs of an edge, from its first node and from its second; equal if the edge carries nothing.
+    std::array<ArcIndex, 2> arcs_of_edge(std::size_t edge) const;
 
     /// Sets all capacities to zero.
     void clear();
@@ -26,53 +38,62 @@ class MaxFlow {
     void add_terminals(std::size_t node, double from_source, double to_sink);
     /// Sets the capacities of an edge: from its first node to its second, and back.
     void set_edge(std::size_t edge, double forward, double backward);
-
     /// The value of the maximum flow. Capacities are used up: clear and set them before the next call.
     double solve();
-    /// After solve: whether the node is on the sink's side of a minimum cut. Nodes that neither terminal reaches are on
-    /// the source's side.
-    bool on_sink_side(std::size_t node) const { return tree_[node] == Tree::sink; }
+
+    /// The same for capacities that are made as the search reaches their nodes. Among `start` are all nodes
+    /// with capacity to the sink. Before any use of a node, `reach` calls set_node for it and set_arc for its arcs.
+    void solve(std::span<const Node> start, const std::function<void(Node)>& reach);
+    void set_node(Node node, double from_source) { vertices_[node].terminal = from_source; }  ///< < 0: to the sink
+    void set_arc(ArcIndex arc, double capacity) { arcs_[arc].residual = capacity; }
+
+    /// After solve: whether the node is on the sink's side of the minimum cut with the smallest such side.
+    bool on_sink_side(std::size_t node) const {
+        return vertices_[node].problem == problem_ && vertices_[node].is_in_tree;
+    }
+    /// After solve: the nodes that the search reached; all others are on the source's side.
+    std::span<const Node> reached() const { return reached_; }
 
   private:
-    using Node = std::uint32_t;
-    using ArcIndex = std::uint32_t;
-    enum class Tree : std::uint8_t { none, source, sink };
     struct Arc {
         Node head;
         ArcIndex sister;  // the arc of the opposite direction
         double residual;
     };
+    struct Vertex {
+        double terminal = 0.0;       // residual from the source (> 0) or to the sink (< 0)
+        ArcIndex first = 0;          // of its arcs
+        std::uint32_t problem = 0;   // whose capacities it has; what follows is of that problem
+        ArcIndex parent = 0;         // in the sink's tree: the arc from the node to its parent, or a mark
+        std::uint32_t distance = 0;  // arcs to the root, right as of stamp
+        std::uint32_t stamp = 0;
+        bool is_in_tree = false;
+        bool is_active = false;
+    };
 
-    void plant_trees();
+    void forget();
+    void run();
+    void reach(Node node);
     ArcIndex find_meeting_arc();
     ArcIndex scan(Node node);
     void augment(ArcIndex meeting);
     double bottleneck(ArcIndex meeting) const;
-    void push_to_root(Node node, double flow);
     void adopt_orphans();
     ArcIndex find_parent(Node orphan);
     std::uint32_t distance_to_root(Node node);
     void set_free(Node orphan);
     void activate(Node node);
     void make_orphan(Node node);
-    /// The arc between a node and its parent in the direction that flow takes, given the arc from node to parent.
-    ArcIndex along_flow(Tree tree, ArcIndex to_parent) const {
-        return tree == Tree::source ? arcs_[to_parent].sister : to_parent;
-    }
 
-    std::vector<ArcIndex> first_;  // nodes + 1: the arcs that leave a node are neighbors
+    std::vector<Vertex> vertices_;  // one more than there are nodes: the end of the last one's arcs
     std::vector<Arc> arcs_;
     std::vector<ArcIndex> arc_of_edge_;
-
-    std::vector<double> terminal_;  // per node: residual from the source (> 0) or to the sink (< 0)
-    std::vector<Tree> tree_;
-    std::vector<ArcIndex> parent_;         // arc from the node to its parent, or a mark
-    std::vector<std::uint32_t> distance_;  // arcs to the root, right as of stamp_
-    std::vector<std::uint32_t> stamp_;
-    std::vector<std::uint8_t> is_active_;
+    const std::function<void(Node)>* reach_ = nullptr;
+    std::vector<Node> reached_;
     std::vector<Node> active_;  // a queue that starts at next_active_
     std::vector<Node> orphans_;
     std::size_t next_active_ = 0;
+    std::uint32_t problem_ = 0;
     std::uint32_t time_ = 0;
     double flow_ = 0.0;
 };

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 
 #include "host/core/errors.h"
@@ -46,8 +45,7 @@ std::vector<Split> make_splits(std::size_t count, std::size_t train_count, std::
 }
 
 MeshScore score_labeling(const MeshFeatures& features, std::span<const std::int32_t> truth,
-                         std::span<const std::int32_t> predicted, std::size_t classes,
-                         std::span<const std::vector<std::int32_t>> human_segmentations) {
+                         std::span<const std::int32_t> predicted, std::size_t classes) {
     MeshScore score;
     const ConfusionMatrix confusion = confusion_matrix(truth, predicted, features.face_area, classes);
     score.recognition_rate = recognition_rate(confusion);
@@ -55,13 +53,16 @@ MeshScore score_labeling(const MeshFeatures& features, std::span<const std::int3
     const double total = std::max(std::accumulate(confusion.area.begin(), confusion.area.end(), 0.0), 1e-30);
     for (std::size_t t = 0; t < classes; ++t)
         for (std::size_t p = 0; p < classes; ++p) score.confusion.push_back(confusion.at(t, p) / total);
+    return score;
+}
 
-    score.rand_error = human_segmentations.empty() ? std::numeric_limits<double>::quiet_NaN() : 0;
+SegmentationErrors score_segmentation(const TriangleMesh& mesh, const MeshFeatures& features,
+                                      std::span<const std::int32_t> predicted,
+                                      std::span<const std::vector<std::int32_t>> human_segmentations) {
+    if (human_segmentations.empty()) return {};
     const LabelComponents pieces = label_components(features, predicted);
     const std::vector<std::int32_t> segments(pieces.of_face.begin(), pieces.of_face.end());
-    for (const std::vector<std::int32_t>& human : human_segmentations)
-        score.rand_error += rand_index_error(segments, human) / static_cast<double>(human_segmentations.size());
-    return score;
+    return SegmentationMetrics(mesh).mean_errors(segments, human_segmentations);
 }
 
 std::vector<std::vector<std::int32_t>> read_human_segmentations(const std::filesystem::path& folder,

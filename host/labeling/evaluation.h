@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/labeling/features.h"
+#include "host/labeling/segmentation_metrics.h"
 
 namespace exemplar {
 
@@ -19,19 +20,22 @@ struct Split {
 /// train_count = count - 1 (leave one out) split k tests mesh k. Throws UsageError if nothing is left to train or test.
 std::vector<Split> make_splits(std::size_t count, std::size_t train_count, std::size_t splits, std::uint64_t seed);
 
-/// How well one mesh was labeled.
+/// How well one mesh was labeled; the rates are NaN if no face has a truth.
 struct MeshScore {
     double recognition_rate = 0;           ///< share of the area labeled right (one minus Eq. 3.8), in [0, 1]
     double segment_weighted_accuracy = 0;  ///< one minus Eq. 3.9, mean over the labels present
-    double rand_error = 0;          ///< mean over human segmentations of one minus the Rand index; NaN without any
-    std::vector<double> confusion;  ///< classes x classes, row = truth, share of the mesh's area
+    std::vector<double> confusion;         ///< classes x classes, row = truth, share of the mesh's area
 };
 
-/// Scores predicted against true labels; faces whose truth is -1 are left out. Segments for the Rand index are the
-/// connected pieces of equal label, compared with each of the human segmentations (thesis Sec. 3.4).
+/// Scores predicted against true labels; faces whose truth is -1 are left out.
 MeshScore score_labeling(const MeshFeatures& features, std::span<const std::int32_t> truth,
-                         std::span<const std::int32_t> predicted, std::size_t classes,
-                         std::span<const std::vector<std::int32_t>> human_segmentations);
+                         std::span<const std::int32_t> predicted, std::size_t classes);
+
+/// Scores a labeling as a segmentation: its segments are the connected pieces of equal label, compared with each of the
+/// human segmentations (one segment per triangle; thesis Sec. 3.4). All NaN without any.
+SegmentationErrors score_segmentation(const TriangleMesh& mesh, const MeshFeatures& features,
+                                      std::span<const std::int32_t> predicted,
+                                      std::span<const std::vector<std::int32_t>> human_segmentations);
 
 /// The human segmentations of a mesh in the benchmark's layout: FOLDER/NAME/*.seg, in name order; empty if there are
 /// none.

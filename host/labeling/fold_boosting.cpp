@@ -159,7 +159,7 @@ struct RoundChoice {
     std::vector<HeldOutPoint> curve;
 };
 
-/// Grows the classifiers until the held-out loss has not fallen for `patience` rounds.
+/// Grows the classifiers until the held-out loss has not fallen for `patience` rounds, or to the end.
 RoundChoice choose_rounds(const Pool& pool, FoldBoosters& boosters, const FoldBoostingOptions& options,
                           const std::function<void()>& round_done) {
     constexpr std::array<Link, 2> k_links{Link::softmax, Link::sigmoid};
@@ -173,7 +173,8 @@ RoundChoice choose_rounds(const Pool& pool, FoldBoosters& boosters, const FoldBo
         if (round > 10 && round % k_judged_rounds != 0 && round != options.rounds) continue;
         const Calibration now = scores.judge(usable);
         choice.curve.push_back({round, now.loss, now.error});
-        if (choice.rounds == 0 || now.loss < choice.calibration.loss) choice.rounds = round, choice.calibration = now;
+        if (options.patience == 0 || choice.rounds == 0 || now.loss < choice.calibration.loss)
+            choice.rounds = round, choice.calibration = now;
         if (options.patience > 0 && round >= choice.rounds + options.patience) break;
     }
     if (std::isnan(choice.calibration.loss))  // nothing could be held out: stay cautious
@@ -223,7 +224,11 @@ FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const
     grow(everywhere, choice.rounds, round_done);
 
     FoldBoostingResult result;
-    result.classifier.stumps = everywhere.classifier();
+    std::vector<BoostedStumps> all{everywhere.classifier()};
+    for (const BoostedStumps& classifier : of_fold)
+        if (classifier.class_count > 0) all.push_back(classifier);
+    result.classifier.stumps = mean_classifier(all);
+    result.rounds = choice.rounds;
     result.classifier.link = choice.calibration.link;
     result.classifier.scale = choice.calibration.scale;
     result.loss = choice.calibration.loss, result.error = choice.calibration.error;

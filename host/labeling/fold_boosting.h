@@ -23,7 +23,10 @@ struct FoldBoostingOptions {
     std::size_t classes = 2;
     std::size_t features = 0;  ///< leading columns to train on
     std::size_t folds = 1;
-    std::size_t rounds = 300, patience = 50, bins = 128;
+    std::size_t rounds = 300, bins = 128;
+    /// The number of rounds is that of the lowest held-out loss, which the search leaves so many rounds behind; 0 keeps
+    /// all rounds.
+    std::size_t patience = 50;
     std::size_t rows_per_mesh = 0;  ///< 0 = all
     double feature_fraction = 1;    ///< share of the features that each round looks at
     double shrinkage = 1;           ///< see BoostOptions
@@ -38,7 +41,8 @@ struct HeldOutPoint {
 };
 
 struct FoldBoostingResult {
-    CalibratedStumps classifier;  ///< trained on all items
+    CalibratedStumps classifier;  ///< the mean of one trained on all items and those of the folds
+    std::size_t rounds = 0;       ///< of each of them
     std::vector<std::vector<float>>
         out_of_fold;                  ///< per mesh: items x classes, from the classifier that never saw the item
     std::vector<HeldOutPoint> curve;  ///< up to where the search for the number of rounds ended
@@ -47,8 +51,9 @@ struct FoldBoostingResult {
 };
 
 /// Boosts one classifier per fold and one on everything (see train_labeling). The log loss of the held-out items, after
-/// calibration, chooses the number of rounds (the search ends `patience` rounds after the lowest), the link and its
-/// scale. `round_done` is called after every round of every classifier.
+/// calibration, chooses the number of rounds (if options.patience asks for that), the link and its scale. The result is
+/// the mean of all these classifiers, which differ by what they did not see: their mean is better than any one.
+/// `round_done` is called after every round of every classifier.
 FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const FoldBoostingOptions& options,
                                     StumpScorer& scorer, const std::function<void()>& round_done);
 

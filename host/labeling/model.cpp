@@ -7,6 +7,8 @@
 
 #include "host/core/errors.h"
 #include "host/data/safetensors.h"
+#include "host/mesh/io_formats.h"
+#include "host/mesh/io_text.h"
 
 namespace exemplar {
 namespace {
@@ -104,28 +106,44 @@ void require_version(const TensorFile& file, const std::string& key, int known, 
                                      version > known ? "use a newer Exemplar" : mend));
 }
 
+/// The library would turn what is no whole number (-1, 1e300, true) into one.
+std::uint64_t whole_number(const TensorFile& file, const Json& value, std::uint64_t most = ~std::uint64_t{0}) {
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() > most)
+        inconsistent(file, "its description has another value where a whole number should be");
+    return value.get<std::uint64_t>();
+}
+
+Color color_of(const TensorFile& file, const Json& channels) {
+    Color color;
+    for (std::size_t i = 0; i < color.size(); ++i)
+        color[i] = static_cast<std::uint8_t>(whole_number(file, channels.at(i), 255));
+    return color;
+}
+
 void read_description(const TensorFile& file, LabelingModel& model) {
     const Json json = Json::parse(file.meta("model"));
     model.label_names = json.at("labels").get<std::vector<std::string>>();
-    for (const Json& color : json.at("colors")) model.label_colors.push_back(color.get<Color>());
-    model.feature_options.samples = json.at("samples");
+    for (const Json& color : json.at("colors")) model.label_colors.push_back(color_of(file, color));
+    model.feature_options.samples = whole_number(file, json.at("samples"));
     model.feature_options.orientation = json.at("orientation");
     model.unary_names = json.at("unary_features").get<std::vector<std::string>>();
     model.pairwise_names = json.at("pairwise_features").get<std::vector<std::string>>();
-    model.unary.resize(std::min(json.at("unary_stages").get<std::size_t>(), k_most_stages));
-    model.pairwise.resize(std::min(json.at("pairwise_stages").get<std::size_t>(), k_most_stages));
+    model.unary.resize(std::min<std::size_t>(whole_number(file, json.at("unary_stages")), k_most_stages));
+    model.pairwise.resize(std::min<std::size_t>(whole_number(file, json.at("pairwise_stages")), k_most_stages));
     model.crf.kappa = json.at("kappa");
     model.crf.lambda = json.at("lambda");
     model.crf.mu = json.at("mu");
     model.crf.compatibility = json.at("compatibility").get<std::vector<double>>();
     model.crf.merge_fraction = json.at("merge_fraction");
-    model.seed = json.at("seed");
+    model.seed = whole_number(file, json.at("seed"));
     model.provenance = json.at("provenance").get<std::vector<std::string>>();
 }
 
 void check_description(const TensorFile& file, const LabelingModel& model) {
     const std::size_t classes = model.class_count();
     if (classes == 0 || classes > k_max_classes) inconsistent(file, fmt::format("it has {} labels", classes));
+    for (const std::string& name : model.label_names)
+        if (!mesh_io::is_label_name(name)) inconsistent(file, "no label can have the name " + mesh_io::quote(name));
     if (model.label_colors.size() != classes) inconsistent(file, "labels and colors differ in number");
     if (model.crf.compatibility.size() != classes * classes)
         inconsistent(file, "the label compatibility has the wrong size");

@@ -9,7 +9,7 @@
 #include <ostream>
 #include <string_view>
 
-#include "embedded/report_page_html.h"
+#include "embedded/report_page.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
 
@@ -68,6 +68,13 @@ void check_mesh(const ReportMesh& item, std::size_t classes) {
     check_geometry(*item.mesh, where);
 }
 
+void check_curve(const ReportCurve& curve, const std::string& where) {
+    for (std::size_t i = 1; i < curve.points.size(); ++i)
+        if (curve.points[i].rounds <= curve.points[i - 1].rounds)
+            throw UsageError(fmt::format("report page: {}: curve '{}' goes from {} to {} rounds; they must ascend",
+                                         where, curve.name, curve.points[i - 1].rounds, curve.points[i].rounds));
+}
+
 void check_group(const ReportData& group) {
     const std::string where = fmt::format("group '{}'", group.title);
     const std::size_t classes = group.label_names.size();
@@ -80,6 +87,7 @@ void check_group(const ReportData& group) {
         if (!(share >= 0) || !std::isfinite(share))
             throw UsageError(fmt::format("report page: {}: confusion entry {} is not a share of area", where, share));
     for (const ReportMesh& item : group.meshes) check_mesh(item, classes);
+    for (const ReportCurve& curve : group.curves) check_curve(curve, where);
 }
 
 // ---- packing
@@ -184,6 +192,44 @@ Json pairs(const std::vector<std::pair<std::string, Value>>& rows) {
     return result;
 }
 
+Json describe_measures(const std::vector<ReportMeasure>& measures) {
+    Json result = Json::array();
+    for (const ReportMeasure& measure : measures)
+        result.push_back({{"name", measure.name},
+                          {"value", number_or_null(measure.value)},
+                          {"reference", number_or_null(measure.reference)},
+                          {"lower", measure.lower_is_better},
+                          {"share", measure.share}});
+    return result;
+}
+
+Json describe_scores(const std::vector<ReportScore>& scores) {
+    Json result = Json::array();
+    for (const ReportScore& score : scores)
+        result.push_back({{"name", score.name}, {"measures", describe_measures(score.measures)}});
+    return result;
+}
+
+/// Points as [rounds, loss, error].
+Json describe_curves(const std::vector<ReportCurve>& curves) {
+    Json result = Json::array();
+    for (const ReportCurve& curve : curves) {
+        Json points = Json::array();
+        for (const ReportCurvePoint& point : curve.points)
+            points.push_back(Json::array({point.rounds, number_or_null(point.loss), number_or_null(point.error)}));
+        result.push_back(
+            {{"name", curve.name}, {"points", points}, {"chosen", curve.chosen_rounds}, {"kept", curve.kept}});
+    }
+    return result;
+}
+
+Json describe_stages(const std::vector<ReportStageFeatures>& stages) {
+    Json result = Json::array();
+    for (const ReportStageFeatures& stage : stages)
+        result.push_back({{"stage", stage.stage}, {"families", pairs(stage.families)}});
+    return result;
+}
+
 Json describe_group(const ReportData& group) {
     Json colors = Json::array();
     for (const auto& [red, green, blue] : group.label_colors)
@@ -200,6 +246,11 @@ Json describe_group(const ReportData& group) {
             {"features", group.first_features},
             {"timings", timings},
             {"summary", pairs(group.summary)},
+            {"measures", describe_measures(group.measures)},
+            {"reference", group.reference_name},
+            {"scores", describe_scores(group.scores)},
+            {"stages", describe_stages(group.stage_features)},
+            {"curves", describe_curves(group.curves)},
             {"meshes", Json::array()}};
 }
 
@@ -244,6 +295,11 @@ std::string script_json(const Json& json) {
     return result;
 }
 
+template <std::size_t Size>
+std::string_view embedded_text(const unsigned char (&bytes)[Size]) {
+    return {reinterpret_cast<const char*>(bytes), Size};
+}
+
 /// The template up to the next `mark`; moves `rest` behind the mark.
 std::string_view cut_at(std::string_view& rest, std::string_view mark) {
     const std::size_t at = rest.find(mark);
@@ -275,12 +331,13 @@ void write_report_page(const std::filesystem::path& path, const std::string& tit
                        std::span<const ReportData> groups) {
     if (groups.empty()) throw UsageError("report page: there is no group to show; give at least one");
     for (const ReportData& group : groups) check_group(group);
-    std::string_view rest(reinterpret_cast<const char*>(embedded::k_report_page_html),
-                          sizeof embedded::k_report_page_html);
+    std::string_view rest = embedded_text(embedded::k_report_page);
     write_file_atomically(path, [&](std::ostream& out) {
         out << cut_at(rest, "{{title}}") << escaped_html(title);
+        out << cut_at(rest, "{{style}}") << embedded_text(embedded::k_report_style);
         out << cut_at(rest, "{{data}}");
         write_data(out, title, groups);
+        out << cut_at(rest, "{{script}}") << embedded_text(embedded::k_report_script);
         out << rest;
     });
 }

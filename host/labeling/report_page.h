@@ -14,6 +14,41 @@
 
 namespace exemplar {
 
+/// One number about a labeling and, where it is known, the number to compare it with (e.g. a publication's).
+struct ReportMeasure {
+    std::string name;  ///< e.g. "Rand index error"; measures of the same name share a column
+    double value = std::numeric_limits<double>::quiet_NaN();      ///< NaN if unknown
+    double reference = std::numeric_limits<double>::quiet_NaN();  ///< NaN if there is none
+    bool lower_is_better = false;
+    bool share = true;  ///< value and reference are shares, shown in percent; false: shown as they are
+};
+
+/// The numbers of one tested mesh, whether or not the mesh is among those that can be turned.
+struct ReportScore {
+    std::string name;
+    std::vector<ReportMeasure> measures;
+};
+
+/// How well held-out items were labeled after so many rounds (see HeldOutPoint).
+struct ReportCurvePoint {
+    std::size_t rounds = 0;
+    double loss = 0, error = 0;  ///< log loss; share of wrong labels in [0, 1]. NaN leaves a gap
+};
+
+/// The validation curve of one classifier of a cascade.
+struct ReportCurve {
+    std::string name;                      ///< e.g. "unary 0"
+    std::vector<ReportCurvePoint> points;  ///< rounds ascending
+    std::size_t chosen_rounds = 0;         ///< how many rounds were kept; marked in the plot. 0 = no mark
+    bool kept = true;                      ///< false for a classifier that was tried and dropped
+};
+
+/// How many stumps of one classifier use each family of features.
+struct ReportStageFeatures {
+    std::string stage;  ///< e.g. "unary 0"
+    std::vector<std::pair<std::string, std::size_t>> families;
+};
+
 /// One labeled mesh of a report. All per-face values are per triangle of `mesh`, not per polygon of its file.
 struct ReportMesh {
     std::string name;                     ///< any text, e.g. the file's stem
@@ -30,17 +65,25 @@ struct ReportData {
     std::string title, subtitle;
     std::vector<std::string> label_names;  ///< C names, C <= 255
     std::vector<Color> label_colors;       ///< C sRGB colors
-    std::vector<ReportMesh> meshes;
+    std::vector<ReportMesh> meshes;        ///< any order; the page shows the worst first and side by side
     double recognition_rate = std::numeric_limits<double>::quiet_NaN();  ///< of the group, in [0, 1]; NaN if unknown
     std::vector<double> confusion;                                       ///< C x C, row = truth, share of area
-    std::vector<std::pair<std::string, std::size_t>> feature_families;   ///< family, number of stumps
+    std::vector<std::pair<std::string, std::size_t>> feature_families;   ///< family, number of stumps in all stages
     std::vector<std::string> first_features;                             ///< in the order they were chosen
     std::vector<std::pair<std::string, double>> timings;                 ///< what, seconds
     std::vector<std::pair<std::string, std::string>> summary;            ///< key, value; shown in large type
+    /// Means over the group's tested meshes. The page begins with a table of all groups: one row per group, one column
+    /// per name, those with references compared, and the mean over the groups.
+    std::vector<ReportMeasure> measures;
+    std::string reference_name = "reference";         ///< heads the columns of references, e.g. "thesis"
+    std::vector<ReportScore> scores;                  ///< of every tested mesh
+    std::vector<ReportStageFeatures> stage_features;  ///< in the order of the cascade
+    std::vector<ReportCurve> curves;                  ///< in the order of the cascade
 };
 
-/// Writes one HTML file that shows the groups: a turnable view of every labeled mesh (predicted labels, ground truth,
-/// confidence, errors), confusion table, chosen features and timings. The file needs nothing else: no network, no
+/// Writes one HTML file that shows the groups: a table that compares them, turnable views of every labeled mesh
+/// (predicted labels, ground truth, errors, confidence; the first three also side by side), confusion table, scores of
+/// all tested meshes, validation curves, chosen features and timings. The file needs nothing else: no network, no
 /// server, no other file; it opens from file:// in any browser with WebGL (without, the tables remain).
 ///
 /// Meshes are packed for display, not for exchange: positions are rounded to 1 / 65535 of the bounding box of the
@@ -48,7 +91,8 @@ struct ReportData {
 /// of 9 F beyond 65536 vertices. The file is written atomically; equal arguments give equal bytes.
 ///
 /// Throws UsageError naming the mesh or table if a label index or confidence is out of range, a size does not match,
-/// a coordinate is not finite, or there is no group; DataError if the file cannot be written.
+/// a coordinate is not finite, the rounds of a curve do not ascend, or there is no group; DataError if the file cannot
+/// be written.
 void write_report_page(const std::filesystem::path& path, const std::string& title, std::span<const ReportData> groups);
 
 }  // namespace exemplar

@@ -107,7 +107,7 @@ std::vector<float> normalized(std::vector<float> weight) {
 /// One boosting task over all meshes, with its progress and its row of the report.
 FoldBoostingResult run_stage(const std::string& what, std::span<const BoostingItems> items, FoldBoostingOptions options,
                              const TrainOptions& train, StumpScorer& scorer, TrainReport& report) {
-    options.rounds = train.rounds, options.patience = train.patience, options.bins = train.bins;
+    options.rounds = train.rounds, options.bins = train.bins;
     options.rows_per_mesh = train.rows_per_mesh;
     options.feature_fraction = train.feature_fraction, options.shrinkage = train.shrinkage;
     Progress progress("training " + what + " (rounds)", (options.folds + 1) * options.rounds);
@@ -115,7 +115,7 @@ FoldBoostingResult run_stage(const std::string& what, std::span<const BoostingIt
     FoldBoostingResult result = boost_with_folds(items, options, scorer, [&] { progress.advance(); });
     progress.finish();
     report.stages.push_back(
-        {what, result.classifier.stumps.stumps.size(), result.loss, result.error, true, result.curve, watch.wall()});
+        {what, result.rounds, result.loss, result.error, true, result.curve, watch.wall()});
     return result;
 }
 
@@ -169,6 +169,7 @@ PerMesh train_unary(const LabeledCorpus& corpus, std::vector<MeshFeatures>& feat
     Cascade cascade{"unary", options.max_stages, k_kept_unary_loss, {}, model.unary_names.size(), context.size(), {},
                     {}};
     cascade.task.classes = classes;
+    cascade.task.patience = 0;  // the error falls on when the loss rises: see docs/labeling.md
     cascade.task.folds = folds.count;
     cascade.task.seed = options.seed + k_unary_task;
     for (std::size_t m = 0; m < features.size(); ++m)
@@ -237,6 +238,7 @@ PerMesh train_pairwise(const LabeledCorpus& corpus, std::vector<MeshFeatures>& f
                     {},
                     {}};
     cascade.task.binary = true;
+    cascade.task.patience = options.patience;
     cascade.task.folds = folds.count;
     cascade.task.seed = options.seed + k_pairwise_task;
     for (std::size_t m = 0; m < features.size(); ++m)

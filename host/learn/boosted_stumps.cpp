@@ -45,6 +45,20 @@ void normalize(std::span<float> row) {
 
 }  // namespace
 
+BoostedStumps mean_classifier(std::span<const BoostedStumps> classifiers) {
+    BoostedStumps mean;
+    mean.class_count = classifiers.front().class_count;
+    const float share = 1.0F / static_cast<float>(classifiers.size());
+    for (const BoostedStumps& classifier : classifiers) {
+        for (Stump stump : classifier.stumps) {
+            stump.above *= share, stump.below *= share;
+            mean.stumps.push_back(stump);
+        }
+        for (const float constant : classifier.elsewhere) mean.elsewhere.push_back(constant * share);
+    }
+    return mean;
+}
+
 std::vector<float> BoostedStumps::constant() const {
     std::vector<double> sum(class_count, 0.0);
     for (std::size_t m = 0; m < stumps.size(); ++m) {

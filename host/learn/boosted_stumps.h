@@ -31,6 +31,10 @@ struct BoostedStumps {
     std::vector<float> constant() const;
 };
 
+/// The classifier whose H is the mean of the H of several (at least one, all of the same classes): bagging (Breiman
+/// 1996). It has all their stumps, in order.
+BoostedStumps mean_classifier(std::span<const BoostedStumps> classifiers);
+
 /// How H becomes a probability.
 enum class Link : std::uint32_t {
     softmax = 0,  ///< exp(s H_c) / sum exp(s H) (Eq. 2.66)

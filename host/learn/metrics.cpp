@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <utility>
 
 #include "host/core/errors.h"
 
@@ -12,7 +11,6 @@ namespace exemplar {
 namespace {
 
 constexpr double k_nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double k_least_probability = 1e-12;
 
 /// Throws unless there are as many areas, and the truths are classes or -1.
 void check_items(std::span<const std::int32_t> truth, std::span<const float> areas, std::size_t classes) {
@@ -25,22 +23,6 @@ void check_items(std::span<const std::int32_t> truth, std::span<const float> are
         throw UsageError("item " + std::to_string(i) + " has the label " + std::to_string(truth[i]) +
                          ", but there are " + std::to_string(classes) + " labels");
     }
-}
-
-double pairs(double count) {
-    return 0.5 * count * (count - 1.0);
-}
-
-/// Sums the pairs within runs of equal keys of a sorted list.
-template <typename Key>
-double pairs_within(std::vector<Key> keys) {
-    std::sort(keys.begin(), keys.end());
-    double sum = 0.0;
-    for (std::size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
-        while (end < keys.size() && keys[end] == keys[begin]) ++end;
-        sum += pairs(static_cast<double>(end - begin));
-    }
-    return sum;
 }
 
 }  // namespace
@@ -80,19 +62,6 @@ double segment_weighted_accuracy(const ConfusionMatrix& confusion) {
         present += 1.0;
     }
     return present > 0.0 ? sum / present : k_nan;
-}
-
-double rand_index_error(std::span<const std::int32_t> a, std::span<const std::int32_t> b) {
-    if (a.size() != b.size()) {
-        throw UsageError("segmentations of " + std::to_string(a.size()) + " and " + std::to_string(b.size()) +
-                         " items cannot be compared");
-    }
-    if (a.size() < 2) return 0.0;
-    std::vector<std::pair<std::int32_t, std::int32_t>> both;
-    for (std::size_t i = 0; i < a.size(); ++i) both.emplace_back(a[i], b[i]);
-    const double in_a = pairs_within(std::vector<std::int32_t>(a.begin(), a.end()));
-    const double in_b = pairs_within(std::vector<std::int32_t>(b.begin(), b.end()));
-    return (in_a + in_b - 2.0 * pairs_within(std::move(both))) / pairs(static_cast<double>(a.size()));
 }
 
 }  // namespace exemplar

@@ -30,9 +30,4 @@ double recognition_rate(const ConfusionMatrix& confusion);
 /// without any items.
 double segment_weighted_accuracy(const ConfusionMatrix& confusion);
 
-/// One minus the Rand index of two segmentations of the same items (Chen et al. 2009): the share of the pairs of items
-/// that one puts together and the other does not, in [0, 1]. Segment ids are arbitrary. Zero for fewer than two items.
-/// Throws UsageError for sizes that differ.
-double rand_index_error(std::span<const std::int32_t> a, std::span<const std::int32_t> b);
-
 }  // namespace exemplar

@@ -18,9 +18,12 @@ MeshFile read_stl(std::string_view content, const std::string& name);
 MeshFile read_gltf(std::string_view content, const std::string& name, const std::filesystem::path& folder);
 
 /// Throws UsageError unless `labels` has one label in [-1, names) per source face, and DataError unless every name can
-/// be written in a line of text: UTF-8, not empty, no control characters, no space at either end.
+/// be written in a line of text: UTF-8, not empty, no control characters, no space at either end, no byte order mark in
+/// front, not several numbers.
 void check_labels(const TriangleMesh& mesh, const FaceLabels& labels);
 void check_label_names(const FaceLabels& labels);
+/// Whether `name` is one that check_label_names takes; readers refuse any other.
+bool is_label_name(std::string_view name);
 /// Number of source faces, also of meshes of triangles only whose source_face_count nobody set.
 std::size_t source_faces(const TriangleMesh& mesh);
 

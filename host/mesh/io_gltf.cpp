@@ -221,7 +221,7 @@ tinygltf::FsCallbacks folder_callbacks(std::string* folder) {
 /// The first line of the library's complaints.
 std::string first_line(const std::string& text) {
     const std::string_view line = trimmed(std::string_view(text).substr(0, text.find('\n')));
-    return line.empty() ? "tinygltf cannot read it" : std::string(line.substr(0, 200));
+    return line.empty() ? "tinygltf cannot read it" : printable(line, 200);
 }
 
 tinygltf::Model load_model(const std::string& bytes, const std::string& name, const fs::path& folder) {

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cstring>
 
+#include "host/mesh/io_formats.h"
 #include "host/mesh/io_polygons.h"
 #include "host/mesh/io_text.h"
 
@@ -253,6 +254,8 @@ class SceneReader {
         FaceLabels labels;
         std::vector<std::int32_t> label_of_material;
         for (const tinygltf::Material& material : model_.materials) {
+            if (!material.name.empty() && !is_label_name(material.name))
+                fail("no label can have the name " + quote(material.name) + "; rename that material");
             label_of_material.push_back(material.name.empty() ? -1 : static_cast<std::int32_t>(labels.names.size()));
             if (!material.name.empty()) labels.names.push_back(material.name);
         }

@@ -84,7 +84,7 @@ class BinaryValues {
   private:
     template <typename T>
     T take(const std::string& property) {
-        if (bytes_left() < sizeof(T)) fail(fmt::format("the file is cut off in property {}", quote(property)));
+        if (bytes_left() < sizeof(T)) fail(fmt::format("the file is cut off in property {}", property));
         std::array<char, sizeof(T)> bytes;
         std::memcpy(bytes.data(), content_.data() + at_, sizeof(T));
         at_ += sizeof(T);
@@ -179,12 +179,12 @@ class BodyReader {
             mesh_io::fail(name_,
                           fmt::format("{} rows of element {} cannot be in what is left of the file; the count is wrong "
                                       "or the file is cut off",
-                                      element.count, quote(element.name)));
+                                      element.count, element.shown));
         const std::vector<Role> roles = roles_of(element);
         if (element.name == "vertex") content_.polygons.vertices.reserve(element.count);
         if (element.name == "face") content_.polygons.reserve_polygons(element.count);
         for (row_ = 0; row_ < element.count; ++row_) {
-            values_.begin_row(element.name);
+            values_.begin_row(element.shown);
             for (std::size_t p = 0; p < roles.size(); ++p) read_property(element.properties[p], roles[p]);
             if (element.name == "vertex") content_.polygons.vertices.push_back(position_);
             if (element.name == "face") content_.polygons.add(corners_);
@@ -211,7 +211,7 @@ class BodyReader {
             read_list(property, role);
             return;
         }
-        const double value = values_.value(property.type, property.name);
+        const double value = values_.value(property.type, property.shown);
         switch (role) {
             case Role::x:
                 position_.x() = static_cast<float>(value);
@@ -231,14 +231,14 @@ class BodyReader {
     }
 
     void read_list(const PlyProperty& property, Role role) {
-        const double count = values_.value(*property.count_type, property.name);
+        const double count = values_.value(*property.count_type, property.shown);
         if (count < 0 || count > static_cast<double>(values_.most_values(property.type)))
             values_.fail(fmt::format(
                 "a list of {} items cannot be in what is left; the count is wrong or the file is cut off", count));
         const bool wanted = role == Role::corners || role == Role::strips;
         if (wanted) corners_.clear();
         for (auto i = static_cast<std::uint64_t>(count); i > 0; --i) {
-            const double value = values_.value(property.type, property.name);
+            const double value = values_.value(property.type, property.shown);
             if (!wanted) continue;
             if (role == Role::strips && value == -1) {
                 end_strip();

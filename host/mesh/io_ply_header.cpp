@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "host/core/text.h"
+#include "host/mesh/io_formats.h"
 #include "host/mesh/io_ply.h"
 #include "host/mesh/io_text.h"
 
@@ -66,7 +67,7 @@ void read_element(TextCursor& cursor, PlyHeader& header) {
     if (count < 0) cursor.fail(fmt::format("there cannot be {} of element {}", count, quote(name)));
     const auto same_name = [&](const PlyElement& element) { return element.name == name; };
     if (std::ranges::any_of(header.elements, same_name)) cursor.fail("element " + quote(name) + " is declared twice");
-    header.elements.push_back({name, static_cast<std::uint64_t>(count), {}});
+    header.elements.push_back({name, quote(name), static_cast<std::uint64_t>(count), {}});
 }
 
 void read_property(TextCursor& cursor, PlyHeader& header) {
@@ -81,6 +82,7 @@ void read_property(TextCursor& cursor, PlyHeader& header) {
     property.type = read_type(cursor);
     property.name = cursor.word();
     if (property.name.empty()) cursor.fail("the property has no name");
+    property.shown = quote(property.name);
     header.elements.back().properties.push_back(std::move(property));
 }
 
@@ -91,6 +93,7 @@ void read_comment(TextCursor& cursor, PlyHeader& header) {
     const std::string_view name = trimmed(cursor.rest());
     if (!index || name.empty()) return;
     if (!is_utf8(name)) cursor.fail("label name " + quote(name) + " is not UTF-8; save the file in that encoding");
+    if (!is_label_name(name)) cursor.fail("no label can have the name " + quote(name) + "; give it another");
     header.label_names[*index] = name;
 }
 

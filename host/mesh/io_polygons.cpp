@@ -13,8 +13,10 @@ namespace {
 
 using Point = Eigen::Vector2d;
 
-/// Clipping ears takes quadratic time at least; longer polygons than this are cut into a fan.
-constexpr std::size_t k_most_ear_corners = 4000;
+/// Clipping ears takes quadratic time at least; longer polygons than this are cut into a fan. Simple polygons look at
+/// about n^2 / 2 corners; one that crosses itself again and again would look at n^3, so what is left of it after the
+/// second number times n^2 is cut into a fan too.
+constexpr std::size_t k_most_ear_corners = 4000, k_most_looks = 4;
 
 /// The polygon in the plane of its area vector (Newell), counter-clockwise; empty if it has no area.
 std::vector<Point> flattened(std::span<const Vec3> vertices, std::span<const std::uint32_t> corners) {
@@ -72,13 +74,19 @@ class EarClipper {
         return ear;
     }
     std::size_t size() const { return left_.size(); }
+    /// Corner numbers of what is left.
+    std::span<const std::size_t> left() const { return left_; }
+    /// How many times a corner was looked at.
+    std::size_t looks() const { return looks_; }
 
   private:
-    bool is_ear(std::size_t i) const {
+    bool is_ear(std::size_t i) {
+        ++looks_;
         const std::size_t n = left_.size();
         const Point &a = points_[left_[(i + n - 1) % n]], &b = points_[left_[i]], &c = points_[left_[(i + 1) % n]];
         if (!(turn(a, b, c) > 0)) return false;
         for (std::size_t other : left_) {
+            ++looks_;
             const Point& p = points_[other];
             if (p == a || p == b || p == c) continue;
             if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
@@ -88,6 +96,7 @@ class EarClipper {
     std::vector<Point> points_;
     std::vector<std::size_t> left_;
     std::size_t start_ = 0;  ///< where the search for the next ear begins
+    std::size_t looks_ = 0;
 };
 
 }  // namespace
@@ -98,10 +107,14 @@ void triangulate_polygon(std::span<const Vec3> vertices, std::span<const std::ui
     std::vector<Point> points = flattened(vertices, corners);
     if (points.empty() || is_convex(points)) return add_fan(corners, faces);
     EarClipper clipper(std::move(points));
-    while (clipper.size() >= 3) {
+    const std::size_t most_looks = k_most_looks * corners.size() * corners.size();
+    while (clipper.size() >= 3 && clipper.looks() < most_looks) {
         const auto [a, b, c] = clipper.clip();
         faces.push_back({corners[a], corners[b], corners[c]});
     }
+    std::vector<std::uint32_t> left;
+    for (std::size_t corner : clipper.left()) left.push_back(corners[corner]);
+    add_fan(left, faces);
 }
 
 void PolygonList::reserve_polygons(std::size_t polygons) {

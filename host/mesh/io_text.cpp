@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "host/core/errors.h"
+#include "host/core/text.h"
 
 namespace exemplar::mesh_io {
 
@@ -14,11 +15,23 @@ void fail(const std::string& name, const std::string& message) {
     throw MeshError(name + ": " + message);
 }
 
+std::string printable(std::string_view text, std::size_t longest) {
+    std::size_t end = std::min(text.size(), longest);
+    const auto is_continuation = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
+    for (int i = 0; i < 3 && end > 0 && end < text.size() && is_continuation(text[end]); ++i) --end;  // no half letter
+    const std::string_view shown = text.substr(0, end);
+    const bool keeps_letters = is_utf8(shown);
+    std::string result;
+    for (char c : shown) {
+        const bool is_ascii = c >= ' ' && c <= '~', is_letter = keeps_letters && static_cast<unsigned char>(c) >= 0x80;
+        result += is_ascii || is_letter ? c : '?';
+    }
+    return result + (end < text.size() ? "..." : "");
+}
+
 std::string quote(std::string_view text) {
     constexpr std::size_t k_longest = 40;
-    std::string result = "'";
-    for (char c : text.substr(0, k_longest)) result += c >= ' ' && c <= '~' ? c : '?';
-    return result + (text.size() > k_longest ? "...'" : "'");
+    return "'" + printable(text, k_longest) + "'";
 }
 
 bool is_space(char c) {

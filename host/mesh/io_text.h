@@ -10,6 +10,9 @@ namespace exemplar::mesh_io {
 
 /// Throws MeshError "NAME: MESSAGE".
 [[noreturn]] void fail(const std::string& name, const std::string& message);
+/// Foreign text for an error message: its first `longest` bytes, in which ? stands for what is not printable or no
+/// UTF-8, and ... if that is not all.
+std::string printable(std::string_view text, std::size_t longest);
 /// A few characters of foreign text, printable and in quotes, for an error message.
 std::string quote(std::string_view text);
 

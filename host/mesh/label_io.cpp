@@ -23,14 +23,30 @@ std::size_t source_faces(const TriangleMesh& mesh) {
     return only_triangles ? mesh.face_count() : mesh.source_face_count;
 }
 
+namespace {
+
+constexpr std::string_view k_byte_order_mark = "\xef\xbb\xbf";
+
+/// Whether a line is one of face indices, not a name: it begins with two numbers.
+bool is_index_line(std::string_view line) {
+    return parse_integer(take_word(line)) && parse_integer(take_word(line));
+}
+
+}  // namespace
+
+bool is_label_name(std::string_view name) {
+    const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
+    return !name.empty() && std::ranges::none_of(name, is_control) && trimmed(name).size() == name.size() &&
+           is_utf8(name) && !name.starts_with(k_byte_order_mark) && !is_index_line(name);
+}
+
 void check_label_names(const FaceLabels& labels) {
     for (std::size_t i = 0; i < labels.names.size(); ++i) {
         const std::string& name = labels.names[i];
-        const bool has_control = std::ranges::any_of(name, [](char c) { return static_cast<unsigned char>(c) < ' '; });
-        if (name.empty() || has_control || trimmed(name).size() != name.size() || !is_utf8(name))
+        if (!is_label_name(name))
             throw DataError(
                 fmt::format("label {} has the name {}, which a file cannot hold; give it a name in one line of UTF-8, "
-                            "without spaces around it",
+                            "without spaces around it and not of numbers",
                             i, quote(name)));
     }
 }
@@ -55,7 +71,7 @@ namespace {
 class DataLines {
   public:
     explicit DataLines(const std::filesystem::path& path) : name_(path.string()), content_(read_file(path)) {
-        if (content_.starts_with("\xef\xbb\xbf")) at_ = 3;  // byte order mark
+        if (content_.starts_with(mesh_io::k_byte_order_mark)) at_ = mesh_io::k_byte_order_mark.size();
     }
     bool next() {
         if (at_ >= content_.size()) return false;
@@ -79,13 +95,14 @@ class DataLines {
 /// Names end up in model and JSON files, which hold UTF-8 only. Two numbers or more where a name should be are the face
 /// indices of a block whose name is missing.
 void check_name_line(const DataLines& lines) {
-    std::string_view rest = lines.line();
-    const bool two_numbers =
-        mesh_io::parse_integer(mesh_io::take_word(rest)) && mesh_io::parse_integer(mesh_io::take_word(rest));
-    if (!is_utf8(lines.line()))
-        lines.fail(
-            fmt::format("label name {} is not UTF-8; save the file in that encoding", mesh_io::quote(lines.line())));
-    if (two_numbers) lines.fail("a label name is expected, not face indices; each label has one line of indices");
+    const std::string_view name = lines.line();
+    if (!is_utf8(name))
+        lines.fail(fmt::format("label name {} is not UTF-8; save the file in that encoding", mesh_io::quote(name)));
+    if (mesh_io::is_index_line(name))
+        lines.fail("a label name is expected, not face indices; each label has one line of indices");
+    if (!mesh_io::is_label_name(name))
+        lines.fail(fmt::format("label name {} has control characters or a byte order mark; is this a label file?",
+                               mesh_io::quote(name)));
 }
 
 /// Labels the faces that the current line lists.
@@ -93,16 +110,14 @@ void read_face_indices(const DataLines& lines, std::int32_t label, FaceLabels& l
     std::string_view rest = lines.line();
     for (std::string_view word = mesh_io::take_word(rest); !word.empty(); word = mesh_io::take_word(rest)) {
         const auto index = mesh_io::parse_integer(word);
-        const std::string& name = labels.names[static_cast<std::size_t>(label)];
+        const auto name = [&](std::int32_t of) { return mesh_io::quote(labels.names[static_cast<std::size_t>(of)]); };
         if (!index)
-            lines.fail(fmt::format("a face index of label '{}' is expected, not {}", name, mesh_io::quote(word)));
+            lines.fail(fmt::format("a face index of label {} is expected, not {}", name(label), mesh_io::quote(word)));
         if (*index < 1 || *index > static_cast<std::int64_t>(labels.label.size()))
-            lines.fail(fmt::format("label '{}' names face {}, but the mesh has {} faces, counted from 1", name, *index,
-                                   labels.label.size()));
+            lines.fail(fmt::format("label {} names face {}, but the mesh has {} faces, counted from 1", name(label),
+                                   *index, labels.label.size()));
         std::int32_t& face = labels.label[static_cast<std::size_t>(*index - 1)];
-        if (face >= 0)
-            lines.fail(fmt::format("face {} has two labels, '{}' and '{}'", *index,
-                                   labels.names[static_cast<std::size_t>(face)], name));
+        if (face >= 0) lines.fail(fmt::format("face {} has two labels, {} and {}", *index, name(face), name(label)));
         face = label;
     }
 }

@@ -9,7 +9,7 @@ import unittest
 PROGRAM = pathlib.Path(os.environ.get("EXEMPLAR_PROGRAM", "build/exemplar")).absolute()
 DOCS = pathlib.Path(__file__).parents[2] / "docs"
 # A training of seconds: what is tested here is that things fit together, not that they are accurate.
-QUICK = ["--rounds", "8", "--patience", "8", "--samples", "60"]
+QUICK = ["--rounds", "8", "--patience", "8", "--samples", "60", "--feature-fraction", "0.25"]
 
 
 class ProgramTest(unittest.TestCase):

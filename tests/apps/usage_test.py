@@ -6,7 +6,7 @@ import unittest
 
 from program import DOCS, ProgramTest, CUBE, CUBE_QUADS, CUBE_TRIANGLES, read_labels, read_off, write_off
 
-COMMANDS = ["label train", "label apply", "label evaluate", "features", "synth", "devices", "demo"]
+COMMANDS = ["label train", "label apply", "label evaluate", "features", "synth", "devices", "demo", "bench"]
 
 
 class Help(ProgramTest):
@@ -64,6 +64,15 @@ class Usage(ProgramTest):
         self.refused("label", "evaluate", "--out", "x", "--protocol", "sb6", code=2, says="folder")
         self.refused("label", "evaluate", "--out", "x", "--protocol", "sb7", ".", code=2, says="sb6")
         self.refused("label", "evaluate", "--out", "x", "--protocol", "sb6", ".", "--train", "a", code=2, says="--train")
+
+    def test_evaluate_needs_both_of_a_pair_and_a_place_for_its_results(self):
+        self.refused("label", "evaluate", "--out", "x", "--train-on", ".", code=2, says=["--train-on", "--test-on"])
+        self.refused("label", "evaluate", "--out", "x", "--train-on", ".", "--test", ".", code=2, says="--test")
+        self.refused("label", "evaluate", "--out", "x", "--train", ".", "--test", ".", "--labels", "no", code=1, says="no")
+        self.refused("label", "evaluate", "--train", ".", "--test", ".", code=2, says=["--out", "--report"])
+        write_off(self.folder / "cube.off", CUBE, CUBE_QUADS)
+        self.refused("label", "evaluate", "--train", "cube.off", "--test", "cube.off", "--report", "cube.off", code=2,
+                     says="cube.off")
 
     def test_outputs_that_cannot_be_written_are_refused_before_the_work(self):
         write_off(self.folder / "cube.off", CUBE, CUBE_QUADS)

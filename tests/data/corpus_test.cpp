@@ -98,6 +98,32 @@ TEST_F(CorpusFolder, MissingLabelsNameWhatIsAccepted) {
     EXPECT_THAT(error_of({folder_ / "m.off"}), HasSubstr("m_labels.txt"));
 }
 
+TEST_F(CorpusFolder, LabelsOfAnotherFolderReplaceThoseBesideTheMesh) {
+    write("m.off", k_quad_and_triangle);
+    write("m_labels.txt", "seat\n1\nleg\n2\n");
+    write("style/m_labels.txt", "whole\n1 2\n");
+    const LabeledCorpus corpus = load_corpus({folder_ / "m.off"}, {}, folder_ / "style");
+    EXPECT_THAT(corpus.names, ElementsAre("whole"));
+    EXPECT_THAT(corpus.meshes[0].label, ElementsAre(0, 0, 0));
+    try {
+        load_corpus({folder_ / "m.off"}, {}, folder_ / "other");  // not those beside the mesh: styles must not mix
+        FAIL() << "labels were found in a folder that is not there";
+    } catch (const DataError& error) {
+        EXPECT_THAT(error.what(), AllOf(HasSubstr((folder_ / "other" / "m_labels.txt").string()), HasSubstr("m.off")));
+    }
+}
+
+TEST_F(CorpusFolder, LabelsOfEqualNamesAreOneLabel) {
+    write("a.off", k_quad_and_triangle);
+    write("a_labels.txt", "leg\n1\nseat\n2\n");
+    write("b.off", k_quad_and_triangle);
+    write("b_labels.txt", "arm\n1\nleg\n2\n");
+    const LabeledCorpus corpus = load_corpus({folder_ / "a.off", folder_ / "b.off"});
+    EXPECT_THAT(corpus.names, ElementsAre("arm", "leg", "seat"));
+    EXPECT_THAT(corpus.meshes[0].label, ElementsAre(1, 1, 2));
+    EXPECT_THAT(corpus.meshes[1].label, ElementsAre(0, 0, 1));
+}
+
 TEST_F(CorpusFolder, MissingMeshesOfAListNameTheLineAndTheNearestFile) {
     write("chair.off", k_quad_and_triangle);
     write("list.txt", "chair.off\n\nchiar.off\n");

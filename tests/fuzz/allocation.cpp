@@ -7,10 +7,48 @@
 #include <cstdlib>
 #include <new>
 
+#if defined(__SANITIZE_ADDRESS__)  // GCC
+#define EXEMPLAR_SANITIZED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)  // Clang
+#define EXEMPLAR_SANITIZED
+#endif
+#endif
+#ifdef EXEMPLAR_SANITIZED
+#include <sanitizer/allocator_interface.h>
+#endif
+
 namespace exemplar::fuzz {
 namespace {
 
 std::atomic<std::size_t> live{0}, peak{0};
+
+void add(std::size_t bytes) {
+    live += bytes;
+    peak = std::max(peak.load(), live.load());
+}
+
+#ifdef EXEMPLAR_SANITIZED
+void on_allocation(const volatile void*, std::size_t bytes) {
+    add(bytes);
+}
+/// What was allocated before the hooks were installed is freed uncounted.
+void on_free(const volatile void* memory) {
+    const std::size_t bytes = memory ? __sanitizer_get_allocated_size(memory) : 0;
+    live -= std::min(bytes, live.load());
+}
+[[maybe_unused]] const int hooks = __sanitizer_install_malloc_and_free_hooks(on_allocation, on_free);
+#else
+void* counted(void* memory) {
+    if (!memory) throw std::bad_alloc();
+    add(malloc_usable_size(memory));
+    return memory;
+}
+void uncounted(void* memory) {
+    if (memory) live -= malloc_usable_size(memory);
+    std::free(memory);
+}
+#endif
 
 }  // namespace
 
@@ -24,26 +62,9 @@ void reset_peak() {
     peak = live.load();
 }
 
-#ifndef __SANITIZE_ADDRESS__
-namespace {
-
-void* counted(void* memory) {
-    if (!memory) throw std::bad_alloc();
-    live += malloc_usable_size(memory);
-    peak = std::max(peak.load(), live.load());
-    return memory;
-}
-void uncounted(void* memory) {
-    if (memory) live -= malloc_usable_size(memory);
-    std::free(memory);
-}
-
-}  // namespace
-#endif
-
 }  // namespace exemplar::fuzz
 
-#ifndef __SANITIZE_ADDRESS__
+#ifndef EXEMPLAR_SANITIZED
 void* operator new(std::size_t size) {
     return exemplar::fuzz::counted(std::malloc(size));
 }

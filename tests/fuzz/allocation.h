@@ -4,8 +4,8 @@
 
 namespace exemplar::fuzz {
 
-/// Bytes that `new` has handed out and not got back, and the most there were since reset_peak. Both stay 0 in a build
-/// with sanitizers, which bring their own allocator.
+/// Bytes that were allocated and not freed, and the most there were since reset_peak; with a sanitizer's allocator all
+/// of them, without one those of `new`.
 std::size_t live_bytes();
 std::size_t peak_bytes();
 void reset_peak();

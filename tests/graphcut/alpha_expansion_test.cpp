@@ -223,6 +223,34 @@ TEST(AlphaExpansion, SmoothsNoiseOnAGrid) {
     EXPECT_GT(right, truth.size() * 97 / 100);
 }
 
+TEST(AlphaExpansion, LooksAgainWhereverALargeLabelingCouldStillGain) {
+    // Later sweeps look only near what has changed; a fresh start from the result looks everywhere.
+    Random random(11);
+    int with_later_sweeps = 0;
+    for (int trial = 0; trial < 12; ++trial) {
+        constexpr std::uint32_t k_side = 40;
+        Instance instance{std::size_t{k_side} * k_side, 5, {}, {}, {}, potts(5)};
+        if (trial % 3 == 1) instance.v = random_compatibility(5, 0.0, random);
+        if (trial % 3 == 2) instance.v = random_compatibility(5, 0.3, random);
+        for (std::uint32_t i = 0; i < k_side * k_side; ++i) {
+            if ((i + 1) % k_side != 0) instance.edges.push_back({i, i + 1});
+            if (i + k_side < k_side * k_side) instance.edges.push_back({i, i + k_side});
+        }
+        const double strongest = random.uniform(0.1, 1.0);
+        for (std::size_t e = 0; e < instance.edges.size(); ++e)
+            instance.weight.push_back(random.uniform(0.0, strongest));
+        for (std::size_t i = 0; i < instance.nodes * 5; ++i)
+            instance.unary.push_back(static_cast<float>(random.uniform(0.0, 2.0)));
+        AlphaExpansion solver(instance.nodes, instance.edges);
+        const ExpansionResult result = solver.solve(instance.energy(), 5);
+        if (result.sweeps > 2) ++with_later_sweeps;  // the first sweep looks everywhere anyway
+        EXPECT_NEAR(result.energies.back(), solver.evaluate(instance.energy(), 5, result.labels), 1e-6) << trial;
+        const ExpansionResult again = solver.solve(instance.energy(), 5, 100, result.labels);
+        EXPECT_EQ(again.labels, result.labels) << trial;
+    }
+    EXPECT_GE(with_later_sweeps, 6);
+}
+
 TEST(AlphaExpansion, IsDeterministicAndReusable) {
     Random random(6);
     Instance instance = random_instance(300, 5, 700, random);

@@ -28,13 +28,13 @@ TEST(Features, HasTheCountsAndDistinctNamesOfTheText) {
     const MeshFeatures& features = original_features();
     expect_finite(features, original().face_count());
     EXPECT_EQ(features.edges.size(), original().face_count() * 3 / 2);
-    EXPECT_EQ(std::set(features.unary.names.begin(), features.unary.names.end()).size(), 612U);
+    EXPECT_EQ(std::set(features.unary.names.begin(), features.unary.names.end()).size(), 759U);
     EXPECT_EQ(std::set(features.pairwise.names.begin(), features.pairwise.names.end()).size(), 186U);
     std::map<std::string, int> count;
     for (const std::string& name : features.unary.names) ++count[name.substr(0, name.find('.'))];
-    const std::map<std::string, int> expected{{"curvature", 36}, {"pca", 75},      {"diameter", 60},
-                                              {"medial", 60},    {"geodesic", 11}, {"shape_context", 270},
-                                              {"spin", 100}};
+    const std::map<std::string, int> expected{
+        {"curvature", 36}, {"pca", 75},      {"diameter", 60}, {"medial", 60}, {"geodesic", 11}, {"shape_context", 270},
+        {"spin", 100},     {"position", 13}, {"limb", 18},     {"rank", 50},   {"region", 66}};
     EXPECT_EQ(count, expected);
 }
 
@@ -52,7 +52,7 @@ TEST(Features, OrientationAddsCenteredCoordinates) {
     FeatureOptions options = few_samples();
     options.orientation = true;
     const MeshFeatures features = compute_features(shapes::translated(original(), Vec3(5, -3, 2)), options);
-    ASSERT_EQ(features.unary.cols(), 615U);
+    ASSERT_EQ(features.unary.cols(), 762U);
     const std::span<const float> y = column(features.unary, "orientation.y");
     double mean = 0.0, area = 0.0;
     for (std::size_t f = 0; f < y.size(); ++f) {
@@ -202,7 +202,8 @@ TEST(Features, SamplesStandForAllFaces) {
     }
     for (auto& [family, values] : errors) {
         std::ranges::sort(values);
-        const bool summed = family == "shape_context" || family == "spin" || family == "geodesic";
+        const bool summed =
+            std::set<std::string>{"shape_context", "spin", "geodesic", "limb", "region"}.contains(family);
         const double bound = summed ? 0.15 : family == "pca" ? 0.1 : 0.05;
         EXPECT_LT(values[values.size() / 2], bound) << family;
     }

@@ -38,11 +38,22 @@ TEST(FoldBoosting, EndsSoonAfterTheHeldOutLossIsLeast) {
     CpuStumpScorer scorer;
     std::size_t rounds = 0;
     const FoldBoostingResult result = boost_with_folds(meshes.items, options, scorer, [&] { ++rounds; });
-    const std::size_t best = result.classifier.stumps.stumps.size();
+    const std::size_t best = result.rounds;
+    EXPECT_EQ(result.classifier.stumps.stumps.size(), 4 * best) << "the folds' classifiers and that of all meshes";
     ASSERT_LT(best, 150U);
     for (const HeldOutPoint& point : result.curve) EXPECT_GE(point.loss, result.loss);
     EXPECT_LE(result.curve.back().rounds, best + options.patience + 10);  // judged every ten rounds
     EXPECT_EQ(rounds, 3 * result.curve.back().rounds + best) << "no fold went on after the search had ended";
+}
+
+TEST(FoldBoosting, KeepsAllRoundsWithoutPatience) {
+    const Meshes meshes = make_meshes(3, 60, 3.0);
+    FoldBoostingOptions options = options_for(3);
+    options.patience = 0;
+    CpuStumpScorer scorer;
+    const FoldBoostingResult result = boost_with_folds(meshes.items, options, scorer, [] {});
+    EXPECT_EQ(result.rounds, options.rounds);
+    EXPECT_EQ(result.loss, result.curve.back().loss) << "the calibration is that of the last round";
 }
 
 TEST(FoldBoosting, ProbabilitiesAreOfTheClassifierThatNeverSawTheMesh) {

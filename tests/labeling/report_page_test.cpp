@@ -142,7 +142,12 @@ TEST(ReportPage, NamesCannotBreakOutOfTheirPlace) {
     const std::string evil = "</script><script>alert(1)</script><!-- \"'&\\ {{data}} {{title}}";
     ReportData group = group_of(mesh);
     group.title = group.subtitle = group.label_names[1] = group.meshes[0].name = group.first_features[0] = evil;
-    group.feature_families[0].first = group.timings[0].first = group.summary[0].first = group.summary[0].second = evil;
+    group.measures = {{evil, 0.5}};
+    group.scores = {{evil, group.measures}};
+    group.stage_features = {{evil, {{evil, 1}}}};
+    group.curves = {{evil, {{1, 1, 1}}}};
+    group.reference_name = group.feature_families[0].first = group.timings[0].first = group.summary[0].first =
+        group.summary[0].second = evil;
     const std::string page = written(page_path("evil"), evil, std::vector{group});
 
     for (const std::string tag : {"<script", "</script", "<!--"})
@@ -155,7 +160,9 @@ TEST(ReportPage, NamesCannotBreakOutOfTheirPlace) {
     const nlohmann::json& shown = report["groups"][0];
     for (const nlohmann::json& name :
          {shown["title"], shown["subtitle"], shown["labels"][1], shown["meshes"][0]["name"], shown["features"][0],
-          shown["families"][0][0], shown["timings"][0][0], shown["summary"][0][0], shown["summary"][0][1]})
+          shown["families"][0][0], shown["timings"][0][0], shown["measures"][0]["name"], shown["scores"][0]["name"],
+          shown["stages"][0]["stage"], shown["curves"][0]["name"], shown["reference"], shown["summary"][0][0],
+          shown["summary"][0][1]})
         EXPECT_EQ(name, evil);
 }
 
@@ -268,6 +275,29 @@ TEST(ReportPage, TablesArriveUnchangedAndGroupsStayApart) {
     EXPECT_EQ(decode_base64(mesh_text(page, "mesh-1-0")).size(), 6 * other.vertex_count() + 9 * other.face_count());
 }
 
+TEST(ReportPage, MeasuresScoresCurvesAndStagesArrive) {
+    const TriangleMesh mesh = shapes::icosphere(0, 1);
+    constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
+    std::vector<ReportData> groups{group_of(mesh)};
+    groups[0].measures = {{"rate", 0.75, 0.5}, {"cut", 0.1, k_unknown, true, false}};
+    groups[0].reference_name = "thesis";
+    groups[0].scores = {{"first", {{"rate", k_unknown}}}, {"not drawn", {}}};
+    groups[0].stage_features = {{"unary 0", {{"spin", 3}}}};
+    groups[0].curves = {{"unary 0", {{1, 0.5, 0.25}, {7, k_unknown, 0.125}}, 7, false}};
+    const std::string page = written(page_path("measures"), "Report", groups);
+    const nlohmann::json group = report_json(page)["groups"][0];
+    EXPECT_EQ(group["measures"], nlohmann::json::parse(R"([
+        {"name": "rate", "value": 0.75, "reference": 0.5, "lower": false, "share": true},
+        {"name": "cut", "value": 0.1, "reference": null, "lower": true, "share": false}])"));
+    EXPECT_EQ(group["reference"], "thesis");
+    ASSERT_EQ(group["scores"].size(), 2u);
+    EXPECT_TRUE(group["scores"][0]["measures"][0]["value"].is_null());
+    EXPECT_EQ(group["scores"][1], nlohmann::json::parse(R"({"name": "not drawn", "measures": []})"));
+    EXPECT_EQ(group["stages"], nlohmann::json::parse(R"([{"stage": "unary 0", "families": [["spin", 3]]}])"));
+    EXPECT_EQ(group["curves"], nlohmann::json::parse(R"([
+        {"name": "unary 0", "points": [[1, 0.5, 0.25], [7, null, 0.125]], "chosen": 7, "kept": false}])"));
+}
+
 TEST(ReportPage, StaysSmallAndIsDeterministic) {
     const TriangleMesh mesh = shapes::torus(1, 0.4f, 100, 50);
     ASSERT_EQ(mesh.face_count(), 10000u);
@@ -312,6 +342,10 @@ TEST(ReportPage, RefusesWhatDoesNotFit) {
     expect_refused("label colors", [](Groups& g, TriangleMesh&) { g[0].label_colors.pop_back(); });
     expect_refused("confusion", [](Groups& g, TriangleMesh&) { g[0].confusion.pop_back(); });
     expect_refused("confusion", [](Groups& g, TriangleMesh&) { g[0].confusion[1] = NAN; });
+    for (const std::size_t rounds : {3u, 4u})
+        expect_refused("curve 'unary 0' goes from 4 to", [&](Groups& g, TriangleMesh&) {
+            g[0].curves = {{"unary 0", {{1, 1, 1}, {4, 1, 1}, {rounds, 1, 1}}}};
+        });
     expect_refused("256 labels", [](Groups& g, TriangleMesh&) { g[0].label_names.resize(256); });
     expect_refused("vertex 42 of 42", [](Groups&, TriangleMesh& m) { m.faces[9][1] = 42; });
     expect_refused("not finite", [](Groups&, TriangleMesh& m) { m.vertices[5][0] = INFINITY; });

@@ -155,5 +155,23 @@ TEST(BoostedStumps, RefuseWhatDoesNotFit) {
     EXPECT_THROW(scorer.probabilities(good, features, Link::softmax, 1.0f, std::span(out).first(1)), UsageError);
 }
 
+TEST(MeanClassifier, HasTheMeanOfTheScores) {
+    BoostedStumps first{2, {{0, 0.5F, 2.0F, -1.0F, 0b01}}, {0.0F, 0.25F}};
+    BoostedStumps second{2, {{0, 1.5F, 1.0F, 0.5F, 0b11}, {0, 0.5F, 4.0F, 0.0F, 0b10}}, {0.0F, 0.0F, -1.0F, 0.0F}};
+    const BoostedStumps mean = mean_classifier(std::vector{first, second});
+    FeatureMatrix features;
+    features.rows = 3;
+    std::ranges::copy(std::array{0.0F, 1.0F, 2.0F}, features.add("x").begin());
+    CpuStumpScorer scorer;
+    const auto log_odds = [&](const BoostedStumps& classifier) {
+        std::vector<float> p(6), odds;
+        scorer.probabilities(classifier, features, Link::softmax, 1.0F, p);
+        for (std::size_t i = 0; i < 3; ++i) odds.push_back(std::log(p[2 * i] / p[2 * i + 1]));
+        return odds;
+    };
+    const std::vector<float> a = log_odds(first), b = log_odds(second), of_mean = log_odds(mean);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(of_mean[i], 0.5F * (a[i] + b[i]), 1e-5F);
+}
+
 }  // namespace
 }  // namespace exemplar

@@ -1,0 +1,273 @@
+#include "tests/fuzz/readers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <tuple>
+
+#include "host/core/errors.h"
+#include "host/core/files.h"
+#include "host/data/corpus.h"
+#include "host/data/safetensors.h"
+#include "host/labeling/model.h"
+#include "host/mesh/io_formats.h"
+#include "host/mesh/io_text.h"
+#include "tests/fuzz/promises.h"
+#include "tests/support/mesh_files.h"
+
+namespace exemplar::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr MemoryBound k_usual_bound{256 * 1024, 64};
+/// Copies of a mesh cost a glTF file next to nothing, so 300,000 corners are free.
+constexpr MemoryBound k_gltf_bound{48 * 1024 * 1024, 1024};
+
+/// Where files are kept that a reader or writer wants to have a path; goes away with the program. Holds what a glTF
+/// file or a list may name.
+const fs::path& scratch() {
+    static const mesh_files::TemporaryFolder folder;
+    static const bool filled = [] {
+        mesh_files::write_bytes(folder / "a.bin",
+                                mesh_files::tetrahedron_positions() + mesh_files::tetrahedron_indices());
+        mesh_files::write_bytes(folder / "a.off", "OFF\n0 0 0\n");
+        mesh_files::write_bytes(folder / "b c.ply", "ply\n");
+        return true;
+    }();
+    return filled ? folder.path() : throw std::logic_error("no scratch folder");
+}
+
+fs::path scratch_file(const std::string& name, std::string_view content) {
+    const fs::path path = scratch() / name;
+    mesh_files::write_bytes(path, std::string(content));
+    return path;
+}
+
+bool same(float a, float b) {
+    return a == b || (std::isnan(a) && std::isnan(b));
+}
+
+void require_same_triangles(const TriangleMesh& mesh, const TriangleMesh& again) {
+    const auto same_place = [](const Vec3& a, const Vec3& b) {
+        return same(a[0], b[0]) && same(a[1], b[1]) && same(a[2], b[2]);
+    };
+    require(std::ranges::equal(mesh.vertices, again.vertices, same_place), "written vertices are read again");
+    require(mesh.faces == again.faces, "written faces are read again");
+}
+
+/// The name of each triangle's label; empty where it has none.
+std::vector<std::string> names_of_triangles(const MeshFile& file) {
+    std::vector<std::string> names(file.mesh.face_count());
+    for (std::uint32_t f = 0; file.labels && f < names.size(); ++f) {
+        const std::int32_t label = file.labels->label[file.mesh.source_of(f)];
+        if (label >= 0) names[f] = file.labels->names[static_cast<std::size_t>(label)];
+    }
+    return names;
+}
+
+/// All faces must have labels.
+void require_labels_txt(const FaceLabels& labels) {
+    const fs::path path = scratch() / "again_labels.txt";
+    write_labels_txt(path, labels);
+    const FaceLabels again = read_labels_txt(path, labels.label.size());
+    for (std::size_t f = 0; f < labels.label.size(); ++f)
+        require(again.names[static_cast<std::size_t>(again.label[f])] ==
+                    labels.names[static_cast<std::size_t>(labels.label[f])],
+                "written labels are read again");
+}
+
+/// Reads `content` with a reader of meshes and checks the mesh, if it is one.
+template <typename Read>
+bool reads_mesh(const std::string& name, std::string_view content, MemoryBound bound, MeshFile& file, Read&& read) {
+    if (!accepts<MeshError>(name, content.size(), bound, [&] { file = read(content, name); })) return false;
+    require_promises(file);
+    return true;
+}
+
+bool reads_off(std::string_view content) {
+    MeshFile file;
+    if (!reads_mesh("x.off", content, k_usual_bound, file, mesh_io::read_off)) return false;
+    const fs::path path = scratch() / "again.off";
+    write_off(path, file.mesh);
+    require_same_triangles(file.mesh, mesh_io::read_off(read_file(path), "again.off").mesh);
+    return true;
+}
+
+bool reads_obj(std::string_view content) {
+    MeshFile file;
+    if (!reads_mesh("x.obj", content, k_usual_bound, file, mesh_io::read_obj)) return false;
+    const fs::path path = scratch() / "again.obj";
+    write_obj(path, file.mesh);
+    require_same_triangles(file.mesh, mesh_io::read_obj(read_file(path), "again.obj").mesh);
+    return true;
+}
+
+bool reads_ply(std::string_view content) {
+    MeshFile file;
+    if (!reads_mesh("x.ply", content, k_usual_bound, file, mesh_io::read_ply)) return false;
+    const fs::path path = scratch() / "again.ply";
+    write_ply(path, file.mesh, file.labels ? &*file.labels : nullptr);
+    const MeshFile again = mesh_io::read_ply(read_file(path), "again.ply");
+    require_same_triangles(file.mesh, again.mesh);
+    require(file.labels.has_value() == again.labels.has_value(), "written labels are read again");
+    require(names_of_triangles(file) == names_of_triangles(again), "written labels keep their names");
+    if (file.labels && std::ranges::find(file.labels->label, -1) == file.labels->label.end())
+        require_labels_txt(*file.labels);
+    return true;
+}
+
+bool reads_stl(std::string_view content) {
+    MeshFile file;
+    return reads_mesh("x.stl", content, k_usual_bound, file, mesh_io::read_stl);
+}
+
+using LabeledTriangle = std::tuple<std::string, std::array<float, 9>>;
+
+/// In an order that does not depend on the file's.
+std::vector<LabeledTriangle> labeled_triangles(const MeshFile& file) {
+    const std::vector<std::string> names = names_of_triangles(file);
+    std::vector<LabeledTriangle> triangles;
+    for (std::uint32_t f = 0; f < names.size(); ++f) {
+        std::array<float, 9> place;
+        for (std::size_t i = 0; i < place.size(); ++i)
+            place[i] = file.mesh.vertices[file.mesh.faces[f][i / 3]][static_cast<Eigen::Index>(i % 3)];
+        triangles.emplace_back(names[f], place);
+    }
+    std::ranges::sort(triangles);
+    return triangles;
+}
+
+bool reads_gltf(std::string_view content) {
+    MeshFile file;
+    const auto read = [](std::string_view bytes, const std::string& name) {
+        return mesh_io::read_gltf(bytes, name, scratch());
+    };
+    if (!reads_mesh("x.gltf", content, k_gltf_bound, file, read)) return false;
+    const bool writable = !file.mesh.faces.empty() &&
+                          std::ranges::all_of(file.mesh.vertices, [](const Vec3& p) { return p.allFinite(); });
+    if (!writable) return true;
+    const fs::path path = scratch() / "again.glb";
+    write_gltf(path, file.mesh,
+               file.labels.value_or(FaceLabels{{}, std::vector<std::int32_t>(file.mesh.source_face_count, -1)}));
+    require(labeled_triangles(file) == labeled_triangles(read(read_file(path), "again.glb")),
+            "written triangles and labels are read again");
+    return true;
+}
+
+/// As many faces as the file could name if all of its numbers were faces.
+std::size_t numbers_in(std::string_view content) {
+    std::size_t count = 0;
+    for (std::string_view word = mesh_io::take_word(content); !word.empty(); word = mesh_io::take_word(content))
+        if (mesh_io::parse_integer(word)) ++count;
+    return count;
+}
+
+bool reads_labels(std::string_view content) {
+    const std::size_t faces = numbers_in(content);
+    const fs::path path = scratch_file("x_labels.txt", content);
+    FaceLabels labels;
+    const bool accepted = accepts<DataError>(path.string(), content.size(), k_usual_bound,
+                                             [&] { labels = read_labels_txt(path, faces); });
+    if (!accepted) return false;
+    require(labels.label.size() == faces, "a label per face");
+    for (std::int32_t label : labels.label)
+        require(label >= 0 && static_cast<std::size_t>(label) < labels.names.size(), "labels have names");
+    require_labels_txt(labels);
+    return true;
+}
+
+bool reads_seg(std::string_view content) {
+    const std::size_t faces = numbers_in(content);
+    const fs::path path = scratch_file("x.seg", content);
+    std::vector<std::int32_t> segments;
+    const bool accepted =
+        accepts<DataError>(path.string(), content.size(), k_usual_bound, [&] { segments = read_seg(path, faces); });
+    if (!accepted) return false;
+    require(segments.size() == faces, "a segment per face");
+    require(std::ranges::all_of(segments, [](std::int32_t segment) { return segment >= 0; }), "segments from 0 on");
+    const auto reads_more = [&] { read_seg(path, faces + 1); };
+    require(!accepts<DataError>(path.string(), content.size(), k_usual_bound, reads_more), "one segment too few");
+    return true;
+}
+
+bool same(const Tensor& a, const Tensor& b) {
+    return a.type == b.type && a.shape == b.shape && a.bytes == b.bytes;
+}
+
+bool reads_safetensors(std::string_view content) {
+    const fs::path path = scratch_file("x.safetensors", content);
+    TensorFile file;
+    const bool accepted =
+        accepts<ModelError>(path.string(), content.size(), k_usual_bound, [&] { file = read_safetensors(path); });
+    if (!accepted) return false;
+    const fs::path again = scratch() / "again.safetensors";
+    write_safetensors(again, file);
+    const TensorFile written = read_safetensors(again);
+    require(written.metadata == file.metadata, "written metadata are read again");
+    require(
+        std::ranges::equal(written.tensors, file.tensors,
+                           [](const auto& a, const auto& b) { return a.first == b.first && same(a.second, b.second); }),
+        "written arrays are read again");
+    return true;
+}
+
+bool reads_model(std::string_view content) {
+    const fs::path path = scratch_file("x.model", content), again = scratch() / "again.model";
+    LabelingModel model;
+    const auto load = [&] {
+        return accepts<ModelError>(path.string(), content.size(), k_usual_bound, [&] { model = load_model(path); });
+    };
+    load();
+    try {  // made for today's features, whenever it was written, so that the corpus outlives them
+        TensorFile file = read_safetensors(path);
+        file.metadata["feature_version"] = std::to_string(k_feature_version);
+        write_safetensors(path, file);
+    } catch (const ModelError&) {
+        return false;
+    }
+    if (!load()) return false;
+    save_model(again, model);
+    const std::string bytes = read_file(again);
+    save_model(again, load_model(again));
+    require(read_file(again) == bytes, "equal models give equal bytes");
+    return true;
+}
+
+bool reads_list(std::string_view content) {
+    const fs::path path = scratch_file("list.txt", content);
+    std::vector<fs::path> meshes;
+    const bool accepted =
+        accepts<DataError>(path.string(), content.size(), k_usual_bound, [&] { meshes = list_meshes(path); });
+    if (!accepted) return false;
+    require(!meshes.empty(), "a list holds meshes");
+    for (const fs::path& mesh : meshes) require(fs::exists(mesh), "listed meshes exist");
+    return true;
+}
+
+constexpr std::array<Reader, 10> k_readers{{{"off", reads_off},
+                                            {"obj", reads_obj},
+                                            {"ply", reads_ply},
+                                            {"stl", reads_stl},
+                                            {"gltf", reads_gltf},
+                                            {"labels", reads_labels},
+                                            {"seg", reads_seg},
+                                            {"safetensors", reads_safetensors},
+                                            {"model", reads_model},
+                                            {"list", reads_list}}};
+
+}  // namespace
+
+std::span<const Reader> readers() {
+    return k_readers;
+}
+
+const Reader& reader_of(std::string_view name) {
+    const auto found = std::ranges::find(k_readers, name, &Reader::name);
+    if (found == k_readers.end()) throw std::out_of_range("no reader is called " + std::string(name));
+    return *found;
+}
+
+}  // namespace exemplar::fuzz

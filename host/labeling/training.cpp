@@ -114,8 +114,7 @@ FoldBoostingResult run_stage(const std::string& what, std::span<const BoostingIt
     const Stopwatch watch;
     FoldBoostingResult result = boost_with_folds(items, options, scorer, [&] { progress.advance(); });
     progress.finish();
-    report.stages.push_back(
-        {what, result.rounds, result.loss, result.error, true, result.curve, watch.wall()});
+    report.stages.push_back({what, result.rounds, result.loss, result.error, true, result.curve, watch.wall()});
     return result;
 }
 

@@ -18,7 +18,8 @@ bool is_ranked(const std::string& name) {
 /// equal their order is noise.
 void rank_by_area(std::span<const float> values, std::span<const float> area_share, std::span<float> ranks) {
     constexpr std::size_t k_bins = 256;
-    const auto [low, high] = std::ranges::minmax(values);
+    const auto range = std::ranges::minmax(values);
+    const float low = range.min, high = range.max;
     const float per_bin = high > low ? static_cast<float>(k_bins) / (high - low) : 0.0F;
     const auto place = [&](float value) { return std::min((value - low) * per_bin, static_cast<float>(k_bins)); };
     std::array<double, k_bins + 1> below{};  // area below each bin's lower end

@@ -120,13 +120,29 @@ class FoldBoosters {
     std::vector<std::optional<Booster>> of_fold_;
 };
 
+/// Per row whether its label occurs in the other folds: only then can the classifier that never saw it be right.
+std::vector<bool> learnable_rows(const Pool& pool, std::size_t folds, std::size_t classes) {
+    std::vector<std::size_t> rows_of(folds * classes, 0), total(classes, 0);
+    for (std::size_t i = 0; i < pool.label.size(); ++i) {
+        const auto label = static_cast<std::size_t>(pool.label[i]);
+        ++rows_of[pool.fold[i] * classes + label], ++total[label];
+    }
+    std::vector<bool> learnable;
+    for (std::size_t i = 0; i < pool.label.size(); ++i) {
+        const auto label = static_cast<std::size_t>(pool.label[i]);
+        learnable.push_back(total[label] > rows_of[pool.fold[i] * classes + label]);
+    }
+    return learnable;
+}
+
 /// H of every row from the classifier of the fold that held it out, grown round by round.
 class HeldOutScores {
   public:
-    HeldOutScores(const Pool& pool, const FoldBoosters& boosters, std::size_t classes)
-        : pool_(pool), boosters_(boosters), classes_(classes), scores_(pool.label.size() * classes, 0.0F) {
+    HeldOutScores(const Pool& pool, const FoldBoosters& boosters, const FoldBoostingOptions& options)
+        : pool_(pool), boosters_(boosters), classes_(options.classes), scores_(pool.label.size() * classes_, 0.0F) {
+        const std::vector<bool> learnable = learnable_rows(pool, options.folds, classes_);
         for (std::size_t i = 0; i < pool.label.size(); ++i)
-            weight_.push_back(boosters.without(pool.fold[i]) ? pool.weight[i] : 0);
+            weight_.push_back(boosters.without(pool.fold[i]) && learnable[i] ? pool.weight[i] : 0);
     }
 
     void add_round(std::size_t round) {
@@ -165,7 +181,7 @@ RoundChoice choose_rounds(const Pool& pool, FoldBoosters& boosters, const FoldBo
     constexpr std::array<Link, 2> k_links{Link::softmax, Link::sigmoid};
     // GentleBoost's class 0 has no score of its own, so sigmoids do not apply.
     const std::span<const Link> usable = std::span(k_links).first(options.binary ? 1 : 2);
-    HeldOutScores scores(pool, boosters, options.classes);
+    HeldOutScores scores(pool, boosters, options);
     RoundChoice choice;
     for (std::size_t round = 1; round <= options.rounds; ++round) {
         boosters.grow_to(round, round_done);

@@ -288,18 +288,36 @@ std::vector<bool> touching_labels(const LabeledCorpus& corpus, const std::vector
     return touching;
 }
 
-void train_crf(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& features, const PerMesh& probabilities,
-               const PerMesh& boundary, LabelingModel& model, TrainReport& report) {
+/// The labels that out-of-fold probabilities can be judged by: -1 where no other fold has a face of that label.
+std::vector<std::vector<std::int32_t>> learnable_labels(const LabeledCorpus& corpus, const Folds& folds) {
+    const std::size_t classes = corpus.names.size();
+    std::vector<std::vector<bool>> occurs(classes, std::vector<bool>(folds.count, false));  // per label and fold
+    for (std::size_t m = 0; m < corpus.meshes.size(); ++m)
+        for (std::size_t f = 0; f < folds.of_face[m].size(); ++f)
+            if (const std::int32_t label = corpus.meshes[m].label[f]; label >= 0)
+                occurs[static_cast<std::size_t>(label)][folds.of_face[m][f]] = true;
+    std::vector<std::vector<std::int32_t>> learnable;
+    for (std::size_t m = 0; m < corpus.meshes.size(); ++m) {
+        learnable.push_back(corpus.meshes[m].label);
+        for (std::int32_t& label : learnable.back())
+            if (label >= 0 && std::ranges::count(occurs[static_cast<std::size_t>(label)], true) < 2) label = -1;
+    }
+    return learnable;
+}
+
+void train_crf(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& features, const Folds& folds,
+               const PerMesh& probabilities, const PerMesh& boundary, LabelingModel& model, TrainReport& report) {
     const std::size_t classes = corpus.names.size();
     PerMesh smallest;
     for (std::size_t m = 0; m < features.size(); ++m)
         smallest.push_back(smallest_pieces(features[m], corpus.meshes[m].label, classes));
     model.smallest_component = smallest_of_others(smallest, k_none);
 
+    const std::vector<std::vector<std::int32_t>> truth = learnable_labels(corpus, folds);
     std::vector<CrfExample> examples;
     for (std::size_t m = 0; m < features.size(); ++m)
-        examples.push_back({&features[m], make_crf_terms(features[m], probabilities[m], classes, boundary[m]),
-                            corpus.meshes[m].label, smallest_of_others(smallest, features.size() > 1 ? m : k_none)});
+        examples.push_back({&features[m], make_crf_terms(features[m], probabilities[m], classes, boundary[m]), truth[m],
+                            smallest_of_others(smallest, features.size() > 1 ? m : k_none)});
     const std::vector<bool> touching = touching_labels(corpus, features);
     Progress progress("searching CRF parameters", crf_search_evaluations(classes, touching));
     const Stopwatch watch;
@@ -327,7 +345,7 @@ LabelingModel train_labeling(const LabeledCorpus& corpus, std::vector<MeshFeatur
     const Folds folds = make_folds(corpus, features, options.seed, report);
     const PerMesh probabilities = train_unary(corpus, features, folds, options, backend, model, report);
     const PerMesh boundary = train_pairwise(corpus, features, folds, options, backend, model, report);
-    train_crf(corpus, features, probabilities, boundary, model, report);
+    train_crf(corpus, features, folds, probabilities, boundary, model, report);
     return model;
 }
 

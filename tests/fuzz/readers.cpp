@@ -1,8 +1,11 @@
 #include "tests/fuzz/readers.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 #include <tuple>
@@ -26,18 +29,19 @@ constexpr MemoryBound k_usual_bound{256 * 1024, 64};
 /// Copies of a mesh cost a glTF file next to nothing, so 300,000 corners are free.
 constexpr MemoryBound k_gltf_bound{48 * 1024 * 1024, 1024};
 
-/// Where files are kept that a reader or writer wants to have a path; goes away with the program. Holds what a glTF
-/// file or a list may name.
+/// Where files are kept that a reader or writer wants to have a path; goes away with the program. In memory where that
+/// is possible, as a disk would take most of the time. Holds what a glTF file or a list may name.
 const fs::path& scratch() {
-    static const mesh_files::TemporaryFolder folder;
-    static const bool filled = [] {
+    static const fs::path path = [] {
+        if (access("/dev/shm", W_OK) == 0) setenv("TEST_TMPDIR", "/dev/shm", 0);  // GoogleTest's name for /tmp
+        static const mesh_files::TemporaryFolder folder;
         mesh_files::write_bytes(folder / "a.bin",
                                 mesh_files::tetrahedron_positions() + mesh_files::tetrahedron_indices());
         mesh_files::write_bytes(folder / "a.off", "OFF\n0 0 0\n");
         mesh_files::write_bytes(folder / "b c.ply", "ply\n");
-        return true;
+        return folder.path();
     }();
-    return filled ? folder.path() : throw std::logic_error("no scratch folder");
+    return path;
 }
 
 fs::path scratch_file(const std::string& name, std::string_view content) {

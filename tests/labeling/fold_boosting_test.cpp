@@ -74,6 +74,18 @@ TEST(FoldBoosting, ProbabilitiesAreOfTheClassifierThatNeverSawTheMesh) {
     EXPECT_EQ(likelier(), straight);
 }
 
+TEST(FoldBoosting, ALabelOfOneFoldOnlyIsNotHeldAgainstTheOthers) {
+    Meshes meshes = make_meshes(3, 80, 0.2);
+    CpuStumpScorer scorer;
+    FoldBoostingOptions options = options_for(3);
+    options.classes = 3, options.patience = 0, options.rounds = 60;
+    const FoldBoostingResult before = boost_with_folds(meshes.items, options, scorer, [] {});
+    for (std::size_t i = 0; i < 30; ++i) meshes.data[0].labels[i] = 2;  // what no classifier without this mesh can know
+    const FoldBoostingResult after = boost_with_folds(meshes.items, options, scorer, [] {});
+    EXPECT_LT(after.error, before.error + 0.1);
+    EXPECT_GT(after.classifier.scale, 0.5F * before.classifier.scale) << "probabilities must not become unsure";
+}
+
 TEST(FoldBoosting, WithoutAnythingHeldOutItStillTrains) {
     const Meshes meshes = make_meshes(1, 60, 1.0);
     CpuStumpScorer scorer;

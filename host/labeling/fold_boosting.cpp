@@ -120,29 +120,42 @@ class FoldBoosters {
     std::vector<std::optional<Booster>> of_fold_;
 };
 
-/// Per row whether its label occurs in the other folds: only then can the classifier that never saw it be right.
-std::vector<bool> learnable_rows(const Pool& pool, std::size_t folds, std::size_t classes) {
-    std::vector<std::size_t> rows_of(folds * classes, 0), total(classes, 0);
-    for (std::size_t i = 0; i < pool.label.size(); ++i) {
-        const auto label = static_cast<std::size_t>(pool.label[i]);
-        ++rows_of[pool.fold[i] * classes + label], ++total[label];
+/// Where the rows of each label lie: what occurs in one fold only, the classifier of the others cannot know.
+class FoldLabels {
+  public:
+    FoldLabels(const Pool& pool, const FoldBoostingOptions& options)
+        : classes_(options.classes), folds_(options.folds), rows_(folds_ * classes_, 0), total_(classes_, 0) {
+        for (std::size_t i = 0; i < pool.label.size(); ++i) {
+            const auto label = static_cast<std::size_t>(pool.label[i]);
+            ++rows_[pool.fold[i] * classes_ + label], ++total_[label];
+        }
     }
-    std::vector<bool> learnable;
-    for (std::size_t i = 0; i < pool.label.size(); ++i) {
-        const auto label = static_cast<std::size_t>(pool.label[i]);
-        learnable.push_back(total[label] > rows_of[pool.fold[i] * classes + label]);
+    /// Whether rows of this label lie outside of the fold.
+    bool known_without(std::size_t fold, std::size_t label) const {
+        return total_[label] > rows_[fold * classes_ + label];
     }
-    return learnable;
-}
+    /// Whether that holds for all labels there are.
+    bool all_known_without(std::size_t fold) const {
+        for (std::size_t label = 0; label < classes_; ++label)
+            if (total_[label] > 0 && !known_without(fold, label)) return false;
+        return true;
+    }
+
+  private:
+    std::size_t classes_, folds_;
+    std::vector<std::size_t> rows_, total_;
+};
 
 /// H of every row from the classifier of the fold that held it out, grown round by round.
 class HeldOutScores {
   public:
     HeldOutScores(const Pool& pool, const FoldBoosters& boosters, const FoldBoostingOptions& options)
         : pool_(pool), boosters_(boosters), classes_(options.classes), scores_(pool.label.size() * classes_, 0.0F) {
-        const std::vector<bool> learnable = learnable_rows(pool, options.folds, classes_);
-        for (std::size_t i = 0; i < pool.label.size(); ++i)
-            weight_.push_back(boosters.without(pool.fold[i]) && learnable[i] ? pool.weight[i] : 0);
+        const FoldLabels labels(pool, options);
+        for (std::size_t i = 0; i < pool.label.size(); ++i) {
+            const bool known = labels.known_without(pool.fold[i], static_cast<std::size_t>(pool.label[i]));
+            weight_.push_back(boosters.without(pool.fold[i]) && known ? pool.weight[i] : 0);
+        }
     }
 
     void add_round(std::size_t round) {
@@ -241,8 +254,9 @@ FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const
 
     FoldBoostingResult result;
     std::vector<BoostedStumps> all{everywhere.classifier()};
-    for (const BoostedStumps& classifier : of_fold)
-        if (classifier.class_count > 0) all.push_back(classifier);
+    const FoldLabels labels(pool, options);
+    for (std::size_t fold = 0; fold < of_fold.size(); ++fold)
+        if (of_fold[fold].class_count > 0 && labels.all_known_without(fold)) all.push_back(of_fold[fold]);
     result.classifier.stumps = mean_classifier(all);
     result.rounds = choice.rounds;
     result.classifier.link = choice.calibration.link;

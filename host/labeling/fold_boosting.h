@@ -52,7 +52,8 @@ struct FoldBoostingResult {
 
 /// Boosts one classifier per fold and one on everything (see train_labeling). The log loss of the held-out items, after
 /// calibration, chooses the number of rounds (if options.patience asks for that), the link and its scale. The result is
-/// the mean of all these classifiers, which differ by what they did not see: their mean is better than any one.
+/// the mean of these classifiers, which differ by what they did not see: their mean is better than any one. Those of
+/// folds that hold all items of a class have no say: they do not know it.
 /// `round_done` is called after every round of every classifier.
 FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const FoldBoostingOptions& options,
                                     StumpScorer& scorer, const std::function<void()>& round_done);

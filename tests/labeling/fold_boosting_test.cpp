@@ -82,6 +82,8 @@ TEST(FoldBoosting, ALabelOfOneFoldOnlyIsNotHeldAgainstTheOthers) {
     const FoldBoostingResult before = boost_with_folds(meshes.items, options, scorer, [] {});
     for (std::size_t i = 0; i < 30; ++i) meshes.data[0].labels[i] = 2;  // what no classifier without this mesh can know
     const FoldBoostingResult after = boost_with_folds(meshes.items, options, scorer, [] {});
+    EXPECT_EQ(before.classifier.stumps.stumps.size(), 4 * 60U);
+    EXPECT_EQ(after.classifier.stumps.stumps.size(), 3 * 60U) << "the one that cannot know the label has no say";
     EXPECT_LT(after.error, before.error + 0.1);
     EXPECT_GT(after.classifier.scale, 0.5F * before.classifier.scale) << "probabilities must not become unsure";
 }

@@ -98,18 +98,20 @@ void score_stumps(benchmark::State& state) {
 BENCHMARK(score_stumps)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 
 /// A grid of hexagonal connectivity (three neighbors, as faces of a mesh have) with smooth, noisy unary costs.
+/// Arguments: the heaviest edge in tenths; width and height of the grid.
 void expand_labels(benchmark::State& state) {
-    constexpr std::uint32_t k_width = 200, k_height = 100, k_labels = 8;
+    constexpr std::uint32_t k_labels = 8;
+    const auto width = static_cast<std::uint32_t>(state.range(1)), height = static_cast<std::uint32_t>(state.range(2));
     Random random(1);
     std::vector<std::array<std::uint32_t, 2>> edges;
     std::vector<float> unary;
-    for (std::uint32_t i = 0; i < k_width * k_height; ++i) {
-        const std::uint32_t x = i % k_width, y = i / k_width, truth = x * 4 / k_width + 4 * (y * 2 / k_height);
+    for (std::uint32_t i = 0; i < width * height; ++i) {
+        const std::uint32_t x = i % width, y = i / width, truth = x * 4 / width + 4 * (y * 2 / height);
         for (std::uint32_t l = 0; l < k_labels; ++l) {
             unary.push_back(static_cast<float>((l == truth ? 0.0 : 1.0) + 2.0 * random.uniform()));
         }
-        if (x + 1 < k_width) edges.push_back({i, i + 1});
-        if (y + 1 < k_height && (x + y) % 2 == 0) edges.push_back({i, i + k_width});
+        if (x + 1 < width) edges.push_back({i, i + 1});
+        if (y + 1 < height && (x + y) % 2 == 0) edges.push_back({i, i + width});
     }
     std::vector<double> weight(edges.size()), v(k_labels * k_labels, 1.0);
     for (double& w : weight) w = random.uniform(0.1, static_cast<double>(state.range(0)) / 10.0);
@@ -120,7 +122,13 @@ void expand_labels(benchmark::State& state) {
         state.counters["edges"] = static_cast<double>(edges.size());
     }
 }
-BENCHMARK(expand_labels)->Arg(5)->Arg(20)->Unit(benchmark::kMillisecond);
+BENCHMARK(expand_labels)
+    ->Args({5, 200, 100})
+    ->Args({20, 200, 100})
+    ->Args({5, 500, 200})
+    ->Args({20, 500, 200})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime();
 
 }  // namespace
 }  // namespace exemplar

@@ -118,7 +118,7 @@ void bench_scoring(BenchContext& context, const std::function<void(const BenchRo
 
     BenchRow result{.name = "scoring",
                     .what = fmt::format("{} stumps, {} x {}, {} classes", k_stumps, k_rows, k_features, k_classes),
-                    .goal = "at most 2x the CPU time of vectorized C++",
+                    .goal = "at most 2x the CPU time of vectorized C++: 110 ms",
                     .others = "plain C++ 55 ms, XGBoost 128 ms"};
     profiler.reset();
     result.cost = per_call(measure(context.runs(), [&] { score(scorer, actual); }), k_calls);

@@ -23,11 +23,11 @@ bool reset_peak() {
     return file.good();
 }
 
-/// The largest memory use since reset_peak, in bytes.
-double peak_memory() {
+/// A line of the process' status in bytes: "VmHWM" is the largest memory use since reset_peak, "VmRSS" that of now.
+double memory(const std::string& line) {
     std::ifstream file("/proc/self/status");
     for (std::string word; file >> word;) {
-        if (word != "VmHWM:") continue;
+        if (word != line + ":") continue;
         double kilobytes = 0;
         file >> kilobytes;
         return 1024 * kilobytes;
@@ -58,24 +58,26 @@ void print_cost(const std::string& what, const Cost& cost) {
 
 nlohmann::json describe_cost(const Cost& cost) {
     nlohmann::json json{{"wall_seconds", cost.wall}, {"cpu_seconds", cost.cpu}};
-    if (!std::isnan(cost.peak)) json["peak_bytes"] = cost.peak;
+    if (!std::isnan(cost.peak)) json["peak_bytes"] = cost.peak, json["own_bytes"] = cost.own;
     return json;
 }
 
 }  // namespace
 
 Cost measure(std::size_t runs, const std::function<void()>& run) {
-    std::vector<double> wall, cpu, peak;
+    std::vector<double> wall, cpu, peak, own;
     for (std::size_t i = 0; i < runs; ++i) {
         check_interrupt();
         const bool has_peak = reset_peak();
+        const double before = memory("VmRSS");
         const Stopwatch watch;
         run();
         wall.push_back(watch.wall());
         cpu.push_back(watch.cpu());
-        peak.push_back(has_peak ? peak_memory() : std::numeric_limits<double>::quiet_NaN());
+        peak.push_back(has_peak ? memory("VmHWM") : std::numeric_limits<double>::quiet_NaN());
+        own.push_back(peak.back() - before);
     }
-    return {median(wall), median(cpu), median(peak)};
+    return {median(wall), median(cpu), median(peak), median(own)};
 }
 
 Cost measure_single_thread(std::size_t runs, const std::function<void()>& run) {

@@ -14,6 +14,7 @@ struct Cost {
     double wall = 0;  ///< seconds
     double cpu = 0;   ///< seconds of all threads
     double peak = 0;  ///< bytes of the process at most while it ran, its data included; NaN where the system cannot say
+    double own = 0;   ///< what of that the process did not have before
 };
 
 /// The medians over `runs` runs. Memory that earlier work has freed is given back first, so that it does not count.
@@ -34,7 +35,7 @@ void print_header();
 void print_row(const BenchRow& row);
 nlohmann::json describe_row(const BenchRow& row);
 
-/// The exponent e of time = c size^e, by least squares of the logarithms. Two sizes at least.
+/// The exponent e of value = c size^e, by least squares of the logarithms. Two sizes at least.
 double fitted_exponent(const std::vector<double>& sizes, const std::vector<double>& values);
 
 }  // namespace exemplar

@@ -32,6 +32,7 @@ constexpr std::array<BenchPart, 7> k_parts{{{"features", false, bench_features},
 
 std::vector<std::string> part_names() {
     std::vector<std::string> names;
+    names.reserve(k_parts.size());
     for (const BenchPart& part : k_parts) names.emplace_back(part.name);
     return names;
 }

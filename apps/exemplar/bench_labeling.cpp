@@ -8,7 +8,7 @@
 #include "apps/exemplar/bench_rows.h"
 #include "host/core/progress.h"
 #include "host/labeling/feature_cache.h"
-#include "host/labeling/labeler.h"
+#include "host/labeling/mesh_labeling.h"
 #include "host/labeling/training.h"
 
 namespace exemplar {
@@ -132,8 +132,7 @@ void bench_labeling(BenchContext& context, const std::function<void(const BenchR
     const TemporaryFolder cache;
     HostBackend host;
     const auto label = [&](const std::filesystem::path& folder, const LabelingBackend& backend) {
-        MeshFeatures features = cached_features(mesh.mesh, model.feature_options, folder);
-        label_faces(model, features, backend);
+        label_mesh(model, mesh.mesh, folder, backend);
     };
     label(cache.path, context.backend().labeling());  // fills the cache and compiles the kernels
 

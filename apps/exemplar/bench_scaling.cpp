@@ -3,25 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 
 #include "apps/exemplar/bench_data.h"
 #include "apps/exemplar/bench_rows.h"
 #include "host/core/progress.h"
-#include "host/labeling/labeler.h"
+#include "host/labeling/mesh_labeling.h"
 #include "host/labeling/training.h"
 #include "host/synth/shapes.h"
 
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_coarsest = 2000, k_sizes = 5;  // each 4 times the one before: up to 512,000 faces
-constexpr double k_longest = 15 * 60;                  // CPU seconds; a size that would take longer is left out
+constexpr std::size_t k_coarsest = 2000, k_sizes = 6;  // each 4 times the one before: up to two million faces
 
 /// Costs of one operation over the sizes.
 struct Growth {
-    std::string what, goal;
+    std::string what;
     std::vector<double> faces, cpu, memory;
     std::vector<Cost> costs;
 
@@ -30,11 +27,6 @@ struct Growth {
         cpu.push_back(cost.cpu);
         memory.push_back(cost.own);
         costs.push_back(cost);
-    }
-    /// The CPU time of four times as many faces, if it goes on as it did: a loaded machine must not decide.
-    double expected_next() const {
-        if (cpu.size() < 2) return 0;
-        return cpu.back() * std::max(4.0, cpu.back() / cpu[cpu.size() - 2]);
     }
 };
 
@@ -64,17 +56,6 @@ void report(const Growth& growth, const std::function<void(const BenchRow&)>& ro
     }
 }
 
-/// How much time each family takes more when the faces are four times as many, as an exponent of the last two sizes.
-std::string family_exponents(const std::vector<std::map<std::string, double>>& seconds) {
-    std::string text;
-    if (seconds.size() < 2) return text;
-    const auto& before = seconds[seconds.size() - 2];
-    for (const auto& [family, time] : seconds.back())
-        text += fmt::format("{}{} {:.2f}", text.empty() ? "" : ", ", family,
-                            std::log(time / before.at(family)) / std::log(4.0));
-    return text;
-}
-
 }  // namespace
 
 void bench_scaling(BenchContext& context, const std::function<void(const BenchRow&)>& row) {
@@ -87,9 +68,7 @@ void bench_scaling(BenchContext& context, const std::function<void(const BenchRo
     TrainReport unused;
     const LabelingModel model = train_labeling(corpus, examples, options, context.backend().labeling(), unused);
 
-    Growth features{"all features", {}, {}, {}, {}, {}}, labeling{"labeling, features at hand", {}, {}, {}, {}, {}},
-        cut{"alpha-expansion, 8 labels", {}, {}, {}, {}, {}};
-    std::vector<std::map<std::string, double>> families;
+    Growth labeling{"labeling, features included", {}, {}, {}, {}}, cut{"alpha-expansion, 8 labels", {}, {}, {}, {}};
     TriangleMesh mesh = corpus.meshes.front().mesh;
     Progress progress("growing", k_sizes);
     for (std::size_t size = 0; size < k_sizes; ++size) {
@@ -101,26 +80,12 @@ void bench_scaling(BenchContext& context, const std::function<void(const BenchRo
                                         problem.compatibility);
                     }));
         }
-        if (features.expected_next() < k_longest) {
-            MeshFeatures of_mesh;
-            features.add(mesh.face_count(), measure(1, [&] { of_mesh = compute_features(mesh); }));
-            families.emplace_back(of_mesh.seconds.begin(), of_mesh.seconds.end());
-            label_faces(model, of_mesh, context.backend().labeling());
-            drop_context_columns(of_mesh);
-            labeling.add(mesh.face_count(),
-                         measure(1, [&] { label_faces(model, of_mesh, context.backend().labeling()); }));
-        }
+        labeling.add(mesh.face_count(), measure(1, [&] { label_mesh(model, mesh, {}, context.backend().labeling()); }));
         progress.advance(1, fmt::format("{} faces", mesh.face_count()));
     }
     progress.finish();
-    report(features, row);
     report(labeling, row);
     report(cut, row);
-    if (const std::string text = family_exponents(families); !text.empty())
-        fmt::print("    feature families, exponents of wall time between the last two sizes: {}\n", text);
-    if (features.costs.size() < k_sizes)
-        fmt::print("    features of larger meshes would take more than {:.0f} minutes of CPU and were left out\n",
-                   k_longest / 60);
 }
 
 }  // namespace exemplar

@@ -33,6 +33,7 @@ void add_label_command(CLI::App& app);
 void add_train_command(CLI::App& label);
 void add_apply_command(CLI::App& label);
 void add_evaluate_command(CLI::App& label);
+void add_stress_command(CLI::App& label);
 void add_demo_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 

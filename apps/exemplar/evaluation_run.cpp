@@ -18,6 +18,7 @@
 #include "host/core/stopwatch.h"
 #include "host/core/text.h"
 #include "host/labeling/evaluation.h"
+#include "host/labeling/mesh_labeling.h"
 #include "host/labeling/report_page.h"
 
 namespace exemplar {
@@ -163,7 +164,7 @@ LabelingModel EvaluationRun::model_for(const EvaluationTask& task, const fs::pat
         }
     }
     const Stopwatch watch;
-    const LabeledCorpus corpus = load_corpus(task.train, {}, task.labels);
+    const LabeledCorpus corpus = working_corpus(load_corpus(task.train, {}, task.labels));
     warn(corpus.warnings);
     std::vector<MeshFeatures> features = features_of(corpus, train_.features, cache_);
     const double feature_seconds = watch.wall();
@@ -215,26 +216,26 @@ Json EvaluationRun::test_mesh(const EvaluationTask& task, const fs::path& mesh, 
     const LabeledCorpus corpus = load_test_mesh(task, mesh, model);
     warn(corpus.warnings);
     const LabeledMesh& item = corpus.meshes.front();
-    MeshFeatures features = cached_features(item.mesh, model.feature_options, cache_);
-    Json seconds{{"features", watch.wall()}};
-    const FaceLabeling labeling = label_faces(model, features, backend_.labeling());
+    const FaceLabeling labeling = label_mesh(model, item.mesh, cache_, backend_.labeling());
+    Json seconds = Json::object();
     for (const auto& [stage, time] : labeling.seconds) seconds[stage] = time;
     const LabeledOutput output = make_labeled_output(item.mesh, model, labeling);
     write_labels_txt(stem.string() + "_labels.txt", output.labels);
     write_ply(stem.string() + ".ply", item.mesh, &output.labels, output.confidence);
 
     const Stopwatch scoring;
-    MeshScore score = score_labeling(features, item.label, labeling.label, corpus.names.size());
+    const std::vector<float> areas = face_areas(item.mesh);
+    MeshScore score = score_labeling(areas, item.label, labeling.label, corpus.names.size());
     if (task.other_category) {  // all labels are compared, but only what both could name is rated
         std::vector<std::int32_t> rated = item.label;
         for (std::int32_t& label : rated)
             if (label >= static_cast<std::int32_t>(model.class_count())) label = -1;
-        const MeshScore shared = score_labeling(features, rated, labeling.label, corpus.names.size());
+        const MeshScore shared = score_labeling(areas, rated, labeling.label, corpus.names.size());
         score.recognition_rate = shared.recognition_rate;
         score.segment_weighted_accuracy = shared.segment_weighted_accuracy;
     }
-    Json json = describe_scores(
-        score, score_segmentation(item.mesh, features, labeling.label, human_segmentations(task.humans, item)));
+    Json json =
+        describe_scores(score, score_segmentation(item.mesh, labeling.label, human_segmentations(task.humans, item)));
     seconds["scores"] = scoring.wall(), seconds["all"] = watch.wall();
     json.update({{"key", mesh_key},
                  {"mesh", item.name},
@@ -320,8 +321,7 @@ void EvaluationRun::write_page(const std::vector<EvaluationTask>& tasks, const J
 ReportMesh EvaluationRun::report_mesh(const LabelingModel& model, LabeledCorpus& shown,
                                       const std::vector<std::string>& names) {
     LabeledMesh& mesh = shown.meshes.front();
-    MeshFeatures features = cached_features(mesh.mesh, model.feature_options, cache_);
-    FaceLabeling labeling = label_faces(model, features, backend_.labeling());
+    FaceLabeling labeling = label_mesh(model, mesh.mesh, cache_, backend_.labeling());
     for (std::int32_t& label : mesh.label) {
         if (label < 0) continue;
         const auto found = std::find(names.begin(), names.end(), shown.names[static_cast<std::size_t>(label)]);

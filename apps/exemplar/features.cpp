@@ -4,10 +4,13 @@
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/commands.h"
+#include "host/core/errors.h"
 #include "host/core/stopwatch.h"
 #include "host/data/npy.h"
 #include "host/labeling/features.h"
+#include "host/labeling/mesh_labeling.h"
 #include "host/mesh/io.h"
+#include "host/mesh/simplify.h"
 #include "host/mesh/validate.h"
 
 namespace exemplar {
@@ -19,6 +22,16 @@ struct FeaturesOptions {
     bool pairwise = false;
     FeatureOptions features;
 };
+
+/// Of a large mesh each face has the features of the face that stands for it; edges have no such counterpart.
+void announce_simplification(const FeaturesOptions& options, std::size_t faces) {
+    if (options.pairwise)
+        throw UsageError(fmt::format("{}: has {} faces; features of edges take {} at most: simplify it first",
+                                     options.mesh.string(), faces, k_most_working_faces));
+    if (!options.common.quiet)
+        fmt::print(stderr, "note: {}: {} faces are simplified to about {}; each gets the features of the nearest\n",
+                   options.mesh.string(), faces, k_most_working_faces);
+}
 
 void run_features(const FeaturesOptions& options) {
     const auto limits = apply_common_options(options.common);
@@ -33,9 +46,13 @@ void run_features(const FeaturesOptions& options) {
         for (const std::string& message : warnings)
             fmt::print(stderr, "warning: {}: {}\n", options.mesh.string(), message);
     const Stopwatch watch;
-    const MeshFeatures features = compute_features(file.mesh, options.features);
+    const bool large = file.mesh.face_count() > k_most_working_faces;
+    if (large) announce_simplification(options, file.mesh.face_count());
+    const SimplifiedMesh working = large ? simplify_mesh(file.mesh, k_most_working_faces) : SimplifiedMesh{};
+    const MeshFeatures features = compute_features(large ? working.mesh : file.mesh, options.features);
     const FeatureMatrix& matrix = options.pairwise ? features.pairwise : features.unary;
-    write_npy(options.out, matrix);
+    const std::size_t rows = large ? working.face_of.size() : matrix.rows;
+    write_npy(options.out, matrix, working.face_of);
     if (!options.names.empty()) write_json(options.names, matrix.names);
 
     nlohmann::json seconds;
@@ -43,9 +60,9 @@ void run_features(const FeaturesOptions& options) {
         fmt::print("{:>16} {:8.3f} s\n", family, time);
         seconds[family] = time;
     }
-    fmt::print("{} x {} features of {} in {:.2f} s\n", matrix.rows, matrix.cols(), options.mesh.string(), watch.wall());
+    fmt::print("{} x {} features of {} in {:.2f} s\n", rows, matrix.cols(), options.mesh.string(), watch.wall());
     write_report(options.common, {{"mesh", options.mesh.string()},
-                                  {"rows", matrix.rows},
+                                  {"rows", rows},
                                   {"features", matrix.cols()},
                                   {"names", matrix.names},
                                   {"warnings", warnings},

@@ -7,6 +7,7 @@
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/training_run.h"
 #include "host/core/stopwatch.h"
+#include "host/labeling/mesh_labeling.h"
 
 namespace exemplar {
 namespace {
@@ -23,7 +24,7 @@ void run_train(const TrainCommand& options) {
     const Stopwatch watch;
     require_output_file(options.out);
     const std::filesystem::path cache = usable_cache(options.cache, options.common.quiet);
-    const LabeledCorpus corpus = load_corpus(meshes_of_argument(options.source));
+    const LabeledCorpus corpus = working_corpus(load_corpus(meshes_of_argument(options.source)));
     if (!options.common.quiet)
         for (const std::string& warning : corpus.warnings) fmt::print(stderr, "warning: {}\n", warning);
     DeviceBackend backend(options.common.device);

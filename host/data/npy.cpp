@@ -29,13 +29,15 @@ std::string npy_header(std::size_t rows, std::size_t cols) {
 
 }  // namespace
 
-void write_npy(const std::filesystem::path& path, const FeatureMatrix& matrix) {
+void write_npy(const std::filesystem::path& path, const FeatureMatrix& matrix, std::span<const std::uint32_t> row_of) {
+    const std::size_t items = row_of.empty() ? matrix.rows : row_of.size();
     write_file_atomically(path, [&](std::ostream& stream) {
-        const std::string header = npy_header(matrix.rows, matrix.cols());
+        const std::string header = npy_header(items, matrix.cols());
         stream.write(header.data(), static_cast<std::streamsize>(header.size()));
         std::vector<float> row(matrix.cols());
-        for (std::size_t i = 0; i < matrix.rows; ++i) {
-            for (std::size_t k = 0; k < row.size(); ++k) row[k] = matrix.column(k)[i];
+        for (std::size_t i = 0; i < items; ++i) {
+            const std::size_t source = row_of.empty() ? i : row_of[i];
+            for (std::size_t k = 0; k < row.size(); ++k) row[k] = matrix.column(k)[source];
             stream.write(reinterpret_cast<const char*>(row.data()),
                          static_cast<std::streamsize>(row.size() * sizeof(float)));
         }

@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <numeric>
 
+#include "host/core/disjoint_sets.h"
 #include "host/core/errors.h"
 #include "host/core/random.h"
-#include "host/labeling/crf.h"
 #include "host/learn/metrics.h"
 #include "host/mesh/io.h"
+#include "host/mesh/topology.h"
 
 namespace exemplar {
 namespace {
@@ -44,10 +45,10 @@ std::vector<Split> make_splits(std::size_t count, std::size_t train_count, std::
     return result;
 }
 
-MeshScore score_labeling(const MeshFeatures& features, std::span<const std::int32_t> truth,
+MeshScore score_labeling(std::span<const float> face_area, std::span<const std::int32_t> truth,
                          std::span<const std::int32_t> predicted, std::size_t classes) {
     MeshScore score;
-    const ConfusionMatrix confusion = confusion_matrix(truth, predicted, features.face_area, classes);
+    const ConfusionMatrix confusion = confusion_matrix(truth, predicted, face_area, classes);
     score.recognition_rate = recognition_rate(confusion);
     score.segment_weighted_accuracy = segment_weighted_accuracy(confusion);
     const double total = std::max(std::accumulate(confusion.area.begin(), confusion.area.end(), 0.0), 1e-30);
@@ -56,12 +57,15 @@ MeshScore score_labeling(const MeshFeatures& features, std::span<const std::int3
     return score;
 }
 
-SegmentationErrors score_segmentation(const TriangleMesh& mesh, const MeshFeatures& features,
-                                      std::span<const std::int32_t> predicted,
+SegmentationErrors score_segmentation(const TriangleMesh& mesh, std::span<const std::int32_t> predicted,
                                       std::span<const std::vector<std::int32_t>> human_segmentations) {
     if (human_segmentations.empty()) return {};
-    const LabelComponents pieces = label_components(features, predicted);
-    const std::vector<std::int32_t> segments(pieces.of_face.begin(), pieces.of_face.end());
+    DisjointSets pieces(predicted.size());
+    for (const Edge& edge : build_topology(mesh).edges)
+        if (!edge.is_boundary() && predicted[edge.face[0]] == predicted[edge.face[1]])
+            pieces.join(edge.face[0], edge.face[1]);
+    std::vector<std::int32_t> segments(predicted.size());
+    for (std::uint32_t f = 0; f < segments.size(); ++f) segments[f] = static_cast<std::int32_t>(pieces.find(f));
     return SegmentationMetrics(mesh).mean_errors(segments, human_segmentations);
 }
 

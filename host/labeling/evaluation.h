@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "host/labeling/features.h"
 #include "host/labeling/segmentation_metrics.h"
+#include "host/mesh/mesh.h"
 
 namespace exemplar {
 
@@ -27,14 +27,13 @@ struct MeshScore {
     std::vector<double> confusion;         ///< classes x classes, row = truth, share of the mesh's area
 };
 
-/// Scores predicted against true labels; faces whose truth is -1 are left out.
-MeshScore score_labeling(const MeshFeatures& features, std::span<const std::int32_t> truth,
+/// Scores predicted against true labels, weighted by the area of each face; faces whose truth is -1 are left out.
+MeshScore score_labeling(std::span<const float> face_area, std::span<const std::int32_t> truth,
                          std::span<const std::int32_t> predicted, std::size_t classes);
 
 /// Scores a labeling as a segmentation: its segments are the connected pieces of equal label, compared with each of the
 /// human segmentations (one segment per triangle; thesis Sec. 3.4). All NaN without any.
-SegmentationErrors score_segmentation(const TriangleMesh& mesh, const MeshFeatures& features,
-                                      std::span<const std::int32_t> predicted,
+SegmentationErrors score_segmentation(const TriangleMesh& mesh, std::span<const std::int32_t> predicted,
                                       std::span<const std::vector<std::int32_t>> human_segmentations);
 
 /// The human segmentations of a mesh in the benchmark's layout: FOLDER/NAME/*.seg, in name order; empty if there are

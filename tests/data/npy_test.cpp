@@ -50,6 +50,18 @@ TEST(Npy, DataBeginAtAMultipleOf64Bytes) {
     }
 }
 
+TEST(Npy, RepeatsAndReordersRows) {
+    FeatureMatrix matrix;
+    matrix.rows = 2;
+    const std::span<float> column = matrix.add("f.x");
+    column[0] = 1.0F, column[1] = 2.0F;
+    const TemporaryFolder folder;
+    write_npy(folder / "rows.npy", matrix, std::vector<std::uint32_t>{1, 0, 1});
+    const std::string bytes = read_file(folder / "rows.npy");
+    EXPECT_NE(bytes.find("'shape': (3, 1)"), std::string::npos);
+    EXPECT_EQ(bytes.substr(bytes.size() - 12), std::string("\x00\x00\x00\x40\x00\x00\x80\x3f\x00\x00\x00\x40", 12));
+}
+
 TEST(Npy, NamesAPathThatCannotBeWritten) {
     FeatureMatrix matrix;
     EXPECT_THROW(write_npy("/proc/no_such_folder/x.npy", matrix), DataError);

@@ -65,7 +65,7 @@ TEST_F(SlowTraining, LabelsUnseenShapes) {
     for (const LabeledMesh& mesh : unseen.meshes) {
         MeshFeatures features = compute_features(mesh.mesh, options.features);
         const FaceLabeling labeling = label_faces(model, features, {scorer_, context_});
-        rate += score_labeling(features, mesh.label, labeling.label, model.class_count()).recognition_rate / 3;
+        rate += score_labeling(features.face_area, mesh.label, labeling.label, model.class_count()).recognition_rate / 3;
     }
     EXPECT_GT(rate, 0.85) << "stated accuracy on generated humans";
 }
@@ -91,7 +91,7 @@ TEST_F(SlowTraining, OneOrTwoMeshesAreEnoughToTrain) {
         EXPECT_EQ(report_.folds.size(), meshes == 1 ? 5U : 2U);
         MeshFeatures features = compute_features(corpus.meshes[0].mesh, model.feature_options);
         const FaceLabeling labeling = label_faces(model, features, {scorer_, context_});
-        EXPECT_GT(score_labeling(features, corpus.meshes[0].label, labeling.label, 2).recognition_rate, 0.9);
+        EXPECT_GT(score_labeling(features.face_area, corpus.meshes[0].label, labeling.label, 2).recognition_rate, 0.9);
     }
 }
 

@@ -1,0 +1,71 @@
+#include "host/labeling/mesh_labeling.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "host/core/stopwatch.h"
+#include "host/labeling/feature_cache.h"
+#include "host/mesh/simplify.h"
+
+namespace exemplar {
+namespace {
+
+/// Values per working face, `width` each, handed to the faces of the original.
+template <typename T>
+std::vector<T> per_original_face(const std::vector<T>& values, const std::vector<std::uint32_t>& face_of,
+                                 std::size_t width = 1) {
+    std::vector<T> result(face_of.size() * width);
+    for (std::size_t f = 0; f < face_of.size(); ++f)
+        for (std::size_t i = 0; i < width; ++i) result[f * width + i] = values[face_of[f] * width + i];
+    return result;
+}
+
+/// Labels of the simplified faces: of all labels (and none, -1) of the faces they stand for, the one with the most
+/// area.
+std::vector<std::int32_t> labels_by_area(const LabeledMesh& original, const SimplifiedMesh& simple,
+                                         std::size_t classes) {
+    const std::vector<float> area = face_areas(original.mesh);
+    const std::size_t choices = classes + 1;
+    std::vector<float> votes(simple.mesh.face_count() * choices, 0);
+    for (std::size_t f = 0; f < area.size(); ++f)
+        votes[simple.face_of[f] * choices + static_cast<std::size_t>(original.label[f] + 1)] += area[f];
+    std::vector<std::int32_t> label;
+    for (auto face = votes.begin(); face != votes.end(); face += static_cast<std::ptrdiff_t>(choices)) {
+        const auto most = std::max_element(face, face + static_cast<std::ptrdiff_t>(choices));
+        label.push_back(static_cast<std::int32_t>(most - face) - 1);
+    }
+    return label;
+}
+
+}  // namespace
+
+LabeledCorpus working_corpus(LabeledCorpus corpus, std::size_t most_faces) {
+    for (LabeledMesh& mesh : corpus.meshes) {
+        if (mesh.mesh.face_count() <= most_faces) continue;
+        SimplifiedMesh simple = simplify_mesh(mesh.mesh, most_faces);
+        mesh.label = labels_by_area(mesh, simple, corpus.names.size());
+        mesh.mesh = std::move(simple.mesh);
+    }
+    return corpus;
+}
+
+FaceLabeling label_mesh(const LabelingModel& model, const TriangleMesh& mesh, const std::filesystem::path& cache,
+                        const LabelingBackend& backend, std::size_t most_faces) {
+    const Stopwatch watch;
+    const bool large = mesh.face_count() > most_faces;
+    const SimplifiedMesh working = large ? simplify_mesh(mesh, most_faces) : SimplifiedMesh{};
+    MeshFeatures features = cached_features(large ? working.mesh : mesh, model.feature_options, cache);
+    const double feature_seconds = watch.wall();
+    FaceLabeling labeling = label_faces(model, features, backend);
+    labeling.seconds.emplace(labeling.seconds.begin(), "features", feature_seconds);
+    if (large) {
+        labeling.label = per_original_face(labeling.label, working.face_of);
+        labeling.confidence = per_original_face(labeling.confidence, working.face_of);
+        labeling.probabilities = per_original_face(labeling.probabilities, working.face_of, model.class_count());
+    }
+    return labeling;
+}
+
+}  // namespace exemplar

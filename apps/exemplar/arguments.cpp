@@ -9,6 +9,7 @@
 #include <charconv>
 #include <fstream>
 #include <map>
+#include <set>
 #include <string>
 
 #include "host/core/errors.h"
@@ -74,6 +75,15 @@ std::vector<fs::path> meshes_of_argument(const fs::path& source) {
         throw DataError(fmt::format("{}: is neither a mesh ({}) nor a list of meshes (text, a path a line)",
                                     source.string(), fmt::join(known, " ")));
     return list_meshes(source);
+}
+
+std::vector<std::filesystem::path> meshes_of_arguments(const std::vector<std::filesystem::path>& sources) {
+    std::vector<std::filesystem::path> meshes;
+    std::set<std::filesystem::path> known;
+    for (const auto& source : sources)
+        for (const auto& mesh : meshes_of_argument(source))
+            if (known.insert(std::filesystem::weakly_canonical(mesh)).second) meshes.push_back(mesh);
+    return meshes;
 }
 
 LabelingModel model_of_argument(const fs::path& path) {

@@ -19,6 +19,8 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most = std::numer
 void require_input(const std::filesystem::path& path);
 /// The meshes of a folder, a list or a mesh file (see list_meshes). Throws DataError if it is none of them.
 std::vector<std::filesystem::path> meshes_of_argument(const std::filesystem::path& source);
+/// The same of several sources; a mesh that is in more than one comes once.
+std::vector<std::filesystem::path> meshes_of_arguments(const std::vector<std::filesystem::path>& sources);
 /// load_model for a file that may be anything; throws ModelError saying what makes a model.
 LabelingModel model_of_argument(const std::filesystem::path& path);
 /// Throws UsageError if a file, or a folder of files, cannot be written at `path`. An empty path is no output.

@@ -10,7 +10,6 @@
 #include "host/labeling/features.h"
 #include "host/labeling/mesh_labeling.h"
 #include "host/mesh/io.h"
-#include "host/mesh/simplify.h"
 #include "host/mesh/validate.h"
 
 namespace exemplar {
@@ -48,11 +47,11 @@ void run_features(const FeaturesOptions& options) {
     const Stopwatch watch;
     const bool large = file.mesh.face_count() > k_most_working_faces;
     if (large) announce_simplification(options, file.mesh.face_count());
-    const SimplifiedMesh working = large ? simplify_mesh(file.mesh, k_most_working_faces) : SimplifiedMesh{};
-    const MeshFeatures features = compute_features(large ? working.mesh : file.mesh, options.features);
+    const SimplifiedMesh working = working_mesh(file.mesh);
+    const MeshFeatures features = compute_features(working.mesh, options.features);
     const FeatureMatrix& matrix = options.pairwise ? features.pairwise : features.unary;
-    const std::size_t rows = large ? working.face_of.size() : matrix.rows;
-    write_npy(options.out, matrix, working.face_of);
+    const std::size_t rows = options.pairwise ? matrix.rows : working.face_of.size();
+    write_npy(options.out, matrix, options.pairwise ? std::span<const std::uint32_t>() : working.face_of);
     if (!options.names.empty()) write_json(options.names, matrix.names);
 
     nlohmann::json seconds;

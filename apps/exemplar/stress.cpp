@@ -48,6 +48,7 @@ struct Outcome {
     std::optional<double> recognition_rate;  ///< where the mesh has labels
     double seconds = 0;
     std::vector<std::string> warnings{};
+    std::string error{};  ///< why it could not be labeled; nothing is unchanged then
 };
 
 struct StressRow {
@@ -70,9 +71,7 @@ std::vector<std::int32_t> true_labels(const fs::path& path, const MeshFile& file
 
 /// Reads and checks all meshes: a bad one should not cost the minutes of those before it.
 std::vector<Subject> read_subjects(const StressOptions& options, const LabelingModel& model) {
-    std::vector<fs::path> paths;
-    for (const fs::path& source : options.meshes)
-        for (const fs::path& path : meshes_of_argument(source)) paths.push_back(path);
+    const std::vector<fs::path> paths = meshes_of_arguments(options.meshes);
     if (!options.out.empty()) require_distinct_names(paths);
     std::vector<Subject> subjects;
     for (const fs::path& path : paths) {
@@ -139,6 +138,9 @@ class StressRun {
             "unchanged: share of the area with the label of the undamaged mesh, mean and worst over {} mesh{}\n"
             "right: share of the area with its true label, where the meshes have labels; seconds: per mesh\n",
             subjects_.size(), subjects_.size() == 1 ? "" : "es");
+        for (const StressRow& row : rows_)
+            for (const Outcome& outcome : row.outcomes)
+                if (!outcome.error.empty()) fmt::print(stderr, "error: {}\n", outcome.error);
     }
 
     nlohmann::json describe() const {
@@ -163,16 +165,26 @@ class StressRun {
         DamagedMesh same{subject.mesh, std::vector<std::uint32_t>(subject.mesh.face_count())};
         for (std::uint32_t f = 0; f < same.origin.size(); ++f) same.origin[f] = f;
         Outcome outcome;
-        std::vector<std::int32_t> labels = label(subject, same, cache_, rows_.front().name, outcome);
-        rows_.front().outcomes.push_back(std::move(outcome));
-        return labels;
+        try {
+            std::vector<std::int32_t> labels = label(subject, same, cache_, rows_.front().name, outcome);
+            rows_.front().outcomes.push_back(std::move(outcome));
+            return labels;
+        } catch (const MeshError& error) {
+            throw MeshError(fmt::format("{}: {}", subject.path.string(), error.what()));
+        }
     }
 
     void label_damaged(const Subject& subject, const std::vector<std::int32_t>& undamaged, StressRow& row) {
-        const DamagedMesh damaged = damage_named(row.name).apply(subject.mesh, options_.seed);
         Outcome outcome;
-        const std::vector<std::int32_t> labels = label(subject, damaged, {}, row.name, outcome);
-        outcome.unchanged = area_share_right(damaged, labels, undamaged).value_or(1);
+        try {
+            const DamagedMesh damaged = damage_named(row.name).apply(subject.mesh, options_.seed);
+            const std::vector<std::int32_t> labels = label(subject, damaged, {}, row.name, outcome);
+            outcome.unchanged = area_share_right(damaged, labels, undamaged).value_or(1);
+        } catch (const MeshError& error) {
+            outcome.unchanged = 0;
+            if (!subject.truth.empty()) outcome.recognition_rate = 0;
+            outcome.error = fmt::format("{} ({}): {}", subject.path.string(), row.name, error.what());
+        }
         row.outcomes.push_back(std::move(outcome));
     }
 
@@ -180,11 +192,10 @@ class StressRun {
     std::vector<std::int32_t> label(const Subject& subject, const DamagedMesh& damaged, const fs::path& cache,
                                     const std::string& name, Outcome& outcome) {
         const Stopwatch watch;
-        const MeshReport report = require_usable(damaged.mesh, fmt::format("{} ({})", subject.path.string(), name));
+        outcome.warnings = validate_mesh(damaged.mesh).messages();
         const FaceLabeling labeling = label_mesh(model_, damaged.mesh, cache, backend_.labeling());
         outcome.seconds = watch.wall();
         outcome.faces = damaged.mesh.face_count();
-        outcome.warnings = report.messages();
         if (!options_.out.empty()) write_picture(subject, damaged.mesh, labeling, name);
         const std::vector<std::int32_t> polygon = to_source_faces(damaged.mesh, labeling.label);
         std::vector<std::int32_t> labels(damaged.mesh.face_count());
@@ -225,6 +236,7 @@ class StressRun {
                                 {"unchanged", outcome.unchanged},
                                 {"seconds", outcome.seconds},
                                 {"warnings", outcome.warnings}};
+            if (!outcome.error.empty()) json["error"] = outcome.error;
             if (outcome.recognition_rate) json["recognition_rate"] = *outcome.recognition_rate;
             if (before.recognition_rate) json["recognition_rate_before"] = *before.recognition_rate;
             meshes.push_back(std::move(json));
@@ -282,7 +294,9 @@ void add_stress_command(CLI::App& label) {
         ->type_name("");
     command->add_option("--damage", options->damages, "only these damages; all of them, if not given")
         ->type_name("NAME");
-    command->add_option("--seed", options->seed, "seed of what is damaged where")->capture_default_str();
+    command->add_option("--seed", options->seed, "seed of what is damaged where")
+        ->capture_default_str()
+        ->check(whole_number(0));
     command
         ->add_option("--out", options->out,
                      "also write the labeled meshes, damaged and not, as MESH-DAMAGE.ply and .png")

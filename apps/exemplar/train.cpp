@@ -14,7 +14,8 @@ namespace {
 
 struct TrainCommand {
     CommonOptions common;
-    std::filesystem::path source, out;
+    std::vector<std::filesystem::path> sources;
+    std::filesystem::path out, labels;
     std::filesystem::path cache = default_feature_folder();
     TrainOptions train;
 };
@@ -24,7 +25,8 @@ void run_train(const TrainCommand& options) {
     const Stopwatch watch;
     require_output_file(options.out);
     const std::filesystem::path cache = usable_cache(options.cache, options.common.quiet);
-    const LabeledCorpus corpus = working_corpus(load_corpus(meshes_of_argument(options.source)));
+    if (!options.labels.empty()) require_input(options.labels);
+    const LabeledCorpus corpus = working_corpus(load_corpus(meshes_of_arguments(options.sources), {}, options.labels));
     if (!options.common.quiet)
         for (const std::string& warning : corpus.warnings) fmt::print(stderr, "warning: {}\n", warning);
     DeviceBackend backend(options.common.device);
@@ -94,9 +96,14 @@ void add_train_command(CLI::App& label) {
         "Labels: NAME_labels.txt beside NAME.off (a label name, then a line of 1-based face numbers, and so on),\n"
         "or a PLY with a per-face 'label' property.\n\nExample:\n"
         "  exemplar label train shapes --out human.safetensors --seed 1");
-    command->add_option("SOURCE", options->source, "folder of labeled meshes, or a list (.txt, a path a line)")
+    command
+        ->add_option(
+            "SOURCE", options->sources,
+            "labeled meshes: folders, lists (.txt, a path a line) or mesh files; equal label names are one label")
         ->required()
         ->type_name("");
+    command->add_option("--labels", options->labels, "folder of the NAME_labels.txt, if they are not beside the meshes")
+        ->type_name("FOLDER");
     command->add_option("--out", options->out, "model file to write, .safetensors")->required()->type_name("FILE");
     add_training_options(*command, options->train, options->cache);
     add_common_options(*command, options->common);

@@ -93,20 +93,6 @@ FeatureMatrix medial_features(const PreparedMesh& prepared, const RayScene& scen
 /// Face centers (A.1h), 3 columns.
 FeatureMatrix orientation_features(const PreparedMesh& prepared);
 
-/// Where a face lies (not in the thesis), 13 columns: its distances from the three principal and the three symmetry
-/// planes, in normalized units and as shares of the farthest face's, and its distance from the centroid.
-FeatureMatrix position_features(const PreparedMesh& prepared, const ContextGeometry& context);
-/// Limbs (not in the thesis), 18 columns. A limb is a piece of the surface that stands out of the rest in average
-/// geodesic distance (`mean_distance`, per face): it begins at a tip and ends where it meets another one, if both stand
-/// out by a prominence of 2, 8 or 20% of the range. Columns per prominence: the limb's area share, the values at its
-/// tip and its base, their difference, the face's height between them in [0, 1], and the mean of `width`, a value per
-/// face, over the limb. All are 0 on the trunk.
-FeatureMatrix limb_features(const PreparedMesh& prepared, std::span<const float> mean_distance,
-                            std::span<const float> width);
-/// Ranks (not in the thesis), 50 columns in [0, 1]: the share of the surface whose value is smaller, for the average
-/// geodesic distances, shape diameters, distances from the medial surface and PCA's singular values of `unary`. What is
-/// thin on a stout shape and on a slender one differs in value, not in rank.
-FeatureMatrix rank_features(const PreparedMesh& prepared, const FeatureMatrix& unary);
 /// Means over the region around a face (not in the thesis), 66 columns: for geodesic radii of 10, 20 and 40% of the
 /// median distance the mean over the samples inside of the average distance, the shape diameters, the distances from
 /// the medial surface and the curvatures at 10% of `unary`, and the face's own value less that mean.

@@ -69,21 +69,6 @@ CurvatureFamily::FaceValues add_neighborhood_families(const PreparedMesh& prepar
     return curvatures.take_pairwise();
 }
 
-/// The families that are made of others: what a face's value means in this shape.
-void add_shape_families(const PreparedMesh& prepared, MeshFeatures& features) {
-    const auto column = [&](const char* name) {
-        const auto found = std::ranges::find(features.unary.names, name);
-        return features.unary.column(static_cast<std::size_t>(found - features.unary.names.begin()));
-    };
-    const FeatureMatrix ranks = rank_features(prepared, features.unary);
-    const FeatureMatrix regions = region_features(prepared, features.unary);
-    const FeatureMatrix limbs = limb_features(prepared, column("geodesic.mean"), column("diameter.mean@60"));
-    features.unary.append(position_features(prepared, features.context));
-    features.unary.append(limbs);
-    features.unary.append(ranks);
-    features.unary.append(regions);
-}
-
 void add_pairwise(const PreparedMesh& prepared, const CurvatureFamily::FaceValues& curvature,
                   const FeatureMatrix& diameter, const FeatureMatrix& medial, MeshFeatures& features) {
     InteriorEdges edges = interior_edges(prepared);
@@ -132,8 +117,8 @@ MeshFeatures compute_features(const TriangleMesh& mesh, const FeatureOptions& op
     }
     features.context = context_geometry(prepared);
     clock.done("context");
-    add_shape_families(prepared, features);
-    clock.done("position, limbs, ranks, regions");
+    features.unary.append(region_features(prepared, features.unary));
+    clock.done("regions");
     if (options.orientation) features.unary.append(orientation_features(prepared));
     features.face_area = in_median_units(prepared.area_share);
     return features;

@@ -36,7 +36,7 @@ struct EdgeNeighborhood {
 
 /// Everything labeling needs to know of a mesh: computed once, cached on disk, then used by training and inference.
 struct MeshFeatures {
-    FeatureMatrix unary;     ///< per face (App. A.1a-h): 759 features, 762 with orientation
+    FeatureMatrix unary;     ///< per face (App. A.1a-h): 678 features, 681 with orientation
     FeatureMatrix pairwise;  ///< per interior edge (App. A.2a-d): 186 features
     ContextGeometry context;
     EdgeNeighborhood edge_context;
@@ -57,6 +57,6 @@ struct MeshFeatures {
 MeshFeatures compute_features(const TriangleMesh& mesh, const FeatureOptions& options = {});
 
 /// Identifies the meaning of the values; changes whenever they change. Part of model files and cache keys.
-constexpr int k_feature_version = 5;
+constexpr int k_feature_version = 6;
 
 }  // namespace exemplar

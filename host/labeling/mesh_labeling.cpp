@@ -7,7 +7,7 @@
 
 #include "host/core/stopwatch.h"
 #include "host/labeling/feature_cache.h"
-#include "host/mesh/simplify.h"
+#include "host/mesh/weld.h"
 
 namespace exemplar {
 namespace {
@@ -41,12 +41,16 @@ std::vector<std::int32_t> labels_by_area(const LabeledMesh& original, const Simp
 
 }  // namespace
 
+SimplifiedMesh working_mesh(const TriangleMesh& mesh, std::size_t most_faces) {
+    return simplify_mesh(welded(mesh), most_faces);
+}
+
 LabeledCorpus working_corpus(LabeledCorpus corpus, std::size_t most_faces) {
     for (LabeledMesh& mesh : corpus.meshes) {
-        if (mesh.mesh.face_count() <= most_faces) continue;
-        SimplifiedMesh simple = simplify_mesh(mesh.mesh, most_faces);
-        mesh.label = labels_by_area(mesh, simple, corpus.names.size());
-        mesh.mesh = std::move(simple.mesh);
+        SimplifiedMesh working = working_mesh(mesh.mesh, most_faces);
+        if (working.mesh.face_count() < mesh.mesh.face_count())
+            mesh.label = labels_by_area(mesh, working, corpus.names.size());
+        mesh.mesh = std::move(working.mesh);
     }
     return corpus;
 }
@@ -54,17 +58,14 @@ LabeledCorpus working_corpus(LabeledCorpus corpus, std::size_t most_faces) {
 FaceLabeling label_mesh(const LabelingModel& model, const TriangleMesh& mesh, const std::filesystem::path& cache,
                         const LabelingBackend& backend, std::size_t most_faces) {
     const Stopwatch watch;
-    const bool large = mesh.face_count() > most_faces;
-    const SimplifiedMesh working = large ? simplify_mesh(mesh, most_faces) : SimplifiedMesh{};
-    MeshFeatures features = cached_features(large ? working.mesh : mesh, model.feature_options, cache);
+    const SimplifiedMesh working = working_mesh(mesh, most_faces);
+    MeshFeatures features = cached_features(working.mesh, model.feature_options, cache);
     const double feature_seconds = watch.wall();
     FaceLabeling labeling = label_faces(model, features, backend);
     labeling.seconds.emplace(labeling.seconds.begin(), "features", feature_seconds);
-    if (large) {
-        labeling.label = per_original_face(labeling.label, working.face_of);
-        labeling.confidence = per_original_face(labeling.confidence, working.face_of);
-        labeling.probabilities = per_original_face(labeling.probabilities, working.face_of, model.class_count());
-    }
+    labeling.label = per_original_face(labeling.label, working.face_of);
+    labeling.confidence = per_original_face(labeling.confidence, working.face_of);
+    labeling.probabilities = per_original_face(labeling.probabilities, working.face_of, model.class_count());
     return labeling;
 }
 

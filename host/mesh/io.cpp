@@ -21,7 +21,8 @@ constexpr std::array<std::string_view, 6> k_extensions{".off", ".obj", ".ply", "
 std::string read_content(const fs::path& path) {
     try {
         std::string content = read_file(path);
-        if (content.empty()) throw MeshError(path.string() + ": the file is empty");
+        if (mesh_io::trimmed(content).empty())
+            throw MeshError(path.string() + ": the file is empty; save or copy the mesh again");
         return content;
     } catch (const DataError& error) {
         throw MeshError(error.what());

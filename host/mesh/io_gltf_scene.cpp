@@ -9,6 +9,7 @@
 #include "host/mesh/io_formats.h"
 #include "host/mesh/io_polygons.h"
 #include "host/mesh/io_text.h"
+#include "host/mesh/weld.h"
 
 namespace exemplar::mesh_io {
 namespace {

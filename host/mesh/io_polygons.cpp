@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -149,20 +148,6 @@ TriangleMesh PolygonList::triangulate(std::vector<std::string>& warnings) && {
         warnings.push_back(fmt::format(
             "{} faces have fewer than three corners and were left out (the first is face {})", dropped, first_dropped));
     return mesh;
-}
-
-std::size_t VertexWelder::Hash::operator()(const Key& key) const {
-    std::uint64_t h = (std::uint64_t{key.bits[0]} << 32 | key.bits[1]) * 0x9e3779b97f4a7c15ULL;
-    h = (h ^ h >> 29 ^ key.bits[2]) * 0xbf58476d1ce4e5b9ULL;
-    return h ^ h >> 32;
-}
-
-std::uint32_t VertexWelder::add(const Vec3& position, std::vector<Vec3>& vertices) {
-    const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x == 0 ? 0.0f : x); };
-    const Key key{{bits(position[0]), bits(position[1]), bits(position[2])}};
-    const auto [it, added] = index_.try_emplace(key, static_cast<std::uint32_t>(vertices.size()));
-    if (added) vertices.push_back(position);
-    return it->second;
 }
 
 }  // namespace exemplar::mesh_io

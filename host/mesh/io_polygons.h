@@ -2,7 +2,6 @@
 
 #include <span>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "host/mesh/io.h"
@@ -34,22 +33,5 @@ class PolygonList {
 /// else by clipping ears in the plane of its area vector. Never fails: what is not simple is cut somehow.
 void triangulate_polygon(std::span<const Vec3> vertices, std::span<const std::uint32_t> corners,
                          std::vector<Face>& faces);
-
-/// Gives equal positions one vertex.
-class VertexWelder {
-  public:
-    /// The vertex at `position`, appended to `vertices` if there was none. -0 equals 0.
-    std::uint32_t add(const Vec3& position, std::vector<Vec3>& vertices);
-
-  private:
-    struct Key {
-        std::array<std::uint32_t, 3> bits;
-        bool operator==(const Key&) const = default;
-    };
-    struct Hash {
-        std::size_t operator()(const Key& key) const;
-    };
-    std::unordered_map<Key, std::uint32_t, Hash> index_;
-};
 
 }  // namespace exemplar::mesh_io

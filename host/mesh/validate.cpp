@@ -123,7 +123,13 @@ bool MeshReport::clean() const {
 
 std::vector<std::string> MeshReport::messages() const {
     std::vector<std::string> lines;
-    if (empty) lines.push_back("the mesh has no faces: it cannot be used");
+    if (const std::size_t points = unreferenced_vertices.size(); empty && points > 0)
+        lines.push_back(
+            fmt::format("{} point{} and no faces: a point cloud cannot be used; make it a surface first, say by a "
+                        "reconstruction in MeshLab",
+                        points, points == 1 ? "" : "s"));
+    else if (empty)
+        lines.push_back("the mesh has no faces: it cannot be used; save it again with its surface");
     add_message(lines, non_finite_vertices, "vertex is not finite", "vertices are not finite",
                 "the mesh cannot be used until they have numbers for coordinates");
     add_message(lines, non_manifold_edges, "edge with more than two faces", "edges with more than two faces",

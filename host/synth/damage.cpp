@@ -103,8 +103,8 @@ std::span<const Damage> damages() {
 const Damage& damage_named(std::string_view name) {
     const auto found = std::ranges::find(k_damages, name, &Damage::name);
     if (found != k_damages.end()) return *found;
-    std::vector<std::string> names;
-    for (const Damage& damage : k_damages) names.emplace_back(damage.name);
+    std::vector<std::string> names(k_damages.size());
+    std::ranges::transform(k_damages, names.begin(), [](const Damage& damage) { return std::string(damage.name); });
     throw UsageError(fmt::format("unknown damage '{}'{}; the damages are {}", name, suggestion(name, names),
                                  fmt::join(names, ", ")));
 }

@@ -71,7 +71,8 @@ DamagedMesh split_parts(const TriangleMesh& mesh, std::uint64_t seed) {
     const std::vector<Vec3> centers = face_centers(mesh);
     std::vector<std::uint32_t> region(mesh.face_count(), 0);
     for (std::size_t plane = 0; plane < k_planes; ++plane) {
-        const Vec3 point = centers[random.index(centers.size())], normal = random_direction(random).cast<float>();
+        const Vec3& point = centers[random.index(centers.size())];
+        const Vec3 normal = random_direction(random).cast<float>();
         for (std::size_t f = 0; f < centers.size(); ++f)
             region[f] = 2 * region[f] + ((centers[f] - point).dot(normal) > 0);
     }

@@ -9,9 +9,11 @@
 #include <set>
 #include <utility>
 
+#include "host/core/errors.h"
 #include "host/core/parallel.h"
 #include "host/mesh/simplify.h"
 #include "host/mesh/topology.h"
+#include "host/mesh/weld.h"
 #include "host/synth/damage_kinds.h"
 
 namespace exemplar {
@@ -171,8 +173,12 @@ DamagedMesh make_slivers(const TriangleMesh& mesh, std::uint64_t seed) {
 
 DamagedMesh decimate(const TriangleMesh& mesh, std::uint64_t) {
     constexpr std::size_t k_part = 10, k_fewest = 20;
-    DamagedMesh damaged;
-    damaged.mesh = simplify_mesh(undamaged(mesh).mesh, std::max(mesh.face_count() / k_part, k_fewest)).mesh;
+    DamagedMesh damaged = undamaged(mesh);
+    try {
+        damaged.mesh = simplify_mesh(welded(mesh), std::max(mesh.face_count() / k_part, k_fewest)).mesh;
+    } catch (const MeshError&) {
+        return damaged;  // without area, or pieces too small to stand for anything: there is no coarser mesh
+    }
     const NearestFace nearest(mesh);
     const std::vector<Vec3> centers = face_centers(damaged.mesh), normals = face_normals(damaged.mesh);
     damaged.origin.resize(damaged.mesh.face_count());

@@ -51,6 +51,16 @@ class Train(WithModel):
         (spaced / "list.txt").write_bytes("\r\n".join(lines).encode())
         self.assertEqual(self.train("my shapes/list.txt", "listed"), (self.folder / "cup.safetensors").read_bytes())
 
+    def test_several_sources_are_one_set_and_labels_may_lie_elsewhere(self):
+        bare, style = self.folder / "bare", self.folder / "labels only"
+        bare.mkdir(), style.mkdir()
+        for k in (1, 2, 3):
+            shutil.copy(self.folder / "cups" / f"cup_00{k}.off", bare)
+            shutil.copy(self.folder / "cups" / f"cup_00{k}_labels.txt", style)
+        self.call("label", "train", "bare/cup_001.off", "bare", "bare/", "--labels", "labels only", "--out", "united", *QUICK)
+        self.assertEqual((self.folder / "united").read_bytes(), (self.folder / "cup.safetensors").read_bytes())
+        self.refused("label", "train", "bare", "--labels", "none", "--out", "x", *QUICK, code=1, says="none")
+
     def test_labels_in_a_ply_are_those_beside_a_mesh(self):
         self.call("label", "apply", "cup.safetensors", "cups", "--out", "labeled")
         within, beside = self.folder / "within", self.folder / "beside"
@@ -186,6 +196,33 @@ class Apply(WithModel):
         self.refused("label", "apply", "cup.safetensors", "nan.off", "--out", "none", code=1, says="nan.off")
         self.assertEqual(list(self.folder.glob("none/*")), [])
 
+    def refused_file(self, name, content, says):
+        (self.folder / name).write_bytes(content)
+        error = self.refused("label", "apply", "cup.safetensors", name, "--out", "none", code=1, says=says)
+        self.assertTrue(error.startswith(f"error: {name}"), error)
+        self.assertEqual(list(self.folder.glob("none/*")), [])
+
+    def test_empty_files_say_so(self):
+        for kind in ["off", "obj", "ply", "stl", "gltf", "glb"]:
+            for content in [b"", b"\n \r\n"]:
+                with self.subTest(kind=kind, content=content):
+                    self.refused_file(f"nothing.{kind}", content, ["the file is empty", "again"])
+        self.refused_file("nothing.stl", b"solid nothing\nendsolid nothing\n", ["no faces", "again"])
+        self.refused_file("nothing.gltf", b'{"asset": {"version": "2.0"}}', ["no faces", "again"])
+
+    def test_point_clouds_say_so(self):
+        points = b"0 0 0\n1 0 0\n0 1 0\n"
+        ply = b"ply\nformat ascii 1.0\nelement vertex 3\n" + b"".join(b"property float %c\n" % c for c in b"xyz")
+        files = {
+            "without.ply": ply + b"end_header\n" + points,
+            "zero.ply": ply + b"element face 0\nproperty list uchar int vertex_indices\nend_header\n" + points,
+            "points.obj": b"".join(b"v " + line + b"\n" for line in points.splitlines()),
+            "points.off": b"OFF\n3 0 0\n" + points,
+        }
+        for name, content in files.items():
+            with self.subTest(name):
+                self.refused_file(name, content, ["3 points and no faces", "point cloud", "surface"])
+
     def test_one_bad_mesh_does_not_stop_the_others(self):
         many = self.folder / "many"
         shutil.copytree(self.folder / "cups", many)
@@ -223,6 +260,52 @@ class Apply(WithModel):
     def test_unwritable_cache_is_a_warning(self):
         result = self.call("label", "apply", "cup.safetensors", self.cup, "--out", "y", "--cache", self.cup)
         self.assertIn("warning: features are not remembered", result.stderr)
+
+
+class Stress(WithModel):
+    NAMES = ["holes", "rotated", "unwelded"]
+
+    def test_a_row_per_damage(self):
+        write_off(self.folder / "unlabeled.off", *read_off(self.cup))
+        result = self.call("label", "stress", "cup.safetensors", self.cup, "unlabeled.off", "--damage", *self.NAMES, "--json",
+                           "stress.json", "--out", "stressed")
+        rows = self.json("stress.json")["damages"]
+        self.assertEqual([row["damage"] for row in rows], ["undamaged", *self.NAMES])
+        for row in rows:
+            self.assertRegex(result.stdout, rf"\n{row['damage']} +{100 * row['unchanged_mean']:.1f} % ")
+            labeled, unlabeled = row["meshes"]
+            self.assertEqual(row["unchanged_worst"], min(mesh["unchanged"] for mesh in row["meshes"]))
+            self.assertAlmostEqual(row["unchanged_mean"], (labeled["unchanged"] + unlabeled["unchanged"]) / 2)
+            self.assertEqual(labeled["unchanged"], unlabeled["unchanged"], "the same mesh, the same damage")
+            self.assertEqual(row["recognition_rate"], labeled["recognition_rate"])
+            self.assertEqual(row["recognition_rate_before"], rows[0]["recognition_rate"])
+            self.assertNotIn("recognition_rate", unlabeled)
+            for stem in ["cup_001", "unlabeled"]:
+                for suffix in [".ply", ".png"]:
+                    self.assertTrue((self.folder / "stressed" / f"{stem}-{row['damage']}{suffix}").exists())
+        undamaged, holes, rotated, unwelded = rows
+        self.assertEqual(undamaged["unchanged_mean"], 1)
+        self.assertGreater(rotated["unchanged_mean"], 0.98)
+        self.assertLess(holes["meshes"][0]["faces"], undamaged["meshes"][0]["faces"])
+        self.assertIn("boundary", " ".join(holes["meshes"][0]["warnings"]))
+        self.assertIn("components", " ".join(unwelded["meshes"][0]["warnings"]))
+
+    def test_equal_seeds_damage_equally(self):
+        def rates(seed):
+            self.call("label", "stress", "cup.safetensors", self.cup, "--damage", "holes", "--seed", seed, "--json", "s.json")
+            return [row["meshes"][0]["faces"] for row in self.json("s.json")["damages"]], [
+                row["recognition_rate"] for row in self.json("s.json")["damages"]]
+
+        self.assertEqual(rates(3), rates(3))
+
+    def test_wrong_arguments_are_refused_before_any_work(self):
+        self.refused("label", "stress", "cup.safetensors", self.cup, "--damage", "hole", code=2, says=["'hole'", "'holes'"])
+        self.refused("label", "stress", self.cup, self.cup, code=1, says=["cup_001.off", "is no Exemplar model"])
+        self.refused("label", "stress", "cup.safetensors", "cup.off", code=1, says="cup.off: no such file")
+        write_off(self.folder / "cloud.off", CUBE, [])
+        self.refused("label", "stress", "cup.safetensors", self.cup, "cloud.off", code=1, says=["cloud.off: 8 points", "surface"])
+        shutil.copytree(self.folder / "cups", self.folder / "twins")
+        self.refused("label", "stress", "cup.safetensors", "twins", "cups", "--out", "x", code=2, says="cup_001.off")
 
 
 class Evaluate(WithModel):

@@ -6,7 +6,7 @@ import unittest
 
 from program import DOCS, ProgramTest, CUBE, CUBE_QUADS, CUBE_TRIANGLES, read_labels, read_off, write_off
 
-COMMANDS = ["label train", "label apply", "label evaluate", "features", "synth", "devices", "demo", "bench"]
+COMMANDS = ["label train", "label apply", "label evaluate", "label stress", "features", "synth", "devices", "demo", "bench"]
 
 
 class Help(ProgramTest):

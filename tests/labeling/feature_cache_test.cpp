@@ -84,7 +84,7 @@ TEST_F(FeatureCache, TellsMeshesAndOptionsApart) {
     options.samples = 41;
     cached_features(mesh_, options, folder_ / "cache");
     options.orientation = true;
-    EXPECT_EQ(cached_features(mesh_, options, folder_ / "cache").unary.cols(), 762U);
+    EXPECT_EQ(cached_features(mesh_, options, folder_ / "cache").unary.cols(), 681U);
     EXPECT_EQ(entries().size(), 4U);
     EXPECT_NE(content_hash(other), content_hash(mesh_));
 }

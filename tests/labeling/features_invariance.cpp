@@ -28,7 +28,7 @@ TEST(Features, HasTheCountsAndDistinctNamesOfTheText) {
     const MeshFeatures& features = original_features();
     expect_finite(features, original().face_count());
     EXPECT_EQ(features.edges.size(), original().face_count() * 3 / 2);
-    EXPECT_EQ(std::set(features.unary.names.begin(), features.unary.names.end()).size(), 759U);
+    EXPECT_EQ(std::set(features.unary.names.begin(), features.unary.names.end()).size(), 678U);
     EXPECT_EQ(std::set(features.pairwise.names.begin(), features.pairwise.names.end()).size(), 186U);
     std::map<std::string, int> count;
     for (const std::string& name : features.unary.names) ++count[name.substr(0, name.find('.'))];
@@ -52,7 +52,7 @@ TEST(Features, OrientationAddsCenteredCoordinates) {
     FeatureOptions options = few_samples();
     options.orientation = true;
     const MeshFeatures features = compute_features(shapes::translated(original(), Vec3(5, -3, 2)), options);
-    ASSERT_EQ(features.unary.cols(), 762U);
+    ASSERT_EQ(features.unary.cols(), 681U);
     const std::span<const float> y = column(features.unary, "orientation.y");
     double mean = 0.0, area = 0.0;
     for (std::size_t f = 0; f < y.size(); ++f) {

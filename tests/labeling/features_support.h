@@ -54,7 +54,7 @@ inline double mismatched_share(const FeatureMatrix& a, const FeatureMatrix& b, f
 
 inline void expect_finite(const MeshFeatures& features, std::size_t faces) {
     EXPECT_EQ(features.unary.rows, faces);
-    EXPECT_EQ(features.unary.cols(), 759U);
+    EXPECT_EQ(features.unary.cols(), 678U);
     EXPECT_EQ(features.pairwise.cols(), 186U);
     EXPECT_EQ(features.pairwise.rows, features.edges.size());
     const auto finite = [](float x) { return std::isfinite(x); };

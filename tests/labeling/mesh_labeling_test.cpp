@@ -1,0 +1,65 @@
+#include "host/labeling/mesh_labeling.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "host/labeling/training.h"
+#include "tests/support/shapes.h"
+
+namespace exemplar {
+namespace {
+
+/// A sphere whose upper half is label 1, the rest 0.
+LabeledMesh halves(float height) {
+    LabeledMesh sphere{"sphere", {}, shapes::icosphere(4, 1.0F), {}};  // 5120 faces
+    for (Vec3& v : sphere.mesh.vertices)
+        if (v.z() > 0) v.z() *= height;
+    for (const Vec3& center : face_centers(sphere.mesh)) sphere.label.push_back(center.z() > 0 ? 1 : 0);
+    return sphere;
+}
+
+TEST(MeshLabeling, SimplifiedTrainingMeshesKeepTheirLabels) {
+    LabeledCorpus corpus{{"low", "high"}, {halves(1.0F)}, {}};
+    for (std::size_t f = 0; f < 200; ++f) corpus.meshes.front().label[f] = -1;
+    const LabeledMesh original = corpus.meshes.front();
+    corpus = working_corpus(std::move(corpus), 800);
+    const LabeledMesh& mesh = corpus.meshes.front();
+    ASSERT_EQ(mesh.label.size(), mesh.mesh.face_count());
+    EXPECT_NEAR(static_cast<double>(mesh.mesh.face_count()), 800, 80);
+    const std::vector<Vec3> center = face_centers(mesh.mesh);
+    std::size_t unlabeled = 0;
+    for (std::size_t f = 0; f < center.size(); ++f) {
+        unlabeled += mesh.label[f] < 0 ? 1 : 0;
+        if (mesh.label[f] >= 0 && std::abs(center[f].z()) > 0.1F) {
+            EXPECT_EQ(mesh.label[f], center[f].z() > 0 ? 1 : 0) << center[f].transpose();
+        }
+    }
+    EXPECT_NEAR(static_cast<double>(unlabeled), 800.0 * 200 / 5120, 15) << "what nobody labeled stays unlabeled";
+}
+
+TEST(MeshLabeling, LabelsOfASimplifiedMeshComeBackToItsFaces) {
+    LabeledCorpus corpus{{"low", "high"}, {halves(2.0F), halves(2.2F), halves(2.4F)}, {}};
+    TrainOptions options;
+    options.rounds = 20, options.max_stages = 1, options.rows_per_mesh = 400, options.features.samples = 100;
+    corpus = working_corpus(std::move(corpus), 1000);
+    std::vector<MeshFeatures> features;
+    for (const LabeledMesh& mesh : corpus.meshes) features.push_back(compute_features(mesh.mesh, options.features));
+    CpuStumpScorer scorer;
+    CpuContextHistograms context;
+    TrainReport report;
+    const LabelingModel model = train_labeling(corpus, features, options, {scorer, context}, report);
+
+    const LabeledMesh unseen = halves(2.1F);
+    const FaceLabeling labeling = label_mesh(model, unseen.mesh, {}, {scorer, context}, 1000);
+    ASSERT_EQ(labeling.label.size(), unseen.mesh.face_count());
+    EXPECT_EQ(labeling.confidence.size(), unseen.mesh.face_count());
+    EXPECT_EQ(labeling.probabilities.size(), 2 * unseen.mesh.face_count());
+    EXPECT_EQ(labeling.seconds.front().first, "features");
+    std::size_t right = 0;
+    for (std::size_t f = 0; f < unseen.label.size(); ++f) right += labeling.label[f] == unseen.label[f] ? 1 : 0;
+    EXPECT_GT(static_cast<double>(right), 0.93 * static_cast<double>(unseen.label.size()));
+}
+
+}  // namespace
+}  // namespace exemplar

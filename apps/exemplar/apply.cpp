@@ -13,7 +13,6 @@
 #include "host/data/corpus.h"
 #include "host/labeling/feature_cache.h"
 #include "host/labeling/mesh_labeling.h"
-#include "host/mesh/validate.h"
 
 namespace exemplar {
 namespace {
@@ -31,12 +30,7 @@ nlohmann::json apply_to(const std::filesystem::path& path, const LabelingModel& 
                         const std::filesystem::path& cache, const ApplyOptions& options) {
     const Stopwatch watch;
     const MeshFile file = read_mesh(path);
-    const MeshReport report = require_usable(file.mesh, path.string());
-    std::vector<std::string> warnings = file.warnings;
-    for (const std::string& message : report.messages()) warnings.push_back(message);
-    if (!options.common.quiet)
-        for (const std::string& message : warnings) fmt::print(stderr, "warning: {}: {}\n", path.string(), message);
-
+    const std::vector<std::string> warnings = mesh_warnings(file, path, options.common.quiet);
     const double read_seconds = watch.wall();
     const FaceLabeling labeling = label_mesh(model, file.mesh, cache, backend.labeling());
     const LabeledOutput output = make_labeled_output(file.mesh, model, labeling);

@@ -15,6 +15,8 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/data/corpus.h"
+#include "host/mesh/validate.h"
+#include "host/mesh/weld.h"
 
 namespace exemplar {
 namespace {
@@ -84,6 +86,18 @@ std::vector<std::filesystem::path> meshes_of_arguments(const std::vector<std::fi
         for (const auto& mesh : meshes_of_argument(source))
             if (known.insert(std::filesystem::weakly_canonical(mesh)).second) meshes.push_back(mesh);
     return meshes;
+}
+
+std::vector<std::string> mesh_warnings(const MeshFile& file, const fs::path& path, bool quiet) {
+    std::vector<std::string> warnings = file.warnings;
+    const TriangleMesh joined = welded(file.mesh);  // as labeling takes it
+    if (const std::size_t count = file.mesh.vertex_count() - joined.vertex_count(); count > 0)
+        warnings.push_back(
+            fmt::format("{} {} at the place of another: joined", count, count == 1 ? "vertex is" : "vertices are"));
+    for (const std::string& message : require_usable(joined, path.string()).messages()) warnings.push_back(message);
+    if (!quiet)
+        for (const std::string& message : warnings) fmt::print(stderr, "warning: {}: {}\n", path.string(), message);
+    return warnings;
 }
 
 LabelingModel model_of_argument(const fs::path& path) {

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "host/labeling/model.h"
+#include "host/mesh/io.h"
 
 namespace exemplar {
 
@@ -21,6 +23,9 @@ void require_input(const std::filesystem::path& path);
 std::vector<std::filesystem::path> meshes_of_argument(const std::filesystem::path& source);
 /// The same of several sources; a mesh that is in more than one comes once.
 std::vector<std::filesystem::path> meshes_of_arguments(const std::vector<std::filesystem::path>& sources);
+/// What is unusual about a mesh read from `path`, a line each, and how it is worked around; printed unless `quiet`.
+/// Throws MeshError if it cannot be labeled.
+std::vector<std::string> mesh_warnings(const MeshFile& file, const std::filesystem::path& path, bool quiet);
 /// load_model for a file that may be anything; throws ModelError saying what makes a model.
 LabelingModel model_of_argument(const std::filesystem::path& path);
 /// Throws UsageError if a file, or a folder of files, cannot be written at `path`. An empty path is no output.

@@ -10,7 +10,6 @@
 #include "host/labeling/features.h"
 #include "host/labeling/mesh_labeling.h"
 #include "host/mesh/io.h"
-#include "host/mesh/validate.h"
 
 namespace exemplar {
 namespace {
@@ -38,12 +37,7 @@ void run_features(const FeaturesOptions& options) {
     require_output_file(options.names);
     require_input(options.mesh);
     const MeshFile file = read_mesh(options.mesh);
-    const MeshReport report = require_usable(file.mesh, options.mesh.string());
-    std::vector<std::string> warnings = file.warnings;
-    for (const std::string& message : report.messages()) warnings.push_back(message);
-    if (!options.common.quiet)
-        for (const std::string& message : warnings)
-            fmt::print(stderr, "warning: {}: {}\n", options.mesh.string(), message);
+    const std::vector<std::string> warnings = mesh_warnings(file, options.mesh, options.common.quiet);
     const Stopwatch watch;
     const bool large = file.mesh.face_count() > k_most_working_faces;
     if (large) announce_simplification(options, file.mesh.face_count());

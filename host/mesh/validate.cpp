@@ -148,7 +148,7 @@ std::vector<std::string> MeshReport::messages() const {
                                     boundary_edges, boundary_edges == 1 ? "" : "s"));
     if (components > 1)
         lines.push_back(
-            fmt::format("{} connected components: geodesic distances between them are infinite", components));
+            fmt::format("{} connected components: distances run within each, so join pieces that belong together", components));
     return lines;
 }
 

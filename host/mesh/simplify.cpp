@@ -320,7 +320,9 @@ SimplifiedMesh simplify_mesh(const TriangleMesh& mesh, std::size_t faces) {
     result.mesh.vertices = clustering.best_points();
     result.mesh.faces = faces_between(unit, clustering);
     if (result.mesh.faces.empty())
-        throw MeshError("the mesh has too many faces and cannot be simplified: they share no vertices; join those at the same place");
+        throw MeshError(
+            "the mesh has too many faces and cannot be simplified: they share no vertices; join those at the same "
+            "place");
     result.mesh.source_face_count = static_cast<std::uint32_t>(result.mesh.face_count());
     result.face_of = assign_faces(unit, clustering, result.mesh);
     for (Vec3& v : result.mesh.vertices) v = frame.from_unit(v);

@@ -147,8 +147,8 @@ std::vector<std::string> MeshReport::messages() const {
         lines.push_back(fmt::format("{} boundary edge{}: the surface is open; rays may leave through its holes",
                                     boundary_edges, boundary_edges == 1 ? "" : "s"));
     if (components > 1)
-        lines.push_back(
-            fmt::format("{} connected components: distances run within each, so join pieces that belong together", components));
+        lines.push_back(fmt::format(
+            "{} connected components: distances run within each, so join pieces that belong together", components));
     return lines;
 }
 

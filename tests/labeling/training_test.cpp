@@ -65,7 +65,8 @@ TEST_F(SlowTraining, LabelsUnseenShapes) {
     for (const LabeledMesh& mesh : unseen.meshes) {
         MeshFeatures features = compute_features(mesh.mesh, options.features);
         const FaceLabeling labeling = label_faces(model, features, {scorer_, context_});
-        rate += score_labeling(features.face_area, mesh.label, labeling.label, model.class_count()).recognition_rate / 3;
+        rate +=
+            score_labeling(features.face_area, mesh.label, labeling.label, model.class_count()).recognition_rate / 3;
     }
     EXPECT_GT(rate, 0.85) << "stated accuracy on generated humans";
 }

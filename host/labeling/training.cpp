@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <functional>
 #include <limits>
@@ -104,6 +105,20 @@ std::vector<float> normalized(std::vector<float> weight) {
     return weight;
 }
 
+/// Weighs each label by the root of its area in place of its area: boosting would give up small parts, and labels that
+/// few meshes have, where many stumps are needed to tell them from the large ones.
+void favor_rare_labels(const LabeledCorpus& corpus, std::vector<std::vector<float>>& weights) {
+    std::vector<double> total(corpus.names.size(), 0);
+    for (std::size_t m = 0; m < weights.size(); ++m)
+        for (std::size_t f = 0; f < weights[m].size(); ++f)
+            if (const std::int32_t label = corpus.meshes[m].label[f]; label >= 0)
+                total[static_cast<std::size_t>(label)] += static_cast<double>(weights[m][f]);
+    for (std::size_t m = 0; m < weights.size(); ++m)
+        for (std::size_t f = 0; f < weights[m].size(); ++f)
+            if (const std::int32_t label = corpus.meshes[m].label[f]; label >= 0 && weights[m][f] > 0)
+                weights[m][f] /= static_cast<float>(std::sqrt(total[static_cast<std::size_t>(label)]));
+}
+
 /// One boosting task over all meshes, with its progress and its row of the report.
 FoldBoostingResult run_stage(const std::string& what, std::span<const BoostingItems> items, FoldBoostingOptions options,
                              const TrainOptions& train, StumpScorer& scorer, TrainReport& report) {
@@ -164,6 +179,7 @@ PerMesh train_unary(const LabeledCorpus& corpus, std::vector<MeshFeatures>& feat
     std::vector<std::vector<float>> weights;
     weights.reserve(features.size());
     for (const MeshFeatures& mesh : features) weights.push_back(normalized(mesh.face_area));
+    favor_rare_labels(corpus, weights);
 
     Cascade cascade{"unary", options.max_stages, k_kept_unary_loss, {}, model.unary_names.size(), context.size(), {},
                     {}};

@@ -179,6 +179,8 @@ DamagedMesh decimate(const TriangleMesh& mesh, std::uint64_t) {
     } catch (const MeshError&) {
         return damaged;  // without area, or pieces too small to stand for anything: there is no coarser mesh
     }
+    damaged.mesh.source_face.clear();  // a mesh of few faces comes back with its polygons
+    damaged.mesh.source_face_count = static_cast<std::uint32_t>(damaged.mesh.face_count());
     const NearestFace nearest(mesh);
     const std::vector<Vec3> centers = face_centers(damaged.mesh), normals = face_normals(damaged.mesh);
     damaged.origin.resize(damaged.mesh.face_count());

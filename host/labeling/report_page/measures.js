@@ -16,10 +16,10 @@ function differenceCell({ value, reference, lower, share }) {
   const word = Number(text) === 0 ? 'equal' : gain > 0 ? 'better' : 'worse';
   return numberCell(word === 'equal' ? word : `${text} ${word}`, { class: `number ${word}` });
 }
-/** One measure per name, in the order of their first appearance; `compared` if any has a reference. */
+/** One measure per name that has a value anywhere, in the order of their first appearance; `compared` if any has a reference. */
 function measureColumns(lists) {
   const columns = new Map();
-  for (const measure of lists.flat()) {
+  for (const measure of lists.flat().filter(m => m.value !== null)) {
     const column = columns.get(measure.name) ?? { ...measure, compared: false };
     column.compared ||= measure.reference !== null;
     columns.set(measure.name, column);

@@ -15,8 +15,7 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/data/corpus.h"
-#include "host/mesh/validate.h"
-#include "host/mesh/weld.h"
+#include "host/labeling/mesh_labeling.h"
 
 namespace exemplar {
 namespace {
@@ -79,22 +78,18 @@ std::vector<fs::path> meshes_of_argument(const fs::path& source) {
     return list_meshes(source);
 }
 
-std::vector<std::filesystem::path> meshes_of_arguments(const std::vector<std::filesystem::path>& sources) {
-    std::vector<std::filesystem::path> meshes;
-    std::set<std::filesystem::path> known;
+std::vector<fs::path> meshes_of_arguments(const std::vector<fs::path>& sources) {
+    std::vector<fs::path> meshes;
+    std::set<fs::path> known;
     for (const auto& source : sources)
         for (const auto& mesh : meshes_of_argument(source))
-            if (known.insert(std::filesystem::weakly_canonical(mesh)).second) meshes.push_back(mesh);
+            if (known.insert(fs::weakly_canonical(mesh)).second) meshes.push_back(mesh);
     return meshes;
 }
 
 std::vector<std::string> mesh_warnings(const MeshFile& file, const fs::path& path, bool quiet) {
     std::vector<std::string> warnings = file.warnings;
-    const TriangleMesh joined = welded(file.mesh);  // as labeling takes it
-    if (const std::size_t count = file.mesh.vertex_count() - joined.vertex_count(); count > 0)
-        warnings.push_back(
-            fmt::format("{} {} at the place of another: joined", count, count == 1 ? "vertex is" : "vertices are"));
-    for (const std::string& message : require_usable(joined, path.string()).messages()) warnings.push_back(message);
+    for (std::string& message : labeling_warnings(file.mesh, path.string())) warnings.push_back(std::move(message));
     if (!quiet)
         for (const std::string& message : warnings) fmt::print(stderr, "warning: {}: {}\n", path.string(), message);
     return warnings;

@@ -192,7 +192,7 @@ class StressRun {
     std::vector<std::int32_t> label(const Subject& subject, const DamagedMesh& damaged, const fs::path& cache,
                                     const std::string& name, Outcome& outcome) {
         const Stopwatch watch;
-        outcome.warnings = validate_mesh(damaged.mesh).messages();
+        outcome.warnings = labeling_warnings(damaged.mesh, subject.path.string());
         const FaceLabeling labeling = label_mesh(model_, damaged.mesh, cache, backend_.labeling());
         outcome.seconds = watch.wall();
         outcome.faces = damaged.mesh.face_count();

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <filesystem>
-
 #include <cstdint>
+#include <filesystem>
 #include <span>
 
 #include "host/learn/feature_matrix.h"

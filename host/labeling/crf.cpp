@@ -52,14 +52,15 @@ std::vector<std::int32_t> solve_crf(const MeshFeatures& features, const CrfTerms
     return alpha_expansion(terms.unary, terms.classes, features.edges, weight, parameters.compatibility).labels;
 }
 
-LabelComponents label_components(const MeshFeatures& features, std::span<const std::int32_t> labels) {
+LabelComponents label_components(std::span<const std::array<std::uint32_t, 2>> edges, std::span<const float> face_area,
+                                 std::span<const std::int32_t> labels) {
     DisjointSets sets(labels.size());
-    for (const auto& [a, b] : features.edges)
+    for (const auto& [a, b] : edges)
         if (labels[a] == labels[b]) sets.join(a, b);
 
     LabelComponents components;
     components.of_face.resize(labels.size());
-    const double total = std::accumulate(features.face_area.begin(), features.face_area.end(), 0.0);
+    const double total = std::accumulate(face_area.begin(), face_area.end(), 0.0);
     for (std::uint32_t f = 0; f < labels.size(); ++f) {
         const std::uint32_t root = sets.find(f);  // the smallest face of the piece, so it comes first
         if (root == f) {
@@ -69,7 +70,7 @@ LabelComponents label_components(const MeshFeatures& features, std::span<const s
         } else {
             components.of_face[f] = components.of_face[root];
         }
-        components.area_share[components.of_face[f]] += static_cast<float>(features.face_area[f] / total);
+        components.area_share[components.of_face[f]] += static_cast<float>(face_area[f] / total);
     }
     return components;
 }
@@ -77,7 +78,7 @@ LabelComponents label_components(const MeshFeatures& features, std::span<const s
 void merge_small_components(const MeshFeatures& features, const CrfParameters& parameters,
                             std::span<const float> smallest_component, std::vector<std::int32_t>& labels) {
     if (parameters.merge_fraction <= 0) return;
-    const LabelComponents pieces = label_components(features, labels);
+    const LabelComponents pieces = label_components(features.edges, features.face_area, labels);
     std::vector<std::uint32_t> small;
     for (std::uint32_t p = 0; p < pieces.label.size(); ++p)
         if (pieces.label[p] >= 0 &&

@@ -31,7 +31,8 @@ struct LabelComponents {
     std::vector<std::int32_t> label;
     std::vector<float> area_share;
 };
-LabelComponents label_components(const MeshFeatures& features, std::span<const std::int32_t> labels);
+LabelComponents label_components(std::span<const std::array<std::uint32_t, 2>> edges, std::span<const float> face_area,
+                                 std::span<const std::int32_t> labels);
 
 /// Gives every piece whose area share is below `parameters.merge_fraction` times the smallest training piece of its
 /// label to the neighboring label it shares the longest border with, smallest pieces first. A piece without neighbors

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "host/core/disjoint_sets.h"
 #include "host/core/errors.h"
 #include "host/core/random.h"
+#include "host/labeling/crf.h"
 #include "host/learn/metrics.h"
 #include "host/mesh/io.h"
 #include "host/mesh/topology.h"
@@ -60,12 +60,11 @@ MeshScore score_labeling(std::span<const float> face_area, std::span<const std::
 SegmentationErrors score_segmentation(const TriangleMesh& mesh, std::span<const std::int32_t> predicted,
                                       std::span<const std::vector<std::int32_t>> human_segmentations) {
     if (human_segmentations.empty()) return {};
-    DisjointSets pieces(predicted.size());
+    std::vector<std::array<std::uint32_t, 2>> neighbors;
     for (const Edge& edge : build_topology(mesh).edges)
-        if (!edge.is_boundary() && predicted[edge.face[0]] == predicted[edge.face[1]])
-            pieces.join(edge.face[0], edge.face[1]);
-    std::vector<std::int32_t> segments(predicted.size());
-    for (std::uint32_t f = 0; f < segments.size(); ++f) segments[f] = static_cast<std::int32_t>(pieces.find(f));
+        if (!edge.is_boundary()) neighbors.push_back(edge.face);
+    const LabelComponents pieces = label_components(neighbors, face_areas(mesh), predicted);
+    const std::vector<std::int32_t> segments(pieces.of_face.begin(), pieces.of_face.end());
     return SegmentationMetrics(mesh).mean_errors(segments, human_segmentations);
 }
 

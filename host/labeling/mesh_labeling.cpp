@@ -1,5 +1,7 @@
 #include "host/labeling/mesh_labeling.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <utility>
@@ -7,6 +9,7 @@
 
 #include "host/core/stopwatch.h"
 #include "host/labeling/feature_cache.h"
+#include "host/mesh/validate.h"
 #include "host/mesh/weld.h"
 
 namespace exemplar {
@@ -40,6 +43,16 @@ std::vector<std::int32_t> labels_by_area(const LabeledMesh& original, const Simp
 }
 
 }  // namespace
+
+std::vector<std::string> labeling_warnings(const TriangleMesh& mesh, const std::string& name) {
+    std::vector<std::string> warnings;
+    const TriangleMesh joined = welded(mesh);
+    if (const std::size_t count = mesh.vertex_count() - joined.vertex_count(); count > 0)
+        warnings.push_back(
+            fmt::format("{} {} at the place of another: joined", count, count == 1 ? "vertex is" : "vertices are"));
+    for (std::string& message : require_usable(joined, name).messages()) warnings.push_back(std::move(message));
+    return warnings;
+}
 
 SimplifiedMesh working_mesh(const TriangleMesh& mesh, std::size_t most_faces) {
     return simplify_mesh(welded(mesh), most_faces);

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "host/data/corpus.h"
 #include "host/labeling/labeler.h"
@@ -13,6 +15,10 @@ namespace exemplar {
 /// The most faces that features are computed on. Larger meshes are simplified to about so many: part borders are found
 /// to a hundredth of the shape's size long before, and time and memory stay bounded (see simplify_mesh).
 constexpr std::size_t k_most_working_faces = 40'000;
+
+/// What is unusual about a mesh as it is labeled, vertices at the same place being one: a line each, with what is done
+/// about it. Throws MeshError naming `name` if it cannot be labeled.
+std::vector<std::string> labeling_warnings(const TriangleMesh& mesh, const std::string& name);
 
 /// The mesh that features are computed on: vertices at the same place made one, as distances run along shared edges,
 /// and large meshes simplified.

@@ -18,18 +18,6 @@ Vec3d corner(const TriangleMesh& mesh, const Face& face, int k) {
     return mesh.vertices[face[static_cast<std::size_t>(k)]].cast<double>();
 }
 
-/// Diagonal of the bounding box of what the faces refer to.
-double referenced_diagonal(const TriangleMesh& mesh) {
-    Vec3d low = Vec3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-    for (const Face& face : mesh.faces) {
-        for (int k = 0; k < 3; ++k) {
-            low = low.cwiseMin(corner(mesh, face, k));
-            high = high.cwiseMax(corner(mesh, face, k));
-        }
-    }
-    return (high - low).norm();
-}
-
 /// Area-weighted mean of the face centers in double precision; the plain mean where there is no area.
 Vec3d surface_centroid(const TriangleMesh& mesh) {
     Vec3d weighted = Vec3d::Zero(), plain = Vec3d::Zero();
@@ -64,7 +52,7 @@ bool faces_inward(const TriangleMesh& mesh) {
 
 /// The mesh with its centroid at the origin and unit size: later steps may work in single precision at any scale.
 TriangleMesh centered_mesh(const TriangleMesh& mesh) {
-    const double diagonal = referenced_diagonal(mesh);
+    const double diagonal = bounding_box(mesh).diagonal();
     const double scale = diagonal > 0.0 ? 1.0 / diagonal : 1.0;
     const Vec3d centroid = surface_centroid(mesh);
     TriangleMesh centered;

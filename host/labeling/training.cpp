@@ -272,7 +272,7 @@ PerMesh train_pairwise(const LabeledCorpus& corpus, std::vector<MeshFeatures>& f
 /// label, far smaller than its largest piece, are slips of the annotator: they say nothing about its size.
 std::vector<float> smallest_pieces(const MeshFeatures& features, std::span<const std::int32_t> labels,
                                    std::size_t classes) {
-    const LabelComponents pieces = label_components(features, labels);
+    const LabelComponents pieces = label_components(features.edges, features.face_area, labels);
     std::vector<float> largest(classes, 0), smallest(classes, 0);
     for (std::size_t p = 0; p < pieces.label.size(); ++p)
         if (pieces.label[p] >= 0) largest[pieces.label[p]] = std::max(largest[pieces.label[p]], pieces.area_share[p]);

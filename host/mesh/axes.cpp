@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nanoflann.hpp>
 #include <numbers>
 
 #include "host/core/parallel.h"
+#include "host/mesh/point_tree.h"
 
 namespace exemplar {
 
@@ -118,14 +118,6 @@ Eigen::Matrix3f frame(const PrincipalAxes& axes) {
 /// from them turns with the mesh.
 struct SurfaceSamples {
     std::vector<Vec3> point, normal;
-
-    // The interface that nanoflann asks for.
-    std::size_t kdtree_get_point_count() const { return point.size(); }
-    float kdtree_get_pt(std::size_t i, std::size_t axis) const { return point[i][static_cast<Eigen::Index>(axis)]; }
-    template <typename Box>
-    bool kdtree_get_bbox(Box&) const {
-        return false;
-    }
 };
 
 /// `count` samples, one for each equal share of the area along the curve of faces; within a face they follow a
@@ -157,16 +149,6 @@ SurfaceSamples sample_surface(const TriangleMesh& mesh, const PrincipalAxes& axe
     return samples;
 }
 
-float bounding_box_diagonal(const TriangleMesh& mesh) {
-    Vec3 low = Vec3::Constant(std::numeric_limits<float>::max()), high = -low;
-    for (const Face& face : mesh.faces)
-        for (std::uint32_t v : face) {
-            low = low.cwiseMin(mesh.vertices[v]);
-            high = high.cwiseMax(mesh.vertices[v]);
-        }
-    return (high - low).norm();
-}
-
 /// How well a mirror plane through the area centroid maps the surface to itself.
 struct Asymmetry {
     float distance;  ///< mean distance of the mirrored samples to the surface, over the diagonal
@@ -180,7 +162,7 @@ class MirrorTest {
         : samples_(std::move(samples)),
           diagonal_(diagonal),
           sample_radius_(std::sqrt(area / static_cast<float>(samples_.point.size()))),
-          tree_(3, samples_, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {}
+          tree_(samples_.point) {}
 
     /// Mirrors `queries` samples, evenly taken from all.
     Asymmetry measure(const Vec3& plane_normal, std::size_t queries) const {
@@ -189,9 +171,7 @@ class MirrorTest {
         std::size_t used = 0;
         for (std::size_t i = stride / 2; i < count; i += stride, ++used) {
             const Vec3 p = mirrored(samples_.point[i], plane_normal), n = mirrored(samples_.normal[i], plane_normal);
-            std::uint32_t nearest = 0;
-            float squared = 0;
-            tree_.knnSearch(p.data(), 1, &nearest, &squared);
+            const std::uint32_t nearest = tree_.nearest(p);
             distance += static_cast<double>(distance_to_sample(p - samples_.point[nearest], samples_.normal[nearest]));
             mismatch += 0.5 * (1.0 - static_cast<double>(n.dot(samples_.normal[nearest])));
         }
@@ -201,9 +181,6 @@ class MirrorTest {
     }
 
   private:
-    using Tree =
-        nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, SurfaceSamples>, SurfaceSamples, 3>;
-
     static Vec3 mirrored(const Vec3& v, const Vec3& plane_normal) { return v - 2 * v.dot(plane_normal) * plane_normal; }
     /// A sample stands for the disk of surface around it, so that the spacing of samples does not count as distance.
     float distance_to_sample(const Vec3& offset, const Vec3& normal) const {
@@ -214,7 +191,7 @@ class MirrorTest {
 
     SurfaceSamples samples_;
     float diagonal_, sample_radius_;
-    Tree tree_;
+    PointTree tree_;
 };
 
 /// A plane's normal and what the search knows of its cost.
@@ -303,7 +280,9 @@ std::vector<SymmetryPlane> symmetry_planes(const TriangleMesh& mesh, int count) 
     if (!samples.point.empty()) {
         double area = 0;
         for (float a : face_areas(mesh)) area += static_cast<double>(a);
-        const MirrorTest test(std::move(samples), bounding_box_diagonal(mesh), static_cast<float>(area));
+        const BoundingBox box = bounding_box(mesh);
+        const float diagonal = (box.high - box.low).cast<float>().norm();
+        const MirrorTest test(std::move(samples), diagonal, static_cast<float>(area));
         chosen = best_separated(search_planes(test), wanted, k_separation);
         for (Candidate& c : chosen) c.asymmetry = test.measure(c.normal, k_final_queries);
         std::ranges::stable_sort(chosen, {}, [](const Candidate& c) { return c.asymmetry.distance; });

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <limits>
 
 namespace exemplar {
 
@@ -31,6 +32,17 @@ std::vector<Vec3d> vertex_area_vectors(const TriangleMesh& mesh) {
 }
 
 }  // namespace
+
+BoundingBox bounding_box(const TriangleMesh& mesh) {
+    BoundingBox box{Vec3d::Constant(std::numeric_limits<double>::infinity()),
+                    Vec3d::Constant(-std::numeric_limits<double>::infinity())};
+    for (const Face& face : mesh.faces)
+        for (const std::uint32_t v : face) {
+            box.low = box.low.cwiseMin(mesh.vertices[v].cast<double>());
+            box.high = box.high.cwiseMax(mesh.vertices[v].cast<double>());
+        }
+    return box;
+}
 
 std::vector<float> face_areas(const TriangleMesh& mesh) {
     std::vector<float> areas;

@@ -31,6 +31,13 @@ struct TriangleMesh {
     std::uint32_t source_of(std::uint32_t face) const { return source_face.empty() ? face : source_face[face]; }
 };
 
+struct BoundingBox {
+    Vec3d low, high;
+    double diagonal() const { return (high - low).norm(); }
+};
+/// The box around all vertices that faces refer to; low above high if there are no faces.
+BoundingBox bounding_box(const TriangleMesh& mesh);
+
 /// Area of each face, in squared mesh units (zero for degenerate faces).
 std::vector<float> face_areas(const TriangleMesh& mesh);
 /// Unit normal of each face; a degenerate face gets the area-weighted mean of its neighbors by vertex, else +z.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nanoflann.hpp>
 #include <numeric>
 #include <span>
 #include <tuple>
@@ -14,6 +13,7 @@
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
 #include "host/mesh/distance_queue.h"
+#include "host/mesh/point_tree.h"
 #include "host/mesh/topology.h"
 
 namespace exemplar {
@@ -59,15 +59,9 @@ Rows vertex_neighbors(const TriangleMesh& mesh) {
 class UnitFrame {
   public:
     explicit UnitFrame(const TriangleMesh& mesh) {
-        Vec3d low = Vec3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-        for (const Face& face : mesh.faces)
-            for (const std::uint32_t v : face) {
-                low = low.cwiseMin(mesh.vertices[v].cast<double>());
-                high = high.cwiseMax(mesh.vertices[v].cast<double>());
-            }
-        const double diagonal = (high - low).norm();
-        origin_ = (low + high) / 2;
-        if (diagonal > 0) size_ = diagonal;
+        const BoundingBox box = bounding_box(mesh);
+        origin_ = (box.low + box.high) / 2;
+        if (box.diagonal() > 0) size_ = box.diagonal();
     }
     Vec3 to_unit(const Vec3& p) const { return ((p.cast<double>() - origin_) / size_).cast<float>(); }
     Vec3 from_unit(const Vec3& p) const { return (origin_ + p.cast<double>() * size_).cast<float>(); }
@@ -212,9 +206,8 @@ std::vector<Face> faces_between(const TriangleMesh& mesh, const Clustering& clus
         found.emplace_back(sorted, f, clusters);
     }
     std::ranges::sort(found);
-    const auto repeated =
-        std::ranges::unique(found, [](const auto& a, const auto& b) { return std::get<0>(a) == std::get<0>(b); });
-    found.erase(repeated.begin(), repeated.end());
+    const auto same = [](const auto& a, const auto& b) { return std::get<0>(a) == std::get<0>(b); };
+    found.erase(std::unique(found.begin(), found.end(), same), found.end());
     std::ranges::sort(found, {}, [](const auto& entry) { return std::get<1>(entry); });  // as they lie in the mesh
     std::vector<Face> faces;
     faces.reserve(found.size());
@@ -238,37 +231,6 @@ float squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& 
     return std::min({from_edge(a, b), from_edge(b, c), from_edge(c, a)});
 }
 
-/// Finds faces of the simplified mesh by the nearest center, for those whose clusters have none.
-class NearestCenter {
-  public:
-    explicit NearestCenter(const TriangleMesh& mesh)
-        : centers_{face_centers(mesh)}, tree_(3, centers_, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {
-        tree_.buildIndex();
-    }
-    std::uint32_t find(const Vec3& point) const {
-        std::uint32_t index = 0;
-        float distance = 0;
-        tree_.knnSearch(point.data(), 1, &index, &distance);
-        return index;
-    }
-
-  private:
-    /// The interface that nanoflann asks for.
-    struct Centers {
-        std::vector<Vec3> points;
-        std::size_t kdtree_get_point_count() const { return points.size(); }
-        float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-            return points[i][static_cast<Eigen::Index>(axis)];
-        }
-        template <class Box>
-        bool kdtree_get_bbox(Box&) const {
-            return false;
-        }
-    };
-    Centers centers_;
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Centers>, Centers, 3, std::uint32_t> tree_;
-};
-
 /// The face for each face of the original: of those at its clusters that look the same way, the nearest.
 std::vector<std::uint32_t> assign_faces(const TriangleMesh& mesh, const Clustering& clustering,
                                         const TriangleMesh& simple) {
@@ -278,7 +240,7 @@ std::vector<std::uint32_t> assign_faces(const TriangleMesh& mesh, const Clusteri
     });
     const std::vector<Vec3> center = face_centers(mesh), normal = face_normals(mesh),
                             simple_normal = face_normals(simple);
-    const NearestCenter nearest(simple);
+    const PointTree centers(face_centers(simple));
     std::vector<std::uint32_t> face_of(mesh.face_count());
     parallel_ranges(mesh.face_count(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
@@ -297,7 +259,7 @@ std::vector<std::uint32_t> assign_faces(const TriangleMesh& mesh, const Clusteri
                     best = rating, face_of[f] = other, found = true;
                 }
             }
-            if (!found) face_of[f] = nearest.find(center[f]);
+            if (!found) face_of[f] = centers.nearest(center[f]);
         }
     });
     return face_of;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <string>
 
@@ -50,16 +49,6 @@ std::vector<std::uint32_t> random_share(std::size_t count, double share, Random&
     const auto wanted = static_cast<std::size_t>(std::lround(share * static_cast<double>(count)));
     items.resize(std::clamp<std::size_t>(wanted, std::min<std::size_t>(1, count), count));
     return items;
-}
-
-double surface_diagonal(const TriangleMesh& mesh) {
-    Vec3d low = Vec3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
-    for (const Face& face : mesh.faces)
-        for (const std::uint32_t v : face) {
-            low = low.cwiseMin(mesh.vertices[v].cast<double>());
-            high = high.cwiseMax(mesh.vertices[v].cast<double>());
-        }
-    return mesh.faces.empty() ? 0.0 : (high - low).norm();
 }
 
 Vec3d random_direction(Random& random) {

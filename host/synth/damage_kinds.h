@@ -15,8 +15,6 @@ void keep_faces(DamagedMesh& damaged, const std::vector<bool>& kept);
 void add_face(DamagedMesh& damaged, const Face& face, std::uint32_t origin);
 /// So many different faces (or other items out of `count`) in random order: `share` of them, at least one.
 std::vector<std::uint32_t> random_share(std::size_t count, double share, Random& random);
-/// Diagonal of the bounding box of what the faces refer to.
-double surface_diagonal(const TriangleMesh& mesh);
 /// A uniformly distributed unit vector.
 Vec3d random_direction(Random& random);
 

@@ -3,14 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <map>
-#include <nanoflann.hpp>
 #include <set>
 #include <utility>
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
+#include "host/mesh/point_tree.h"
 #include "host/mesh/simplify.h"
 #include "host/mesh/topology.h"
 #include "host/mesh/weld.h"
@@ -34,39 +33,20 @@ std::size_t side_between(const Face& face, const std::array<std::uint32_t, 2>& e
 /// Finds the face of a mesh whose center is nearest to a point, among those that look the same way where there are any.
 class NearestFace {
   public:
-    explicit NearestFace(const TriangleMesh& mesh)
-        : centers_{face_centers(mesh)},
-          normals_(face_normals(mesh)),
-          tree_(3, centers_, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {
-        tree_.buildIndex();
-    }
+    explicit NearestFace(const TriangleMesh& mesh) : normals_(face_normals(mesh)), centers_(face_centers(mesh)) {}
 
     std::uint32_t find(const Vec3& point, const Vec3& normal) const {
         constexpr std::size_t k_candidates = 8;  // the other side of a thin wall can be nearer
         std::array<std::uint32_t, k_candidates> face{};
-        std::array<float, k_candidates> squared{};
-        const std::size_t found = tree_.knnSearch(point.data(), k_candidates, face.data(), squared.data());
+        const std::size_t found = centers_.nearest(point, face);
         for (std::size_t i = 0; i < found; ++i)
             if (normals_[face[i]].dot(normal) > 0) return face[i];
         return face[0];
     }
 
   private:
-    /// The interface that nanoflann asks for.
-    struct Centers {
-        std::vector<Vec3> points;
-        std::size_t kdtree_get_point_count() const { return points.size(); }
-        float kdtree_get_pt(std::size_t i, std::size_t axis) const {
-            return points[i][static_cast<Eigen::Index>(axis)];
-        }
-        template <typename Box>
-        bool kdtree_get_bbox(Box&) const {
-            return false;
-        }
-    };
-    Centers centers_;
     std::vector<Vec3> normals_;
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Centers>, Centers, 3, std::uint32_t> tree_;
+    PointTree centers_;
 };
 
 /// Cuts every face into n x n equal ones. Sides of the same two vertices are cut in the same points.

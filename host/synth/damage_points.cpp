@@ -29,7 +29,7 @@ std::vector<double> mean_edge_lengths(const TriangleMesh& mesh) {
 DamagedMesh with_noise(const TriangleMesh& mesh, std::uint64_t seed, double of_diagonal, double of_edges) {
     DamagedMesh damaged = undamaged(mesh);
     Random random(seed);
-    const double diagonal = surface_diagonal(mesh);
+    const double diagonal = bounding_box(mesh).diagonal();
     const std::vector<double> edge = mean_edge_lengths(mesh);
     for (std::size_t v = 0; v < mesh.vertex_count(); ++v) {
         const double deviation = std::min(of_diagonal * diagonal, of_edges * edge[v]) / std::sqrt(3.0);  // per axis
@@ -84,7 +84,7 @@ DamagedMesh scale_up(const TriangleMesh& mesh, std::uint64_t) {
 DamagedMesh move_far(const TriangleMesh& mesh, std::uint64_t seed) {
     DamagedMesh damaged = undamaged(mesh);
     Random random(seed);
-    const Vec3d offset = 100 * surface_diagonal(mesh) * random_direction(random);
+    const Vec3d offset = 100 * bounding_box(mesh).diagonal() * random_direction(random);
     for (Vec3& v : damaged.mesh.vertices) v = (v.cast<double>() + offset).cast<float>();
     return damaged;
 }
@@ -93,7 +93,7 @@ DamagedMesh add_loose_vertices(const TriangleMesh& mesh, std::uint64_t seed) {
     constexpr std::uint32_t k_loose = 100;
     DamagedMesh damaged = undamaged(mesh);
     Random random(seed);
-    const double diagonal = surface_diagonal(mesh);
+    const double diagonal = bounding_box(mesh).diagonal();
     const Vec3d center = area_centroid(mesh).cast<double>();
     std::vector<Vec3> loose;  // before the others, so that these get other numbers
     for (std::uint32_t i = 0; i < k_loose; ++i)

@@ -1,5 +1,6 @@
 """Runs the exemplar program for the tests of this folder, each in a folder of its own."""
 
+import json
 import os
 import pathlib
 import subprocess
@@ -51,6 +52,23 @@ class ProgramTest(unittest.TestCase):
 
     def assert_no_leftovers(self):
         self.assertEqual([str(path) for path in self.folder.rglob("*.tmp")], [])
+
+
+TRUTH = ("body", "handle")  # the labels of cups
+
+
+class WithModel(ProgramTest):
+    """Three cups and a model trained on them."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.call("synth", "cup", "--count", "3", "--faces", "500", "--out", "cups")
+        cls.trained = cls.call("label", "train", "cups", "--out", "cup.safetensors", "--json", "train.json", *QUICK)
+        cls.cup = cls.folder / "cups" / "cup_001.off"
+
+    def json(self, name):
+        return json.loads((self.folder / name).read_text())
 
 
 def write_off(path, vertices, faces):

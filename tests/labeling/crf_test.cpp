@@ -70,7 +70,8 @@ TEST(Crf, TermsStayFiniteForCertainProbabilities) {
 
 TEST(LabelComponents, ArePiecesOfEqualLabel) {
     const MeshFeatures features = strip(6);
-    const LabelComponents pieces = label_components(features, std::vector<std::int32_t>{2, 2, 0, 2, 2, 2});
+    const LabelComponents pieces =
+        label_components(features.edges, features.face_area, std::vector<std::int32_t>{2, 2, 0, 2, 2, 2});
     EXPECT_THAT(pieces.of_face, ElementsAre(0, 0, 1, 2, 2, 2));
     EXPECT_THAT(pieces.label, ElementsAre(2, 0, 2));
     EXPECT_FLOAT_EQ(pieces.area_share[2], 0.5F);

@@ -1,0 +1,66 @@
+"""What --json writes is what docs/formats.md says. Needs a Vulkan device (a software one will do)."""
+
+import re
+import unittest
+
+from program import (WithModel, DOCS, QUICK)
+
+
+class Reports(WithModel):
+    """docs/formats.md says all keys of every report, and no others."""
+
+    OPEN = {"stumps_per_family", "share_per_family", "seconds_per_family"}  # their keys are names of families
+    OPTIONAL = {"error", "unusable_because", "copy_gb_per_s", "fma_gflop_per_s", "subgroup_size", "thesis"}
+
+    def keys(self, value):
+        if isinstance(value, dict):
+            for key, inner in value.items():
+                yield key
+                if key not in self.OPEN:
+                    yield from self.keys(inner)
+        elif isinstance(value, list):
+            for inner in value:
+                yield from self.keys(inner)
+
+    def documented(self, command):
+        text = (DOCS / "formats.md").read_text()
+        section = re.search(rf"^### `{command}`\n(.*?)(?=^##|\Z)", text, re.M | re.S)[1]
+        return set(re.findall(r"`(\w+)`", section))
+
+    def check(self, command, report):
+        found, documented = set(self.keys(report)), self.documented(command)
+        self.assertEqual(found - documented, set(), "not in docs/formats.md")
+        self.assertEqual(documented - found - self.OPTIONAL, set(), "in docs/formats.md but not in the report")
+
+    def test_train(self):
+        self.check("label train", self.json("train.json"))
+
+    def test_apply(self):
+        self.call("label", "apply", "cup.safetensors", "cups", "--out", "labeled", "--json", "a.json")
+        self.check("label apply", self.json("a.json"))
+
+    def test_evaluate(self):
+        self.call("label", "evaluate", "--train-on", "cups", "cups/cup_001.off", "--test-on", "cups", "--out", "e", "--json",
+                  "e.json", *QUICK)
+        self.check("label evaluate", self.json("e.json"))
+
+    def test_stress(self):
+        self.call("label", "stress", "cup.safetensors", "cups", "--damage", "holes", "--json", "x.json")
+        self.check("label stress", self.json("x.json"))
+
+    def test_features(self):
+        self.call("features", self.cup, "--out", "f.npy", "--json", "f.json", "--samples", "60")
+        self.check("features", self.json("f.json"))
+
+    def test_synth(self):
+        self.call("synth", "cup", "--faces", "500", "--out", "s", "--json", "s.json")
+        self.check("synth", self.json("s.json"))
+
+    def test_devices(self):
+        self.call("devices", "--no-measure", "--json", "d.json")
+        self.check("devices", self.json("d.json"))
+        self.assertEqual(sum(device["chosen"] for device in self.json("d.json")["devices"]), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

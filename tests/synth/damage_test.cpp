@@ -341,7 +341,7 @@ TEST(Shuffled, IsTheSameInAnotherOrder) {
         auto corner = corners(damaged.mesh, f);
         const auto original = corners(cup(), damaged.origin[f]);
         same_start += corner == original;
-        for (int k = 0; k < 2 && corner != original; ++k) std::ranges::rotate(corner, corner.begin() + 1);
+        for (int k = 0; k < 2 && corner != original; ++k) std::rotate(corner.begin(), corner.begin() + 1, corner.end());
         EXPECT_EQ(corner, original) << "the same corners, turned the same way";
     }
     EXPECT_LT(same_start, now.size() / 2);

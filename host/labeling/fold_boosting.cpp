@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::size_t k_judged_rounds = 10;  // after the first ten, held-out rows are judged every so many rounds
 constexpr std::size_t k_blind_rounds = 50;   // where nothing can be held out
+/// Share of the scale that scores keep where the classifier has learned from the very items: it is too sure of them.
+constexpr float k_seen_scale = 0.5F;
 
 /// The rows of all meshes that boosting uses, side by side.
 struct Pool {
@@ -134,11 +136,12 @@ class FoldLabels {
     bool known_without(std::size_t fold, std::size_t label) const {
         return total_[label] > rows_[fold * classes_ + label];
     }
-    /// Whether that holds for all labels there are.
-    bool all_known_without(std::size_t fold) const {
+    /// The labels all of whose rows lie in the fold.
+    std::vector<std::size_t> of_fold_alone(std::size_t fold) const {
+        std::vector<std::size_t> alone;
         for (std::size_t label = 0; label < classes_; ++label)
-            if (total_[label] > 0 && !known_without(fold, label)) return false;
-        return true;
+            if (total_[label] > 0 && !known_without(fold, label)) alone.push_back(label);
+        return alone;
     }
 
   private:
@@ -211,22 +214,39 @@ RoundChoice choose_rounds(const Pool& pool, FoldBoosters& boosters, const FoldBo
     return choice;
 }
 
-/// Probabilities of every item of every mesh from the classifier of the fold that held it out.
+/// Gives some classes the probabilities that `source` has for them; the others share the rest as they did.
+void take_classes(std::span<const std::size_t> taken, std::span<const float> source, std::span<float> target) {
+    float rest = 1, scale = 1;
+    for (const std::size_t c : taken) rest -= source[c], scale -= target[c];
+    for (float& p : target) p *= scale > 0 ? std::max(rest, 0.0F) / scale : 0;
+    for (const std::size_t c : taken) target[c] = source[c];
+}
+
+/// Probabilities of every item of every mesh from the classifier of the fold that held it out. Labels that it cannot
+/// know, as all their items are held out with this one, have those of the final classifier at a reduced scale: else a
+/// later stage, for which this is the context, would learn that the surroundings never show such a label.
 std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems> meshes,
                                                   const std::vector<BoostedStumps>& of_fold,
-                                                  const CalibratedStumps& everywhere, std::size_t classes,
-                                                  StumpScorer& scorer) {
+                                                  const CalibratedStumps& everywhere, const FoldLabels& labels,
+                                                  std::size_t classes, StumpScorer& scorer) {
     std::vector<std::vector<float>> result;
     for (const BoostingItems& mesh : meshes) {
-        std::vector<float> scores(mesh.fold.size() * classes), from_fold(mesh.fold.size() * classes);
+        std::vector<float> scores(mesh.fold.size() * classes), from_fold(scores.size()), seen(scores.size());
         for (std::size_t fold = 0; fold < of_fold.size(); ++fold) {
             const auto holds = [&](std::uint8_t f) { return f == fold; };
             if (std::none_of(mesh.fold.begin(), mesh.fold.end(), holds)) continue;
             const BoostedStumps& classifier = of_fold[fold].class_count ? of_fold[fold] : everywhere.stumps;
             scorer.probabilities(classifier, *mesh.features, everywhere.link, everywhere.scale, from_fold);
-            for (std::size_t i = 0; i < mesh.fold.size(); ++i)
-                if (mesh.fold[i] == fold)
-                    std::copy_n(from_fold.begin() + i * classes, classes, scores.begin() + i * classes);
+            const std::vector<std::size_t> alone = labels.of_fold_alone(fold);
+            if (!alone.empty())
+                scorer.probabilities(everywhere.stumps, *mesh.features, everywhere.link,
+                                     k_seen_scale * everywhere.scale, seen);
+            for (std::size_t i = 0; i < mesh.fold.size(); ++i) {
+                if (mesh.fold[i] != fold) continue;
+                const std::span<float> item = std::span(scores).subspan(i * classes, classes);
+                std::copy_n(from_fold.begin() + i * classes, classes, item.begin());
+                if (!alone.empty()) take_classes(alone, std::span(seen).subspan(i * classes, classes), item);
+            }
         }
         result.push_back(std::move(scores));
     }
@@ -256,14 +276,14 @@ FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const
     std::vector<BoostedStumps> all{everywhere.classifier()};
     const FoldLabels labels(pool, options);
     for (std::size_t fold = 0; fold < of_fold.size(); ++fold)
-        if (of_fold[fold].class_count > 0 && labels.all_known_without(fold)) all.push_back(of_fold[fold]);
+        if (of_fold[fold].class_count > 0 && labels.of_fold_alone(fold).empty()) all.push_back(of_fold[fold]);
     result.classifier.stumps = mean_classifier(all);
     result.rounds = choice.rounds;
     result.classifier.link = choice.calibration.link;
     result.classifier.scale = choice.calibration.scale;
     result.loss = choice.calibration.loss, result.error = choice.calibration.error;
     result.curve = std::move(choice.curve);
-    result.out_of_fold = score_out_of_fold(meshes, of_fold, result.classifier, options.classes, scorer);
+    result.out_of_fold = score_out_of_fold(meshes, of_fold, result.classifier, labels, options.classes, scorer);
     return result;
 }
 

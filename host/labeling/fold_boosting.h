@@ -43,8 +43,9 @@ struct HeldOutPoint {
 struct FoldBoostingResult {
     CalibratedStumps classifier;  ///< the mean of one trained on all items and those of the folds
     std::size_t rounds = 0;       ///< of each of them
-    std::vector<std::vector<float>>
-        out_of_fold;                  ///< per mesh: items x classes, from the classifier that never saw the item
+    /// Per mesh: items x classes, from the classifier that never saw the item; for labels that it cannot know, as one
+    /// fold has them all, from the mean, with less confidence.
+    std::vector<std::vector<float>> out_of_fold;
     std::vector<HeldOutPoint> curve;  ///< up to where the search for the number of rounds ended
     double loss = 0;                  ///< weighted log loss of held-out items; NaN if nothing could be held out
     double error = 0;                 ///< weighted share of wrong labels; likewise

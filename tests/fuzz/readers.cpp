@@ -45,7 +45,7 @@ const fs::path& scratch() {
 }
 
 fs::path scratch_file(const std::string& name, std::string_view content) {
-    const fs::path path = scratch() / name;
+    fs::path path = scratch() / name;
     mesh_files::write_bytes(path, std::string(content));
     return path;
 }

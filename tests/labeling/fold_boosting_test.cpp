@@ -88,6 +88,35 @@ TEST(FoldBoosting, ALabelOfOneFoldOnlyIsNotHeldAgainstTheOthers) {
     EXPECT_GT(after.classifier.scale, 0.5F * before.classifier.scale) << "probabilities must not become unsure";
 }
 
+TEST(FoldBoosting, ContextShowsALabelOfOneFoldOnlyWithLessConfidence) {
+    Meshes meshes = make_meshes(3, 80, 0.2);
+    for (std::size_t i = 0; i < 30; ++i) {
+        meshes.data[0].labels[i] = 2;
+        meshes.data[0].features.column(0)[i] = 50.0F;  // easy to learn
+    }
+    CpuStumpScorer scorer;
+    FoldBoostingOptions options = options_for(3);
+    options.classes = 3, options.patience = 0, options.rounds = 60;
+    const FoldBoostingResult result = boost_with_folds(meshes.items, options, scorer, [] {});
+    std::vector<float> seen(80 * 3), held_out = result.out_of_fold[0];
+    scorer.probabilities(result.classifier.stumps, meshes.data[0].features, result.classifier.link,
+                         result.classifier.scale, seen);
+    float least = 1;
+    for (std::size_t i = 0; i < 80; ++i) {
+        const float* p = held_out.data() + 3 * i;
+        EXPECT_NEAR(p[0] + p[1] + p[2], 1, 1e-5);
+        const bool is_rare = i < 30;
+        EXPECT_EQ(is_rare, *std::max_element(p, p + 3) == p[2]) << "item " << i;
+        if (!is_rare) continue;
+        EXPECT_LE(p[2], seen[3 * i + 2]);
+        least = std::min(least, p[2]);
+    }
+    EXPECT_LT(least, 0.999F);
+    float elsewhere = 0;
+    for (std::size_t i = 0; i < 80; ++i) elsewhere += result.out_of_fold[1][3 * i + 2] / 80;
+    EXPECT_LT(elsewhere, 0.05F) << "known, and not there";
+}
+
 TEST(FoldBoosting, WithoutAnythingHeldOutItStillTrains) {
     const Meshes meshes = make_meshes(1, 60, 1.0);
     CpuStumpScorer scorer;

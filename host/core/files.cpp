@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <vector>
 
 #include "host/core/errors.h"
@@ -88,13 +87,21 @@ std::string read_file(const fs::path& path) {
     errno = 0;
     std::ifstream stream(path, std::ios::binary);
     if (!stream) throw DataError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
-    std::ostringstream content;
+    // What has no size, or another one by now, such as a pipe, is read to its end piece by piece.
+    constexpr std::size_t k_piece = 65536;
+    const std::uintmax_t size = fs::file_size(path, ignored);
+    std::string content(ignored ? k_piece : static_cast<std::size_t>(size) + 1, '\0');
+    std::size_t filled = 0;
     errno = 0;
-    content << stream.rdbuf();
-    const bool failed = content.fail() && errno != 0;  // an empty file fails too, without a reason
-    if (stream.bad() || failed)
-        throw DataError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
-    return std::move(content).str();
+    for (;;) {
+        stream.read(content.data() + filled, static_cast<std::streamsize>(content.size() - filled));
+        filled += static_cast<std::size_t>(stream.gcount());
+        if (!stream) break;
+        content.resize(content.size() + std::max(k_piece, content.size() / 2));
+    }
+    if (stream.bad()) throw DataError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
+    content.resize(filled);
+    return content;
 }
 
 std::string suggest_file(const fs::path& path) {

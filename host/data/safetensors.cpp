@@ -61,6 +61,7 @@ std::vector<std::size_t> sizes_of(const std::string& path, const std::string& na
     return sizes;
 }
 
+/// The array that a header's entry describes; its bytes stay those of `data`.
 Tensor parse_tensor(const std::string& path, const std::string& name, const Json& entry, std::string_view data) {
     if (!entry.is_object() || !entry.contains("dtype") || !entry.contains("shape") || !entry.contains("data_offsets"))
         damaged(path, "the entry " + mesh_io::quote(name) + " is incomplete");
@@ -75,7 +76,7 @@ Tensor parse_tensor(const std::string& path, const std::string& name, const Json
     if (offsets.size() != 2 || offsets[0] > offsets[1] || offsets[1] > data.size() ||
         !byte_count(tensor.shape, element, bytes) || bytes != offsets[1] - offsets[0])
         damaged(path, fmt::format("{} does not fit the file", mesh_io::quote(name)));
-    tensor.bytes.assign(data.begin() + offsets[0], data.begin() + offsets[1]);
+    tensor.bytes = {reinterpret_cast<const std::uint8_t*>(data.data()) + offsets[0], bytes};
     return tensor;
 }
 
@@ -95,7 +96,8 @@ void check_tiling(const std::string& path, const Json& header, std::size_t bytes
     if (end != bytes) damaged(path, fmt::format("it has {} bytes of data where {} are described", bytes, end));
 }
 
-TensorFile parse(const std::string& path, std::string_view content) {
+TensorFile parse(const std::string& path, const std::shared_ptr<const std::string>& read) {
+    const std::string_view content = *read;
     std::uint64_t header_size = 0;
     if (content.size() < sizeof(header_size)) damaged(path, "it is too short for a header");
     std::memcpy(&header_size, content.data(), sizeof(header_size));
@@ -113,7 +115,8 @@ TensorFile parse(const std::string& path, std::string_view content) {
             file.metadata = entry.get<std::map<std::string, std::string>>();
             continue;
         }
-        file.tensors[name] = parse_tensor(path, name, entry, data);
+        Tensor& tensor = file.tensors[name] = parse_tensor(path, name, entry, data);
+        tensor.owner = read;
     }
     return file;
 }
@@ -133,9 +136,9 @@ bool shape_matches(const std::vector<std::size_t>& shape, const std::vector<std:
 
 template <typename T>
 void TensorFile::add(const std::string& name, std::vector<std::size_t> shape, std::span<const T> values) {
-    Tensor tensor{k_type_name<T>, std::move(shape), std::vector<std::uint8_t>(values.size_bytes())};
-    if (!values.empty()) std::memcpy(tensor.bytes.data(), values.data(), values.size_bytes());
-    tensors[name] = std::move(tensor);
+    const auto copy = std::make_shared<const std::vector<T>>(values.begin(), values.end());
+    const std::span<const std::uint8_t> bytes{reinterpret_cast<const std::uint8_t*>(copy->data()), values.size_bytes()};
+    tensors[name] = {k_type_name<T>, std::move(shape), bytes, copy};
 }
 
 template <typename T>
@@ -192,9 +195,9 @@ void write_safetensors(const std::filesystem::path& path, const TensorFile& file
 }
 
 TensorFile read_safetensors(const std::filesystem::path& path) {
-    std::string content;
+    std::shared_ptr<const std::string> content;
     try {
-        content = read_file(path);
+        content = std::make_shared<const std::string>(read_file(path));
     } catch (const DataError& error) {
         throw ModelError(error.what());
     }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,9 +12,10 @@ namespace exemplar {
 
 /// One named array of a safetensors file, row-major, little-endian.
 struct Tensor {
-    std::string type;                 ///< "F32", "U8", "U32", "U64" or "I32"
-    std::vector<std::size_t> shape;   ///< product = number of elements
-    std::vector<std::uint8_t> bytes;  ///< elements x element size
+    std::string type;                     ///< "F32", "U8", "U32", "U64" or "I32"
+    std::vector<std::size_t> shape;       ///< product = number of elements
+    std::span<const std::uint8_t> bytes;  ///< elements x element size
+    std::shared_ptr<const void> owner;    ///< of the bytes: all arrays of a file that was read share its content
 };
 
 /// The content of a safetensors file: text metadata and named arrays, both in name order, so that equal content gives

@@ -231,7 +231,8 @@ std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems>
                                                   std::size_t classes, StumpScorer& scorer) {
     std::vector<std::vector<float>> result;
     for (const BoostingItems& mesh : meshes) {
-        std::vector<float> scores(mesh.fold.size() * classes), from_fold(scores.size()), seen(scores.size());
+        const std::size_t size = mesh.fold.size() * classes;
+        std::vector<float> scores(size), from_fold(size), seen(size);
         for (std::size_t fold = 0; fold < of_fold.size(); ++fold) {
             const auto holds = [&](std::uint8_t f) { return f == fold; };
             if (std::none_of(mesh.fold.begin(), mesh.fold.end(), holds)) continue;

@@ -198,7 +198,7 @@ bool reads_seg(std::string_view content) {
 }
 
 bool same(const Tensor& a, const Tensor& b) {
-    return a.type == b.type && a.shape == b.shape && a.bytes == b.bytes;
+    return a.type == b.type && a.shape == b.shape && std::ranges::equal(a.bytes, b.bytes);
 }
 
 bool reads_safetensors(std::string_view content) {

@@ -1,11 +1,13 @@
 #include "gpu/labeling/context_histograms.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <numeric>
 
 #include "embedded/labeling_context_axes_comp.h"
 #include "embedded/labeling_context_geodesic_comp.h"
+#include "host/core/parallel.h"
 #include "shaders/shared/context.h"
 
 namespace exemplar {
@@ -86,13 +88,15 @@ std::vector<vec4> mass_prefixes(const Masses& masses, std::span<const std::vecto
 }
 
 // One block of samples: the ranges of faces seen from 16 samples, the first in the lowest byte of x. What stands in the
-// place of missing samples does not matter: they have no mass.
+// place of missing samples does not matter: they have no mass. Each texel is written once, as device memory may be slow
+// to read.
 void pack_ranges(const ContextGeometry& geometry, Range samples, std::size_t first_face, std::span<uvec4> texels) {
-    std::ranges::fill(texels, uvec4{});
-    for (std::size_t j = 0; j < samples.count; ++j) {
-        const std::size_t word = j / 4, shift = 8 * (j % 4);
-        const std::uint8_t* row = geometry.geodesic_bin.data() + (samples.first + j) * geometry.faces + first_face;
-        for (std::size_t i = 0; i < texels.size(); ++i) (&texels[i].x)[word] |= std::uint32_t{row[i]} << shift;
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+        std::array<std::uint32_t, 4> words{};
+        const std::uint8_t* range = geometry.geodesic_bin.data() + samples.first * geometry.faces + first_face + i;
+        for (std::size_t j = 0; j < samples.count; ++j, range += geometry.faces)
+            words[j / 4] |= std::uint32_t{*range} << (8 * (j % 4));
+        texels[i] = {words[0], words[1], words[2], words[3]};
     }
 }
 
@@ -145,11 +149,13 @@ GpuContextHistograms::Tile::Tile(Device& device, Stream& stream, const ContextGe
     : faces(part),
       ranges(device, sample_blocks(samples.count) * faces.count * sizeof(uvec4)),
       positions(device, k_context_axes * faces.count * sizeof(float)) {
-    std::vector<uvec4> texels(faces.count);
-    std::size_t block = 0;
-    for_each_range(samples.count, k_block, [&](Range rows) {
-        pack_ranges(geometry, {samples.first + rows.first, rows.count}, faces.first, texels);
-        stream.upload<uvec4>(ranges, texels, block++ * faces.count * sizeof(uvec4));
+    stream.upload_with(ranges, ranges.bytes(), 0, [&](std::span<std::byte> memory) {
+        const std::span texels(reinterpret_cast<uvec4*>(memory.data()), memory.size() / sizeof(uvec4));
+        parallel_for(sample_blocks(samples.count), [&](std::size_t block) {
+            const std::size_t first = k_block * block;
+            pack_ranges(geometry, {samples.first + first, std::min(k_block, samples.count - first)}, faces.first,
+                        texels.subspan(block * faces.count, faces.count));
+        });
     });
     for (std::size_t axis = 0; axis < k_context_axes; ++axis)
         stream.upload<float>(

@@ -1,6 +1,9 @@
 #include "host/core/files.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -65,6 +68,22 @@ fs::path link_target(const fs::path& path) {
     return error ? path : target;
 }
 
+/// Nothing where there is nothing to map: an empty file, a pipe, one that cannot be read.
+FileView map_file(const fs::path& path) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(path, ignored)) return {};  // opening a pipe would wait
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) return {};
+    struct stat status = {};
+    const bool sized = fstat(file, &status) == 0 && S_ISREG(status.st_mode) && status.st_size > 0;
+    const auto bytes = static_cast<std::size_t>(status.st_size);
+    void* memory = sized ? mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE | MAP_POPULATE, file, 0) : MAP_FAILED;
+    close(file);
+    if (memory == MAP_FAILED) return {};
+    const auto unmap = [bytes](void* mapped) { munmap(mapped, bytes); };
+    return {{static_cast<const char*>(memory), bytes}, std::shared_ptr<void>(memory, unmap)};
+}
+
 }  // namespace
 
 void write_file_atomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
@@ -102,6 +121,12 @@ std::string read_file(const fs::path& path) {
     if (stream.bad()) throw DataError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
     content.resize(filled);
     return content;
+}
+
+FileView view_file(const fs::path& path) {
+    if (FileView mapped = map_file(path); mapped.owner) return mapped;
+    auto copy = std::make_shared<const std::string>(read_file(path));
+    return {*copy, copy};
 }
 
 std::string suggest_file(const fs::path& path) {

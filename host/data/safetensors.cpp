@@ -96,8 +96,8 @@ void check_tiling(const std::string& path, const Json& header, std::size_t bytes
     if (end != bytes) damaged(path, fmt::format("it has {} bytes of data where {} are described", bytes, end));
 }
 
-TensorFile parse(const std::string& path, const std::shared_ptr<const std::string>& read) {
-    const std::string_view content = *read;
+TensorFile parse(const std::string& path, const FileView& read) {
+    const std::string_view content = read.content;
     std::uint64_t header_size = 0;
     if (content.size() < sizeof(header_size)) damaged(path, "it is too short for a header");
     std::memcpy(&header_size, content.data(), sizeof(header_size));
@@ -116,7 +116,7 @@ TensorFile parse(const std::string& path, const std::shared_ptr<const std::strin
             continue;
         }
         Tensor& tensor = file.tensors[name] = parse_tensor(path, name, entry, data);
-        tensor.owner = read;
+        tensor.owner = read.owner;
     }
     return file;
 }
@@ -142,7 +142,7 @@ void TensorFile::add(const std::string& name, std::vector<std::size_t> shape, st
 }
 
 template <typename T>
-std::vector<T> TensorFile::get(const std::string& name, const std::vector<std::size_t>& shape) const {
+std::vector<T> TensorFile::get(const std::string& name, const std::vector<std::size_t>& shape, std::size_t room) const {
     const auto found = tensors.find(name);
     if (found == tensors.end()) damaged(path, fmt::format("the array '{}' is missing", name));
     const Tensor& tensor = found->second;
@@ -151,8 +151,16 @@ std::vector<T> TensorFile::get(const std::string& name, const std::vector<std::s
     if (!shape.empty() && !shape_matches(tensor.shape, shape))
         damaged(path,
                 fmt::format("the array '{}' has shape {}", name, mesh_io::printable(shape_text(tensor.shape), 100)));
-    std::vector<T> values(tensor.bytes.size() / sizeof(T));
-    if (!values.empty()) std::memcpy(values.data(), tensor.bytes.data(), tensor.bytes.size());
+    const std::size_t count = tensor.bytes.size() / sizeof(T);
+    std::vector<T> values;
+    values.reserve(count + room);
+    if (reinterpret_cast<std::uintptr_t>(tensor.bytes.data()) % alignof(T) == 0) {
+        const T* first = reinterpret_cast<const T*>(tensor.bytes.data());
+        values.assign(first, first + count);  // once, where resize() would write zeros first
+    } else if (count > 0) {
+        values.resize(count);
+        std::memcpy(values.data(), tensor.bytes.data(), tensor.bytes.size());
+    }
     return values;
 }
 
@@ -164,7 +172,7 @@ const std::string& TensorFile::meta(const std::string& key) const {
 
 #define EXEMPLAR_INSTANTIATE(T)                                                                         \
     template void TensorFile::add<T>(const std::string&, std::vector<std::size_t>, std::span<const T>); \
-    template std::vector<T> TensorFile::get<T>(const std::string&, const std::vector<std::size_t>&) const;
+    template std::vector<T> TensorFile::get<T>(const std::string&, const std::vector<std::size_t>&, std::size_t) const;
 EXEMPLAR_INSTANTIATE(float)
 EXEMPLAR_INSTANTIATE(std::uint8_t)
 EXEMPLAR_INSTANTIATE(std::uint32_t)
@@ -195,9 +203,9 @@ void write_safetensors(const std::filesystem::path& path, const TensorFile& file
 }
 
 TensorFile read_safetensors(const std::filesystem::path& path) {
-    std::shared_ptr<const std::string> content;
+    FileView content;
     try {
-        content = std::make_shared<const std::string>(read_file(path));
+        content = view_file(path);
     } catch (const DataError& error) {
         throw ModelError(error.what());
     }

@@ -33,9 +33,9 @@ struct TensorFile {
         add<T>(name, std::move(shape), std::span<const T>(values));
     }
     /// A copy of an array; throws ModelError if it is missing or has another type, or another shape than `shape` when
-    /// that is given (k_any matches every extent).
+    /// that is given (k_any matches every extent). So many more elements as `room` can be added without moving it.
     template <typename T>
-    std::vector<T> get(const std::string& name, const std::vector<std::size_t>& shape = {}) const;
+    std::vector<T> get(const std::string& name, const std::vector<std::size_t>& shape = {}, std::size_t room = 0) const;
     /// A metadata value; throws ModelError if it is missing.
     const std::string& meta(const std::string& key) const;
 

@@ -53,11 +53,14 @@ TensorFile to_file(const MeshFeatures& features) {
     return file;
 }
 
+/// Contextual features that later stages add without moving the others; with more labels they are moved once.
+constexpr std::size_t k_room = 16 * k_context_measures * k_context_bins;
+
 FeatureMatrix matrix_from(const TensorFile& file, const std::string& name, std::size_t rows) {
     FeatureMatrix matrix;
     matrix.rows = rows;
     matrix.names = Json::parse(file.meta(name)).get<std::vector<std::string>>();
-    matrix.values = file.get<float>(name, {matrix.cols(), rows});
+    matrix.values = file.get<float>(name, {matrix.cols(), rows}, k_room * rows);
     return matrix;
 }
 

@@ -75,6 +75,20 @@ TEST(Files, MissingFilesAndFoldersAreNamed) {
     }
 }
 
+TEST(Files, ViewsHaveTheContent) {
+    const TemporaryFolder folder;
+    const std::string text = "two\nlines";
+    write_file_atomically(folder / "text.txt", [&](std::ostream& out) { out << text; });
+    write_file_atomically(folder / "empty.txt", [](std::ostream&) {});
+    const FileView view = view_file(folder / "text.txt");
+    write_file_atomically(folder / "text.txt", [](std::ostream& out) { out << "replaced"; });
+    EXPECT_EQ(view.content, text);
+    EXPECT_EQ(view_file(folder / "empty.txt").content, "");
+    EXPECT_FALSE(view_file("/proc/self/status").content.empty()) << "a file whose size is not known beforehand";
+    EXPECT_THROW(view_file("/nowhere/model.bin"), DataError);
+    EXPECT_THROW(view_file("/tmp"), DataError);
+}
+
 TEST(Text, SuggestsTheNearestWord) {
     const std::vector<std::string> words{"head", "torso", "upperLeg", "tail"};
     EXPECT_EQ(nearest_word("haed", words), "head");

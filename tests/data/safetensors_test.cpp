@@ -48,6 +48,36 @@ TEST(Safetensors, GoldenBytes) {
     EXPECT_EQ(read_file(path), file_of(padded, data));
 }
 
+TEST(Safetensors, ArraysAreReadWhereverTheyLie) {
+    const TemporaryFolder folder;
+    TensorFile file;
+    file.add("a byte", {1}, std::vector<std::uint8_t>{5});
+    file.add("after it", {2}, std::vector<float>{0.5F, -2});
+    file.add("none there", {0}, std::vector<float>{});
+    write_safetensors(folder / "odd.safetensors", file);
+    const TensorFile back = read_safetensors(folder / "odd.safetensors");
+    std::vector<float> values = back.get<float>("after it", {2}, 100);
+    EXPECT_EQ(values, (std::vector<float>{0.5F, -2}));
+    const float* before = values.data();
+    values.resize(102);
+    EXPECT_EQ(values.data(), before);
+    EXPECT_TRUE(back.get<float>("none there").empty());
+}
+
+TEST(Safetensors, ArraysOutliveTheirFile) {
+    const TemporaryFolder folder;
+    const fs::path path = folder / "old.safetensors";
+    write_safetensors(path, small_file());
+    const TensorFile old = read_safetensors(path);
+    TensorFile changed;
+    changed.add("weights", {1}, std::vector<float>{9});
+    write_safetensors(path, changed);
+    EXPECT_EQ(old.get<float>("weights"), (std::vector<float>{1, 2, 3, 4}));
+    EXPECT_EQ(read_safetensors(path).get<float>("weights"), (std::vector<float>{9}));
+    fs::remove(path);
+    EXPECT_EQ(old.get<float>("weights"), (std::vector<float>{1, 2, 3, 4}));
+}
+
 TEST(Safetensors, RoundTripWithEmptyArrays) {
     const TemporaryFolder folder;
     const fs::path path = folder / "round.safetensors";

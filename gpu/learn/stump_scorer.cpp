@@ -22,9 +22,6 @@ static_assert(shared::k_link_softmax == static_cast<std::uint32_t>(Link::softmax
 // On a CPU every load of a kernel is expensive, so that a stump, once loaded, serves many items; a GPU wants many
 // invocations.
 constexpr std::uint32_t k_quads_on_cpu = 4;
-// And a tile that stays in its caches, in memory that the last tile has touched, saves a quarter of the time.
-constexpr std::size_t k_tile_bytes_on_cpu = std::size_t{8} << 20;
-constexpr std::size_t k_tile_bytes = std::size_t{256} << 20;
 
 // A classifier as the kernel wants it.
 struct GroupedStumps {
@@ -72,16 +69,12 @@ void copy_finite(std::span<const float> values, std::span<std::byte> memory) {
     }
 }
 
-std::size_t default_tile_bytes(const Device& device) {
-    return device.info().type == DeviceType::cpu ? k_tile_bytes_on_cpu : k_tile_bytes;
-}
-
 }  // namespace
 
 GpuStumpScorer::GpuStumpScorer(Device& device, Profiler* profiler, std::size_t tile_bytes)
     : device_(device),
       quads_(device.info().type == DeviceType::cpu ? k_quads_on_cpu : 1),
-      tile_bytes_(buffer_limit(device.info(), tile_bytes > 0 ? tile_bytes : default_tile_bytes(device))),
+      tile_bytes_(buffer_limit(device.info(), tile_bytes)),
       stream_(device, profiler) {}
 
 // Rows of the smallest tile: neighboring invocations work side by side.

@@ -18,9 +18,9 @@ namespace exemplar {
 /// between devices.
 class GpuStumpScorer final : public StumpScorer {
   public:
-    /// `tile_bytes` bounds the memory of a tile's features and of its probabilities below the device's own limits; 0
-    /// chooses for the kind of device.
-    explicit GpuStumpScorer(Device& device, Profiler* profiler = nullptr, std::size_t tile_bytes = 0);
+    /// `tile_bytes` bounds the memory of a tile's features and of its probabilities below the device's own limits.
+    explicit GpuStumpScorer(Device& device, Profiler* profiler = nullptr,
+                            std::size_t tile_bytes = std::size_t{256} << 20);
     void probabilities(const BoostedStumps& classifier, const FeatureMatrix& features, Link link, float scale,
                        std::span<float> out) override;
 

@@ -1,6 +1,6 @@
-// Large blocks lie on huge pages. Features of a mesh are a hundred megabytes; with pages of 4 KiB a third of the time of
-// labeling a mesh whose features are known went into having the kernel map them one by one. Systems commonly hand out
-// huge pages only where a program asks for them, so the program's allocation functions do.
+// Large blocks lie on huge pages. Features of a mesh are a hundred megabytes; with pages of 4 KiB a third of the time
+// of labeling a mesh whose features are known went into having the kernel map them one by one. Systems commonly hand
+// out huge pages only where a program asks for them, so the program's allocation functions do.
 
 #include <sys/mman.h>
 

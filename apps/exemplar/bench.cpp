@@ -75,7 +75,8 @@ void add_bench_command(CLI::App& app) {
     auto options = std::make_shared<BenchOptions>();
     CLI::App* command = app.add_subcommand("bench", "Measures speed and memory, beside goals and others' figures");
     command->footer(
-        "Times are medians of three runs, CPU times those of all threads; peak is the memory of the process.\n"
+        "Times are medians of three runs, of long ones a single run; CPU times are those of all threads; peak is the\n"
+        "memory of the process.\n"
         "'plain, one thread' is the same run on one thread and without a device.\n"
         "Others' figures were measured on other machines or data: they tell an order of magnitude.\n\nExample:\n"
         "  exemplar bench --only cut scoring --json bench.json");
@@ -85,8 +86,8 @@ void add_bench_command(CLI::App& app) {
         ->type_name("LIST");
     command->add_option("--only", options->only, fmt::format("measure only these: {}", fmt::join(part_names(), " ")))
         ->type_name("NAME");
-    command->add_flag("--full", options->full, "also how costs grow up to 512,000 faces, which takes many minutes");
-    command->add_flag("--quick", options->quick, "one run of each, and none on one thread");
+    command->add_flag("--full", options->full, "also how costs grow up to two million faces, which takes many minutes");
+    command->add_flag("--quick", options->quick, "one run of each, and none on one thread that takes long");
     add_common_options(*command, options->common);
     command->callback([options] { run_bench(*options); });
 }

@@ -74,7 +74,7 @@ DeviceBackend& BenchContext::backend() {
 const LabeledCorpus& BenchContext::corpus() {
     if (!corpus_)
         corpus_ = options_.meshes.empty() ? generated_fourlegs(k_training_meshes, k_faces)
-                                          : load_corpus(list_meshes(options_.meshes));
+                                          : working_corpus(load_corpus(list_meshes(options_.meshes)));
     return *corpus_;
 }
 

@@ -65,17 +65,22 @@ bool may_be_labeled(const fs::path& file) {
     return file.filename().string().ends_with("_labels.txt") || extension == ".ply" || extension == ".glb";
 }
 
-/// The folders below `folder` that hold labeled meshes, or the folder itself.
-std::vector<fs::path> category_folders(const fs::path& folder) {
-    std::set<fs::path> categories;
+bool holds(const fs::path& folder, bool (*kind)(const fs::path&)) {
+    return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(),
+                       [&](const fs::directory_entry& entry) { return entry.is_regular_file() && kind(entry.path()); });
+}
+
+/// The folder itself if it holds meshes: folders in it may be what a model made of them. Else the folders in it that
+/// hold meshes with labels, which are elsewhere if `labels` says so.
+std::vector<fs::path> category_folders(const fs::path& folder, const fs::path& labels) {
     if (folder.empty()) throw UsageError("--protocol needs the folder of a category, or of several");
     require_input(folder);
     if (!fs::is_directory(folder)) throw UsageError(fmt::format("{}: is no folder", folder.string()));
-    for (const auto& entry : fs::directory_iterator(folder)) {
-        if (!entry.is_directory()) continue;
-        for (const auto& file : fs::directory_iterator(entry.path()))
-            if (may_be_labeled(file.path())) categories.insert(entry.path());
-    }
+    std::set<fs::path> categories;
+    if (!holds(folder, is_mesh_file))
+        for (const auto& entry : fs::directory_iterator(folder))
+            if (entry.is_directory() && holds(entry.path(), labels.empty() ? may_be_labeled : is_mesh_file))
+                categories.insert(entry.path());
     if (categories.empty()) categories.insert(folder);
     return {categories.begin(), categories.end()};
 }
@@ -101,7 +106,7 @@ std::vector<EvaluationTask> protocol_tasks(const EvaluateCommand& options) {
     std::vector<EvaluationTask> tasks;
     if (options.protocol == "sb19" && options.splits)
         throw UsageError("--splits does not apply to sb19, which leaves out each mesh in turn");
-    for (const fs::path& folder : category_folders(options.folder)) {
+    for (const fs::path& folder : category_folders(options.folder, options.labels)) {
         const fs::path category = without_trailing_slash(folder);
         const std::vector<fs::path> meshes = list_meshes(category);
         require_distinct_names(meshes);

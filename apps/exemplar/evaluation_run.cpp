@@ -27,13 +27,27 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr int k_score_version = 2;  ///< what the scores of a mesh hold; those of another version are not taken over
+/// How meshes are labeled, and what their scores hold; scores of another version are not taken over.
+constexpr int k_score_version = 3;
+
+/// Beside NAME.json of every test mesh: no mesh is called so.
+constexpr const char* k_training_report = "model.training.json";
+
+std::string digest(const std::string& content) {
+    return fmt::format("{:016x}", XXH3_64bits(content.data(), content.size()));
+}
 
 /// The content of a mesh file and of its label file, as 16 hexadecimal digits.
 std::string digest(const fs::path& mesh, const fs::path& labels_folder) {
     const fs::path labels = labels_path(mesh, labels_folder);
-    const std::string content = read_file(mesh) + (fs::exists(labels) ? read_file(labels) : std::string());
-    return fmt::format("{:016x}", XXH3_64bits(content.data(), content.size()));
+    return digest(read_file(mesh) + (fs::exists(labels) ? read_file(labels) : std::string()));
+}
+
+/// The content of a mesh's human segmentations.
+std::string digest_of_humans(const fs::path& folder, const std::string& name) {
+    std::string content;
+    for (const fs::path& path : human_segmentation_files(folder, name)) content += read_file(path);
+    return digest(content);
 }
 
 /// Everything that a model depends on: results of another run are not mixed into this one.
@@ -49,6 +63,7 @@ std::string run_key(const EvaluationTask& task, const TrainOptions& train) {
              {"samples", train.features.samples},
              {"orientation", train.features.orientation},
              {"features", k_feature_version},
+             {"training", k_training_version},
              {"format", k_model_format_version}};
     for (const fs::path& path : task.train) key["train"].push_back({path.stem().string(), digest(path, task.labels)});
     return key.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -155,7 +170,7 @@ void EvaluationRun::warn(const std::vector<std::string>& warnings) const {
 }
 
 LabelingModel EvaluationRun::model_for(const EvaluationTask& task, const fs::path& folder, const std::string& key) {
-    const fs::path path = folder / "model.safetensors", run = folder / "run.json";
+    const fs::path path = folder / "model.safetensors", run = folder / k_training_report;
     if (!finished(run, key).is_null() && fs::exists(path)) {
         try {
             return load_model(path);
@@ -171,6 +186,7 @@ LabelingModel EvaluationRun::model_for(const EvaluationTask& task, const fs::pat
     TrainReport report;
     LabelingModel model = train_labeling(corpus, features, train_, backend_.labeling(), report);
     if (!behavior_.quiet) print_training(model, report);
+    fs::remove(run);  // it tells what the model is of
     save_model(path, model);
     Json json = describe_training(model, report);
     json["key"] = key;
@@ -206,8 +222,9 @@ LabeledCorpus EvaluationRun::load_test_mesh(const EvaluationTask& task, const fs
 Json EvaluationRun::test_mesh(const EvaluationTask& task, const fs::path& mesh, const fs::path& folder,
                               const LabelingModel& model, const std::string& key) {
     const fs::path stem = folder / mesh.stem(), scores = stem.string() + ".json";
-    const std::string mesh_key = fmt::format("{} {} {} scores {} {}", key, digest(mesh, task.labels),
-                                             task.humans.string(), k_score_version, task.other_category);
+    const std::string mesh_key =
+        fmt::format("{} {} {} scores {} {}", key, digest(mesh, task.labels),
+                    digest_of_humans(task.humans, mesh.stem().string()), k_score_version, task.other_category);
     if (Json done = finished(scores, mesh_key); !done.is_null()) {
         done["path"] = mesh.string();  // the same mesh may have moved
         return done;
@@ -252,7 +269,7 @@ Json EvaluationRun::run_task(const EvaluationTask& task, Progress& progress) {
     const std::string key = run_key(task, train_);
     const LabelingModel model = model_for(task, folder, key);
     progress.advance(1, task.category + " trained");
-    const Json run = read_json(folder / "run.json");
+    const Json run = read_json(folder / k_training_report);
     Json result{{"split", task.split},
                 {"train", Json::array()},
                 {"training", training_of(run)},

@@ -24,7 +24,7 @@ void* allocate(std::size_t bytes) {
 
 }  // namespace
 
-// All other forms of new and delete call these.
+// All other forms of new and delete, but those with an alignment, call these.
 void* operator new(std::size_t bytes) {
     for (;;) {
         if (void* block = allocate(bytes)) return block;

@@ -94,8 +94,8 @@ void pack_ranges(const ContextGeometry& geometry, Range samples, std::size_t fir
     for (std::size_t i = 0; i < texels.size(); ++i) {
         std::array<std::uint32_t, 4> words{};
         const std::uint8_t* range = geometry.geodesic_bin.data() + samples.first * geometry.faces + first_face + i;
-        for (std::size_t j = 0; j < samples.count; ++j, range += geometry.faces)
-            words[j / 4] |= std::uint32_t{*range} << (8 * (j % 4));
+        for (std::size_t j = 0; j < samples.count; ++j)
+            words[j / 4] |= std::uint32_t{range[j * geometry.faces]} << (8 * (j % 4));
         texels[i] = {words[0], words[1], words[2], words[3]};
     }
 }

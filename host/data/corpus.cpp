@@ -25,14 +25,6 @@ bool is_there(const fs::path& path) {
     return fs::exists(path, ignored);
 }
 
-bool is_mesh_file(const fs::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return std::tolower(c); });
-    const auto known = mesh_extensions();
-    return std::find(known.begin(), known.end(), extension) != known.end();
-}
-
 /// Orders "2.off" before "10.off": digit runs compare as numbers.
 bool natural_less(const fs::path& a, const fs::path& b) {
     const std::string x = a.string(), y = b.string();
@@ -139,6 +131,14 @@ Loaded load_one(const fs::path& path, const fs::path& labels_folder) {
 }
 
 }  // namespace
+
+bool is_mesh_file(const fs::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    const auto known = mesh_extensions();
+    return std::find(known.begin(), known.end(), extension) != known.end();
+}
 
 std::vector<fs::path> list_meshes(const fs::path& source) {
     if (!is_there(source))

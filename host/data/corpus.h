@@ -24,6 +24,9 @@ struct LabeledCorpus {
     std::vector<std::string> warnings;
 };
 
+/// Whether the name ends as that of a mesh.
+bool is_mesh_file(const std::filesystem::path& path);
+
 /// Mesh paths of `source`: a mesh file itself, a folder (its mesh files in natural order, not below) or a text file
 /// with a path a line (relative to the working folder or to the list's; a '#' at the start or after a space begins a
 /// comment). Throws DataError when there are none.

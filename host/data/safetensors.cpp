@@ -125,6 +125,21 @@ std::string shape_text(const std::vector<std::size_t>& shape) {
     return fmt::format("[{}]", fmt::join(shape, " x "));
 }
 
+template <typename View>
+TensorFile read_with(const std::filesystem::path& path, View&& view) {
+    FileView content;
+    try {
+        content = view(path);
+    } catch (const DataError& error) {
+        throw ModelError(error.what());
+    }
+    try {
+        return parse(path.string(), content);
+    } catch (const Json::exception&) {
+        damaged(path.string(), "its header cannot be parsed");
+    }
+}
+
 bool shape_matches(const std::vector<std::size_t>& shape, const std::vector<std::size_t>& wanted) {
     if (shape.size() != wanted.size()) return false;
     for (std::size_t i = 0; i < shape.size(); ++i)
@@ -203,17 +218,14 @@ void write_safetensors(const std::filesystem::path& path, const TensorFile& file
 }
 
 TensorFile read_safetensors(const std::filesystem::path& path) {
-    FileView content;
-    try {
-        content = view_file(path);
-    } catch (const DataError& error) {
-        throw ModelError(error.what());
-    }
-    try {
-        return parse(path.string(), content);
-    } catch (const Json::exception&) {
-        damaged(path.string(), "its header cannot be parsed");
-    }
+    return read_with(path, [](const std::filesystem::path& file) {
+        const auto copy = std::make_shared<const std::string>(read_file(file));
+        return FileView{*copy, copy};
+    });
+}
+
+TensorFile map_safetensors(const std::filesystem::path& path) {
+    return read_with(path, view_file);
 }
 
 }  // namespace exemplar

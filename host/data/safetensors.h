@@ -48,5 +48,7 @@ void write_safetensors(const std::filesystem::path& path, const TensorFile& file
 /// Reads and checks the whole file: header within bounds, known types, offsets that tile the data without gaps, shapes
 /// that match. Throws ModelError naming the path and what is wrong.
 TensorFile read_safetensors(const std::filesystem::path& path);
+/// The same without a copy of the file, if it is one that is replaced and never rewritten (see view_file).
+TensorFile map_safetensors(const std::filesystem::path& path);
 
 }  // namespace exemplar

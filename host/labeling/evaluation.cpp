@@ -68,13 +68,19 @@ SegmentationErrors score_segmentation(const TriangleMesh& mesh, std::span<const 
     return SegmentationMetrics(mesh).mean_errors(segments, human_segmentations);
 }
 
-std::vector<std::vector<std::int32_t>> read_human_segmentations(const std::filesystem::path& folder,
-                                                                const std::string& name, std::size_t faces) {
+std::vector<std::filesystem::path> human_segmentation_files(const std::filesystem::path& folder,
+                                                            const std::string& name) {
     std::vector<std::filesystem::path> paths;
     if (folder.empty() || !std::filesystem::is_directory(folder / name)) return {};
     for (const auto& entry : std::filesystem::directory_iterator(folder / name))
         if (entry.path().extension() == ".seg") paths.push_back(entry.path());
     std::sort(paths.begin(), paths.end());
+    return paths;
+}
+
+std::vector<std::vector<std::int32_t>> read_human_segmentations(const std::filesystem::path& folder,
+                                                                const std::string& name, std::size_t faces) {
+    const std::vector<std::filesystem::path> paths = human_segmentation_files(folder, name);
     std::vector<std::vector<std::int32_t>> segmentations;
     segmentations.reserve(paths.size());
     for (const auto& path : paths) segmentations.push_back(read_seg(path, faces));

@@ -36,8 +36,12 @@ MeshScore score_labeling(std::span<const float> face_area, std::span<const std::
 SegmentationErrors score_segmentation(const TriangleMesh& mesh, std::span<const std::int32_t> predicted,
                                       std::span<const std::vector<std::int32_t>> human_segmentations);
 
-/// The human segmentations of a mesh in the benchmark's layout: FOLDER/NAME/*.seg, in name order; empty if there are
-/// none.
+/// The files with the human segmentations of a mesh in the benchmark's layout: FOLDER/NAME/*.seg, in name order; empty
+/// if there are none.
+std::vector<std::filesystem::path> human_segmentation_files(const std::filesystem::path& folder,
+                                                            const std::string& name);
+
+/// The segmentations in these files: the segment of each face.
 std::vector<std::vector<std::int32_t>> read_human_segmentations(const std::filesystem::path& folder,
                                                                 const std::string& name, std::size_t faces);
 

@@ -54,13 +54,14 @@ TensorFile to_file(const MeshFeatures& features) {
 }
 
 /// Contextual features that later stages add without moving the others; with more labels they are moved once.
-constexpr std::size_t k_room = 16 * k_context_measures * k_context_bins;
+constexpr std::size_t k_unary_room = 16 * k_context_measures * k_context_bins;
+constexpr std::size_t k_pairwise_room = EdgeNeighborhood::k_bins;
 
-FeatureMatrix matrix_from(const TensorFile& file, const std::string& name, std::size_t rows) {
+FeatureMatrix matrix_from(const TensorFile& file, const std::string& name, std::size_t rows, std::size_t room) {
     FeatureMatrix matrix;
     matrix.rows = rows;
     matrix.names = Json::parse(file.meta(name)).get<std::vector<std::string>>();
-    matrix.values = file.get<float>(name, {matrix.cols(), rows}, k_room * rows);
+    matrix.values = file.get<float>(name, {matrix.cols(), rows}, room * rows);
     return matrix;
 }
 
@@ -72,8 +73,8 @@ MeshFeatures from_file(const TensorFile& file, std::size_t faces) {
     const std::size_t edge_count = features.edges.size();
     features.edge_length = file.get<float>("edge_length", {edge_count});
     features.dihedral = file.get<float>("dihedral", {edge_count});
-    features.unary = matrix_from(file, "unary", faces);
-    features.pairwise = matrix_from(file, "pairwise", edge_count);
+    features.unary = matrix_from(file, "unary", faces, k_unary_room);
+    features.pairwise = matrix_from(file, "pairwise", edge_count, k_pairwise_room);
     features.seconds = Json::parse(file.meta("seconds")).get<std::vector<std::pair<std::string, double>>>();
 
     ContextGeometry& context = features.context;
@@ -130,7 +131,7 @@ std::optional<MeshFeatures> read_entry(const fs::path& path, std::size_t faces) 
     std::error_code unreadable;
     if (!fs::is_regular_file(path, unreadable)) return std::nullopt;
     try {
-        const TensorFile file = read_safetensors(path);
+        const TensorFile file = map_safetensors(path);
         if (file.meta("version") != std::to_string(k_feature_version)) return std::nullopt;
         if (file.meta("checksum") != checksum(file)) return std::nullopt;
         return from_file(file, faces);

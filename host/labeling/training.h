@@ -12,6 +12,9 @@
 
 namespace exemplar {
 
+/// Of what equal meshes and options give; to be raised with every change of the learning.
+constexpr int k_training_version = 2;
+
 struct TrainOptions {
     std::uint64_t seed = 1;
     std::size_t rounds = 300;        ///< stumps per classifier (thesis Sec. 3.3.1); at most, for boundaries

@@ -61,7 +61,7 @@ class Evaluate(WithModel):
             t, p = category["names"].index(pair["truth"]), category["names"].index(pair["predicted"])
             self.assertAlmostEqual(pair["area_share"], category["confusion"][2 * t + p])
             self.assertAlmostEqual(pair["label_share"], pair["area_share"] / sum(category["confusion"][2 * t:2 * t + 2]))
-        run = self.json("summary/cups/lists/run.json")
+        run = self.json("summary/cups/lists/model.training.json")
         count = {}
         for stage in report["features"]:
             self.assertAlmostEqual(sum(stage["share_per_family"].values()), 1)
@@ -206,6 +206,40 @@ class Evaluate(WithModel):
         for split in splits:
             self.assertEqual(len(split["train"]), 2)
             self.assertNotIn(split["meshes"][0]["mesh"], split["train"])
+
+    def test_protocol_leaves_what_a_model_made_alone(self):
+        copy = self.folder / "labeled-before"
+        shutil.copytree(self.folder / "cups", copy)
+        shutil.copytree(self.folder / "cups", copy / "labeled")
+        self.call("label", "evaluate", "--protocol", "sb19", "labeled-before", "--out", "lb", "--json", "lb.json", *QUICK)
+        self.assertEqual([c["category"] for c in self.json("lb.json")["categories"]], ["labeled-before"])
+
+    def test_a_mesh_may_have_any_name(self):
+        poses = self.folder / "poses"
+        poses.mkdir()
+        for ending in (".off", "_labels.txt"):
+            shutil.copy(self.folder / f"cups/cup_001{ending}", poses / f"run{ending}")
+            shutil.copy(self.folder / f"cups/cup_002{ending}", poses / f"model{ending}")
+        call = ["label", "evaluate", "--train", "cups", "--test", "poses", "--out", "posed", *QUICK]
+        times = lambda: {p.name: p.stat().st_mtime_ns for p in (self.folder / "posed" / "cups" / "lists").iterdir()}
+        self.call(*call)
+        before = times()
+        self.call(*call)
+        self.assertEqual(before, times(), "finished work was done again")
+
+    def test_other_human_segmentations_are_no_finished_result(self):
+        humans = self.folder / "humans" / "cup_001"
+        humans.mkdir(parents=True)
+        faces = len(read_off(self.folder / "cups/cup_001.off")[1])
+        call = ["label", "evaluate", "--train", "cups", "--test", "cups", "--humans", "humans", "--out", "h", "--json",
+                "h.json", *QUICK]
+        rates = []
+        for segments in (["0\n"] * faces, [f"{f % 2}\n" for f in range(faces)]):
+            (humans / "cup_001_0.seg").write_text("".join(segments))
+            self.call(*call)
+            meshes = self.json("h.json")["categories"][0]["splits"][0]["meshes"]
+            rates.append(next(m["rand_error"] for m in meshes if m["mesh"] == "cup_001"))
+        self.assertNotEqual(*rates)
 
     def test_another_option_or_mesh_is_no_finished_result(self):
         copy = self.folder / "changing"

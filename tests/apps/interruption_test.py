@@ -164,7 +164,7 @@ class Interruption(ProgramTest):
         """When each result was written: the model once its record is there, and each mesh with its scores."""
         folder = self.folder / out / "cups" / "lists"
         done = {path.name: path.stat().st_mtime_ns for path in folder.glob("*.json")}
-        if "run.json" in done:
+        if "model.training.json" in done:
             done["model"] = (folder / "model.safetensors").stat().st_mtime_ns
         return done
 

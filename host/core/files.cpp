@@ -123,10 +123,14 @@ std::string read_file(const fs::path& path) {
     return content;
 }
 
-FileView view_file(const fs::path& path) {
-    if (FileView mapped = map_file(path); mapped.owner) return mapped;
+FileView hold_file(const fs::path& path) {
     auto copy = std::make_shared<const std::string>(read_file(path));
     return {*copy, copy};
+}
+
+FileView view_file(const fs::path& path) {
+    FileView mapped = map_file(path);
+    return mapped.owner ? mapped : hold_file(path);
 }
 
 std::string suggest_file(const fs::path& path) {

@@ -24,7 +24,10 @@ struct FileView {
     std::shared_ptr<const void> owner;
 };
 
-/// As read_file, without a copy where the system can map the file into memory. For files that are replaced and never
+/// As read_file, for readers that keep parts of the file.
+FileView hold_file(const std::filesystem::path& path);
+
+/// As hold_file, without a copy where the system can map the file into memory. For files that are replaced and never
 /// rewritten, as write_file_atomically does: a program that loses pages it has mapped is ended by the system.
 FileView view_file(const std::filesystem::path& path);
 

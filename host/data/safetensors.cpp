@@ -218,10 +218,7 @@ void write_safetensors(const std::filesystem::path& path, const TensorFile& file
 }
 
 TensorFile read_safetensors(const std::filesystem::path& path) {
-    return read_with(path, [](const std::filesystem::path& file) {
-        const auto copy = std::make_shared<const std::string>(read_file(file));
-        return FileView{*copy, copy};
-    });
+    return read_with(path, hold_file);
 }
 
 TensorFile map_safetensors(const std::filesystem::path& path) {

@@ -9,6 +9,7 @@
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
 #include "host/core/random.h"
+#include "host/labeling/labeler.h"
 #include "host/learn/calibration.h"
 #include "host/learn/jointboost.h"
 #include "host/learn/quantize.h"
@@ -137,9 +138,9 @@ class FoldLabels {
         return total_[label] > rows_[fold * classes_ + label];
     }
     /// The labels all of whose rows lie in the fold.
-    std::vector<std::size_t> of_fold_alone(std::size_t fold) const {
-        std::vector<std::size_t> alone;
-        for (std::size_t label = 0; label < classes_; ++label)
+    std::vector<std::uint32_t> of_fold_alone(std::size_t fold) const {
+        std::vector<std::uint32_t> alone;
+        for (std::uint32_t label = 0; label < classes_; ++label)
             if (total_[label] > 0 && !known_without(fold, label)) alone.push_back(label);
         return alone;
     }
@@ -214,14 +215,6 @@ RoundChoice choose_rounds(const Pool& pool, FoldBoosters& boosters, const FoldBo
     return choice;
 }
 
-/// Gives some classes the probabilities that `source` has for them; the others share the rest as they did.
-void take_classes(std::span<const std::size_t> taken, std::span<const float> source, std::span<float> target) {
-    float rest = 1, scale = 1;
-    for (const std::size_t c : taken) rest -= source[c], scale -= target[c];
-    for (float& p : target) p *= scale > 0 ? std::max(rest, 0.0F) / scale : 0;
-    for (const std::size_t c : taken) target[c] = source[c];
-}
-
 /// Probabilities of every item of every mesh from the classifier of the fold that held it out. Labels that it cannot
 /// know, as all their items are held out with this one, have those of the final classifier at a reduced scale: else a
 /// later stage, for which this is the context, would learn that the surroundings never show such a label.
@@ -238,7 +231,7 @@ std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems>
             if (std::none_of(mesh.fold.begin(), mesh.fold.end(), holds)) continue;
             const BoostedStumps& classifier = of_fold[fold].class_count ? of_fold[fold] : everywhere.stumps;
             scorer.probabilities(classifier, *mesh.features, everywhere.link, everywhere.scale, from_fold);
-            const std::vector<std::size_t> alone = labels.of_fold_alone(fold);
+            const std::vector<std::uint32_t> alone = labels.of_fold_alone(fold);
             if (!alone.empty())
                 scorer.probabilities(everywhere.stumps, *mesh.features, everywhere.link,
                                      k_seen_scale * everywhere.scale, seen);
@@ -246,7 +239,7 @@ std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems>
                 if (mesh.fold[i] != fold) continue;
                 const std::span<float> item = std::span(scores).subspan(i * classes, classes);
                 std::copy_n(from_fold.begin() + i * classes, classes, item.begin());
-                if (!alone.empty()) take_classes(alone, std::span(seen).subspan(i * classes, classes), item);
+                take_classes(alone, classes, std::span(seen).subspan(i * classes, classes), item);
             }
         }
         result.push_back(std::move(scores));
@@ -276,8 +269,11 @@ FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const
     FoldBoostingResult result;
     std::vector<BoostedStumps> all{everywhere.classifier()};
     const FoldLabels labels(pool, options);
-    for (std::size_t fold = 0; fold < of_fold.size(); ++fold)
-        if (of_fold[fold].class_count > 0 && labels.of_fold_alone(fold).empty()) all.push_back(of_fold[fold]);
+    for (std::size_t fold = 0; fold < of_fold.size(); ++fold) {
+        const std::vector<std::uint32_t> alone = labels.of_fold_alone(fold);
+        result.of_one_fold.insert(result.of_one_fold.end(), alone.begin(), alone.end());
+        if (of_fold[fold].class_count > 0 && alone.empty()) all.push_back(of_fold[fold]);
+    }
     result.classifier.stumps = mean_classifier(all);
     result.rounds = choice.rounds;
     result.classifier.link = choice.calibration.link;

@@ -46,9 +46,10 @@ struct FoldBoostingResult {
     /// Per mesh: items x classes, from the classifier that never saw the item; for labels that it cannot know, as one
     /// fold has them all, from the mean, with less confidence.
     std::vector<std::vector<float>> out_of_fold;
-    std::vector<HeldOutPoint> curve;  ///< up to where the search for the number of rounds ended
-    double loss = 0;                  ///< weighted log loss of held-out items; NaN if nothing could be held out
-    double error = 0;                 ///< weighted share of wrong labels; likewise
+    std::vector<std::uint32_t> of_one_fold;  ///< the labels that one fold has alone
+    std::vector<HeldOutPoint> curve;         ///< up to where the search for the number of rounds ended
+    double loss = 0;                         ///< weighted log loss of held-out items; NaN if nothing could be held out
+    double error = 0;                        ///< weighted share of wrong labels; likewise
 };
 
 /// Boosts one classifier per fold and one on everything (see train_labeling). The log loss of the held-out items, after

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
@@ -68,16 +69,32 @@ void drop_context_columns(MeshFeatures& features) {
     }
 }
 
+void take_classes(std::span<const std::uint32_t> taken, std::size_t classes, std::span<const float> source,
+                  std::span<float> target) {
+    if (taken.empty()) return;
+    for (std::size_t begin = 0; begin < target.size(); begin += classes) {
+        const std::span<const float> from = source.subspan(begin, classes);
+        const std::span<float> to = target.subspan(begin, classes);
+        float rest = 1;
+        for (const std::uint32_t c : taken) rest -= from[c], to[c] = 0;
+        const float others = std::accumulate(to.begin(), to.end(), 0.0F);
+        for (float& p : to) p *= others > 0 ? std::max(rest, 0.0F) / others : 0;
+        for (const std::uint32_t c : taken) to[c] = from[c];
+    }
+}
+
 std::vector<float> unary_probabilities(const LabelingModel& model, MeshFeatures& features,
                                        const LabelingBackend& backend) {
     require_features(features.unary, model.unary_names, "face");
     std::vector<float> probabilities = score(model.unary.front(), features.unary, backend.scorer);
+    const std::vector<float> first = probabilities;
     const std::vector<std::string> names = context_names(model.label_names);
     for (std::size_t stage = 1; stage < model.unary.size(); ++stage) {
         check_interrupt();
         const std::span<float> context = context_columns(features.unary, model.unary_names.size(), names);
         backend.context.accumulate(features.context, probabilities, model.class_count(), context);
         probabilities = score(model.unary[stage], features.unary, backend.scorer);
+        take_classes(model.first_stage_labels, model.class_count(), first, probabilities);
     }
     return probabilities;
 }

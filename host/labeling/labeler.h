@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,6 +41,11 @@ std::span<float> context_columns(FeatureMatrix& matrix, std::size_t base, const 
 
 /// Removes the contextual columns of both matrices.
 void drop_context_columns(MeshFeatures& features);
+
+/// Gives some classes of each item the probabilities that `source` has for them; the others share the rest as they did.
+/// Both: items x classes.
+void take_classes(std::span<const std::uint32_t> taken, std::size_t classes, std::span<const float> source,
+                  std::span<float> target);
 
 /// Runs the unary cascade: faces x classes. `features.unary` gains (or reuses) the contextual columns.
 /// Throws ModelError where the features are not those the model was trained on.

@@ -13,7 +13,7 @@
 namespace exemplar {
 
 /// Of what equal meshes and options give; to be raised with every change of the learning.
-constexpr int k_training_version = 2;
+constexpr int k_training_version = 3;
 
 struct TrainOptions {
     std::uint64_t seed = 1;
@@ -51,9 +51,10 @@ struct TrainReport {
 /// five folds; for each fold a classifier is trained on the others and validated on it. The probabilities that each
 /// mesh gets from the classifier that never saw it feed the contextual features of the next stage, the choice of the
 /// number of stages, the link between score and probability, and the CRF's parameters; their log loss chooses the
-/// number of rounds of the boundary classifiers. The final
-/// classifiers are the mean of those of the folds and one trained on all meshes. With 2 to 4 meshes
-/// there are as many folds as meshes; a single mesh is cut into patches of faces that serve as folds.
+/// number of rounds of the boundary classifiers. The final classifiers are the mean of those of the folds and one
+/// trained on all meshes. With 2 to 4 meshes there are as many folds as meshes; a single mesh is cut into patches of
+/// faces that serve as folds. What is said of labels that one fold has alone cannot be validated, nor is there context
+/// to learn from: these keep the probabilities of the first stage.
 ///
 /// Throws DataError if there is no mesh, no labeled face, or more than k_max_classes labels.
 LabelingModel train_labeling(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features,

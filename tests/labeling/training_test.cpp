@@ -104,6 +104,35 @@ TEST_F(SlowTraining, LabelsMissingFromSomeMeshesAndUnlabeledFacesAreFine) {
     EXPECT_NO_THROW(train(corpus, quick_options()));
 }
 
+TEST_F(SlowTraining, ALabelOfOneMeshKeepsWhatTheFirstStageSays) {
+    LabeledCorpus corpus = generated("cup", 1, 3, 1000);
+    for (const std::size_t m : {1UL, 2UL})
+        for (std::int32_t& label : corpus.meshes[m].label) label = 0;  // body
+    LabelingModel model = train(corpus, quick_options());
+    ASSERT_EQ(model.unary.size(), 2U);
+    EXPECT_EQ(model.first_stage_labels, std::vector<std::uint32_t>{1});
+    MeshFeatures features = compute_features(corpus.meshes[0].mesh, model.feature_options);
+    const std::vector<float> both = unary_probabilities(model, features, {scorer_, context_});
+    model.unary.pop_back();
+    const std::vector<float> first = unary_probabilities(model, features, {scorer_, context_});
+    for (std::size_t f = 0; f < features.face_area.size(); ++f) {
+        ASSERT_EQ(both[2 * f + 1], first[2 * f + 1]) << "face " << f;
+        ASSERT_NEAR(both[2 * f] + both[2 * f + 1], 1, 1e-5);
+    }
+}
+
+TEST(Cascade, TakesSomeClassesFromAnotherStage) {
+    const std::vector<std::uint32_t> taken{1};
+    const std::vector<float> source{0.1F, 0.8F, 0.1F, 0.5F, 0.0F, 0.5F, 0.0F, 0.4F, 0.6F};
+    std::vector<float> target{0.3F, 0.4F, 0.3F, 0.2F, 0.6F, 0.2F, 0.0F, 1.0F, 0.0F};
+    take_classes(taken, 3, source, target);
+    const std::vector<float> expected{0.1F, 0.8F, 0.1F, 0.5F, 0.0F, 0.5F, 0.0F, 0.4F, 0.0F};
+    for (std::size_t i = 0; i < target.size(); ++i) EXPECT_NEAR(target[i], expected[i], 1e-6) << i;
+    const std::vector<float> before = target;
+    take_classes({}, 3, source, target);
+    EXPECT_EQ(target, before);
+}
+
 TEST_F(SlowTraining, PartsInSeparatePiecesHaveNoBoundaries) {
     LabeledCorpus corpus;
     corpus.names = {"ball", "box"};

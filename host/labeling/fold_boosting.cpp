@@ -238,7 +238,7 @@ std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems>
             for (std::size_t i = 0; i < mesh.fold.size(); ++i) {
                 if (mesh.fold[i] != fold) continue;
                 const std::span<float> item = std::span(scores).subspan(i * classes, classes);
-                std::copy_n(from_fold.begin() + i * classes, classes, item.begin());
+                for (std::size_t c = 0; c < classes; ++c) item[c] = from_fold[i * classes + c];
                 take_classes(alone, classes, std::span(seen).subspan(i * classes, classes), item);
             }
         }

@@ -31,7 +31,7 @@ std::string printable(std::string_view text, std::size_t longest) {
 
 std::string quote(std::string_view text) {
     constexpr std::size_t k_longest = 40;
-    return "'" + printable(text, k_longest) + "'";
+    return fmt::format("'{}'", printable(text, k_longest));
 }
 
 bool is_space(char c) {

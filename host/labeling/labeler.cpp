@@ -83,18 +83,27 @@ void take_classes(std::span<const std::uint32_t> taken, std::size_t classes, std
     }
 }
 
+void CascadeOpinion::add_stage(std::span<float> probabilities) {
+    if (averaged_.empty()) return;
+    stages_ += 1;
+    mean_.resize(probabilities.size(), 0.0F);
+    for (std::size_t i = 0; i < mean_.size(); ++i) mean_[i] += (probabilities[i] - mean_[i]) / stages_;
+    take_classes(averaged_, classes_, mean_, probabilities);
+}
+
 std::vector<float> unary_probabilities(const LabelingModel& model, MeshFeatures& features,
                                        const LabelingBackend& backend) {
     require_features(features.unary, model.unary_names, "face");
     std::vector<float> probabilities = score(model.unary.front(), features.unary, backend.scorer);
-    const std::vector<float> first = probabilities;
+    CascadeOpinion opinion(model.averaged_labels, model.class_count());
+    opinion.add_stage(probabilities);
     const std::vector<std::string> names = context_names(model.label_names);
     for (std::size_t stage = 1; stage < model.unary.size(); ++stage) {
         check_interrupt();
         const std::span<float> context = context_columns(features.unary, model.unary_names.size(), names);
         backend.context.accumulate(features.context, probabilities, model.class_count(), context);
         probabilities = score(model.unary[stage], features.unary, backend.scorer);
-        take_classes(model.first_stage_labels, model.class_count(), first, probabilities);
+        opinion.add_stage(probabilities);
     }
     return probabilities;
 }

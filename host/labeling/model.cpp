@@ -84,7 +84,7 @@ Json describe(const LabelingModel& model) {
             {"unary_features", model.unary_names},
             {"pairwise_features", model.pairwise_names},
             {"unary_stages", model.unary.size()},
-            {"first_stage_labels", model.first_stage_labels},
+            {"averaged_labels", model.averaged_labels},
             {"pairwise_stages", model.pairwise.size()},
             {"kappa", model.crf.kappa},
             {"lambda", model.crf.lambda},
@@ -131,11 +131,10 @@ void read_description(const TensorFile& file, LabelingModel& model) {
     model.pairwise_names = json.at("pairwise_features").get<std::vector<std::string>>();
     model.unary.resize(std::min<std::size_t>(whole_number(file, json.at("unary_stages")), k_most_stages));
     model.pairwise.resize(std::min<std::size_t>(whole_number(file, json.at("pairwise_stages")), k_most_stages));
-    const Json first_stage = json.value("first_stage_labels", Json::array());  // models of before have none
-    if (!first_stage.is_array()) inconsistent(file, "its labels of the first stage are no list");
-    for (const Json& label : first_stage)
-        model.first_stage_labels.push_back(
-            static_cast<std::uint32_t>(whole_number(file, label, model.class_count() - 1)));
+    const Json averaged = json.value("averaged_labels", Json::array());  // models of before have none
+    if (!averaged.is_array()) inconsistent(file, "its averaged labels are no list");
+    for (const Json& label : averaged)
+        model.averaged_labels.push_back(static_cast<std::uint32_t>(whole_number(file, label, model.class_count() - 1)));
     model.crf.kappa = json.at("kappa");
     model.crf.lambda = json.at("lambda");
     model.crf.mu = json.at("mu");

@@ -39,8 +39,8 @@ struct LabelingModel {
     std::vector<std::string> pairwise_names;  ///< base features, in column order
     /// The cascade: stage 0 sees the base features, later stages also the contextual features of the stage before.
     std::vector<CalibratedStumps> unary;
-    /// Labels that later stages leave as stage 0 has them: training saw them in one fold alone (see train_labeling).
-    std::vector<std::uint32_t> first_stage_labels;
+    /// Labels whose probabilities are the mean of all stages' (see CascadeOpinion).
+    std::vector<std::uint32_t> averaged_labels;
     /// The same for boundaries (classes: 0 = same label, 1 = boundary).
     std::vector<CalibratedStumps> pairwise;
     CrfParameters crf;

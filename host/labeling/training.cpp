@@ -147,11 +147,12 @@ struct Cascade {
 };
 
 /// Trains stage after stage until the out-of-fold loss rises; returns the out-of-fold probabilities of the last kept
-/// one. `first_stage_labels`, if any: set to the labels that all stages leave as the first has them.
+/// one. `averaged`, if any: set to the labels of one fold, for which all stages count (see CascadeOpinion).
 PerMesh train_cascade(Cascade cascade, const TrainOptions& options, StumpScorer& scorer,
-                      std::vector<CalibratedStumps>& classifiers, std::vector<std::uint32_t>* first_stage_labels,
+                      std::vector<CalibratedStumps>& classifiers, std::vector<std::uint32_t>* averaged,
                       TrainReport& report) {
-    PerMesh kept, first;
+    PerMesh kept;
+    std::vector<CascadeOpinion> opinions;
     double last_loss = std::numeric_limits<double>::infinity();
     const std::uint64_t first_seed = cascade.task.seed;
     for (std::size_t stage = 0; stage < cascade.most_stages; ++stage) {
@@ -166,9 +167,11 @@ PerMesh train_cascade(Cascade cascade, const TrainOptions& options, StumpScorer&
         }
         last_loss = result.loss;
         kept = std::move(result.out_of_fold);
-        if (first_stage_labels && stage == 0) first = kept, *first_stage_labels = result.of_one_fold;
-        for (std::size_t m = 0; m < first.size(); ++m)
-            take_classes(*first_stage_labels, cascade.task.classes, first[m], kept[m]);
+        if (averaged && stage == 0) {
+            *averaged = result.of_one_fold;
+            opinions.assign(kept.size(), CascadeOpinion(*averaged, cascade.task.classes));
+        }
+        for (std::size_t m = 0; m < opinions.size(); ++m) opinions[m].add_stage(kept[m]);
         classifiers.push_back(std::move(result.classifier));
     }
     return kept;
@@ -197,7 +200,7 @@ PerMesh train_unary(const LabeledCorpus& corpus, std::vector<MeshFeatures>& feat
         backend.context.accumulate(features[m].context, probabilities, classes,
                                    context_columns(features[m].unary, model.unary_names.size(), context));
     };
-    return train_cascade(std::move(cascade), options, backend.scorer, model.unary, &model.first_stage_labels, report);
+    return train_cascade(std::move(cascade), options, backend.scorer, model.unary, &model.averaged_labels, report);
 }
 
 /// What the boundary classifiers learn from: per mesh and edge 0 = same label, 1 = boundary, -1 = unknown, and a weight

@@ -54,7 +54,7 @@ struct TrainReport {
 /// number of rounds of the boundary classifiers. The final classifiers are the mean of those of the folds and one
 /// trained on all meshes. With 2 to 4 meshes there are as many folds as meshes; a single mesh is cut into patches of
 /// faces that serve as folds. What is said of labels that one fold has alone cannot be validated, nor is there context
-/// to learn from: these keep the probabilities of the first stage.
+/// to learn from: for these the mean of all stages counts.
 ///
 /// Throws DataError if there is no mesh, no labeled face, or more than k_max_classes labels.
 LabelingModel train_labeling(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features,

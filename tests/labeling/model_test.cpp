@@ -38,7 +38,7 @@ LabelingModel small_model() {
     model.pairwise_names = {"b.z"};
     model.unary = {classifier(2, 1), classifier(2, 71)};
     model.pairwise = {classifier(2, 0), classifier(2, 5)};
-    model.first_stage_labels = {1};
+    model.averaged_labels = {1};
     model.crf.compatibility = {0, 1, 1, 0};
     model.smallest_component = {0.1F, 0.2F};
     model.provenance = {"horse 0123"};
@@ -71,7 +71,7 @@ TEST(LabelingModelFile, RoundTripKeepsEverythingAndTheBytes) {
     EXPECT_EQ(model.unary[1].stumps.stumps[0].feature, 71U);
     EXPECT_EQ(model.unary[1].link, Link::sigmoid);
     EXPECT_EQ(model.unary[1].scale, 1.5F);
-    EXPECT_EQ(model.first_stage_labels, small_model().first_stage_labels);
+    EXPECT_EQ(model.averaged_labels, small_model().averaged_labels);
     EXPECT_EQ(model.seed, small_model().seed);
     EXPECT_EQ(model.smallest_component, small_model().smallest_component);
     save_model(again, model);
@@ -110,8 +110,8 @@ TEST(LabelingModelFile, InconsistentContentIsRefused) {
         [](File& f) { f.add("unary.0.classes", {1}, std::vector<std::uint64_t>{8}); },
         [](File& f) { replace(f.metadata["model"], "\"kappa\":", "\"kappa\":-"); },
         [](File& f) { replace(f.metadata["model"], "\"samples\":", "\"samples\":-"); },
-        [](File& f) { replace(f.metadata["model"], "\"first_stage_labels\":[1", "\"first_stage_labels\":[2"); },
-        [](File& f) { replace(f.metadata["model"], "\"first_stage_labels\":[1]", "\"first_stage_labels\":1"); },
+        [](File& f) { replace(f.metadata["model"], "\"averaged_labels\":[1", "\"averaged_labels\":[2"); },
+        [](File& f) { replace(f.metadata["model"], "\"averaged_labels\":[1]", "\"averaged_labels\":1"); },
         [](File& f) {
             f.add("smallest_component", {2}, std::vector<float>{NAN, 0});
         },

@@ -9,7 +9,7 @@
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
 #include "host/core/random.h"
-#include "host/labeling/labeler.h"
+#include "host/labeling/cascade_opinion.h"
 #include "host/learn/calibration.h"
 #include "host/learn/jointboost.h"
 #include "host/learn/quantize.h"

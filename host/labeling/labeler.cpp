@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/stopwatch.h"
+#include "host/labeling/cascade_opinion.h"
 #include "host/labeling/crf.h"
 #include "host/labeling/edge_context.h"
 
@@ -67,28 +67,6 @@ void drop_context_columns(MeshFeatures& features) {
         matrix->names.erase(std::find_if(matrix->names.begin(), matrix->names.end(), is_context), matrix->names.end());
         matrix->values.resize(matrix->cols() * matrix->rows);
     }
-}
-
-void take_classes(std::span<const std::uint32_t> taken, std::size_t classes, std::span<const float> source,
-                  std::span<float> target) {
-    if (taken.empty()) return;
-    for (std::size_t begin = 0; begin < target.size(); begin += classes) {
-        const std::span<const float> from = source.subspan(begin, classes);
-        const std::span<float> to = target.subspan(begin, classes);
-        float rest = 1;
-        for (const std::uint32_t c : taken) rest -= from[c], to[c] = 0;
-        const float others = std::accumulate(to.begin(), to.end(), 0.0F);
-        for (float& p : to) p *= others > 0 ? std::max(rest, 0.0F) / others : 0;
-        for (const std::uint32_t c : taken) to[c] = from[c];
-    }
-}
-
-void CascadeOpinion::add_stage(std::span<float> probabilities) {
-    if (averaged_.empty()) return;
-    stages_ += 1;
-    mean_.resize(probabilities.size(), 0.0F);
-    for (std::size_t i = 0; i < mean_.size(); ++i) mean_[i] += (probabilities[i] - mean_[i]) / stages_;
-    take_classes(averaged_, classes_, mean_, probabilities);
 }
 
 std::vector<float> unary_probabilities(const LabelingModel& model, MeshFeatures& features,

@@ -21,7 +21,7 @@ struct LabelingBackend {
 /// What inference says about one mesh, per triangle.
 struct FaceLabeling {
     std::vector<std::int32_t> label;                      ///< after the CRF and the merging of small pieces
-    std::vector<float> probabilities;                     ///< faces x classes: the last unary classifier
+    std::vector<float> probabilities;                     ///< faces x classes: what the unary cascade says
     std::vector<float> confidence;                        ///< probability of the assigned label
     std::vector<std::pair<std::string, double>> seconds;  ///< wall time: unary, pairwise, cut
 };
@@ -41,28 +41,6 @@ std::span<float> context_columns(FeatureMatrix& matrix, std::size_t base, const 
 
 /// Removes the contextual columns of both matrices.
 void drop_context_columns(MeshFeatures& features);
-
-/// Gives some classes of each item the probabilities that `source` has for them; the others share the rest as they did.
-/// Both: items x classes.
-void take_classes(std::span<const std::uint32_t> taken, std::size_t classes, std::span<const float> source,
-                  std::span<float> target);
-
-/// What a cascade says after each of its stages: what its last classifier says, but for the `averaged` classes the mean
-/// of what all have said. Those are labels that training saw in one fold alone: out-of-fold context does not show them
-/// as they are, so later stages forget them (see train_labeling).
-class CascadeOpinion {
-  public:
-    CascadeOpinion(std::span<const std::uint32_t> averaged, std::size_t classes)
-        : averaged_(averaged.begin(), averaged.end()), classes_(classes) {}
-    /// Turns the probabilities of the next stage, items x classes, into what the cascade says.
-    void add_stage(std::span<float> probabilities);
-
-  private:
-    std::vector<std::uint32_t> averaged_;
-    std::size_t classes_;
-    std::vector<float> mean_;  ///< of the stages so far
-    float stages_ = 0;
-};
 
 /// Runs the unary cascade: faces x classes. `features.unary` gains (or reuses) the contextual columns.
 /// Throws ModelError where the features are not those the model was trained on.

@@ -1,6 +1,7 @@
 #include "host/labeling/model.h"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -149,6 +150,9 @@ void check_description(const TensorFile& file, const LabelingModel& model) {
     if (classes == 0 || classes > k_max_classes) inconsistent(file, fmt::format("it has {} labels", classes));
     for (const std::string& name : model.label_names)
         if (!mesh_io::is_label_name(name)) inconsistent(file, "no label can have the name " + mesh_io::quote(name));
+    for (auto label = model.averaged_labels.begin(); label != model.averaged_labels.end(); ++label)
+        if (std::find(model.averaged_labels.begin(), label, *label) != label)
+            inconsistent(file, "an averaged label is there twice");
     if (model.label_colors.size() != classes) inconsistent(file, "labels and colors differ in number");
     if (model.crf.compatibility.size() != classes * classes)
         inconsistent(file, "the label compatibility has the wrong size");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <ostream>
 #include <vector>
 
 #include "host/core/errors.h"
@@ -12,6 +13,12 @@
 #include "tests/fuzz/readers.h"
 
 namespace exemplar::fuzz {
+
+/// How GoogleTest shows a reader.
+void PrintTo(const Reader& reader, std::ostream* out) {
+    *out << reader.name;
+}
+
 namespace {
 
 namespace fs = std::filesystem;

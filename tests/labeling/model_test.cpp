@@ -112,6 +112,7 @@ TEST(LabelingModelFile, InconsistentContentIsRefused) {
         [](File& f) { replace(f.metadata["model"], "\"samples\":", "\"samples\":-"); },
         [](File& f) { replace(f.metadata["model"], "\"averaged_labels\":[1", "\"averaged_labels\":[2"); },
         [](File& f) { replace(f.metadata["model"], "\"averaged_labels\":[1]", "\"averaged_labels\":1"); },
+        [](File& f) { replace(f.metadata["model"], "\"averaged_labels\":[1]", "\"averaged_labels\":[1,1]"); },
         [](File& f) {
             f.add("smallest_component", {2}, std::vector<float>{NAN, 0});
         },

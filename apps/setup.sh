@@ -35,11 +35,15 @@ exemplar_install() {
         'apt-get -qq update && apt-get -qq install -y --no-install-recommends "$@" >/dev/null' install $missing
 }
 
+# Builds the targets named, or everything.
 exemplar_build() {
     local first=() log
-    [ -e "$exemplar_build/CMakeCache.txt" ] || first=(-G Ninja -DCMAKE_BUILD_TYPE=Release)
-    log=$(cmake -S "$exemplar_root" -B "$exemplar_build" "${first[@]}" "$@") || { echo "$log"; return 1; }
-    cmake --build "$exemplar_build"
+    if [ ! -e "$exemplar_build/CMakeCache.txt" ]; then
+        first=(-G Ninja -DCMAKE_BUILD_TYPE=Release)
+        echo "Building in $exemplar_build; the first time takes some minutes."
+    fi
+    log=$(cmake -S "$exemplar_root" -B "$exemplar_build" "${first[@]}") || { echo "$log"; return 1; }
+    cmake --build "$exemplar_build" --target "${@:-all}"
 }
 
 # Vulkan's software driver wants a private folder for its sockets: one of the user's that all runs share.

@@ -14,10 +14,13 @@ HOST = {
     'graphcut': {'core'},
     'data': {'core', 'mesh', 'learn'},
     'imaging': {'core', 'mesh'},
-    'synth': {'core', 'mesh'},
+    'animation': {'core', 'mesh'},
+    'synth': {'core', 'mesh', 'animation'},
+    'lines': {'core', 'mesh'},
+    'curvature': {'core', 'mesh', 'learn', 'data', 'animation', 'lines'},
     'labeling': {'core', 'mesh', 'learn', 'graphcut', 'data', 'imaging'},
 }
-GPU = {'runtime': set(), 'learn': {'runtime'}, 'labeling': {'runtime', 'learn'}, 'imaging': {'runtime'}}
+GPU = {'runtime': set(), 'learn': {'runtime'}, 'labeling': {'runtime', 'learn'}, 'imaging': {'runtime'}, 'curvature': {'runtime'}}
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]')
 
 

@@ -25,6 +25,10 @@ constexpr const char* k_type_name<float> = "F32";
 template <>
 constexpr const char* k_type_name<std::uint8_t> = "U8";
 template <>
+constexpr const char* k_type_name<std::uint16_t> = "U16";
+template <>
+constexpr const char* k_type_name<Half> = "F16";
+template <>
 constexpr const char* k_type_name<std::uint32_t> = "U32";
 template <>
 constexpr const char* k_type_name<std::uint64_t> = "U64";
@@ -33,6 +37,7 @@ constexpr const char* k_type_name<std::int32_t> = "I32";
 
 std::size_t element_size(const std::string& type) {
     if (type == "U8") return 1;
+    if (type == "F16" || type == "U16") return 2;
     if (type == "F32" || type == "U32" || type == "I32") return 4;
     if (type == "U64") return 8;
     return 0;
@@ -189,7 +194,9 @@ const std::string& TensorFile::meta(const std::string& key) const {
     template void TensorFile::add<T>(const std::string&, std::vector<std::size_t>, std::span<const T>); \
     template std::vector<T> TensorFile::get<T>(const std::string&, const std::vector<std::size_t>&, std::size_t) const;
 EXEMPLAR_INSTANTIATE(float)
+EXEMPLAR_INSTANTIATE(Half)
 EXEMPLAR_INSTANTIATE(std::uint8_t)
+EXEMPLAR_INSTANTIATE(std::uint16_t)
 EXEMPLAR_INSTANTIATE(std::uint32_t)
 EXEMPLAR_INSTANTIATE(std::uint64_t)
 EXEMPLAR_INSTANTIATE(std::int32_t)

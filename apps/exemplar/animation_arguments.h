@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "apps/exemplar/commands.h"
+#include "host/animation/animation.h"
+#include "host/curvature/samples.h"
+
+namespace exemplar {
+
+/// Which frames of an animation a command works on.
+struct FrameArguments {
+    std::vector<std::string> clips;
+    std::string range;     ///< "a:b", either end may be left out
+    std::size_t most = 0;  ///< 0: all
+};
+
+/// Adds --clips, --frames and --poses; `prefix` goes before each name, as in --test-clips.
+void add_frame_options(CLI::App& command, FrameArguments& arguments, const std::string& prefix,
+                       const std::string& what);
+/// Throws UsageError if the range is none.
+FrameSelection selection_of(const FrameArguments& arguments);
+
+/// read_animation, with its warnings printed unless `quiet`. Blend shapes without a clip get one of random expressions,
+/// drawn from `seed`.
+Animation animation_of_argument(const std::filesystem::path& path, double frames_per_second, std::uint64_t seed,
+                                bool quiet);
+
+}  // namespace exemplar

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "host/curvature/evaluation.h"
+#include "host/curvature/training.h"
+
+namespace exemplar {
+
+/// How to learn curvature, as words on the command line.
+struct CurvatureArguments {
+    double frames_per_second = 30;
+    double smoothing = 1;
+    std::string robust = "none", learner = "auto", attributes = "tensor", bases = "ica";
+    double variance = 0;  ///< 0: the learner's own
+    double dropped_variance = CurvatureTraining{}.dropped_variance;
+    std::uint64_t seed = 1;
+};
+
+void add_curvature_options(CLI::App& command, CurvatureArguments& arguments);
+/// What the arguments mean for this kind of animation.
+CurvatureTraining training_of(const CurvatureArguments& arguments, AnimationKind kind);
+
+nlohmann::json describe_training(const CurvatureTrainingReport& report);
+nlohmann::json describe_evaluation(const CurvatureEvaluation& evaluation);
+void print_evaluation(const CurvatureEvaluation& evaluation);
+
+}  // namespace exemplar

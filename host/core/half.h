@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#ifdef __F16C__
+#include <immintrin.h>
+#endif
+
+namespace exemplar {
+
+/// A number of IEEE 754 binary16: 11 significant bits; magnitudes of 6e-5 to 65504 have all of them.
+struct Half {
+    std::uint16_t bits = 0;
+    bool operator==(const Half&) const = default;
+};
+
+/// The nearest half; the largest one for what is beyond.
+inline Half to_half(float value) {
+    constexpr float k_largest = 65504.0f;
+    const float bounded = value > k_largest ? k_largest : value < -k_largest ? -k_largest : value;
+    return {Eigen::half_impl::float_to_half_rtne(bounded).x};
+}
+inline float from_half(Half half) {
+    return Eigen::half_impl::half_to_float(Eigen::half_impl::raw_uint16_to_half(half.bits));
+}
+
+/// Eight halves, one after the other, as floats.
+using EightFloats = Eigen::Array<float, 8, 1>;
+inline EightFloats eight_from_halves(const Half* halves) {
+    EightFloats values;
+#ifdef __F16C__
+    _mm256_storeu_ps(values.data(), _mm256_cvtph_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(halves))));
+#else
+    for (int i = 0; i < 8; ++i) values[i] = from_half(halves[i]);
+#endif
+    return values;
+}
+
+}  // namespace exemplar

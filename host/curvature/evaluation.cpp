@@ -1,0 +1,214 @@
+#include "host/curvature/evaluation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "host/core/parallel.h"
+#include "host/core/progress.h"
+
+namespace exemplar {
+
+namespace {
+
+constexpr std::array<LineType, 6> k_compared{
+    LineType::suggestive_contours, LineType::suggestive_highlights, LineType::ridges, LineType::valleys,
+    LineType::apparent_ridges,     LineType::principal_highlights};
+
+/// Views from all sides, off the axes, along which models tend to be symmetric.
+std::array<Vec3, 6> eyes_around(std::span<const Vec3> vertices) {
+    Vec3 low = vertices.front(), high = vertices.front();
+    for (const Vec3& p : vertices) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    const Vec3 center = 0.5f * (low + high);
+    const float distance = 1.5f * (high - low).norm();
+    std::array<Vec3, 6> eyes;
+    for (std::size_t i = 0; i < eyes.size(); ++i) {
+        Vec3 direction(0.31f, 0.22f, -0.27f);
+        direction[static_cast<Eigen::Index>(i / 2)] = i % 2 ? -1.0f : 1.0f;
+        eyes[i] = center + distance * direction.normalized();
+    }
+    return eyes;
+}
+
+/// Errors of one attribute, collected.
+struct ErrorSum {
+    double squares = 0;
+    std::vector<float> magnitudes;
+    void add(float error) {
+        squares += double(error) * error;
+        magnitudes.push_back(std::abs(error));
+    }
+    void add(const ErrorSum& other) {
+        squares += other.squares;
+        magnitudes.insert(magnitudes.end(), other.magnitudes.begin(), other.magnitudes.end());
+    }
+    double rms() const { return magnitudes.empty() ? 0 : std::sqrt(squares / static_cast<double>(magnitudes.size())); }
+    double percentile_95() {
+        if (magnitudes.empty()) return 0;
+        const auto place = magnitudes.begin() + static_cast<std::ptrdiff_t>(0.95 * double(magnitudes.size() - 1));
+        std::nth_element(magnitudes.begin(), place, magnitudes.end());
+        return *place;
+    }
+};
+
+constexpr std::array<const char*, 7> k_names{"k1", "k2", "direction", "C111", "C112", "C122", "C222"};
+using Errors = std::array<ErrorSum, k_names.size()>;
+
+void add_errors(const VertexCurvature& truth, const VertexCurvature& guess, Errors& errors) {
+    double difference = 0;
+    for (std::size_t v = 0; v < truth.k1.size(); ++v) difference += double(truth.k1[v]) - truth.k2[v];
+    const auto distinct =
+        static_cast<float>(difference / static_cast<double>(std::max<std::size_t>(truth.k1.size(), 1)));
+    for (std::size_t v = 0; v < truth.k1.size(); ++v) {
+        errors[0].add(guess.k1[v] - truth.k1[v]);
+        errors[1].add(guess.k2[v] - truth.k2[v]);
+        const float along = truth.e1[v].dot(guess.e1[v]), sign = along < 0 ? -1.0f : 1.0f;
+        if (truth.k1[v] - truth.k2[v] >= distinct)
+            errors[2].add(std::acos(std::min(std::abs(along), 1.0f)) * 180 / std::numbers::pi_v<float>);
+        for (std::size_t k = 0; k < 4; ++k) errors[3 + k].add(sign * guess.derivative[v][k] - truth.derivative[v][k]);
+    }
+}
+
+struct LineCounts {
+    std::array<std::size_t, k_compared.size()> truth{}, learned{}, zero_order{};
+    std::size_t faces = 0;
+};
+
+std::size_t differences(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) count += a[i] != b[i];
+    return count;
+}
+
+void compare_lines(const std::vector<Face>& faces, const SurfaceMoment& moment, const VertexCurvature& learned,
+                   const VertexCurvature& zero_order, float feature_size, LineCounts& counts) {
+    const std::array<Vec3, 6> eyes = eyes_around(moment.vertices);
+    for (std::size_t i = 0; i < k_compared.size(); ++i) {
+        const bool by_view = depends_on_view(k_compared[i]);
+        const std::size_t times = by_view ? 1 : eyes.size();
+        for (const Vec3& eye : eyes) {
+            const auto lines_of = [&](const VertexCurvature& curvature) {
+                return classify_faces({faces, moment.vertices, moment.normals, curvature}, k_compared[i],
+                                      {.eye = eye, .feature_size = feature_size});
+            };
+            const std::vector<std::uint8_t> truth = lines_of(moment.curvature);
+            counts.truth[i] += times * static_cast<std::size_t>(std::count(truth.begin(), truth.end(), 1));
+            counts.learned[i] += times * differences(truth, lines_of(learned));
+            counts.zero_order[i] += times * differences(truth, lines_of(zero_order));
+            if (!by_view) break;
+        }
+    }
+    counts.faces += eyes.size() * faces.size();
+}
+
+/// What is known after some frames.
+struct Tally {
+    Errors learned, zero_order, truth;
+    LineCounts lines;
+    PoseRange::Farthest farthest;
+    std::size_t far_frames = 0;
+
+    void add(const Tally& other) {
+        for (std::size_t i = 0; i < learned.size(); ++i) {
+            learned[i].add(other.learned[i]);
+            zero_order[i].add(other.zero_order[i]);
+            truth[i].add(other.truth[i]);
+        }
+        for (std::size_t i = 0; i < k_compared.size(); ++i) {
+            lines.truth[i] += other.lines.truth[i];
+            lines.learned[i] += other.lines.learned[i];
+            lines.zero_order[i] += other.lines.zero_order[i];
+        }
+        lines.faces += other.lines.faces;
+        if (other.farthest.distance > farthest.distance) farthest = other.farthest;
+        far_frames += other.far_frames;
+    }
+};
+
+/// Compares frame after frame, on one thread.
+class FrameComparison {
+  public:
+    FrameComparison(const CurvatureModel& model, const Animation& animation, const Segments& segments)
+        : model_(model),
+          animation_(animation),
+          reader_(animation, segments, model.truth),
+          evaluator_(model),
+          nothing_(model.regression.components.size(), 0.0f) {}
+
+    void compare(FrameRef frame, Tally& tally) {
+        const SurfaceMoment moment = reader_.read(frame, true);
+        const Clip& clip = animation_.clips[frame.clip];
+        const VertexCurvature& learned =
+            model_.kind == AnimationKind::sequence
+                ? evaluator_.evaluate(moment.vertices, moment.normals)
+                : evaluator_.evaluate(animation_.rig, clip.poses[frame.frame], moment.normals);
+        reproject_curvature(model_.tiles, nothing_, moment.normals, moment.rotations, mean_);
+        add_errors(moment.curvature, learned, tally.learned);
+        add_errors(moment.curvature, mean_, tally.zero_order);
+        for (std::size_t v = 0; v < moment.curvature.k1.size(); ++v) {
+            tally.truth[0].squares += double(moment.curvature.k1[v]) * moment.curvature.k1[v];
+            tally.truth[1].squares += double(moment.curvature.k2[v]) * moment.curvature.k2[v];
+            for (std::size_t k = 0; k < 4; ++k)
+                tally.truth[3 + k].squares +=
+                    double(moment.curvature.derivative[v][k]) * moment.curvature.derivative[v][k];
+        }
+        compare_lines(animation_.rest.faces, moment, learned, mean_, model_.feature_size, tally.lines);
+        const PoseRange::Farthest farthest = evaluator_.farthest();
+        if (farthest.distance > tally.farthest.distance) tally.farthest = farthest;
+        tally.far_frames += farthest.distance > k_far_pose;
+    }
+
+  private:
+    const CurvatureModel& model_;
+    const Animation& animation_;
+    MomentReader reader_;
+    CurvatureEvaluator evaluator_;
+    std::vector<float> nothing_;  // all components at their mean: the zero-order prediction
+    VertexCurvature mean_;
+};
+
+}  // namespace
+
+std::span<const LineType> compared_lines() {
+    return k_compared;
+}
+
+CurvatureEvaluation evaluate_curvature(const CurvatureModel& model, const Animation& animation,
+                                       std::span<const FrameRef> frames) {
+    require_fit(model, animation);
+    // Chunks of frames, so that sums do not depend on the number of threads.
+    constexpr std::size_t k_chunk = 8;
+    std::vector<Tally> tallies((frames.size() + k_chunk - 1) / k_chunk);
+    Progress progress("comparing frames", frames.size());
+    parallel_for(tallies.size(), [&](std::size_t chunk) {
+        FrameComparison comparison(model, animation, model.segments);
+        for (std::size_t i = chunk * k_chunk; i < std::min(frames.size(), (chunk + 1) * k_chunk); ++i) {
+            comparison.compare(frames[i], tallies[chunk]);
+            progress.advance();
+        }
+    });
+    Tally sum;
+    for (const Tally& tally : tallies) sum.add(tally);
+
+    CurvatureEvaluation result;
+    result.frames = frames.size();
+    const double values = std::max(1.0, double(frames.size()) * double(model.vertex_count));
+    for (std::size_t i = 0; i < k_names.size(); ++i)
+        result.attributes.push_back({k_names[i], sum.learned[i].rms(), sum.learned[i].percentile_95(),
+                                     sum.zero_order[i].rms(), sum.zero_order[i].percentile_95(),
+                                     std::sqrt(sum.truth[i].squares / values)});
+    const double faces = std::max<double>(1, double(sum.lines.faces));
+    for (std::size_t i = 0; i < k_compared.size(); ++i)
+        result.lines.push_back({k_compared[i], double(sum.lines.truth[i]) / faces, double(sum.lines.learned[i]) / faces,
+                                double(sum.lines.zero_order[i]) / faces});
+    result.farthest_pose = sum.farthest.distance;
+    if (sum.farthest.control < model.state.controls.size())
+        result.farthest_control = model.state.controls[sum.farthest.control].name;
+    result.far_frames = sum.far_frames;
+    return result;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,377 @@
+#include "host/curvature/model.h"
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "host/core/errors.h"
+#include "host/data/safetensors.h"
+
+namespace exemplar {
+
+namespace {
+
+using Json = nlohmann::json;
+using Words = std::vector<std::uint32_t>;
+using Floats = std::vector<float>;
+
+constexpr const char* k_kind = "exemplar curvature";
+constexpr int k_format_version = 1;
+constexpr std::size_t k_any = TensorFile::k_any;
+
+Floats row_major(const Eigen::Ref<const Eigen::MatrixXf>& matrix) {
+    Floats values;
+    values.reserve(static_cast<std::size_t>(matrix.size()));
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+        for (Eigen::Index j = 0; j < matrix.cols(); ++j) values.push_back(matrix(i, j));
+    return values;
+}
+
+Eigen::MatrixXf matrix_of(const Floats& values, std::size_t rows, std::size_t columns) {
+    return Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+        values.data(), static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+}
+
+Eigen::VectorXf vector_of(const Floats& values) {
+    return Eigen::Map<const Eigen::VectorXf>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+// Writing, part by part.
+
+Json describe(const CurvatureModel& model) {
+    Json controls = Json::array();
+    for (const Control& control : model.state.controls)
+        controls.push_back({{"name", control.name}, {"inputs", control.input_count}});
+    return {{"animation", static_cast<int>(model.kind)},
+            {"attributes", static_cast<int>(model.tiles.set)},
+            {"vertices", model.vertex_count},
+            {"topology", fmt::format("{:016x}", model.topology)},
+            {"smoothing", model.truth.smoothing},
+            {"smoothing_unit", model.truth.smoothing_unit},
+            {"robust", static_cast<int>(model.truth.robust)},
+            {"feature_size", model.feature_size},
+            {"controls", controls},
+            {"training", model.training}};
+}
+
+void add_state(TensorFile& file, const StateReader& state) {
+    Floats reference;
+    for (const Eigen::Quaternionf& q : state.reference) reference.insert(reference.end(), {q.x(), q.y(), q.z(), q.w()});
+    file.add("state.nodes", {state.nodes.size()}, state.nodes);
+    file.add("state.reference", {state.reference.size(), 4}, reference);
+    Words hinges;
+    for (const StateReader::Hinge& h : state.hinges) hinges.insert(hinges.end(), {h.a, h.b, h.left, h.right});
+    file.add("state.hinges", {state.hinges.size(), 4}, hinges);
+    file.add("state.mean_angles", {state.hinges.size()}, row_major(state.mean_angles));
+    file.add("state.unmixing", {static_cast<std::size_t>(state.unmixing.rows()), state.hinges.size()},
+             row_major(state.unmixing));
+}
+
+void add_range(TensorFile& file, const PoseRange& range) {
+    Floats whitening;
+    for (const Eigen::MatrixXf& part : range.whitening) {
+        const Floats values = row_major(part);
+        whitening.insert(whitening.end(), values.begin(), values.end());
+    }
+    file.add("range.mean", {static_cast<std::size_t>(range.mean.size())}, row_major(range.mean));
+    file.add("range.whitening", {whitening.size()}, whitening);
+    file.add("range.largest", {range.largest.size()}, range.largest);
+}
+
+void add_segments(TensorFile& file, const Segments& segments) {
+    Words bones, patches;
+    Floats weights, frames;
+    for (const Influence& influence : segments.influences) {
+        bones.push_back(influence.bone);
+        weights.push_back(influence.weight);
+    }
+    for (const Segments::Triangle& triangle : segments.triangles) {
+        for (const auto& patch : triangle.patches) patches.insert(patches.end(), patch.begin(), patch.end());
+        const Floats frame = row_major(triangle.rest_frame);
+        frames.insert(frames.end(), frame.begin(), frame.end());
+    }
+    file.add("segments.influence_begin", {segments.influence_begin.size()}, segments.influence_begin);
+    file.add("segments.bone", {bones.size()}, bones);
+    file.add("segments.weight", {weights.size()}, weights);
+    file.add("segments.patches", {segments.triangles.size(), 3, Segments::Triangle::k_patch}, patches);
+    file.add("segments.frame", {segments.triangles.size(), 3, 3}, frames);
+}
+
+void add_regression(TensorFile& file, const ComponentRegression& regression) {
+    Words monomials, components;
+    for (const Monomial& m : regression.monomials) monomials.insert(monomials.end(), m.begin(), m.end());
+    for (const ComponentRegression::Component& c : regression.components)
+        components.insert(components.end(), {c.first_feature, c.feature_count, c.first_coefficient});
+    const auto neurons = static_cast<std::size_t>(regression.neurons.rows());
+    file.add("regression.monomials", {regression.monomials.size(), 3}, monomials);
+    file.add("regression.neurons", {neurons, regression.input_count}, row_major(regression.neurons));
+    file.add("regression.neuron_bias", {neurons}, row_major(regression.neuron_bias));
+    file.add("regression.components", {regression.components.size(), 3}, components);
+    file.add("regression.coefficients", {regression.coefficients.size()}, regression.coefficients);
+}
+
+void add_tiles(TensorFile& file, const BasisTiles& tiles) {
+    const std::size_t count = tiles.tile_count(), lanes = BasisTiles::k_lanes;
+    file.add("tiles.vertex", {count, lanes}, tiles.vertex);
+    file.add("tiles.segment", {count}, tiles.segment);
+    file.add("tiles.scale", {tiles.scale.size()}, tiles.scale);
+    file.add("tiles.entry_begin", {tiles.entry_begin.size()}, tiles.entry_begin);
+    file.add("tiles.component", {tiles.component.size()}, tiles.component);
+    file.add("tiles.basis", {tiles.component.size(), lanes}, tiles.basis);
+    file.add("tiles.mean", {count, tiles.scale.size(), lanes}, tiles.mean);
+    file.add("tiles.reference", {count, 3, lanes}, tiles.reference);
+}
+
+// Reading: every number that leads somewhere is checked to lead there.
+
+/// A file that is being read.
+struct Reading {
+    const TensorFile& file;
+
+    [[noreturn]] void damaged(const std::string& what) const {
+        throw ModelError(fmt::format("{}: damaged file: {}; train it again", file.path, what));
+    }
+    void require(bool holds, const char* what) const {
+        if (!holds) damaged(what);
+    }
+    Words words(const std::string& name, const std::vector<std::size_t>& shape) const {
+        return file.get<std::uint32_t>(name, shape);
+    }
+    Floats floats(const std::string& name, const std::vector<std::size_t>& shape) const {
+        Floats values = file.get<float>(name, shape);
+        if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
+            damaged(name + " holds a value that is not finite");
+        return values;
+    }
+    std::vector<Half> halves(const std::string& name, const std::vector<std::size_t>& shape) const {
+        std::vector<Half> values = file.get<Half>(name, shape);
+        constexpr std::uint16_t k_exponent = 0x7C00;
+        if (std::any_of(values.begin(), values.end(), [](Half h) { return (h.bits & k_exponent) == k_exponent; }))
+            damaged(name + " holds a value that is not finite");
+        return values;
+    }
+    void below(const Words& values, std::size_t bound, const char* name) const {
+        for (const std::uint32_t value : values)
+            if (value >= bound) damaged(fmt::format("{} names {} of {}", name, value, bound));
+    }
+    void rows(const Words& begin, std::size_t count, std::size_t end, const char* name) const {
+        if (begin.size() != count + 1 || begin.front() != 0 || begin.back() != end ||
+            !std::is_sorted(begin.begin(), begin.end()))
+            damaged(fmt::format("{} are no rows", name));
+    }
+};
+
+/// The library would turn what is no whole number (-1, 1e300, true) into one.
+std::uint64_t whole_number(const Reading& reading, const Json& value, std::uint64_t most) {
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() > most)
+        reading.damaged("its description has another value where a whole number should be");
+    return value.get<std::uint64_t>();
+}
+
+void read_description(const Reading& reading, CurvatureModel& model) {
+    const Json json = Json::parse(reading.file.meta("model"));
+    model.kind = static_cast<AnimationKind>(whole_number(reading, json.at("animation"), 2));
+    model.tiles.set = static_cast<AttributeSet>(whole_number(reading, json.at("attributes"), 1));
+    model.vertex_count = whole_number(reading, json.at("vertices"), 0xFFFFFFFEu);
+    model.topology = std::stoull(json.at("topology").get<std::string>(), nullptr, 16);
+    model.truth.smoothing = json.at("smoothing");
+    model.truth.smoothing_unit = json.at("smoothing_unit");
+    model.truth.robust = static_cast<RobustEstimator>(whole_number(reading, json.at("robust"), 2));
+    model.feature_size = json.at("feature_size");
+    for (const Json& control : json.at("controls")) {
+        const auto inputs = static_cast<std::uint32_t>(whole_number(reading, control.at("inputs"), 100'000));
+        model.state.controls.push_back(
+            {control.at("name"), static_cast<std::uint32_t>(model.state.input_count), inputs});
+        model.state.input_count += inputs;
+    }
+    model.training = json.at("training").get<std::map<std::string, std::string>>();
+    for (const double value : {model.truth.smoothing, model.truth.smoothing_unit, double(model.feature_size)})
+        reading.require(value >= 0 && std::isfinite(value), "a length in its description is negative");
+}
+
+void read_state(const Reading& reading, CurvatureModel& model) {
+    StateReader& state = model.state;
+    state.kind = model.kind;
+    const bool is_rig = model.kind != AnimationKind::sequence;
+    state.nodes = reading.words("state.nodes", {is_rig ? state.controls.size() : 0});
+    const bool turns = model.kind == AnimationKind::skeleton;
+    const Floats reference = reading.floats("state.reference", {turns ? state.controls.size() : 0, 4});
+    for (std::size_t i = 0; i + 3 < reference.size(); i += 4)
+        state.reference.emplace_back(reference[i + 3], reference[i], reference[i + 1], reference[i + 2]);
+    for (const Control& control : state.controls)
+        reading.require(!is_rig || control.input_count == (turns ? 3u : 1u), "a control has a wrong number of inputs");
+    reading.require(is_rig || state.controls.size() == 1, "the state of a mesh sequence has one control");
+    const Words hinges = reading.words("state.hinges", {k_any, 4});
+    reading.below(hinges, model.vertex_count, "state.hinges");
+    for (std::size_t i = 0; i < hinges.size(); i += 4)
+        state.hinges.push_back({hinges[i], hinges[i + 1], hinges[i + 2], hinges[i + 3]});
+    state.mean_angles = vector_of(reading.floats("state.mean_angles", {state.hinges.size()}));
+    const std::size_t rows = is_rig ? 0 : state.input_count;
+    state.unmixing =
+        matrix_of(reading.floats("state.unmixing", {rows, state.hinges.size()}), rows, state.hinges.size());
+}
+
+void read_range(const Reading& reading, CurvatureModel& model) {
+    model.range.mean = vector_of(reading.floats("range.mean", {model.state.input_count}));
+    model.range.largest = reading.floats("range.largest", {model.state.controls.size()});
+    const Floats whitening = reading.floats("range.whitening", {k_any});
+    std::size_t at = 0;
+    for (const Control& control : model.state.controls) {
+        const std::size_t n = control.input_count;
+        reading.require(n * n <= whitening.size() - at, "range.whitening is too short");
+        model.range.whitening.push_back(matrix_of(Floats(whitening.begin() + static_cast<std::ptrdiff_t>(at),
+                                                         whitening.begin() + static_cast<std::ptrdiff_t>(at + n * n)),
+                                                  n, n));
+        at += n * n;
+    }
+    for (const float largest : model.range.largest) reading.require(largest > 0, "range.largest is not positive");
+}
+
+void read_segments(const Reading& reading, CurvatureModel& model) {
+    Segments& segments = model.segments;
+    segments.influence_begin = reading.words("segments.influence_begin", {k_any});
+    const Words bones = reading.words("segments.bone", {k_any});
+    const Floats weights = reading.floats("segments.weight", {bones.size()});
+    for (std::size_t i = 0; i < bones.size(); ++i) segments.influences.push_back({bones[i], weights[i]});
+    if (model.kind != AnimationKind::sequence) {
+        reading.require(!segments.influence_begin.empty(), "it has no segments");
+        reading.rows(segments.influence_begin, segments.influence_begin.size() - 1, bones.size(), "the segments");
+        return;
+    }
+    const Words patches = reading.words("segments.patches", {k_any, 3, Segments::Triangle::k_patch});
+    reading.below(patches, model.vertex_count, "segments.patches");
+    const std::size_t count = patches.size() / (3 * Segments::Triangle::k_patch);
+    reading.require(count > 0, "it has no segments");
+    const Floats frames = reading.floats("segments.frame", {count, 3, 3});
+    for (std::size_t s = 0; s < count; ++s) {
+        Segments::Triangle triangle;
+        for (std::size_t i = 0; i < 3; ++i)
+            std::copy_n(patches.begin() + static_cast<std::ptrdiff_t>((3 * s + i) * Segments::Triangle::k_patch),
+                        Segments::Triangle::k_patch, triangle.patches[i].begin());
+        triangle.rest_frame = matrix_of(Floats(frames.begin() + static_cast<std::ptrdiff_t>(9 * s),
+                                               frames.begin() + static_cast<std::ptrdiff_t>(9 * s + 9)),
+                                        3, 3);
+        segments.triangles.push_back(triangle);
+    }
+}
+
+void read_regression(const Reading& reading, CurvatureModel& model) {
+    ComponentRegression& regression = model.regression;
+    regression.input_count = model.state.input_count;
+    const Words monomials = reading.words("regression.monomials", {k_any, 3});
+    reading.below(monomials, regression.input_count + 1, "regression.monomials");
+    for (std::size_t i = 0; i < monomials.size(); i += 3)
+        regression.monomials.push_back({monomials[i], monomials[i + 1], monomials[i + 2]});
+    regression.neuron_bias = vector_of(reading.floats("regression.neuron_bias", {k_any}));
+    const auto neurons = static_cast<std::size_t>(regression.neuron_bias.size());
+    regression.neurons = matrix_of(reading.floats("regression.neurons", {neurons, regression.input_count}), neurons,
+                                   regression.input_count);
+    regression.coefficients = reading.floats("regression.coefficients", {k_any});
+    const Words components = reading.words("regression.components", {k_any, 3});
+    for (std::size_t i = 0; i < components.size(); i += 3) {
+        const std::uint64_t first = components[i], count = components[i + 1], coefficient = components[i + 2];
+        reading.require(first + count <= regression.feature_count(), "a component uses features that are not there");
+        reading.require(coefficient + count <= regression.coefficients.size(),
+                        "a component uses coefficients that are not there");
+        regression.components.push_back({components[i], components[i + 1], components[i + 2]});
+    }
+}
+
+void read_tiles(const Reading& reading, CurvatureModel& model) {
+    BasisTiles& tiles = model.tiles;
+    const std::size_t lanes = BasisTiles::k_lanes, attributes = attribute_count(tiles.set);
+    tiles.vertex_count = model.vertex_count;
+    tiles.segment = reading.words("tiles.segment", {k_any});
+    const std::size_t count = tiles.segment.size();
+    reading.below(tiles.segment, model.segments.count(), "tiles.segment");
+    tiles.vertex = reading.words("tiles.vertex", {count, lanes});
+    reading.below(tiles.vertex, model.vertex_count, "tiles.vertex");
+    tiles.scale = reading.floats("tiles.scale", {attributes});
+    tiles.component = reading.file.get<std::uint16_t>("tiles.component", {k_any});
+    for (const std::uint16_t component : tiles.component)
+        reading.require(component < model.regression.components.size(), "a tile uses a component that is not there");
+    tiles.entry_begin = reading.words("tiles.entry_begin", {k_any});
+    reading.rows(tiles.entry_begin, count * attributes, tiles.component.size(), "the entries of the tiles");
+    tiles.basis = reading.halves("tiles.basis", {tiles.component.size(), lanes});
+    tiles.mean = reading.halves("tiles.mean", {count, attributes, lanes});
+    tiles.reference = reading.halves("tiles.reference", {count, 3, lanes});
+    std::vector<bool> seen(model.vertex_count, false);
+    for (const std::uint32_t v : tiles.vertex) seen[v] = true;
+    reading.require(std::find(seen.begin(), seen.end(), false) == seen.end(), "a vertex is in no tile");
+}
+
+void require_version(const TensorFile& file) {
+    const auto kind = file.metadata.find("kind");
+    if (kind == file.metadata.end() || kind->second != k_kind)
+        throw ModelError(fmt::format("{}: is no curvature model; make one with 'exemplar curvature train'", file.path));
+    const std::string& version = file.meta("format_version");
+    if (version != std::to_string(k_format_version))
+        throw ModelError(fmt::format("{}: its format has version {}, this program knows {}; train it again", file.path,
+                                     version.substr(0, 20), k_format_version));
+}
+
+}  // namespace
+
+std::uint64_t topology_hash(std::span<const Face> faces, std::size_t vertex_count) {
+    return XXH3_64bits_withSeed(faces.data(), faces.size_bytes(), vertex_count);
+}
+
+void save_curvature_model(const std::filesystem::path& path, const CurvatureModel& model) {
+    TensorFile file;
+    file.metadata["kind"] = k_kind;
+    file.metadata["format_version"] = std::to_string(k_format_version);
+    file.metadata["model"] = describe(model).dump(-1, ' ', false, Json::error_handler_t::replace);
+    add_state(file, model.state);
+    add_range(file, model.range);
+    add_segments(file, model.segments);
+    add_regression(file, model.regression);
+    add_tiles(file, model.tiles);
+    write_safetensors(path, file);
+}
+
+CurvatureModel load_curvature_model(const std::filesystem::path& path) {
+    const TensorFile file = read_safetensors(path);
+    require_version(file);
+    const Reading reading{file};
+    CurvatureModel model;
+    try {
+        read_description(reading, model);
+    } catch (const Json::exception&) {
+        reading.damaged("its description cannot be read");
+    } catch (const std::logic_error&) {
+        reading.damaged("its description holds no number where one should be");
+    }
+    read_state(reading, model);
+    read_range(reading, model);
+    read_segments(reading, model);
+    read_regression(reading, model);
+    read_tiles(reading, model);
+    return model;
+}
+
+void require_fit(const CurvatureModel& model, const Animation& animation) {
+    const auto refuse = [&](const std::string& why) {
+        throw ModelError(fmt::format("the model does not fit {}: {}; train one for it", animation.name, why));
+    };
+    if (model.kind != animation.kind)
+        refuse(fmt::format("it was learned on a {}, this is a {}", name_of(model.kind), name_of(animation.kind)));
+    if (model.vertex_count != animation.rest.vertex_count() ||
+        model.topology != topology_hash(animation.rest.faces, animation.rest.vertex_count()))
+        refuse(fmt::format("it was learned on other triangles ({} vertices, here {})", model.vertex_count,
+                           animation.rest.vertex_count()));
+    for (std::size_t c = 0; c < model.state.nodes.size(); ++c) {
+        const std::uint32_t index = model.state.nodes[c];
+        const bool skeleton = model.kind == AnimationKind::skeleton;
+        const std::size_t count = skeleton ? animation.rig.nodes.size() : animation.rig.targets.size();
+        const std::string& name = model.state.controls[c].name;
+        if (index >= count || name != (skeleton ? animation.rig.nodes[index].name : animation.rig.targets[index].name))
+            refuse(fmt::format("it has no {} '{}' in that place", skeleton ? "joint" : "blend shape", name));
+    }
+    for (const Influence& influence : model.segments.influences)
+        if (influence.bone >= animation.rig.bones.size()) refuse("it has fewer bones");
+}
+
+}  // namespace exemplar

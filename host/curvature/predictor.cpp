@@ -1,0 +1,220 @@
+#include "host/curvature/predictor.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace exemplar {
+
+namespace {
+
+constexpr int k_half_lanes = 8;
+
+/// A number for each of eight vertices.
+using Lanes = EightFloats;
+using LaneVectors = std::array<Lanes, 3>;
+
+Lanes dot(const LaneVectors& a, const LaneVectors& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+LaneVectors cross(const LaneVectors& a, const LaneVectors& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+LaneVectors combined(const Lanes& s, const LaneVectors& a, const Lanes& t, const LaneVectors& b) {
+    return {s * a[0] + t * b[0], s * a[1] + t * b[1], s * a[2] + t * b[2]};
+}
+
+/// One attribute of half a tile.
+Lanes reproject_lanes(const BasisTiles& tiles, std::span<const float> z, std::size_t row, std::size_t half) {
+    const std::size_t offset = half * k_half_lanes;
+    Lanes sum = eight_from_halves(tiles.mean.data() + row * BasisTiles::k_lanes + offset);
+    const Half* basis = tiles.basis.data() + tiles.entry_begin[row] * BasisTiles::k_lanes + offset;
+    for (std::uint32_t e = tiles.entry_begin[row]; e < tiles.entry_begin[row + 1]; ++e, basis += BasisTiles::k_lanes)
+        sum += eight_from_halves(basis) * z[tiles.component[e]];
+    return sum;
+}
+
+/// any_tangent of eight unit vectors.
+LaneVectors any_tangent(const LaneVectors& n) {
+    const Lanes sign = (n[2] >= 0).select(Lanes::Ones(), -Lanes::Ones());
+    const Lanes a = -(sign + n[2]).inverse();
+    return {1 + sign * n[0] * n[0] * a, sign * n[0] * n[1] * a, -sign * n[0]};
+}
+
+LaneVectors carried(const LaneVectors& axis, const LaneVectors& from, const LaneVectors& to) {
+    const Lanes one_plus = 1 + dot(from, to);
+    const Lanes factor = (one_plus > 1e-4f).select(dot(to, axis) / one_plus, Lanes::Zero());
+    LaneVectors result;
+    for (std::size_t i = 0; i < 3; ++i) result[i] = axis[i] - (from[i] + to[i]) * factor;
+    return result;
+}
+
+/// Normals of eight vertices, now and in training, in the coordinates of their segment.
+struct LaneFrames {
+    LaneVectors normal, reference;
+};
+
+LaneFrames frames_of(const BasisTiles& tiles, std::size_t tile, std::size_t half, std::span<const Vec3> normals,
+                     const Eigen::Matrix3f& rotation) {
+    LaneFrames frames;
+    LaneVectors world;
+    const std::uint32_t* const vertex = tiles.vertex.data() + tile * BasisTiles::k_lanes + half * k_half_lanes;
+    for (int lane = 0; lane < k_half_lanes; ++lane)
+        for (std::size_t i = 0; i < 3; ++i) world[i][lane] = normals[vertex[lane]][static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto column = static_cast<Eigen::Index>(i);
+        frames.normal[i] =
+            rotation(0, column) * world[0] + rotation(1, column) * world[1] + rotation(2, column) * world[2];
+        frames.reference[i] =
+            eight_from_halves(tiles.reference.data() + (tile * 3 + i) * BasisTiles::k_lanes + half * k_half_lanes);
+    }
+    return frames;
+}
+
+/// principal_turn of eight forms.
+void principal_lanes(const Lanes& f11, const Lanes& f12, const Lanes& f22, Lanes& k1, Lanes& k2, Lanes& cosine,
+                     Lanes& sine) {
+    const Lanes difference = 0.5f * (f11 - f22), mean = 0.5f * (f11 + f22);
+    const Lanes radius = (difference * difference + f12 * f12).sqrt();
+    k1 = mean + radius;
+    k2 = mean - radius;
+    const Lanes inverse = (radius > 0).select(radius.inverse(), Lanes::Zero());
+    const Lanes larger = (0.5f * (1 + difference.abs() * inverse)).sqrt();
+    const Lanes smaller = 0.5f * f12 * inverse / larger;
+    const auto is_flat = (radius > 0);
+    cosine = (difference >= 0).select(larger, smaller);
+    sine = (difference >= 0).select(smaller, larger);
+    cosine = is_flat.select(cosine, Lanes::Ones());
+    sine = is_flat.select(sine, Lanes::Zero());
+}
+
+std::array<Lanes, 4> turned_lanes(const std::array<Lanes, 4>& d, const Lanes& c, const Lanes& s) {
+    const Lanes cc = c * c, ss = s * s, ccc = cc * c, ccs = cc * s, css = c * ss, sss = ss * s;
+    return {ccc * d[0] + 3 * ccs * d[1] + 3 * css * d[2] + sss * d[3],
+            -ccs * d[0] + (ccc - 2 * css) * d[1] + (2 * ccs - sss) * d[2] + css * d[3],
+            css * d[0] + (sss - 2 * ccs) * d[1] + (ccc - 2 * css) * d[2] + ccs * d[3],
+            -sss * d[0] + 3 * css * d[1] - 3 * ccs * d[2] + ccc * d[3]};
+}
+
+void store_lanes(const std::uint32_t* vertex, const Lanes& k1, const Lanes& k2, const LaneVectors& e1,
+                 const LaneVectors& e2, const Eigen::Matrix3f& rotation, const std::array<Lanes, 4>& derivative,
+                 VertexCurvature& curvature) {
+    LaneVectors w1, w2;
+    for (int i = 0; i < 3; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        w1[k] = rotation(i, 0) * e1[0] + rotation(i, 1) * e1[1] + rotation(i, 2) * e1[2];
+        w2[k] = rotation(i, 0) * e2[0] + rotation(i, 1) * e2[1] + rotation(i, 2) * e2[2];
+    }
+    for (int lane = 0; lane < k_half_lanes; ++lane) {
+        const std::uint32_t v = vertex[lane];
+        curvature.k1[v] = k1[lane];
+        curvature.k2[v] = k2[lane];
+        curvature.e1[v] = {w1[0][lane], w1[1][lane], w1[2][lane]};
+        curvature.e2[v] = {w2[0][lane], w2[1][lane], w2[2][lane]};
+        curvature.derivative[v] = {derivative[0][lane], derivative[1][lane], derivative[2][lane], derivative[3][lane]};
+    }
+}
+
+/// The tensor set: seven attributes of eight vertices.
+void decode_tensor(const std::array<Lanes, k_most_attributes>& y, const LaneFrames& frames, const std::uint32_t* vertex,
+                   const Eigen::Matrix3f& rotation, VertexCurvature& curvature) {
+    const LaneVectors tangent = carried(any_tangent(frames.reference), frames.reference, frames.normal);
+    const LaneVectors bitangent = cross(frames.normal, tangent);
+    Lanes k1, k2, cosine, sine;
+    principal_lanes(y[0], y[1], y[2], k1, k2, cosine, sine);
+    const LaneVectors e1 = combined(cosine, tangent, sine, bitangent), e2 = combined(cosine, bitangent, -sine, tangent);
+    store_lanes(vertex, k1, k2, e1, e2, rotation, turned_lanes({y[3], y[4], y[5], y[6]}, cosine, sine), curvature);
+}
+
+/// e1 of eight vertices from its two kept coordinates (see AttributeFrames): the third makes it orthogonal to the
+/// normal.
+LaneVectors completed_direction(const Lanes& first, const Lanes& second, const LaneFrames& frames) {
+    const auto& [rx, ry, rz] = frames.reference;
+    const auto drop_x = rx.abs() >= ry.abs() && rx.abs() >= rz.abs();
+    const auto drop_y = !drop_x && ry.abs() >= rz.abs();
+    const LaneVectors& n = frames.normal;
+    const Lanes zero = Lanes::Zero();
+    LaneVectors e{drop_x.select(zero, first), drop_x.select(first, drop_y.select(zero, second)),
+                  (drop_x || drop_y).select(second, zero)};
+    const Lanes dropped = drop_x.select(n[0], drop_y.select(n[1], n[2]));
+    const Lanes bounded = (dropped >= 0).select(dropped.max(k_least_divisor), dropped.min(-k_least_divisor));
+    const Lanes missing = -dot(n, e) / bounded;
+    e[0] = drop_x.select(missing, e[0]);
+    e[1] = drop_y.select(missing, e[1]);
+    e[2] = (drop_x || drop_y).select(e[2], missing);
+    e = combined(Lanes::Ones(), e, -dot(n, e), n);
+    const Lanes length = dot(e, e).sqrt();
+    const LaneVectors other = any_tangent(n);
+    for (std::size_t i = 0; i < 3; ++i) e[i] = (length > 1e-6f).select(e[i] / length, other[i]);
+    return e;
+}
+
+/// The thesis' eight attributes.
+void decode_principal(const std::array<Lanes, k_most_attributes>& y, const LaneFrames& frames,
+                      const std::uint32_t* vertex, const Eigen::Matrix3f& rotation, VertexCurvature& curvature) {
+    const LaneVectors e1 = completed_direction(y[2], y[3], frames);
+    store_lanes(vertex, y[0].max(y[1]), y[0].min(y[1]), e1, cross(frames.normal, e1), rotation,
+                {y[4], y[5], y[6], y[7]}, curvature);
+}
+
+}  // namespace
+
+void ComponentRegression::evaluate(std::span<const float> x, std::span<float> features, std::span<float> z) const {
+    const auto input = [&](std::uint32_t i) { return i < x.size() ? x[i] : 1.0f; };
+    for (std::size_t m = 0; m < monomials.size(); ++m)
+        features[m] = input(monomials[m][0]) * input(monomials[m][1]) * input(monomials[m][2]);
+    if (neurons.rows() > 0) {
+        const Eigen::Map<const Eigen::VectorXf> in(x.data(), static_cast<Eigen::Index>(x.size()));
+        Eigen::Map<Eigen::ArrayXf>(features.data() + monomials.size(), neurons.rows()) =
+            (neurons * in + neuron_bias).array().tanh();
+    }
+    for (std::size_t c = 0; c < components.size(); ++c) {
+        const Component& part = components[c];
+        z[c] = Eigen::Map<const Eigen::VectorXf>(features.data() + part.first_feature, part.feature_count)
+                   .dot(Eigen::Map<const Eigen::VectorXf>(coefficients.data() + part.first_coefficient,
+                                                          part.feature_count));
+    }
+}
+
+std::size_t BasisTiles::bytes() const {
+    return vertex.size() * sizeof(vertex[0]) + segment.size() * sizeof(segment[0]) +
+           entry_begin.size() * sizeof(entry_begin[0]) + component.size() * sizeof(component[0]) +
+           (basis.size() + mean.size() + reference.size()) * sizeof(Half);
+}
+
+void reproject(const BasisTiles& tiles, std::span<const float> z, std::span<float> attributes) {
+    const std::size_t count = attribute_count(tiles.set);
+    for (std::size_t t = 0; t < tiles.tile_count(); ++t)
+        for (std::size_t a = 0; a < count; ++a)
+            for (std::size_t half = 0; half < 2; ++half) {
+                const Lanes y = tiles.scale[a] * reproject_lanes(tiles, z, t * count + a, half);
+                const std::uint32_t* const vertex = tiles.vertex.data() + t * BasisTiles::k_lanes + half * k_half_lanes;
+                for (int lane = 0; lane < k_half_lanes; ++lane)
+                    attributes[a * tiles.vertex_count + vertex[lane]] = y[lane];
+            }
+}
+
+void reproject_curvature(const BasisTiles& tiles, std::span<const float> z, std::span<const Vec3> normals,
+                         std::span<const Eigen::Matrix3f> rotations, VertexCurvature& curvature) {
+    const std::size_t count = attribute_count(tiles.set);
+    curvature.k1.resize(tiles.vertex_count);
+    curvature.k2.resize(tiles.vertex_count);
+    curvature.e1.resize(tiles.vertex_count);
+    curvature.e2.resize(tiles.vertex_count);
+    curvature.derivative.resize(tiles.vertex_count);
+    std::array<Lanes, k_most_attributes> y;
+    for (std::size_t t = 0; t < tiles.tile_count(); ++t) {
+        const Eigen::Matrix3f& rotation = rotations[tiles.segment[t]];
+        for (std::size_t half = 0; half < 2; ++half) {
+            for (std::size_t a = 0; a < count; ++a)
+                y[a] = tiles.scale[a] * reproject_lanes(tiles, z, t * count + a, half);
+            const LaneFrames frames = frames_of(tiles, t, half, normals, rotation);
+            const std::uint32_t* const vertex = tiles.vertex.data() + t * BasisTiles::k_lanes + half * k_half_lanes;
+            if (tiles.set == AttributeSet::tensor)
+                decode_tensor(y, frames, vertex, rotation, curvature);
+            else
+                decode_principal(y, frames, vertex, rotation, curvature);
+        }
+    }
+}
+
+}  // namespace exemplar

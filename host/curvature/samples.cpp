@@ -1,0 +1,198 @@
+#include "host/curvature/samples.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "host/core/errors.h"
+#include "host/core/half.h"
+#include "host/core/parallel.h"
+#include "host/core/progress.h"
+#include "host/core/text.h"
+#include "host/lines/lines.h"
+
+namespace exemplar {
+
+namespace {
+
+std::vector<std::string> clip_names(const Animation& animation) {
+    std::vector<std::string> names;
+    for (const Clip& clip : animation.clips) names.push_back(clip.name);
+    return names;
+}
+
+std::vector<std::uint32_t> selected_clips(const Animation& animation, const std::vector<std::string>& wanted) {
+    const std::vector<std::string> names = clip_names(animation);
+    std::vector<std::uint32_t> clips;
+    for (std::uint32_t c = 0; c < names.size(); ++c)
+        if (wanted.empty() || std::find(wanted.begin(), wanted.end(), names[c]) != wanted.end()) clips.push_back(c);
+    for (const std::string& name : wanted)
+        if (std::find(names.begin(), names.end(), name) == names.end())
+            throw UsageError(fmt::format("{} has no clip '{}'{}; it has: {}", animation.name, name,
+                                         suggestion(name, names), fmt::join(names, ", ")));
+    return clips;
+}
+
+/// The mean of unit vectors, `fallback` where they cancel.
+Vec3 unit_or(const Vec3& sum, const Vec3& fallback) {
+    const float length = sum.norm();
+    return length > 1e-6f ? Vec3(sum / length) : fallback;
+}
+
+/// As a model file keeps it, so that training and use agree about the tangent that follows from it. No zero is
+/// negative.
+Vec3 as_halves(const Vec3& v) {
+    return v.unaryExpr([](float value) { return from_half(to_half(value)) + 0.0f; });
+}
+
+/// Sums over poses, per vertex, that the frames of attributes are made from.
+struct FrameSums {
+    std::vector<Vec3> normal;
+    std::vector<Eigen::Matrix3f> direction;  ///< of e1 e1^T, which knows no sign
+};
+
+AttributeFrames make_frames(AttributeSet set, const Segments& segments, const FrameSums& sums) {
+    AttributeFrames frames;
+    frames.set = set;
+    frames.segment = segments.segment_of_vertex;
+    frames.reference_normal.reserve(sums.normal.size());
+    for (const Vec3& sum : sums.normal) frames.reference_normal.push_back(as_halves(unit_or(sum, Vec3::UnitZ())));
+    if (set == AttributeSet::principal)
+        for (const Eigen::Matrix3f& sum : sums.direction)
+            frames.reference_direction.emplace_back(
+                Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f>(sum).eigenvectors().col(2));
+    return frames;
+}
+
+FrameSums sum_frames(const std::vector<SurfaceMoment>& moments, const Segments& segments) {
+    const std::size_t count = segments.segment_of_vertex.size();
+    FrameSums sums{std::vector<Vec3>(count, Vec3::Zero()),
+                   std::vector<Eigen::Matrix3f>(count, Eigen::Matrix3f::Zero())};
+    parallel_for(
+        count,
+        [&](std::size_t v) {
+            for (const SurfaceMoment& moment : moments) {
+                const Eigen::Matrix3f to_segment = moment.rotations[segments.segment_of_vertex[v]].transpose();
+                const Vec3 e1 = to_segment * moment.curvature.e1[v];
+                sums.normal[v] += to_segment * moment.normals[v];
+                sums.direction[v] += e1 * e1.transpose();
+            }
+        },
+        1024);
+    return sums;
+}
+
+std::vector<SurfaceMoment> read_moments(const Animation& animation, const Segments& segments,
+                                        std::span<const FrameRef> frames, const CurvatureOptions& truth) {
+    std::vector<SurfaceMoment> moments(frames.size());
+    Progress progress("measuring curvature", frames.size());
+    parallel_ranges(frames.size(), 8, [&](std::size_t begin, std::size_t end) {
+        MomentReader reader(animation, segments, truth);
+        for (std::size_t i = begin; i < end; ++i) {
+            moments[i] = reader.read(frames[i], true);
+            progress.advance();
+        }
+    });
+    return moments;
+}
+
+}  // namespace
+
+std::vector<FrameRef> select_frames(const Animation& animation, const FrameSelection& selection) {
+    std::vector<FrameRef> frames;
+    for (const std::uint32_t clip : selected_clips(animation, selection.clips)) {
+        const std::size_t end = std::min(selection.end, animation.clips[clip].size());
+        for (std::size_t f = selection.begin; f < end; ++f) frames.push_back({clip, static_cast<std::uint32_t>(f)});
+    }
+    if (frames.empty())
+        throw UsageError(fmt::format("{} has no frame that was asked for; its clips are: {}", animation.name,
+                                     fmt::join(clip_names(animation), ", ")));
+    if (frames.size() > selection.most) {
+        std::vector<FrameRef> taken;
+        for (std::size_t i = 0; i < selection.most; ++i) taken.push_back(frames[i * frames.size() / selection.most]);
+        frames = std::move(taken);
+    }
+    return frames;
+}
+
+MomentReader::MomentReader(const Animation& animation, const Segments& segments, const CurvatureOptions& truth)
+    : animation_(&animation),
+      segments_(&segments),
+      truth_(truth),
+      estimator_(animation.rest.faces, animation.rest.vertex_count()) {
+    if (truth_.smoothing_unit <= 0) truth_.smoothing_unit = estimator_.median_edge_length(animation.rest.vertices);
+}
+
+SurfaceMoment MomentReader::read(FrameRef frame, bool with_curvature) {
+    SurfaceMoment moment;
+    const Clip& clip = animation_->clips[frame.clip];
+    moment.vertices = frame_vertices(*animation_, clip, frame.frame);
+    if (animation_->kind == AnimationKind::sequence)
+        segments_->rotations_of_sequence(moment.vertices, moment.rotations);
+    else
+        segments_->rotations_of_rig(bone_transforms(animation_->rig, clip.poses[frame.frame]), moment.rotations);
+    if (with_curvature) {
+        moment.curvature = estimator_.estimate(moment.vertices, truth_);
+        moment.normals = estimator_.normals();
+    } else {
+        TriangleMesh mesh;
+        mesh.vertices = moment.vertices;
+        mesh.faces = animation_->rest.faces;
+        moment.normals = vertex_normals(mesh);
+    }
+    return moment;
+}
+
+Segments segment_animation(const Animation& animation, std::span<const FrameRef> frames) {
+    if (animation.kind != AnimationKind::sequence) return segment_rig(animation.rig, animation.rest.vertex_count());
+    std::vector<std::vector<Vec3>> positions;
+    for (const FrameRef& frame : frames) positions.push_back(animation.clips[frame.clip].frames[frame.frame]);
+    return segment_sequence(animation.rest, positions);
+}
+
+StateReader make_state(const Animation& animation, std::span<const FrameRef> frames, double variance,
+                       std::uint64_t seed) {
+    if (animation.kind == AnimationKind::sequence) {
+        std::vector<std::vector<Vec3>> positions;
+        for (const FrameRef& frame : frames) positions.push_back(animation.clips[frame.clip].frames[frame.frame]);
+        return make_sequence_state(animation.rest, positions, {.share = variance, .seed = seed});
+    }
+    std::vector<const Pose*> poses;
+    for (const FrameRef& frame : frames) poses.push_back(&animation.clips[frame.clip].poses[frame.frame]);
+    return make_rig_state(animation, poses);
+}
+
+void read_state(const StateReader& reader, const Animation& animation, FrameRef frame, std::span<float> x) {
+    const Clip& clip = animation.clips[frame.clip];
+    if (animation.kind == AnimationKind::sequence)
+        reader.read_vertices(clip.frames[frame.frame], x);
+    else
+        reader.read_pose(clip.poses[frame.frame], x);
+}
+
+TrainingSamples collect_samples(const Animation& animation, const Segments& segments, const StateReader& reader,
+                                std::span<const FrameRef> frames, AttributeSet set, const CurvatureOptions& truth) {
+    const std::vector<SurfaceMoment> moments = read_moments(animation, segments, frames, truth);
+    TrainingSamples samples;
+    samples.frames = make_frames(set, segments, sum_frames(moments, segments));
+    const std::size_t count = segments.segment_of_vertex.size();
+    const auto poses = static_cast<Eigen::Index>(frames.size());
+    samples.attributes.assign(attribute_count(set), Eigen::MatrixXf(poses, static_cast<Eigen::Index>(count)));
+    samples.states.resize(poses, static_cast<Eigen::Index>(reader.input_count));
+    std::vector<float> attributes(count * attribute_count(set)), x(reader.input_count);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const SurfaceMoment& moment = moments[i];
+        const auto row = static_cast<Eigen::Index>(i);
+        samples.frames.encode(moment.curvature, moment.normals, moment.rotations, attributes);
+        for (std::size_t a = 0; a < samples.attributes.size(); ++a)
+            samples.attributes[a].row(row) =
+                Eigen::Map<const Eigen::RowVectorXf>(attributes.data() + a * count, static_cast<Eigen::Index>(count));
+        read_state(reader, animation, frames[i], x);
+        samples.states.row(row) = Eigen::Map<const Eigen::RowVectorXf>(x.data(), static_cast<Eigen::Index>(x.size()));
+        samples.feature_size += feature_size(moment.vertices, moment.curvature) / static_cast<float>(frames.size());
+    }
+    return samples;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/animation/animation.h"
+#include "host/curvature/attributes.h"
+#include "host/curvature/segments.h"
+#include "host/curvature/state.h"
+#include "host/mesh/curvature_estimator.h"
+
+namespace exemplar {
+
+/// One moment of an animation.
+struct FrameRef {
+    std::uint32_t clip = 0, frame = 0;
+};
+
+/// What is taken of an animation.
+struct FrameSelection {
+    std::vector<std::string> clips;  ///< by name; empty takes all
+    std::size_t begin = 0;           ///< frames [begin, end) of each clip, cut to its length
+    std::size_t end = static_cast<std::size_t>(-1);
+    std::size_t most = static_cast<std::size_t>(-1);  ///< evenly taken, if there are more
+};
+/// The selected frames, in order. Throws UsageError naming the clips there are if one is not known, or if none is left.
+std::vector<FrameRef> select_frames(const Animation& animation, const FrameSelection& selection);
+
+/// The surface at one moment, and its measured curvature.
+struct SurfaceMoment {
+    std::vector<Vec3> vertices, normals;
+    VertexCurvature curvature;
+    std::vector<Eigen::Matrix3f> rotations;  ///< of the segments
+};
+
+/// Reads moments of an animation. One thread at a time may use a reader.
+class MomentReader {
+  public:
+    /// truth: how curvature is measured.
+    MomentReader(const Animation& animation, const Segments& segments, const CurvatureOptions& truth);
+    /// The surface at a frame.
+    SurfaceMoment read(FrameRef frame, bool with_curvature);
+
+  private:
+    const Animation* animation_;
+    const Segments* segments_;
+    CurvatureOptions truth_;
+    CurvatureEstimator estimator_;
+};
+
+/// The segments of an animation: by weights, or by motion in the given frames of a sequence.
+Segments segment_animation(const Animation& animation, std::span<const FrameRef> frames);
+/// The reader of its state, made from the given frames.
+StateReader make_state(const Animation& animation, std::span<const FrameRef> frames, double variance,
+                       std::uint64_t seed);
+/// x of a frame.
+void read_state(const StateReader& reader, const Animation& animation, FrameRef frame, std::span<float> x);
+
+/// Training poses: inputs and attributes.
+struct TrainingSamples {
+    AttributeFrames frames;
+    Eigen::MatrixXf states;                   ///< poses x inputs
+    std::vector<Eigen::MatrixXf> attributes;  ///< of each attribute: poses x vertices
+    float feature_size = 0;                   ///< mean over the poses (see lines)
+};
+TrainingSamples collect_samples(const Animation& animation, const Segments& segments, const StateReader& reader,
+                                std::span<const FrameRef> frames, AttributeSet set, const CurvatureOptions& truth);
+
+}  // namespace exemplar

@@ -1,0 +1,186 @@
+#include "host/curvature/state.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "host/learn/fast_ica.h"
+#include "host/mesh/topology.h"
+
+namespace exemplar {
+
+namespace {
+
+using Eigen::Quaternionf;
+
+/// A joint that turns less than this (radians, about a degree) does not move the surface to speak of.
+constexpr float k_least_turn = 0.02f;
+constexpr float k_least_weight = 1e-3f;
+
+/// The mean of rotations: the main axis of their quaternions as points of four dimensions.
+Quaternionf mean_rotation(std::span<const Pose* const> poses, std::size_t node) {
+    Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
+    for (const Pose* pose : poses) {
+        const Eigen::Vector4d q = pose->nodes[node].rotation.coeffs().cast<double>();
+        sum += q * q.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(sum);
+    Quaternionf mean;
+    mean.coeffs() = solver.eigenvectors().col(3).cast<float>();
+    return mean.normalized();
+}
+
+Vec3 vector_part(const Quaternionf& reference, const Quaternionf& rotation) {
+    const Quaternionf relative = reference.conjugate() * rotation;
+    return relative.w() < 0 ? Vec3(-relative.vec()) : Vec3(relative.vec());
+}
+
+void add_control(StateReader& reader, const std::string& name, std::uint32_t inputs) {
+    reader.controls.push_back({name, static_cast<std::uint32_t>(reader.input_count), inputs});
+    reader.input_count += inputs;
+}
+
+/// The nodes whose rotation can bend the surface: bones and what lies between them.
+std::vector<bool> nodes_above_bones(const Rig& rig) {
+    std::vector<bool> used(rig.nodes.size(), false);
+    for (const Bone& bone : rig.bones)
+        for (std::uint32_t node = bone.node; node != k_none && !used[node]; node = rig.nodes[node].parent)
+            used[node] = true;
+    return used;
+}
+
+void add_joints(const Rig& rig, std::span<const Pose* const> poses, StateReader& reader) {
+    const std::vector<bool> used = nodes_above_bones(rig);
+    for (std::uint32_t node = 0; node < rig.nodes.size(); ++node) {
+        if (!used[node]) continue;
+        const Quaternionf reference = mean_rotation(poses, node);
+        const bool turns = std::any_of(poses.begin(), poses.end(), [&](const Pose* pose) {
+            return 2 * vector_part(reference, pose->nodes[node].rotation).norm() > k_least_turn;
+        });
+        if (!turns) continue;
+        add_control(reader, rig.nodes[node].name, 3);
+        reader.nodes.push_back(node);
+        reader.reference.push_back(reference);
+    }
+}
+
+void add_targets(const Rig& rig, std::span<const Pose* const> poses, StateReader& reader) {
+    for (std::uint32_t target = 0; target < rig.targets.size(); ++target) {
+        const float first = poses.front()->weights[target];
+        const bool changes = std::any_of(poses.begin(), poses.end(), [&](const Pose* pose) {
+            return std::abs(pose->weights[target] - first) > k_least_weight;
+        });
+        if (!changes) continue;
+        add_control(reader, rig.targets[target].name, 1);
+        reader.nodes.push_back(target);
+    }
+}
+
+std::vector<StateReader::Hinge> all_hinges(const TriangleMesh& mesh) {
+    const Topology topology = build_topology(mesh);
+    std::vector<StateReader::Hinge> hinges;
+    for (const Edge& edge : topology.edges) {
+        if (edge.is_boundary()) continue;
+        StateReader::Hinge hinge{edge.vertex[0], edge.vertex[1], k_none, k_none};
+        for (std::size_t side = 0; side < 2; ++side) {
+            const Face& face = mesh.faces[edge.face[side]];
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::uint32_t from = face[i], to = face[(i + 1) % 3], third = face[(i + 2) % 3];
+                if (from == hinge.a && to == hinge.b) hinge.left = third;
+                if (from == hinge.b && to == hinge.a) hinge.right = third;
+            }
+        }
+        if (hinge.left != k_none && hinge.right != k_none) hinges.push_back(hinge);
+    }
+    return hinges;
+}
+
+}  // namespace
+
+float bend(const StateReader::Hinge& hinge, std::span<const Vec3> vertices) {
+    const Vec3 &a = vertices[hinge.a], &b = vertices[hinge.b];
+    const Vec3 edge = b - a, left = edge.cross(vertices[hinge.left] - a),
+               right = (vertices[hinge.right] - a).cross(edge);
+    const float sine = left.cross(right).dot(edge), cosine = left.dot(right) * edge.norm();
+    return std::atan2(-sine, cosine);
+}
+
+void StateReader::read_pose(const Pose& pose, std::span<float> x) const {
+    for (std::size_t c = 0; c < controls.size(); ++c) {
+        const std::uint32_t first = controls[c].first_input;
+        if (kind == AnimationKind::blend_shapes) {
+            x[first] = pose.weights[nodes[c]];
+            continue;
+        }
+        const Vec3 part = vector_part(reference[c], pose.nodes[nodes[c]].rotation);
+        for (int i = 0; i < 3; ++i) x[first + i] = part[i];
+    }
+}
+
+void StateReader::read_vertices(std::span<const Vec3> vertices, std::span<float> x) const {
+    Eigen::VectorXf angles(static_cast<Eigen::Index>(hinges.size()));
+    for (std::size_t h = 0; h < hinges.size(); ++h) angles[static_cast<Eigen::Index>(h)] = bend(hinges[h], vertices);
+    Eigen::Map<Eigen::VectorXf>(x.data(), static_cast<Eigen::Index>(x.size())) = unmixing * (angles - mean_angles);
+}
+
+StateReader make_rig_state(const Animation& animation, std::span<const Pose* const> poses) {
+    StateReader reader;
+    reader.kind = animation.kind;
+    if (animation.kind == AnimationKind::blend_shapes)
+        add_targets(animation.rig, poses, reader);
+    else
+        add_joints(animation.rig, poses, reader);
+    return reader;
+}
+
+StateReader make_sequence_state(const TriangleMesh& rest, std::span<const std::vector<Vec3>> frames,
+                                const SequenceStateOptions& options) {
+    StateReader reader;
+    reader.kind = AnimationKind::sequence;
+    const std::vector<StateReader::Hinge> all = all_hinges(rest);
+    const std::size_t count = std::min(all.size(), options.most_hinges);
+    for (std::size_t h = 0; h < count; ++h) reader.hinges.push_back(all[h * all.size() / count]);
+
+    Eigen::MatrixXf angles(static_cast<Eigen::Index>(frames.size()), static_cast<Eigen::Index>(count));
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        for (std::size_t h = 0; h < count; ++h)
+            angles(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(h)) = bend(reader.hinges[h], frames[i]);
+    const Ica ica = fit_ica(angles, {.share = options.share, .seed = options.seed});
+    reader.mean_angles = ica.mean;
+    reader.unmixing = ica.unmixing;
+    add_control(reader, "surface", static_cast<std::uint32_t>(ica.unmixing.rows()));
+    return reader;
+}
+
+PoseRange make_pose_range(const StateReader& reader, const Eigen::Ref<const Eigen::MatrixXf>& states) {
+    PoseRange range;
+    range.mean = states.colwise().mean();
+    const Eigen::MatrixXf centered = states.rowwise() - range.mean.transpose();
+    for (const Control& control : reader.controls) {
+        const Eigen::MatrixXd part = centered.middleCols(control.first_input, control.input_count).cast<double>();
+        const Eigen::MatrixXd covariance =
+            part.transpose() * part / static_cast<double>(std::max<Eigen::Index>(part.rows(), 1));
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
+        // A direction that hardly varied in training still has some slack: a hundredth of the largest variance.
+        const double floor = std::max(1e-2 * solver.eigenvalues().maxCoeff(), 1e-8);
+        const Eigen::VectorXd scale = solver.eigenvalues().cwiseMax(floor).cwiseSqrt().cwiseInverse();
+        range.whitening.emplace_back((scale.asDiagonal() * solver.eigenvectors().transpose()).cast<float>());
+        const Eigen::MatrixXf white = part.cast<float>() * range.whitening.back().transpose();
+        range.largest.push_back(std::max(white.rowwise().norm().maxCoeff(), 1e-6f));
+    }
+    return range;
+}
+
+PoseRange::Farthest PoseRange::farthest(const StateReader& reader, std::span<const float> x) const {
+    Farthest result;
+    for (std::size_t c = 0; c < reader.controls.size(); ++c) {
+        const Control& control = reader.controls[c];
+        const Eigen::Map<const Eigen::VectorXf> here(x.data() + control.first_input, control.input_count);
+        const float distance =
+            (whitening[c] * (here - mean.segment(control.first_input, control.input_count))).norm() / largest[c];
+        if (distance > result.distance) result = {c, distance};
+    }
+    return result;
+}
+
+}  // namespace exemplar

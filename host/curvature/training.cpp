@@ -1,0 +1,168 @@
+#include "host/curvature/training.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/core/errors.h"
+#include "host/core/parallel.h"
+#include "host/core/stopwatch.h"
+#include "host/curvature/learners.h"
+
+namespace exemplar {
+
+namespace {
+
+/// Curvature at a vertex is that of its surroundings: of a ring for its normals, one for the fit, and what is diffused.
+constexpr int k_surrounding_rings = 3;
+/// A vertex varies if its curvature's deviation is at least this share of that of the vertex that varies most
+/// (Sec. 5.4.1).
+constexpr double k_least_variation = 0.005;
+
+/// Deviation over the poses, summed over attributes of one order: vertices.
+Eigen::VectorXd deviations(const TrainingSamples& samples, bool of_derivatives) {
+    const Eigen::Index vertices = samples.attributes[0].cols();
+    Eigen::VectorXd variance = Eigen::VectorXd::Zero(vertices);
+    for (std::size_t a = 0; a < samples.attributes.size(); ++a) {
+        if (is_derivative(samples.frames.set, a) != of_derivatives) continue;
+        const Eigen::MatrixXf& values = samples.attributes[a];
+        parallel_for(
+            static_cast<std::size_t>(vertices),
+            [&](std::size_t v) {
+                const auto column = values.col(static_cast<Eigen::Index>(v)).cast<double>();
+                variance[static_cast<Eigen::Index>(v)] +=
+                    (column.array() - column.mean()).square().sum() / static_cast<double>(values.rows());
+            },
+            1024);
+    }
+    return variance.cwiseSqrt();
+}
+
+std::vector<bool> varying(const TrainingSamples& samples) {
+    const Eigen::VectorXd deviation = deviations(samples, false);
+    const double least = k_least_variation * deviation.maxCoeff();
+    std::vector<bool> varies;
+    for (const double d : deviation) varies.push_back(d > least);
+    return varies;
+}
+
+/// (k1 + k2) / 2, which both sets of attributes have: poses x vertices.
+Eigen::MatrixXf mean_curvature(const TrainingSamples& samples) {
+    const std::size_t second = samples.frames.set == AttributeSet::principal ? 1 : 2;
+    return 0.5f * (samples.attributes[0] + samples.attributes[second]);
+}
+
+Eigen::MatrixXf mean_attributes(const TrainingSamples& samples) {
+    Eigen::MatrixXf means(static_cast<Eigen::Index>(samples.attributes.size()), samples.attributes[0].cols());
+    for (std::size_t a = 0; a < samples.attributes.size(); ++a)
+        means.row(static_cast<Eigen::Index>(a)) = samples.attributes[a].colwise().mean();
+    return means;
+}
+
+double mean_controls(const std::vector<InfluenceGroup>& groups, const std::vector<bool>& varies) {
+    double sum = 0, count = 0;
+    for (const InfluenceGroup& group : groups)
+        for (const std::uint32_t v : group.vertices)
+            if (varies[v]) {
+                sum += static_cast<double>(group.controls.size());
+                ++count;
+            }
+    return count > 0 ? sum / count : 0;
+}
+
+void learn(const LearningTask& task, PredictorBuilder& builder) {
+    switch (task.options.learner) {
+        case Learner::additive:
+            return learn_additive(task, builder);
+        case Learner::averaged:
+            return learn_averaged(task, builder);
+        case Learner::network:
+            return learn_network(task, builder);
+        case Learner::global:
+            return learn_global(task, builder);
+    }
+}
+
+/// The shape that tiles are laid out on: of a rig the first pose, as its bind space may be no shape at all.
+std::vector<Vec3> layout_shape(const Animation& animation, FrameRef frame) {
+    if (animation.kind == AnimationKind::sequence) return animation.rest.vertices;
+    return frame_vertices(animation, animation.clips[frame.clip], frame.frame);
+}
+
+void require_learnable(const Animation& animation, std::span<const FrameRef> frames) {
+    if (frames.size() < k_fewest_poses)
+        throw UsageError(
+            fmt::format("{}: {} poses are too few to learn from; at least {} are needed: name more clips "
+                        "or frames",
+                        animation.name, frames.size(), k_fewest_poses));
+}
+
+}  // namespace
+
+std::string_view name_of(Learner learner) {
+    switch (learner) {
+        case Learner::additive:
+            return "additive";
+        case Learner::averaged:
+            return "averaged";
+        case Learner::network:
+            return "network";
+        case Learner::global:
+            break;
+    }
+    return "global";
+}
+
+CurvatureModel train_curvature(const Animation& animation, std::span<const FrameRef> frames,
+                               const CurvatureTraining& options, CurvatureTrainingReport& report) {
+    require_learnable(animation, frames);
+    Stopwatch watch;
+    CurvatureModel model;
+    model.kind = animation.kind;
+    model.vertex_count = animation.rest.vertex_count();
+    model.topology = topology_hash(animation.rest.faces, model.vertex_count);
+    model.truth = options.truth;
+    if (model.truth.smoothing_unit <= 0)
+        model.truth.smoothing_unit = CurvatureEstimator(animation.rest.faces, model.vertex_count)
+                                         .median_edge_length(layout_shape(animation, frames.front()));
+    model.segments = segment_animation(animation, frames);
+    model.state = make_state(animation, frames, options.state_variance, options.seed);
+    if (model.state.input_count == 0)
+        throw UsageError(fmt::format("{}: nothing moves in the {} poses given; name other clips or frames",
+                                     animation.name, frames.size()));
+    const TrainingSamples samples =
+        collect_samples(animation, model.segments, model.state, frames, options.attributes, model.truth);
+    model.feature_size = samples.feature_size;
+    model.range = make_pose_range(model.state, samples.states);
+    report.seconds_truth = watch.wall();
+
+    watch = Stopwatch();
+    const std::vector<bool> varies = varying(samples);
+    const std::vector<InfluenceGroup> possible = possible_influences(animation, model.state, k_surrounding_rings);
+    LearningTask task{animation, model.state, samples, mean_attributes(samples), {}, options};
+    task.groups = tested_influences(possible, model.state, samples.states, mean_curvature(samples), varies, {});
+    report.seconds_influence = watch.wall();
+
+    watch = Stopwatch();
+    PredictorBuilder builder(model.state.input_count);
+    learn(task, builder);
+    model.regression = builder.regression();
+    model.tiles = make_tiles(samples.frames, layout_shape(animation, frames.front()), task.means, builder.bases(),
+                             {.dropped_variance = options.dropped_variance});
+    report.seconds_fit = watch.wall();
+
+    report.poses = frames.size();
+    report.vertices = model.vertex_count;
+    report.varying_vertices = static_cast<std::size_t>(std::count(varies.begin(), varies.end(), true));
+    report.segments = model.segments.count();
+    report.controls = model.state.controls.size();
+    report.inputs = model.state.input_count;
+    report.components = model.regression.components.size();
+    report.possible_controls = mean_controls(possible, varies);
+    report.kept_controls = mean_controls(task.groups, varies);
+    report.model_bytes = model.tiles.bytes();
+    return model;
+}
+
+}  // namespace exemplar

@@ -6,7 +6,8 @@ namespace exemplar {
 
 Clip random_expressions(const Rig& rig, std::size_t poses, std::uint64_t seed) {
     constexpr std::size_t k_most_active = 4;
-    Clip clip{.name = "random"};
+    Clip clip;
+    clip.name = "random";
     Random random(seed);
     for (std::size_t i = 0; i < poses; ++i) {
         Pose pose = rest_pose(rig);

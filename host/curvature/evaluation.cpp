@@ -92,7 +92,7 @@ void compare_lines(const std::vector<Face>& faces, const SurfaceMoment& moment, 
         for (const Vec3& eye : eyes) {
             const auto lines_of = [&](const VertexCurvature& curvature) {
                 return classify_faces({faces, moment.vertices, moment.normals, curvature}, k_compared[i],
-                                      {.eye = eye, .feature_size = feature_size});
+                                      {.eye = eye, .feature_size = feature_size, .thresholds = {}});
             };
             const std::vector<std::uint8_t> truth = lines_of(moment.curvature);
             counts.truth[i] += times * static_cast<std::size_t>(std::count(truth.begin(), truth.end(), 1));

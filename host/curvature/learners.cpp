@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 
+#include "host/core/parallel.h"
+#include "host/core/progress.h"
+
 namespace exemplar {
 
 Eigen::MatrixXf LearningTask::centered(std::size_t attribute, const std::vector<std::uint32_t>& vertices) const {
@@ -25,6 +28,24 @@ Ica LearningTask::reduce(const Eigen::Ref<const Eigen::MatrixXf>& values) const 
     result.unmixing = deviation.cwiseInverse().asDiagonal() * pca.basis.transpose();
     result.sources = pca.project(values) * deviation.cwiseInverse().asDiagonal();
     return result;
+}
+
+std::vector<std::uint32_t> LearningTask::varying_vertices() const {
+    std::vector<std::uint32_t> vertices;
+    for (const InfluenceGroup& group : groups)
+        if (!group.controls.empty()) vertices.insert(vertices.end(), group.vertices.begin(), group.vertices.end());
+    std::sort(vertices.begin(), vertices.end());
+    return vertices;
+}
+
+std::vector<Ica> LearningTask::reduce_all(const std::vector<std::uint32_t>& vertices) const {
+    std::vector<Ica> bases(samples.attributes.size());
+    Progress progress("reducing", bases.size());
+    parallel_for(bases.size(), [&](std::size_t a) {
+        bases[a] = reduce(centered(a, vertices));
+        progress.advance();
+    });
+    return bases;
 }
 
 std::vector<Monomial> polynomial_monomials(std::span<const std::uint32_t> inputs, std::size_t input_count, int degree) {

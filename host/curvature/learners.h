@@ -26,6 +26,10 @@ struct LearningTask {
     Eigen::MatrixXf centered(std::size_t attribute, const std::vector<std::uint32_t>& vertices) const;
     /// Bases of training values or predictions (poses x vertices), as the options ask for them.
     Ica reduce(const Eigen::Ref<const Eigen::MatrixXf>& values) const;
+    /// The vertices that some control matters to, rising.
+    std::vector<std::uint32_t> varying_vertices() const;
+    /// The bases of each attribute over those vertices.
+    std::vector<Ica> reduce_all(const std::vector<std::uint32_t>& vertices) const;
 };
 
 // Each adds the bases of all attributes, with their regressions, to the builder.

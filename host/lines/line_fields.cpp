@@ -76,13 +76,16 @@ std::vector<LineField> principal_highlight_field(const LineSurface& surface, int
         const ViewVector view = view_at(surface, i, options.eye);
         const float k = axis == 0 ? c.k1[i] : c.k2[i], other = axis == 0 ? c.k2[i] : c.k1[i];
         const float across = axis == 0 ? view.v : view.u;
-        // Along e1, n.w changes by k1 u: the extrema are the zeros of u. There its second derivative is
-        // -k1^2 cos + k1 v g, with g = C112 / (k1 - k2) the turn of e1 along itself; likewise for e2.
+        // Along e1, n.w changes by k1 u: its extrema are the zeros of u. There its second derivative is
+        // -k1^2 cos + k1 v g, with g = C112 / (k1 - k2) the turn of e1 along itself; likewise for e2. The test is of
+        // the part that is curvature alone: the other only tells maxima from minima, being large where e1 is noise.
         const float turn = k == other ? 0.0f : c.derivative[i][axis == 0 ? 1 : 2] / (k - other);
+        const float squared_unit = options.feature_size * options.feature_size;
+        const float bend = k * k * view.cosine, maximum = bend - k * turn * across;
         LineField field;
         field.value = axis == 0 ? view.u : view.v;
-        field.strength = (k * k * view.cosine - k * turn * across) * options.feature_size * options.feature_size;
-        field.margin = field.strength - options.thresholds.principal_highlights;
+        field.strength = bend * squared_unit;
+        field.margin = std::min(field.strength - options.thresholds.principal_highlights, maximum * squared_unit);
         field.front = view.cosine;
         field.direction = axis == 0 ? c.e1[i] : c.e2[i];
         return field;

@@ -16,8 +16,8 @@ const std::map<std::string, RobustEstimator>& robust_names() {
     return names;
 }
 
-Learner learner_of(const std::string& name, AnimationKind kind) {
-    if (name == "auto") return kind == AnimationKind::sequence ? Learner::global : Learner::additive;
+Learner learner_of(const std::string& name) {
+    if (name == "auto") return Learner::additive;
     for (const Learner learner : {Learner::additive, Learner::averaged, Learner::network})
         if (name == name_of(learner)) return learner;
     return Learner::global;
@@ -58,21 +58,39 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
                     "share of what the bases explain that is left out to make the model smaller")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 0.5));
+    command
+        .add_option(
+            "--patch", arguments.patch_vertices,
+            "mesh sequences: vertices of the patches whose folds are told apart, about; 0 takes the whole surface")
+        ->capture_default_str()
+        ->check(whole_number(0));
+    command.add_option("--patch-inputs", arguments.patch_inputs, "mesh sequences: most numbers that describe a patch")
+        ->capture_default_str()
+        ->check(whole_number(1, 1000));
+    command
+        .add_option("--state-variance", arguments.state_variance,
+                    "mesh sequences: share of the variance of the dihedral angles that these numbers keep")
+        ->capture_default_str()
+        ->check(CLI::Range(0.01, 1.0));
     command.add_option("--seed", arguments.seed, "seed of all random choices; equal seeds give equal model files")
         ->capture_default_str()
         ->check(whole_number(0));
 }
 
-CurvatureTraining training_of(const CurvatureArguments& arguments, AnimationKind kind) {
+CurvatureTraining training_of(const CurvatureArguments& arguments) {
     CurvatureTraining training;
     training.attributes = arguments.attributes == "principal" ? AttributeSet::principal : AttributeSet::tensor;
-    training.learner = learner_of(arguments.learner, kind);
+    training.learner = learner_of(arguments.learner);
     training.independent = arguments.bases == "ica";
     if (arguments.variance > 0) training.variance = arguments.variance;
     training.dropped_variance = arguments.dropped_variance;
     training.truth.smoothing = arguments.smoothing;
     training.truth.robust = robust_names().at(arguments.robust);
     training.seed = arguments.seed;
+    training.sequence.patch_vertices = arguments.patch_vertices;
+    training.sequence.most_inputs = arguments.patch_inputs;
+    training.sequence.share = arguments.state_variance;
+    training.sequence.seed = arguments.seed;
     return training;
 }
 

@@ -16,12 +16,14 @@ struct CurvatureArguments {
     std::string robust = "none", learner = "auto", attributes = "tensor", bases = "ica";
     double variance = 0;  ///< 0: the learner's own
     double dropped_variance = CurvatureTraining{}.dropped_variance;
+    std::size_t patch_vertices = SequenceStateOptions{}.patch_vertices,
+                patch_inputs = SequenceStateOptions{}.most_inputs;
+    double state_variance = SequenceStateOptions{}.share;
     std::uint64_t seed = 1;
 };
 
 void add_curvature_options(CLI::App& command, CurvatureArguments& arguments);
-/// What the arguments mean for this kind of animation.
-CurvatureTraining training_of(const CurvatureArguments& arguments, AnimationKind kind);
+CurvatureTraining training_of(const CurvatureArguments& arguments);
 
 nlohmann::json describe_training(const CurvatureTrainingReport& report);
 nlohmann::json describe_evaluation(const CurvatureEvaluation& evaluation);

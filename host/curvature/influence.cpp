@@ -171,7 +171,9 @@ std::vector<InfluenceGroup> possible_influences(const Animation& animation, cons
         case AnimationKind::sequence:
             break;
     }
-    return grouped(std::vector<ControlSet>(animation.rest.vertex_count(), {0}));
+    std::vector<ControlSet> patch;
+    for (const std::uint32_t control : reader.control_of_vertex) patch.push_back({control});
+    return grouped(patch);
 }
 
 std::vector<InfluenceGroup> tested_influences(const std::vector<InfluenceGroup>& possible, const StateReader& reader,

@@ -35,6 +35,11 @@ Eigen::MatrixXf matrix_of(const Floats& values, std::size_t rows, std::size_t co
         values.data(), static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
 }
 
+Floats part_of(const Floats& values, std::size_t first, std::size_t count) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+    return {begin, begin + static_cast<std::ptrdiff_t>(count)};
+}
+
 Eigen::VectorXf vector_of(const Floats& values) {
     return Eigen::Map<const Eigen::VectorXf>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
@@ -65,9 +70,14 @@ void add_state(TensorFile& file, const StateReader& state) {
     Words hinges;
     for (const StateReader::Hinge& h : state.hinges) hinges.insert(hinges.end(), {h.a, h.b, h.left, h.right});
     file.add("state.hinges", {state.hinges.size(), 4}, hinges);
+    file.add("state.hinge_begin", {state.hinge_begin.size()}, state.hinge_begin);
     file.add("state.mean_angles", {state.hinges.size()}, row_major(state.mean_angles));
-    file.add("state.unmixing", {static_cast<std::size_t>(state.unmixing.rows()), state.hinges.size()},
-             row_major(state.unmixing));
+    Floats unmixing;
+    for (const Eigen::MatrixXf& part : state.unmixing) {
+        const Floats values = row_major(part);
+        unmixing.insert(unmixing.end(), values.begin(), values.end());
+    }
+    file.add("state.unmixing", {unmixing.size()}, unmixing);
 }
 
 void add_range(TensorFile& file, const PoseRange& range) {
@@ -203,15 +213,23 @@ void read_state(const Reading& reading, CurvatureModel& model) {
         state.reference.emplace_back(reference[i + 3], reference[i], reference[i + 1], reference[i + 2]);
     for (const Control& control : state.controls)
         reading.require(!is_rig || control.input_count == (turns ? 3u : 1u), "a control has a wrong number of inputs");
-    reading.require(is_rig || state.controls.size() == 1, "the state of a mesh sequence has one control");
     const Words hinges = reading.words("state.hinges", {k_any, 4});
     reading.below(hinges, model.vertex_count, "state.hinges");
     for (std::size_t i = 0; i < hinges.size(); i += 4)
         state.hinges.push_back({hinges[i], hinges[i + 1], hinges[i + 2], hinges[i + 3]});
     state.mean_angles = vector_of(reading.floats("state.mean_angles", {state.hinges.size()}));
-    const std::size_t rows = is_rig ? 0 : state.input_count;
-    state.unmixing =
-        matrix_of(reading.floats("state.unmixing", {rows, state.hinges.size()}), rows, state.hinges.size());
+    if (is_rig) return;
+    state.hinge_begin = reading.words("state.hinge_begin", {state.controls.size() + 1});
+    reading.rows(state.hinge_begin, state.controls.size(), state.hinges.size(), "the hinges of the patches");
+    const Floats unmixing = reading.floats("state.unmixing", {k_any});
+    std::size_t at = 0;
+    for (std::size_t c = 0; c < state.controls.size(); ++c) {
+        const std::size_t rows = state.controls[c].input_count,
+                          columns = state.hinge_begin[c + 1] - state.hinge_begin[c];
+        reading.require(rows * columns <= unmixing.size() - at, "state.unmixing is too short");
+        state.unmixing.push_back(matrix_of(part_of(unmixing, at, rows * columns), rows, columns));
+        at += rows * columns;
+    }
 }
 
 void read_range(const Reading& reading, CurvatureModel& model) {
@@ -222,9 +240,7 @@ void read_range(const Reading& reading, CurvatureModel& model) {
     for (const Control& control : model.state.controls) {
         const std::size_t n = control.input_count;
         reading.require(n * n <= whitening.size() - at, "range.whitening is too short");
-        model.range.whitening.push_back(matrix_of(Floats(whitening.begin() + static_cast<std::ptrdiff_t>(at),
-                                                         whitening.begin() + static_cast<std::ptrdiff_t>(at + n * n)),
-                                                  n, n));
+        model.range.whitening.push_back(matrix_of(part_of(whitening, at, n * n), n, n));
         at += n * n;
     }
     for (const float largest : model.range.largest) reading.require(largest > 0, "range.largest is not positive");
@@ -251,9 +267,7 @@ void read_segments(const Reading& reading, CurvatureModel& model) {
         for (std::size_t i = 0; i < 3; ++i)
             std::copy_n(patches.begin() + static_cast<std::ptrdiff_t>((3 * s + i) * Segments::Triangle::k_patch),
                         Segments::Triangle::k_patch, triangle.patches[i].begin());
-        triangle.rest_frame = matrix_of(Floats(frames.begin() + static_cast<std::ptrdiff_t>(9 * s),
-                                               frames.begin() + static_cast<std::ptrdiff_t>(9 * s + 9)),
-                                        3, 3);
+        triangle.rest_frame = matrix_of(part_of(frames, 9 * s, 9), 3, 3);
         segments.triangles.push_back(triangle);
     }
 }

@@ -151,12 +151,12 @@ Segments segment_animation(const Animation& animation, std::span<const FrameRef>
     return segment_sequence(animation.rest, positions);
 }
 
-StateReader make_state(const Animation& animation, std::span<const FrameRef> frames, double variance,
-                       std::uint64_t seed) {
+StateReader make_state(const Animation& animation, std::span<const FrameRef> frames,
+                       const SequenceStateOptions& options) {
     if (animation.kind == AnimationKind::sequence) {
         std::vector<std::vector<Vec3>> positions;
         for (const FrameRef& frame : frames) positions.push_back(animation.clips[frame.clip].frames[frame.frame]);
-        return make_sequence_state(animation.rest, positions, {.share = variance, .seed = seed});
+        return make_sequence_state(animation.rest, positions, options);
     }
     std::vector<const Pose*> poses;
     for (const FrameRef& frame : frames) poses.push_back(&animation.clips[frame.clip].poses[frame.frame]);

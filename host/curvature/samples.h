@@ -54,8 +54,8 @@ class MomentReader {
 /// The segments of an animation: by weights, or by motion in the given frames of a sequence.
 Segments segment_animation(const Animation& animation, std::span<const FrameRef> frames);
 /// The reader of its state, made from the given frames.
-StateReader make_state(const Animation& animation, std::span<const FrameRef> frames, double variance,
-                       std::uint64_t seed);
+StateReader make_state(const Animation& animation, std::span<const FrameRef> frames,
+                       const SequenceStateOptions& options);
 /// x of a frame.
 void read_state(const StateReader& reader, const Animation& animation, FrameRef frame, std::span<float> x);
 

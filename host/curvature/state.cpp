@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/core/parallel.h"
+#include "host/curvature/patches.h"
 #include "host/learn/fast_ica.h"
 #include "host/mesh/topology.h"
 
@@ -95,6 +97,37 @@ std::vector<StateReader::Hinge> all_hinges(const TriangleMesh& mesh) {
     return hinges;
 }
 
+/// For each patch the hinges that have a vertex in it, at most so many.
+std::vector<std::vector<StateReader::Hinge>> hinges_of_patches(const std::vector<StateReader::Hinge>& all,
+                                                               const std::vector<std::uint32_t>& patch_of_vertex,
+                                                               std::size_t most) {
+    const std::uint32_t count = 1 + *std::max_element(patch_of_vertex.begin(), patch_of_vertex.end());
+    std::vector<std::vector<StateReader::Hinge>> patches(count);
+    for (const StateReader::Hinge& hinge : all) {
+        std::array<std::uint32_t, 4> near{patch_of_vertex[hinge.a], patch_of_vertex[hinge.b],
+                                          patch_of_vertex[hinge.left], patch_of_vertex[hinge.right]};
+        std::sort(near.begin(), near.end());
+        const auto end = std::unique(near.begin(), near.end());
+        for (auto patch = near.begin(); patch != end; ++patch) patches[*patch].push_back(hinge);
+    }
+    for (auto& hinges : patches) {
+        if (hinges.size() <= most) continue;
+        std::vector<StateReader::Hinge> taken;
+        for (std::size_t h = 0; h < most; ++h) taken.push_back(hinges[h * hinges.size() / most]);
+        hinges = std::move(taken);
+    }
+    return patches;
+}
+
+/// frames x hinges
+Eigen::MatrixXf angles_of(const std::vector<StateReader::Hinge>& hinges, std::span<const std::vector<Vec3>> frames) {
+    Eigen::MatrixXf angles(static_cast<Eigen::Index>(frames.size()), static_cast<Eigen::Index>(hinges.size()));
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        for (std::size_t h = 0; h < hinges.size(); ++h)
+            angles(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(h)) = bend(hinges[h], frames[i]);
+    return angles;
+}
+
 }  // namespace
 
 float bend(const StateReader::Hinge& hinge, std::span<const Vec3> vertices) {
@@ -118,9 +151,14 @@ void StateReader::read_pose(const Pose& pose, std::span<float> x) const {
 }
 
 void StateReader::read_vertices(std::span<const Vec3> vertices, std::span<float> x) const {
-    Eigen::VectorXf angles(static_cast<Eigen::Index>(hinges.size()));
-    for (std::size_t h = 0; h < hinges.size(); ++h) angles[static_cast<Eigen::Index>(h)] = bend(hinges[h], vertices);
-    Eigen::Map<Eigen::VectorXf>(x.data(), static_cast<Eigen::Index>(x.size())) = unmixing * (angles - mean_angles);
+    Eigen::VectorXf angles;
+    for (std::size_t c = 0; c < controls.size(); ++c) {
+        const std::uint32_t first = hinge_begin[c], count = hinge_begin[c + 1] - first;
+        angles.resize(count);
+        for (std::uint32_t h = 0; h < count; ++h) angles[h] = bend(hinges[first + h], vertices);
+        Eigen::Map<Eigen::VectorXf>(x.data() + controls[c].first_input, controls[c].input_count).noalias() =
+            unmixing[c] * (angles - mean_angles.segment(first, count));
+    }
 }
 
 StateReader make_rig_state(const Animation& animation, std::span<const Pose* const> poses) {
@@ -137,18 +175,27 @@ StateReader make_sequence_state(const TriangleMesh& rest, std::span<const std::v
                                 const SequenceStateOptions& options) {
     StateReader reader;
     reader.kind = AnimationKind::sequence;
-    const std::vector<StateReader::Hinge> all = all_hinges(rest);
-    const std::size_t count = std::min(all.size(), options.most_hinges);
-    for (std::size_t h = 0; h < count; ++h) reader.hinges.push_back(all[h * all.size() / count]);
-
-    Eigen::MatrixXf angles(static_cast<Eigen::Index>(frames.size()), static_cast<Eigen::Index>(count));
-    for (std::size_t i = 0; i < frames.size(); ++i)
-        for (std::size_t h = 0; h < count; ++h)
-            angles(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(h)) = bend(reader.hinges[h], frames[i]);
-    const Ica ica = fit_ica(angles, {.share = options.share, .seed = options.seed});
-    reader.mean_angles = ica.mean;
-    reader.unmixing = ica.unmixing;
-    add_control(reader, "surface", static_cast<std::uint32_t>(ica.unmixing.rows()));
+    reader.control_of_vertex = surface_patches(rest, options.patch_vertices);
+    const std::vector<std::vector<StateReader::Hinge>> hinges =
+        hinges_of_patches(all_hinges(rest), reader.control_of_vertex, options.most_hinges);
+    const bool is_whole = hinges.size() == 1;
+    std::vector<Ica> components(hinges.size());
+    parallel_for(hinges.size(), [&](std::size_t patch) {
+        if (hinges[patch].empty()) return;
+        components[patch] = fit_ica(
+            angles_of(hinges[patch], frames),
+            {.share = options.share, .most = is_whole ? k_unlimited : options.most_inputs, .seed = options.seed});
+    });
+    reader.hinge_begin.push_back(0);
+    for (std::size_t patch = 0; patch < hinges.size(); ++patch) {
+        reader.hinges.insert(reader.hinges.end(), hinges[patch].begin(), hinges[patch].end());
+        reader.hinge_begin.push_back(static_cast<std::uint32_t>(reader.hinges.size()));
+        reader.mean_angles.conservativeResize(static_cast<Eigen::Index>(reader.hinges.size()));
+        reader.mean_angles.tail(static_cast<Eigen::Index>(hinges[patch].size())) = components[patch].mean;
+        reader.unmixing.push_back(components[patch].unmixing);
+        add_control(reader, is_whole ? "surface" : "patch " + std::to_string(patch),
+                    static_cast<std::uint32_t>(components[patch].unmixing.rows()));
+    }
     return reader;
 }
 

@@ -12,7 +12,7 @@
 
 namespace exemplar {
 
-/// A group of inputs that belong together: a joint (three inputs), a blend shape (one), the whole of a cloth.
+/// A group of inputs that belong together: a joint (three inputs), a blend shape (one), a patch of a cloth.
 struct Control {
     std::string name;
     std::uint32_t first_input = 0, input_count = 0;
@@ -40,8 +40,10 @@ struct StateReader {
             right;  ///< an edge a-b and the third vertices of its faces; a-b-left runs around a face
     };
     std::vector<Hinge> hinges;
-    Eigen::VectorXf mean_angles;
-    Eigen::MatrixXf unmixing;  ///< inputs x hinges
+    std::vector<std::uint32_t> hinge_begin;        ///< those of control c are [hinge_begin[c], hinge_begin[c + 1])
+    Eigen::VectorXf mean_angles;                   ///< of each hinge
+    std::vector<Eigen::MatrixXf> unmixing;         ///< of each control: inputs x hinges
+    std::vector<std::uint32_t> control_of_vertex;  ///< in training: the patch of each vertex
 
     /// x of a rig's pose. `x` has input_count numbers.
     void read_pose(const Pose& pose, std::span<float> x) const;
@@ -56,11 +58,13 @@ float bend(const StateReader::Hinge& hinge, std::span<const Vec3> vertices);
 StateReader make_rig_state(const Animation& animation, std::span<const Pose* const> poses);
 
 struct SequenceStateOptions {
-    double share = 0.95;             ///< of the variance of the angles
-    std::size_t most_hinges = 3000;  ///< that are measured; evenly taken from all
+    std::size_t patch_vertices = 64;  ///< about; 0 makes the whole surface one patch
+    double share = 0.95;              ///< of the variance of a patch' angles
+    std::size_t most_inputs = 12;     ///< of a patch, if there is more than one
+    std::size_t most_hinges = 3000;   ///< of a patch that are measured; evenly taken
     std::uint64_t seed = 1;
 };
-/// Reader of a mesh sequence: one control, whose inputs are the components of the angles in `frames`.
+/// Reader of a mesh sequence: a control per patch, whose inputs are the components of its angles in `frames`.
 StateReader make_sequence_state(const TriangleMesh& rest, std::span<const std::vector<Vec3>> frames,
                                 const SequenceStateOptions& options);
 

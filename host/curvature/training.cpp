@@ -127,7 +127,9 @@ CurvatureModel train_curvature(const Animation& animation, std::span<const Frame
         model.truth.smoothing_unit = CurvatureEstimator(animation.rest.faces, model.vertex_count)
                                          .median_edge_length(layout_shape(animation, frames.front()));
     model.segments = segment_animation(animation, frames);
-    model.state = make_state(animation, frames, options.state_variance, options.seed);
+    SequenceStateOptions sequence = options.sequence;
+    if (options.learner == Learner::global) sequence.patch_vertices = 0;
+    model.state = make_state(animation, frames, sequence);
     if (model.state.input_count == 0)
         throw UsageError(fmt::format("{}: nothing moves in the {} poses given; name other clips or frames",
                                      animation.name, frames.size()));

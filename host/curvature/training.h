@@ -25,7 +25,7 @@ struct CurvatureTraining {
     Learner learner = Learner::additive;
     bool independent = true;          ///< ICA bases, else PCA
     double variance = 0.99;           ///< kept by the bases of each control
-    double state_variance = 0.95;     ///< of the dihedral angles of a mesh sequence
+    SequenceStateOptions sequence{};  ///< the state of mesh sequences; `global` takes the whole surface as one patch
     double dropped_variance = 0.002;  ///< left out by sparsity (see TilingOptions)
     CurvatureOptions truth{.derivatives = true, .smoothing = 1};
     std::uint64_t seed = 1;

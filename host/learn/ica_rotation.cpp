@@ -26,12 +26,12 @@ Eigen::RowVectorXd derivatives(MatrixXd& u, IcaContrast contrast) {
             return (1.0 - g.square()).colwise().sum().matrix();
         case IcaContrast::gauss: {
             const Eigen::ArrayXXd bell = (-0.5 * g.square()).exp();
-            const Eigen::RowVectorXd slope = ((1.0 - g.square()) * bell).colwise().sum().matrix();
+            Eigen::RowVectorXd slope = ((1.0 - g.square()) * bell).colwise().sum().matrix();
             g *= bell;
             return slope;
         }
         default: {
-            const Eigen::RowVectorXd slope = (3.0 * g.square()).colwise().sum().matrix();
+            Eigen::RowVectorXd slope = (3.0 * g.square()).colwise().sum().matrix();
             g = g.cube();
             return slope;
         }

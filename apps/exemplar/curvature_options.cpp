@@ -87,6 +87,7 @@ CurvatureTraining training_of(const CurvatureArguments& arguments) {
     training.truth.smoothing = arguments.smoothing;
     training.truth.robust = robust_names().at(arguments.robust);
     training.seed = arguments.seed;
+    training.augmented_poses = arguments.augmented_poses;
     training.sequence.patch_vertices = arguments.patch_vertices;
     training.sequence.most_inputs = arguments.patch_inputs;
     training.sequence.share = arguments.state_variance;

@@ -16,6 +16,7 @@ struct CurvatureArguments {
     std::string robust = "none", learner = "auto", attributes = "tensor", bases = "ica";
     double variance = 0;  ///< 0: the learner's own
     double dropped_variance = CurvatureTraining{}.dropped_variance;
+    std::size_t augmented_poses = CurvatureTraining{}.augmented_poses;
     std::size_t patch_vertices = SequenceStateOptions{}.patch_vertices,
                 patch_inputs = SequenceStateOptions{}.most_inputs;
     double state_variance = SequenceStateOptions{}.share;

@@ -8,6 +8,7 @@
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
 #include "host/core/stopwatch.h"
+#include "host/curvature/augmentation.h"
 #include "host/curvature/learners.h"
 
 namespace exemplar {
@@ -39,9 +40,18 @@ Eigen::VectorXd deviations(const TrainingSamples& samples, bool of_derivatives) 
     return variance.cwiseSqrt();
 }
 
+/// The most, but for the hundredth of the vertices that vary even more: one crumpled face should not make the rest of a
+/// surface rigid.
+double largest_but_outliers(const Eigen::VectorXd& values) {
+    std::vector<double> sorted(values.begin(), values.end());
+    const auto place = sorted.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sorted.size() - 1));
+    std::nth_element(sorted.begin(), place, sorted.end());
+    return *place;
+}
+
 std::vector<bool> varying(const TrainingSamples& samples) {
     const Eigen::VectorXd deviation = deviations(samples, false);
-    const double least = k_least_variation * deviation.maxCoeff();
+    const double least = k_least_variation * largest_but_outliers(deviation);
     std::vector<bool> varies;
     for (const double d : deviation) varies.push_back(d > least);
     return varies;
@@ -98,6 +108,18 @@ void require_learnable(const Animation& animation, std::span<const FrameRef> fra
                         animation.name, frames.size(), k_fewest_poses));
 }
 
+/// The animation with a clip of augmented poses, and the frames with theirs.
+std::pair<Animation, std::vector<FrameRef>> with_augmentation(const Animation& animation,
+                                                              std::span<const FrameRef> frames,
+                                                              const CurvatureTraining& options) {
+    std::pair<Animation, std::vector<FrameRef>> result{animation, {frames.begin(), frames.end()}};
+    if (animation.kind == AnimationKind::sequence || options.augmented_poses == 0) return result;
+    const auto clip = static_cast<std::uint32_t>(animation.clips.size());
+    result.first.clips.push_back(augmented_poses(animation, frames, options.augmented_poses, options.seed));
+    for (std::uint32_t i = 0; i < options.augmented_poses; ++i) result.second.push_back({clip, i});
+    return result;
+}
+
 }  // namespace
 
 std::string_view name_of(Learner learner) {
@@ -114,9 +136,10 @@ std::string_view name_of(Learner learner) {
     return "global";
 }
 
-CurvatureModel train_curvature(const Animation& animation, std::span<const FrameRef> frames,
+CurvatureModel train_curvature(const Animation& given, std::span<const FrameRef> given_frames,
                                const CurvatureTraining& options, CurvatureTrainingReport& report) {
-    require_learnable(animation, frames);
+    require_learnable(given, given_frames);
+    const auto [animation, frames] = with_augmentation(given, given_frames, options);
     Stopwatch watch;
     CurvatureModel model;
     model.kind = animation.kind;

@@ -206,7 +206,7 @@ class RigReader {
                         gltf_.fail(
                             fmt::format("joint {} is named, but skin {} has {}", set.joints[i], skin, bones.size()));
                     rig().influences.push_back({bones[set.joints[i]], set.weights[i]});
-                    if (set.weights[i] > k_used_weight) used.insert(bones[set.joints[i]]);
+                    if (!(set.weights[i] <= k_used_weight)) used.insert(bones[set.joints[i]]);
                     is_bound = true;
                 }
             if (!is_bound) rig().influences.push_back({bones.front(), 0.0f});

@@ -24,6 +24,7 @@ class RigReader {
         : gltf_(gltf),
           model_(gltf.model()),
           tree_(read_gltf_tree(gltf)),
+          mirrors_(mirroring_nodes()),
           animation_(animation),
           bones_of_skin_(model_.skins.size()),
           used_bones_(model_.skins.size()) {
@@ -42,7 +43,6 @@ class RigReader {
         animation_.kind = kind();
         keep_nodes();
         clean_influences(rig(), animation_.name, animation_.warnings);
-        turn_mirrored_faces();
         return std::move(links_);
     }
 
@@ -77,6 +77,7 @@ class RigReader {
         vertices.insert(vertices.end(), positions.begin(), positions.end());
         for (Face face : gltf_.triangles(primitive, positions.size())) {
             for (std::uint32_t& corner : face) corner += first;
+            if (mirrors_[node]) std::swap(face[1], face[2]);
             animation_.rest.faces.push_back(face);
         }
         if (model_.nodes[node].skin >= 0 && primitive.attributes.contains("JOINTS_0"))
@@ -231,14 +232,17 @@ class RigReader {
         for (Bone& bone : rig().bones) bone.node = links_.rig_node[bone.node];
     }
 
-    /// Bones that mirror turn faces inside out.
-    void turn_mirrored_faces() {
-        const std::vector<Affine> bones = bone_transforms(rig(), rest_pose(rig()));
-        for (Face& face : animation_.rest.faces) {
-            const auto influences = rig().influences_of(face[0]);
-            const auto strongest = std::ranges::max_element(influences, {}, &Influence::weight);
-            if (bones[strongest->bone].linear().determinant() < 0) std::swap(face[1], face[2]);
+    /// Per node of the file whether its place in the world mirrors, which turns the faces of its mesh around. glTF
+    /// makes no exception of skinned meshes, which else ignore their node.
+    std::vector<bool> mirroring_nodes() const {
+        std::vector<bool> mirrors(model_.nodes.size(), false);
+        std::vector<std::string> ignored;  // keep_nodes warns of nodes that matter
+        for (const std::uint32_t node : tree_.order) {
+            const bool itself = read_gltf_transform(gltf_, static_cast<int>(node), ignored).scale.prod() < 0;
+            const std::uint32_t parent = tree_.parent[node];
+            mirrors[node] = itself != (parent != k_none && mirrors[parent]);
         }
+        return mirrors;
     }
 
     static constexpr float k_used_weight = 1e-3f;
@@ -246,6 +250,7 @@ class RigReader {
     GltfReader& gltf_;
     const tinygltf::Model& model_;
     GltfTree tree_;
+    std::vector<bool> mirrors_;
     Animation& animation_;
     GltfLinks links_;
     std::vector<std::vector<std::uint32_t>> bones_of_skin_;

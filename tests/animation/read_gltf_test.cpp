@@ -257,11 +257,19 @@ TEST(ReadGltfAnimation, MatricesAreTakenApart) {
     expect_near(world * Vec3(0, 1, 0), {8, 6, 7});
     expect_near(world * Vec3(0, 0, 1), {5, 6, 11});
     EXPECT_NEAR(animation.rig.nodes[0].rest.rotation.norm(), 1, 1e-6);
-    // The mirror turns the faces, so that they keep their front.
-    EXPECT_EQ(animation.rest.faces[0], (Face{0, 1, 2}));
 
     gltf.json["nodes"][k_upper]["matrix"] = {1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     EXPECT_THAT(warnings_of(gltf.read()), HasSubstr("node 1 ('upper') shears"));
+}
+
+TEST(ReadGltfAnimation, FacesOfAMirroredNodeAreTurned) {
+    Gltf gltf = arm();
+    EXPECT_EQ(gltf.read().rest.faces[0], (Face{0, 2, 1}));
+    gltf.json["nodes"][k_surface]["scale"] = {1, -1, 1};
+    EXPECT_EQ(gltf.read().rest.faces[0], (Face{0, 1, 2}));
+    gltf.json["nodes"].push_back({{"children", {k_surface}}, {"scale", {-1, 1, 1}}});
+    gltf.json["scenes"][0]["nodes"] = {3};
+    EXPECT_EQ(gltf.read().rest.faces[0], (Face{0, 2, 1}));
 }
 
 TEST(ReadGltfAnimation, AMeshWithoutSkinFollowsItsNode) {

@@ -50,6 +50,8 @@ class RigReader {
     Rig& rig() { return animation_.rig; }
 
     AnimationKind kind() const {
+        if (model_.asset.generator == k_blend_shapes_generator && !animation_.rig.targets.empty())
+            return AnimationKind::blend_shapes;
         for (const std::set<std::uint32_t>& used : used_bones_)
             if (used.size() >= 2) return AnimationKind::skeleton;
         if (!animation_.rig.targets.empty()) return AnimationKind::blend_shapes;

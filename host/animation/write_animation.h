@@ -6,9 +6,9 @@
 
 namespace exemplar {
 
-/// Writes a rig with its morph targets and clips as binary glTF 2.0 (.glb) that Blender and read_animation read: one
-/// mesh bound to one skin whose joints are the bones, and linear keys at each frame of each clip. Bones that share a
-/// node get nodes of their own below it. Names should be UTF-8. Throws UsageError for a mesh sequence, MeshError if the
+/// Writes a rig with its morph targets and clips as binary glTF 2.0 (.glb), which read_animation reads: one mesh bound
+/// to one skin whose joints are the bones, and linear keys at each frame of each clip. Bones that share a node get
+/// nodes of their own below it. Names should be UTF-8. Throws UsageError for a mesh sequence, MeshError if the
 /// animation is empty, not finite or too large for glTF, DataError if the file cannot be written.
 void write_gltf_animation(const std::filesystem::path& path, const Animation& animation);
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "host/animation/gltf_rig.h"
 #include "host/animation/write_animation.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
@@ -30,7 +31,10 @@ std::vector<float> numbers_of(const Eigen::Quaternionf& q) {
 class GltfBuilder {
   public:
     explicit GltfBuilder(const Animation& animation) : animation_(animation), rig_(animation.rig) {
-        document_["asset"] = {{"version", "2.0"}, {"generator", "Exemplar"}};
+        const bool is_skeleton = animation.kind == AnimationKind::skeleton;
+        document_["asset"] = {{"version", "2.0"},
+                              {"generator", is_skeleton ? std::string_view("Animation written by Exemplar")
+                                                        : animation_io::k_blend_shapes_generator}};
         for (const char* list : {"accessors", "bufferViews"}) document_[list] = Json::array();
     }
 

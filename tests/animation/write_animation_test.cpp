@@ -100,7 +100,17 @@ TEST(WriteGltfAnimation, TheMeshReaderReadsItToo) {
     const TemporaryFolder folder;
     const Animation written = random_rig();
     write_gltf_animation(folder / "a.glb", written);
-    EXPECT_EQ(read_mesh(folder / "a.glb").mesh.faces, written.rest.faces);
+    const MeshFile read = read_mesh(folder / "a.glb");
+    EXPECT_EQ(read.mesh.faces, written.rest.faces);
+    EXPECT_FALSE(read.labels.has_value());
+}
+
+TEST(WriteGltfAnimation, BlendShapesOnSeveralNodesDoNotBecomeASkeleton) {
+    const TemporaryFolder folder;
+    Animation written = random_rig();
+    written.kind = AnimationKind::blend_shapes;
+    write_gltf_animation(folder / "a.glb", written);
+    EXPECT_EQ(read_animation(folder / "a.glb").kind, AnimationKind::blend_shapes);
 }
 
 TEST(WriteGltfAnimation, WhatGltfCannotSayIsRefused) {

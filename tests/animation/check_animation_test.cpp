@@ -25,7 +25,7 @@ std::string error_after(Damage&& damage) {
     Animation animation = bending();
     animation.name = "the arm";
     damage(animation);
-    const std::string message = mesh_files::error_of<MeshError>([&] { check_animation(animation); });
+    std::string message = mesh_files::error_of<MeshError>([&] { check_animation(animation); });
     EXPECT_THAT(message, testing::StartsWith("the arm: "));
     return message;
 }
@@ -66,6 +66,22 @@ TEST(CheckAnimation, InfluencesBecomeWhatARigPromises) {
     EXPECT_THAT(row(4), ElementsAre(Pair(1, 1.0f)));
     EXPECT_THAT(warnings, ElementsAre(HasSubstr("2 vertices have no weight"),
                                       AllOf(HasSubstr("1 vertices"), HasSubstr("off by up to 3"))));
+}
+
+TEST(CheckAnimation, WeightsOfAnySizeEndBetweenZeroAndOne) {
+    Rig rig;
+    rig.nodes.resize(1);
+    rig.bones = {{0, Affine::Identity()}, {0, Affine::Identity()}};
+    const float largest = std::numeric_limits<float>::max(), least = std::numeric_limits<float>::denorm_min();
+    rig.influence_begin = {0, 3, 5, 6};
+    rig.influences = {{0, largest}, {0, largest}, {1, largest}, {0, least}, {1, least}, {1, 1.0000005f}};
+    std::vector<std::string> warnings;
+    clean_influences(rig, "x", warnings);
+    ASSERT_EQ(rig.influence_begin, (std::vector<std::uint32_t>{0, 2, 4, 5}));
+    EXPECT_NEAR(rig.influences[0].weight, 2.0f / 3, 1e-6);
+    EXPECT_NEAR(rig.influences[1].weight, 1.0f / 3, 1e-6);
+    EXPECT_EQ(rig.influences[2].weight, 0.5f);
+    EXPECT_EQ(rig.influences[4].weight, 1.0f);
 }
 
 TEST(CheckAnimation, WhatDoesNotFitIsRefused) {

@@ -143,12 +143,4 @@ inline std::string warnings_of(const Animation& animation) {
     return text;
 }
 
-inline const Clip& clip_of(const Animation& animation, const std::string& name) {
-    for (const Clip& clip : animation.clips)
-        if (clip.name == name) return clip;
-    ADD_FAILURE() << "no clip is called " << name;
-    static const Clip none;
-    return none;
-}
-
 }  // namespace exemplar::made_up

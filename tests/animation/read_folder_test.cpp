@@ -24,7 +24,7 @@ class Folder : public testing::Test {
     void add(const std::string& name, const std::string& bytes) { mesh_files::write_bytes(folder_ / name, bytes); }
     Animation read(const ReadAnimationOptions& options = {}) { return read_animation(folder_.path(), options); }
     std::string error() {
-        const std::string message = mesh_files::error_of<MeshError>([&] { std::ignore = read(); });
+        std::string message = mesh_files::error_of<MeshError>([&] { std::ignore = read(); });
         EXPECT_THAT(message, HasSubstr(folder_.path().string()));
         return message;
     }

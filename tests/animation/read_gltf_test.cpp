@@ -9,7 +9,6 @@ namespace {
 
 using made_up::arm;
 using made_up::bending_arm;
-using made_up::clip_of;
 using made_up::face;
 using made_up::Gltf;
 using made_up::Json;
@@ -434,7 +433,7 @@ TEST(ReadGltfAnimation, BrokenFramesAreDropped) {
 }
 
 std::string error_of(const Gltf& gltf, double frames_per_second = 30) {
-    const std::string message = mesh_files::error_of<MeshError>([&] { std::ignore = gltf.read(frames_per_second); });
+    std::string message = mesh_files::error_of<MeshError>([&] { std::ignore = gltf.read(frames_per_second); });
     EXPECT_THAT(message, HasSubstr("a.glb: "));
     EXPECT_THAT(message, Not(HasSubstr("\n")));
     return message;

@@ -31,7 +31,8 @@ Animation random_rig() {
     Animation animation;
     animation.name = "made up";
     animation.kind = AnimationKind::skeleton;
-    for (int i = 0; i < 25; ++i) animation.rest.vertices.emplace_back(float(i % 5), float(i / 5), 0.01f * float(i));
+    for (int i = 0, row = 0; i < 25; ++i, row = i / 5)
+        animation.rest.vertices.emplace_back(float(i % 5), float(row), 0.01f * float(i));
     for (std::uint32_t i = 0; i < 24; ++i)
         if (i % 5 < 4 && i < 20) animation.rest.faces.push_back({i, i + 1, i + 5});
     animation.rest.source_face_count = static_cast<std::uint32_t>(animation.rest.face_count());

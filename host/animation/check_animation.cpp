@@ -16,9 +16,21 @@ namespace {
 
 using mesh_io::quote;
 
-/// The influences of one vertex by rising bone, each bone once.
-std::vector<Influence> merged_row(std::span<const Influence> influences) {
-    std::vector<Influence> row(influences.begin(), influences.end());
+double weight_sum(const std::vector<Influence>& row) {
+    double sum = 0;
+    for (const Influence& influence : row) sum += influence.weight;
+    return sum;
+}
+
+/// Makes weights that sum to `sum` sum to one; sums that are off by rounding stay as they are.
+void scale_weights(std::vector<Influence>& row, double sum) {
+    constexpr double k_same = 1e-6;
+    const double scale = std::abs(sum - 1) > k_same ? 1 / sum : 1;
+    for (Influence& influence : row) influence.weight = std::min(static_cast<float>(influence.weight * scale), 1.0f);
+}
+
+/// Sorts by bone and adds up the weights of each.
+void merge_bones(std::vector<Influence>& row) {
     std::ranges::stable_sort(row, {}, &Influence::bone);
     std::size_t kept = 0;
     for (const Influence& influence : row) {
@@ -28,24 +40,18 @@ std::vector<Influence> merged_row(std::span<const Influence> influences) {
             row[kept++] = influence;
     }
     row.resize(kept);
-    return row;
-}
-
-double weight_sum(const std::vector<Influence>& row) {
-    double sum = 0;
-    for (const Influence& influence : row) sum += influence.weight;
-    return sum;
 }
 
 /// Drops what is too small to see and makes the rest sum to one; returns what it summed to before.
 double normalize_row(std::vector<Influence>& row) {
-    constexpr double k_least_weight = 1e-4, k_same = 1e-6;
+    constexpr float k_least_weight = 1e-4f;
     std::erase_if(row, [](const Influence& influence) { return influence.weight <= 0; });
     const double before = weight_sum(row);
-    std::erase_if(row, [&](const Influence& influence) { return influence.weight < k_least_weight * before; });
-    const double sum = weight_sum(row);
-    if (std::abs(sum - 1) > k_same)
-        for (Influence& influence : row) influence.weight = static_cast<float>(influence.weight / sum);
+    if (row.empty()) return before;
+    scale_weights(row, before);
+    merge_bones(row);
+    std::erase_if(row, [&](const Influence& influence) { return influence.weight < k_least_weight; });
+    scale_weights(row, weight_sum(row));
     return before;
 }
 
@@ -277,7 +283,7 @@ void clean_influences(Rig& rig, const std::string& name, std::vector<std::string
             if (!std::isfinite(influence.weight))
                 throw MeshError(fmt::format("{}: vertex {} has a weight that is not finite", name, v));
         }
-        std::vector<Influence> row = merged_row(before);
+        std::vector<Influence> row(before.begin(), before.end());
         const double sum = normalize_row(row);
         if (row.empty()) {
             ++unbound;

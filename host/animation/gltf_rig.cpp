@@ -24,6 +24,7 @@ class RigReader {
         : gltf_(gltf),
           model_(gltf.model()),
           tree_(read_gltf_tree(gltf)),
+          mirrors_(mirroring_nodes()),
           animation_(animation),
           bones_of_skin_(model_.skins.size()),
           used_bones_(model_.skins.size()) {
@@ -42,7 +43,6 @@ class RigReader {
         animation_.kind = kind();
         keep_nodes();
         clean_influences(rig(), animation_.name, animation_.warnings);
-        turn_mirrored_faces();
         return std::move(links_);
     }
 
@@ -50,6 +50,8 @@ class RigReader {
     Rig& rig() { return animation_.rig; }
 
     AnimationKind kind() const {
+        if (model_.asset.generator == k_blend_shapes_generator && !animation_.rig.targets.empty())
+            return AnimationKind::blend_shapes;
         for (const std::set<std::uint32_t>& used : used_bones_)
             if (used.size() >= 2) return AnimationKind::skeleton;
         if (!animation_.rig.targets.empty()) return AnimationKind::blend_shapes;
@@ -77,6 +79,7 @@ class RigReader {
         vertices.insert(vertices.end(), positions.begin(), positions.end());
         for (Face face : gltf_.triangles(primitive, positions.size())) {
             for (std::uint32_t& corner : face) corner += first;
+            if (mirrors_[node]) std::swap(face[1], face[2]);
             animation_.rest.faces.push_back(face);
         }
         if (model_.nodes[node].skin >= 0 && primitive.attributes.contains("JOINTS_0"))
@@ -206,7 +209,7 @@ class RigReader {
                         gltf_.fail(
                             fmt::format("joint {} is named, but skin {} has {}", set.joints[i], skin, bones.size()));
                     rig().influences.push_back({bones[set.joints[i]], set.weights[i]});
-                    if (set.weights[i] > k_used_weight) used.insert(bones[set.joints[i]]);
+                    if (!(set.weights[i] <= k_used_weight)) used.insert(bones[set.joints[i]]);
                     is_bound = true;
                 }
             if (!is_bound) rig().influences.push_back({bones.front(), 0.0f});
@@ -231,14 +234,17 @@ class RigReader {
         for (Bone& bone : rig().bones) bone.node = links_.rig_node[bone.node];
     }
 
-    /// Bones that mirror turn faces inside out.
-    void turn_mirrored_faces() {
-        const std::vector<Affine> bones = bone_transforms(rig(), rest_pose(rig()));
-        for (Face& face : animation_.rest.faces) {
-            const auto influences = rig().influences_of(face[0]);
-            const auto strongest = std::ranges::max_element(influences, {}, &Influence::weight);
-            if (bones[strongest->bone].linear().determinant() < 0) std::swap(face[1], face[2]);
+    /// Per node of the file whether its place in the world mirrors, which turns the faces of its mesh around. glTF
+    /// makes no exception of skinned meshes, which else ignore their node.
+    std::vector<bool> mirroring_nodes() const {
+        std::vector<bool> mirrors(model_.nodes.size(), false);
+        std::vector<std::string> ignored;  // keep_nodes warns of nodes that matter
+        for (const std::uint32_t node : tree_.order) {
+            const bool itself = read_gltf_transform(gltf_, static_cast<int>(node), ignored).scale.prod() < 0;
+            const std::uint32_t parent = tree_.parent[node];
+            mirrors[node] = itself != (parent != k_none && mirrors[parent]);
         }
+        return mirrors;
     }
 
     static constexpr float k_used_weight = 1e-3f;
@@ -246,6 +252,7 @@ class RigReader {
     GltfReader& gltf_;
     const tinygltf::Model& model_;
     GltfTree tree_;
+    std::vector<bool> mirrors_;
     Animation& animation_;
     GltfLinks links_;
     std::vector<std::vector<std::uint32_t>> bones_of_skin_;

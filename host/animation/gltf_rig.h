@@ -1,12 +1,17 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "host/animation/animation.h"
 #include "host/mesh/io_gltf_reader.h"
 
 namespace exemplar::animation_io {
+
+/// What stands as generator in files that Exemplar writes of blend shapes whose meshes hang on several nodes, which
+/// would otherwise pass for a skeleton.
+constexpr std::string_view k_blend_shapes_generator = "Blend shapes written by Exemplar";
 
 /// Which numbers of a pose the nodes of a glTF file drive.
 struct GltfLinks {

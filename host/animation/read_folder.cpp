@@ -32,7 +32,7 @@ void set_once(fs::path& place, const fs::path& path) {
 ShapeFiles shape_files(const fs::path& folder) {
     ShapeFiles files;
     for (const auto& entry : fs::directory_iterator(folder)) {
-        const fs::path path = entry.path();
+        const fs::path& path = entry.path();
         const auto known = mesh_extensions();
         const bool is_mesh = std::ranges::find(known, mesh_io::lower_case(path.extension().string())) != known.end();
         if (!is_mesh || !entry.is_regular_file() || path.filename().string().starts_with('.')) continue;

@@ -66,6 +66,7 @@ void merge_targets(Animation& animation, const GltfLinks& links) {
     for (Clip& clip : animation.clips)
         for (Pose& pose : clip.poses) {
             std::vector<float> weights;
+            weights.reserve(kept_column.size());
             for (const std::uint32_t column : kept_column) weights.push_back(pose.weights[column]);
             pose.weights = std::move(weights);
         }

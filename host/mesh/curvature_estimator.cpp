@@ -51,6 +51,7 @@ Vec3 unit_or_up(const Vec3d& v) {
 struct Surroundings {
     VertexNeighbors neighbors;
     TensorDiffusion diffusion;
+    std::unique_ptr<RobustFits> robust;
     std::vector<float> lengths;
 
     Surroundings(std::span<const Face> faces, std::size_t vertex_count)
@@ -106,6 +107,7 @@ struct CurvatureEstimator::Parts {
 
     void check(std::span<const Vec3> vertices) const;
     Surroundings& around();
+    const RobustFits* robust_fits(const CurvatureOptions& options);
     TensorDiffusion* prepared_diffusion(std::span<const Vec3> vertices, const CurvatureOptions& options);
     void measure(std::span<const Vec3> vertices);
     void fit_forms();
@@ -222,6 +224,13 @@ void CurvatureEstimator::Parts::diagonalize(bool with_derivatives) {
         k_grain);
 }
 
+/// Null for plain least squares.
+const RobustFits* CurvatureEstimator::Parts::robust_fits(const CurvatureOptions& options) {
+    if (options.robust == RobustEstimator::none) return nullptr;
+    if (!around().robust) around().robust = std::make_unique<RobustFits>(around().neighbors);
+    return around().robust.get();
+}
+
 /// Null without smoothing.
 TensorDiffusion* CurvatureEstimator::Parts::prepared_diffusion(std::span<const Vec3> vertices,
                                                                const CurvatureOptions& options) {
@@ -248,10 +257,13 @@ const VertexCurvature& CurvatureEstimator::estimate(std::span<const Vec3> vertic
                                      options.smoothing, options.smoothing_unit));
     parts.measure(vertices);
     parts.fit_forms();
+    const RobustFits* const robust = parts.robust_fits(options);
+    if (robust) robust->fit(vertices, parts.frames, options.robust, parts.forms);
     TensorDiffusion* const diffusion = parts.prepared_diffusion(vertices, options);
     if (diffusion) diffusion->apply(parts.forms);
     if (options.derivatives) {
         parts.fit_derivatives();
+        if (robust) robust->fit(vertices, parts.frames, options.robust, parts.forms, parts.derivatives);
         if (diffusion) diffusion->apply(parts.derivatives);
     }
     parts.diagonalize(options.derivatives);

@@ -3,27 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/mesh/tensor_equations.h"
+
 namespace exemplar {
 
 namespace {
 
-/// Solves the symmetric tridiagonal positive definite system with this diagonal and off-diagonal.
 template <std::size_t N>
-std::array<float, N> solve_tridiagonal(std::array<double, N> diagonal, const std::array<double, N - 1>& off,
-                                       std::array<double, N> right) {
-    for (std::size_t i = 1; i < N; ++i) {
-        const double factor = off[i - 1] / diagonal[i - 1];
-        diagonal[i] -= factor * off[i - 1];
-        right[i] -= factor * right[i - 1];
-    }
-    std::array<float, N> solution;
-    double next = 0;
-    for (std::size_t i = N; i-- > 0;) {
-        if (i + 1 < N) right[i] -= off[i] * next;
-        next = right[i] / diagonal[i];
-        solution[i] = static_cast<float>(next);
-    }
-    return solution;
+std::array<float, N> rounded(const std::array<double, N>& values) {
+    std::array<float, N> result;
+    for (std::size_t i = 0; i < N; ++i) result[i] = static_cast<float>(values[i]);
+    return result;
 }
 
 /// The part of a triangle that is nearest to each corner (Meyer et al. 2003), from its squared edge lengths; where an
@@ -82,38 +72,21 @@ std::array<CornerShare, 3> measure_face(const std::array<Vec3, 3>& corners, Face
 }
 
 Form fit_form(const FaceFit& fit, const std::array<Vec3, 3>& normals) {
-    double uu = 0, uv = 0, vv = 0;
-    std::array<double, 3> right{};
+    TensorEquations<3> equations;
     for (std::size_t i = 0; i < 3; ++i) {
-        const double u = fit.u[i], v = fit.v[i];
         const Vec3 change = normals[(i + 2) % 3] - normals[(i + 1) % 3];
-        const double du = fit.frame.tangent.dot(change), dv = fit.frame.bitangent.dot(change);
-        uu += u * u;
-        uv += u * v;
-        vv += v * v;
-        right[0] += u * du;
-        right[1] += v * du + u * dv;
-        right[2] += v * dv;
+        equations.add(fit.u[i], fit.v[i], {fit.frame.tangent.dot(change), fit.frame.bitangent.dot(change)});
     }
-    return solve_tridiagonal<3>({uu, uu + vv, vv}, {uv, uv}, right);
+    return rounded(equations.solve());
 }
 
 FormDerivative fit_derivative(const FaceFit& fit, const std::array<Form, 3>& forms) {
-    double uu = 0, uv = 0, vv = 0;
-    std::array<double, 4> right{};
+    TensorEquations<4> equations;
     for (std::size_t i = 0; i < 3; ++i) {
-        const double u = fit.u[i], v = fit.v[i];
         const Form &to = forms[(i + 2) % 3], &from = forms[(i + 1) % 3];
-        const double d11 = to[0] - from[0], d12 = to[1] - from[1], d22 = to[2] - from[2];
-        uu += u * u;
-        uv += u * v;
-        vv += v * v;
-        right[0] += u * d11;
-        right[1] += v * d11 + 2 * u * d12;
-        right[2] += 2 * v * d12 + u * d22;
-        right[3] += v * d22;
+        equations.add(fit.u[i], fit.v[i], {to[0] - from[0], to[1] - from[1], to[2] - from[2]});
     }
-    return solve_tridiagonal<4>({uu, 2 * uu + vv, uu + 2 * vv, vv}, {uv, 2 * uv, uv}, right);
+    return rounded(equations.solve());
 }
 
 }  // namespace exemplar

@@ -42,7 +42,13 @@ void expect_finite(const VertexCurvature& c) {
         for (float d : c.derivative[i]) EXPECT_TRUE(std::isfinite(d)) << i;
     }
 }
-const CurvatureOptions k_kinds[] = {{}, {true, 1.5}, {false, 1}};
+CurvatureOptions robust(RobustEstimator estimator) {
+    CurvatureOptions options;
+    options.robust = estimator;
+    return options;
+}
+const CurvatureOptions k_kinds[] = {
+    {}, {true, 1.5}, {false, 1}, robust(RobustEstimator::cauchy), {true, 1, 0, RobustEstimator::geman_mcclure}};
 
 TEST(CurvatureEstimator, GivesWhatTheOneOffFunctionGives) {
     const TriangleMesh mesh = lumpy();
@@ -74,7 +80,7 @@ TEST(CurvatureEstimator, RemembersNothingOfEarlierPoses) {
 }
 
 TEST(CurvatureEstimator, DoesNotDependOnThreads) {
-    const TriangleMesh mesh = shapes::torus(3, 1, 150, 60);
+    const TriangleMesh mesh = shapes::torus(3, 1, 110, 50);
     for (const CurvatureOptions& options : k_kinds) {
         const VertexCurvature many = estimated(mesh, options);
         const ThreadLimit limit(1);
@@ -122,7 +128,7 @@ double largest_difference(const std::vector<float>& a, const std::vector<float>&
 TEST(CurvatureSmoothing, AddsHalfTheVarianceTimesTheLaplacian) {
     // What a Gaussian does to leading order. On a torus k1 + k2 changes only along the tube (angle v, w = 3 + cos v):
     // (1 / w) d/dv (w d/dv (cos v / w)) = -3 (cos v / w^2 + sin^2 v / w^3).
-    const TriangleMesh mesh = shapes::torus(3, 1, 360, 120);
+    const TriangleMesh mesh = shapes::torus(3, 1, 240, 80);
     const VertexCurvature plain = estimated(mesh, {});
     for (const double width : {0.12, 0.24}) {
         const VertexCurvature c = estimated(mesh, smoothed(1, width));
@@ -140,7 +146,7 @@ TEST(CurvatureSmoothing, AddsHalfTheVarianceTimesTheLaplacian) {
 }
 
 TEST(CurvatureSmoothing, ErrorGrowsWithTheSquareOfTheWidth) {
-    const TriangleMesh mesh = shapes::torus(3, 1, 360, 120);
+    const TriangleMesh mesh = shapes::torus(3, 1, 240, 80);
     const VertexCurvature plain = estimated(mesh, {});
     double last = 0;
     for (const double width : {0.1, 0.2, 0.4}) {
@@ -214,6 +220,94 @@ TEST(CurvatureSmoothing, UnitIsTheMedianEdge) {
     const TriangleMesh square = shapes::grid(5, 5, 10);
     // 60 edges of 2 and 25 diagonals.
     EXPECT_FLOAT_EQ(static_cast<float>(CurvatureEstimator(square.faces, 36).median_edge_length(square.vertices)), 2);
+}
+
+class RobustCurvature : public testing::TestWithParam<RobustEstimator> {};
+
+/// Errors of curvature and of its derivative.
+struct TensorErrors {
+    double curvature, derivative;
+};
+/// Root mean squares.
+TensorErrors errors_on_sphere(const TriangleMesh& mesh, const CurvatureOptions& options) {
+    const VertexCurvature c = estimated(mesh, options);
+    TensorErrors sum{0, 0};
+    for (std::size_t i = 0; i < c.k1.size(); ++i) {
+        sum.curvature += std::pow(c.k1[i] - 1, 2) + std::pow(c.k2[i] - 1, 2);
+        for (float d : c.derivative[i]) sum.derivative += d * d;
+    }
+    const auto count = static_cast<double>(c.k1.size());
+    return {std::sqrt(sum.curvature / (2 * count)), std::sqrt(sum.derivative / (4 * count))};
+}
+
+TEST_P(RobustCurvature, SuffersLessFromNoiseAndOutliers) {
+    Random random(5);
+    const TriangleMesh noisy = shapes::transformed(shapes::icosphere(4, 1), [&](const Vec3& p) -> Vec3 {
+        const double outlier = random.index(60) == 0 ? random.uniform(-0.03, 0.03) : 0.0;
+        return p * static_cast<float>(1 + 0.0005 * random.normal() + outlier);
+    });
+    const TensorErrors plain = errors_on_sphere(noisy, {}), better = errors_on_sphere(noisy, robust(GetParam()));
+    EXPECT_LT(better.curvature, plain.curvature / 2);
+    EXPECT_LT(better.derivative, plain.derivative / 4);
+}
+
+TEST_P(RobustCurvature, ConvergesAtSecondOrderOnCleanSurfaces) {
+    const auto errors = [](std::uint32_t n) {
+        const TriangleMesh mesh = shapes::torus(3, 1, 2 * n, n);
+        const VertexCurvature c = estimated(mesh, robust(GetParam()));
+        TensorErrors largest{0, 0};
+        for (std::size_t i = 0; i < mesh.vertex_count(); ++i) {
+            const double w = std::hypot(mesh.vertices[i].x(), mesh.vertices[i].y());
+            const double slope = std::abs(3 * mesh.vertices[i].z() / (w * w));  // of k2 along e1; the rest is zero
+            largest.curvature = std::max({largest.curvature, std::abs(c.k1[i] - 1.0), std::abs(c.k2[i] - (w - 3) / w)});
+            largest.derivative = std::max(largest.derivative, std::abs(std::abs(c.derivative[i][2]) - slope));
+        }
+        return largest;
+    };
+    TensorErrors coarse = errors(16);
+    for (const std::uint32_t n : {32u, 64u}) {
+        const TensorErrors fine = errors(n);
+        EXPECT_LT(fine.curvature, coarse.curvature / 3) << n;
+        EXPECT_LT(fine.derivative, coarse.derivative / 3) << n;
+        coarse = fine;
+    }
+    EXPECT_LT(coarse.curvature, 0.01);
+    EXPECT_LT(coarse.derivative, 0.03);
+}
+
+TEST_P(RobustCurvature, KeepsACreaseToItself) {
+    // Two planes that meet at a right angle over the middle of a grid.
+    const TriangleMesh mesh = shapes::transformed(shapes::grid(20, 20, 20), [](const Vec3& p) -> Vec3 {
+        return {p.x(), p.y(), -std::abs(p.x() - 10)};
+    });
+    const auto at_ring = [&](const CurvatureOptions& options, std::size_t ring) {
+        const VertexCurvature c = estimated(mesh, options);
+        return double(c.k1[10 * 21 + 10 + ring]);
+    };
+    const CurvatureOptions options = robust(GetParam());
+    // Plain fits see half of the crease a ring away from it.
+    EXPECT_NEAR(at_ring({}, 1), 0.5 * at_ring({}, 0), 0.01);
+    EXPECT_LT(at_ring(options, 1), 0.3 * at_ring(options, 0));
+    EXPECT_GE(at_ring(options, 0), at_ring({}, 0));
+}
+
+INSTANTIATE_TEST_SUITE_P(BothEstimators, RobustCurvature,
+                         testing::Values(RobustEstimator::cauchy, RobustEstimator::geman_mcclure),
+                         [](const auto& estimator) {
+                             return estimator.param == RobustEstimator::cauchy ? "Cauchy" : "GemanMcClure";
+                         });
+
+TEST(RobustCurvatureOfFans, IsFinite) {
+    // Around the tip of a cone each vertex has all others in two rings.
+    TriangleMesh mesh;
+    constexpr std::uint32_t k_around = 400;
+    mesh.vertices.push_back({0, 0, 1});
+    for (std::uint32_t i = 0; i < k_around; ++i) {
+        const double u = 6.283185307179586 * i / k_around;
+        mesh.vertices.push_back(shapes::detail::vec3(std::cos(u), std::sin(u), 0));
+        mesh.faces.push_back({0, 1 + i, 1 + (i + 1) % k_around});
+    }
+    expect_finite(estimated(mesh, robust(RobustEstimator::geman_mcclure)));
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
+#include <string>
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
@@ -118,7 +118,87 @@ TEST(CurvatureEstimator, StaysFiniteOnMessyMeshes) {
     }
 }
 
-/// The errors of an estimate of a torus against another field on it.
+class EveryCurvature : public testing::TestWithParam<CurvatureOptions> {
+  protected:
+    CurvatureOptions options() const {
+        CurvatureOptions with_derivatives = GetParam();
+        with_derivatives.derivatives = true;
+        return with_derivatives;
+    }
+};
+
+/// Compares where directions are well defined; `scale` is the ratio of the units of length.
+void expect_same_up_to(const VertexCurvature& a, const VertexCurvature& b, const Eigen::Matrix3f& rotation, float scale,
+                       float tolerance) {
+    std::size_t compared = 0;
+    for (std::size_t i = 0; i < a.k1.size(); ++i) {
+        EXPECT_NEAR(a.k1[i], b.k1[i] * scale, tolerance) << i;
+        EXPECT_NEAR(a.k2[i], b.k2[i] * scale, tolerance) << i;
+        if (a.k1[i] - a.k2[i] < 0.3f) continue;
+        ++compared;
+        const float along = (rotation * a.e1[i]).dot(b.e1[i]), sign = along > 0 ? 1.0f : -1.0f;
+        EXPECT_NEAR(std::abs(along), 1, tolerance) << i;
+        for (std::size_t k = 0; k < 4; ++k)
+            EXPECT_NEAR(a.derivative[i][k], sign * b.derivative[i][k] * scale * scale, 10 * tolerance) << i;
+    }
+    EXPECT_GT(compared, a.k1.size() / 4);
+}
+
+TEST_P(EveryCurvature, MovesWithRigidMotionsAndScales) {
+    const Eigen::Matrix3f rotation = shapes::random_rotation(6);
+    const TriangleMesh mesh = lumpy();
+    const TriangleMesh moved =
+        shapes::translated(shapes::scaled(shapes::rotated(lumpy(), rotation), 0.01f), {0.003f, -0.002f, 0.005f});
+    expect_same_up_to(estimated(mesh, options()), estimated(moved, options()), rotation, 0.01f, 5e-3f);
+}
+
+TEST_P(EveryCurvature, TurnedInsideOutChangesSignAndOrder) {
+    TriangleMesh inverted = lumpy();
+    for (Face& face : inverted.faces) std::swap(face[0], face[1]);
+    VertexCurvature b = estimated(inverted, options());
+    // The same directions change places and, with the normal, one changes its sign: (e1, e2) of the one side is
+    // (e2, e1) of the other. All curvatures and derivatives change their sign.
+    std::swap(b.k1, b.k2);
+    std::swap(b.e1, b.e2);
+    for (std::size_t i = 0; i < b.k1.size(); ++i) {
+        b.k1[i] = -b.k1[i];
+        b.k2[i] = -b.k2[i];
+        const auto [c111, c112, c122, c222] = b.derivative[i];
+        b.derivative[i] = {-c222, -c122, -c112, -c111};
+    }
+    expect_same_up_to(estimated(lumpy(), options()), b, Eigen::Matrix3f::Identity(), 1, 2e-3f);
+}
+
+TEST_P(EveryCurvature, OfASaddleConvergesAtSecondOrder) {
+    // The monkey saddle z = (x^3 - 3 x y^2) / 6 + (x^2 - y^2) / 2, at its middle: curvatures along y and x are 1 and
+    // -1, and the derivative is minus the third derivatives of the height, as the normal is up.
+    const auto error = [&](std::uint32_t n) {
+        const TriangleMesh mesh = shapes::transformed(shapes::grid(n, n, 1), [](const Vec3& p) {
+            const double x = double(p.x()) - 0.5, y = double(p.y()) - 0.5;
+            return shapes::detail::vec3(x, y, (x * x * x - 3 * x * y * y) / 6 + (x * x - y * y) / 2);
+        });
+        CurvatureOptions absolute = options();
+        absolute.smoothing_unit = 1.0 / n;
+        const VertexCurvature c = estimated(mesh, absolute);
+        const std::size_t middle = n / 2 * (n + 1) + n / 2;
+        // e1 along +-y, e2 along -+x: h_yyy = 0, h_yyx = -1, h_yxx = 0, h_xxx = 1.
+        const float sign = c.e1[middle].y() > 0 ? 1.0f : -1.0f;
+        const std::array<float, 4> truth = {0, -sign, 0, sign};
+        std::array<double, 2> result = {std::max(std::abs(c.k1[middle] - 1), std::abs(c.k2[middle] + 1)), 0};
+        for (std::size_t k = 0; k < 4; ++k)
+            result[1] = std::max<double>(result[1], std::abs(c.derivative[middle][k] - truth[k]));
+        return result;
+    };
+    const auto coarse = error(16), fine = error(32);
+    EXPECT_LT(fine[0], coarse[0] / 3.3);
+    EXPECT_LT(fine[1], coarse[1] / 3.0);
+    EXPECT_LT(fine[0], 0.03);
+    EXPECT_LT(fine[1], 0.06);
+}
+
+INSTANTIATE_TEST_SUITE_P(AllKinds, EveryCurvature, testing::ValuesIn(k_kinds),
+                         [](const auto& kind) { return "Kind" + std::to_string(kind.index); });
+
 double largest_difference(const std::vector<float>& a, const std::vector<float>& b) {
     double largest = 0;
     for (std::size_t i = 0; i < a.size(); ++i) largest = std::max<double>(largest, std::abs(a[i] - b[i]));

@@ -20,6 +20,7 @@ struct Ball {
 
 /// The smallest ball with these points, at most four, on its surface.
 Ball ball_through(const std::vector<Vec3d>& points) {
+    if (points.size() == 1) return {points[0], 0};
     // Its center is points[0] + sum of x_i (points[i] - points[0]), at the same distance from all.
     const auto count = static_cast<Eigen::Index>(points.size()) - 1;
     Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> to(3, count);

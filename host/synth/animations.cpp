@@ -10,6 +10,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/text.h"
+#include "host/synth/cloth_scenes.h"
 #include "host/synth/figure.h"
 
 namespace exemplar {
@@ -22,7 +23,8 @@ struct Kind {
     Animation (*make)(const AnimationOptions&);
 };
 
-constexpr std::array<Kind, 1> k_kinds{{{"figure", make_figure}}};
+constexpr std::array<Kind, 4> k_kinds{
+    {{"figure", make_figure}, {"flag", make_flag}, {"curtain", make_curtain}, {"drape", make_drape}}};
 
 constexpr auto k_names = [] {
     std::array<std::string_view, k_kinds.size()> names;

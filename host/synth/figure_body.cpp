@@ -63,9 +63,9 @@ class Body {
 
   private:
     static float sign(int side) { return side == 0 ? 1.0f : -1.0f; }
-    Sculptor& on(std::int32_t joint, int side = 0) { return add_.part(joint + side * k_joints_of_a_side); }
-    void place(std::int32_t joint, int side, const Vec3& begin, const Vec3& end) {
-        const auto j = static_cast<std::size_t>(joint + side * k_joints_of_a_side);
+    Sculptor& on(int joint, int side = 0) { return add_.part(joint + side * k_joints_of_a_side); }
+    void place(std::size_t joint, int side, const Vec3& begin, const Vec3& end) {
+        const std::size_t j = side == 0 ? joint : joint + k_joints_of_a_side;
         figure_.joint[j] = begin;
         figure_.tip[j] = end;
     }

@@ -11,6 +11,7 @@
 #include "host/core/errors.h"
 #include "host/core/text.h"
 #include "host/synth/cloth_scenes.h"
+#include "host/synth/face.h"
 #include "host/synth/figure.h"
 
 namespace exemplar {
@@ -23,8 +24,11 @@ struct Kind {
     Animation (*make)(const AnimationOptions&);
 };
 
-constexpr std::array<Kind, 4> k_kinds{
-    {{"figure", make_figure}, {"flag", make_flag}, {"curtain", make_curtain}, {"drape", make_drape}}};
+constexpr std::array<Kind, 5> k_kinds{{{"figure", make_figure},
+                                       {"flag", make_flag},
+                                       {"curtain", make_curtain},
+                                       {"drape", make_drape},
+                                       {"face", make_face}}};
 
 constexpr auto k_names = [] {
     std::array<std::string_view, k_kinds.size()> names;

@@ -50,6 +50,29 @@ std::string suggestion(std::string_view word, std::span<const std::string> candi
     return nearest.empty() ? std::string() : fmt::format(" (did you mean '{}'?)", nearest);
 }
 
+bool natural_less(std::string_view a, std::string_view b) {
+    const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+    std::size_t i = 0, j = 0;
+    while (i < a.size() && j < b.size()) {
+        if (digit(a[i]) && digit(b[j])) {
+            std::size_t i_end = i, j_end = j;
+            while (i_end < a.size() && digit(a[i_end])) ++i_end;
+            while (j_end < b.size() && digit(b[j_end])) ++j_end;
+            while (i < i_end && a[i] == '0') ++i;
+            while (j < j_end && b[j] == '0') ++j;
+            if (i_end - i != j_end - j) return i_end - i < j_end - j;
+            const int order = a.substr(i, i_end - i).compare(b.substr(j, j_end - j));
+            if (order != 0) return order < 0;
+            i = i_end, j = j_end;
+        } else {
+            if (a[i] != b[j]) return a[i] < b[j];
+            ++i, ++j;
+        }
+    }
+    if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
+    return a < b;
+}
+
 bool is_utf8(std::string_view text) {
     for (std::size_t i = 0; i < text.size();) {
         const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };

@@ -11,6 +11,8 @@ namespace exemplar {
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
 /// " (did you mean 'X'?)" or an empty string.
 std::string suggestion(std::string_view word, std::span<const std::string> candidates);
+/// Orders "2.off" before "10.off": digit runs compare as numbers; equal ones by their leading zeros.
+bool natural_less(std::string_view a, std::string_view b);
 /// Whether all of `text` is well-formed UTF-8, as JSON, model and glTF files demand of names.
 bool is_utf8(std::string_view text);
 /// Seconds as "0.42 s", "12 s", "3 min 20 s", "1 h 05 min".

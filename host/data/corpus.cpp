@@ -25,35 +25,11 @@ bool is_there(const fs::path& path) {
     return fs::exists(path, ignored);
 }
 
-/// Orders "2.off" before "10.off": digit runs compare as numbers.
-bool natural_less(const fs::path& a, const fs::path& b) {
-    const std::string x = a.string(), y = b.string();
-    const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-    std::size_t i = 0, j = 0;
-    while (i < x.size() && j < y.size()) {
-        if (digit(x[i]) && digit(y[j])) {
-            std::size_t i_end = i, j_end = j;
-            while (i_end < x.size() && digit(x[i_end])) ++i_end;
-            while (j_end < y.size() && digit(y[j_end])) ++j_end;
-            while (i < i_end && x[i] == '0') ++i;
-            while (j < j_end && y[j] == '0') ++j;
-            if (i_end - i != j_end - j) return i_end - i < j_end - j;
-            const int order = x.compare(i, i_end - i, y, j, j_end - j);
-            if (order != 0) return order < 0;
-            i = i_end, j = j_end;
-        } else {
-            if (x[i] != y[j]) return x[i] < y[j];
-            ++i, ++j;
-        }
-    }
-    return x.size() - i < y.size() - j;
-}
-
 std::vector<fs::path> meshes_of_folder(const fs::path& folder) {
     std::vector<fs::path> paths;
     for (const auto& entry : fs::directory_iterator(folder))
         if (entry.is_regular_file() && is_mesh_file(entry.path())) paths.push_back(entry.path());
-    std::sort(paths.begin(), paths.end(), natural_less);
+    std::ranges::sort(paths, natural_less, [](const fs::path& path) { return path.string(); });
     return paths;
 }
 

@@ -8,6 +8,7 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/mesh/io_formats.h"
+#include "host/mesh/io_gltf_file.h"
 #include "host/mesh/io_write_text.h"
 
 namespace exemplar {
@@ -105,12 +106,6 @@ void check_writable(const std::filesystem::path& path, const TriangleMesh& mesh)
         throw MeshError(path.string() + ": the mesh is too large for a glTF file; write PLY");
 }
 
-void append_chunk(std::string& bytes, const char* type, const std::string& content) {
-    mesh_io::append_bytes(bytes, static_cast<std::uint32_t>(content.size()));
-    bytes.append(type, 4);
-    bytes += content;
-}
-
 }  // namespace
 
 void write_gltf(const std::filesystem::path& path, const TriangleMesh& mesh, const FaceLabels& labels) {
@@ -118,20 +113,12 @@ void write_gltf(const std::filesystem::path& path, const TriangleMesh& mesh, con
     check_writable(path, mesh);
     const std::vector<Part> parts = parts_by_label(mesh, labels);
     std::string json = document_of(mesh, labels, parts).dump(-1, ' ', false, Json::error_handler_t::replace);
-    json.resize((json.size() + 3) / 4 * 4, ' ');  // chunks are aligned to four bytes
     std::string binary;
     for (const Vec3& p : mesh.vertices)
         for (int i = 0; i < 3; ++i) mesh_io::append_bytes(binary, p[i]);
     for (const Part& part : parts)
         for (const Face& face : part.faces) mesh_io::append_bytes(binary, face);
-
-    constexpr std::uint32_t k_header_bytes = 12, k_chunk_header_bytes = 8, k_version = 2;
-    std::string bytes = "glTF";
-    mesh_io::append_bytes(bytes, k_version);
-    mesh_io::append_bytes(
-        bytes, static_cast<std::uint32_t>(k_header_bytes + 2 * k_chunk_header_bytes + json.size() + binary.size()));
-    append_chunk(bytes, "JSON", json);
-    append_chunk(bytes, std::string("BIN\0", 4).c_str(), binary);
+    const std::string bytes = mesh_io::binary_gltf(std::move(json), binary);
     write_file_atomically(path, [&](std::ostream& out) { out << bytes; });
 }
 

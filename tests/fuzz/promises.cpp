@@ -1,6 +1,7 @@
 #include "tests/fuzz/promises.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "host/core/errors.h"
 #include "host/core/text.h"
@@ -46,6 +47,31 @@ void require_report(const TriangleMesh& mesh) {
     require(usable == report.usable(), "what is not usable is refused");
 }
 
+void require_rig(const Rig& rig, std::size_t vertex_count) {
+    for (std::size_t i = 0; i < rig.nodes.size(); ++i)
+        require(rig.nodes[i].parent == k_none || rig.nodes[i].parent < i, "parents before children");
+    for (const Bone& bone : rig.bones) require(bone.node < rig.nodes.size(), "bones are nodes");
+    require(rig.influence_begin.size() == vertex_count + 1, "influences of each vertex");
+    for (std::size_t v = 0; v < vertex_count; ++v) {
+        float sum = 0;
+        const auto row = rig.influences_of(v);
+        require(!row.empty(), "an influence at least");
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            require(row[i].bone < rig.bones.size(), "influences are bones'");
+            require(i == 0 || row[i - 1].bone < row[i].bone, "bones rise");
+            require(row[i].weight > 0 && row[i].weight <= 1, "weights in (0, 1]");
+            sum += row[i].weight;
+        }
+        require(std::abs(sum - 1) < 1e-4f, "weights sum to one");
+    }
+    for (const MorphTarget& target : rig.targets) {
+        require(target.vertices.size() == target.offsets.size(), "an offset per vertex");
+        for (std::size_t i = 0; i < target.vertices.size(); ++i)
+            require(target.vertices[i] < vertex_count && (i == 0 || target.vertices[i - 1] < target.vertices[i]),
+                    "vertices of a target rise");
+    }
+}
+
 }  // namespace
 
 void require(bool kept, std::string_view promise) {
@@ -66,6 +92,20 @@ void require_promises(const MeshFile& file) {
     if (file.labels) require_labels(file.mesh, *file.labels);
     for (const std::string& warning : file.warnings) require_readable(warning);
     require_report(file.mesh);
+}
+
+void require_promises(const Animation& animation) {
+    require_faces(animation.rest);
+    require(!animation.rest.faces.empty(), "a surface has faces");
+    require_rig(animation.rig, animation.rest.vertex_count());
+    for (const std::uint32_t v : animation.vertex_of_source)
+        require(v < animation.rest.vertex_count(), "vertices of the file are vertices");
+    for (const std::string& warning : animation.warnings) require_readable(warning);
+    for (const Clip& clip : animation.clips) {
+        require(clip.size() > 0, "a clip has frames");
+        require(frame_vertices(animation, clip, clip.size() - 1).size() == animation.rest.vertex_count(),
+                "a frame has the surface's vertices");
+    }
 }
 
 }  // namespace exemplar::fuzz

@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "host/animation/animation.h"
 #include "host/mesh/io.h"
 #include "tests/fuzz/allocation.h"
 
@@ -22,6 +23,9 @@ void require_readable(std::string_view message);
 /// Indices in range, labels that fit the faces and have names that every writer takes, readable warnings; and
 /// validate_mesh and require_usable agree with what the vertices are.
 void require_promises(const MeshFile& file);
+
+/// What Rig says of its lists, indices in range, readable warnings; and posed vertices for each frame of a clip.
+void require_promises(const Animation& animation);
 
 /// The most memory that reading may take at any time: `fixed` plus `per_byte` times the size of the file.
 struct MemoryBound {

@@ -10,6 +10,9 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "host/animation/check_animation.h"
+#include "host/animation/read_formats.h"
+#include "host/animation/write_animation.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/data/corpus.h"
@@ -28,6 +31,9 @@ namespace fs = std::filesystem;
 constexpr MemoryBound k_usual_bound{256 * 1024, 64};
 /// Copies of a mesh cost a glTF file next to nothing, so 300,000 corners are free.
 constexpr MemoryBound k_gltf_bound{48 * 1024 * 1024, 1024};
+
+/// Frames of clips between two keys cost next to nothing as well.
+constexpr MemoryBound k_animation_bound{160 * 1024 * 1024, 4096};
 
 /// Where files are kept that a reader or writer wants to have a path; goes away with the program. In memory where that
 /// is possible, as a disk would take most of the time. Holds what a glTF file or a list may name.
@@ -161,6 +167,33 @@ bool reads_gltf(std::string_view content) {
     return true;
 }
 
+Animation read_animated_gltf(std::string_view content, const std::string& name) {
+    Animation animation = animation_io::read_gltf(content, name, scratch(), {});
+    check_animation(animation);
+    return animation;
+}
+
+bool reads_animation(std::string_view content) {
+    Animation animation;
+    const auto read = [&] { animation = read_animated_gltf(content, "x.glb"); };
+    if (!accepts<MeshError>("x.glb", content.size(), k_animation_bound, read)) return false;
+    require_promises(animation);
+    const fs::path path = scratch() / "again.glb";
+    write_gltf_animation(path, animation);
+    const Animation again = read_animated_gltf(read_file(path), "again.glb");
+    require_same_triangles(animation.rest, again.rest);
+    require(animation.rig.influence_begin == again.rig.influence_begin, "written influences are read again");
+    require(std::ranges::equal(animation.rig.targets, again.rig.targets,
+                               [](const MorphTarget& a, const MorphTarget& b) {
+                                   return a.vertices == b.vertices && a.offsets == b.offsets;
+                               }),
+            "written morph targets are read again");
+    require(std::ranges::equal(animation.clips, again.clips,
+                               [](const Clip& a, const Clip& b) { return a.size() == b.size(); }),
+            "written clips are read again");
+    return true;
+}
+
 /// As many faces as the file could name if all of its numbers were faces.
 std::size_t numbers_in(std::string_view content) {
     std::size_t count = 0;
@@ -251,11 +284,12 @@ bool reads_list(std::string_view content) {
     return true;
 }
 
-constexpr std::array<Reader, 10> k_readers{{{"off", reads_off},
+constexpr std::array<Reader, 11> k_readers{{{"off", reads_off},
                                             {"obj", reads_obj},
                                             {"ply", reads_ply},
                                             {"stl", reads_stl},
                                             {"gltf", reads_gltf},
+                                            {"animation", reads_animation},
                                             {"labels", reads_labels},
                                             {"seg", reads_seg},
                                             {"safetensors", reads_safetensors},

@@ -1,6 +1,5 @@
-// glTF 2.0 through tinygltf. The library trusts parts of its input (lengths of binary chunks, deep nesting, many
-// buffers that share one chunk), so a file is checked and cut down to what a mesh needs before the library sees it;
-// whatever the library returns is checked again before it is used.
+#include "host/mesh/io_gltf_file.h"
+
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
@@ -13,9 +12,8 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
-#include "host/mesh/io_formats.h"
-#include "host/mesh/io_gltf_scene.h"
 #include "host/mesh/io_text.h"
+#include "host/mesh/io_write_text.h"
 
 namespace exemplar::mesh_io {
 namespace {
@@ -101,19 +99,50 @@ void drop_extras(Json& value) {
         for (Json& child : value) drop_extras(child);
 }
 
-/// Keeps only what geometry and part names need.
-Json geometry_only(const Json& document) {
+/// The names of a mesh's morph targets, which by custom are among its extras or those of its first primitive.
+Json target_names(const Json& mesh) {
+    Json names = Json::array();
+    const auto collect = [&](const Json& owner) {
+        if (!owner.is_object() || !names.empty()) return;
+        const auto extras = owner.find("extras");
+        if (extras == owner.end() || !extras->is_object()) return;
+        const auto listed = extras->find("targetNames");
+        if (listed == extras->end() || !listed->is_array()) return;
+        for (const Json& name : *listed) names.push_back(name.is_string() ? name : Json(""));
+    };
+    collect(mesh);
+    if (!mesh.is_object()) return names;
+    const auto primitives = mesh.find("primitives");
+    if (primitives != mesh.end() && primitives->is_array() && !primitives->empty()) collect(primitives->front());
+    return names;
+}
+
+/// Of the materials only their names, which are part names.
+Json named_materials(const Json& materials) {
+    Json kept = Json::array();
+    for (const Json& material : materials) {
+        const bool is_named = material.is_object() && material.contains("name") && material["name"].is_string();
+        kept.push_back(is_named ? Json{{"name", material["name"]}} : Json::object());
+    }
+    return kept;
+}
+
+/// Keeps only what geometry and part names need, and, if wanted, what moves them.
+Json cut_down(const Json& document, GltfContent wanted) {
     Json kept = Json::object();
     for (const char* key : {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers"})
         if (const auto it = document.find(key); it != document.end()) kept[key] = *it;
-    if (const auto it = document.find("materials"); it != document.end() && it->is_array()) {
-        kept["materials"] = Json::array();
-        for (const Json& material : *it) {
-            const bool is_named = material.is_object() && material.contains("name") && material["name"].is_string();
-            kept["materials"].push_back(is_named ? Json{{"name", material["name"]}} : Json::object());
-        }
-    }
+    if (wanted == GltfContent::animation)
+        for (const char* key : {"skins", "animations"})
+            if (const auto it = document.find(key); it != document.end()) kept[key] = *it;
+    if (const auto it = document.find("materials"); it != document.end() && it->is_array())
+        kept["materials"] = named_materials(*it);
     drop_extras(kept);
+    const auto meshes = document.find("meshes");
+    if (wanted != GltfContent::animation || meshes == document.end() || !meshes->is_array()) return kept;
+    for (std::size_t i = 0; i < meshes->size(); ++i)
+        if (Json names = target_names((*meshes)[i]); !names.empty() && kept["meshes"][i].is_object())
+            kept["meshes"][i]["extras"]["targetNames"] = std::move(names);
     return kept;
 }
 
@@ -175,22 +204,7 @@ void check_buffers(const Json& document, const GltfChunks& chunks, const std::st
 /// Text as the library takes it: .glb with cut-down JSON if there is a binary chunk.
 std::string rebuilt(const Json& document, const GltfChunks& chunks) {
     std::string json = document.dump(-1, ' ', false, Json::error_handler_t::replace);
-    if (chunks.binary.empty()) return json;
-    json.resize((json.size() + 3) / 4 * 4, ' ');
-    std::string binary(chunks.binary);
-    binary.resize(std::max<std::size_t>((binary.size() + 3) / 4 * 4, 4), '\0');
-    std::string bytes = "glTF";
-    const auto append_word = [&](std::size_t value) {
-        const auto word = static_cast<std::uint32_t>(value);
-        bytes.append(reinterpret_cast<const char*>(&word), sizeof(word));
-    };
-    append_word(2);
-    append_word(12 + 8 + json.size() + 8 + binary.size());
-    append_word(json.size());
-    bytes += "JSON" + json;
-    append_word(binary.size());
-    bytes.append("BIN\0", 4);
-    return bytes + binary;
+    return chunks.binary.empty() ? json : binary_gltf(std::move(json), chunks.binary);
 }
 
 /// Buffers in files of their own are read only from the folder of the glTF file, not from the working folder.
@@ -246,7 +260,8 @@ tinygltf::Model load_model(const std::string& bytes, const std::string& name, co
 
 }  // namespace
 
-MeshFile read_gltf(std::string_view content, const std::string& name, const fs::path& folder) {
+tinygltf::Model load_gltf(std::string_view content, const std::string& name, const fs::path& folder,
+                          GltfContent wanted) {
     if (content.size() > std::numeric_limits<std::uint32_t>::max() / 2)
         fail(name, "the file is larger than 2 GiB; split it");
     GltfChunks chunks;
@@ -257,7 +272,23 @@ MeshFile read_gltf(std::string_view content, const std::string& name, const fs::
     const Json document = parse_json(chunks.json, name);
     check_extensions(document, name);
     check_buffers(document, chunks, name);
-    return mesh_of_gltf(load_model(rebuilt(geometry_only(document), chunks), name, folder), name);
+    return load_model(rebuilt(cut_down(document, wanted), chunks), name, folder);
+}
+
+std::string binary_gltf(std::string json, std::string_view binary) {
+    constexpr std::size_t k_header_bytes = 12, k_chunk_header_bytes = 8;
+    json.resize((json.size() + 3) / 4 * 4, ' ');  // chunks are aligned to four bytes
+    const std::size_t binary_bytes = std::max<std::size_t>((binary.size() + 3) / 4 * 4, 4);
+    std::string bytes = "glTF";
+    const auto append_word = [&](std::size_t value) { append_bytes(bytes, static_cast<std::uint32_t>(value)); };
+    append_word(2);
+    append_word(k_header_bytes + 2 * k_chunk_header_bytes + json.size() + binary_bytes);
+    append_word(json.size());
+    bytes += "JSON" + json;
+    append_word(binary_bytes);
+    bytes.append("BIN\0", 4).append(binary);
+    bytes.resize(bytes.size() + binary_bytes - binary.size(), '\0');
+    return bytes;
 }
 
 }  // namespace exemplar::mesh_io

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "host/animation/animation.h"
+#include "host/mesh/io_gltf_reader.h"
+
+namespace exemplar::animation_io {
+
+/// What stands as generator in files that Exemplar writes of blend shapes whose meshes hang on several nodes, which
+/// would otherwise pass for a skeleton.
+constexpr std::string_view k_blend_shapes_generator = "Blend shapes written by Exemplar";
+
+/// Which numbers of a pose the nodes of a glTF file drive.
+struct GltfLinks {
+    struct Targets {
+        std::uint32_t begin = 0, count = 0;
+    };
+    std::vector<std::uint32_t> rig_node;     ///< per node of the file; k_none if the surface does not depend on it
+    std::vector<Targets> targets;            ///< per node of the file: the morph targets of its mesh
+    std::vector<std::uint32_t> target_node;  ///< per morph target of the rig: the node of the file that drives it
+    std::vector<bool> target_is_named;       ///< per morph target of the rig: whether the file names it
+};
+
+/// Reads the surface of the default scene, one vertex per vertex of the file, with its rig: into `rest`, `rig`, `kind`
+/// and `warnings` of `animation`. Nodes that no bone depends on are left out; each node with a mesh has morph targets
+/// of its own. Throws MeshError where the file contradicts itself, or has neither skin nor morph target.
+GltfLinks read_gltf_rig(mesh_io::GltfReader& gltf, Animation& animation);
+
+}  // namespace exemplar::animation_io

@@ -1,0 +1,47 @@
+#include "host/animation/read_animation.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "host/animation/check_animation.h"
+#include "host/animation/read_formats.h"
+#include "host/core/errors.h"
+#include "host/core/files.h"
+#include "host/mesh/io_text.h"
+
+namespace exemplar {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_content(const fs::path& path) {
+    try {
+        return read_file(path);
+    } catch (const DataError& error) {
+        throw MeshError(error.what());
+    }
+}
+
+Animation read_unchecked(const fs::path& path, const ReadAnimationOptions& options) {
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored)) return animation_io::read_folder(path, options);
+    const std::string extension = mesh_io::lower_case(path.extension().string());
+    const bool is_gltf = extension == ".gltf" || extension == ".glb";
+    if (!is_gltf && fs::exists(path, ignored))
+        throw MeshError(path.string() +
+                        ": one file is an animation only as glTF (.gltf, .glb); name the folder that holds the frames");
+    return animation_io::read_gltf(read_content(path), path.string(), path.parent_path(), options);
+}
+
+}  // namespace
+
+Animation read_animation(const fs::path& path, const ReadAnimationOptions& options) {
+    if (!(options.frames_per_second > 0 && std::isfinite(options.frames_per_second)))
+        throw UsageError(fmt::format("{} is no rate of frames per second", options.frames_per_second));
+    Animation animation = read_unchecked(path, options);
+    check_animation(animation);
+    return animation;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace tinygltf {
+class Model;
+}
+
+namespace exemplar::mesh_io {
+
+/// What of a glTF file is looked at: triangles, nodes and material names; or also skins, morph targets and animations.
+enum class GltfContent { geometry, animation };
+
+/// glTF 2.0 (.gltf or .glb, told apart by content) through tinygltf. The library trusts parts of its input (lengths of
+/// binary chunks, deep nesting, many buffers that share one chunk), so a file is checked and cut down to what is wanted
+/// before the library sees it; whatever the library returns must be checked again before it is used (GltfReader).
+/// Buffers in files of their own are looked for in `folder`. Throws MeshError that begins with `name`.
+tinygltf::Model load_gltf(std::string_view content, const std::string& name, const std::filesystem::path& folder,
+                          GltfContent wanted);
+
+/// The bytes of a .glb file of a JSON chunk and a binary chunk.
+std::string binary_gltf(std::string json, std::string_view binary);
+
+}  // namespace exemplar::mesh_io

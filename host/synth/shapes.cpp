@@ -12,12 +12,11 @@
 #include "host/core/errors.h"
 #include "host/core/random.h"
 #include "host/core/text.h"
-#include "host/mesh/topology.h"
 #include "host/synth/field.h"
 #include "host/synth/models.h"
 #include "host/synth/part_labels.h"
-#include "host/synth/polygonize.h"
 #include "host/synth/remesh.h"
+#include "host/synth/surface.h"
 
 namespace exemplar {
 namespace {
@@ -55,25 +54,6 @@ const Kind& find_kind(std::string_view name) {
         list += (list.empty() ? "" : ", ") + names.back();
     }
     throw UsageError(fmt::format("unknown shape kind '{}'{}; the kinds are {}", name, suggestion(name, names), list));
-}
-
-/// A closed one-component mesh with V vertices and F = 2 (V - 2 + 2 genus) faces has this genus.
-int genus_of(const TriangleMesh& mesh) {
-    const auto v = static_cast<long>(mesh.vertex_count()), f = static_cast<long>(mesh.face_count());
-    return static_cast<int>((f / 2 - v + 2) / 2);
-}
-
-bool is_one_component(const TriangleMesh& mesh) {
-    return !mesh.faces.empty() && std::ranges::max(face_components(mesh, build_topology(mesh))) == 0;
-}
-
-/// Polygonizes finely enough that coarsening to `faces` leaves no trace of the grid.
-TriangleMesh fine_mesh(const ImplicitField& field, float detail, std::size_t faces) {
-    float cell = detail;
-    TriangleMesh mesh = polygonize(field, cell);
-    const double wanted = 2.5 * static_cast<double>(faces), got = static_cast<double>(mesh.face_count());
-    if (got < wanted) mesh = polygonize(field, cell * static_cast<float>(std::sqrt(got / wanted)));
-    return mesh;
 }
 
 void turn_randomly(TriangleMesh& mesh, Random random) {

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
 #include "host/mesh/topology.h"
+#include "tests/support/manifold.h"
 
 namespace exemplar {
 namespace {
@@ -28,42 +28,6 @@ const SynthShape& shape_of(const std::string& kind, std::uint64_t seed, std::siz
     const auto key = std::pair{kind + std::to_string(faces), seed};
     if (!cache.contains(key)) cache[key] = make_shape(kind, seed, faces);
     return cache.at(key);
-}
-
-double signed_volume(const TriangleMesh& mesh) {
-    double volume = 0;
-    for (const auto& [a, b, c] : mesh.faces)
-        volume += mesh.vertices[a].cross(mesh.vertices[b]).dot(mesh.vertices[c]) / 6;
-    return volume;
-}
-
-/// Each directed edge once and its reverse once: closed, edge-manifold, consistently oriented.
-bool is_closed_and_oriented(const TriangleMesh& mesh) {
-    std::set<std::pair<std::uint32_t, std::uint32_t>> directed;
-    for (const Face& face : mesh.faces)
-        for (std::size_t i = 0; i < 3; ++i)
-            if (!directed.insert({face[i], face[(i + 1) % 3]}).second) return false;
-    return std::all_of(directed.begin(), directed.end(), [&](const auto& e) {
-        return directed.contains({e.second, e.first});
-    });
-}
-
-/// The faces around every vertex form one closed fan.
-bool is_vertex_manifold(const TriangleMesh& mesh) {
-    std::vector<std::map<std::uint32_t, std::uint32_t>> next(mesh.vertex_count());
-    for (const auto& [a, b, c] : mesh.faces) {
-        next[a][b] = c;
-        next[b][c] = a;
-        next[c][a] = b;
-    }
-    for (const auto& ring : next) {
-        if (ring.size() < 3) return false;
-        std::size_t steps = 1;
-        for (std::uint32_t v = ring.begin()->second; v != ring.begin()->first && steps <= ring.size(); ++steps)
-            v = ring.at(v);
-        if (steps != ring.size()) return false;
-    }
-    return true;
 }
 
 double smallest_angle(const TriangleMesh& mesh, const Face& face) {

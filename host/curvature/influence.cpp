@@ -144,8 +144,10 @@ std::vector<ControlSet> test_group(const InfluenceGroup& group, const StateReade
             fit(features_of(reader, {group.controls[c]}, states), targets).residual;
         for (std::size_t i = 0; i < kept.size(); ++i) {
             const auto column = static_cast<Eigen::Index>(i);
-            const FTest test =
-                f_test(without.residual[column], without.parameters, full.residual[column], full.parameters, samples);
+            // Where a control adds no parameter, its inputs are combinations of the others'.
+            if (without.parameters >= full.parameters) continue;
+            const FTest test = f_test(without.residual[column], without.parameters, full.residual[column],
+                                      full.parameters, samples, variation[column]);
             const double gain = without.residual[column] - full.residual[column];
             if (test.p_value < options.significance && gain >= options.least_gain * variation[column])
                 kept[i].push_back(group.controls[c]);

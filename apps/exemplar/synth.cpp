@@ -1,12 +1,18 @@
-// exemplar synth: generated labeled shapes.
+// exemplar synth: generated labeled shapes and animations.
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/commands.h"
+#include "host/animation/write_animation.h"
+#include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
+#include "host/core/text.h"
 #include "host/mesh/io.h"
+#include "host/synth/animations.h"
 #include "host/synth/shapes.h"
 
 namespace exemplar {
@@ -16,48 +22,122 @@ struct SynthOptions {
     CommonOptions common;
     std::string kind;
     std::size_t count = 1, faces = 10000;
+    AnimationOptions animation;
     std::uint64_t seed = 1;
     std::filesystem::path out;
 };
 
+bool is_one_of(std::span<const std::string_view> names, std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Throws UsageError for a kind that is neither of shapes nor of animations.
+void require_kind(const std::string& kind) {
+    const auto shapes = synth_kinds(), animations = synth_animation_kinds();
+    if (is_one_of(shapes, kind) || is_one_of(animations, kind)) return;
+    std::vector<std::string> names(shapes.begin(), shapes.end());
+    names.insert(names.end(), animations.begin(), animations.end());
+    throw UsageError(
+        fmt::format("unknown kind '{}'{}; the kinds are {}", kind, suggestion(kind, names), fmt::join(names, ", ")));
+}
+
+/// Options of shapes say nothing about animations, and the other way round.
+void require_fitting_options(const CLI::App& command, const std::string& kind) {
+    const bool is_animation = is_one_of(synth_animation_kinds(), kind);
+    const auto refuse = [&](const char* option) {
+        if (command.count(option) > 0)
+            throw UsageError(fmt::format("{} is not for {}: '{}' is {}", option, is_animation ? "animations" : "shapes",
+                                         kind, is_animation ? "an animation" : "a shape"));
+    };
+    if (is_animation) refuse("--faces");
+    if (is_animation) return;
+    for (const char* option : {"--vertices", "--frames", "--shape-seed"}) refuse(option);
+}
+
+nlohmann::json write_shape(const SynthOptions& options, std::uint64_t seed) {
+    const SynthShape shape = make_shape(options.kind, seed, options.faces);
+    const std::string name = fmt::format("{}_{:03}", options.kind, seed);
+    write_labels_txt(options.out / (name + "_labels.txt"), shape.labels);
+    write_off(options.out / (name + ".off"), shape.mesh);
+    return {{"name", name}, {"faces", shape.mesh.face_count()}, {"vertices", shape.mesh.vertex_count()}};
+}
+
+nlohmann::json write_animation(const SynthOptions& options, std::uint64_t seed) {
+    AnimationOptions wanted = options.animation;
+    wanted.motion_seed = seed;
+    const Animation animation = make_animation(options.kind, wanted);
+    const std::string name = fmt::format("{}_{:03}", options.kind, seed);
+    if (animation.kind == AnimationKind::sequence)
+        write_sequence(options.out / name, animation);
+    else
+        write_gltf_animation(options.out / (name + ".glb"), animation);
+    return {{"name", name},
+            {"faces", animation.rest.face_count()},
+            {"vertices", animation.rest.vertex_count()},
+            {"frames", animation.frame_count()}};
+}
+
 void run_synth(const SynthOptions& options) {
     const auto limits = apply_common_options(options.common);
     require_output_folder(options.out);
-    synth_labels(options.kind);  // an unknown kind is an error before anything is counted
+    const bool is_animation = is_one_of(synth_animation_kinds(), options.kind);
     Progress progress("generating " + options.kind, options.count);
-    nlohmann::json shapes = nlohmann::json::array();
+    nlohmann::json made = nlohmann::json::array();
     for (std::size_t i = 0; i < options.count; ++i) {
         check_interrupt();
-        const SynthShape shape = make_shape(options.kind, options.seed + i, options.faces);
-        const std::string name = fmt::format("{}_{:03}", options.kind, options.seed + i);
-        write_labels_txt(options.out / (name + "_labels.txt"), shape.labels);
-        write_off(options.out / (name + ".off"), shape.mesh);
-        shapes.push_back({{"name", name}, {"faces", shape.mesh.face_count()}, {"vertices", shape.mesh.vertex_count()}});
+        made.push_back((is_animation ? write_animation : write_shape)(options, options.seed + i));
         progress.advance();
     }
     progress.finish();
-    fmt::print("{} {} in {}\n", options.count, options.count == 1 ? "shape" : "shapes", options.out.string());
-    write_report(options.common, {{"kind", options.kind}, {"seed", options.seed}, {"shapes", shapes}});
+    const char* noun = is_animation ? "animation" : "shape";
+    fmt::print("{} {}{} in {}\n", options.count, noun, options.count == 1 ? "" : "s", options.out.string());
+    write_report(
+        options.common,
+        {{"kind", options.kind}, {"seed", options.seed}, {is_animation ? "animations" : "shapes", std::move(made)}});
+}
+
+void add_animation_options(CLI::App& command, AnimationOptions& options) {
+    command.add_option("--vertices", options.vertices, "vertices of an animation, about")
+        ->capture_default_str()
+        ->check(whole_number(500, 100'000));
+    command.add_option("--frames", options.frames, "frames of an animation, 30 per second")
+        ->capture_default_str()
+        ->check(whole_number(1, 100'000));
+    command
+        .add_option("--shape-seed", options.shape_seed,
+                    "seed of an animation's surface; equal ones give the same surface in other motions")
+        ->capture_default_str()
+        ->check(whole_number(0));
 }
 
 }  // namespace
 
 void add_synth_command(CLI::App& app) {
     auto options = std::make_shared<SynthOptions>();
-    CLI::App* command = app.add_subcommand("synth", "Generates labeled shapes (NAME.off and NAME_labels.txt)");
-    command->footer(fmt::format("Kinds: {}\n\nExample:\n  exemplar synth human --count 8 --seed 1 --out shapes",
-                                fmt::join(synth_kinds(), " ")));
+    CLI::App* command = app.add_subcommand(
+        "synth",
+        "Generates labeled shapes (NAME.off and NAME_labels.txt) and animations (NAME.glb, or a folder of PLY)");
+    command->footer(
+        fmt::format("Kinds of shapes: {}\nKinds of animations: {}\n\nExamples:\n"
+                    "  exemplar synth human --count 8 --seed 1 --out shapes\n"
+                    "  exemplar synth figure --vertices 20000 --seed 1 --out animations",
+                    fmt::join(synth_kinds(), " "), fmt::join(synth_animation_kinds(), " ")));
     command->add_option("KIND", options->kind, "what to generate")->required()->type_name("");
-    command->add_option("--count", options->count, "number of shapes")->capture_default_str()->check(whole_number(1));
-    command->add_option("--seed", options->seed, "seed of the first shape; the next ones count up")
+    command->add_option("--count", options->count, "how many")->capture_default_str()->check(whole_number(1));
+    command->add_option("--seed", options->seed, "seed of the first shape or motion; the next ones count up")
         ->capture_default_str()
         ->check(whole_number(0));
     command->add_option("--faces", options->faces, "faces per shape, about")
         ->capture_default_str()
         ->check(whole_number(500, 200000));
+    add_animation_options(*command, options->animation);
     command->add_option("--out", options->out, "folder to write to")->required()->type_name("FOLDER");
     add_common_options(*command, options->common);
-    command->callback([options] { run_synth(*options); });
+    command->callback([options, command] {
+        require_kind(options->kind);
+        require_fitting_options(*command, options->kind);
+        run_synth(*options);
+    });
 }
 
 }  // namespace exemplar

@@ -166,6 +166,19 @@ class Synth(ProgramTest):
             self.assertEqual(set(labels), {"body", "handle"})
             self.assertEqual(sorted(sum(labels.values(), [])), list(range(1, len(faces) + 1)))
 
+    def test_animations_and_their_options(self):
+        size = ["--vertices", "1000", "--frames", "4"]
+        self.call("synth", "face", *size, "--count", "2", "--out", "moving", "--json", "m.json")
+        report = json.loads((self.folder / "m.json").read_text())
+        self.assertEqual([made["name"] for made in report["animations"]], ["face_001", "face_002"])
+        self.assertEqual([made["frames"] for made in report["animations"]], [4, 4])
+        self.assertEqual((self.folder / "moving" / "face_001.glb").read_bytes()[:4], b"glTF")
+        self.call("synth", "flag", *size, "--out", "moving")
+        self.assertEqual(len(list((self.folder / "moving" / "flag_001").glob("*.ply"))), 5)  # and the rest shape
+        self.refused("synth", "figre", "--out", "x", code=2, says=["'figre'", "'figure'", "cup"])
+        self.refused("synth", "face", "--faces", "900", "--out", "x", code=2, says="--faces")
+        self.refused("synth", "cup", "--frames", "9", "--out", "x", code=2, says="--frames")
+
     def test_equal_seeds_give_equal_files_and_others_do_not(self):
         for out, seed in [("a", 3), ("b", 3), ("c", 4)]:
             self.call("synth", "cup", "--faces", "500", "--seed", seed, "--out", out)

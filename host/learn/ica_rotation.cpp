@@ -69,7 +69,7 @@ MatrixXd nearest_rotation(const MatrixXd& rows) {
 class StepLength {
   public:
     double after(double change) {
-        constexpr int k_patience = 20;
+        constexpr int k_patience = 60;
         if (change < 0.5 * least_) {
             least_ = change;
             waited_ = 0;

@@ -1,0 +1,59 @@
+#ifndef EXEMPLAR_SHARED_CURVATURE_H
+#define EXEMPLAR_SHARED_CURVATURE_H
+#include "shaders/shared/types.h"
+
+SHARED_BEGIN
+
+// A vertex's place in space and where its influences begin.
+struct RestVertex {
+    float x;
+    float y;
+    float z;
+    uint influences;  // index of its first InfluencePair
+};
+
+// Two influences on a vertex; a bone beyond the palette's weight is zero. The last pair of a vertex is marked.
+struct InfluencePair {
+    uint first_bone;  // with k_last_of_vertex
+    float first_weight;
+    uint second_bone;
+    float second_weight;
+};
+
+// What full weight of a morph target adds to a vertex. The last of a vertex is marked.
+struct MorphOffset {
+    float x;
+    float y;
+    float z;
+    uint target;  // with k_last_of_vertex
+};
+
+const uint k_last_of_vertex = 0x80000000u;
+
+struct PoseParameters {
+    uint vertices;
+    uint first_weight;  // where the weights of targets begin in the pose, in floats
+    uint targets;
+};
+
+// The ring of a vertex: the other corners of its faces, in their order around it, four to a texel. Two entries that
+// follow each other make a face with the vertex, unless the second starts a fan. The last entry of a vertex is marked.
+const uint k_ring_fan = 0x80000000u;
+const uint k_ring_last = 0x40000000u;
+const uint k_ring_vertex = 0x3fffffffu;
+
+struct SurfaceParameters {
+    uint vertices;
+    float scale;  // from mesh units to units in which edges are about 1 long
+};
+
+#ifdef __cplusplus
+EXEMPLAR_LAYOUT(RestVertex, x, y, z, influences)
+EXEMPLAR_LAYOUT(InfluencePair, first_bone, first_weight, second_bone, second_weight)
+EXEMPLAR_LAYOUT(MorphOffset, x, y, z, target)
+EXEMPLAR_LAYOUT(PoseParameters, vertices, first_weight, targets)
+EXEMPLAR_LAYOUT(SurfaceParameters, vertices, scale)
+#endif
+
+SHARED_END
+#endif

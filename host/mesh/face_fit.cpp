@@ -62,8 +62,9 @@ std::array<CornerShare, 3> measure_face(const std::array<Vec3, 3>& corners, Face
     const double longest = std::max({squared[0], squared[1], squared[2]});
     const double twice_area = n.norm();
     std::array<CornerShare, 3> shares;
-    // |n| is sine times the two edge lengths, so the squared lengths leave sine over lengths.
-    if (twice_area > 0)
+    // |n| is sine times the two edge lengths, so the squared lengths leave sine over lengths. Between edges of which
+    // one is zero, fused products leave n a little above it.
+    if (squared[0] > 0 && squared[1] > 0 && squared[2] > 0)
         for (std::size_t i = 0; i < 3; ++i) shares[i].normal = n / (squared[(i + 1) % 3] * squared[(i + 2) % 3]);
     // Thinner slivers are rounding noise, and the differences of squares in voronoi_areas would vanish.
     fit.valid = twice_area > 1e-7 * longest;

@@ -101,6 +101,7 @@ inline TriangleMesh waved(TriangleMesh mesh, float height) {
 /// A buffer of vec4s (x, y, z, 1), as the kernels take vertices.
 inline Buffer upload_vertices(Device& device, const std::vector<Vec3>& vertices) {
     std::vector<shared::vec4> out;
+    out.reserve(vertices.size());
     for (const Vec3& v : vertices) out.push_back({v.x(), v.y(), v.z(), 1.0f});
     return Buffer::of<shared::vec4>(device, out);
 }

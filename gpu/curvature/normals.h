@@ -15,7 +15,8 @@ class GpuNormals {
 
     /// Normals of `vertices`, a vec4 per vertex. Throws UsageError if they are not of the surface.
     void record(Stream& stream, const Buffer& vertices);
-    /// A vec4 per vertex: the unit normal ((0, 0, 1) where no face is) and 0.
+    /// A vec4 per vertex: the unit normal, (0, 0, 1) where no face is, and the area around the vertex, the parts of its
+    /// faces that are nearest to it (Meyer et al. 2003), in squared mesh units.
     const Buffer& normals() const { return normals_; }
 
   private:

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "gpu/curvature/vertex_rings.h"
@@ -31,14 +33,15 @@ std::vector<shared::uvec4> corners_of(const TriangleMesh& mesh) {
 
 }  // namespace
 
-GpuSurface::GpuSurface(Device& device, const TriangleMesh& rest)
+GpuSurface::GpuSurface(Device& device, TriangleMesh rest)
     : device_(&device),
-      vertex_count_(static_cast<std::uint32_t>(rest.vertex_count())),
-      face_count_(static_cast<std::uint32_t>(rest.face_count())),
+      rest_(std::move(rest)),
+      vertex_count_(static_cast<std::uint32_t>(rest_.vertex_count())),
+      face_count_(static_cast<std::uint32_t>(rest_.face_count())),
       scale_(1.0f) {
-    const VertexRings rings = build_vertex_rings(rest);
-    scale_ = edge_scale(rest);
-    faces_ = Buffer::of<shared::uvec4>(device, corners_of(rest));
+    const VertexRings rings = build_vertex_rings(rest_);
+    scale_ = edge_scale(rest_);
+    faces_ = Buffer::of<shared::uvec4>(device, corners_of(rest_));
     ring_begin_ = Buffer::of<std::uint32_t>(device, rings.begin);
     rings_ = Buffer::of<shared::uvec4>(device, rings.texels);
 }

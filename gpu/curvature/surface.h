@@ -13,13 +13,15 @@ namespace exemplar {
 /// stays; the vertices, a vec4 (x, y, z, 1) each, change with every frame.
 class GpuSurface {
   public:
-    /// `rest` is any frame of the surface: of its vertices only the scale of the mesh is taken. Throws MeshError if a
-    /// face refers to a vertex that does not exist.
-    GpuSurface(Device& device, const TriangleMesh& rest);
+    /// `rest` is any frame of the surface; its vertices tell the scale of the mesh, and what may come near what. Throws
+    /// MeshError if a face refers to a vertex that does not exist.
+    GpuSurface(Device& device, TriangleMesh rest);
 
     Device& device() const { return *device_; }
     std::uint32_t vertex_count() const { return vertex_count_; }
     std::uint32_t face_count() const { return face_count_; }
+    /// The surface as it was given.
+    const TriangleMesh& rest() const { return rest_; }
     /// A uvec4 (a, b, c, 0) per face.
     const Buffer& faces() const { return faces_; }
     /// The rings of the vertices (build_vertex_rings): a uint per vertex, and uvec4s.
@@ -35,6 +37,7 @@ class GpuSurface {
 
   private:
     Device* device_;
+    TriangleMesh rest_;
     std::uint32_t vertex_count_, face_count_;
     float scale_;
     Buffer faces_, ring_begin_, rings_;

@@ -8,8 +8,9 @@
 // saved. Per vertex of six faces 4 + 32 bytes of topology and 32 of its position and normal are read and 32 written, each
 // once; what its seven ring entries need comes from caches.
 layout(local_size_x = 64) in;
+layout(constant_id = 0) const bool k_smoothed = false;
 layout(set = 0, binding = 3) uniform samplerBuffer normals;
-layout(set = 0, binding = 4, std430) writeonly buffer First { vec4 first[]; };    // e1, k1
+layout(set = 0, binding = 4, std430) writeonly buffer First { vec4 first[]; };    // e1, k1; if smoothed, the form's spins in scaled units
 layout(set = 0, binding = 5, std430) writeonly buffer Second { vec4 second[]; };  // e2, k2
 
 vec3 normal_of(uint vertex) {
@@ -48,8 +49,13 @@ void main() {
     if (vertex >= parameters.vertices) return;
 
     const TangentFrame frame = any_frame(normal_of(vertex));
+    const vec3 form = mean_form(vertex, frame);
+    if (k_smoothed) {
+        first[vertex] = to_spins(form);
+        return;
+    }
     vec2 k;
-    const vec2 turn = principal_turn(mean_form(vertex, frame), k);
+    const vec2 turn = principal_turn(form, k);
     first[vertex] = vec4(turn.x * frame.tangent + turn.y * frame.bitangent, parameters.scale * k.x);
     second[vertex] = vec4(turn.x * frame.bitangent - turn.y * frame.tangent, parameters.scale * k.y);
 }

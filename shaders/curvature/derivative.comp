@@ -7,9 +7,11 @@
 // curvature.comp. Per vertex of six faces 4 + 32 bytes of topology and 48 of its position and principal frame are read and
 // 16 written, each once; what its seven ring entries need comes from caches.
 layout(local_size_x = 64) in;
-layout(set = 0, binding = 3) uniform samplerBuffer first;   // e1, k1
-layout(set = 0, binding = 4) uniform samplerBuffer second;  // e2, k2
-layout(set = 0, binding = 5, std430) writeonly buffer Derivatives { vec4 derivatives[]; };
+layout(constant_id = 0) const bool k_smoothed = false;
+layout(set = 0, binding = 3) uniform samplerBuffer first;    // e1, k1
+layout(set = 0, binding = 4) uniform samplerBuffer second;   // e2, k2
+layout(set = 0, binding = 5) uniform samplerBuffer normals;  // for smoothing
+layout(set = 0, binding = 6, std430) writeonly buffer Derivatives { vec4 derivatives[]; };  // if smoothed, spins in any_frame(normal), in scaled units
 
 struct Principal {
     vec3 axis;
@@ -68,5 +70,13 @@ vec4 mean_derivative(uint vertex) {
 void main() {
     const uint vertex = linear_thread();
     if (vertex >= parameters.vertices) return;
-    derivatives[vertex] = parameters.scale * parameters.scale * mean_derivative(vertex);
+    const vec4 derivative = mean_derivative(vertex);
+    if (!k_smoothed) {
+        derivatives[vertex] = parameters.scale * parameters.scale * derivative;
+        return;
+    }
+    // Back from the principal frame.
+    const TangentFrame frame = any_frame(texelFetch(normals, int(vertex)).xyz);
+    const vec3 e1 = texelFetch(first, int(vertex)).xyz;
+    derivatives[vertex] = to_spins(turned(derivative, vec2(dot(e1, frame.tangent), -dot(e1, frame.bitangent))));
 }

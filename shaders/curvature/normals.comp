@@ -3,15 +3,17 @@
 #include "shaders/lib/face_fit.glsl"
 #include "shaders/lib/surface.glsl"
 
-// Vertex normals, weighted as in Max 1999 (exemplar::vertex_normals), one vertex per invocation. Per vertex of six faces
+// Vertex normals, weighted as in Max 1999 (exemplar::vertex_normals), and areas, one vertex per invocation. Per vertex of six faces
 // 4 + 32 bytes of topology and 16 of its position are read and 16 written, each once; the positions of its seven ring
 // entries come from caches.
 layout(local_size_x = 64) in;
 layout(set = 0, binding = 3, std430) writeonly buffer Normals { vec4 normals[]; };
 
-vec3 weighted_normal(vec3 a, vec3 b, vec3 ab) {
+// The share of a face: its normal weighted by the sine of its angle over the edge lengths, and its part of the vertex's area.
+vec4 share(vec3 a, vec3 b, vec3 ab) {
+    const vec3 n = area_vector(a, b, ab);
     const float lengths = dot(a, a) * dot(b, b);
-    return lengths > 0.0 ? area_vector(a, b, ab) / lengths : vec3(0.0);
+    return vec4(lengths > 0.0 ? n / lengths : vec3(0.0), corner_area(a, b, ab, length(n)));
 }
 
 void main() {
@@ -19,19 +21,22 @@ void main() {
     if (vertex >= parameters.vertices) return;
 
     const vec3 here = position_of(vertex);
-    vec3 sum = vec3(0.0), last = vec3(0.0);
+    vec4 sum = vec4(0.0);
+    vec3 last = here;
     uint texel = texelFetch(ring_begin, int(vertex)).x;
     for (bool more = true; more; ++texel) {
         uvec4 entries = texelFetch(rings, int(texel));
         for (uint i = 0; i < 4 && more; ++i) {
             const vec3 there = position_of(entries.x & k_ring_vertex);
-            const vec3 a = parameters.scale * (last - here), b = parameters.scale * (there - here);
-            if ((entries.x & k_ring_fan) == 0) sum += weighted_normal(a, b, parameters.scale * (there - last));
+            if ((entries.x & k_ring_fan) == 0)
+                sum += share(parameters.scale * (last - here), parameters.scale * (there - here),
+                             parameters.scale * (there - last));
             last = there;
             more = (entries.x & k_ring_last) == 0;
             entries = entries.yzwx;
         }
     }
-    const float size = length(sum);
-    normals[vertex] = vec4(size > 0.0 ? sum / size : vec3(0.0, 0.0, 1.0), 0.0);
+    const float size = length(sum.xyz);
+    normals[vertex] = vec4(size > 0.0 ? sum.xyz / size : vec3(0.0, 0.0, 1.0),
+                           sum.w / (parameters.scale * parameters.scale));
 }

@@ -16,35 +16,36 @@ struct FaceFit {
 // Faces that are lower than this part of their longest edge are left out: in single precision they are noise.
 const float k_least_height = 1e-6;
 
-// The part of a face that is nearest to a corner (Meyer et al. 2003); where an angle is obtuse the Voronoi cells are cut off
-// at the opposite edge.
-float voronoi_area(vec3 a, vec3 b, vec3 ab, float twice_area) {
-    const float aa = dot(a, a), bb = dot(b, b);
-    const float at_corner = dot(a, b), at_a = -dot(a, ab), at_b = dot(b, ab);
-    const float area = 0.5 * twice_area;
-    if (at_corner <= 0.0) return area - 0.25 * area * (aa / at_a + bb / at_b);
-    if (at_a <= 0.0) return 0.25 * area * aa / at_corner;
-    if (at_b <= 0.0) return 0.25 * area * bb / at_corner;
-    return 0.125 * (bb * at_a + aa * at_b) / twice_area;
-}
-
 // Twice the area times the normal, from the edges to a, to b, and from a to b. Slivers lose digits in a product of two
 // long edges, so the shortest or second shortest is always taken.
 vec3 area_vector(vec3 a, vec3 b, vec3 ab) {
     return dot(a, a) < dot(b, b) ? cross(a, ab) : cross(b, ab);
 }
 
+// The part of a face that is nearest to a corner (Meyer et al. 2003), zero in a degenerate face; where an angle is obtuse the
+// Voronoi cells are cut off at the opposite edge.
+float corner_area(vec3 a, vec3 b, vec3 ab, float twice_area) {
+    const float aa = dot(a, a), bb = dot(b, b);
+    if (!(twice_area > k_least_height * max(max(aa, bb), dot(ab, ab)))) return 0.0;
+    const float at_corner = dot(a, b), at_a = -dot(a, ab), at_b = dot(b, ab);
+    const float quarter = 0.125 * twice_area;
+    if (at_corner <= 0.0) return 4.0 * quarter - quarter * (aa / at_a + bb / at_b);
+    if (at_a <= 0.0) return quarter * aa / at_corner;
+    if (at_b <= 0.0) return quarter * bb / at_corner;
+    return 0.125 * (bb * at_a + aa * at_b) / twice_area;
+}
+
+// Only what has an area may be used.
 FaceFit measure_face(vec3 a, vec3 b, vec3 ab) {
     FaceFit fit;
     const vec3 n = area_vector(a, b, ab);
-    const float twice_area = length(n), aa = dot(a, a);
-    const bool valid = twice_area > k_least_height * max(aa, max(dot(b, b), dot(ab, ab)));
-    fit.to_a = valid ? sqrt(aa) : 1.0;
+    const float twice_area = length(n);
+    fit.area = corner_area(a, b, ab, twice_area);
+    fit.to_a = length(a);
     fit.frame.tangent = a / fit.to_a;
-    fit.frame.normal = n / (valid ? twice_area : 1.0);
+    fit.frame.normal = n / twice_area;
     fit.frame.bitangent = cross(fit.frame.normal, fit.frame.tangent);
-    fit.to_b = vec2(dot(b, fit.frame.tangent), valid ? twice_area / fit.to_a : 1.0);
-    fit.area = valid ? voronoi_area(a, b, ab, twice_area) : 0.0;
+    fit.to_b = vec2(dot(b, fit.frame.tangent), twice_area / fit.to_a);
     return fit;
 }
 

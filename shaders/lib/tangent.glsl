@@ -41,6 +41,21 @@ vec4 turned(vec4 d, vec2 turn) {
                 -sss * d.x + 3.0 * css * d.y - 3.0 * ccs * d.z + ccc * d.w);
 }
 
+// Tensors as what turns by whole multiples of an angle, two pairs to a vector: forms as (mean, 0, half the difference of the
+// diagonal, off-diagonal), by 0 and 2 angles; derivatives by 1 and 3.
+vec4 to_spins(vec3 form) {
+    return vec4(0.5 * (form.x + form.z), 0.0, 0.5 * (form.x - form.z), form.y);
+}
+vec3 form_of_spins(vec4 s) {
+    return vec3(s.x + s.z, s.w, s.x - s.z);
+}
+vec4 to_spins(vec4 d) {
+    return vec4(d.x + d.z, d.y + d.w, d.x - 3.0 * d.z, 3.0 * d.y - d.w);
+}
+vec4 derivative_of_spins(vec4 s) {
+    return 0.25 * vec4(3.0 * s.x + s.z, s.y + s.w, s.x - s.z, 3.0 * s.y - s.w);
+}
+
 // The turn to the principal frame of a form, in which it is diagonal with the larger value, k.x, first.
 vec2 principal_turn(vec3 form, out vec2 k) {
     const float half_difference = 0.5 * (form.x - form.z), mean = 0.5 * (form.x + form.z);

@@ -47,12 +47,28 @@ struct SurfaceParameters {
     float scale;  // from mesh units to units in which edges are about 1 long
 };
 
+// The vertices that may come near a vertex, four to a texel; its last texel is marked in w. Gaps hold the vertex itself.
+const uint k_near_last = 0x80000000u;
+const uint k_near_vertex = 0x7fffffffu;
+
+// The diffusion kernel exp(-d^2 / (2 s^2)) - k_diffusion_rest ends at d^2 = 2 k_diffusion_cutoff s^2, where it is zero.
+const float k_diffusion_cutoff = 4.0f;
+const float k_diffusion_rest = 0.018315639f;  // exp(-k_diffusion_cutoff)
+
+struct DiffusionParameters {
+    uint vertices;
+    float scale;     // as in SurfaceParameters; the others are in scaled units
+    float exponent;  // -1 / (2 s^2)
+    float limit;     // of the squared distance
+};
+
 #ifdef __cplusplus
 EXEMPLAR_LAYOUT(RestVertex, x, y, z, influences)
 EXEMPLAR_LAYOUT(InfluencePair, first_bone, first_weight, second_bone, second_weight)
 EXEMPLAR_LAYOUT(MorphOffset, x, y, z, target)
 EXEMPLAR_LAYOUT(PoseParameters, vertices, first_weight, targets)
 EXEMPLAR_LAYOUT(SurfaceParameters, vertices, scale)
+EXEMPLAR_LAYOUT(DiffusionParameters, vertices, scale, exponent, limit)
 #endif
 
 SHARED_END

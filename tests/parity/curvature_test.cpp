@@ -34,11 +34,13 @@ constexpr double k_tolerance = 1e-6;
 using Tensor2 = Eigen::Matrix3d;
 using Tensor3 = std::array<Eigen::Matrix3d, 3>;
 
-VertexCurvature device_curvature(const TriangleMesh& mesh) {
-    const GpuSurface surface(shared_device(), mesh);
-    GpuCurvature curvature(surface);
+// Of a frame of a surface that was made at rest.
+VertexCurvature device_curvature(const TriangleMesh& rest, const std::vector<Vec3>& vertices,
+                                 const CurvatureOptions& options = {}) {
+    const GpuSurface surface(shared_device(), rest);
+    GpuCurvature curvature(surface, options);
     Stream stream(shared_device());
-    curvature.record(stream, testing::upload_vertices(shared_device(), mesh.vertices));
+    curvature.record(stream, testing::upload_vertices(shared_device(), vertices));
     stream.finish();
     VertexCurvature result;
     for (const vec4& v : download(curvature.first())) {
@@ -51,6 +53,10 @@ VertexCurvature device_curvature(const TriangleMesh& mesh) {
     }
     for (const vec4& v : download(curvature.derivative())) result.derivative.push_back({v.x, v.y, v.z, v.w});
     return result;
+}
+
+VertexCurvature device_curvature(const TriangleMesh& mesh) {
+    return device_curvature(mesh, mesh.vertices);
 }
 
 // In space, so that it does not matter how the principal directions are signed, nor where they are at umbilics.
@@ -94,8 +100,8 @@ std::vector<double> least_heights(const TriangleMesh& mesh) {
     return heights;
 }
 
-void expect_parity(const TriangleMesh& mesh, double tolerance = k_tolerance) {
-    const VertexCurvature expected = estimate_curvature(mesh, true), actual = device_curvature(mesh);
+void expect_near(const TriangleMesh& mesh, const VertexCurvature& actual, const VertexCurvature& expected,
+                 double tolerance) {
     ASSERT_EQ(actual.k1.size(), expected.k1.size());
     const std::vector<Vec3> normals = vertex_normals(mesh);
     const std::vector<double> heights = least_heights(mesh);
@@ -112,6 +118,21 @@ void expect_parity(const TriangleMesh& mesh, double tolerance = k_tolerance) {
                   tolerance * (1 / (heights[v] * heights[v]) + size_of(derivative)))
             << "vertex " << v;
     }
+}
+
+void expect_parity(const TriangleMesh& mesh, double tolerance = k_tolerance) {
+    expect_near(mesh, device_curvature(mesh), estimate_curvature(mesh, true), tolerance);
+}
+
+// Smoothed in units of the mesh at rest, of a frame of it.
+void expect_smoothed_parity(const TriangleMesh& rest, const std::vector<Vec3>& vertices, double smoothing) {
+    CurvatureEstimator reference(rest.faces, rest.vertex_count());
+    CurvatureOptions options{.smoothing = smoothing};
+    const VertexCurvature actual = device_curvature(rest, vertices, options);
+    options.smoothing_unit = reference.median_edge_length(rest.vertices);
+    TriangleMesh frame = rest;
+    frame.vertices = vertices;
+    expect_near(frame, actual, reference.estimate(vertices, options), k_tolerance);
 }
 
 bool same_bits(const std::vector<vec4>& a, const std::vector<vec4>& b) {
@@ -197,6 +218,25 @@ TEST(CurvatureParity, ClashingOrientationsStayFinite) {
     }
 }
 
+TEST(SmoothedCurvatureParity, OddNumbersOfVerticesAndFaces) {
+    for (const std::size_t vertices : {0u, 1u, 2u, 3u, 63u, 64u, 65u, 66u, 67u, 257u}) {
+        SCOPED_TRACE(vertices);
+        const TriangleMesh mesh = strip(vertices);
+        expect_smoothed_parity(mesh, mesh.vertices, 1);
+    }
+}
+
+TEST(SmoothedCurvatureParity, ClosedAndBoundedSurfaces) {
+    for (const double smoothing : {0.2, 1.0, 2.5})
+        for (const TriangleMesh& mesh :
+             {waved(shapes::icosphere(3, 1), 0.2f), waved(shapes::torus(2, 0.7f, 40, 17), 0.1f),
+              waved(shapes::grid(13, 9, 2), 0.3f), waved(shapes::cylinder(1, 3, 19, 7, false), 0.2f),
+              shapes::box(1, 2, 3, 4)}) {
+            SCOPED_TRACE(::testing::Message() << mesh.vertex_count() << " vertices by " << smoothing);
+            expect_smoothed_parity(mesh, mesh.vertices, smoothing);
+        }
+}
+
 // Fourth powers of lengths would leave the range of single precision.
 TEST(CurvatureParity, MeshesOfAnyScale) {
     const TriangleMesh mesh = waved(shapes::icosphere(2, 1), 0.2f);
@@ -209,7 +249,7 @@ TEST(CurvatureParity, MeshesOfAnyScale) {
 TEST(CurvatureParity, WithoutDerivatives) {
     const TriangleMesh mesh = waved(shapes::icosphere(2, 1), 0.2f);
     const GpuSurface surface(shared_device(), mesh);
-    GpuCurvature with(surface), without(surface, false);
+    GpuCurvature with(surface), without(surface, {.derivatives = false});
     const Buffer vertices = testing::upload_vertices(shared_device(), mesh.vertices);
     Stream stream(shared_device());
     with.record(stream, vertices);

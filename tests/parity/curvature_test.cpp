@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gpu/curvature/curvature.h"
+#include "gpu/curvature/near_vertices.h"
 #include "gpu/curvature/poser.h"
 #include "host/core/errors.h"
 #include "host/mesh/curvature.h"
@@ -135,6 +136,16 @@ void expect_smoothed_parity(const TriangleMesh& rest, const std::vector<Vec3>& v
     expect_near(frame, actual, reference.estimate(vertices, options), k_tolerance);
 }
 
+// With a vertex of no face, three on a line and their face, one where another is, and faces that name a vertex twice.
+TriangleMesh with_junk(TriangleMesh mesh) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertex_count());
+    mesh.vertices.insert(mesh.vertices.end(), {{9, 9, 9}, {0, 5, 5}, {1, 5, 5}, {2, 5, 5}, Vec3(mesh.vertices[0])});
+    for (const Face& face :
+         {Face{first + 1, first + 2, first + 3}, Face{3, 3, 8}, Face{7, 7, 7}, Face{0, first + 4, 1}})
+        mesh.faces.push_back(face);
+    return mesh;
+}
+
 bool same_bits(const std::vector<vec4>& a, const std::vector<vec4>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(vec4)) == 0;
 }
@@ -164,17 +175,10 @@ TEST(CurvatureParity, ClosedAndBoundedSurfaces) {
 }
 
 TEST(CurvatureParity, DegenerateFacesAndLooseVertices) {
-    TriangleMesh mesh = waved(shapes::icosphere(2, 1), 0.2f);
-    const auto first = static_cast<std::uint32_t>(mesh.vertex_count());
-    mesh.vertices.push_back({9, 9, 9});                                     // nobody's
-    for (float x : {0.0f, 1.0f, 2.0f}) mesh.vertices.push_back({x, 5, 5});  // on a line
-    mesh.vertices.push_back(mesh.vertices[0]);                              // where another is
-    for (const Face& face :
-         {Face{first + 1, first + 2, first + 3}, Face{3, 3, 8}, Face{7, 7, 7}, Face{0, first + 4, 1}})
-        mesh.faces.push_back(face);
+    const TriangleMesh clean = waved(shapes::icosphere(2, 1), 0.2f), mesh = with_junk(clean);
     expect_parity(mesh);
     const VertexCurvature actual = device_curvature(mesh);
-    for (const std::uint32_t v : {first, first + 1, first + 2, first + 3}) {
+    for (std::size_t v = clean.vertex_count(); v < mesh.vertex_count() - 1; ++v) {
         EXPECT_EQ(actual.k1[v], 0.0f);
         EXPECT_EQ(actual.k2[v], 0.0f);
         EXPECT_EQ(actual.derivative[v], (std::array<float, 4>{}));
@@ -237,6 +241,70 @@ TEST(SmoothedCurvatureParity, ClosedAndBoundedSurfaces) {
         }
 }
 
+// A tube that bends over a quarter circle: stretched outside, pressed together inside.
+std::vector<Vec3> bent(const TriangleMesh& tube, float length, float angle) {
+    std::vector<Vec3> vertices;
+    const float radius = length / angle;
+    for (const Vec3& p : tube.vertices) {
+        const float turn = p.z() / radius;
+        vertices.push_back({(p.x() + radius) * std::cos(turn) - radius, p.y(), (p.x() + radius) * std::sin(turn)});
+    }
+    return vertices;
+}
+
+TEST(SmoothedCurvatureParity, PosesFarFromRest) {
+    const TriangleMesh tube = waved(shapes::cylinder(1, 12, 40, 80, false), 0.05f);
+    for (const float angle : {0.3f, 1.0f, 1.5f}) {
+        SCOPED_TRACE(angle);
+        expect_smoothed_parity(tube, bent(tube, 12, angle), 1.5);
+    }
+}
+
+// What comes near from beyond the reach has little weight: the kernel ends at zero.
+TEST(SmoothedCurvatureParity, PressedBeyondReachOnlyTheRimIsMissing) {
+    const TriangleMesh rest = waved(shapes::grid(40, 40, 4), 0.1f);
+    const TriangleMesh pressed = shapes::transformed(rest, [](const Vec3& p) -> Vec3 {
+        return {p.x() / 2, p.y(), p.z()};
+    });
+    CurvatureEstimator reference(rest.faces, rest.vertex_count());
+    CurvatureOptions options{.derivatives = false, .smoothing = 1.5};
+    const VertexCurvature actual = device_curvature(rest, pressed.vertices, options);
+    options.smoothing_unit = reference.median_edge_length(rest.vertices);
+    const VertexCurvature expected = reference.estimate(pressed.vertices, options);
+    double error = 0, size = 0;
+    for (std::size_t v = 0; v < rest.vertex_count(); ++v) {
+        error += (form_in_space(actual, v) - form_in_space(expected, v)).squaredNorm();
+        size += form_in_space(expected, v).squaredNorm();
+    }
+    EXPECT_LE(std::sqrt(error / size), 0.08);
+}
+
+TEST(SmoothedCurvatureParity, DegenerateFacesAndLooseVertices) {
+    const TriangleMesh mesh = with_junk(waved(shapes::icosphere(2, 1), 0.2f));
+    expect_smoothed_parity(mesh, mesh.vertices, 1.5);
+}
+
+TEST(SmoothedCurvatureParity, MeshesOfAnyScale) {
+    const TriangleMesh mesh = waved(shapes::icosphere(2, 1), 0.2f);
+    for (const float scale : {1e-15f, 1e-6f, 1e6f, 1e15f}) {
+        SCOPED_TRACE(scale);
+        const TriangleMesh scaled = shapes::scaled(mesh, scale);
+        expect_smoothed_parity(scaled, scaled.vertices, 1);
+    }
+}
+
+TEST(SmoothedCurvatureParity, RefusesWhatTheDeviceCannotDo) {
+    const GpuSurface surface(shared_device(), shapes::icosphere(1, 1));
+    const auto refused = [&](const CurvatureOptions& options) {
+        EXPECT_THROW(GpuCurvature(surface, options), UsageError);
+    };
+    refused({.smoothing = -1});
+    refused({.smoothing = std::numeric_limits<double>::infinity()});
+    refused({.smoothing = 1, .smoothing_unit = std::numeric_limits<double>::quiet_NaN()});
+    refused({.robust = RobustEstimator::cauchy});
+    EXPECT_THROW(build_near_vertices(surface.rest(), 1, 41), UsageError);
+}
+
 // Fourth powers of lengths would leave the range of single precision.
 TEST(CurvatureParity, MeshesOfAnyScale) {
     const TriangleMesh mesh = waved(shapes::icosphere(2, 1), 0.2f);
@@ -275,7 +343,7 @@ TEST(CurvatureParity, ManyFramesOfARig) {
     const Rig rig = testing::random_rig(rest.vertex_count(), 12, 5, random);
     const GpuSurface surface(shared_device(), rest);
     GpuPoser poser(shared_device(), rig, rest.vertices);
-    GpuCurvature curvature(surface);
+    GpuCurvature curvature(surface, {.smoothing = 1});
     Stream stream(shared_device());
     std::vector<Pose> poses;
     for (int i = 0; i < 10; ++i) poses.push_back(random_pose(rig, random));

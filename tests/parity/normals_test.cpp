@@ -165,6 +165,16 @@ TEST(NormalParity, NeedlesAndCaps) {
     expect_parity(mesh);
 }
 
+TEST(NormalParity, AreasAddUpToThoseOfTheFaces) {
+    for (const TriangleMesh& mesh : {waved(shapes::torus(2, 0.7f, 30, 20), 0.1f), shapes::box(1, 2, 3, 4), strip(65),
+                                     shapes::scaled(shapes::icosphere(2, 1), 1000.0f)}) {
+        double around_vertices = 0, of_faces = 0;
+        for (const vec4& normal : device_normals(mesh)) around_vertices += static_cast<double>(normal.w);
+        for (const float area : face_areas(mesh)) of_faces += static_cast<double>(area);
+        EXPECT_NEAR(around_vertices, of_faces, 1e-6 * of_faces);
+    }
+}
+
 // Fourth powers of lengths would leave the range of single precision.
 TEST(NormalParity, MeshesOfAnyScale) {
     const TriangleMesh mesh = waved(shapes::icosphere(2, 1), 0.2f);

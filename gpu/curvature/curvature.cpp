@@ -62,20 +62,36 @@ Buffer attribute(const GpuSurface& surface) {
 }  // namespace
 
 GpuCurvature::Diffusion::Diffusion(const GpuSurface& surface, double width, bool with_derivatives)
-    : parameters{.vertices = surface.vertex_count(), .scale = surface.scale(), .exponent = 0, .limit = 0},
-      spins(attribute(surface)),
+    : spins(attribute(surface)),
       forms(surface.device(), shaders::curvature_smooth_forms_comp,
             gathering_interface<DiffusionParameters>(5, false)) {
-    const double scaled = width * static_cast<double>(surface.scale());
-    parameters.exponent = static_cast<float>(-0.5 * kept_variance() / (scaled * scaled));
-    parameters.limit = static_cast<float>(squared_radius(scaled));
+    const DeviceInfo& info = surface.device().info();
     const NearVertices rows = build_near_vertices(surface.rest(), k_smoothing_reach * std::sqrt(squared_radius(width)),
-                                                  surface.device().info().max_texels);
+                                                  info.max_allocation / sizeof(uvec4));
     near_begin = Buffer::of<std::uint32_t>(surface.device(), rows.begin);
     near = Buffer::of<uvec4>(surface.device(), rows.texels);
+    const double scaled = width * static_cast<double>(surface.scale());
+    for (const NearTile& tile : tile_rows(rows, info.max_texels, info.texel_alignment / sizeof(uvec4)))
+        tiles.push_back({.parameters = {.first = tile.first,
+                                        .vertices = tile.count,
+                                        .near_first = tile.first_texel,
+                                        .scale = surface.scale(),
+                                        .exponent = static_cast<float>(-0.5 * kept_variance() / (scaled * scaled)),
+                                        .limit = static_cast<float>(squared_radius(scaled))},
+                         .offset = tile.first_texel * sizeof(uvec4),
+                         .bytes = tile.texels * sizeof(uvec4)});
     if (with_derivatives)
         derivatives = Kernel(surface.device(), shaders::curvature_smooth_derivatives_comp,
                              gathering_interface<DiffusionParameters>(5, false));
+}
+
+void GpuCurvature::Diffusion::record(Stream& stream, const Kernel& kernel, const Buffer& vertices,
+                                     const Buffer& normals, const Buffer& sixth, const Buffer& seventh) const {
+    for (const Tile& tile : tiles)
+        stream.dispatch(
+            kernel, tile.parameters.vertices,
+            {near_begin, BufferRange(near, tile.offset, tile.bytes), vertices, normals, spins, sixth, seventh},
+            tile.parameters);
 }
 
 GpuCurvature::GpuCurvature(const GpuSurface& surface, const CurvatureOptions& options)
@@ -98,20 +114,12 @@ void GpuCurvature::record(Stream& stream, const Buffer& vertices) {
     stream.dispatch(curvature_kernel_, count,
                     {begin, rings, vertices, normals(), diffusion_ ? diffusion_->spins : first_, second_},
                     surface_.parameters());
-    if (diffusion_)
-        stream.dispatch(
-            diffusion_->forms, count,
-            {diffusion_->near_begin, diffusion_->near, vertices, normals(), diffusion_->spins, first_, second_},
-            diffusion_->parameters);
+    if (diffusion_) diffusion_->record(stream, diffusion_->forms, vertices, normals(), first_, second_);
     if (!derivative_) return;
     stream.dispatch(derivative_kernel_, count,
                     {begin, rings, vertices, first_, second_, normals(), diffusion_ ? diffusion_->spins : derivative_},
                     surface_.parameters());
-    if (diffusion_)
-        stream.dispatch(
-            diffusion_->derivatives, count,
-            {diffusion_->near_begin, diffusion_->near, vertices, normals(), diffusion_->spins, first_, derivative_},
-            diffusion_->parameters);
+    if (diffusion_) diffusion_->record(stream, diffusion_->derivatives, vertices, normals(), first_, derivative_);
 }
 
 }  // namespace exemplar

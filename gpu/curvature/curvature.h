@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <vector>
 
 #include "gpu/curvature/normals.h"
 #include "gpu/curvature/surface.h"
@@ -23,11 +25,12 @@ namespace exemplar {
 class GpuCurvature {
   public:
     /// `surface` must live as long as this. Throws UsageError for robust fits, which the device does not have, for a
-    /// smoothing that is negative or not finite, or one that reaches more vertices than the device can list.
+    /// smoothing that is negative or not finite, or one that reaches more vertices than a buffer of the device can
+    /// list.
     explicit GpuCurvature(const GpuSurface& surface, const CurvatureOptions& options = {});
 
     /// Curvature of `vertices`, a vec4 per vertex; two dispatches, one more each for smoothing and derivatives, and one
-    /// for both. Throws UsageError if they are not of the surface.
+    /// for both (in tiles where the device's limits are low). Throws UsageError if they are not of the surface.
     void record(Stream& stream, const Buffer& vertices);
     /// Normals and areas, as GpuNormals has them.
     const Buffer& normals() const { return normals_.normals(); }
@@ -40,9 +43,17 @@ class GpuCurvature {
 
   private:
     struct Diffusion {
+        // As many vertices as kernels can see the rows of.
+        struct Tile {
+            shared::DiffusionParameters parameters;
+            std::size_t offset, bytes;  // in `near`
+        };
         Diffusion(const GpuSurface& surface, double width, bool derivatives);
-        shared::DiffusionParameters parameters;
+        // `sixth` and `seventh` are the bindings in which the kernels differ.
+        void record(Stream& stream, const Kernel& kernel, const Buffer& vertices, const Buffer& normals,
+                    const Buffer& sixth, const Buffer& seventh) const;
         Buffer near_begin, near;
+        std::vector<Tile> tiles;
         Buffer spins;  // of what is to be smoothed next
         Kernel forms, derivatives;
     };

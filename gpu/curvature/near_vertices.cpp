@@ -92,4 +92,26 @@ NearVertices build_near_vertices(const TriangleMesh& mesh, double radius, std::s
     return near;
 }
 
+std::vector<NearTile> tile_rows(const NearVertices& rows, std::size_t most_texels, std::size_t alignment) {
+    const auto count = static_cast<std::uint32_t>(rows.begin.size());
+    const auto end_of = [&](std::uint32_t v) {
+        return v + 1 < count ? rows.begin[v + 1] : static_cast<std::uint32_t>(rows.texels.size());
+    };
+    const auto aligned = static_cast<std::uint32_t>(std::max<std::size_t>(alignment, 1));
+    std::vector<NearTile> tiles;
+    for (std::uint32_t v = 0; v < count; ++v) {
+        if (tiles.empty() || end_of(v) - tiles.back().first_texel > most_texels)
+            tiles.push_back({.first = v, .count = 0, .first_texel = rows.begin[v] / aligned * aligned, .texels = 0});
+        NearTile& tile = tiles.back();
+        ++tile.count;
+        tile.texels = end_of(v) - tile.first_texel;
+        if (tile.texels > most_texels)
+            throw UsageError(
+                fmt::format("smoothing reaches {} texels of vertices from vertex {}, over the limit of {} "
+                            "of this device; smooth less",
+                            tile.texels, v, most_texels));
+    }
+    return tiles;
+}
+
 }  // namespace exemplar

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "embedded/curvature_pose_comp.h"
+#include "gpu/curvature/texels.h"
 #include "host/core/errors.h"
 #include "shaders/shared/curvature.h"
 
@@ -139,9 +140,11 @@ void GpuPoser::upload_rig(Device& device, const Rig& rig, std::span<const Vec3> 
         vertices.push_back({rest[v].x(), rest[v].y(), rest[v].z(), static_cast<std::uint32_t>(pairs.size())});
         append_pairs(rig.influences_of(v), pairs);
     }
+    check_texels(device, pairs.size(), "the influences of a rig");
     rest_ = Buffer::of<RestVertex>(device, vertices);
     influences_ = Buffer::of<InfluencePair>(device, pairs);
     const Morphs morphs = gather_morphs(rig, target_count_ == 0 ? 0 : rest.size());
+    check_texels(device, morphs.offsets.size(), "the morph targets of a rig");
     morph_begin_ = Buffer::of<std::uint32_t>(device, morphs.begin);
     morphs_ = Buffer::of<MorphOffset>(device, morphs.offsets);
     pose_ = Buffer(device, k_rows_per_bone * sizeof(vec4) * rig.bones.size() + sizeof(float) * target_count_);

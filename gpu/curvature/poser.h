@@ -18,7 +18,7 @@ namespace exemplar {
 class GpuPoser {
   public:
     /// `rest` has the vertices that the rig moves. A rig without bones (of a mesh sequence) takes set_vertices() alone.
-    /// Throws UsageError if the rig contradicts itself or `rest`.
+    /// Throws UsageError if the rig contradicts itself or `rest`, DeviceLimitError if kernels cannot see all of it.
     GpuPoser(Device& device, const Rig& rig, std::span<const Vec3> rest);
 
     /// Poses the vertices. Throws UsageError if the pose is not of the rig, or the rig has no bones.

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "gpu/curvature/texels.h"
 #include "gpu/curvature/vertex_rings.h"
 #include "host/core/errors.h"
 
@@ -40,6 +41,7 @@ GpuSurface::GpuSurface(Device& device, TriangleMesh rest)
       face_count_(static_cast<std::uint32_t>(rest_.face_count())),
       scale_(1.0f) {
     const VertexRings rings = build_vertex_rings(rest_);
+    check_texels(device, std::max<std::size_t>(rings.texels.size(), face_count_), "the faces of a surface");
     scale_ = edge_scale(rest_);
     faces_ = Buffer::of<shared::uvec4>(device, corners_of(rest_));
     ring_begin_ = Buffer::of<std::uint32_t>(device, rings.begin);

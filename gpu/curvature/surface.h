@@ -14,7 +14,7 @@ namespace exemplar {
 class GpuSurface {
   public:
     /// `rest` is any frame of the surface; its vertices tell the scale of the mesh, and what may come near what. Throws
-    /// MeshError if a face refers to a vertex that does not exist.
+    /// MeshError if a face refers to a vertex that does not exist, DeviceLimitError if kernels cannot see all of it.
     GpuSurface(Device& device, TriangleMesh rest);
 
     Device& device() const { return *device_; }

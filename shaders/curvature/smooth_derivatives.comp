@@ -15,12 +15,13 @@ vec4 spins_turned(vec4 spins, vec2 turn) {
 }
 
 void main() {
-    const uint vertex = linear_thread();
-    if (vertex >= parameters.vertices) return;
+    const uint thread = linear_thread();
+    if (thread >= parameters.vertices) return;
+    const uint vertex = parameters.first + thread;
 
     const TangentFrame frame = any_frame(texelFetch(normals, int(vertex)).xyz);
     const vec3 e1 = texelFetch(first, int(vertex)).xyz;
-    const vec4 derivative = derivative_of_spins(diffused_spins(vertex, frame));
+    const vec4 derivative = derivative_of_spins(diffused_spins(vertex, frame.normal));
     derivatives[vertex] = parameters.scale * parameters.scale *
                           turned(derivative, vec2(dot(e1, frame.tangent), dot(e1, frame.bitangent)));
 }

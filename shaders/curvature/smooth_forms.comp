@@ -14,12 +14,13 @@ vec4 spins_turned(vec4 spins, vec2 turn) {
 }
 
 void main() {
-    const uint vertex = linear_thread();
-    if (vertex >= parameters.vertices) return;
+    const uint thread = linear_thread();
+    if (thread >= parameters.vertices) return;
+    const uint vertex = parameters.first + thread;
 
     const TangentFrame frame = any_frame(texelFetch(normals, int(vertex)).xyz);
     vec2 k;
-    const vec2 turn = principal_turn(form_of_spins(diffused_spins(vertex, frame)), k);
+    const vec2 turn = principal_turn(form_of_spins(diffused_spins(vertex, frame.normal)), k);
     first[vertex] = vec4(turn.x * frame.tangent + turn.y * frame.bitangent, parameters.scale * k.x);
     second[vertex] = vec4(turn.x * frame.bitangent - turn.y * frame.tangent, parameters.scale * k.y);
 }

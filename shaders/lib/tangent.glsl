@@ -15,6 +15,21 @@ TangentFrame any_frame(vec3 n) {
     return TangentFrame(vec3(1.0 + side * n.x * n.x * a, side * b, -side * n.x), vec3(b, side + n.y * n.y * a, -n.y), n);
 }
 
+// any_frame(n) as a spinor, two complex numbers, not normalized: what its rotation makes of the first basis spinor. Between
+// two normals the least rotation turns frames by twice the argument of the product of their spinors.
+vec4 spinor_of_frame(vec3 n) {
+    const float a = 1.0 + abs(n.z);
+    return n.z < 0.0 ? vec4(n.y, n.x, 0.0, a) : vec4(a, 0.0, n.x, n.y);
+}
+
+// turn_to(any_frame(m), any_frame(n).tangent, n) of their spinors, in half of the operations. Zero between
+// opposite normals.
+vec2 turn_between(vec4 m, vec4 n) {
+    const vec2 half_turn = vec2(dot(n, m), dot(n, vec4(m.y, -m.x, m.w, -m.z)));
+    const vec2 squares = half_turn * half_turn;
+    return vec2(squares.x - squares.y, 2.0 * half_turn.x * half_turn.y) / max(squares.x + squares.y, 1e-20);
+}
+
 // The turn (cosine and sine) from `frame` to a frame with this first axis and normal, laid flat into it by the least rotation.
 vec2 turn_to(TangentFrame frame, vec3 axis, vec3 normal) {
     const float one_plus = 1.0 + dot(frame.normal, normal);

@@ -56,7 +56,9 @@ const float k_diffusion_cutoff = 4.0f;
 const float k_diffusion_rest = 0.018315639f;  // exp(-k_diffusion_cutoff)
 
 struct DiffusionParameters {
-    uint vertices;
+    uint first;       // vertex of the tile
+    uint vertices;    // in the tile
+    uint near_first;  // texel of all rows with which the tile's begin
     float scale;     // as in SurfaceParameters; the others are in scaled units
     float exponent;  // -1 / (2 s^2)
     float limit;     // of the squared distance
@@ -68,7 +70,7 @@ EXEMPLAR_LAYOUT(InfluencePair, first_bone, first_weight, second_bone, second_wei
 EXEMPLAR_LAYOUT(MorphOffset, x, y, z, target)
 EXEMPLAR_LAYOUT(PoseParameters, vertices, first_weight, targets)
 EXEMPLAR_LAYOUT(SurfaceParameters, vertices, scale)
-EXEMPLAR_LAYOUT(DiffusionParameters, vertices, scale, exponent, limit)
+EXEMPLAR_LAYOUT(DiffusionParameters, first, vertices, near_first, scale, exponent, limit)
 #endif
 
 SHARED_END

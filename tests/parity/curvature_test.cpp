@@ -293,6 +293,26 @@ TEST(SmoothedCurvatureParity, MeshesOfAnyScale) {
     }
 }
 
+// Each row lies whole in the tile of its vertex, and each vertex is in one.
+TEST(NearVertices, AreTiledToTheLimit) {
+    const NearVertices rows = build_near_vertices(waved(shapes::icosphere(3, 1), 0.2f), 0.4, 1'000'000);
+    for (const std::size_t most : {std::size_t{40}, std::size_t{1000}, rows.texels.size() + 4})
+        for (const std::size_t alignment : {1u, 4u, 16u}) {
+            std::uint32_t next = 0;
+            for (const NearTile& tile : tile_rows(rows, most, alignment)) {
+                EXPECT_EQ(tile.first, next);
+                EXPECT_EQ(tile.first_texel % alignment, 0u);
+                EXPECT_LE(tile.texels, most);
+                EXPECT_LE(tile.first_texel, rows.begin[tile.first]);
+                next = tile.first + tile.count;
+                EXPECT_EQ(tile.first_texel + tile.texels,
+                          next < rows.begin.size() ? rows.begin[next] : rows.texels.size());
+            }
+            EXPECT_EQ(next, rows.begin.size());
+        }
+    EXPECT_THROW(tile_rows(rows, 3, 1), UsageError);
+}
+
 TEST(SmoothedCurvatureParity, RefusesWhatTheDeviceCannotDo) {
     const GpuSurface surface(shared_device(), shapes::icosphere(1, 1));
     const auto refused = [&](const CurvatureOptions& options) {

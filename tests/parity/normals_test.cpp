@@ -8,6 +8,7 @@
 
 #include "gpu/curvature/normals.h"
 #include "gpu/curvature/vertex_rings.h"
+#include "gpu/runtime/errors.h"
 #include "host/core/errors.h"
 #include "tests/gpu/support/environment.h"
 #include "tests/parity/surfaces.h"
@@ -114,6 +115,23 @@ TEST(VertexRings, RefuseFacesOfVerticesThatAreNotThere) {
     TriangleMesh mesh = shapes::grid(2, 2, 1);
     mesh.faces[3][1] = 9;
     EXPECT_THROW(build_vertex_rings(mesh), MeshError);
+}
+
+TEST(GpuSurface, HoldsItsFaces) {
+    const TriangleMesh mesh = shapes::icosphere(1, 1);
+    const GpuSurface surface(shared_device(), mesh);
+    std::vector<shared::uvec4> faces(surface.face_count());
+    surface.faces().download(std::span(faces));
+    ASSERT_EQ(faces.size(), mesh.face_count());
+    for (std::size_t f = 0; f < faces.size(); ++f) EXPECT_EQ((Face{faces[f].x, faces[f].y, faces[f].z}), mesh.faces[f]);
+}
+
+TEST(GpuSurface, RefusesMeshesOverTheLimitOfTexels) {
+    const std::size_t limit = shared_device().info().max_texels;
+    if (limit > 1'000'000) GTEST_SKIP() << "the device sees " << limit << " texels at once";
+    TriangleMesh mesh;
+    mesh.vertices.resize(limit + 1, Vec3::Zero());
+    EXPECT_THROW(GpuSurface(shared_device(), mesh), DeviceLimitError);
 }
 
 TEST(NormalParity, OddNumbersOfVerticesAndFaces) {

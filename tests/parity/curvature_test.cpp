@@ -366,6 +366,7 @@ TEST(CurvatureParity, ManyFramesOfARig) {
     GpuCurvature curvature(surface, {.smoothing = 1});
     Stream stream(shared_device());
     std::vector<Pose> poses;
+    poses.reserve(10);
     for (int i = 0; i < 10; ++i) poses.push_back(random_pose(rig, random));
     const auto run = [&](const Pose& pose) {
         poser.record(stream, pose);
@@ -374,6 +375,7 @@ TEST(CurvatureParity, ManyFramesOfARig) {
         return std::array{download(curvature.first()), download(curvature.second()), download(curvature.derivative())};
     };
     std::vector<std::array<std::vector<vec4>, 3>> first;
+    first.reserve(poses.size());
     for (const Pose& pose : poses) first.push_back(run(pose));
     for (int i = 0; i < 200; ++i) run(poses[0]);
     const std::size_t before = resident_bytes();

@@ -8,6 +8,7 @@
 #include "host/core/random.h"
 #include "host/mesh/axes.h"
 #include "host/mesh/curvature.h"
+#include "host/mesh/curvature_estimator.h"
 #include "host/mesh/geodesics.h"
 #include "host/mesh/mesh.h"
 #include "host/mesh/rays.h"
@@ -39,8 +40,10 @@ TriangleMesh bumpy_torus(std::uint32_t n, std::uint32_t m) {
 TriangleMesh mesh_of_20k_faces() {
     return bumpy_torus(170, 59);
 }
-TriangleMesh mesh_of_20k_vertices() {
-    return bumpy_torus(250, 80);
+/// About 10, 20 or 50 thousand vertices.
+TriangleMesh mesh_of_vertices(std::int64_t thousands) {
+    if (thousands == 10) return bumpy_torus(179, 56);
+    return thousands == 20 ? bumpy_torus(250, 80) : bumpy_torus(400, 125);
 }
 
 void count_items(benchmark::State& state, std::size_t per_iteration) {
@@ -127,13 +130,36 @@ void rays_inward(benchmark::State& state) {
 }
 BENCHMARK(rays_inward)->Unit(benchmark::kMillisecond);
 
-void curvature(benchmark::State& state) {
-    const TriangleMesh mesh = mesh_of_20k_vertices();
+void curvature_once(benchmark::State& state) {
+    const TriangleMesh mesh = mesh_of_vertices(20);
     const ThreadLimit one(1);
     for (auto _ : state) benchmark::DoNotOptimize(estimate_curvature(mesh, state.range(0) != 0));
     count_items(state, mesh.vertex_count());
 }
-BENCHMARK(curvature)->ArgName("derivatives")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(curvature_once)->ArgName("derivatives")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+
+void curvature_again(benchmark::State& state, const CurvatureOptions& options) {
+    const TriangleMesh mesh = mesh_of_vertices(state.range(0));
+    const ThreadLimit one(1);
+    CurvatureEstimator estimator(mesh.faces, mesh.vertex_count());
+    estimator.estimate(mesh.vertices, options);  // allocates
+    for (auto _ : state) benchmark::DoNotOptimize(estimator.estimate(mesh.vertices, options));
+    count_items(state, mesh.vertex_count());
+}
+#define CURVATURE_AGAIN(name, ...)                                         \
+    BENCHMARK_CAPTURE(curvature_again, name, CurvatureOptions __VA_ARGS__) \
+        ->ArgName("thousands")                                             \
+        ->Arg(10)                                                          \
+        ->Arg(20)                                                          \
+        ->Arg(50)                                                          \
+        ->Unit(benchmark::kMillisecond)
+CURVATURE_AGAIN(without_derivatives, {false});
+CURVATURE_AGAIN(with_derivatives, {true});
+CURVATURE_AGAIN(smoothed_by_1, {true, 1});
+CURVATURE_AGAIN(smoothed_by_2, {true, 2});
+CURVATURE_AGAIN(cauchy, {true, 0, 0, RobustEstimator::cauchy});
+CURVATURE_AGAIN(geman_mcclure, {true, 0, 0, RobustEstimator::geman_mcclure});
+#undef CURVATURE_AGAIN
 
 void symmetry(benchmark::State& state) {
     const TriangleMesh mesh = mesh_of_20k_faces();

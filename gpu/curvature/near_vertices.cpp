@@ -9,7 +9,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
-#include "host/mesh/tensor_diffusion.h"
+#include "host/mesh/vertex_neighbors.h"
 
 namespace exemplar {
 namespace {

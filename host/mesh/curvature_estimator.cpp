@@ -17,11 +17,14 @@ namespace {
 
 constexpr std::size_t k_grain = 4096;  // faces or vertices that one thread takes at a time
 
-/// Where the corners of each face stand in rows of corners ordered by vertex, then by face: sums over a row give the
+/// The corners at each vertex (3 x face + corner), in increasing order, as compressed rows: sums over a row give the
 /// same bits on any number of threads.
 struct CornerRows {
-    std::vector<std::uint32_t> begin;                 ///< V + 1 offsets
-    std::vector<std::array<std::uint32_t, 3>> place;  ///< per face and corner
+    std::vector<std::uint32_t> begin;  ///< V + 1 offsets
+    std::vector<std::uint32_t> corner;
+    std::span<const std::uint32_t> of(std::size_t v) const {
+        return {corner.data() + begin[v], corner.data() + begin[v + 1]};
+    }
 };
 
 CornerRows build_corner_rows(std::span<const Face> faces, std::size_t vertex_count) {
@@ -36,8 +39,9 @@ CornerRows build_corner_rows(std::span<const Face> faces, std::size_t vertex_cou
         }
     for (std::size_t v = 0; v < vertex_count; ++v) rows.begin[v + 1] += rows.begin[v];
     std::vector<std::uint32_t> next(rows.begin.begin(), rows.begin.end() - 1);
-    rows.place.reserve(faces.size());
-    for (const Face& face : faces) rows.place.push_back({next[face[0]]++, next[face[1]]++, next[face[2]]++});
+    rows.corner.resize(3 * faces.size());
+    for (std::size_t f = 0; f < faces.size(); ++f)
+        for (std::size_t i = 0; i < 3; ++i) rows.corner[next[faces[f][i]]++] = static_cast<std::uint32_t>(3 * f + i);
     return rows;
 }
 
@@ -51,6 +55,7 @@ Vec3 unit_or_up(const Vec3d& v) {
 struct Surroundings {
     VertexNeighbors neighbors;
     TensorDiffusion diffusion;
+    std::unique_ptr<RobustFits> robust;
     std::vector<float> lengths;
 
     Surroundings(std::span<const Face> faces, std::size_t vertex_count)
@@ -78,8 +83,8 @@ struct CurvatureEstimator::Parts {
     CornerRows rows;
     std::unique_ptr<Surroundings> surroundings;  ///< made when first needed
     std::vector<FaceFit> fits;
-    std::vector<CornerShare> shares;        ///< per corner, in rows
-    std::vector<FormDerivative> at_corner;  ///< per corner, in rows: a face's tensor in the frame of the vertex
+    std::vector<Form> face_forms;  ///< in the frames of the faces
+    std::vector<FormDerivative> face_derivatives;
     std::vector<Vec3> normals;
     std::vector<TangentFrame> frames;
     std::vector<float> areas;
@@ -91,13 +96,11 @@ struct CurvatureEstimator::Parts {
         : faces(mesh_faces.begin(), mesh_faces.end()),
           rows(build_corner_rows(faces, vertex_count)),
           fits(faces.size()),
-          shares(3 * faces.size()),
-          at_corner(3 * faces.size()),
+          face_forms(faces.size()),
           normals(vertex_count, Vec3::UnitZ()),
           frames(vertex_count),
           areas(vertex_count),
-          forms(vertex_count),
-          derivatives(vertex_count) {
+          forms(vertex_count) {
         result.k1.resize(vertex_count);
         result.k2.resize(vertex_count);
         result.e1.resize(vertex_count);
@@ -106,13 +109,14 @@ struct CurvatureEstimator::Parts {
 
     void check(std::span<const Vec3> vertices) const;
     Surroundings& around();
+    const RobustFits* robust_fits(const CurvatureOptions& options);
     TensorDiffusion* prepared_diffusion(std::span<const Vec3> vertices, const CurvatureOptions& options);
     void measure(std::span<const Vec3> vertices);
     void fit_forms();
     void fit_derivatives();
     void diagonalize(bool with_derivatives);
     template <typename Tensor>
-    void average(std::vector<Tensor>& sums) const;
+    void average(const std::vector<Tensor>& of_faces, std::vector<Tensor>& sums) const;
 };
 
 void CurvatureEstimator::Parts::check(std::span<const Vec3> vertices) const {
@@ -134,21 +138,22 @@ void CurvatureEstimator::Parts::measure(std::span<const Vec3> vertices) {
         faces.size(),
         [&](std::size_t f) {
             const auto& [a, b, c] = faces[f];
-            const std::array<CornerShare, 3> of_face = measure_face({vertices[a], vertices[b], vertices[c]}, fits[f]);
-            for (std::size_t i = 0; i < 3; ++i) shares[rows.place[f][i]] = of_face[i];
+            measure_face({vertices[a], vertices[b], vertices[c]}, fits[f]);
         },
         k_grain);
     parallel_for(
         vertices.size(),
         [&](std::size_t v) {
-            CornerShare sum;
-            for (std::uint32_t i = rows.begin[v]; i < rows.begin[v + 1]; ++i) {
-                sum.normal += shares[i].normal;
-                sum.area += shares[i].area;
+            Vec3d normal = Vec3d::Zero();
+            float area = 0;
+            for (const std::uint32_t corner : rows.of(v)) {
+                const FaceFit& fit = fits[corner / 3];
+                normal += static_cast<double>(fit.normal_weight[corner % 3]) * fit.normal;
+                area += fit.corner_area[corner % 3];
             }
-            normals[v] = unit_or_up(sum.normal);
+            normals[v] = unit_or_up(normal);
             frames[v] = any_frame(normals[v]);
-            areas[v] = sum.area;
+            areas[v] = area;
         },
         k_grain);
 }
@@ -160,19 +165,19 @@ void CurvatureEstimator::Parts::fit_forms() {
             FaceFit& fit = fits[f];
             if (!fit.valid) return;
             const Face& face = faces[f];
-            const Form form = fit_form(fit, {normals[face[0]], normals[face[1]], normals[face[2]]});
+            face_forms[f] = fit_form(fit, {normals[face[0]], normals[face[1]], normals[face[2]]});
             for (std::size_t i = 0; i < 3; ++i) {
                 const TangentFrame& there = frames[face[i]];
                 fit.turn[i] = turn_to(fit.frame, there.tangent, there.normal);
-                const Form at = turned(form, fit.turn[i]);
-                at_corner[rows.place[f][i]] = {at[0], at[1], at[2], 0.0f};
             }
         },
         k_grain);
-    average(forms);
+    average(face_forms, forms);
 }
 
 void CurvatureEstimator::Parts::fit_derivatives() {
+    face_derivatives.resize(faces.size());
+    derivatives.resize(normals.size());
     parallel_for(
         faces.size(),
         [&](std::size_t f) {
@@ -180,25 +185,26 @@ void CurvatureEstimator::Parts::fit_derivatives() {
             if (!fit.valid) return;
             std::array<Form, 3> in_face;
             for (std::size_t i = 0; i < 3; ++i) in_face[i] = turned(forms[faces[f][i]], fit.turn[i].inverse());
-            const FormDerivative derivative = fit_derivative(fit, in_face);
-            for (std::size_t i = 0; i < 3; ++i) at_corner[rows.place[f][i]] = turned(derivative, fit.turn[i]);
+            face_derivatives[f] = fit_derivative(fit, in_face);
         },
         k_grain);
-    average(derivatives);
+    average(face_derivatives, derivatives);
 }
 
-/// Mean of the faces' tensors at each vertex, weighted by corner area; zero without faces. A degenerate face has no
-/// area, and its tensor is not to be read.
+/// Mean of the faces' tensors at each vertex, weighted by corner area; zero without faces. A degenerate face has
+/// no tensor.
 template <typename Tensor>
-void CurvatureEstimator::Parts::average(std::vector<Tensor>& sums) const {
+void CurvatureEstimator::Parts::average(const std::vector<Tensor>& of_faces, std::vector<Tensor>& sums) const {
     parallel_for(
         sums.size(),
         [&](std::size_t v) {
             Tensor sum{};
-            for (std::uint32_t i = rows.begin[v]; i < rows.begin[v + 1]; ++i) {
-                const float area = shares[i].area;
-                if (!(area > 0)) continue;
-                for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += area * at_corner[i][k];
+            for (const std::uint32_t corner : rows.of(v)) {
+                const FaceFit& fit = fits[corner / 3];
+                if (!fit.valid) continue;
+                const Tensor there = turned(of_faces[corner / 3], fit.turn[corner % 3]);
+                const float area = fit.corner_area[corner % 3];
+                for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += area * there[k];
             }
             const float scale = areas[v] > 0 ? 1 / areas[v] : 0.0f;
             for (float& s : sum) s *= scale;
@@ -220,6 +226,13 @@ void CurvatureEstimator::Parts::diagonalize(bool with_derivatives) {
             if (with_derivatives) result.derivative[v] = turned(derivatives[v], turn);
         },
         k_grain);
+}
+
+/// Null for plain least squares.
+const RobustFits* CurvatureEstimator::Parts::robust_fits(const CurvatureOptions& options) {
+    if (options.robust == RobustEstimator::none) return nullptr;
+    if (!around().robust) around().robust = std::make_unique<RobustFits>(around().neighbors);
+    return around().robust.get();
 }
 
 /// Null without smoothing.
@@ -248,10 +261,13 @@ const VertexCurvature& CurvatureEstimator::estimate(std::span<const Vec3> vertic
                                      options.smoothing, options.smoothing_unit));
     parts.measure(vertices);
     parts.fit_forms();
+    const RobustFits* const robust = parts.robust_fits(options);
+    if (robust) robust->fit(vertices, parts.frames, options.robust, parts.forms);
     TensorDiffusion* const diffusion = parts.prepared_diffusion(vertices, options);
     if (diffusion) diffusion->apply(parts.forms);
     if (options.derivatives) {
         parts.fit_derivatives();
+        if (robust) robust->fit(vertices, parts.frames, options.robust, parts.forms, parts.derivatives);
         if (diffusion) diffusion->apply(parts.derivatives);
     }
     parts.diagonalize(options.derivatives);

@@ -7,11 +7,9 @@
 
 #include "host/mesh/curvature.h"
 #include "host/mesh/mesh.h"
+#include "host/mesh/robust_fit.h"
 
 namespace exemplar {
-
-/// What limits the pull of outliers on the least-squares fits (thesis Sec. 2.2.1, Eq. 2.7 and 2.8).
-enum class RobustEstimator { none, cauchy, geman_mcclure };
 
 struct CurvatureOptions {
     bool derivatives = true;

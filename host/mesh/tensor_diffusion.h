@@ -8,18 +8,9 @@
 
 #include "host/mesh/mesh.h"
 #include "host/mesh/tangent_tensors.h"
+#include "host/mesh/vertex_neighbors.h"
 
 namespace exemplar {
-
-/// The vertices that share an edge with each vertex, in increasing order, as compressed rows.
-struct VertexNeighbors {
-    std::vector<std::uint32_t> begin;  ///< V + 1 offsets
-    std::vector<std::uint32_t> vertex;
-    std::span<const std::uint32_t> of(std::size_t v) const {
-        return {vertex.data() + begin[v], vertex.data() + begin[v + 1]};
-    }
-};
-VertexNeighbors build_vertex_neighbors(std::span<const Face> faces, std::size_t vertex_count);
 
 /// Diffusion of tensors in vertex frames over a surface: each becomes the mean of those around it under a Gaussian of
 /// their distance, transported to its frame by the least rotation and weighted by vertex area.

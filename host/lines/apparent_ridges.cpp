@@ -1,0 +1,108 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "host/core/parallel.h"
+#include "host/lines/line_fields.h"
+
+namespace exemplar {
+
+namespace {
+
+constexpr std::size_t k_grain = 4096;  // vertices that one thread takes at a time
+constexpr float k_grazing = 1e-3f;     // least |n.w| that the foreshortening is computed with
+
+/// View-dependent curvature (Judd et al. 2007): how much the normal turns over a step on the screen.
+struct ViewCurvature {
+    float q = 0;                     ///< the largest: squared, in 1 / squared mesh units
+    Vec2 direction = Vec2::UnitX();  ///< of it, on the surface, in (e1, e2); a step of length 1 on the screen
+    float cosine = 1;                ///< n.w
+};
+
+/// With S = diag(k1, k2) and a the unit projection of w into the surface, a step x on the screen is one of
+/// x + (1 / |n.w| - 1) a a^T x on the surface, so Q = S + (1 / |n.w| - 1) S a a^T turns it into the change of the
+/// normal. The largest eigenvalue of Q^T Q, and its eigenvector.
+ViewCurvature view_curvature(float k1, float k2, float u, float v, float cosine) {
+    ViewCurvature result;
+    result.cosine = cosine;
+    const float sine = std::hypot(u, v), stretch = 1 / std::max(std::abs(cosine), k_grazing) - 1;
+    const Vec2 a = sine > 0 ? Vec2(u / sine, v / sine) : Vec2::Zero();
+    const Eigen::Matrix2f to_surface = Eigen::Matrix2f::Identity() + stretch * a * a.transpose();
+    const Eigen::Matrix2f to_normal = Eigen::Vector2f(k1, k2).asDiagonal() * to_surface;
+    const Eigen::Matrix2f squared = to_normal.transpose() * to_normal;
+    const float half_difference = 0.5f * (squared(0, 0) - squared(1, 1)), off = squared(0, 1);
+    const float radius = std::hypot(half_difference, off);
+    result.q = 0.5f * squared.trace() + radius;
+    // Half the angle of (half_difference, off).
+    const float angle = 0.5f * std::atan2(off, half_difference);
+    result.direction = to_surface * Vec2(std::cos(angle), std::sin(angle));
+    return result;
+}
+
+/// Sum and number of the differences quotients of q along the direction of a vertex.
+struct Slope {
+    float sum = 0;
+    int count = 0;
+};
+
+float cross(const Vec2& a, const Vec2& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
+
+/// Adds the quotient in the face of a vertex with these other corners, seen from it in (e1, e2), if the direction of
+/// the vertex, forward or backward, leads into it.
+void add_slope(const ViewCurvature& here, const Vec2& to_a, const Vec2& to_b, float q_a, float q_b, Slope& slope) {
+    const float length = here.direction.norm();
+    for (const float sign : {1.0f, -1.0f}) {
+        const Vec2 direction = sign * here.direction;
+        const float beside_a = cross(to_a, direction), beside_b = cross(direction, to_b);
+        if (!(beside_a >= 0 && beside_b > 0)) continue;
+        const float t = beside_a / (beside_a + beside_b);
+        const Vec2 across = to_a + t * (to_b - to_a);
+        const float on_screen = across.dot(direction) / (length * length);
+        if (!(on_screen > 0)) continue;
+        slope.sum += sign * (q_a + t * (q_b - q_a) - here.q) / on_screen;
+        ++slope.count;
+    }
+}
+
+}  // namespace
+
+std::vector<LineField> apparent_ridge_field(const LineSurface& surface, const LineOptions& options) {
+    const VertexCurvature& c = surface.curvature;
+    const std::size_t count = surface.vertices.size();
+    std::vector<ViewCurvature> view(count);
+    parallel_for(
+        count,
+        [&](std::size_t i) {
+            const Vec3 w = (options.eye - surface.vertices[i]).normalized();
+            view[i] = view_curvature(c.k1[i], c.k2[i], c.e1[i].dot(w), c.e2[i].dot(w), surface.normals[i].dot(w));
+        },
+        k_grain);
+
+    std::vector<Slope> slopes(count);
+    for (const Face& face : surface.faces)
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const std::uint32_t i = face[corner], a = face[(corner + 1) % 3], b = face[(corner + 2) % 3];
+            const auto seen = [&](std::uint32_t other) {
+                const Vec3 step = surface.vertices[other] - surface.vertices[i];
+                return Vec2(c.e1[i].dot(step), c.e2[i].dot(step));
+            };
+            add_slope(view[i], seen(a), seen(b), view[a].q, view[b].q, slopes[i]);
+        }
+
+    const float squared_unit = options.feature_size * options.feature_size;
+    std::vector<LineField> field(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec2 direction = view[i].direction.normalized();
+        const float slope = slopes[i].count ? slopes[i].sum / static_cast<float>(slopes[i].count) : 0.0f;
+        field[i].value = 1;
+        field[i].strength = view[i].q * squared_unit;
+        field[i].margin = field[i].strength - options.thresholds.apparent_ridges;
+        field[i].front = view[i].cosine;
+        field[i].direction = slope * (direction.x() * c.e1[i] + direction.y() * c.e2[i]);
+    }
+    return field;
+}
+
+}  // namespace exemplar

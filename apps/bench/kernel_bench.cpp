@@ -4,23 +4,31 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "gpu/curvature/curvature.h"
+#include "gpu/curvature/normals.h"
+#include "gpu/curvature/poser.h"
 #include "gpu/labeling/context_histograms.h"
 #include "gpu/learn/stump_scorer.h"
 #include "gpu/runtime/device.h"
+#include "host/core/parallel.h"
 #include "host/core/random.h"
 #include "host/core/stopwatch.h"
 
-// The kernels of labeling on the device of EXEMPLAR_DEVICE, else the best: each is compared with its CPU reference
-// once, then timed by the device's own timestamps. The argument is the number of faces. Counters, per call:
+// The kernels of labeling and of animated surfaces on the device of EXEMPLAR_DEVICE, else the best: each is compared
+// with its CPU reference once, then timed by the device's own timestamps. The argument is the number of faces, of
+// animated surfaces that of vertices. Counters, per call:
 //   MB       what must cross the memory at least: every input once, every output once
 //   Mop      additions, comparisons and selections that the result needs, 10^6
 //   GB/s, Gop/s       these by device time
 //   copy, fma         and as shares of the device's measured ceilings (one multiply-add counts as two operations)
 //   call, call_cpu    milliseconds of the whole call with its transfers: wall clock, and CPU of this process
-//   reference_cpu     milliseconds of CPU of the reference
+//   reference_cpu     milliseconds of CPU of the reference, on one thread where it is of an animated surface
 
 namespace exemplar {
 namespace {
@@ -179,6 +187,206 @@ void context_histograms(benchmark::State& state) {
     state.counters["reference_cpu"] = reference_ms;
 }
 BENCHMARK(context_histograms)->Arg(5'000)->Arg(20'000)->Arg(100'000)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+// A wavy torus of twice as many faces as vertices, its edges about 1 long, so that rounding is about the same in all
+// sizes.
+TriangleMesh wavy_torus(std::uint32_t vertices) {
+    const auto around = static_cast<std::uint32_t>(std::sqrt(vertices / 2.0)), along = vertices / around;
+    TriangleMesh mesh;
+    const auto at = [&](std::uint32_t i, std::uint32_t j) { return i % along * around + j % around; };
+    const double ring = along / (2 * std::numbers::pi), tube = around / (2 * std::numbers::pi);
+    for (std::uint32_t i = 0; i < along; ++i)
+        for (std::uint32_t j = 0; j < around; ++j) {
+            const double u = i / ring, v = j / tube, w = 2 * ring + tube * std::cos(v) * (1 + 0.1 * std::sin(5 * u));
+            mesh.vertices.push_back(Vec3d(w * std::cos(u), w * std::sin(u), tube * std::sin(v)).cast<float>());
+            mesh.faces.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+            mesh.faces.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    return mesh;
+}
+
+// A chain of 60 bones, four on each vertex, and 20 targets that move a twentieth of the vertices each.
+Rig chain_rig(std::size_t vertices, Random& random) {
+    Rig rig;
+    for (std::uint32_t b = 0; b < 60; ++b) {
+        rig.nodes.push_back({std::to_string(b), b == 0 ? k_none : b - 1, {.translation = Vec3(0.1f, 0, 0)}});
+        rig.bones.push_back({b, Affine::Identity()});
+    }
+    for (std::size_t v = 0; v < vertices; ++v) {
+        rig.influence_begin.push_back(static_cast<std::uint32_t>(rig.influences.size()));
+        const auto first = static_cast<std::uint32_t>(v * 57 / vertices);
+        for (std::uint32_t b = first; b < first + 4; ++b) rig.influences.push_back({b, 0.25f});
+    }
+    rig.influence_begin.push_back(static_cast<std::uint32_t>(rig.influences.size()));
+    for (std::size_t t = 0; t < 20; ++t) {
+        MorphTarget target{.name = std::to_string(t), .vertices = {}, .offsets = {}};
+        for (std::uint32_t v = 0; v < vertices; ++v)
+            if (random.uniform() < 0.05) {
+                target.vertices.push_back(v);
+                target.offsets.emplace_back(0.1f, 0.2f, 0.3f);
+            }
+        rig.targets.push_back(std::move(target));
+    }
+    return rig;
+}
+
+std::vector<float> flattened(std::span<const Vec3> vectors, float scale) {
+    std::vector<float> values;
+    values.reserve(3 * vectors.size());
+    for (const Vec3& v : vectors) values.insert(values.end(), {scale * v.x(), scale * v.y(), scale * v.z()});
+    return values;
+}
+
+std::vector<shared::vec4> downloaded(const Buffer& buffer) {
+    std::vector<shared::vec4> values(buffer.bytes() / sizeof(shared::vec4));
+    buffer.download(std::span(values));
+    return values;
+}
+
+std::vector<Vec3> vectors_of(const Buffer& buffer) {
+    std::vector<Vec3> vectors;
+    vectors.reserve(buffer.bytes() / sizeof(shared::vec4));
+    for (const shared::vec4& v : downloaded(buffer)) vectors.emplace_back(v.x, v.y, v.z);
+    return vectors;
+}
+
+Buffer uploaded(std::span<const Vec3> vertices) {
+    std::vector<shared::vec4> values;
+    values.reserve(vertices.size());
+    for (const Vec3& v : vertices) values.push_back({v.x(), v.y(), v.z(), 1.0f});
+    return Buffer::of<shared::vec4>(bench().device, values);
+}
+
+void pose(benchmark::State& state) {
+    Random random(3);
+    const TriangleMesh rest = wavy_torus(static_cast<std::uint32_t>(state.range(0)));
+    const Rig rig = chain_rig(rest.vertex_count(), random);
+    Pose posed = rest_pose(rig);
+    for (NodeTransform& node : posed.nodes) node.rotation = Eigen::AngleAxisf(0.02f, Vec3::UnitZ());
+    for (float& weight : posed.weights) weight = static_cast<float>(random.uniform());
+    std::vector<Vec3> expected;
+    const double reference_ms = reference_cpu([&] { pose_vertices(rig, rest.vertices, posed, expected); });
+    Profiler profiler;
+    Stream stream(bench().device, &profiler);
+    GpuPoser poser(bench().device, rig, rest.vertices);
+    const auto call = [&] {
+        poser.record(stream, posed);
+        stream.finish();
+    };
+    call();
+    // Sums of a few products, relative to the size of the mesh.
+    const float size = 1.0f / static_cast<float>(bounding_box(rest).diagonal());
+    if (!verified(state, flattened(vectors_of(poser.vertices()), size), flattened(expected, size))) return;
+
+    // Per influence twelve products and sums; the point itself three times four; an offset of a target per vertex.
+    const auto vertices = static_cast<double>(rest.vertex_count());
+    time_call(state, profiler,
+              {.bytes = vertices * (16 + 32 + 4 + 16 + 16), .operations = vertices * (4 * 24 + 24 + 6)}, call);
+    state.counters["reference_cpu"] = reference_ms;
+}
+BENCHMARK(pose)->Arg(5'000)->Arg(20'000)->Arg(100'000)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+// What the kernels read and write per vertex of six faces, each once, and about how much they calculate per face.
+constexpr double k_ring_bytes = 4 + 32, k_normal_operations = 60, k_curvature_operations = 200,
+                 k_derivative_operations = 350, k_near_operations = 100;
+
+void normals(benchmark::State& state) {
+    const TriangleMesh mesh = wavy_torus(static_cast<std::uint32_t>(state.range(0)));
+    std::vector<Vec3> expected;
+    const double reference_ms = reference_cpu([&] { expected = vertex_normals(mesh); });
+    const GpuSurface surface(bench().device, mesh);
+    const Buffer vertices = uploaded(mesh.vertices);
+    Profiler profiler;
+    Stream stream(bench().device, &profiler);
+    GpuNormals device_normals(surface);
+    const auto call = [&] {
+        device_normals.record(stream, vertices);
+        stream.finish();
+    };
+    call();
+    if (!verified(state, flattened(vectors_of(device_normals.normals()), 1), flattened(expected, 1))) return;
+
+    const auto count = static_cast<double>(mesh.vertex_count());
+    time_call(state, profiler, {.bytes = count * (k_ring_bytes + 32), .operations = count * 6 * k_normal_operations},
+              call);
+    state.counters["reference_cpu"] = reference_ms;
+}
+BENCHMARK(normals)->Arg(5'000)->Arg(20'000)->Arg(100'000)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+// The forms as matrices, row by row, whose values do not depend on the signs of principal directions.
+std::vector<float> forms(const VertexCurvature& c) {
+    std::vector<float> values;
+    values.reserve(9 * c.k1.size());
+    for (std::size_t v = 0; v < c.k1.size(); ++v) {
+        const Eigen::Matrix3f form = c.k1[v] * c.e1[v] * c.e1[v].transpose() + c.k2[v] * c.e2[v] * c.e2[v].transpose();
+        values.insert(values.end(), form.data(), form.data() + 9);
+    }
+    return values;
+}
+
+// The squared size of the derivative, which does not depend on the frame either.
+std::vector<float> derivative_sizes(std::span<const std::array<float, 4>> derivatives) {
+    std::vector<float> values;
+    values.reserve(derivatives.size());
+    for (const auto& d : derivatives) values.push_back(d[0] * d[0] + 3 * d[1] * d[1] + 3 * d[2] * d[2] + d[3] * d[3]);
+    return values;
+}
+
+VertexCurvature downloaded(const GpuCurvature& curvature) {
+    VertexCurvature result;
+    result.e1 = vectors_of(curvature.first());
+    result.e2 = vectors_of(curvature.second());
+    for (const shared::vec4& v : downloaded(curvature.first())) result.k1.push_back(v.w);
+    for (const shared::vec4& v : downloaded(curvature.second())) result.k2.push_back(v.w);
+    for (const shared::vec4& v : downloaded(curvature.derivative())) result.derivative.push_back({v.x, v.y, v.z, v.w});
+    return result;
+}
+
+void time_curvature(benchmark::State& state, const CurvatureOptions& options, double near) {
+    const TriangleMesh mesh = wavy_torus(static_cast<std::uint32_t>(state.range(0)));
+    CurvatureEstimator estimator(mesh.faces, mesh.vertex_count());
+    VertexCurvature expected;
+    const ThreadLimit one_thread(1);
+    const double reference_ms = reference_cpu([&] { estimator.estimate(mesh.vertices, options); });
+    expected = estimator.estimate(mesh.vertices, options);
+    const GpuSurface surface(bench().device, mesh);
+    const Buffer vertices = uploaded(mesh.vertices);
+    Profiler profiler;
+    Stream stream(bench().device, &profiler);
+    GpuCurvature curvature(surface, options);
+    const auto call = [&] {
+        curvature.record(stream, vertices);
+        stream.finish();
+    };
+    call();
+    const VertexCurvature actual = downloaded(curvature);
+    if (!verified(state, forms(actual), forms(expected)) ||
+        !verified(state, derivative_sizes(actual.derivative), derivative_sizes(expected.derivative)))
+        return;
+
+    const auto count = static_cast<double>(mesh.vertex_count());
+    double bytes = 3 * k_ring_bytes + 32 + 64 + 64;
+    double operations = 6 * (k_normal_operations + k_curvature_operations + k_derivative_operations);
+    if (options.smoothing > 0) {
+        bytes += 2 * (4 + 4 * near) + 80 + 80;
+        operations += 2 * k_near_operations * near;
+    }
+    time_call(state, profiler, {.bytes = count * bytes, .operations = count * operations}, call);
+    state.counters["reference_cpu"] = reference_ms;
+    for (const auto& [kernel, entry] : profiler.entries()) state.counters[kernel] = entry.milliseconds;
+}
+
+void curvature(benchmark::State& state) {
+    time_curvature(state, {}, 0);
+}
+BENCHMARK(curvature)->Arg(5'000)->Arg(20'000)->Arg(100'000)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+// Of a kernel that reaches three median edges far; near vertices, of which there are this many here, are four away.
+void smoothed_curvature(benchmark::State& state) {
+    constexpr double k_near = 82;
+    time_curvature(state, {.smoothing = 1}, k_near);
+}
+BENCHMARK(smoothed_curvature)->Arg(5'000)->Arg(20'000)->Arg(100'000)->UseManualTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace exemplar

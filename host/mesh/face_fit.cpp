@@ -54,8 +54,9 @@ void measure_face(const std::array<Vec3, 3>& corners, FaceFit& fit) {
     fit.normal = Vec3d::Zero();
     fit.normal_weight = fit.corner_area = {};
     // |n| is sine times the two edge lengths, so sine over lengths is |n| over the squares of both: over all three
-    // squares but that of the opposite edge, which is left as the corner's weight, in units of the longest.
-    if (twice_area > 0) {
+    // squares but that of the opposite edge, which is left as the corner's weight, in units of the longest. Between
+    // edges of which one is zero, fused products leave n a little above it.
+    if (squared[0] > 0 && squared[1] > 0 && squared[2] > 0) {
         fit.normal = n / ((squared[0] / longest) * squared[1] * squared[2]);
         for (std::size_t i = 0; i < 3; ++i) fit.normal_weight[i] = static_cast<float>(squared[i] / longest);
     }

@@ -85,9 +85,10 @@ std::vector<Vec3> vertex_normals(const TriangleMesh& mesh) {
         const Vec3d pa = mesh.vertices[a].cast<double>();
         const Vec3d ab = mesh.vertices[b].cast<double>() - pa, ac = mesh.vertices[c].cast<double>() - pa;
         const Vec3d n = ab.cross(ac);
-        if (!(n.squaredNorm() > 0)) continue;
-        // |n| is sine times the two edge lengths, so the squared lengths leave sine over lengths.
+        // |n| is sine times the two edge lengths, so the squared lengths leave sine over lengths. Between edges of
+        // which one is zero, fused products leave n a little above it.
         const double ab2 = ab.squaredNorm(), ac2 = ac.squaredNorm(), bc2 = (ac - ab).squaredNorm();
+        if (!(ab2 > 0 && ac2 > 0 && bc2 > 0)) continue;
         sum[a] += n / (ab2 * ac2);
         sum[b] += n / (ab2 * bc2);
         sum[c] += n / (ac2 * bc2);

@@ -83,6 +83,15 @@ TEST(VertexNormals, IgnoreDegenerateFacesAndPointUpWhereUnreferenced) {
     EXPECT_EQ(normals[4], Vec3::UnitZ());
 }
 
+TEST(VertexNormals, IgnoreFacesThatNameAVertexTwice) {
+    const TriangleMesh mesh = shapes::rotated(shapes::icosphere(2, 1.7f), shapes::random_rotation(5));
+    TriangleMesh with_junk = mesh;
+    for (std::uint32_t v = 0; v < 100; ++v)
+        for (const Face& twice : {Face{v, v, v + 1}, Face{v, v + 1, v}, Face{v + 1, v, v}})
+            with_junk.faces.push_back(twice);
+    EXPECT_EQ(vertex_normals(with_junk), vertex_normals(mesh));
+}
+
 TEST(AreaCentroid, DoesNotDependOnTessellation) {
     TriangleMesh coarse_and_fine = shapes::grid(1, 1, 2);
     coarse_and_fine = shapes::joined(coarse_and_fine, shapes::translated(shapes::grid(20, 20, 2), {4, 0, 0}));

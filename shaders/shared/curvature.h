@@ -1,0 +1,77 @@
+#ifndef EXEMPLAR_SHARED_CURVATURE_H
+#define EXEMPLAR_SHARED_CURVATURE_H
+#include "shaders/shared/types.h"
+
+SHARED_BEGIN
+
+// A vertex's place in space and where its influences begin.
+struct RestVertex {
+    float x;
+    float y;
+    float z;
+    uint influences;  // index of its first InfluencePair
+};
+
+// Two influences on a vertex; a bone beyond the palette's weight is zero. The last pair of a vertex is marked.
+struct InfluencePair {
+    uint first_bone;  // with k_last_of_vertex
+    float first_weight;
+    uint second_bone;
+    float second_weight;
+};
+
+// What full weight of a morph target adds to a vertex. The last of a vertex is marked.
+struct MorphOffset {
+    float x;
+    float y;
+    float z;
+    uint target;  // with k_last_of_vertex
+};
+
+const uint k_last_of_vertex = 0x80000000u;
+
+struct PoseParameters {
+    uint vertices;
+    uint first_weight;  // where the weights of targets begin in the pose, in floats
+    uint targets;
+};
+
+// The ring of a vertex: the other corners of its faces, in their order around it, four to a texel. Two entries that
+// follow each other make a face with the vertex, unless the second starts a fan. The last entry of a vertex is marked.
+const uint k_ring_fan = 0x80000000u;
+const uint k_ring_last = 0x40000000u;
+const uint k_ring_vertex = 0x3fffffffu;
+
+struct SurfaceParameters {
+    uint vertices;
+    float scale;  // from mesh units to units in which edges are about 1 long
+};
+
+// The vertices that may come near a vertex, four to a texel; its last texel is marked in w. Gaps hold the vertex itself.
+const uint k_near_last = 0x80000000u;
+const uint k_near_vertex = 0x7fffffffu;
+
+// The diffusion kernel exp(-d^2 / (2 s^2)) - k_diffusion_rest ends at d^2 = 2 k_diffusion_cutoff s^2, where it is zero.
+const float k_diffusion_cutoff = 4.0f;
+const float k_diffusion_rest = 0.018315639f;  // exp(-k_diffusion_cutoff)
+
+struct DiffusionParameters {
+    uint first;       // vertex of the tile
+    uint vertices;    // in the tile
+    uint near_first;  // texel of all rows with which the tile's begin
+    float scale;     // as in SurfaceParameters; the others are in scaled units
+    float exponent;  // -1 / (2 s^2)
+    float limit;     // of the squared distance
+};
+
+#ifdef __cplusplus
+EXEMPLAR_LAYOUT(RestVertex, x, y, z, influences)
+EXEMPLAR_LAYOUT(InfluencePair, first_bone, first_weight, second_bone, second_weight)
+EXEMPLAR_LAYOUT(MorphOffset, x, y, z, target)
+EXEMPLAR_LAYOUT(PoseParameters, vertices, first_weight, targets)
+EXEMPLAR_LAYOUT(SurfaceParameters, vertices, scale)
+EXEMPLAR_LAYOUT(DiffusionParameters, first, vertices, near_first, scale, exponent, limit)
+#endif
+
+SHARED_END
+#endif

@@ -43,7 +43,7 @@ Vec3 unit_or(const Vec3& sum, const Vec3& fallback) {
 /// As a model file keeps it, so that training and use agree about the tangent that follows from it. No zero is
 /// negative.
 Vec3 as_halves(const Vec3& v) {
-    return v.unaryExpr([](float value) { return from_half(to_half(value)) + 0.0f; });
+    return v.unaryExpr([](float value) { return from_half(to_half(value)); });
 }
 
 /// Sums over poses, per vertex, that the frames of attributes are made from.
@@ -52,16 +52,14 @@ struct FrameSums {
     std::vector<Eigen::Matrix3f> direction;  ///< of e1 e1^T, which knows no sign
 };
 
-AttributeFrames make_frames(AttributeSet set, const Segments& segments, const FrameSums& sums) {
+AttributeFrames make_principal_frames(const Segments& segments, const FrameSums& sums) {
     AttributeFrames frames;
-    frames.set = set;
+    frames.set = AttributeSet::principal;
     frames.segment = segments.segment_of_vertex;
-    frames.reference_normal.reserve(sums.normal.size());
     for (const Vec3& sum : sums.normal) frames.reference_normal.push_back(as_halves(unit_or(sum, Vec3::UnitZ())));
-    if (set == AttributeSet::principal)
-        for (const Eigen::Matrix3f& sum : sums.direction)
-            frames.reference_direction.emplace_back(
-                Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f>(sum).eigenvectors().col(2));
+    for (const Eigen::Matrix3f& sum : sums.direction)
+        frames.reference_direction.emplace_back(
+            Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f>(sum).eigenvectors().col(2));
     return frames;
 }
 
@@ -175,8 +173,11 @@ TrainingSamples collect_samples(const Animation& animation, const Segments& segm
                                 std::span<const FrameRef> frames, AttributeSet set, const CurvatureOptions& truth) {
     const std::vector<SurfaceMoment> moments = read_moments(animation, segments, frames, truth);
     TrainingSamples samples;
-    samples.frames = make_frames(set, segments, sum_frames(moments, segments));
-    const std::size_t count = segments.segment_of_vertex.size();
+    if (set == AttributeSet::principal)
+        samples.frames = make_principal_frames(segments, sum_frames(moments, segments));
+    else
+        samples.frames.neighbor = longest_neighbors(animation.rest.faces, moments.front().vertices);
+    const std::size_t count = animation.rest.vertex_count();
     const auto poses = static_cast<Eigen::Index>(frames.size());
     samples.attributes.assign(attribute_count(set), Eigen::MatrixXf(poses, static_cast<Eigen::Index>(count)));
     samples.states.resize(poses, static_cast<Eigen::Index>(reader.input_count));
@@ -184,7 +185,7 @@ TrainingSamples collect_samples(const Animation& animation, const Segments& segm
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const SurfaceMoment& moment = moments[i];
         const auto row = static_cast<Eigen::Index>(i);
-        samples.frames.encode(moment.curvature, moment.normals, moment.rotations, attributes);
+        samples.frames.encode(moment.curvature, moment.surface(), attributes);
         for (std::size_t a = 0; a < samples.attributes.size(); ++a)
             samples.attributes[a].row(row) =
                 Eigen::Map<const Eigen::RowVectorXf>(attributes.data() + a * count, static_cast<Eigen::Index>(count));

@@ -34,6 +34,8 @@ struct SurfaceMoment {
     std::vector<Vec3> vertices, normals;
     VertexCurvature curvature;
     std::vector<Eigen::Matrix3f> rotations;  ///< of the segments
+
+    PosedSurface surface() const { return {vertices, normals, rotations}; }
 };
 
 /// Reads moments of an animation. One thread at a time may use a reader.

@@ -46,14 +46,15 @@ void lay_out_vertices(const AttributeFrames& frames, std::span<const Vec3> rest,
     const std::vector<std::uint32_t> place = curve_places(rest);
     std::vector<std::uint32_t> order(frames.vertex_count());
     std::iota(order.begin(), order.end(), 0u);
+    const auto segment_of = [&](std::uint32_t v) { return frames.segment.empty() ? 0 : frames.segment[v]; };
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return frames.segment[a] != frames.segment[b] ? frames.segment[a] < frames.segment[b] : place[a] < place[b];
+        return segment_of(a) != segment_of(b) ? segment_of(a) < segment_of(b) : place[a] < place[b];
     });
     for (std::size_t i = 0; i < order.size(); ++i) {
-        const std::uint32_t segment = frames.segment[order[i]];
+        const std::uint32_t segment = segment_of(order[i]);
         if (tiles.vertex.size() % k_lanes == 0) tiles.segment.push_back(segment);
         tiles.vertex.push_back(order[i]);
-        const bool ends = i + 1 == order.size() || frames.segment[order[i + 1]] != segment;
+        const bool ends = i + 1 == order.size() || segment_of(order[i + 1]) != segment;
         while (ends && tiles.vertex.size() % k_lanes != 0) tiles.vertex.push_back(order[i]);
     }
 }
@@ -154,7 +155,9 @@ BasisTiles make_tiles(const AttributeFrames& frames, std::span<const Vec3> rest,
                 tiles.mean.push_back(
                     to_half(means(static_cast<Eigen::Index>(a), tiles.vertex[t * k_lanes + lane]) / tiles.scale[a]));
         }
-    for (std::uint32_t t = 0; t < tiles.tile_count(); ++t)
+    if (frames.set == AttributeSet::tensor)
+        for (const std::uint32_t v : tiles.vertex) tiles.neighbor.push_back(frames.neighbor[v]);
+    for (std::uint32_t t = 0; frames.set == AttributeSet::principal && t < tiles.tile_count(); ++t)
         for (Eigen::Index i = 0; i < 3; ++i)
             for (std::size_t lane = 0; lane < k_lanes; ++lane)
                 tiles.reference.push_back(to_half(frames.reference_normal[tiles.vertex[t * k_lanes + lane]][i]));

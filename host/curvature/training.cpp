@@ -149,7 +149,7 @@ CurvatureModel train_curvature(const Animation& given, std::span<const FrameRef>
     if (model.truth.smoothing_unit <= 0)
         model.truth.smoothing_unit = CurvatureEstimator(animation.rest.faces, model.vertex_count)
                                          .median_edge_length(layout_shape(animation, frames.front()));
-    model.segments = segment_animation(animation, frames);
+    if (options.attributes == AttributeSet::principal) model.segments = segment_animation(animation, frames);
     SequenceStateOptions sequence = options.sequence;
     if (options.learner == Learner::global) sequence.patch_vertices = 0;
     model.state = make_state(animation, frames, sequence);

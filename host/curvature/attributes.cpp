@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 namespace exemplar {
 
@@ -47,24 +46,6 @@ Vec3 edge_tangent(const Vec3& edge, const Vec3& normal) {
     const Vec3 flat = edge - normal * normal.dot(edge);
     const float squared = flat.squaredNorm();
     return squared > k_least_flat * edge.squaredNorm() ? Vec3(flat / std::sqrt(squared)) : any_frame(normal).tangent;
-}
-
-std::vector<std::uint32_t> longest_neighbors(std::span<const Face> faces, std::span<const Vec3> vertices) {
-    std::vector<std::uint32_t> neighbor(vertices.size());
-    std::iota(neighbor.begin(), neighbor.end(), 0u);
-    std::vector<float> longest(vertices.size(), 0.0f);
-    const auto offer = [&](std::uint32_t v, std::uint32_t w) {
-        const float length = (vertices[w] - vertices[v]).squaredNorm();
-        if (!(length > longest[v])) return;
-        longest[v] = length;
-        neighbor[v] = w;
-    };
-    for (const Face& face : faces)
-        for (std::size_t i = 0; i < 3; ++i) {
-            offer(face[i], face[(i + 1) % 3]);
-            offer(face[i], face[(i + 2) % 3]);
-        }
-    return neighbor;
 }
 
 void AttributeFrames::encode(const VertexCurvature& curvature, const PosedSurface& surface,

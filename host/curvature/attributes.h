@@ -63,9 +63,6 @@ struct AttributeFrames {
     Vec3 completed_direction(float first, float second, std::size_t v, const PosedSurface& surface) const;
 };
 
-/// For each vertex the neighbor at the end of its longest edge in `vertices`; the vertex itself if it has none.
-std::vector<std::uint32_t> longest_neighbors(std::span<const Face> faces, std::span<const Vec3> vertices);
-
 /// The direction of an edge in the tangent plane of `normal`, unit; some tangent if it stands upright.
 Vec3 edge_tangent(const Vec3& edge, const Vec3& normal);
 

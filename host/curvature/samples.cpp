@@ -4,6 +4,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <limits>
+#include <numeric>
 
 #include "host/core/errors.h"
 #include "host/core/half.h"
@@ -11,6 +13,7 @@
 #include "host/core/progress.h"
 #include "host/core/text.h"
 #include "host/lines/lines.h"
+#include "host/mesh/topology.h"
 
 namespace exemplar {
 
@@ -79,6 +82,41 @@ FrameSums sum_frames(const std::vector<SurfaceMoment>& moments, const Segments& 
         },
         1024);
     return sums;
+}
+
+/// For each vertex the neighbor whose edge stays flattest in the tangent plane: the largest least share of its length
+/// there, over all moments. An edge that stands up, as in a fold, has a direction that means nothing. The vertex itself
+/// if it has no neighbors.
+std::vector<std::uint32_t> steadiest_neighbors(const TriangleMesh& rest, const std::vector<SurfaceMoment>& moments) {
+    const Topology topology = build_topology(rest);
+    std::vector<float> flatness(topology.edges.size() * 2, 1.0f);  // from either end
+    parallel_for(
+        topology.edges.size(),
+        [&](std::size_t e) {
+            const auto [a, b] = topology.edges[e].vertex;
+            for (const SurfaceMoment& moment : moments) {
+                const Vec3 edge = moment.vertices[b] - moment.vertices[a];
+                const float squared = std::max(edge.squaredNorm(), std::numeric_limits<float>::min());
+                const auto flat = [&](std::uint32_t v) {
+                    const float upright = edge.dot(moment.normals[v]);
+                    return 1 - upright * upright / squared;
+                };
+                flatness[2 * e] = std::min(flatness[2 * e], flat(a));
+                flatness[2 * e + 1] = std::min(flatness[2 * e + 1], flat(b));
+            }
+        },
+        512);
+    std::vector<std::uint32_t> neighbor(rest.vertex_count());
+    std::iota(neighbor.begin(), neighbor.end(), 0u);
+    std::vector<float> best(rest.vertex_count(), -1.0f);
+    for (std::size_t e = 0; e < topology.edges.size(); ++e)
+        for (std::size_t end = 0; end < 2; ++end) {
+            const std::uint32_t v = topology.edges[e].vertex[end];
+            if (!(flatness[2 * e + end] > best[v])) continue;
+            best[v] = flatness[2 * e + end];
+            neighbor[v] = topology.edges[e].vertex[1 - end];
+        }
+    return neighbor;
 }
 
 std::vector<SurfaceMoment> read_moments(const Animation& animation, const Segments& segments,
@@ -176,7 +214,7 @@ TrainingSamples collect_samples(const Animation& animation, const Segments& segm
     if (set == AttributeSet::principal)
         samples.frames = make_principal_frames(segments, sum_frames(moments, segments));
     else
-        samples.frames.neighbor = longest_neighbors(animation.rest.faces, moments.front().vertices);
+        samples.frames.neighbor = steadiest_neighbors(animation.rest, moments);
     const std::size_t count = animation.rest.vertex_count();
     const auto poses = static_cast<Eigen::Index>(frames.size());
     samples.attributes.assign(attribute_count(set), Eigen::MatrixXf(poses, static_cast<Eigen::Index>(count)));

@@ -23,6 +23,7 @@ const VertexCurvature& CurvatureEvaluator::evaluate(std::span<const Vec3> vertic
 }
 
 const VertexCurvature& CurvatureEvaluator::reproject(std::span<const Vec3> vertices, std::span<const Vec3> normals) {
+    farthest_ = model_->range.bound(model_->state, x_);
     model_->regression.evaluate(x_, features_, z_);
     reproject_curvature(model_->tiles, z_, {vertices, normals, rotations_}, curvature_);
     return curvature_;

@@ -53,7 +53,7 @@ class CurvatureEvaluator {
     /// The same of a mesh sequence.
     const VertexCurvature& evaluate(std::span<const Vec3> vertices, std::span<const Vec3> normals);
     /// The control of the last call that was farthest from the training poses.
-    PoseRange::Farthest farthest() const { return model_->range.farthest(model_->state, x_); }
+    PoseRange::Farthest farthest() const { return farthest_; }
     std::span<const float> components() const { return z_; }
     std::span<const Eigen::Matrix3f> rotations() const { return rotations_; }
 
@@ -61,6 +61,7 @@ class CurvatureEvaluator {
     const VertexCurvature& reproject(std::span<const Vec3> vertices, std::span<const Vec3> normals);
     const CurvatureModel* model_;
     std::vector<float> x_, features_, z_;
+    PoseRange::Farthest farthest_;
     std::vector<Eigen::Matrix3f> rotations_;
     VertexCurvature curvature_;
 };

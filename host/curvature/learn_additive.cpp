@@ -245,7 +245,7 @@ class AdditiveLearner {
         const Eigen::MatrixXf& coefficients = term.coefficients[attribute];
         const Eigen::RowVectorXf mean = term.values.colwise().mean().cast<float>();
         const Eigen::MatrixXf centered = term.values.cast<float>().rowwise() - mean;
-        const Ica ica = task_.reduce(centered * coefficients);
+        const Ica ica = task_.reduce(centered * coefficients, attribute, term.vertices);
         Reduced result;
         result.basis = ica.mixing;
         result.regression.resize(ica.unmixing.rows(), coefficients.rows() + 1);

@@ -44,7 +44,7 @@ std::vector<std::uint32_t> bone_inputs(const LearningTask& task, std::size_t con
 JointPredictor predict_from(const LearningTask& task, std::size_t attribute, const std::vector<std::uint32_t>& vertices,
                             const Eigen::MatrixXd& features) {
     const Eigen::MatrixXf values = task.centered(attribute, vertices);
-    const Ica ica = task.reduce(values);
+    const Ica ica = task.reduce(values, attribute, vertices);
     JointPredictor predictor;
     predictor.basis = ica.mixing;
     predictor.regression = LeastSquares(features).solve(ica.sources.cast<double>()).transpose().cast<float>();

@@ -12,6 +12,8 @@ constexpr int k_half_lanes = 8;
 /// A number for each of eight vertices.
 using Lanes = EightFloats;
 using LaneVectors = std::array<Lanes, 3>;
+/// Not an expression: those hold references to temporaries.
+using Mask = Eigen::Array<bool, k_half_lanes, 1>;
 
 Lanes dot(const LaneVectors& a, const LaneVectors& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -58,7 +60,7 @@ LaneVectors turned_by(const Eigen::Matrix3f& rotation, const LaneVectors& v) {
 LaneVectors edge_tangents(const LaneVectors& edge, const LaneVectors& normal) {
     const LaneVectors flat = combined(Lanes::Ones(), edge, -dot(normal, edge), normal);
     const Lanes squared = dot(flat, flat);
-    const auto lies = squared > k_least_flat * dot(edge, edge);
+    const Mask lies = squared > k_least_flat * dot(edge, edge);
     const Lanes inverse = squared.sqrt().inverse();
     const LaneVectors other = any_tangent(normal);
     LaneVectors result;
@@ -76,11 +78,11 @@ void principal_lanes(const Lanes& f11, const Lanes& f12, const Lanes& f22, Lanes
     const Lanes inverse = (radius > 0).select(radius.inverse(), Lanes::Zero());
     const Lanes larger = (0.5f * (1 + difference.abs() * inverse)).sqrt();
     const Lanes smaller = 0.5f * f12 * inverse / larger;
-    const auto is_flat = (radius > 0);
+    const Mask is_bent = radius > 0;
     cosine = (difference >= 0).select(larger, smaller);
     sine = (difference >= 0).select(smaller, larger);
-    cosine = is_flat.select(cosine, Lanes::Ones());
-    sine = is_flat.select(sine, Lanes::Zero());
+    cosine = is_bent.select(cosine, Lanes::Ones());
+    sine = is_bent.select(sine, Lanes::Zero());
 }
 
 std::array<Lanes, 4> turned_lanes(const std::array<Lanes, 4>& d, const Lanes& c, const Lanes& s) {
@@ -129,8 +131,8 @@ LaneCurvature decode_tensor(const std::array<Lanes, k_most_attributes>& y, const
 LaneVectors completed_direction(const Lanes& first, const Lanes& second, const LaneVectors& n,
                                 const LaneVectors& reference) {
     const auto& [rx, ry, rz] = reference;
-    const auto drop_x = rx.abs() >= ry.abs() && rx.abs() >= rz.abs();
-    const auto drop_y = !drop_x && ry.abs() >= rz.abs();
+    const Mask drop_x = rx.abs() >= ry.abs() && rx.abs() >= rz.abs();
+    const Mask drop_y = !drop_x && ry.abs() >= rz.abs();
     const Lanes zero = Lanes::Zero();
     LaneVectors e{drop_x.select(zero, first), drop_x.select(first, drop_y.select(zero, second)),
                   (drop_x || drop_y).select(second, zero)};

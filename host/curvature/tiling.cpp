@@ -68,9 +68,12 @@ struct TileEntry {
 };
 
 /// All entries of an attribute that are not zero, by tile and component.
-std::vector<TileEntry> entries_of(const BasisTiles& tiles, std::size_t attribute,
-                                  const std::vector<VertexBasis>& bases) {
+std::vector<TileEntry> entries_of(const BasisTiles& tiles, std::size_t attribute, const std::vector<VertexBasis>& bases,
+                                  const Eigen::MatrixXf& scales) {
     std::vector<TileEntry> entries;
+    const auto scale_of = [&](std::uint32_t v) {
+        return scales.size() ? scales(static_cast<Eigen::Index>(attribute), v) : 1.0f;
+    };
     std::vector<Eigen::Index> row_of_vertex(tiles.vertex_count, -1);
     for (const VertexBasis& basis : bases) {
         if (basis.attribute != attribute || basis.basis.cols() == 0) continue;
@@ -83,7 +86,8 @@ std::vector<TileEntry> entries_of(const BasisTiles& tiles, std::size_t attribute
                 for (std::size_t lane = 0; lane < k_lanes; ++lane) {
                     const Eigen::Index row = row_of_vertex[tiles.vertex[t * k_lanes + lane]];
                     entry.basis[lane] = row < 0 ? 0.0f : basis.basis(row, c);
-                    entry.variance += entry.basis[lane] * entry.basis[lane];
+                    const float scaled = entry.basis[lane] / scale_of(tiles.vertex[t * k_lanes + lane]);
+                    entry.variance += scaled * scaled;
                 }
                 if (entry.variance > 0) entries.push_back(entry);
             }
@@ -137,7 +141,7 @@ BasisTiles make_tiles(const AttributeFrames& frames, std::span<const Vec3> rest,
     const std::size_t count = attribute_count(frames.set);
     std::vector<std::vector<TileEntry>> entries(count);
     for (std::size_t a = 0; a < count; ++a) {
-        entries[a] = entries_of(tiles, a, bases);
+        entries[a] = entries_of(tiles, a, bases, options.scales);
         drop_weakest(entries[a], options.dropped_variance);
         tiles.scale.push_back(half_scale(means.row(static_cast<Eigen::Index>(a)), entries[a]));
     }

@@ -70,6 +70,20 @@ Eigen::MatrixXf mean_attributes(const TrainingSamples& samples) {
     return means;
 }
 
+/// How much each attribute varies at each vertex, but at least a tenth of what it does at most: attributes x vertices.
+Eigen::MatrixXf attribute_scales(const TrainingSamples& samples, const Eigen::MatrixXf& means) {
+    constexpr double k_least_share = 0.1;
+    Eigen::MatrixXf scales(means.rows(), means.cols());
+    for (Eigen::Index a = 0; a < means.rows(); ++a) {
+        const Eigen::MatrixXf& values = samples.attributes[static_cast<std::size_t>(a)];
+        for (Eigen::Index v = 0; v < means.cols(); ++v)
+            scales(a, v) = std::sqrt((values.col(v).array() - means(a, v)).square().mean());
+        const double most = largest_but_outliers(scales.row(a).transpose().cast<double>());
+        scales.row(a) = scales.row(a).cwiseMax(static_cast<float>(std::max(k_least_share * most, 1e-20)));
+    }
+    return scales;
+}
+
 double mean_controls(const std::vector<InfluenceGroup>& groups, const std::vector<bool>& varies) {
     double sum = 0, count = 0;
     for (const InfluenceGroup& group : groups)
@@ -156,16 +170,19 @@ CurvatureModel train_curvature(const Animation& given, std::span<const FrameRef>
     if (model.state.input_count == 0)
         throw UsageError(fmt::format("{}: nothing moves in the {} poses given; name other clips or frames",
                                      animation.name, frames.size()));
-    const TrainingSamples samples =
+    TrainingSamples samples =
         collect_samples(animation, model.segments, model.state, frames, options.attributes, model.truth);
     model.feature_size = samples.feature_size;
     model.range = make_pose_range(model.state, samples.states);
+    samples.states.rowwise() -=
+        model.range.mean.transpose();  // products of inputs around zero say what their factors do not
     report.seconds_truth = watch.wall();
 
     watch = Stopwatch();
     const std::vector<bool> varies = varying(samples);
     const std::vector<InfluenceGroup> possible = possible_influences(animation, model.state, k_surrounding_rings);
-    LearningTask task{animation, model.state, samples, mean_attributes(samples), {}, options};
+    LearningTask task{animation, model.state, samples, mean_attributes(samples), {}, {}, options};
+    task.scales = attribute_scales(samples, task.means);
     task.groups = tested_influences(possible, model.state, samples.states, mean_curvature(samples), varies, {});
     report.seconds_influence = watch.wall();
 
@@ -174,7 +191,7 @@ CurvatureModel train_curvature(const Animation& given, std::span<const FrameRef>
     learn(task, builder);
     model.regression = builder.regression();
     model.tiles = make_tiles(samples.frames, layout_shape(animation, frames.front()), task.means, builder.bases(),
-                             {.dropped_variance = options.dropped_variance});
+                             {.dropped_variance = options.dropped_variance, .scales = task.scales});
     report.seconds_fit = watch.wall();
 
     report.poses = frames.size();

@@ -135,7 +135,7 @@ float bend(const StateReader::Hinge& hinge, std::span<const Vec3> vertices) {
     const Vec3 edge = b - a, left = edge.cross(vertices[hinge.left] - a),
                right = (vertices[hinge.right] - a).cross(edge);
     const float sine = left.cross(right).dot(edge), cosine = left.dot(right) * edge.norm();
-    return std::atan2(-sine, cosine);
+    return std::atan2(sine, cosine);
 }
 
 void StateReader::read_pose(const Pose& pose, std::span<float> x) const {

@@ -62,6 +62,7 @@ void weigh(const std::vector<std::vector<std::uint32_t>>& vertices, std::size_t 
             predictors[vertices[j][i]].emplace_back(j, static_cast<Eigen::Index>(i));
     for (const auto& of_vertex : predictors) {
         std::vector<double> residuals;
+        residuals.reserve(of_vertex.size());
         for (const auto& [j, i] : of_vertex) residuals.push_back(joints[j].residual[i]);
         if (residuals.empty()) continue;
         const std::vector<double> weights = predictor_weights(residuals);

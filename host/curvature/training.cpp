@@ -84,6 +84,21 @@ Eigen::MatrixXf attribute_scales(const TrainingSamples& samples, const Eigen::Ma
     return scales;
 }
 
+/// A control that nothing is predicted from, such as the heading of a figure, may do as it likes: no pose is far for
+/// it.
+void leave_out_unused(CurvatureModel& model) {
+    constexpr float k_no_limit = 1e30f;
+    std::vector<bool> used(model.state.input_count + 1, model.regression.neurons.rows() > 0);
+    for (const Monomial& monomial : model.regression.monomials)
+        for (const std::uint32_t input : monomial) used[input] = true;
+    for (std::size_t c = 0; c < model.state.controls.size(); ++c) {
+        const Control& control = model.state.controls[c];
+        const auto first = used.begin() + control.first_input;
+        if (std::find(first, first + control.input_count, true) == first + control.input_count)
+            model.range.largest[c] = k_no_limit;
+    }
+}
+
 double mean_controls(const std::vector<InfluenceGroup>& groups, const std::vector<bool>& varies) {
     double sum = 0, count = 0;
     for (const InfluenceGroup& group : groups)
@@ -190,6 +205,7 @@ CurvatureModel train_curvature(const Animation& given, std::span<const FrameRef>
     PredictorBuilder builder(model.state.input_count);
     learn(task, builder);
     model.regression = builder.regression();
+    leave_out_unused(model);
     model.tiles = make_tiles(samples.frames, layout_shape(animation, frames.front()), task.means, builder.bases(),
                              {.dropped_variance = options.dropped_variance, .scales = task.scales});
     report.seconds_fit = watch.wall();

@@ -59,8 +59,9 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
         ->capture_default_str()
         ->check(CLI::Range(0.0, 0.5));
     command
-        .add_option("--augment", arguments.augmented_poses,
-                    "rigs: poses to learn from beside the frames, in which joints or shapes of different frames are mixed")
+        .add_option(
+            "--augment", arguments.augmented_poses,
+            "rigs: poses to learn from beside the frames, in which joints or shapes of different frames are mixed")
         ->capture_default_str()
         ->check(whole_number(0, 100000));
     command

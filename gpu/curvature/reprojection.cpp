@@ -1,0 +1,81 @@
+#include "gpu/curvature/reprojection.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "embedded/curvature_reproject_comp.h"
+#include "gpu/curvature/texels.h"
+#include "host/core/errors.h"
+
+namespace exemplar {
+namespace {
+
+using shared::CurvatureTile;
+using shared::k_tile_quads;
+using shared::ReprojectionParameters;
+using shared::uvec4;
+using shared::vec4;
+
+// The kernel fetches each as one four-component vector.
+static_assert(sizeof(CurvatureTile) == 16);
+
+// On a CPU every load of a kernel is expensive, so that a component, once loaded, serves many vertices; a GPU wants
+// many invocations.
+std::uint32_t quads_on(const Device& device) {
+    return device.info().type == DeviceType::cpu ? 2 : 1;
+}
+
+Kernel make_kernel(Device& device, AttributeSet set) {
+    return {
+        device,
+        shaders::curvature_reproject_comp,
+        {.push_constants = layout_of<ReprojectionParameters>(),
+         .elements = {layout_of<uvec4>(), layout_of<uvec4>(), layout_of<std::uint32_t>(), layout_of<float>(),
+                      layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>()},
+         .constants = {{0, set == AttributeSet::principal ? 1u : 0u}, {1, quads_on(device)}}}};
+}
+
+}  // namespace
+
+GpuReprojection::GpuReprojection(Device& device, const BasisTiles& tiles, std::size_t components, std::size_t segments,
+                                 std::size_t most_texels)
+    : vertex_count_(tiles.vertex_count),
+      scale_(tiles.scale),
+      kernel_(make_kernel(device, tiles.set)),
+      quads_(quads_on(device)) {
+    check_texels(device, std::max({tiles.tile_count(), vertex_count_, components, 3 * segments}),
+                 "the vertices of a curvature model");
+    const TileLayout layout =
+        lay_out_tiles(tiles, components, segments, std::min<std::size_t>(most_texels, device.info().max_texels),
+                      device.info().texel_alignment);
+    scale_.resize(k_most_attributes, 0.0f);
+    ranges_ = layout.ranges;
+    table_ = Buffer::of<CurvatureTile>(device, layout.table);
+    tiles_ = Buffer::of<uvec4>(device, layout.texels);
+    pairs_ = Buffer::of<std::uint32_t>(device, layout.pairs);
+    for (Buffer* const output : {&first_, &second_, &derivative_})
+        *output = Buffer(device, vertex_count_ * sizeof(vec4));
+}
+
+void GpuReprojection::record(Stream& stream, const Buffer& components, const Buffer& rotations, const Buffer& normals) {
+    if (normals.bytes() != vertex_count_ * sizeof(vec4))
+        throw UsageError(
+            fmt::format("a curvature model of {} vertices needs normals of {} bytes, not {}; take those "
+                        "of the surface it was learned on",
+                        vertex_count_, vertex_count_ * sizeof(vec4), normals.bytes()));
+    for (const TileLayout::Range& range : ranges_)
+        stream.dispatch(
+            kernel_, std::size_t{range.tiles} * (k_tile_quads / quads_),
+            {table_, BufferRange(tiles_, range.first_texel * sizeof(uvec4), range.texels * sizeof(uvec4)),
+             BufferRange(pairs_, range.first_pair * sizeof(std::uint32_t), range.pairs * sizeof(std::uint32_t)),
+             components, rotations, normals, first_, second_, derivative_},
+            ReprojectionParameters{.low_scales = {scale_[0], scale_[1], scale_[2], scale_[3]},
+                                   .high_scales = {scale_[4], scale_[5], scale_[6], scale_[7]},
+                                   .first_tile = range.first_tile,
+                                   .tiles = range.tiles,
+                                   .first_texel = static_cast<std::uint32_t>(range.first_texel),
+                                   .first_pair = static_cast<std::uint32_t>(range.first_pair)});
+}
+
+}  // namespace exemplar

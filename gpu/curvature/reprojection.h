@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "gpu/curvature/tile_layout.h"
+#include "gpu/runtime/buffer.h"
+#include "gpu/runtime/device.h"
+#include "gpu/runtime/kernel.h"
+#include "gpu/runtime/stream.h"
+#include "host/curvature/predictor.h"
+
+namespace exemplar {
+
+/// Curvature from its components on the device, as reproject_curvature(). Products are rounded in single precision in
+/// another order.
+class GpuReprojection {
+  public:
+    /// Tiles are read in ranges of at most `most_texels` (16 bytes each), and of what the device allows. Throws
+    /// ModelError if the tiles contradict themselves or refer to more than `components` or `segments`, DeviceLimitError
+    /// if they are too large for the device.
+    GpuReprojection(Device& device, const BasisTiles& tiles, std::size_t components, std::size_t segments,
+                    std::size_t most_texels);
+
+    /// A dispatch for each range. components: a float each; rotations: of each segment three rows, a vec4 (x, y, z, 0)
+    /// each, at the begin of the buffer; normals: of the posed surface in the world, unit, a vec4 (x, y, z, any) per
+    /// vertex. Throws UsageError if there are not as many normals as vertices.
+    void record(Stream& stream, const Buffer& components, const Buffer& rotations, const Buffer& normals);
+    /// As those of GpuCurvature.
+    const Buffer& first() const { return first_; }
+    const Buffer& second() const { return second_; }
+    const Buffer& derivative() const { return derivative_; }
+
+  private:
+    std::size_t vertex_count_;
+    std::vector<float> scale_;
+    Kernel kernel_;
+    std::uint32_t quads_;  // of vertices per invocation
+    std::vector<TileLayout::Range> ranges_;
+    Buffer table_, tiles_, pairs_, first_, second_, derivative_;
+};
+
+}  // namespace exemplar

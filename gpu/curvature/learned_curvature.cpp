@@ -15,12 +15,13 @@ constexpr std::size_t k_rows_per_segment = 3;
 
 }  // namespace
 
-GpuLearnedCurvature::GpuLearnedCurvature(Device& device, const CurvatureModel& model, std::size_t most_texels)
+GpuLearnedCurvature::GpuLearnedCurvature(Device& device, const CurvatureModel& model,
+                                         const ReprojectionOptions& options)
     : vertex_count_(model.tiles.vertex_count),
       reader_(model.state),
       segments_(model.segments),
       predictor_(device, model.regression),
-      reprojection_(device, model.tiles, model.regression.components.size(), model.segments.count(), most_texels),
+      reprojection_(device, model.tiles, model.regression.components.size(), model.segments.count(), options),
       x_(model.state.input_count),
       rotations_(model.segments.count()) {
     if (model.regression.input_count != model.state.input_count)

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -22,11 +21,9 @@ namespace exemplar {
 /// GpuCurvature.
 class GpuLearnedCurvature {
   public:
-    /// The model may end when this returns. The bases are read in ranges of at most `most_texels` (16 bytes each), and
-    /// of what the device allows. Throws ModelError if the model contradicts itself, DeviceLimitError if it is too
+    /// The model may end when this returns. Throws ModelError if it contradicts itself, DeviceLimitError if it is too
     /// large for the device.
-    GpuLearnedCurvature(Device& device, const CurvatureModel& model,
-                        std::size_t most_texels = std::numeric_limits<std::size_t>::max());
+    GpuLearnedCurvature(Device& device, const CurvatureModel& model, const ReprojectionOptions& options = {});
 
     /// Curvature at a pose of the rig, given GpuNormals::normals() of the posed surface: three dispatches, more where
     /// the device's limits are low. Throws UsageError if the model was learned on mesh sequences, or if rig, pose or

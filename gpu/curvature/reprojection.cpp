@@ -20,34 +20,36 @@ using shared::vec4;
 // The kernel fetches each as one four-component vector.
 static_assert(sizeof(CurvatureTile) == 16);
 
-// On a CPU every load of a kernel is expensive, so that a component, once loaded, serves many vertices; a GPU wants
-// many invocations.
-std::uint32_t quads_on(const Device& device) {
-    return device.info().type == DeviceType::cpu ? 2 : 1;
+// On a CPU every load of a kernel is expensive, so that a component, once loaded, serves a whole tile; a GPU wants many
+// invocations.
+std::uint32_t suitable_quads(const Device& device) {
+    return device.info().type == DeviceType::cpu ? k_tile_quads : 1;
 }
 
-Kernel make_kernel(Device& device, AttributeSet set) {
+Kernel make_kernel(Device& device, AttributeSet set, std::uint32_t quads) {
     return {
         device,
         shaders::curvature_reproject_comp,
         {.push_constants = layout_of<ReprojectionParameters>(),
          .elements = {layout_of<uvec4>(), layout_of<uvec4>(), layout_of<std::uint32_t>(), layout_of<float>(),
                       layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>()},
-         .constants = {{0, set == AttributeSet::principal ? 1u : 0u}, {1, quads_on(device)}}}};
+         .constants = {{0, set == AttributeSet::principal ? 1u : 0u}, {1, quads}}}};
 }
 
 }  // namespace
 
 GpuReprojection::GpuReprojection(Device& device, const BasisTiles& tiles, std::size_t components, std::size_t segments,
-                                 std::size_t most_texels)
+                                 const ReprojectionOptions& options)
     : vertex_count_(tiles.vertex_count),
       scale_(tiles.scale),
-      kernel_(make_kernel(device, tiles.set)),
-      quads_(quads_on(device)) {
+      quads_(options.quads != 0 ? options.quads : suitable_quads(device)),
+      kernel_(make_kernel(device, tiles.set, quads_)) {
+    if (quads_ != 1 && quads_ != 2 && quads_ != k_tile_quads)
+        throw UsageError(fmt::format("vertices are re-projected by 4, 8 or 16, not by 4 x {}", quads_));
     check_texels(device, std::max({tiles.tile_count(), vertex_count_, components, 3 * segments}),
                  "the vertices of a curvature model");
     const TileLayout layout =
-        lay_out_tiles(tiles, components, segments, std::min<std::size_t>(most_texels, device.info().max_texels),
+        lay_out_tiles(tiles, components, segments, std::min<std::size_t>(options.most_texels, device.info().max_texels),
                       device.info().texel_alignment);
     scale_.resize(k_most_attributes, 0.0f);
     ranges_ = layout.ranges;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "gpu/curvature/tile_layout.h"
@@ -12,15 +14,21 @@
 
 namespace exemplar {
 
+struct ReprojectionOptions {
+    /// The bases are read in ranges of at most so many texels (16 bytes each), and of what the device allows.
+    std::size_t most_texels = std::numeric_limits<std::size_t>::max();
+    /// Vertices per invocation, by four: 1, 2 or 4; 0 is what suits the device.
+    std::uint32_t quads = 0;
+};
+
 /// Curvature from its components on the device, as reproject_curvature(). Products are rounded in single precision in
 /// another order.
 class GpuReprojection {
   public:
-    /// Tiles are read in ranges of at most `most_texels` (16 bytes each), and of what the device allows. Throws
-    /// ModelError if the tiles contradict themselves or refer to more than `components` or `segments`, DeviceLimitError
-    /// if they are too large for the device.
+    /// Throws ModelError if the tiles contradict themselves or refer to more than `components` or `segments`,
+    /// DeviceLimitError if they are too large for the device, UsageError for another number of quads.
     GpuReprojection(Device& device, const BasisTiles& tiles, std::size_t components, std::size_t segments,
-                    std::size_t most_texels);
+                    const ReprojectionOptions& options);
 
     /// A dispatch for each range. components: a float each; rotations: of each segment three rows, a vec4 (x, y, z, 0)
     /// each, at the begin of the buffer; normals: of the posed surface in the world, unit, a vec4 (x, y, z, any) per
@@ -34,8 +42,8 @@ class GpuReprojection {
   private:
     std::size_t vertex_count_;
     std::vector<float> scale_;
-    Kernel kernel_;
     std::uint32_t quads_;  // of vertices per invocation
+    Kernel kernel_;
     std::vector<TileLayout::Range> ranges_;
     Buffer table_, tiles_, pairs_, first_, second_, derivative_;
 };

@@ -117,7 +117,7 @@ void store_quad(uint quad, uvec4 vertices, mat3 rotation) {
     vec4 of_quad[k_attributes + 3];
     for (uint i = 0; i < k_attributes + 3; ++i) of_quad[i] = rows[i * k_quads + quad];
     // Turned around instead of indexed.
-    [[dont_unroll]] for (uint v = 0; v < 4; ++v, vertices = vertices.yzwx) {
+    [[unroll]] for (uint v = 0; v < 4; ++v, vertices = vertices.yzwx) {
         float y[8];
         for (uint i = 0; i < k_attributes; ++i) y[i] = of_quad[i].x;
         store_vertex(vertices.x, rotation, y, vec3(of_quad[k_attributes].x, of_quad[k_attributes + 1].x, of_quad[k_attributes + 2].x));

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "gpu/curvature/learned_curvature.h"
@@ -181,10 +180,10 @@ class RandomModel {
     std::vector<Vec3> points_;
 };
 
-void expect_parity(const Shape& shape, std::size_t most_texels = std::numeric_limits<std::size_t>::max()) {
+void expect_parity(const Shape& shape, const ReprojectionOptions& options = {}) {
     RandomModel random(shape, 7 + shape.vertices);
     CurvatureEvaluator reference(random.model);
-    GpuLearnedCurvature curvature(shared_device(), random.model, most_texels);
+    GpuLearnedCurvature curvature(shared_device(), random.model, options);
     Stream stream(shared_device());
     for (const bool anywhere : {false, true}) {
         const Pose pose = random.pose();
@@ -225,7 +224,15 @@ TEST(LearnedCurvatureParity, ManyComponents) {
 }
 
 TEST(LearnedCurvatureParity, BasesInManyRanges) {
-    for (const AttributeSet set : k_sets) expect_parity({.vertices = 700, .set = set}, 700);
+    for (const AttributeSet set : k_sets) expect_parity({.vertices = 700, .set = set}, {.most_texels = 700});
+}
+
+// What suits another device than this.
+TEST(LearnedCurvatureParity, AnyNumberOfVerticesPerInvocation) {
+    for (const AttributeSet set : k_sets)
+        for (const std::uint32_t quads : {1u, 2u, 4u})
+            for (const std::size_t vertices : {16u, 65u, 700u})
+                expect_parity({.vertices = vertices, .set = set}, {.quads = quads});
 }
 
 TEST(LearnedCurvatureParity, OppositeNormalsStayFinite) {
@@ -385,7 +392,8 @@ TEST(LearnedCurvatureParity, RefusesWhatIsOfAnotherModel) {
     bad = random.model;
     bad.state.input_count += 1;
     EXPECT_THROW(GpuLearnedCurvature(shared_device(), bad), ModelError);
-    EXPECT_THROW(GpuLearnedCurvature(shared_device(), random.model, 20), DeviceLimitError);
+    EXPECT_THROW(GpuLearnedCurvature(shared_device(), random.model, {.most_texels = 20}), DeviceLimitError);
+    EXPECT_THROW(GpuLearnedCurvature(shared_device(), random.model, {.quads = 3}), UsageError);
 }
 
 // Each frame is what it would be alone, reruns are equal bit for bit, and nothing grows.

@@ -497,8 +497,8 @@ struct LearnedScene {
     }
     void count_entries(benchmark::State& state) const {
         state.counters["components"] = static_cast<double>(model.regression.components.size());
-        state.counters["entries"] = static_cast<double>(model.tiles.component.size()) /
-                                    static_cast<double>(model.tiles.mean.size() / BasisTiles::k_lanes);
+        state.counters["entries"] =
+            static_cast<double>(model.tiles.basis.size()) / static_cast<double>(model.tiles.mean.size());
     }
     Random random{4};
     TriangleMesh rest;

@@ -416,6 +416,7 @@ TEST(LearnedCurvatureParity, ManyFrames) {
         return std::array{download(curvature.first()), download(curvature.second()), download(curvature.derivative())};
     };
     std::vector<std::array<std::vector<vec4>, 3>> first;
+    first.reserve(frames.size());
     for (const Frame& frame : frames) first.push_back(run(frame));
     for (int i = 0; i < 200; ++i) run(frames[0]);
     const std::size_t before = resident_bytes();

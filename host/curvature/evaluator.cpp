@@ -23,8 +23,7 @@ const VertexCurvature& CurvatureEvaluator::evaluate(std::span<const Vec3> vertic
 }
 
 const VertexCurvature& CurvatureEvaluator::reproject(std::span<const Vec3> vertices, std::span<const Vec3> normals) {
-    farthest_ = model_->range.bound(model_->state, x_);
-    Eigen::Map<Eigen::VectorXf>(x_.data(), model_->range.mean.size()) -= model_->range.mean;
+    farthest_ = model_->range.prepare(model_->state, x_);
     model_->regression.evaluate(x_, features_, z_);
     reproject_curvature(model_->tiles, z_, {vertices, normals, rotations_}, curvature_);
     return curvature_;

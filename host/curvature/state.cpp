@@ -244,4 +244,10 @@ PoseRange::Farthest PoseRange::bound(const StateReader& reader, std::span<float>
     return result;
 }
 
+PoseRange::Farthest PoseRange::prepare(const StateReader& reader, std::span<float> x) const {
+    const Farthest result = bound(reader, x);
+    Eigen::Map<Eigen::VectorXf>(x.data(), mean.size()) -= mean;
+    return result;
+}
+
 }  // namespace exemplar

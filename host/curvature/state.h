@@ -83,6 +83,8 @@ struct PoseRange {
     /// Pulls the inputs of controls beyond their largest distance back to it, towards the mean: polynomials that fit
     /// within run away beyond. Returns what farthest() says of x as it was.
     Farthest bound(const StateReader& reader, std::span<float> x) const;
+    /// Makes of a state what components are predicted from: bound() and less the mean. Returns what bound() returns.
+    Farthest prepare(const StateReader& reader, std::span<float> x) const;
 
   private:
     float distance(const Control& control, std::size_t index, std::span<const float> x) const;

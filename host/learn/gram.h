@@ -15,6 +15,7 @@ namespace exemplar {
 template <typename Chunk>
 Eigen::MatrixXd gram_of_chunks(Eigen::Index rows, Eigen::Index columns, const Chunk& chunk) {
     constexpr Eigen::Index k_groups = 8, k_chunk = 512;
+    if (rows == 0 || columns == 0) return Eigen::MatrixXd::Zero(rows, rows);
     std::vector<Eigen::MatrixXd> sums(k_groups);
     const Eigen::Index group_size = (columns + k_groups - 1) / k_groups;
     parallel_for(k_groups, [&](std::size_t g) {

@@ -50,9 +50,9 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
     command.add_option("--bases", arguments.bases, "ica or pca")
         ->capture_default_str()
         ->check(CLI::IsMember({"ica", "pca"}));
-    command.add_option("--variance", arguments.variance, "share of the variance that bases keep; 0 takes the default")
+    command.add_option("--variance", arguments.variance, "share of the variance that bases keep")
         ->capture_default_str()
-        ->check(CLI::Range(0.0, 1.0));
+        ->check(CLI::Range(0.01, 1.0));
     command
         .add_option("--sparsity", arguments.dropped_variance,
                     "share of what the bases explain that is left out to make the model smaller")
@@ -88,7 +88,7 @@ CurvatureTraining training_of(const CurvatureArguments& arguments) {
     training.attributes = arguments.attributes == "principal" ? AttributeSet::principal : AttributeSet::tensor;
     training.learner = learner_of(arguments.learner);
     training.independent = arguments.bases == "ica";
-    if (arguments.variance > 0) training.variance = arguments.variance;
+    training.variance = arguments.variance;
     training.dropped_variance = arguments.dropped_variance;
     training.truth.smoothing = arguments.smoothing;
     training.truth.robust = robust_names().at(arguments.robust);
@@ -99,6 +99,22 @@ CurvatureTraining training_of(const CurvatureArguments& arguments) {
     training.sequence.share = arguments.state_variance;
     training.sequence.seed = arguments.seed;
     return training;
+}
+
+std::map<std::string, std::string> words_of(const CurvatureArguments& arguments) {
+    return {{"smoothing", fmt::format("{}", arguments.smoothing)},
+            {"robust", arguments.robust},
+            {"learner", arguments.learner},
+            {"attributes", arguments.attributes},
+            {"bases", arguments.bases},
+            {"variance", fmt::format("{}", arguments.variance)},
+            {"sparsity", fmt::format("{}", arguments.dropped_variance)},
+            {"augment", std::to_string(arguments.augmented_poses)},
+            {"patch", std::to_string(arguments.patch_vertices)},
+            {"patch-inputs", std::to_string(arguments.patch_inputs)},
+            {"state-variance", fmt::format("{}", arguments.state_variance)},
+            {"fps", fmt::format("{}", arguments.frames_per_second)},
+            {"seed", std::to_string(arguments.seed)}};
 }
 
 nlohmann::json describe_training(const CurvatureTrainingReport& report) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -14,7 +15,7 @@ struct CurvatureArguments {
     double frames_per_second = 30;
     double smoothing = 1;
     std::string robust = "none", learner = "auto", attributes = "tensor", bases = "ica";
-    double variance = 0;  ///< 0: the learner's own
+    double variance = CurvatureTraining{}.variance;
     double dropped_variance = CurvatureTraining{}.dropped_variance;
     std::size_t augmented_poses = CurvatureTraining{}.augmented_poses;
     std::size_t patch_vertices = SequenceStateOptions{}.patch_vertices,
@@ -25,6 +26,9 @@ struct CurvatureArguments {
 
 void add_curvature_options(CLI::App& command, CurvatureArguments& arguments);
 CurvatureTraining training_of(const CurvatureArguments& arguments);
+
+/// The arguments that decide what is learned, by the names of their options: what a model file keeps of its training.
+std::map<std::string, std::string> words_of(const CurvatureArguments& arguments);
 
 nlohmann::json describe_training(const CurvatureTrainingReport& report);
 nlohmann::json describe_evaluation(const CurvatureEvaluation& evaluation);

@@ -17,6 +17,8 @@ namespace {
 
 using mesh_io::GltfReader;
 
+constexpr float k_used_weight = 1e-3f;
+
 /// Collects the vertices, faces, bones and morph targets of a scene.
 class RigReader {
   public:
@@ -25,9 +27,8 @@ class RigReader {
           model_(gltf.model()),
           tree_(read_gltf_tree(gltf)),
           mirrors_(mirroring_nodes()),
-          animation_(animation),
-          bones_of_skin_(model_.skins.size()),
-          used_bones_(model_.skins.size()) {
+          animation_(animation) {
+        links_.bones_of_skin.resize(model_.skins.size());
         links_.rig_node.assign(model_.nodes.size(), k_none);
         links_.targets.resize(model_.nodes.size());
     }
@@ -40,7 +41,6 @@ class RigReader {
             animation_.warnings.push_back(fmt::format("{} primitives without POSITION were left out", unplaced_));
         if (skipped_)
             animation_.warnings.push_back(fmt::format("{} primitives of points or lines were left out", skipped_));
-        animation_.kind = kind();
         keep_nodes();
         clean_influences(rig(), animation_.name, animation_.warnings);
         return std::move(links_);
@@ -48,16 +48,6 @@ class RigReader {
 
   private:
     Rig& rig() { return animation_.rig; }
-
-    AnimationKind kind() const {
-        if (model_.asset.generator == k_blend_shapes_generator && !animation_.rig.targets.empty())
-            return AnimationKind::blend_shapes;
-        for (const std::set<std::uint32_t>& used : used_bones_)
-            if (used.size() >= 2) return AnimationKind::skeleton;
-        if (!animation_.rig.targets.empty()) return AnimationKind::blend_shapes;
-        gltf_.fail(
-            "there is neither a skin of several joints nor a morph target; export with the armature or shape keys");
-    }
 
     void read_mesh(std::uint32_t node_index) {
         const tinygltf::Node& node = model_.nodes[node_index];
@@ -146,7 +136,7 @@ class RigReader {
 
     void read_skin(int index) {
         const tinygltf::Skin& skin = gltf_.item(model_.skins, index, "skin");
-        std::vector<std::uint32_t>& bones = bones_of_skin_[static_cast<std::size_t>(index)];
+        std::vector<std::uint32_t>& bones = links_.bones_of_skin[static_cast<std::size_t>(index)];
         if (!bones.empty()) return;
         if (skin.joints.empty()) gltf_.fail(fmt::format("skin {} has no joints", index));
         std::vector<float> matrices;
@@ -197,8 +187,7 @@ class RigReader {
     }
 
     void bind_to_joints(int skin, const tinygltf::Primitive& primitive, std::size_t vertex_count) {
-        const std::vector<std::uint32_t>& bones = bones_of_skin_[static_cast<std::size_t>(skin)];
-        std::set<std::uint32_t>& used = used_bones_[static_cast<std::size_t>(skin)];
+        const std::vector<std::uint32_t>& bones = links_.bones_of_skin[static_cast<std::size_t>(skin)];
         const std::vector<JointSet> sets = joint_sets(primitive, vertex_count);
         for (std::size_t v = 0; v < vertex_count; ++v) {
             bool is_bound = false;
@@ -209,7 +198,6 @@ class RigReader {
                         gltf_.fail(
                             fmt::format("joint {} is named, but skin {} has {}", set.joints[i], skin, bones.size()));
                     rig().influences.push_back({bones[set.joints[i]], set.weights[i]});
-                    if (!(set.weights[i] <= k_used_weight)) used.insert(bones[set.joints[i]]);
                     is_bound = true;
                 }
             if (!is_bound) rig().influences.push_back({bones.front(), 0.0f});
@@ -247,16 +235,12 @@ class RigReader {
         return mirrors;
     }
 
-    static constexpr float k_used_weight = 1e-3f;
-
     GltfReader& gltf_;
     const tinygltf::Model& model_;
     GltfTree tree_;
     std::vector<bool> mirrors_;
     Animation& animation_;
     GltfLinks links_;
-    std::vector<std::vector<std::uint32_t>> bones_of_skin_;
-    std::vector<std::set<std::uint32_t>> used_bones_;  ///< per skin
     std::map<std::pair<std::uint32_t, std::array<std::uint32_t, 12>>, std::uint32_t> bone_index_;
     std::size_t skipped_ = 0, unplaced_ = 0;
 };
@@ -265,6 +249,22 @@ class RigReader {
 
 GltfLinks read_gltf_rig(GltfReader& gltf, Animation& animation) {
     return RigReader(gltf, animation).read();
+}
+
+AnimationKind gltf_kind(const mesh_io::GltfReader& gltf, const GltfLinks& links, const Rig& rig) {
+    if (gltf.model().asset.generator == k_blend_shapes_generator && !rig.targets.empty())
+        return AnimationKind::blend_shapes;
+    std::vector<bool> is_used(rig.bones.size(), false);
+    for (const Influence& influence : rig.influences)
+        if (influence.weight > k_used_weight) is_used[influence.bone] = true;
+    for (const std::vector<std::uint32_t>& bones : links.bones_of_skin) {
+        std::set<std::uint32_t> used;
+        for (const std::uint32_t bone : bones)
+            if (is_used[bone]) used.insert(bone);
+        if (used.size() >= 2) return AnimationKind::skeleton;
+    }
+    if (!rig.targets.empty()) return AnimationKind::blend_shapes;
+    gltf.fail("there is neither a skin of several joints nor a morph target; export with the armature or shape keys");
 }
 
 }  // namespace exemplar::animation_io

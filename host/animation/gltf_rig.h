@@ -22,11 +22,17 @@ struct GltfLinks {
     std::vector<Targets> targets;            ///< per node of the file: the morph targets of its mesh
     std::vector<std::uint32_t> target_node;  ///< per morph target of the rig: the node of the file that drives it
     std::vector<bool> target_is_named;       ///< per morph target of the rig: whether the file names it
+    std::vector<std::vector<std::uint32_t>> bones_of_skin;  ///< per skin of the file; empty if no mesh has the skin
 };
 
-/// Reads the surface of the default scene, one vertex per vertex of the file, with its rig: into `rest`, `rig`, `kind`
-/// and `warnings` of `animation`. Nodes that no bone depends on are left out; each node with a mesh has morph targets
-/// of its own. Throws MeshError where the file contradicts itself, or has neither skin nor morph target.
+/// Reads the surface of the default scene, one vertex per vertex of the file, with its rig: into `rest`, `rig` and
+/// `warnings` of `animation`. Nodes that no bone depends on are left out; each node with a mesh has morph targets of its
+/// own. Throws MeshError where the file contradicts itself.
 GltfLinks read_gltf_rig(mesh_io::GltfReader& gltf, Animation& animation);
+
+/// Skeleton if vertices follow several joints of one skin. Asked of the rig as it will be used: a joint whose vertices
+/// were welded to others, or whose weights were rounded away, moves nothing. Throws MeshError if it has no morph target
+/// either.
+AnimationKind gltf_kind(const mesh_io::GltfReader& gltf, const GltfLinks& links, const Rig& rig);
 
 }  // namespace exemplar::animation_io

@@ -94,6 +94,7 @@ Animation read_gltf(std::string_view content, const std::string& name, const std
     merge_targets(animation, links);
     make_names_unique(animation.rig.targets);
     weld_rig(animation);
+    animation.kind = gltf_kind(gltf, links, animation.rig);
     animation.rest.source_face_count = static_cast<std::uint32_t>(animation.rest.face_count());
     return animation;
 }

@@ -33,19 +33,22 @@ std::array<Vec3, 6> eyes_around(std::span<const Vec3> vertices) {
     return eyes;
 }
 
-/// Errors of one attribute, collected.
+/// Errors of one attribute, collected. Percentiles are taken of some of them, so that memory does not grow with the
+/// length of a motion.
 struct ErrorSum {
-    double squares = 0;
+    double squares = 0, count = 0;
     std::vector<float> magnitudes;
-    void add(float error) {
+    void add(float error, bool keeps) {
         squares += double(error) * error;
-        magnitudes.push_back(std::abs(error));
+        ++count;
+        if (keeps) magnitudes.push_back(std::abs(error));
     }
     void add(const ErrorSum& other) {
         squares += other.squares;
+        count += other.count;
         magnitudes.insert(magnitudes.end(), other.magnitudes.begin(), other.magnitudes.end());
     }
-    double rms() const { return magnitudes.empty() ? 0 : std::sqrt(squares / static_cast<double>(magnitudes.size())); }
+    double rms() const { return count > 0 ? std::sqrt(squares / count) : 0; }
     double percentile_95() {
         if (magnitudes.empty()) return 0;
         const auto place = magnitudes.begin() + static_cast<std::ptrdiff_t>(0.95 * double(magnitudes.size() - 1));
@@ -57,18 +60,20 @@ struct ErrorSum {
 constexpr std::array<const char*, 7> k_names{"k1", "k2", "direction", "C111", "C112", "C122", "C222"};
 using Errors = std::array<ErrorSum, k_names.size()>;
 
-void add_errors(const VertexCurvature& truth, const VertexCurvature& guess, Errors& errors) {
+void add_errors(const VertexCurvature& truth, const VertexCurvature& guess, std::size_t stride, Errors& errors) {
     double difference = 0;
     for (std::size_t v = 0; v < truth.k1.size(); ++v) difference += double(truth.k1[v]) - truth.k2[v];
     const auto distinct =
         static_cast<float>(difference / static_cast<double>(std::max<std::size_t>(truth.k1.size(), 1)));
     for (std::size_t v = 0; v < truth.k1.size(); ++v) {
-        errors[0].add(guess.k1[v] - truth.k1[v]);
-        errors[1].add(guess.k2[v] - truth.k2[v]);
+        const bool keeps = v % stride == 0;
+        errors[0].add(guess.k1[v] - truth.k1[v], keeps);
+        errors[1].add(guess.k2[v] - truth.k2[v], keeps);
         const float along = truth.e1[v].dot(guess.e1[v]), sign = along < 0 ? -1.0f : 1.0f;
         if (truth.k1[v] - truth.k2[v] >= distinct)
-            errors[2].add(std::acos(std::min(std::abs(along), 1.0f)) * 180 / std::numbers::pi_v<float>);
-        for (std::size_t k = 0; k < 4; ++k) errors[3 + k].add(sign * guess.derivative[v][k] - truth.derivative[v][k]);
+            errors[2].add(std::acos(std::min(std::abs(along), 1.0f)) * 180 / std::numbers::pi_v<float>, keeps);
+        for (std::size_t k = 0; k < 4; ++k)
+            errors[3 + k].add(sign * guess.derivative[v][k] - truth.derivative[v][k], keeps);
     }
 }
 
@@ -131,23 +136,25 @@ struct Tally {
 /// Compares frame after frame, on one thread.
 class FrameComparison {
   public:
-    FrameComparison(const CurvatureModel& model, const Animation& animation, const Segments& segments)
+    /// Keeps the errors of every stride-th vertex.
+    FrameComparison(const CurvatureModel& model, const Animation& animation, std::size_t stride)
         : model_(model),
           animation_(animation),
-          reader_(animation, segments, model.truth),
+          reader_(animation, model.segments, model.truth),
           evaluator_(model),
+          stride_(stride),
           nothing_(model.regression.components.size(), 0.0f) {}
 
     void compare(FrameRef frame, Tally& tally) {
-        const SurfaceMoment moment = reader_.read(frame, true);
+        const SurfaceMoment moment = reader_.read(frame);
         const Clip& clip = animation_.clips[frame.clip];
         const VertexCurvature& learned =
             model_.kind == AnimationKind::sequence
                 ? evaluator_.evaluate(moment.vertices, moment.normals)
                 : evaluator_.evaluate(animation_.rig, clip.poses[frame.frame], moment.vertices, moment.normals);
         reproject_curvature(model_.tiles, nothing_, moment.surface(), mean_);
-        add_errors(moment.curvature, learned, tally.learned);
-        add_errors(moment.curvature, mean_, tally.zero_order);
+        add_errors(moment.curvature, learned, stride_, tally.learned);
+        add_errors(moment.curvature, mean_, stride_, tally.zero_order);
         for (std::size_t v = 0; v < moment.curvature.k1.size(); ++v) {
             tally.truth[0].squares += double(moment.curvature.k1[v]) * moment.curvature.k1[v];
             tally.truth[1].squares += double(moment.curvature.k2[v]) * moment.curvature.k2[v];
@@ -166,6 +173,7 @@ class FrameComparison {
     const Animation& animation_;
     MomentReader reader_;
     CurvatureEvaluator evaluator_;
+    std::size_t stride_;
     std::vector<float> nothing_;  // all components at their mean: the zero-order prediction
     VertexCurvature mean_;
 };
@@ -180,11 +188,12 @@ CurvatureEvaluation evaluate_curvature(const CurvatureModel& model, const Animat
                                        std::span<const FrameRef> frames) {
     require_fit(model, animation);
     // Chunks of frames, so that sums do not depend on the number of threads.
-    constexpr std::size_t k_chunk = 8;
+    constexpr std::size_t k_chunk = 8, k_most_kept = 4'000'000;
+    const std::size_t stride = 1 + frames.size() * model.vertex_count / k_most_kept;
     std::vector<Tally> tallies((frames.size() + k_chunk - 1) / k_chunk);
     Progress progress("comparing frames", frames.size());
     parallel_for(tallies.size(), [&](std::size_t chunk) {
-        FrameComparison comparison(model, animation, model.segments);
+        FrameComparison comparison(model, animation, stride);
         for (std::size_t i = chunk * k_chunk; i < std::min(frames.size(), (chunk + 1) * k_chunk); ++i) {
             comparison.compare(frames[i], tallies[chunk]);
             progress.advance();

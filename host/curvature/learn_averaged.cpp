@@ -2,7 +2,6 @@
 // own and its parent's angles; the predictions are averaged.
 
 #include <algorithm>
-#include <numeric>
 
 #include "host/core/parallel.h"
 #include "host/core/progress.h"
@@ -76,15 +75,14 @@ void weigh(const std::vector<std::vector<std::uint32_t>>& vertices, std::size_t 
 void learn_averaged(const LearningTask& task, PredictorBuilder& builder) {
     const std::size_t attributes = task.samples.attributes.size(), controls = task.reader.controls.size();
     const std::vector<std::vector<std::uint32_t>> vertices = vertices_of_controls(task);
-    std::vector<std::vector<Monomial>> quadratic, cubic;
-    std::vector<std::uint32_t> first_quadratic, first_cubic;
+    std::vector<std::vector<Monomial>> quadratic(controls), cubic(controls);
+    std::vector<std::uint32_t> first(controls, 0);  // feature; the quadratic ones are the first of the cubic ones
     for (std::size_t c = 0; c < controls; ++c) {
+        if (vertices[c].empty()) continue;
         const std::vector<std::uint32_t> inputs = bone_inputs(task, c);
-        quadratic.push_back(polynomial_monomials(inputs, task.reader.input_count, 2));
-        cubic.push_back(polynomial_monomials(inputs, task.reader.input_count, 3));
-        // The quadratic features are the first of the cubic ones.
-        first_quadratic.push_back(builder.add_monomials(cubic.back()));
-        first_cubic.push_back(first_quadratic.back());
+        quadratic[c] = polynomial_monomials(inputs, task.reader.input_count, 2);
+        cubic[c] = polynomial_monomials(inputs, task.reader.input_count, 3);
+        first[c] = builder.add_monomials(cubic[c]);
     }
     Progress progress("fitting", attributes);
     for (std::size_t a = 0; a < attributes; ++a) {
@@ -97,8 +95,7 @@ void learn_averaged(const LearningTask& task, PredictorBuilder& builder) {
         });
         weigh(vertices, static_cast<std::size_t>(task.means.cols()), joints);
         for (std::size_t c = 0; c < controls; ++c)
-            builder.add_basis(a, vertices[c], joints[c].basis, derivative ? first_cubic[c] : first_quadratic[c],
-                              joints[c].regression);
+            builder.add_basis(a, vertices[c], joints[c].basis, first[c], joints[c].regression);
         progress.advance();
     }
 }

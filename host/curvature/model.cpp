@@ -376,7 +376,8 @@ void require_fit(const CurvatureModel& model, const Animation& animation) {
         throw ModelError(fmt::format("the model does not fit {}: {}; train one for it", animation.name, why));
     };
     if (model.kind != animation.kind)
-        refuse(fmt::format("it was learned on a {}, this is a {}", name_of(model.kind), name_of(animation.kind)));
+        refuse(fmt::format("it was learned on another kind of animation ({}, here {})", name_of(model.kind),
+                           name_of(animation.kind)));
     if (model.vertex_count != animation.rest.vertex_count() ||
         model.topology != topology_hash(animation.rest.faces, animation.rest.vertex_count()))
         refuse(fmt::format("it was learned on other triangles ({} vertices, here {})", model.vertex_count,

@@ -126,7 +126,7 @@ std::vector<SurfaceMoment> read_moments(const Animation& animation, const Segmen
     parallel_ranges(frames.size(), 8, [&](std::size_t begin, std::size_t end) {
         MomentReader reader(animation, segments, truth);
         for (std::size_t i = begin; i < end; ++i) {
-            moments[i] = reader.read(frames[i], true);
+            moments[i] = reader.read(frames[i]);
             progress.advance();
         }
     });
@@ -160,7 +160,7 @@ MomentReader::MomentReader(const Animation& animation, const Segments& segments,
     if (truth_.smoothing_unit <= 0) truth_.smoothing_unit = estimator_.median_edge_length(animation.rest.vertices);
 }
 
-SurfaceMoment MomentReader::read(FrameRef frame, bool with_curvature) {
+SurfaceMoment MomentReader::read(FrameRef frame) {
     SurfaceMoment moment;
     const Clip& clip = animation_->clips[frame.clip];
     moment.vertices = frame_vertices(*animation_, clip, frame.frame);
@@ -168,15 +168,8 @@ SurfaceMoment MomentReader::read(FrameRef frame, bool with_curvature) {
         segments_->rotations_of_sequence(moment.vertices, moment.rotations);
     else
         segments_->rotations_of_rig(bone_transforms(animation_->rig, clip.poses[frame.frame]), moment.rotations);
-    if (with_curvature) {
-        moment.curvature = estimator_.estimate(moment.vertices, truth_);
-        moment.normals = estimator_.normals();
-    } else {
-        TriangleMesh mesh;
-        mesh.vertices = moment.vertices;
-        mesh.faces = animation_->rest.faces;
-        moment.normals = vertex_normals(mesh);
-    }
+    moment.curvature = estimator_.estimate(moment.vertices, truth_);
+    moment.normals = estimator_.normals();
     return moment;
 }
 

@@ -44,7 +44,7 @@ class MomentReader {
     /// truth: how curvature is measured.
     MomentReader(const Animation& animation, const Segments& segments, const CurvatureOptions& truth);
     /// The surface at a frame.
-    SurfaceMoment read(FrameRef frame, bool with_curvature);
+    SurfaceMoment read(FrameRef frame);
 
   private:
     const Animation* animation_;

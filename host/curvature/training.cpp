@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "host/core/errors.h"
-#include "host/core/parallel.h"
 #include "host/core/stopwatch.h"
 #include "host/curvature/augmentation.h"
 #include "host/curvature/learners.h"
@@ -21,25 +20,6 @@ constexpr int k_surrounding_rings = 3;
 /// (Sec. 5.4.1).
 constexpr double k_least_variation = 0.005;
 
-/// Deviation over the poses, summed over attributes of one order: vertices.
-Eigen::VectorXd deviations(const TrainingSamples& samples, bool of_derivatives) {
-    const Eigen::Index vertices = samples.attributes[0].cols();
-    Eigen::VectorXd variance = Eigen::VectorXd::Zero(vertices);
-    for (std::size_t a = 0; a < samples.attributes.size(); ++a) {
-        if (is_derivative(samples.frames.set, a) != of_derivatives) continue;
-        const Eigen::MatrixXf& values = samples.attributes[a];
-        parallel_for(
-            static_cast<std::size_t>(vertices),
-            [&](std::size_t v) {
-                const auto column = values.col(static_cast<Eigen::Index>(v)).cast<double>();
-                variance[static_cast<Eigen::Index>(v)] +=
-                    (column.array() - column.mean()).square().sum() / static_cast<double>(values.rows());
-            },
-            1024);
-    }
-    return variance.cwiseSqrt();
-}
-
 /// The most, but for the hundredth of the vertices that vary even more: one crumpled face should not make the rest of a
 /// surface rigid.
 double largest_but_outliers(const Eigen::VectorXd& values) {
@@ -47,14 +27,6 @@ double largest_but_outliers(const Eigen::VectorXd& values) {
     const auto place = sorted.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sorted.size() - 1));
     std::nth_element(sorted.begin(), place, sorted.end());
     return *place;
-}
-
-std::vector<bool> varying(const TrainingSamples& samples) {
-    const Eigen::VectorXd deviation = deviations(samples, false);
-    const double least = k_least_variation * largest_but_outliers(deviation);
-    std::vector<bool> varies;
-    for (const double d : deviation) varies.push_back(d > least);
-    return varies;
 }
 
 /// (k1 + k2) / 2, which both sets of attributes have: poses x vertices.
@@ -70,18 +42,39 @@ Eigen::MatrixXf mean_attributes(const TrainingSamples& samples) {
     return means;
 }
 
-/// How much each attribute varies at each vertex, but at least a tenth of what it does at most: attributes x vertices.
-Eigen::MatrixXf attribute_scales(const TrainingSamples& samples, const Eigen::MatrixXf& means) {
-    constexpr double k_least_share = 0.1;
-    Eigen::MatrixXf scales(means.rows(), means.cols());
+/// Standard deviation of each attribute at each vertex over the poses: attributes x vertices.
+Eigen::MatrixXf deviations(const TrainingSamples& samples, const Eigen::MatrixXf& means) {
+    Eigen::MatrixXf result(means.rows(), means.cols());
     for (Eigen::Index a = 0; a < means.rows(); ++a) {
         const Eigen::MatrixXf& values = samples.attributes[static_cast<std::size_t>(a)];
         for (Eigen::Index v = 0; v < means.cols(); ++v)
-            scales(a, v) = std::sqrt((values.col(v).array() - means(a, v)).square().mean());
-        const double most = largest_but_outliers(scales.row(a).transpose().cast<double>());
-        scales.row(a) = scales.row(a).cwiseMax(static_cast<float>(std::max(k_least_share * most, 1e-20)));
+            result(a, v) = std::sqrt((values.col(v).array() - means(a, v)).square().mean());
     }
-    return scales;
+    return result;
+}
+
+/// Whether the curvature at each vertex varies, all attributes of second order together.
+std::vector<bool> varying(AttributeSet set, const Eigen::MatrixXf& deviations) {
+    Eigen::VectorXd deviation = Eigen::VectorXd::Zero(deviations.cols());
+    for (Eigen::Index a = 0; a < deviations.rows(); ++a)
+        if (!is_derivative(set, static_cast<std::size_t>(a)))
+            deviation += deviations.row(a).transpose().cast<double>().cwiseAbs2();
+    deviation = deviation.cwiseSqrt().eval();
+    const double least = k_least_variation * largest_but_outliers(deviation);
+    std::vector<bool> varies;
+    varies.reserve(static_cast<std::size_t>(deviation.size()));
+    for (const double d : deviation) varies.push_back(d > least);
+    return varies;
+}
+
+/// What errors are counted in: deviations, but at least a tenth of the largest of the attribute.
+Eigen::MatrixXf error_scales(Eigen::MatrixXf deviations) {
+    constexpr double k_least_share = 0.1;
+    for (Eigen::Index a = 0; a < deviations.rows(); ++a) {
+        const double most = largest_but_outliers(deviations.row(a).transpose().cast<double>());
+        deviations.row(a) = deviations.row(a).cwiseMax(static_cast<float>(std::max(k_least_share * most, 1e-20)));
+    }
+    return deviations;
 }
 
 /// A control that nothing is predicted from, such as the heading of a figure, may do as it likes: no pose is far for
@@ -137,16 +130,74 @@ void require_learnable(const Animation& animation, std::span<const FrameRef> fra
                         animation.name, frames.size(), k_fewest_poses));
 }
 
-/// The animation with a clip of augmented poses, and the frames with theirs.
-std::pair<Animation, std::vector<FrameRef>> with_augmentation(const Animation& animation,
-                                                              std::span<const FrameRef> frames,
-                                                              const CurvatureTraining& options) {
-    std::pair<Animation, std::vector<FrameRef>> result{animation, {frames.begin(), frames.end()}};
-    if (animation.kind == AnimationKind::sequence || options.augmented_poses == 0) return result;
+/// What is known of a model before anything is learned: what it is of, and how curvature is measured.
+CurvatureModel blank_model(const Animation& animation, FrameRef first, const CurvatureTraining& options) {
+    CurvatureModel model;
+    model.kind = animation.kind;
+    model.vertex_count = animation.rest.vertex_count();
+    model.topology = topology_hash(animation.rest.faces, model.vertex_count);
+    model.truth = options.truth;
+    if (model.truth.smoothing_unit <= 0)
+        model.truth.smoothing_unit = CurvatureEstimator(animation.rest.faces, model.vertex_count)
+                                         .median_edge_length(layout_shape(animation, first));
+    return model;
+}
+
+void find_state(const Animation& animation, std::span<const FrameRef> frames, const CurvatureTraining& options,
+                CurvatureModel& model) {
+    if (options.attributes == AttributeSet::principal) model.segments = segment_animation(animation, frames);
+    SequenceStateOptions sequence = options.sequence;
+    if (options.learner == Learner::global) sequence.patch_vertices = 0;
+    model.state = make_state(animation, frames, sequence);
+    if (model.state.input_count == 0)
+        throw UsageError(fmt::format("{}: nothing moves in the {} poses given; name other clips or frames",
+                                     animation.name, frames.size()));
+}
+
+CurvatureModel train_on(const Animation& animation, std::span<const FrameRef> frames, const CurvatureTraining& options,
+                        CurvatureTrainingReport& report) {
+    Stopwatch watch;
+    CurvatureModel model = blank_model(animation, frames.front(), options);
+    find_state(animation, frames, options, model);
+    TrainingSamples samples =
+        collect_samples(animation, model.segments, model.state, frames, options.attributes, model.truth);
+    model.feature_size = samples.feature_size;
+    model.range = make_pose_range(model.state, samples.states);
+    // Around zero, products of inputs say what their factors do not.
+    samples.states.rowwise() -= model.range.mean.transpose();
+    report.seconds_truth = watch.wall();
+
+    watch = Stopwatch();
+    LearningTask task{animation, model.state, samples, mean_attributes(samples), {}, {}, options};
+    const Eigen::MatrixXf deviation = deviations(samples, task.means);
+    task.scales = error_scales(deviation);
+    const std::vector<bool> varies = varying(options.attributes, deviation);
+    const std::vector<InfluenceGroup> possible = possible_influences(animation, model.state, k_surrounding_rings);
+    task.groups = tested_influences(possible, model.state, samples.states, mean_curvature(samples), varies, {});
+    report.seconds_influence = watch.wall();
+
+    watch = Stopwatch();
+    PredictorBuilder builder(model.state.input_count);
+    learn(task, builder);
+    model.regression = builder.regression();
+    leave_out_unused(model);
+    model.tiles = make_tiles(samples.frames, layout_shape(animation, frames.front()), task.means, builder.bases(),
+                             {.dropped_variance = options.dropped_variance, .scales = task.scales});
+    report.seconds_fit = watch.wall();
+    report.varying_vertices = static_cast<std::size_t>(std::count(varies.begin(), varies.end(), true));
+    report.possible_controls = mean_controls(possible, varies);
+    report.kept_controls = mean_controls(task.groups, varies);
+    return model;
+}
+
+/// The same with augmented poses beside the frames.
+CurvatureModel train_augmented(Animation animation, std::vector<FrameRef> frames, const CurvatureTraining& options,
+                               CurvatureTrainingReport& report) {
     const auto clip = static_cast<std::uint32_t>(animation.clips.size());
-    result.first.clips.push_back(augmented_poses(animation, frames, options.augmented_poses, options.seed));
-    for (std::uint32_t i = 0; i < options.augmented_poses; ++i) result.second.push_back({clip, i});
-    return result;
+    animation.clips.push_back(augmented_poses(animation, frames, options.augmented_poses, options.seed));
+    for (std::uint32_t i = 0; i < options.augmented_poses; ++i) frames.push_back({clip, i});
+    report.poses += options.augmented_poses;
+    return train_on(animation, frames, options, report);
 }
 
 }  // namespace
@@ -165,60 +216,18 @@ std::string_view name_of(Learner learner) {
     return "global";
 }
 
-CurvatureModel train_curvature(const Animation& given, std::span<const FrameRef> given_frames,
+CurvatureModel train_curvature(const Animation& animation, std::span<const FrameRef> frames,
                                const CurvatureTraining& options, CurvatureTrainingReport& report) {
-    require_learnable(given, given_frames);
-    const auto [animation, frames] = with_augmentation(given, given_frames, options);
-    Stopwatch watch;
-    CurvatureModel model;
-    model.kind = animation.kind;
-    model.vertex_count = animation.rest.vertex_count();
-    model.topology = topology_hash(animation.rest.faces, model.vertex_count);
-    model.truth = options.truth;
-    if (model.truth.smoothing_unit <= 0)
-        model.truth.smoothing_unit = CurvatureEstimator(animation.rest.faces, model.vertex_count)
-                                         .median_edge_length(layout_shape(animation, frames.front()));
-    if (options.attributes == AttributeSet::principal) model.segments = segment_animation(animation, frames);
-    SequenceStateOptions sequence = options.sequence;
-    if (options.learner == Learner::global) sequence.patch_vertices = 0;
-    model.state = make_state(animation, frames, sequence);
-    if (model.state.input_count == 0)
-        throw UsageError(fmt::format("{}: nothing moves in the {} poses given; name other clips or frames",
-                                     animation.name, frames.size()));
-    TrainingSamples samples =
-        collect_samples(animation, model.segments, model.state, frames, options.attributes, model.truth);
-    model.feature_size = samples.feature_size;
-    model.range = make_pose_range(model.state, samples.states);
-    samples.states.rowwise() -=
-        model.range.mean.transpose();  // products of inputs around zero say what their factors do not
-    report.seconds_truth = watch.wall();
-
-    watch = Stopwatch();
-    const std::vector<bool> varies = varying(samples);
-    const std::vector<InfluenceGroup> possible = possible_influences(animation, model.state, k_surrounding_rings);
-    LearningTask task{animation, model.state, samples, mean_attributes(samples), {}, {}, options};
-    task.scales = attribute_scales(samples, task.means);
-    task.groups = tested_influences(possible, model.state, samples.states, mean_curvature(samples), varies, {});
-    report.seconds_influence = watch.wall();
-
-    watch = Stopwatch();
-    PredictorBuilder builder(model.state.input_count);
-    learn(task, builder);
-    model.regression = builder.regression();
-    leave_out_unused(model);
-    model.tiles = make_tiles(samples.frames, layout_shape(animation, frames.front()), task.means, builder.bases(),
-                             {.dropped_variance = options.dropped_variance, .scales = task.scales});
-    report.seconds_fit = watch.wall();
-
+    require_learnable(animation, frames);
     report.poses = frames.size();
+    const bool augments = animation.kind != AnimationKind::sequence && options.augmented_poses > 0;
+    CurvatureModel model = augments ? train_augmented(animation, {frames.begin(), frames.end()}, options, report)
+                                    : train_on(animation, frames, options, report);
     report.vertices = model.vertex_count;
-    report.varying_vertices = static_cast<std::size_t>(std::count(varies.begin(), varies.end(), true));
     report.segments = model.segments.count();
     report.controls = model.state.controls.size();
     report.inputs = model.state.input_count;
     report.components = model.regression.components.size();
-    report.possible_controls = mean_controls(possible, varies);
-    report.kept_controls = mean_controls(task.groups, varies);
     report.model_bytes = model.tiles.bytes();
     return model;
 }

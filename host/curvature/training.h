@@ -33,7 +33,8 @@ struct CurvatureTraining {
 };
 
 struct CurvatureTrainingReport {
-    std::size_t poses = 0, vertices = 0, varying_vertices = 0, segments = 0, controls = 0, inputs = 0, components = 0;
+    std::size_t poses = 0;  ///< augmented ones included
+    std::size_t vertices = 0, varying_vertices = 0, segments = 0, controls = 0, inputs = 0, components = 0;
     double possible_controls = 0, kept_controls = 0;  ///< per varying vertex: before and after the F-test
     std::size_t model_bytes = 0;                      ///< of the tiles
     double seconds_truth = 0, seconds_influence = 0, seconds_fit = 0;

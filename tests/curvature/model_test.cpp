@@ -114,7 +114,7 @@ TEST(CurvatureModel, FilesHoldTheWholeModel) {
 
     MomentReader reader(tube(), model.segments, model.truth);
     CurvatureEvaluator a(model), b(back);
-    const SurfaceMoment moment = reader.read({1, 4}, false);
+    const SurfaceMoment moment = reader.read({1, 4});
     const Pose& pose = tube().clips[1].poses[4];
     const VertexCurvature& from_memory = a.evaluate(tube().rig, pose, moment.vertices, moment.normals);
     const VertexCurvature& from_file = b.evaluate(tube().rig, pose, moment.vertices, moment.normals);
@@ -247,7 +247,7 @@ TEST(Evaluator, GivesWhatReprojectionAndDecodingGive) {
         options.attributes = set;
         const CurvatureModel model = trained(tube(), options);
         MomentReader reader(tube(), model.segments, model.truth);
-        const SurfaceMoment moment = reader.read({1, 7}, false);
+        const SurfaceMoment moment = reader.read({1, 7});
         CurvatureEvaluator evaluator(model);
         const VertexCurvature& fast =
             evaluator.evaluate(tube().rig, tube().clips[1].poses[7], moment.vertices, moment.normals);

@@ -12,6 +12,7 @@
 #include "host/core/parallel.h"
 #include "host/core/random.h"
 #include "tests/learn/amari.h"
+#include "tests/learn/normal_matrix.h"
 
 namespace exemplar {
 namespace {
@@ -19,11 +20,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::MatrixXf;
-
-MatrixXd normal_matrix(Index rows, Index cols, std::uint64_t seed) {
-    Random random(seed);
-    return MatrixXd::NullaryExpr(rows, cols, [&] { return random.normal(); });
-}
 
 /// Two columns with lighter tails than a Gaussian (uniform, sine) and two with heavier ones (Laplace, exponential),
 /// each of zero mean and unit variance.

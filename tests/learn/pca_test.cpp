@@ -8,6 +8,7 @@
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
 #include "host/core/random.h"
+#include "tests/learn/normal_matrix.h"
 
 namespace exemplar {
 namespace {
@@ -15,11 +16,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::MatrixXf;
-
-MatrixXd normal_matrix(Index rows, Index cols, std::uint64_t seed) {
-    Random random(seed);
-    return MatrixXd::NullaryExpr(rows, cols, [&] { return random.normal(); });
-}
 
 /// N samples along a few directions of falling deviation (1, 1/2, 1/3 ..), around a mean that is not zero.
 MatrixXf low_rank_samples(Index samples, Index values, Index rank, std::uint64_t seed) {

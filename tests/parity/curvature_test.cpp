@@ -12,6 +12,7 @@
 #include "host/core/errors.h"
 #include "host/mesh/curvature.h"
 #include "tests/gpu/support/environment.h"
+#include "tests/parity/many_frames.h"
 #include "tests/parity/surfaces.h"
 #include "tests/parity/tensors.h"
 
@@ -327,18 +328,7 @@ TEST(CurvatureParity, ManyFramesOfARig) {
         stream.finish();
         return std::array{download(curvature.first()), download(curvature.second()), download(curvature.derivative())};
     };
-    std::vector<std::array<std::vector<vec4>, 3>> first;
-    first.reserve(poses.size());
-    for (const Pose& pose : poses) first.push_back(run(pose));
-    for (int i = 0; i < 200; ++i) run(poses[0]);
-    const std::size_t before = resident_bytes();
-    for (std::size_t frame = 0; frame < 2000; ++frame) {
-        const auto again = run(poses[frame % poses.size()]);
-        for (std::size_t i = 0; i < again.size(); ++i)
-            ASSERT_TRUE(same_bits(again[i], first[frame % poses.size()][i])) << "frame " << frame;
-    }
-    // A buffer that every frame leaves behind would be 2.6 MB of vertices alone, or pages of descriptors.
-    EXPECT_LE(resident_bytes(), before + 1'000'000);
+    testing::expect_repeatable_without_growth(poses, run);
 }
 
 }  // namespace

@@ -15,6 +15,8 @@
 #include "host/curvature/tiling.h"
 #include "host/curvature/training.h"
 #include "tests/gpu/support/environment.h"
+#include "tests/parity/many_frames.h"
+#include "tests/parity/random_model.h"
 #include "tests/parity/surfaces.h"
 #include "tests/parity/tensors.h"
 #include "tests/support/bending_tube.h"
@@ -37,6 +39,10 @@ using testing::same_bits;
 using testing::shared_device;
 using testing::size_of;
 
+using testing::RandomModel;
+using testing::Shape;
+using testing::Surface;
+
 constexpr double k_tolerance = 1e-5;
 
 void expect_near(const VertexCurvature& actual, const VertexCurvature& expected, double tolerance = k_tolerance) {
@@ -52,172 +58,6 @@ void expect_near(const VertexCurvature& actual, const VertexCurvature& expected,
             << "vertex " << v;
     }
 }
-
-struct Shape {
-    std::size_t vertices = 200;
-    AttributeSet set = AttributeSet::tensor;
-    std::size_t segments = 3;  // of principal attributes
-    std::size_t blocks = 10;   // of components that share their features
-    std::size_t neurons = 0;
-    std::size_t most_components = 5;  // of a block and attribute
-};
-
-struct Surface {
-    std::vector<Vec3> vertices, normals;
-};
-
-// A model without sense, of a rig of ten bones.
-class RandomModel {
-  public:
-    RandomModel(const Shape& shape, std::uint64_t seed) : random_(seed) {
-        rig = testing::random_rig(shape.vertices, 10, 2, random_);
-        model.kind = AnimationKind::skeleton;
-        model.vertex_count = shape.vertices;
-        add_state();
-        if (shape.set == AttributeSet::principal) add_segments(shape.segments);
-        add_frames(shape);
-        PredictorBuilder builder(model.state.input_count);
-        for (std::size_t b = 0; b < shape.blocks; ++b) add_block(shape, builder);
-        if (shape.neurons > 0) add_neurons(shape, builder);
-        model.regression = builder.regression();
-        Eigen::MatrixXf means = random_matrix(attribute_count(shape.set), shape.vertices);
-        // Keeps e1 from vanishing, where its direction would be rounding alone.
-        if (shape.set == AttributeSet::principal) means.row(2).array() += 4.0f;
-        model.tiles = make_tiles(frames_, points_, means, builder.bases(), {});
-    }
-
-    Pose pose() { return random_pose(rig, random_); }
-
-    // Random points, with unit normals about where the model saw them, or anywhere.
-    Surface surface(const Pose& pose, bool anywhere) {
-        Surface result;
-        for (std::size_t v = 0; v < points_.size(); ++v) result.vertices.push_back(random_vec3(random_));
-        const std::vector<Vec3> expected = expected_normals(pose, result.vertices);
-        for (const Vec3& normal : expected)
-            result.normals.push_back(
-                (anywhere ? random_vec3(random_) : Vec3(normal + 0.2f * random_vec3(random_))).normalized());
-        return result;
-    }
-    // Normals opposite to where the model saw them, along the edge that should be a tangent, or of no edge.
-    Surface degenerate_surface(const Pose& pose) {
-        Surface result = surface(pose, false);
-        result.normals = expected_normals(pose, result.vertices);
-        for (std::size_t v = 0; v < points_.size(); ++v)
-            if (frames_.set == AttributeSet::principal)
-                result.normals[v] *= -1.0f;
-            else if (v % 3 == 0)
-                result.vertices[frames_.neighbor[v]] = result.vertices[v];
-            else if (const Vec3 edge = edge_at(result.vertices, v); edge.norm() > 0)
-                result.normals[v] = edge.normalized();
-        return result;
-    }
-
-    Rig rig;
-    CurvatureModel model;
-
-  private:
-    Eigen::MatrixXf random_matrix(std::size_t rows, std::size_t columns) {
-        return Eigen::MatrixXf::NullaryExpr(Eigen::Index(rows), Eigen::Index(columns),
-                                            [&] { return float(random_.normal()); });
-    }
-
-    Vec3 edge_at(const std::vector<Vec3>& vertices, std::size_t v) const {
-        return vertices[frames_.neighbor[v]] - vertices[v];
-    }
-
-    // Reference normals in the world; of tensors, some that edges are orthogonal to.
-    std::vector<Vec3> expected_normals(const Pose& pose, const std::vector<Vec3>& vertices) const {
-        std::vector<Vec3> normals;
-        std::vector<Eigen::Matrix3f> rotations;
-        if (model.segments.count() != 0) model.segments.rotations_of_rig(bone_transforms(rig, pose), rotations);
-        for (std::size_t v = 0; v < vertices.size(); ++v)
-            if (frames_.set == AttributeSet::principal)
-                normals.emplace_back(rotations[frames_.segment[v]] * frames_.reference_normal[v]);
-            else if (const Vec3 edge = edge_at(vertices, v); edge.norm() > 0)
-                normals.push_back(any_frame(edge.normalized()).tangent);
-            else
-                normals.push_back(Vec3::UnitY());
-        return normals;
-    }
-
-    void add_state() {
-        model.state.kind = AnimationKind::skeleton;
-        for (std::uint32_t n = 0; n < rig.nodes.size(); n += 2) {
-            model.state.nodes.push_back(n);
-            model.state.reference.push_back(testing::random_transform(random_).rotation);
-            model.state.controls.push_back({rig.nodes[n].name, std::uint32_t(model.state.input_count), 3});
-            model.state.input_count += 3;
-        }
-        add_range();
-    }
-
-    // Of so few poses that about a third of the controls of others are beyond it.
-    void add_range() {
-        Eigen::MatrixXf states(6, Eigen::Index(model.state.input_count));
-        std::vector<float> x(model.state.input_count);
-        for (Eigen::Index i = 0; i < states.rows(); ++i) {
-            model.state.read_pose(pose(), x);
-            states.row(i) = Eigen::Map<const Eigen::RowVectorXf>(x.data(), states.cols());
-        }
-        model.range = make_pose_range(model.state, states);
-    }
-
-    void add_segments(std::size_t count) {
-        model.segments.influence_begin = {0};
-        for (std::size_t s = 0; s < count; ++s) {
-            const float weight = float(random_.uniform(0.3, 0.7));
-            model.segments.influences.push_back({std::uint32_t(random_.index(5)), weight});
-            model.segments.influences.push_back({std::uint32_t(5 + random_.index(5)), 1 - weight});
-            model.segments.influence_begin.push_back(std::uint32_t(2 * s + 2));
-        }
-    }
-
-    void add_frames(const Shape& shape) {
-        frames_.set = shape.set;
-        for (std::size_t v = 0; v < shape.vertices; ++v) {
-            points_.push_back(random_vec3(random_));
-            if (shape.set == AttributeSet::tensor) {
-                frames_.neighbor.push_back(std::uint32_t(random_.index(shape.vertices)));
-                continue;
-            }
-            frames_.segment.push_back(std::uint32_t(v < shape.segments ? v : random_.index(shape.segments)));
-            frames_.reference_normal.push_back(random_vec3(random_).normalized());
-        }
-    }
-
-    // Bases over a part of the vertices, for about three of four attributes.
-    void add_bases(const Shape& shape, std::uint32_t first, std::size_t features, PredictorBuilder& builder) {
-        std::vector<std::uint32_t> vertices;
-        for (std::uint32_t v = 0; v < shape.vertices; ++v)
-            if (random_.uniform() < 0.4) vertices.push_back(v);
-        for (std::size_t a = 0; a < attribute_count(shape.set); ++a) {
-            if (random_.uniform() < 0.25) continue;
-            const std::size_t components = 1 + random_.index(shape.most_components);
-            builder.add_basis(a, vertices, 0.3f * random_matrix(vertices.size(), components), first,
-                              0.3f * random_matrix(components, features));
-        }
-    }
-
-    void add_block(const Shape& shape, PredictorBuilder& builder) {
-        const auto inputs = std::uint32_t(model.state.input_count);
-        std::vector<Monomial> monomials{{inputs, inputs, inputs}};
-        const std::size_t count = random_.index(20);
-        const auto input = [&] { return std::uint32_t(random_.index(inputs + 1)); };
-        for (std::size_t m = 0; m < count; ++m) monomials.push_back({input(), input(), input()});
-        const std::uint32_t first = builder.add_monomials(monomials);
-        add_bases(shape, first, monomials.size(), builder);
-    }
-
-    void add_neurons(const Shape& shape, PredictorBuilder& builder) {
-        const Eigen::VectorXf bias = random_matrix(shape.neurons, 1);
-        const std::uint32_t first = builder.add_neurons(random_matrix(shape.neurons, model.state.input_count), bias);
-        add_bases(shape, first, shape.neurons, builder);
-    }
-
-    Random random_;
-    AttributeFrames frames_;
-    std::vector<Vec3> points_;
-};
 
 struct DeviceSurface {
     explicit DeviceSurface(const Surface& surface)
@@ -305,70 +145,6 @@ TEST(LearnedCurvatureParity, OppositeNormalsAndUprightEdgesStayFinite) {
             for (const float d : actual.derivative[v]) ASSERT_TRUE(std::isfinite(d)) << "vertex " << v;
         }
     }
-}
-
-// Each tile lies whole in one range.
-TEST(TileLayout, IsCutToTheLimit) {
-    RandomModel random({.vertices = 500}, 5);
-    const BasisTiles& tiles = random.model.tiles;
-    const std::size_t components = random.model.regression.components.size();
-    for (const std::size_t most : {std::size_t{700}, std::size_t{3000}, std::size_t{1} << 20})
-        for (const std::size_t alignment : {1u, 16u, 256u}) {
-            const TileLayout layout = lay_out_tiles(tiles, components, 3, most, alignment);
-            std::uint32_t next = 0;
-            for (const TileLayout::Range& range : layout.ranges) {
-                EXPECT_EQ(range.first_tile, next);
-                EXPECT_EQ(range.first_texel * sizeof(shared::uvec4) % alignment, 0u);
-                EXPECT_EQ(range.first_pair * sizeof(std::uint32_t) % alignment, 0u);
-                EXPECT_LE(range.texels, most);
-                EXPECT_EQ(layout.table[next].first_texel, range.first_texel);
-                EXPECT_EQ(layout.table[next].first_pair, range.first_pair);
-                next += range.tiles;
-            }
-            EXPECT_EQ(next, tiles.tile_count());
-        }
-}
-
-TEST(TileLayout, RefusesATileOverTheLimit) {
-    RandomModel random({}, 5);
-    try {
-        lay_out_tiles(random.model.tiles, random.model.regression.components.size(), 3, 26, 16);
-        FAIL();
-    } catch (const DeviceLimitError& error) {
-        EXPECT_EQ(error.limit, 26u);
-        EXPECT_GT(error.requested, 26u);
-        EXPECT_THAT(error.what(), ::testing::HasSubstr(std::to_string(error.requested)));
-    }
-}
-
-TEST(TileLayout, RefusesTilesThatReferToNothing) {
-    RandomModel random({}, 5);
-    const BasisTiles& good = random.model.tiles;
-    const std::size_t components = random.model.regression.components.size();
-    EXPECT_NO_THROW(lay_out_tiles(good, components, 3, 10000, 16));
-    EXPECT_THROW(lay_out_tiles(good, components - 1, 3, 10000, 16), ModelError);
-    EXPECT_NO_THROW(lay_out_tiles(good, components, 0, 10000, 16));
-    const BasisTiles principal = RandomModel({.set = AttributeSet::principal}, 5).model.tiles;
-    EXPECT_NO_THROW(lay_out_tiles(principal, 1000, 3, 10000, 16));
-    EXPECT_THROW(lay_out_tiles(principal, 1000, 2, 10000, 16), ModelError);
-    BasisTiles bad = good;
-    bad.neighbor[17] = 200;
-    EXPECT_THROW(lay_out_tiles(bad, components, 3, 10000, 16), ModelError);
-    bad = good;
-    bad.neighbor.pop_back();
-    EXPECT_THROW(lay_out_tiles(bad, components, 3, 10000, 16), ModelError);
-    bad = principal;
-    bad.reference.pop_back();
-    EXPECT_THROW(lay_out_tiles(bad, 1000, 3, 10000, 16), ModelError);
-    bad = good;
-    bad.vertex[17] = 200;
-    EXPECT_THROW(lay_out_tiles(bad, components, 3, 10000, 16), ModelError);
-    bad = good;
-    bad.mean.pop_back();
-    EXPECT_THROW(lay_out_tiles(bad, components, 3, 10000, 16), ModelError);
-    bad = good;
-    std::swap(bad.entry_begin[4], bad.entry_begin[30]);
-    EXPECT_THROW(lay_out_tiles(bad, components, 3, 10000, 16), ModelError);
 }
 
 CurvatureModel trained(const Animation& animation, const CurvatureTraining& options) {
@@ -496,17 +272,7 @@ TEST(LearnedCurvatureParity, ManyFrames) {
         stream.finish();
         return std::array{download(curvature.first()), download(curvature.second()), download(curvature.derivative())};
     };
-    std::vector<std::array<std::vector<vec4>, 3>> first;
-    first.reserve(frames.size());
-    for (const Frame& frame : frames) first.push_back(run(frame));
-    for (int i = 0; i < 200; ++i) run(frames[0]);
-    const std::size_t before = resident_bytes();
-    for (std::size_t frame = 0; frame < 2000; ++frame) {
-        const auto again = run(frames[frame % frames.size()]);
-        for (std::size_t i = 0; i < again.size(); ++i)
-            ASSERT_TRUE(same_bits(again[i], first[frame % frames.size()][i])) << "frame " << frame;
-    }
-    EXPECT_LE(resident_bytes(), before + 1'000'000);
+    testing::expect_repeatable_without_growth(frames, run);
 }
 
 }  // namespace

@@ -26,8 +26,8 @@ struct GltfLinks {
 };
 
 /// Reads the surface of the default scene, one vertex per vertex of the file, with its rig: into `rest`, `rig` and
-/// `warnings` of `animation`. Nodes that no bone depends on are left out; each node with a mesh has morph targets of its
-/// own. Throws MeshError where the file contradicts itself.
+/// `warnings` of `animation`. Nodes that no bone depends on are left out; each node with a mesh has morph targets of
+/// its own. Throws MeshError where the file contradicts itself.
 GltfLinks read_gltf_rig(mesh_io::GltfReader& gltf, Animation& animation);
 
 /// Skeleton if vertices follow several joints of one skin. Asked of the rig as it will be used: a joint whose vertices

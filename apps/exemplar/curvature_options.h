@@ -24,7 +24,8 @@ struct CurvatureArguments {
 };
 
 void add_curvature_options(CLI::App& command, CurvatureArguments& arguments);
-CurvatureTraining training_of(const CurvatureArguments& arguments);
+/// `kind` decides the learner where none is named.
+CurvatureTraining training_of(const CurvatureArguments& arguments, AnimationKind kind);
 
 nlohmann::json describe_training(const CurvatureTrainingReport& report);
 nlohmann::json describe_evaluation(const CurvatureEvaluation& evaluation);

@@ -9,6 +9,7 @@
 #include "host/core/parallel.h"
 #include "host/core/stopwatch.h"
 #include "host/curvature/augmentation.h"
+#include "host/curvature/learn_local.h"
 #include "host/curvature/learners.h"
 
 namespace exemplar {
@@ -91,6 +92,8 @@ void learn(const LearningTask& task, PredictorBuilder& builder) {
             return learn_network(task, builder);
         case Learner::global:
             return learn_global(task, builder);
+        case Learner::local:
+            break;  // has a state of its own, learned with the map; see learn_local
     }
 }
 
@@ -120,35 +123,10 @@ std::pair<Animation, std::vector<FrameRef>> with_augmentation(const Animation& a
     return result;
 }
 
-}  // namespace
-
-std::string_view name_of(Learner learner) {
-    switch (learner) {
-        case Learner::additive:
-            return "additive";
-        case Learner::averaged:
-            return "averaged";
-        case Learner::network:
-            return "network";
-        case Learner::global:
-            break;
-    }
-    return "global";
-}
-
-CurvatureModel train_curvature(const Animation& given, std::span<const FrameRef> given_frames,
-                               const CurvatureTraining& options, CurvatureTrainingReport& report) {
-    require_learnable(given, given_frames);
-    const auto [animation, frames] = with_augmentation(given, given_frames, options);
+/// All learners that start from a state which is found first.
+void learn_by_controls(const Animation& animation, std::span<const FrameRef> frames, const CurvatureTraining& options,
+                       CurvatureModel& model, CurvatureTrainingReport& report) {
     Stopwatch watch;
-    CurvatureModel model;
-    model.kind = animation.kind;
-    model.vertex_count = animation.rest.vertex_count();
-    model.topology = topology_hash(animation.rest.faces, model.vertex_count);
-    model.truth = options.truth;
-    if (model.truth.smoothing_unit <= 0)
-        model.truth.smoothing_unit = CurvatureEstimator(animation.rest.faces, model.vertex_count)
-                                         .median_edge_length(layout_shape(animation, frames.front()));
     model.segments = segment_animation(animation, frames);
     SequenceStateOptions sequence = options.sequence;
     if (options.learner == Learner::global) sequence.patch_vertices = 0;
@@ -176,16 +154,58 @@ CurvatureModel train_curvature(const Animation& given, std::span<const FrameRef>
     model.tiles = make_tiles(samples.frames, layout_shape(animation, frames.front()), task.means, builder.bases(),
                              {.dropped_variance = options.dropped_variance});
     report.seconds_fit = watch.wall();
+    report.varying_vertices = static_cast<std::size_t>(std::count(varies.begin(), varies.end(), true));
+    report.possible_controls = mean_controls(possible, varies);
+    report.kept_controls = mean_controls(task.groups, varies);
+}
 
+}  // namespace
+
+std::string_view name_of(Learner learner) {
+    switch (learner) {
+        case Learner::additive:
+            return "additive";
+        case Learner::averaged:
+            return "averaged";
+        case Learner::network:
+            return "network";
+        case Learner::local:
+            return "local";
+        case Learner::global:
+            break;
+    }
+    return "global";
+}
+
+Learner default_learner(AnimationKind kind) {
+    return kind == AnimationKind::sequence ? Learner::local : Learner::additive;
+}
+
+CurvatureModel train_curvature(const Animation& given, std::span<const FrameRef> given_frames,
+                               const CurvatureTraining& options, CurvatureTrainingReport& report) {
+    require_learnable(given, given_frames);
+    if (options.learner == Learner::local && given.kind != AnimationKind::sequence)
+        throw UsageError(fmt::format("{}: the local learner is for mesh sequences; take another for a {}", given.name,
+                                     name_of(given.kind)));
+    const auto [animation, frames] = with_augmentation(given, given_frames, options);
+    CurvatureModel model;
+    model.kind = animation.kind;
+    model.vertex_count = animation.rest.vertex_count();
+    model.topology = topology_hash(animation.rest.faces, model.vertex_count);
+    model.truth = options.truth;
+    if (model.truth.smoothing_unit <= 0)
+        model.truth.smoothing_unit = CurvatureEstimator(animation.rest.faces, model.vertex_count)
+                                         .median_edge_length(layout_shape(animation, frames.front()));
+    if (options.learner == Learner::local)
+        learn_local(animation, frames, options, model, report);
+    else
+        learn_by_controls(animation, frames, options, model, report);
     report.poses = frames.size();
     report.vertices = model.vertex_count;
-    report.varying_vertices = static_cast<std::size_t>(std::count(varies.begin(), varies.end(), true));
     report.segments = model.segments.count();
     report.controls = model.state.controls.size();
     report.inputs = model.state.input_count;
     report.components = model.regression.components.size();
-    report.possible_controls = mean_controls(possible, varies);
-    report.kept_controls = mean_controls(task.groups, varies);
     report.model_bytes = model.tiles.bytes();
     return model;
 }

@@ -52,5 +52,5 @@ exemplar_shaders(exemplar_gpu_labeling labeling)
 exemplar_library(gpu_imaging gpu/imaging exemplar_runtime exemplar_imaging)
 exemplar_shaders(exemplar_gpu_imaging imaging)
 
-exemplar_library(gpu_curvature gpu/curvature exemplar_runtime exemplar_animation)
+exemplar_library(gpu_curvature gpu/curvature exemplar_runtime exemplar_animation exemplar_curvature)
 exemplar_shaders(exemplar_gpu_curvature curvature)

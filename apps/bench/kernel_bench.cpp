@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "gpu/curvature/curvature.h"
+#include "gpu/curvature/learned_curvature.h"
 #include "gpu/curvature/normals.h"
 #include "gpu/curvature/poser.h"
 #include "gpu/labeling/context_histograms.h"
@@ -19,6 +20,8 @@
 #include "host/core/parallel.h"
 #include "host/core/random.h"
 #include "host/core/stopwatch.h"
+#include "host/curvature/model_builder.h"
+#include "host/curvature/tiling.h"
 
 // The kernels of labeling and of animated surfaces on the device of EXEMPLAR_DEVICE, else the best: each is compared
 // with its CPU reference once, then timed by the device's own timestamps. The argument is the number of faces, of
@@ -29,6 +32,7 @@
 //   copy, fma         and as shares of the device's measured ceilings (one multiply-add counts as two operations)
 //   call, call_cpu    milliseconds of the whole call with its transfers: wall clock, and CPU of this process
 //   reference_cpu     milliseconds of CPU of the reference, on one thread where it is of an animated surface
+//   entries           of learned curvature: components that matter to a tile, per attribute
 
 namespace exemplar {
 namespace {
@@ -332,7 +336,8 @@ std::vector<float> derivative_sizes(std::span<const std::array<float, 4>> deriva
     return values;
 }
 
-VertexCurvature downloaded(const GpuCurvature& curvature) {
+template <typename DeviceCurvature>
+VertexCurvature downloaded(const DeviceCurvature& curvature) {
     VertexCurvature result;
     result.e1 = vectors_of(curvature.first());
     result.e2 = vectors_of(curvature.second());
@@ -340,6 +345,13 @@ VertexCurvature downloaded(const GpuCurvature& curvature) {
     for (const shared::vec4& v : downloaded(curvature.second())) result.k2.push_back(v.w);
     for (const shared::vec4& v : downloaded(curvature.derivative())) result.derivative.push_back({v.x, v.y, v.z, v.w});
     return result;
+}
+
+template <typename DeviceCurvature>
+bool verified(benchmark::State& state, const DeviceCurvature& curvature, const VertexCurvature& expected) {
+    const VertexCurvature actual = downloaded(curvature);
+    return verified(state, forms(actual), forms(expected)) &&
+           verified(state, derivative_sizes(actual.derivative), derivative_sizes(expected.derivative));
 }
 
 void time_curvature(benchmark::State& state, const CurvatureOptions& options, double near) {
@@ -359,10 +371,7 @@ void time_curvature(benchmark::State& state, const CurvatureOptions& options, do
         stream.finish();
     };
     call();
-    const VertexCurvature actual = downloaded(curvature);
-    if (!verified(state, forms(actual), forms(expected)) ||
-        !verified(state, derivative_sizes(actual.derivative), derivative_sizes(expected.derivative)))
-        return;
+    if (!verified(state, curvature, expected)) return;
 
     const auto count = static_cast<double>(mesh.vertex_count());
     double bytes = 3 * k_ring_bytes + 32 + 64 + 64;
@@ -387,6 +396,199 @@ void smoothed_curvature(benchmark::State& state) {
     time_curvature(state, {.smoothing = 1}, k_near);
 }
 BENCHMARK(smoothed_curvature)->Arg(5'000)->Arg(20'000)->Arg(100'000)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+// How many components matter to a vertex.
+struct Density {
+    std::size_t controls;    // that move its part of the surface
+    std::size_t components;  // of each control and attribute
+};
+
+Eigen::MatrixXf random_matrix(std::size_t rows, std::size_t columns, float deviation, Random& random) {
+    return Eigen::MatrixXf::NullaryExpr(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns),
+                                        [&] { return deviation * static_cast<float>(random.normal()); });
+}
+
+// A control per node.
+StateReader chain_state(const Rig& rig) {
+    StateReader state;
+    state.kind = AnimationKind::skeleton;
+    for (std::uint32_t n = 0; n < rig.nodes.size(); ++n) {
+        state.nodes.push_back(n);
+        state.reference.push_back(Eigen::Quaternionf::Identity());
+        state.controls.push_back({rig.nodes[n].name, 3 * n, 3});
+    }
+    state.input_count = 3 * rig.nodes.size();
+    return state;
+}
+
+// All monomials of up to third order of the three inputs of a control.
+std::vector<Monomial> cubic_monomials(std::uint32_t first_input, std::uint32_t one) {
+    const std::array inputs{first_input, first_input + 1, first_input + 2, one};
+    std::vector<Monomial> monomials;
+    for (std::size_t a = 0; a < 4; ++a)
+        for (std::size_t b = a; b < 4; ++b)
+            for (std::size_t c = b; c < 4; ++c) monomials.push_back({inputs[a], inputs[b], inputs[c]});
+    return monomials;
+}
+
+// Tensors along the first edge of some face.
+AttributeFrames first_edges(const TriangleMesh& mesh) {
+    AttributeFrames frames;
+    frames.neighbor.resize(mesh.vertex_count());
+    for (const Face& face : mesh.faces)
+        for (std::size_t i = 0; i < 3; ++i) frames.neighbor[face[i]] = face[(i + 1) % 3];
+    return frames;
+}
+
+// The poses near which nothing is out of range.
+PoseRange unit_range(const StateReader& state) {
+    PoseRange range;
+    range.mean = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(state.input_count));
+    range.whitening.assign(state.controls.size(), Eigen::Matrix3f::Identity());
+    range.largest.assign(state.controls.size(), 1.0f);
+    return range;
+}
+
+// A model of random bases that matter where the controls of a chain_rig would.
+CurvatureModel chain_model(const TriangleMesh& rest, const Rig& rig, const Density& density, Random& random) {
+    CurvatureModel model;
+    model.kind = AnimationKind::skeleton;
+    model.vertex_count = rest.vertex_count();
+    model.state = chain_state(rig);
+    model.range = unit_range(model.state);
+    const AttributeFrames frames = first_edges(rest);
+    PredictorBuilder builder(model.state.input_count);
+    const std::size_t nodes = rig.nodes.size();
+    for (std::size_t n = 0; n < nodes; ++n) {
+        std::vector<std::uint32_t> vertices;
+        for (std::uint32_t v = 0; v < rest.vertex_count(); ++v)
+            if ((n + nodes - v * nodes / rest.vertex_count()) % nodes < density.controls) vertices.push_back(v);
+        const std::vector<Monomial> monomials =
+            cubic_monomials(static_cast<std::uint32_t>(3 * n), static_cast<std::uint32_t>(model.state.input_count));
+        const std::uint32_t first = builder.add_monomials(monomials);
+        for (std::size_t a = 0; a < attribute_count(frames.set); ++a)
+            builder.add_basis(a, vertices, random_matrix(vertices.size(), density.components, 0.03f, random), first,
+                              random_matrix(density.components, monomials.size(), 0.1f, random));
+    }
+    model.regression = builder.regression();
+    const Eigen::MatrixXf means = random_matrix(attribute_count(frames.set), rest.vertex_count(), 0.3f, random);
+    model.tiles = make_tiles(frames, rest.vertices, means, builder.bases(), {});
+    return model;
+}
+
+// A surface, its rig, a model and a pose.
+struct LearnedScene {
+    LearnedScene(std::uint32_t vertices, const Density& density)
+        : rest(wavy_torus(vertices)),
+          rig(chain_rig(rest.vertex_count(), random)),
+          model(chain_model(rest, rig, density, random)),
+          posed(rest_pose(rig)),
+          normals(vertex_normals(rest)) {
+        for (NodeTransform& node : posed.nodes) node.rotation = Eigen::AngleAxisf(0.02f, Vec3::UnitZ());
+    }
+    // Each once: tiles as the host has them, components, vertices, normals, and what comes out. A multiplication and a
+    // sum per entry and vertex, and about 150 operations to turn and decode a vertex.
+    Work reprojection() const {
+        const auto count = static_cast<double>(rest.vertex_count());
+        return {.bytes = static_cast<double>(model.tiles.bytes()) +
+                         4 * static_cast<double>(model.regression.components.size()) + count * (32 + 48),
+                .operations = 2 * static_cast<double>(model.tiles.basis.size()) + 150 * count};
+    }
+    Work whole() const {
+        const auto coefficients = static_cast<double>(model.regression.coefficients.size());
+        return {.bytes = reprojection().bytes + 4 * coefficients +
+                         12 * static_cast<double>(model.regression.monomials.size()),
+                .operations = reprojection().operations + 2 * coefficients};
+    }
+    void count_entries(benchmark::State& state) const {
+        state.counters["components"] = static_cast<double>(model.regression.components.size());
+        state.counters["entries"] =
+            static_cast<double>(model.tiles.basis.size()) / static_cast<double>(model.tiles.mean.size());
+    }
+    Random random{4};
+    TriangleMesh rest;
+    Rig rig;
+    CurvatureModel model;
+    Pose posed;
+    std::vector<Vec3> normals;
+};
+
+void time_learned_curvature(benchmark::State& state, const Density& density) {
+    const LearnedScene scene(static_cast<std::uint32_t>(state.range(0)), density);
+    CurvatureEvaluator reference(scene.model);
+    const double reference_ms =
+        reference_cpu([&] { reference.evaluate(scene.rig, scene.posed, scene.rest.vertices, scene.normals); });
+    const Buffer vertices = uploaded(scene.rest.vertices), normals = uploaded(scene.normals);
+    Profiler profiler;
+    Stream stream(bench().device, &profiler);
+    GpuLearnedCurvature curvature(bench().device, scene.model);
+    const auto call = [&] {
+        curvature.record(stream, scene.rig, scene.posed, vertices, normals);
+        stream.finish();
+    };
+    call();
+    if (!verified(state, curvature, reference.evaluate(scene.rig, scene.posed, scene.rest.vertices, scene.normals)))
+        return;
+    time_call(state, profiler, scene.whole(), call);
+    state.counters["reference_cpu"] = reference_ms;
+    scene.count_entries(state);
+    for (const auto& [kernel, entry] : profiler.entries()) state.counters[kernel] = entry.milliseconds;
+}
+
+void time_reprojection(benchmark::State& state, const Density& density) {
+    const LearnedScene scene(static_cast<std::uint32_t>(state.range(0)), density);
+    const BasisTiles& tiles = scene.model.tiles;
+    const Eigen::MatrixXf z =
+        Eigen::MatrixXf::Constant(static_cast<Eigen::Index>(scene.model.regression.components.size()), 1, 0.5f);
+    const std::span<const float> components(z.data(), static_cast<std::size_t>(z.size()));
+    VertexCurvature expected;
+    const double reference_ms = reference_cpu([&] {
+        reproject_curvature(tiles, components, {scene.rest.vertices, scene.normals}, expected);
+    });
+    Device& device = bench().device;
+    const Buffer on_device = Buffer::of(device, components), vertices = uploaded(scene.rest.vertices),
+                 normals = uploaded(scene.normals), no_rotations(device, 3 * sizeof(shared::vec4));
+    Profiler profiler;
+    Stream stream(device, &profiler);
+    GpuReprojection reprojection(device, tiles, components.size(), 0, {});
+    const auto call = [&] {
+        reprojection.record(stream, on_device, {.vertices = vertices, .normals = normals, .rotations = no_rotations});
+        stream.finish();
+    };
+    call();
+    if (!verified(state, reprojection, expected)) return;
+    time_call(state, profiler, scene.reprojection(), call);
+    state.counters["reference_cpu"] = reference_ms;
+    scene.count_entries(state);
+}
+
+// Two controls at a vertex, three components of each for each attribute.
+constexpr Density k_typical{.controls = 2, .components = 3}, k_dense{.controls = 5, .components = 4};
+
+void learned_curvature(benchmark::State& state) {
+    time_learned_curvature(state, k_typical);
+}
+BENCHMARK(learned_curvature)->Arg(5'000)->Arg(20'000)->Arg(100'000)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+void reproject(benchmark::State& state) {
+    time_reprojection(state, k_typical);
+}
+BENCHMARK(reproject)->Arg(5'000)->Arg(20'000)->Arg(100'000)->UseManualTime()->Unit(benchmark::kMillisecond);
+
+void dense_learned_curvature(benchmark::State& state) {
+    time_learned_curvature(state, k_dense);
+}
+BENCHMARK(dense_learned_curvature)
+    ->Arg(5'000)
+    ->Arg(20'000)
+    ->Arg(100'000)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
+
+void dense_reproject(benchmark::State& state) {
+    time_reprojection(state, k_dense);
+}
+BENCHMARK(dense_reproject)->Arg(5'000)->Arg(20'000)->Arg(100'000)->UseManualTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace exemplar

@@ -42,22 +42,19 @@ bool is_derivative(AttributeSet set, std::size_t attribute) {
     return attribute + 4 >= attribute_count(set);
 }
 
-Vec3 carried(const Vec3& axis, const Vec3& from, const Vec3& to) {
-    const float one_plus = 1 + from.dot(to);
-    // Opposite normals have no least rotation; any that is continuous nearby will do.
-    if (!(one_plus > 1e-4f)) return -axis;
-    return axis - (from + to) * (to.dot(axis) / one_plus);
+Vec3 edge_tangent(const Vec3& edge, const Vec3& normal) {
+    const Vec3 flat = edge - normal * normal.dot(edge);
+    const float squared = flat.squaredNorm();
+    return squared > k_least_flat * edge.squaredNorm() ? Vec3(flat / std::sqrt(squared)) : any_frame(normal).tangent;
 }
 
-void AttributeFrames::encode(const VertexCurvature& curvature, std::span<const Vec3> normals,
-                             std::span<const Eigen::Matrix3f> rotations, std::span<float> attributes) const {
+void AttributeFrames::encode(const VertexCurvature& curvature, const PosedSurface& surface,
+                             std::span<float> attributes) const {
     const std::size_t count = vertex_count();
     const auto out = [&](std::size_t attribute, std::size_t v) -> float& { return attributes[attribute * count + v]; };
     for (std::size_t v = 0; v < count; ++v) {
-        const Eigen::Matrix3f& rotation = rotations[segment[v]];
-        const Vec3 normal = rotation.transpose() * normals[v];
-        Vec3 e1 = rotation.transpose() * curvature.e1[v];
         if (set == AttributeSet::principal) {
+            const Vec3 e1 = surface.rotations[segment[v]].transpose() * curvature.e1[v];
             const float sign = e1.dot(reference_direction[v]) < 0 ? -1.0f : 1.0f;
             const KeptAxes axes = kept_axes(reference_normal[v]);
             out(0, v) = curvature.k1[v];
@@ -67,8 +64,9 @@ void AttributeFrames::encode(const VertexCurvature& curvature, std::span<const V
             for (std::size_t k = 0; k < 4; ++k) out(4 + k, v) = sign * curvature.derivative[v][k];
             continue;
         }
-        const Vec3 tangent = carried(any_frame(reference_normal[v]).tangent, reference_normal[v], normal);
-        const Turn back = turn_between(tangent, normal, e1).inverse();
+        const Vec3& normal = surface.normals[v];
+        const Vec3 tangent = edge_tangent(surface.vertices[neighbor[v]] - surface.vertices[v], normal);
+        const Turn back = turn_between(tangent, normal, curvature.e1[v]).inverse();
         const Form form = turned(Form{curvature.k1[v], 0.0f, curvature.k2[v]}, back);
         const FormDerivative derivative = turned(curvature.derivative[v], back);
         for (std::size_t k = 0; k < 3; ++k) out(k, v) = form[k];
@@ -76,8 +74,8 @@ void AttributeFrames::encode(const VertexCurvature& curvature, std::span<const V
     }
 }
 
-void AttributeFrames::decode(std::span<const float> attributes, std::span<const Vec3> normals,
-                             std::span<const Eigen::Matrix3f> rotations, VertexCurvature& curvature) const {
+void AttributeFrames::decode(std::span<const float> attributes, const PosedSurface& surface,
+                             VertexCurvature& curvature) const {
     const std::size_t count = vertex_count();
     const auto in = [&](std::size_t attribute, std::size_t v) { return attributes[attribute * count + v]; };
     curvature.k1.resize(count);
@@ -86,32 +84,35 @@ void AttributeFrames::decode(std::span<const float> attributes, std::span<const 
     curvature.e2.resize(count);
     curvature.derivative.resize(count);
     for (std::size_t v = 0; v < count; ++v) {
-        const Eigen::Matrix3f& rotation = rotations[segment[v]];
-        const Vec3 normal = rotation.transpose() * normals[v];
-        Vec3 e1;
         if (set == AttributeSet::principal) {
-            const float k1 = in(0, v), k2 = in(1, v);
-            curvature.k1[v] = std::max(k1, k2);
-            curvature.k2[v] = std::min(k1, k2);
-            const KeptAxes axes = kept_axes(reference_normal[v]);
-            e1[axes.first] = in(2, v);
-            e1[axes.second] = in(3, v);
-            const float along = normal[axes.dropped];
-            const float divisor = along >= 0 ? std::max(along, k_least_divisor) : std::min(along, -k_least_divisor);
-            e1[axes.dropped] = -(normal[axes.first] * e1[axes.first] + normal[axes.second] * e1[axes.second]) / divisor;
-            e1 -= normal * normal.dot(e1);
-            const float length = e1.norm();
-            e1 = length > 1e-6f ? Vec3(e1 / length) : any_frame(normal).tangent;
+            curvature.k1[v] = std::max(in(0, v), in(1, v));
+            curvature.k2[v] = std::min(in(0, v), in(1, v));
+            curvature.e1[v] = completed_direction(in(2, v), in(3, v), v, surface);
             for (std::size_t k = 0; k < 4; ++k) curvature.derivative[v][k] = in(4 + k, v);
         } else {
-            const Vec3 tangent = carried(any_frame(reference_normal[v]).tangent, reference_normal[v], normal);
+            const Vec3& normal = surface.normals[v];
+            const Vec3 tangent = edge_tangent(surface.vertices[neighbor[v]] - surface.vertices[v], normal);
             const Turn turn = principal_turn({in(0, v), in(1, v), in(2, v)}, curvature.k1[v], curvature.k2[v]);
-            e1 = turn.cosine * tangent + turn.sine * normal.cross(tangent);
+            curvature.e1[v] = turn.cosine * tangent + turn.sine * normal.cross(tangent);
             curvature.derivative[v] = turned(FormDerivative{in(3, v), in(4, v), in(5, v), in(6, v)}, turn);
         }
-        curvature.e1[v] = rotation * e1;
-        curvature.e2[v] = normals[v].cross(curvature.e1[v]);
+        curvature.e2[v] = surface.normals[v].cross(curvature.e1[v]);
     }
+}
+
+Vec3 AttributeFrames::completed_direction(float first, float second, std::size_t v, const PosedSurface& surface) const {
+    const Eigen::Matrix3f& rotation = surface.rotations[segment[v]];
+    const Vec3 normal = rotation.transpose() * surface.normals[v];
+    const KeptAxes axes = kept_axes(reference_normal[v]);
+    Vec3 e1;
+    e1[axes.first] = first;
+    e1[axes.second] = second;
+    const float along = normal[axes.dropped];
+    const float divisor = along >= 0 ? std::max(along, k_least_divisor) : std::min(along, -k_least_divisor);
+    e1[axes.dropped] = -(normal[axes.first] * first + normal[axes.second] * second) / divisor;
+    e1 -= normal * normal.dot(e1);
+    const float length = e1.norm();
+    return rotation * (length > 1e-6f ? Vec3(e1 / length) : any_frame(normal).tangent);
 }
 
 }  // namespace exemplar

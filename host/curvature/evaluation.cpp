@@ -144,8 +144,8 @@ class FrameComparison {
         const VertexCurvature& learned =
             model_.kind == AnimationKind::sequence
                 ? evaluator_.evaluate(moment.vertices, moment.normals)
-                : evaluator_.evaluate(animation_.rig, clip.poses[frame.frame], moment.normals);
-        reproject_curvature(model_.tiles, nothing_, moment.normals, moment.rotations, mean_);
+                : evaluator_.evaluate(animation_.rig, clip.poses[frame.frame], moment.vertices, moment.normals);
+        reproject_curvature(model_.tiles, nothing_, moment.surface(), mean_);
         add_errors(moment.curvature, learned, tally.learned);
         add_errors(moment.curvature, mean_, tally.zero_order);
         for (std::size_t v = 0; v < moment.curvature.k1.size(); ++v) {

@@ -8,21 +8,24 @@ CurvatureEvaluator::CurvatureEvaluator(const CurvatureModel& model)
       features_(model.regression.feature_count()),
       z_(model.regression.components.size()) {}
 
-const VertexCurvature& CurvatureEvaluator::evaluate(const Rig& rig, const Pose& pose, std::span<const Vec3> normals) {
+const VertexCurvature& CurvatureEvaluator::evaluate(const Rig& rig, const Pose& pose, std::span<const Vec3> vertices,
+                                                    std::span<const Vec3> normals) {
     model_->state.read_pose(pose, x_);
-    model_->segments.rotations_of_rig(bone_transforms(rig, pose), rotations_);
-    return reproject(normals);
+    if (model_->tiles.set == AttributeSet::principal)
+        model_->segments.rotations_of_rig(bone_transforms(rig, pose), rotations_);
+    return reproject(vertices, normals);
 }
 
 const VertexCurvature& CurvatureEvaluator::evaluate(std::span<const Vec3> vertices, std::span<const Vec3> normals) {
-    model_->segments.rotations_of_sequence(vertices, rotations_);
+    if (model_->segments.count() > 0) model_->segments.rotations_of_sequence(vertices, rotations_);
     model_->state.read_surface(vertices, normals, rotations_, x_);
-    return reproject(normals);
+    return reproject(vertices, normals);
 }
 
-const VertexCurvature& CurvatureEvaluator::reproject(std::span<const Vec3> normals) {
+const VertexCurvature& CurvatureEvaluator::reproject(std::span<const Vec3> vertices, std::span<const Vec3> normals) {
+    farthest_ = model_->range.prepare(model_->state, x_);
     model_->regression.evaluate(x_, features_, z_);
-    reproject_curvature(model_->tiles, z_, normals, rotations_, curvature_);
+    reproject_curvature(model_->tiles, z_, {vertices, normals, rotations_}, curvature_);
     return curvature_;
 }
 

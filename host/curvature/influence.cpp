@@ -91,6 +91,21 @@ std::vector<ControlSet> joints_of_vertices(const Animation& animation, const Sta
     return sets;
 }
 
+/// Gives vertices without controls those of their neighbors, from ring to ring, until none is left that has any near.
+void fill(const std::vector<Face>& faces, std::vector<ControlSet>& sets) {
+    for (bool changes = true; changes;) {
+        changes = false;
+        std::vector<ControlSet> wider = sets;
+        for (const Face& face : faces)
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (!sets[face[i]].empty()) continue;
+                for (std::size_t j = 1; j < 3; ++j) merge_into(wider[face[i]], sets[face[(i + j) % 3]]);
+                changes |= !wider[face[i]].empty();
+            }
+        sets = std::move(wider);
+    }
+}
+
 std::vector<ControlSet> targets_of_vertices(const Animation& animation, const StateReader& reader, int rings) {
     std::vector<ControlSet> sets(animation.rest.vertex_count());
     for (std::uint32_t c = 0; c < reader.nodes.size(); ++c)
@@ -165,17 +180,20 @@ std::vector<ControlSet> test_group(const InfluenceGroup& group, const StateReade
 }  // namespace
 
 std::vector<InfluenceGroup> possible_influences(const Animation& animation, const StateReader& reader, int rings) {
+    std::vector<ControlSet> sets;
     switch (animation.kind) {
         case AnimationKind::skeleton:
-            return grouped(joints_of_vertices(animation, reader, rings));
+            sets = joints_of_vertices(animation, reader, rings);
+            break;
         case AnimationKind::blend_shapes:
-            return grouped(targets_of_vertices(animation, reader, rings));
+            sets = targets_of_vertices(animation, reader, rings);
+            break;
         case AnimationKind::sequence:
+            for (const std::uint32_t control : reader.control_of_vertex) sets.push_back({control});
             break;
     }
-    std::vector<ControlSet> patch;
-    for (const std::uint32_t control : reader.control_of_vertex) patch.push_back({control});
-    return grouped(patch);
+    fill(animation.rest.faces, sets);
+    return grouped(sets);
 }
 
 std::vector<InfluenceGroup> tested_influences(const std::vector<InfluenceGroup>& possible, const StateReader& reader,

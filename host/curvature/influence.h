@@ -18,7 +18,8 @@ struct InfluenceGroup {
 /// The controls that could matter to each vertex. Curvature does not change under rigid motion, so of a skeleton these
 /// are the joints on the paths between the bones that hold the vertex or its surroundings: the elbow for a vertex of
 /// the elbow, but not the shoulder. Of blend shapes those that move the surroundings, of a sequence its one control.
-/// `rings`: how far the surroundings reach, in edges. Groups in order of their first vertex.
+/// `rings`: how far the surroundings reach, in edges; vertices farther off take what their neighbors have. Groups in
+/// order of their first vertex.
 std::vector<InfluenceGroup> possible_influences(const Animation& animation, const StateReader& reader, int rings);
 
 struct InfluenceTest {

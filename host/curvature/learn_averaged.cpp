@@ -44,7 +44,7 @@ std::vector<std::uint32_t> bone_inputs(const LearningTask& task, std::size_t con
 JointPredictor predict_from(const LearningTask& task, std::size_t attribute, const std::vector<std::uint32_t>& vertices,
                             const Eigen::MatrixXd& features) {
     const Eigen::MatrixXf values = task.centered(attribute, vertices);
-    const Ica ica = task.reduce(values);
+    const Ica ica = task.reduce(values, attribute, vertices);
     JointPredictor predictor;
     predictor.basis = ica.mixing;
     predictor.regression = LeastSquares(features).solve(ica.sources.cast<double>()).transpose().cast<float>();
@@ -62,6 +62,7 @@ void weigh(const std::vector<std::vector<std::uint32_t>>& vertices, std::size_t 
             predictors[vertices[j][i]].emplace_back(j, static_cast<Eigen::Index>(i));
     for (const auto& of_vertex : predictors) {
         std::vector<double> residuals;
+        residuals.reserve(of_vertex.size());
         for (const auto& [j, i] : of_vertex) residuals.push_back(joints[j].residual[i]);
         if (residuals.empty()) continue;
         const std::vector<double> weights = predictor_weights(residuals);

@@ -74,7 +74,7 @@ std::vector<MatrixXf> encode_all(const AttributeFrames& frames, const std::vecto
     std::vector<MatrixXf> result(attributes, MatrixXf(Index(moments.size()), Index(count)));
     std::vector<float> values(count * attributes);
     for (std::size_t i = 0; i < moments.size(); ++i) {
-        frames.encode(moments[i].curvature, moments[i].normals, moments[i].rotations, values);
+        frames.encode(moments[i].curvature, moments[i].surface(), values);
         for (std::size_t a = 0; a < attributes; ++a)
             result[a].row(Index(i)) = Eigen::Map<const Eigen::RowVectorXf>(values.data() + a * count, Index(count));
     }
@@ -238,7 +238,9 @@ void learn_local(const Animation& animation, std::span<const FrameRef> frames, c
     report.seconds_truth = watch.wall();
 
     watch = Stopwatch();
-    const AttributeFrames attribute_frames = make_attribute_frames(options.attributes, model.segments, moments);
+    AttributeFrames attribute_frames =
+        make_attribute_frames(options.attributes, animation.rest, model.segments, moments);
+    attribute_frames.segment = model.segments.segment_of_vertex;  // tiles of one patch need the components of no other
     LocalLearner learner(moments, attribute_frames, options.sequence.most_inputs, model.state);
     const PredictorBuilder builder = learner.learn();
     if (model.state.input_count == 0)

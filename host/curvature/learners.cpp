@@ -8,6 +8,22 @@
 
 namespace exemplar {
 
+namespace {
+
+/// Principal components in the form of independent ones.
+Ica principal_components(const Eigen::MatrixXf& values, double share) {
+    const Pca pca = fit_pca(values, share);
+    const Eigen::VectorXf deviation = pca.variance.cast<float>().cwiseSqrt();
+    Ica result;
+    result.mean = pca.mean;
+    result.mixing = pca.basis * deviation.asDiagonal();
+    result.unmixing = deviation.cwiseInverse().asDiagonal() * pca.basis.transpose();
+    result.sources = pca.project(values) * deviation.cwiseInverse().asDiagonal();
+    return result;
+}
+
+}  // namespace
+
 Eigen::MatrixXf LearningTask::centered(std::size_t attribute, const std::vector<std::uint32_t>& vertices) const {
     const auto row = static_cast<Eigen::Index>(attribute);
     Eigen::MatrixXf values(poses(), static_cast<Eigen::Index>(vertices.size()));
@@ -17,16 +33,17 @@ Eigen::MatrixXf LearningTask::centered(std::size_t attribute, const std::vector<
     return values;
 }
 
-Ica LearningTask::reduce(const Eigen::Ref<const Eigen::MatrixXf>& values) const {
-    const IcaOptions ica{.share = options.variance, .seed = options.seed};
-    if (options.independent) return fit_spatial_ica(values, ica);
-    const Pca pca = fit_pca(values, options.variance);
-    const Eigen::VectorXf deviation = pca.variance.cast<float>().cwiseSqrt();
-    Ica result;
-    result.mean = pca.mean;
-    result.mixing = pca.basis * deviation.asDiagonal();
-    result.unmixing = deviation.cwiseInverse().asDiagonal() * pca.basis.transpose();
-    result.sources = pca.project(values) * deviation.cwiseInverse().asDiagonal();
+Ica LearningTask::reduce(const Eigen::Ref<const Eigen::MatrixXf>& values, std::size_t attribute,
+                         const std::vector<std::uint32_t>& vertices) const {
+    Eigen::VectorXf scale(static_cast<Eigen::Index>(vertices.size()));
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        scale[static_cast<Eigen::Index>(i)] = scales(static_cast<Eigen::Index>(attribute), vertices[i]);
+    const Eigen::MatrixXf scaled = values * scale.cwiseInverse().asDiagonal();
+    Ica result = options.independent ? fit_spatial_ica(scaled, {.share = options.variance, .seed = options.seed})
+                                     : principal_components(scaled, options.variance);
+    result.mean = scale.asDiagonal() * result.mean;
+    result.mixing = scale.asDiagonal() * result.mixing;
+    result.unmixing = result.unmixing * scale.cwiseInverse().asDiagonal();
     return result;
 }
 
@@ -42,7 +59,7 @@ std::vector<Ica> LearningTask::reduce_all(const std::vector<std::uint32_t>& vert
     std::vector<Ica> bases(samples.attributes.size());
     Progress progress("reducing", bases.size());
     parallel_for(bases.size(), [&](std::size_t a) {
-        bases[a] = reduce(centered(a, vertices));
+        bases[a] = reduce(centered(a, vertices), a, vertices);
         progress.advance();
     });
     return bases;

@@ -18,14 +18,18 @@ struct LearningTask {
     const StateReader& reader;
     const TrainingSamples& samples;
     Eigen::MatrixXf means;               ///< attributes x vertices
+    Eigen::MatrixXf scales;              ///< attributes x vertices: what errors are counted in (see TilingOptions)
     std::vector<InfluenceGroup> groups;  ///< after the test; vertices that do not vary have no controls
     const CurvatureTraining& options;
 
     Eigen::Index poses() const { return samples.states.rows(); }
     /// The training values of an attribute at some vertices, less their means: poses x vertices.
     Eigen::MatrixXf centered(std::size_t attribute, const std::vector<std::uint32_t>& vertices) const;
-    /// Bases of training values or predictions (poses x vertices), as the options ask for them.
-    Ica reduce(const Eigen::Ref<const Eigen::MatrixXf>& values) const;
+    /// Bases of an attribute's training values or predictions at some vertices (poses x vertices), as the options ask
+    /// for them: of the values in units of `scales`, so that the share of the variance that is kept is kept at every
+    /// vertex, and not where the surface bends most alone.
+    Ica reduce(const Eigen::Ref<const Eigen::MatrixXf>& values, std::size_t attribute,
+               const std::vector<std::uint32_t>& vertices) const;
     /// The vertices that some control matters to, rising.
     std::vector<std::uint32_t> varying_vertices() const;
     /// The bases of each attribute over those vertices.

@@ -138,7 +138,9 @@ void add_tiles(TensorFile& file, const BasisTiles& tiles) {
     file.add("tiles.component", {tiles.component.size()}, tiles.component);
     file.add("tiles.basis", {tiles.component.size(), lanes}, tiles.basis);
     file.add("tiles.mean", {count, tiles.scale.size(), lanes}, tiles.mean);
-    file.add("tiles.reference", {count, 3, lanes}, tiles.reference);
+    const bool tensor = tiles.set == AttributeSet::tensor;
+    file.add("tiles.neighbor", {tensor ? count : 0, lanes}, tiles.neighbor);
+    file.add("tiles.reference", {tensor ? 0 : count, 3, lanes}, tiles.reference);
 }
 
 // Reading: every number that leads somewhere is checked to lead there.
@@ -174,7 +176,7 @@ struct Reading {
             if (value >= bound) damaged(fmt::format("{} names {} of {}", name, value, bound));
     }
     void rows(const Words& begin, std::size_t count, std::size_t end, const char* name) const {
-        if (begin.size() != count + 1 || begin.front() != 0 || begin.back() != end ||
+        if (begin.empty() || begin.size() != count + 1 || begin.front() != 0 || begin.back() != end ||
             !std::is_sorted(begin.begin(), begin.end()))
             damaged(fmt::format("{} are no rows", name));
     }
@@ -291,14 +293,14 @@ void read_segments(const Reading& reading, CurvatureModel& model) {
     const Floats weights = reading.floats("segments.weight", {bones.size()});
     for (std::size_t i = 0; i < bones.size(); ++i) segments.influences.push_back({bones[i], weights[i]});
     if (model.kind != AnimationKind::sequence) {
-        reading.require(!segments.influence_begin.empty(), "it has no segments");
-        reading.rows(segments.influence_begin, segments.influence_begin.size() - 1, bones.size(), "the segments");
+        if (model.tiles.set == AttributeSet::principal || !segments.influence_begin.empty())
+            reading.rows(segments.influence_begin, std::max<std::size_t>(segments.influence_begin.size(), 1) - 1,
+                         bones.size(), "the segments");
         return;
     }
     const Words patches = reading.words("segments.patches", {k_any, 3, Segments::Triangle::k_patch});
     reading.below(patches, model.vertex_count, "segments.patches");
     const std::size_t count = patches.size() / (3 * Segments::Triangle::k_patch);
-    reading.require(count > 0, "it has no segments");
     reading.require(!model.state.is_local() || count == model.state.controls.size(), "patches and segments differ");
     const Floats frames = reading.floats("segments.frame", {count, 3, 3});
     for (std::size_t s = 0; s < count; ++s) {
@@ -339,7 +341,7 @@ void read_tiles(const Reading& reading, CurvatureModel& model) {
     tiles.vertex_count = model.vertex_count;
     tiles.segment = reading.words("tiles.segment", {k_any});
     const std::size_t count = tiles.segment.size();
-    reading.below(tiles.segment, model.segments.count(), "tiles.segment");
+    reading.below(tiles.segment, std::max<std::size_t>(model.segments.count(), 1), "tiles.segment");
     tiles.vertex = reading.words("tiles.vertex", {count, lanes});
     reading.below(tiles.vertex, model.vertex_count, "tiles.vertex");
     tiles.scale = reading.floats("tiles.scale", {attributes});
@@ -350,7 +352,10 @@ void read_tiles(const Reading& reading, CurvatureModel& model) {
     reading.rows(tiles.entry_begin, count * attributes, tiles.component.size(), "the entries of the tiles");
     tiles.basis = reading.halves("tiles.basis", {tiles.component.size(), lanes});
     tiles.mean = reading.halves("tiles.mean", {count, attributes, lanes});
-    tiles.reference = reading.halves("tiles.reference", {count, 3, lanes});
+    const bool tensor = tiles.set == AttributeSet::tensor;
+    tiles.neighbor = reading.words("tiles.neighbor", {tensor ? count : 0, lanes});
+    reading.below(tiles.neighbor, model.vertex_count, "tiles.neighbor");
+    tiles.reference = reading.halves("tiles.reference", {tensor ? 0 : count, 3, lanes});
     std::vector<bool> seen(model.vertex_count, false);
     for (const std::uint32_t v : tiles.vertex) seen[v] = true;
     reading.require(std::find(seen.begin(), seen.end(), false) == seen.end(), "a vertex is in no tile");

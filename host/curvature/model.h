@@ -24,7 +24,7 @@ struct CurvatureModel {
     float feature_size = 0;  ///< of the surface in training (see lines)
     StateReader state;
     PoseRange range;
-    Segments segments;  ///< segment_of_vertex is empty: the tiles tell it
+    Segments segments;  ///< principal attributes only; the tiles tell which vertices are of which
     ComponentRegression regression;
     BasisTiles tiles;
     std::map<std::string, std::string> training;  ///< remarks: animation, clips, options, in words
@@ -46,19 +46,22 @@ void require_fit(const CurvatureModel& model, const Animation& animation);
 class CurvatureEvaluator {
   public:
     explicit CurvatureEvaluator(const CurvatureModel& model);
-    /// Curvature at a pose of the rig, given the unit vertex normals of the posed surface; valid until the next call.
-    const VertexCurvature& evaluate(const Rig& rig, const Pose& pose, std::span<const Vec3> normals);
+    /// Curvature at a pose of the rig, given vertices and unit vertex normals of the posed surface; valid until the
+    /// next call.
+    const VertexCurvature& evaluate(const Rig& rig, const Pose& pose, std::span<const Vec3> vertices,
+                                    std::span<const Vec3> normals);
     /// The same of a mesh sequence.
     const VertexCurvature& evaluate(std::span<const Vec3> vertices, std::span<const Vec3> normals);
     /// The control of the last call that was farthest from the training poses.
-    PoseRange::Farthest farthest() const { return model_->range.farthest(model_->state, x_); }
+    PoseRange::Farthest farthest() const { return farthest_; }
     std::span<const float> components() const { return z_; }
     std::span<const Eigen::Matrix3f> rotations() const { return rotations_; }
 
   private:
-    const VertexCurvature& reproject(std::span<const Vec3> normals);
+    const VertexCurvature& reproject(std::span<const Vec3> vertices, std::span<const Vec3> normals);
     const CurvatureModel* model_;
     std::vector<float> x_, features_, z_;
+    PoseRange::Farthest farthest_;
     std::vector<Eigen::Matrix3f> rotations_;
     VertexCurvature curvature_;
 };

@@ -12,6 +12,8 @@ constexpr int k_half_lanes = 8;
 /// A number for each of eight vertices.
 using Lanes = EightFloats;
 using LaneVectors = std::array<Lanes, 3>;
+/// Not an expression: those hold references to temporaries.
+using Mask = Eigen::Array<bool, k_half_lanes, 1>;
 
 Lanes dot(const LaneVectors& a, const LaneVectors& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -40,34 +42,30 @@ LaneVectors any_tangent(const LaneVectors& n) {
     return {1 + sign * n[0] * n[0] * a, sign * n[0] * n[1] * a, -sign * n[0]};
 }
 
-LaneVectors carried(const LaneVectors& axis, const LaneVectors& from, const LaneVectors& to) {
-    const Lanes one_plus = 1 + dot(from, to);
-    const Lanes factor = (one_plus > 1e-4f).select(dot(to, axis) / one_plus, Lanes::Zero());
+LaneVectors gathered(std::span<const Vec3> vectors, const std::uint32_t* at) {
     LaneVectors result;
-    for (std::size_t i = 0; i < 3; ++i) result[i] = axis[i] - (from[i] + to[i]) * factor;
+    for (int lane = 0; lane < k_half_lanes; ++lane)
+        for (std::size_t i = 0; i < 3; ++i) result[i][lane] = vectors[at[lane]][static_cast<Eigen::Index>(i)];
     return result;
 }
 
-/// Normals of eight vertices, now and in training, in the coordinates of their segment.
-struct LaneFrames {
-    LaneVectors normal, reference;
-};
+LaneVectors turned_by(const Eigen::Matrix3f& rotation, const LaneVectors& v) {
+    LaneVectors result;
+    for (int i = 0; i < 3; ++i)
+        result[static_cast<std::size_t>(i)] = rotation(i, 0) * v[0] + rotation(i, 1) * v[1] + rotation(i, 2) * v[2];
+    return result;
+}
 
-LaneFrames frames_of(const BasisTiles& tiles, std::size_t tile, std::size_t half, std::span<const Vec3> normals,
-                     const Eigen::Matrix3f& rotation) {
-    LaneFrames frames;
-    LaneVectors world;
-    const std::uint32_t* const vertex = tiles.vertex.data() + tile * BasisTiles::k_lanes + half * k_half_lanes;
-    for (int lane = 0; lane < k_half_lanes; ++lane)
-        for (std::size_t i = 0; i < 3; ++i) world[i][lane] = normals[vertex[lane]][static_cast<Eigen::Index>(i)];
-    for (std::size_t i = 0; i < 3; ++i) {
-        const auto column = static_cast<Eigen::Index>(i);
-        frames.normal[i] =
-            rotation(0, column) * world[0] + rotation(1, column) * world[1] + rotation(2, column) * world[2];
-        frames.reference[i] =
-            eight_from_halves(tiles.reference.data() + (tile * 3 + i) * BasisTiles::k_lanes + half * k_half_lanes);
-    }
-    return frames;
+/// edge_tangent of eight vertices.
+LaneVectors edge_tangents(const LaneVectors& edge, const LaneVectors& normal) {
+    const LaneVectors flat = combined(Lanes::Ones(), edge, -dot(normal, edge), normal);
+    const Lanes squared = dot(flat, flat);
+    const Mask lies = squared > k_least_flat * dot(edge, edge);
+    const Lanes inverse = squared.sqrt().inverse();
+    const LaneVectors other = any_tangent(normal);
+    LaneVectors result;
+    for (std::size_t i = 0; i < 3; ++i) result[i] = lies.select(flat[i] * inverse, other[i]);
+    return result;
 }
 
 /// principal_turn of eight forms.
@@ -80,11 +78,11 @@ void principal_lanes(const Lanes& f11, const Lanes& f12, const Lanes& f22, Lanes
     const Lanes inverse = (radius > 0).select(radius.inverse(), Lanes::Zero());
     const Lanes larger = (0.5f * (1 + difference.abs() * inverse)).sqrt();
     const Lanes smaller = 0.5f * f12 * inverse / larger;
-    const auto is_flat = (radius > 0);
+    const Mask is_bent = radius > 0;
     cosine = (difference >= 0).select(larger, smaller);
     sine = (difference >= 0).select(smaller, larger);
-    cosine = is_flat.select(cosine, Lanes::Ones());
-    sine = is_flat.select(sine, Lanes::Zero());
+    cosine = is_bent.select(cosine, Lanes::Ones());
+    sine = is_bent.select(sine, Lanes::Zero());
 }
 
 std::array<Lanes, 4> turned_lanes(const std::array<Lanes, 4>& d, const Lanes& c, const Lanes& s) {
@@ -95,43 +93,46 @@ std::array<Lanes, 4> turned_lanes(const std::array<Lanes, 4>& d, const Lanes& c,
             -sss * d[0] + 3 * css * d[1] - 3 * ccs * d[2] + ccc * d[3]};
 }
 
-void store_lanes(const std::uint32_t* vertex, const Lanes& k1, const Lanes& k2, const LaneVectors& e1,
-                 const LaneVectors& e2, const Eigen::Matrix3f& rotation, const std::array<Lanes, 4>& derivative,
+/// What is known of eight vertices.
+struct LaneCurvature {
+    Lanes k1, k2;
+    LaneVectors e1;
+    std::array<Lanes, 4> derivative;
+};
+
+void store_lanes(const std::uint32_t* vertex, const LaneCurvature& lanes, const LaneVectors& normal,
                  VertexCurvature& curvature) {
-    LaneVectors w1, w2;
-    for (int i = 0; i < 3; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        w1[k] = rotation(i, 0) * e1[0] + rotation(i, 1) * e1[1] + rotation(i, 2) * e1[2];
-        w2[k] = rotation(i, 0) * e2[0] + rotation(i, 1) * e2[1] + rotation(i, 2) * e2[2];
-    }
+    const LaneVectors e2 = cross(normal, lanes.e1);
     for (int lane = 0; lane < k_half_lanes; ++lane) {
         const std::uint32_t v = vertex[lane];
-        curvature.k1[v] = k1[lane];
-        curvature.k2[v] = k2[lane];
-        curvature.e1[v] = {w1[0][lane], w1[1][lane], w1[2][lane]};
-        curvature.e2[v] = {w2[0][lane], w2[1][lane], w2[2][lane]};
-        curvature.derivative[v] = {derivative[0][lane], derivative[1][lane], derivative[2][lane], derivative[3][lane]};
+        const auto at = [&](const LaneVectors& e) { return Vec3(e[0][lane], e[1][lane], e[2][lane]); };
+        curvature.k1[v] = lanes.k1[lane];
+        curvature.k2[v] = lanes.k2[lane];
+        curvature.e1[v] = at(lanes.e1);
+        curvature.e2[v] = at(e2);
+        for (std::size_t k = 0; k < 4; ++k) curvature.derivative[v][k] = lanes.derivative[k][lane];
     }
 }
 
-/// The tensor set: seven attributes of eight vertices.
-void decode_tensor(const std::array<Lanes, k_most_attributes>& y, const LaneFrames& frames, const std::uint32_t* vertex,
-                   const Eigen::Matrix3f& rotation, VertexCurvature& curvature) {
-    const LaneVectors tangent = carried(any_tangent(frames.reference), frames.reference, frames.normal);
-    const LaneVectors bitangent = cross(frames.normal, tangent);
-    Lanes k1, k2, cosine, sine;
-    principal_lanes(y[0], y[1], y[2], k1, k2, cosine, sine);
-    const LaneVectors e1 = combined(cosine, tangent, sine, bitangent), e2 = combined(cosine, bitangent, -sine, tangent);
-    store_lanes(vertex, k1, k2, e1, e2, rotation, turned_lanes({y[3], y[4], y[5], y[6]}, cosine, sine), curvature);
+/// The tensor set: seven attributes of eight vertices, in the frame of an edge.
+LaneCurvature decode_tensor(const std::array<Lanes, k_most_attributes>& y, const LaneVectors& edge,
+                            const LaneVectors& normal) {
+    const LaneVectors tangent = edge_tangents(edge, normal);
+    LaneCurvature result;
+    Lanes cosine, sine;
+    principal_lanes(y[0], y[1], y[2], result.k1, result.k2, cosine, sine);
+    result.e1 = combined(cosine, tangent, sine, cross(normal, tangent));
+    result.derivative = turned_lanes({y[3], y[4], y[5], y[6]}, cosine, sine);
+    return result;
 }
 
 /// e1 of eight vertices from its two kept coordinates (see AttributeFrames): the third makes it orthogonal to the
 /// normal.
-LaneVectors completed_direction(const Lanes& first, const Lanes& second, const LaneFrames& frames) {
-    const auto& [rx, ry, rz] = frames.reference;
-    const auto drop_x = rx.abs() >= ry.abs() && rx.abs() >= rz.abs();
-    const auto drop_y = !drop_x && ry.abs() >= rz.abs();
-    const LaneVectors& n = frames.normal;
+LaneVectors completed_direction(const Lanes& first, const Lanes& second, const LaneVectors& n,
+                                const LaneVectors& reference) {
+    const auto& [rx, ry, rz] = reference;
+    const Mask drop_x = rx.abs() >= ry.abs() && rx.abs() >= rz.abs();
+    const Mask drop_y = !drop_x && ry.abs() >= rz.abs();
     const Lanes zero = Lanes::Zero();
     LaneVectors e{drop_x.select(zero, first), drop_x.select(first, drop_y.select(zero, second)),
                   (drop_x || drop_y).select(second, zero)};
@@ -148,12 +149,15 @@ LaneVectors completed_direction(const Lanes& first, const Lanes& second, const L
     return e;
 }
 
-/// The thesis' eight attributes.
-void decode_principal(const std::array<Lanes, k_most_attributes>& y, const LaneFrames& frames,
-                      const std::uint32_t* vertex, const Eigen::Matrix3f& rotation, VertexCurvature& curvature) {
-    const LaneVectors e1 = completed_direction(y[2], y[3], frames);
-    store_lanes(vertex, y[0].max(y[1]), y[0].min(y[1]), e1, cross(frames.normal, e1), rotation,
-                {y[4], y[5], y[6], y[7]}, curvature);
+/// The thesis' eight attributes, given normals in the world.
+LaneCurvature decode_principal(const BasisTiles& tiles, const std::array<Lanes, k_most_attributes>& y, std::size_t tile,
+                               std::size_t half, const LaneVectors& normal, const Eigen::Matrix3f& rotation) {
+    LaneVectors reference;
+    for (std::size_t i = 0; i < 3; ++i)
+        reference[i] =
+            eight_from_halves(tiles.reference.data() + (tile * 3 + i) * BasisTiles::k_lanes + half * k_half_lanes);
+    const LaneVectors e1 = completed_direction(y[2], y[3], turned_by(rotation.transpose(), normal), reference);
+    return {y[0].max(y[1]), y[0].min(y[1]), turned_by(rotation, e1), {y[4], y[5], y[6], y[7]}};
 }
 
 }  // namespace
@@ -178,7 +182,7 @@ void ComponentRegression::evaluate(std::span<const float> x, std::span<float> fe
 std::size_t BasisTiles::bytes() const {
     return vertex.size() * sizeof(vertex[0]) + segment.size() * sizeof(segment[0]) +
            entry_begin.size() * sizeof(entry_begin[0]) + component.size() * sizeof(component[0]) +
-           (basis.size() + mean.size() + reference.size()) * sizeof(Half);
+           (basis.size() + mean.size() + reference.size()) * sizeof(Half) + neighbor.size() * sizeof(neighbor[0]);
 }
 
 void reproject(const BasisTiles& tiles, std::span<const float> z, std::span<float> attributes) {
@@ -193,8 +197,8 @@ void reproject(const BasisTiles& tiles, std::span<const float> z, std::span<floa
             }
 }
 
-void reproject_curvature(const BasisTiles& tiles, std::span<const float> z, std::span<const Vec3> normals,
-                         std::span<const Eigen::Matrix3f> rotations, VertexCurvature& curvature) {
+void reproject_curvature(const BasisTiles& tiles, std::span<const float> z, const PosedSurface& surface,
+                         VertexCurvature& curvature) {
     const std::size_t count = attribute_count(tiles.set);
     curvature.k1.resize(tiles.vertex_count);
     curvature.k2.resize(tiles.vertex_count);
@@ -202,19 +206,23 @@ void reproject_curvature(const BasisTiles& tiles, std::span<const float> z, std:
     curvature.e2.resize(tiles.vertex_count);
     curvature.derivative.resize(tiles.vertex_count);
     std::array<Lanes, k_most_attributes> y;
-    for (std::size_t t = 0; t < tiles.tile_count(); ++t) {
-        const Eigen::Matrix3f& rotation = rotations[tiles.segment[t]];
+    for (std::size_t t = 0; t < tiles.tile_count(); ++t)
         for (std::size_t half = 0; half < 2; ++half) {
             for (std::size_t a = 0; a < count; ++a)
                 y[a] = tiles.scale[a] * reproject_lanes(tiles, z, t * count + a, half);
-            const LaneFrames frames = frames_of(tiles, t, half, normals, rotation);
-            const std::uint32_t* const vertex = tiles.vertex.data() + t * BasisTiles::k_lanes + half * k_half_lanes;
-            if (tiles.set == AttributeSet::tensor)
-                decode_tensor(y, frames, vertex, rotation, curvature);
-            else
-                decode_principal(y, frames, vertex, rotation, curvature);
+            const std::size_t first = t * BasisTiles::k_lanes + half * k_half_lanes;
+            const std::uint32_t* const vertex = tiles.vertex.data() + first;
+            const LaneVectors normal = gathered(surface.normals, vertex);
+            if (tiles.set == AttributeSet::tensor) {
+                LaneVectors edge = gathered(surface.vertices, tiles.neighbor.data() + first);
+                const LaneVectors from = gathered(surface.vertices, vertex);
+                for (std::size_t i = 0; i < 3; ++i) edge[i] -= from[i];
+                store_lanes(vertex, decode_tensor(y, edge, normal), normal, curvature);
+            } else {
+                store_lanes(vertex, decode_principal(tiles, y, t, half, normal, surface.rotations[tiles.segment[t]]),
+                            normal, curvature);
+            }
         }
-    }
 }
 
 }  // namespace exemplar

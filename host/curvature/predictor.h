@@ -41,14 +41,15 @@ struct BasisTiles {
     AttributeSet set = AttributeSet::tensor;
     std::size_t vertex_count = 0;
     std::vector<std::uint32_t> vertex;   ///< of each lane; those of the last tile of a segment may repeat a vertex
-    std::vector<std::uint32_t> segment;  ///< of each tile
+    std::vector<std::uint32_t> segment;  ///< of each tile; 0 where attributes need no segments
     std::vector<float> scale;            ///< of each attribute: what its halves are multiplied with
     /// The entries of attribute a of tile t: entry_begin[t * attributes + a] to the next.
     std::vector<std::uint32_t> entry_begin;
     std::vector<std::uint16_t> component;  ///< of each entry
     std::vector<Half> basis;               ///< entries x k_lanes
     std::vector<Half> mean;                ///< tiles x attributes x k_lanes
-    std::vector<Half> reference;           ///< tiles x 3 x k_lanes: reference normals (see AttributeFrames)
+    std::vector<std::uint32_t> neighbor;   ///< tensor, of each lane: see AttributeFrames
+    std::vector<Half> reference;           ///< principal: tiles x 3 x k_lanes: reference normals (see AttributeFrames)
 
     std::size_t tile_count() const { return segment.size(); }
     std::size_t bytes() const;
@@ -57,9 +58,8 @@ struct BasisTiles {
 /// Attributes of all vertices, attribute-major (attributes x vertices).
 void reproject(const BasisTiles& tiles, std::span<const float> z, std::span<float> attributes);
 
-/// Re-projection and AttributeFrames::decode in one pass over the tiles, which is what a frame runs. normals: the
-/// world's, unit, one per vertex; rotations: of the segments.
-void reproject_curvature(const BasisTiles& tiles, std::span<const float> z, std::span<const Vec3> normals,
-                         std::span<const Eigen::Matrix3f> rotations, VertexCurvature& curvature);
+/// Re-projection and AttributeFrames::decode in one pass over the tiles, which is what a frame runs.
+void reproject_curvature(const BasisTiles& tiles, std::span<const float> z, const PosedSurface& surface,
+                         VertexCurvature& curvature);
 
 }  // namespace exemplar

@@ -4,6 +4,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <limits>
+#include <numeric>
 
 #include "host/core/errors.h"
 #include "host/core/half.h"
@@ -11,6 +13,7 @@
 #include "host/core/progress.h"
 #include "host/core/text.h"
 #include "host/lines/lines.h"
+#include "host/mesh/topology.h"
 
 namespace exemplar {
 
@@ -43,7 +46,7 @@ Vec3 unit_or(const Vec3& sum, const Vec3& fallback) {
 /// As a model file keeps it, so that training and use agree about the tangent that follows from it. No zero is
 /// negative.
 Vec3 as_halves(const Vec3& v) {
-    return v.unaryExpr([](float value) { return from_half(to_half(value)) + 0.0f; });
+    return v.unaryExpr([](float value) { return from_half(to_half(value)); });
 }
 
 /// Sums over poses, per vertex, that the frames of attributes are made from.
@@ -52,16 +55,14 @@ struct FrameSums {
     std::vector<Eigen::Matrix3f> direction;  ///< of e1 e1^T, which knows no sign
 };
 
-AttributeFrames make_frames(AttributeSet set, const Segments& segments, const FrameSums& sums) {
+AttributeFrames make_principal_frames(const Segments& segments, const FrameSums& sums) {
     AttributeFrames frames;
-    frames.set = set;
+    frames.set = AttributeSet::principal;
     frames.segment = segments.segment_of_vertex;
-    frames.reference_normal.reserve(sums.normal.size());
     for (const Vec3& sum : sums.normal) frames.reference_normal.push_back(as_halves(unit_or(sum, Vec3::UnitZ())));
-    if (set == AttributeSet::principal)
-        for (const Eigen::Matrix3f& sum : sums.direction)
-            frames.reference_direction.emplace_back(
-                Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f>(sum).eigenvectors().col(2));
+    for (const Eigen::Matrix3f& sum : sums.direction)
+        frames.reference_direction.emplace_back(
+            Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f>(sum).eigenvectors().col(2));
     return frames;
 }
 
@@ -81,6 +82,41 @@ FrameSums sum_frames(const std::vector<SurfaceMoment>& moments, const Segments& 
         },
         1024);
     return sums;
+}
+
+/// For each vertex the neighbor whose edge stays flattest in the tangent plane: the largest least share of its length
+/// there, over all moments. An edge that stands up, as in a fold, has a direction that means nothing. The vertex itself
+/// if it has no neighbors.
+std::vector<std::uint32_t> steadiest_neighbors(const TriangleMesh& rest, const std::vector<SurfaceMoment>& moments) {
+    const Topology topology = build_topology(rest);
+    std::vector<float> flatness(topology.edges.size() * 2, 1.0f);  // from either end
+    parallel_for(
+        topology.edges.size(),
+        [&](std::size_t e) {
+            const auto [a, b] = topology.edges[e].vertex;
+            for (const SurfaceMoment& moment : moments) {
+                const Vec3 edge = moment.vertices[b] - moment.vertices[a];
+                const float squared = std::max(edge.squaredNorm(), std::numeric_limits<float>::min());
+                const auto flat = [&](std::uint32_t v) {
+                    const float upright = edge.dot(moment.normals[v]);
+                    return 1 - upright * upright / squared;
+                };
+                flatness[2 * e] = std::min(flatness[2 * e], flat(a));
+                flatness[2 * e + 1] = std::min(flatness[2 * e + 1], flat(b));
+            }
+        },
+        512);
+    std::vector<std::uint32_t> neighbor(rest.vertex_count());
+    std::iota(neighbor.begin(), neighbor.end(), 0u);
+    std::vector<float> best(rest.vertex_count(), -1.0f);
+    for (std::size_t e = 0; e < topology.edges.size(); ++e)
+        for (std::size_t end = 0; end < 2; ++end) {
+            const std::uint32_t v = topology.edges[e].vertex[end];
+            if (!(flatness[2 * e + end] > best[v])) continue;
+            best[v] = flatness[2 * e + end];
+            neighbor[v] = topology.edges[e].vertex[1 - end];
+        }
+    return neighbor;
 }
 
 }  // namespace
@@ -171,17 +207,20 @@ std::vector<SurfaceMoment> read_moments(const Animation& animation, const Segmen
     return moments;
 }
 
-AttributeFrames make_attribute_frames(AttributeSet set, const Segments& segments,
+AttributeFrames make_attribute_frames(AttributeSet set, const TriangleMesh& rest, const Segments& segments,
                                       const std::vector<SurfaceMoment>& moments) {
-    return make_frames(set, segments, sum_frames(moments, segments));
+    if (set == AttributeSet::principal) return make_principal_frames(segments, sum_frames(moments, segments));
+    AttributeFrames frames;
+    frames.neighbor = steadiest_neighbors(rest, moments);
+    return frames;
 }
 
 TrainingSamples collect_samples(const Animation& animation, const Segments& segments, const StateReader& reader,
                                 std::span<const FrameRef> frames, AttributeSet set, const CurvatureOptions& truth) {
     const std::vector<SurfaceMoment> moments = read_moments(animation, segments, frames, truth);
     TrainingSamples samples;
-    samples.frames = make_attribute_frames(set, segments, moments);
-    const std::size_t count = segments.segment_of_vertex.size();
+    samples.frames = make_attribute_frames(set, animation.rest, segments, moments);
+    const std::size_t count = animation.rest.vertex_count();
     const auto poses = static_cast<Eigen::Index>(frames.size());
     samples.attributes.assign(attribute_count(set), Eigen::MatrixXf(poses, static_cast<Eigen::Index>(count)));
     samples.states.resize(poses, static_cast<Eigen::Index>(reader.input_count));
@@ -189,7 +228,7 @@ TrainingSamples collect_samples(const Animation& animation, const Segments& segm
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const SurfaceMoment& moment = moments[i];
         const auto row = static_cast<Eigen::Index>(i);
-        samples.frames.encode(moment.curvature, moment.normals, moment.rotations, attributes);
+        samples.frames.encode(moment.curvature, moment.surface(), attributes);
         for (std::size_t a = 0; a < samples.attributes.size(); ++a)
             samples.attributes[a].row(row) =
                 Eigen::Map<const Eigen::RowVectorXf>(attributes.data() + a * count, static_cast<Eigen::Index>(count));

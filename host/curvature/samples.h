@@ -34,6 +34,8 @@ struct SurfaceMoment {
     std::vector<Vec3> vertices, normals;
     VertexCurvature curvature;
     std::vector<Eigen::Matrix3f> rotations;  ///< of the segments
+
+    PosedSurface surface() const { return {vertices, normals, rotations}; }
 };
 
 /// Reads moments of an animation. One thread at a time may use a reader.
@@ -63,7 +65,7 @@ void read_state(const StateReader& reader, const Animation& animation, FrameRef 
 std::vector<SurfaceMoment> read_moments(const Animation& animation, const Segments& segments,
                                         std::span<const FrameRef> frames, const CurvatureOptions& truth);
 /// The frames of attributes that suit some moments with curvature.
-AttributeFrames make_attribute_frames(AttributeSet set, const Segments& segments,
+AttributeFrames make_attribute_frames(AttributeSet set, const TriangleMesh& rest, const Segments& segments,
                                       const std::vector<SurfaceMoment>& moments);
 
 /// Training poses: inputs and attributes.

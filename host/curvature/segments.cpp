@@ -17,8 +17,8 @@ using Eigen::Matrix3f;
 /// Two weights that differ by this much belong to different segments: halfway between a vertex that a bone holds alone
 /// and one that it shares evenly.
 constexpr float k_weight_bandwidth = 0.35f;
-/// For rotation matrices, root mean square over frames: about 20 degrees.
-constexpr float k_rotation_bandwidth = 0.5f;
+/// For rotation matrices, root mean square over frames: about twelve degrees.
+constexpr float k_rotation_bandwidth = 0.3f;
 /// A segment's frame is read from vertices, so it must have some.
 constexpr std::size_t k_smallest_patch = 40;
 constexpr std::size_t k_most_rotation_frames = 24, k_rotation_dimensions = 12;

@@ -24,7 +24,7 @@ struct Segments {
     };
     std::vector<Triangle> triangles;
 
-    std::size_t count() const { return triangles.empty() ? influence_begin.size() - 1 : triangles.size(); }
+    std::size_t count() const { return influence_begin.empty() ? triangles.size() : influence_begin.size() - 1; }
 
     /// Rotation of each segment: from its coordinates to the world. Of a rig, from bone_transforms of the pose.
     void rotations_of_rig(std::span<const Affine> bones, std::vector<Eigen::Matrix3f>& out) const;

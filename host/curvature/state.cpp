@@ -135,7 +135,7 @@ float bend(const StateReader::Hinge& hinge, std::span<const Vec3> vertices) {
     const Vec3 edge = b - a, left = edge.cross(vertices[hinge.left] - a),
                right = (vertices[hinge.right] - a).cross(edge);
     const float sine = left.cross(right).dot(edge), cosine = left.dot(right) * edge.norm();
-    return std::atan2(-sine, cosine);
+    return std::atan2(sine, cosine);
 }
 
 void StateReader::read_pose(const Pose& pose, std::span<float> x) const {
@@ -252,15 +252,35 @@ PoseRange make_pose_range(const StateReader& reader, const Eigen::Ref<const Eige
     return range;
 }
 
+float PoseRange::distance(const Control& control, std::size_t index, std::span<const float> x) const {
+    const Eigen::Map<const Eigen::VectorXf> here(x.data() + control.first_input, control.input_count);
+    return (whitening[index] * (here - mean.segment(control.first_input, control.input_count))).norm() / largest[index];
+}
+
 PoseRange::Farthest PoseRange::farthest(const StateReader& reader, std::span<const float> x) const {
+    Farthest result;
+    for (std::size_t c = 0; c < reader.controls.size(); ++c)
+        if (const float d = distance(reader.controls[c], c, x); d > result.distance) result = {c, d};
+    return result;
+}
+
+PoseRange::Farthest PoseRange::bound(const StateReader& reader, std::span<float> x) const {
     Farthest result;
     for (std::size_t c = 0; c < reader.controls.size(); ++c) {
         const Control& control = reader.controls[c];
-        const Eigen::Map<const Eigen::VectorXf> here(x.data() + control.first_input, control.input_count);
-        const float distance =
-            (whitening[c] * (here - mean.segment(control.first_input, control.input_count))).norm() / largest[c];
-        if (distance > result.distance) result = {c, distance};
+        const float d = distance(control, c, x);
+        if (d > result.distance) result = {c, d};
+        if (!(d > 1)) continue;
+        const auto middle = mean.segment(control.first_input, control.input_count);
+        Eigen::Map<Eigen::VectorXf> here(x.data() + control.first_input, control.input_count);
+        here = middle + (here - middle) / d;
     }
+    return result;
+}
+
+PoseRange::Farthest PoseRange::prepare(const StateReader& reader, std::span<float> x) const {
+    const Farthest result = bound(reader, x);
+    Eigen::Map<Eigen::VectorXf>(x.data(), mean.size()) -= mean;
     return result;
 }
 

@@ -103,6 +103,14 @@ struct PoseRange {
     };
     /// The control that is farthest from training.
     Farthest farthest(const StateReader& reader, std::span<const float> x) const;
+    /// Pulls the inputs of controls beyond their largest distance back to it, towards the mean: polynomials that fit
+    /// within run away beyond. Returns what farthest() says of x as it was.
+    Farthest bound(const StateReader& reader, std::span<float> x) const;
+    /// Makes of a state what components are predicted from: bound() and less the mean. Returns what bound() returns.
+    Farthest prepare(const StateReader& reader, std::span<float> x) const;
+
+  private:
+    float distance(const Control& control, std::size_t index, std::span<const float> x) const;
 };
 PoseRange make_pose_range(const StateReader& reader, const Eigen::Ref<const Eigen::MatrixXf>& states);
 

@@ -46,14 +46,15 @@ void lay_out_vertices(const AttributeFrames& frames, std::span<const Vec3> rest,
     const std::vector<std::uint32_t> place = curve_places(rest);
     std::vector<std::uint32_t> order(frames.vertex_count());
     std::iota(order.begin(), order.end(), 0u);
+    const auto segment_of = [&](std::uint32_t v) { return frames.segment.empty() ? 0 : frames.segment[v]; };
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        return frames.segment[a] != frames.segment[b] ? frames.segment[a] < frames.segment[b] : place[a] < place[b];
+        return segment_of(a) != segment_of(b) ? segment_of(a) < segment_of(b) : place[a] < place[b];
     });
     for (std::size_t i = 0; i < order.size(); ++i) {
-        const std::uint32_t segment = frames.segment[order[i]];
+        const std::uint32_t segment = segment_of(order[i]);
         if (tiles.vertex.size() % k_lanes == 0) tiles.segment.push_back(segment);
         tiles.vertex.push_back(order[i]);
-        const bool ends = i + 1 == order.size() || frames.segment[order[i + 1]] != segment;
+        const bool ends = i + 1 == order.size() || segment_of(order[i + 1]) != segment;
         while (ends && tiles.vertex.size() % k_lanes != 0) tiles.vertex.push_back(order[i]);
     }
 }
@@ -67,9 +68,12 @@ struct TileEntry {
 };
 
 /// All entries of an attribute that are not zero, by tile and component.
-std::vector<TileEntry> entries_of(const BasisTiles& tiles, std::size_t attribute,
-                                  const std::vector<VertexBasis>& bases) {
+std::vector<TileEntry> entries_of(const BasisTiles& tiles, std::size_t attribute, const std::vector<VertexBasis>& bases,
+                                  const Eigen::MatrixXf& scales) {
     std::vector<TileEntry> entries;
+    const auto scale_of = [&](std::uint32_t v) {
+        return scales.size() ? scales(static_cast<Eigen::Index>(attribute), v) : 1.0f;
+    };
     std::vector<Eigen::Index> row_of_vertex(tiles.vertex_count, -1);
     for (const VertexBasis& basis : bases) {
         if (basis.attribute != attribute || basis.basis.cols() == 0) continue;
@@ -82,7 +86,8 @@ std::vector<TileEntry> entries_of(const BasisTiles& tiles, std::size_t attribute
                 for (std::size_t lane = 0; lane < k_lanes; ++lane) {
                     const Eigen::Index row = row_of_vertex[tiles.vertex[t * k_lanes + lane]];
                     entry.basis[lane] = row < 0 ? 0.0f : basis.basis(row, c);
-                    entry.variance += entry.basis[lane] * entry.basis[lane];
+                    const float scaled = entry.basis[lane] / scale_of(tiles.vertex[t * k_lanes + lane]);
+                    entry.variance += scaled * scaled;
                 }
                 if (entry.variance > 0) entries.push_back(entry);
             }
@@ -136,7 +141,7 @@ BasisTiles make_tiles(const AttributeFrames& frames, std::span<const Vec3> rest,
     const std::size_t count = attribute_count(frames.set);
     std::vector<std::vector<TileEntry>> entries(count);
     for (std::size_t a = 0; a < count; ++a) {
-        entries[a] = entries_of(tiles, a, bases);
+        entries[a] = entries_of(tiles, a, bases, options.scales);
         drop_weakest(entries[a], options.dropped_variance);
         tiles.scale.push_back(half_scale(means.row(static_cast<Eigen::Index>(a)), entries[a]));
     }
@@ -154,7 +159,9 @@ BasisTiles make_tiles(const AttributeFrames& frames, std::span<const Vec3> rest,
                 tiles.mean.push_back(
                     to_half(means(static_cast<Eigen::Index>(a), tiles.vertex[t * k_lanes + lane]) / tiles.scale[a]));
         }
-    for (std::uint32_t t = 0; t < tiles.tile_count(); ++t)
+    if (frames.set == AttributeSet::tensor)
+        for (const std::uint32_t v : tiles.vertex) tiles.neighbor.push_back(frames.neighbor[v]);
+    for (std::uint32_t t = 0; frames.set == AttributeSet::principal && t < tiles.tile_count(); ++t)
         for (Eigen::Index i = 0; i < 3; ++i)
             for (std::size_t lane = 0; lane < k_lanes; ++lane)
                 tiles.reference.push_back(to_half(frames.reference_normal[tiles.vertex[t * k_lanes + lane]][i]));

@@ -19,9 +19,11 @@ struct VertexBasis {
 };
 
 struct TilingOptions {
-    /// What sparsity may leave out of each attribute: a share of the variance, summed over all vertices, that the bases
-    /// explain. 0 keeps every entry that is not zero.
+    /// What sparsity may leave out of each attribute: a share of the variance, in units of `scales` and summed over all
+    /// vertices, that the bases explain. 0 keeps every entry that is not zero.
     double dropped_variance = 0;
+    /// attributes x vertices: what a deviation is counted in, such as how much the vertex varies; empty: all alike.
+    Eigen::MatrixXf scales{};
 };
 
 /// Cuts bases into tiles: vertices of a segment are ordered along a space-filling curve over `rest`, so that the

@@ -71,6 +71,35 @@ Eigen::MatrixXf mean_attributes(const TrainingSamples& samples) {
     return means;
 }
 
+/// How much each attribute varies at each vertex, but at least a tenth of what it does at most: attributes x vertices.
+Eigen::MatrixXf attribute_scales(const TrainingSamples& samples, const Eigen::MatrixXf& means) {
+    constexpr double k_least_share = 0.1;
+    Eigen::MatrixXf scales(means.rows(), means.cols());
+    for (Eigen::Index a = 0; a < means.rows(); ++a) {
+        const Eigen::MatrixXf& values = samples.attributes[static_cast<std::size_t>(a)];
+        for (Eigen::Index v = 0; v < means.cols(); ++v)
+            scales(a, v) = std::sqrt((values.col(v).array() - means(a, v)).square().mean());
+        const double most = largest_but_outliers(scales.row(a).transpose().cast<double>());
+        scales.row(a) = scales.row(a).cwiseMax(static_cast<float>(std::max(k_least_share * most, 1e-20)));
+    }
+    return scales;
+}
+
+/// A control that nothing is predicted from, such as the heading of a figure, may do as it likes: no pose is far for
+/// it.
+void leave_out_unused(CurvatureModel& model) {
+    constexpr float k_no_limit = 1e30f;
+    std::vector<bool> used(model.state.input_count + 1, model.regression.neurons.rows() > 0);
+    for (const Monomial& monomial : model.regression.monomials)
+        for (const std::uint32_t input : monomial) used[input] = true;
+    for (std::size_t c = 0; c < model.state.controls.size(); ++c) {
+        const Control& control = model.state.controls[c];
+        const auto first = used.begin() + control.first_input;
+        if (std::find(first, first + control.input_count, true) == first + control.input_count)
+            model.range.largest[c] = k_no_limit;
+    }
+}
+
 double mean_controls(const std::vector<InfluenceGroup>& groups, const std::vector<bool>& varies) {
     double sum = 0, count = 0;
     for (const InfluenceGroup& group : groups)
@@ -127,23 +156,26 @@ std::pair<Animation, std::vector<FrameRef>> with_augmentation(const Animation& a
 void learn_by_controls(const Animation& animation, std::span<const FrameRef> frames, const CurvatureTraining& options,
                        CurvatureModel& model, CurvatureTrainingReport& report) {
     Stopwatch watch;
-    model.segments = segment_animation(animation, frames);
+    if (options.attributes == AttributeSet::principal) model.segments = segment_animation(animation, frames);
     SequenceStateOptions sequence = options.sequence;
     if (options.learner == Learner::global) sequence.patch_vertices = 0;
     model.state = make_state(animation, frames, sequence);
     if (model.state.input_count == 0)
         throw UsageError(fmt::format("{}: nothing moves in the {} poses given; name other clips or frames",
                                      animation.name, frames.size()));
-    const TrainingSamples samples =
+    TrainingSamples samples =
         collect_samples(animation, model.segments, model.state, frames, options.attributes, model.truth);
     model.feature_size = samples.feature_size;
     model.range = make_pose_range(model.state, samples.states);
+    samples.states.rowwise() -=
+        model.range.mean.transpose();  // products of inputs around zero say what their factors do not
     report.seconds_truth = watch.wall();
 
     watch = Stopwatch();
     const std::vector<bool> varies = varying(samples);
     const std::vector<InfluenceGroup> possible = possible_influences(animation, model.state, k_surrounding_rings);
-    LearningTask task{animation, model.state, samples, mean_attributes(samples), {}, options};
+    LearningTask task{animation, model.state, samples, mean_attributes(samples), {}, {}, options};
+    task.scales = attribute_scales(samples, task.means);
     task.groups = tested_influences(possible, model.state, samples.states, mean_curvature(samples), varies, {});
     report.seconds_influence = watch.wall();
 
@@ -151,8 +183,9 @@ void learn_by_controls(const Animation& animation, std::span<const FrameRef> fra
     PredictorBuilder builder(model.state.input_count);
     learn(task, builder);
     model.regression = builder.regression();
+    leave_out_unused(model);
     model.tiles = make_tiles(samples.frames, layout_shape(animation, frames.front()), task.means, builder.bases(),
-                             {.dropped_variance = options.dropped_variance});
+                             {.dropped_variance = options.dropped_variance, .scales = task.scales});
     report.seconds_fit = watch.wall();
     report.varying_vertices = static_cast<std::size_t>(std::count(varies.begin(), varies.end(), true));
     report.possible_controls = mean_controls(possible, varies);

@@ -64,7 +64,63 @@ struct DiffusionParameters {
     float limit;     // of the squared distance
 };
 
+// A feature of learned curvature: a neuron, or the product of three inputs, of which the last is followed by a one.
+struct CurvatureFeature {
+    uint first;
+    uint second;
+    uint third;
+    uint neuron;  // 1 + its index; 0 for none
+};
+
+// Coefficients and features of one component, four to a texel.
+struct CurvatureComponent {
+    uint first_feature;      // texel
+    uint feature_texels;
+    uint first_coefficient;  // texel
+    uint unused;
+};
+
+struct FeatureParameters {
+    uint features;
+    uint first_input;   // in floats of what goes up with a pose; a multiple of four
+    uint input_texels;  // with the one, four to a texel
+};
+
+struct ComponentParameters {
+    uint components;
+};
+
+// Vertices of learned curvature come in tiles of four quads. A tile is a run of texels: numbers of pairs, one for each
+// attribute, two to a word; the vertices of each quad; of tensors, the neighbor of each of these that its first axis leads
+// to; then pairs of rows of halves, four texels to a pair, one for each quad, in which the first row has the first two words:
+// the means of all attributes and, of principal curvatures, the reference normals, then the bases of the attributes, one after
+// the other. An odd row has zeros beside it.
+const uint k_tile_quads = 4;
+const uint k_principal_head = 5;  // texels before the pairs
+const uint k_tensor_head = 9;
+struct CurvatureTile {
+    uint first_texel;
+    uint first_pair;  // of components
+    uint segment;
+    uint unused;
+};
+
+struct ReprojectionParameters {
+    vec4 low_scales;   // what the rows of attributes 0 to 3 are multiplied with
+    vec4 high_scales;  // and of 4 to 7
+    uint first_tile;
+    uint tiles;
+    uint first_texel;  // with which what is bound begins
+    uint first_pair;
+};
+
 #ifdef __cplusplus
+EXEMPLAR_LAYOUT(CurvatureFeature, first, second, third, neuron)
+EXEMPLAR_LAYOUT(CurvatureComponent, first_feature, feature_texels, first_coefficient, unused)
+EXEMPLAR_LAYOUT(FeatureParameters, features, first_input, input_texels)
+EXEMPLAR_LAYOUT(ComponentParameters, components)
+EXEMPLAR_LAYOUT(CurvatureTile, first_texel, first_pair, segment, unused)
+EXEMPLAR_LAYOUT(ReprojectionParameters, low_scales, high_scales, first_tile, tiles, first_texel, first_pair)
 EXEMPLAR_LAYOUT(RestVertex, x, y, z, influences)
 EXEMPLAR_LAYOUT(InfluencePair, first_bone, first_weight, second_bone, second_weight)
 EXEMPLAR_LAYOUT(MorphOffset, x, y, z, target)

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <numbers>
 
 #include "host/curvature/influence.h"
@@ -109,7 +111,7 @@ TEST(Segments, OfATubeAreItsBonesAndTurnWithThem) {
 }
 
 TEST(Segments, OfASequenceTurnWithItsParts) {
-    const Animation tube = shapes::bending_tube();
+    const Animation tube = shapes::bending_tube(80);
     std::vector<std::vector<Vec3>> frames;
     for (std::size_t i = 0; i < 30; ++i) frames.push_back(frame_vertices(tube, tube.clips[0], i));
     const Segments segments = segment_sequence(tube.rest, frames);
@@ -138,7 +140,6 @@ TEST(Influence, IsOfTheJointsBetweenTheBonesOfAVertex) {
         const float x = tube.rest.vertices[v].x();
         if (std::abs(x) < 0.8f)
             EXPECT_EQ(of_vertex[v], std::vector<std::uint32_t>{1}) << x;  // the elbow, never the root
-        if (std::abs(x) > 2) EXPECT_TRUE(of_vertex[v].empty()) << x;
     }
 }
 

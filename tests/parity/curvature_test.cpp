@@ -1,11 +1,8 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <limits>
 #include <vector>
 
@@ -16,6 +13,7 @@
 #include "host/mesh/curvature.h"
 #include "tests/gpu/support/environment.h"
 #include "tests/parity/surfaces.h"
+#include "tests/parity/tensors.h"
 
 // Both round normals to single precision, and the device computes them in it: they differ by a few 1e-7, and the fits
 // divide their differences by the height of a face, for derivatives twice. So forms agree to a few 1e-7 over the least
@@ -24,16 +22,21 @@ namespace exemplar {
 namespace {
 
 using shared::vec4;
+using testing::derivative_in_space;
+using testing::distance;
 using testing::download;
+using testing::form_in_space;
 using testing::random_pose;
+using testing::resident_bytes;
+using testing::same_bits;
 using testing::shared_device;
+using testing::size_of;
 using testing::strip;
+using testing::Tensor2;
+using testing::Tensor3;
 using testing::waved;
 
 constexpr double k_tolerance = 1e-6;
-
-using Tensor2 = Eigen::Matrix3d;
-using Tensor3 = std::array<Eigen::Matrix3d, 3>;
 
 // Of a frame of a surface that was made at rest.
 VertexCurvature device_curvature(const TriangleMesh& rest, const std::vector<Vec3>& vertices,
@@ -43,49 +46,11 @@ VertexCurvature device_curvature(const TriangleMesh& rest, const std::vector<Vec
     Stream stream(shared_device());
     curvature.record(stream, testing::upload_vertices(shared_device(), vertices));
     stream.finish();
-    VertexCurvature result;
-    for (const vec4& v : download(curvature.first())) {
-        result.e1.push_back(testing::xyz(v));
-        result.k1.push_back(v.w);
-    }
-    for (const vec4& v : download(curvature.second())) {
-        result.e2.push_back(testing::xyz(v));
-        result.k2.push_back(v.w);
-    }
-    for (const vec4& v : download(curvature.derivative())) result.derivative.push_back({v.x, v.y, v.z, v.w});
-    return result;
+    return testing::download_curvature(curvature);
 }
 
 VertexCurvature device_curvature(const TriangleMesh& mesh) {
     return device_curvature(mesh, mesh.vertices);
-}
-
-// In space, so that it does not matter how the principal directions are signed, nor where they are at umbilics.
-Tensor2 form_in_space(const VertexCurvature& c, std::size_t v) {
-    const Vec3d e1 = c.e1[v].cast<double>(), e2 = c.e2[v].cast<double>();
-    return static_cast<double>(c.k1[v]) * e1 * e1.transpose() + static_cast<double>(c.k2[v]) * e2 * e2.transpose();
-}
-
-Tensor3 derivative_in_space(const VertexCurvature& c, std::size_t v) {
-    const Vec3d e1 = c.e1[v].cast<double>(), e2 = c.e2[v].cast<double>();
-    const auto& d = c.derivative[v];
-    Tensor3 result;
-    for (Eigen::Index i = 0; i < 3; ++i) {
-        const auto slice = [&](float d11, float d12, float d22) -> Eigen::Matrix3d {
-            return static_cast<double>(d11) * e1 * e1.transpose() + static_cast<double>(d22) * e2 * e2.transpose() +
-                   static_cast<double>(d12) * (e1 * e2.transpose() + e2 * e1.transpose());
-        };
-        result[static_cast<std::size_t>(i)] = e1[i] * slice(d[0], d[1], d[2]) + e2[i] * slice(d[1], d[2], d[3]);
-    }
-    return result;
-}
-
-double size_of(const Tensor3& a) {
-    return std::sqrt(a[0].squaredNorm() + a[1].squaredNorm() + a[2].squaredNorm());
-}
-
-double distance(const Tensor3& a, const Tensor3& b) {
-    return size_of({a[0] - b[0], a[1] - b[1], a[2] - b[2]});
 }
 
 // Per vertex, the least height of the faces around it: the length that differences of normals are divided by.
@@ -144,18 +109,6 @@ TriangleMesh with_junk(TriangleMesh mesh) {
          {Face{first + 1, first + 2, first + 3}, Face{3, 3, 8}, Face{7, 7, 7}, Face{0, first + 4, 1}})
         mesh.faces.push_back(face);
     return mesh;
-}
-
-bool same_bits(const std::vector<vec4>& a, const std::vector<vec4>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(vec4)) == 0;
-}
-
-// Of this process; 0 where there is no /proc.
-std::size_t resident_bytes() {
-    std::ifstream file("/proc/self/statm");
-    std::size_t total = 0, resident = 0;
-    file >> total >> resident;
-    return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
 TEST(CurvatureParity, OddNumbersOfVerticesAndFaces) {

@@ -56,7 +56,7 @@ inline Clip bending_clip(const Animation& tube, std::size_t frames, double degre
 }
 
 /// The tube with clips of 60 training and 20 test frames.
-inline Animation bending_tube(double degrees = 70) {
+inline Animation bending_tube(double degrees = 40) {
     Animation tube = tube_rig();
     tube.clips = {bending_clip(tube, 60, degrees, 1), bending_clip(tube, 20, degrees, 2)};
     return tube;

@@ -1,0 +1,160 @@
+#include "gpu/curvature/tile_layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "gpu/runtime/errors.h"
+#include "host/core/errors.h"
+
+namespace exemplar {
+namespace {
+
+using shared::k_principal_head;
+using shared::k_tensor_head;
+using shared::k_tile_quads;
+using shared::uvec4;
+
+constexpr std::size_t k_lanes = BasisTiles::k_lanes;
+static_assert(k_lanes == std::size_t{4} * k_tile_quads);
+static_assert(k_most_attributes == 8, "the counts of a tile are one texel");
+
+// The halves of a tile's lanes.
+using Row = std::array<Half, k_lanes>;
+
+[[noreturn]] void refuse(const std::string& what) {
+    throw ModelError("a curvature model is damaged: " + what + "; train it again");
+}
+
+bool is_tensor(const BasisTiles& tiles) {
+    return tiles.set == AttributeSet::tensor;
+}
+
+void check_tiles(const BasisTiles& tiles, std::size_t components, std::size_t segments) {
+    const std::size_t count = tiles.tile_count(), attributes = attribute_count(tiles.set);
+    const std::vector<std::uint32_t>& begin = tiles.entry_begin;
+    if (tiles.vertex.size() != count * k_lanes || tiles.mean.size() != count * attributes * k_lanes ||
+        tiles.neighbor.size() != (is_tensor(tiles) ? count * k_lanes : 0) ||
+        tiles.reference.size() != (is_tensor(tiles) ? 0 : count * 3 * k_lanes) ||
+        begin.size() != count * attributes + 1 || begin.back() != tiles.component.size() ||
+        tiles.basis.size() != tiles.component.size() * k_lanes || tiles.scale.size() != attributes ||
+        !std::is_sorted(begin.begin(), begin.end()))
+        refuse(fmt::format("its parts are not those of {} tiles of {} attributes", count, attributes));
+    const auto beyond = [](const auto& values, std::size_t most) {
+        return std::any_of(values.begin(), values.end(), [&](std::size_t value) { return value >= most; });
+    };
+    if (beyond(tiles.vertex, tiles.vertex_count) || beyond(tiles.neighbor, tiles.vertex_count))
+        refuse("a tile has a vertex that does not exist");
+    if (beyond(tiles.component, components)) refuse("a tile has a component that does not exist");
+    if (!is_tensor(tiles) && beyond(tiles.segment, segments)) refuse("a tile is of a segment that does not exist");
+}
+
+Row row_at(const std::vector<Half>& halves, std::size_t index) {
+    Row row;
+    std::copy_n(halves.begin() + static_cast<std::ptrdiff_t>(index * k_lanes), k_lanes, row.begin());
+    return row;
+}
+
+std::uint32_t packed(Half low, Half high) {
+    return low.bits | static_cast<std::uint32_t>(high.bits) << 16;
+}
+
+void append_pair(const Row& a, const Row& b, std::vector<uvec4>& texels) {
+    for (std::size_t i = 0; i < k_lanes; i += 4)
+        texels.push_back(
+            {packed(a[i], a[i + 1]), packed(a[i + 2], a[i + 3]), packed(b[i], b[i + 1]), packed(b[i + 2], b[i + 3])});
+}
+
+// The means of a tile and its reference normals, if there are any.
+void append_constants(const BasisTiles& tiles, std::size_t tile, std::vector<uvec4>& texels) {
+    const std::size_t attributes = attribute_count(tiles.set);
+    std::vector<Row> rows;
+    for (std::size_t a = 0; a < attributes; ++a) rows.push_back(row_at(tiles.mean, tile * attributes + a));
+    for (std::size_t i = 0; !is_tensor(tiles) && i < 3; ++i) rows.push_back(row_at(tiles.reference, tile * 3 + i));
+    if (rows.size() % 2 != 0) rows.emplace_back();
+    for (std::size_t i = 0; i < rows.size(); i += 2) append_pair(rows[i], rows[i + 1], texels);
+}
+
+void append_indices(const std::vector<std::uint32_t>& indices, std::size_t tile, std::vector<uvec4>& texels) {
+    const std::uint32_t* const of_tile = indices.data() + tile * k_lanes;
+    for (std::size_t i = 0; i < k_lanes; i += 4)
+        texels.push_back({of_tile[i], of_tile[i + 1], of_tile[i + 2], of_tile[i + 3]});
+}
+
+// Where the entries of an attribute of a tile end.
+struct Entries {
+    std::uint32_t begin, end;
+    std::uint32_t pairs() const { return (end - begin + 1) / 2; }
+};
+
+Entries entries_at(const BasisTiles& tiles, std::size_t tile, std::size_t attribute) {
+    const std::size_t row = tile * attribute_count(tiles.set) + attribute;
+    return {tiles.entry_begin[row], tiles.entry_begin[row + 1]};
+}
+
+void append_entries(const BasisTiles& tiles, Entries entries, TileLayout& layout) {
+    for (std::uint32_t e = entries.begin; e < entries.end; e += 2) {
+        const bool alone = e + 1 == entries.end;
+        append_pair(row_at(tiles.basis, e), alone ? Row{} : row_at(tiles.basis, e + 1), layout.texels);
+        // Zero times a component that the tile has anyway: what is not finite comes into nothing else.
+        layout.pairs.push_back(tiles.component[e] | std::uint32_t{tiles.component[alone ? e : e + 1]} << 16);
+    }
+}
+
+void append_tile(const BasisTiles& tiles, std::size_t tile, TileLayout& layout) {
+    const std::size_t attributes = attribute_count(tiles.set);
+    std::array<std::uint32_t, k_most_attributes> pairs{};
+    for (std::size_t a = 0; a < attributes; ++a) pairs[a] = entries_at(tiles, tile, a).pairs();
+    const auto counts = [&](std::size_t a) { return pairs[a] | pairs[a + 1] << 16; };
+    layout.texels.push_back({counts(0), counts(2), counts(4), counts(6)});
+    append_indices(tiles.vertex, tile, layout.texels);
+    if (is_tensor(tiles)) append_indices(tiles.neighbor, tile, layout.texels);
+    append_constants(tiles, tile, layout.texels);
+    for (std::size_t a = 0; a < attributes; ++a) append_entries(tiles, entries_at(tiles, tile, a), layout);
+}
+
+std::size_t texels_of(const BasisTiles& tiles, std::size_t tile) {
+    const std::size_t attributes = attribute_count(tiles.set);
+    std::size_t pairs = (attributes + (is_tensor(tiles) ? 0 : 3) + 1) / 2;
+    for (std::size_t a = 0; a < attributes; ++a) pairs += entries_at(tiles, tile, a).pairs();
+    return (is_tensor(tiles) ? k_tensor_head : k_principal_head) + k_tile_quads * pairs;
+}
+
+void pad(std::size_t alignment, TileLayout& layout) {
+    while (layout.texels.size() * sizeof(uvec4) % alignment != 0) layout.texels.push_back({});
+    while (layout.pairs.size() * sizeof(std::uint32_t) % alignment != 0) layout.pairs.push_back(0);
+}
+
+}  // namespace
+
+TileLayout lay_out_tiles(const BasisTiles& tiles, std::size_t components, std::size_t segments, std::size_t most_texels,
+                         std::size_t alignment) {
+    check_tiles(tiles, components, segments);
+    TileLayout layout;
+    for (std::uint32_t t = 0; t < tiles.tile_count(); ++t) {
+        const std::size_t texels = texels_of(tiles, t);
+        if (texels > most_texels)
+            throw DeviceLimitError(fmt::format("16 vertices of a curvature model need {} texels, over the device's "
+                                               "limit of {}; train it with fewer components",
+                                               texels, most_texels),
+                                   texels, most_texels);
+        if (layout.ranges.empty() || layout.ranges.back().texels + texels > most_texels) {
+            pad(alignment, layout);
+            layout.ranges.push_back({t, 0, layout.texels.size(), 0, layout.pairs.size(), 0});
+        }
+        layout.table.push_back({.first_texel = static_cast<std::uint32_t>(layout.texels.size()),
+                                .first_pair = static_cast<std::uint32_t>(layout.pairs.size()),
+                                .segment = tiles.segment[t],
+                                .unused = 0});
+        append_tile(tiles, t, layout);
+        TileLayout::Range& range = layout.ranges.back();
+        ++range.tiles;
+        range.texels = layout.texels.size() - range.first_texel;
+        range.pairs = layout.pairs.size() - range.first_pair;
+    }
+    return layout;
+}
+
+}  // namespace exemplar

@@ -58,6 +58,8 @@ void bench_labeling(BenchContext& context, const std::function<void(const BenchR
 void bench_boosting(BenchContext& context, const std::function<void(const BenchRow&)>& row);
 void bench_scoring(BenchContext& context, const std::function<void(const BenchRow&)>& row);
 void bench_cut(BenchContext& context, const std::function<void(const BenchRow&)>& row);
+// bench_curvature.cpp
+void bench_curvature(BenchContext& context, const std::function<void(const BenchRow&)>& row);
 // bench_scaling.cpp
 void bench_scaling(BenchContext& context, const std::function<void(const BenchRow&)>& row);
 

@@ -16,9 +16,9 @@ const std::map<std::string, RobustEstimator>& robust_names() {
     return names;
 }
 
-Learner learner_of(const std::string& name) {
-    if (name == "auto") return Learner::additive;
-    for (const Learner learner : {Learner::additive, Learner::averaged, Learner::network})
+Learner learner_of(const std::string& name, AnimationKind kind) {
+    if (name == "auto") return default_learner(kind);
+    for (const Learner learner : {Learner::additive, Learner::averaged, Learner::network, Learner::local})
         if (name == name_of(learner)) return learner;
     return Learner::global;
 }
@@ -38,10 +38,11 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
         ->capture_default_str()
         ->check(CLI::IsMember({"none", "cauchy", "geman-mcclure"}));
     command
-        .add_option("--learner", arguments.learner,
-                    "auto, additive, averaged, network or global (the last three as in the thesis)")
+        .add_option(
+            "--learner", arguments.learner,
+            "auto, additive, averaged, network, global (these three as in the thesis) or local (mesh sequences)")
         ->capture_default_str()
-        ->check(CLI::IsMember({"auto", "additive", "averaged", "network", "global"}));
+        ->check(CLI::IsMember({"auto", "additive", "averaged", "network", "global", "local"}));
     command
         .add_option("--attributes", arguments.attributes,
                     "tensor: seven numbers that stay smooth; principal: the thesis' eight")
@@ -83,10 +84,10 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
         ->check(whole_number(0));
 }
 
-CurvatureTraining training_of(const CurvatureArguments& arguments) {
+CurvatureTraining training_of(const CurvatureArguments& arguments, AnimationKind kind) {
     CurvatureTraining training;
     training.attributes = arguments.attributes == "principal" ? AttributeSet::principal : AttributeSet::tensor;
-    training.learner = learner_of(arguments.learner);
+    training.learner = learner_of(arguments.learner, kind);
     training.independent = arguments.bases == "ica";
     training.variance = arguments.variance;
     training.dropped_variance = arguments.dropped_variance;

@@ -25,7 +25,8 @@ struct CurvatureArguments {
 };
 
 void add_curvature_options(CLI::App& command, CurvatureArguments& arguments);
-CurvatureTraining training_of(const CurvatureArguments& arguments);
+/// `kind` decides the learner where none is named.
+CurvatureTraining training_of(const CurvatureArguments& arguments, AnimationKind kind);
 
 /// The arguments that decide what is learned, by the names of their options: what a model file keeps of its training.
 std::map<std::string, std::string> words_of(const CurvatureArguments& arguments);

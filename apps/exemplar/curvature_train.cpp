@@ -26,7 +26,7 @@ void run_train(const TrainOptions& options) {
                                                       options.curvature.seed, options.common.quiet);
     const std::vector<FrameRef> frames = select_frames(animation, selection_of(options.frames));
     CurvatureTrainingReport report;
-    CurvatureModel model = train_curvature(animation, frames, training_of(options.curvature), report);
+    CurvatureModel model = train_curvature(animation, frames, training_of(options.curvature, animation.kind), report);
     model.training["animation"] = options.animation.filename().string();
     model.training["poses"] = std::to_string(frames.size());
     for (const auto& [option, value] : words_of(options.curvature)) model.training[option] = value;

@@ -81,8 +81,8 @@ void GpuLearnedCurvature::record(Stream& stream, std::span<const Vec3> vertices_
     if (vertices_on_host.size() != vertex_count_)
         throw UsageError(
             fmt::format("a frame of {} vertices is not of a surface of {}", vertices_on_host.size(), vertex_count_));
-    reader_.read_vertices(vertices_on_host, x_);
     if (segments_.count() != 0) segments_.rotations_of_sequence(vertices_on_host, rotations_);
+    reader_.read_surface(vertices_on_host, {}, rotations_, x_);
     record_state(stream, vertices, normals);
 }
 

@@ -17,8 +17,8 @@ const VertexCurvature& CurvatureEvaluator::evaluate(const Rig& rig, const Pose& 
 }
 
 const VertexCurvature& CurvatureEvaluator::evaluate(std::span<const Vec3> vertices, std::span<const Vec3> normals) {
-    model_->state.read_vertices(vertices, x_);
-    if (model_->tiles.set == AttributeSet::principal) model_->segments.rotations_of_sequence(vertices, rotations_);
+    if (model_->segments.count() > 0) model_->segments.rotations_of_sequence(vertices, rotations_);
+    model_->state.read_surface(vertices, normals, rotations_, x_);
     return reproject(vertices, normals);
 }
 

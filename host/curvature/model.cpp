@@ -19,7 +19,7 @@ using Words = std::vector<std::uint32_t>;
 using Floats = std::vector<float>;
 
 constexpr const char* k_kind = "exemplar curvature";
-constexpr int k_format_version = 1;
+constexpr int k_format_version = 2;
 constexpr std::size_t k_any = TensorFile::k_any;
 
 Floats row_major(const Eigen::Ref<const Eigen::MatrixXf>& matrix) {
@@ -78,6 +78,12 @@ void add_state(TensorFile& file, const StateReader& state) {
         unmixing.insert(unmixing.end(), values.begin(), values.end());
     }
     file.add("state.unmixing", {unmixing.size()}, unmixing);
+    Floats local_mean;
+    for (const Eigen::VectorXf& part : state.local_mean) local_mean.insert(local_mean.end(), part.begin(), part.end());
+    file.add("state.local_begin", {state.local_begin.size()}, state.local_begin);
+    file.add("state.local_vertex", {state.local_vertex.size()}, state.local_vertex);
+    file.add("state.local_mean", {local_mean.size()}, local_mean);
+    file.add("state.local_unit", {1}, Floats{state.local_unit});
 }
 
 void add_range(TensorFile& file, const PoseRange& range) {
@@ -204,6 +210,38 @@ void read_description(const Reading& reading, CurvatureModel& model) {
         reading.require(value >= 0 && std::isfinite(value), "a length in its description is negative");
 }
 
+/// The unmixing matrices of all controls, one after the other; `columns` tells how wide each is.
+template <typename Columns>
+void read_unmixing(const Reading& reading, StateReader& state, Columns&& columns) {
+    const Floats unmixing = reading.floats("state.unmixing", {k_any});
+    std::size_t at = 0;
+    for (std::size_t c = 0; c < state.controls.size(); ++c) {
+        const std::size_t rows = state.controls[c].input_count, width = columns(c);
+        reading.require(rows * width <= unmixing.size() - at, "state.unmixing is too short");
+        state.unmixing.push_back(matrix_of(part_of(unmixing, at, rows * width), rows, width));
+        at += rows * width;
+    }
+}
+
+void read_local_state(const Reading& reading, CurvatureModel& model) {
+    StateReader& state = model.state;
+    state.local_begin = reading.words("state.local_begin", {k_any});
+    state.local_vertex = reading.words("state.local_vertex", {k_any});
+    state.local_unit = reading.floats("state.local_unit", {1})[0];
+    const Floats mean = reading.floats("state.local_mean", {StateReader::k_local_numbers * state.local_vertex.size()});
+    if (!state.is_local()) {
+        reading.require(state.local_vertex.empty(), "vertices are listed for no patch");
+        return;
+    }
+    reading.rows(state.local_begin, state.controls.size(), state.local_vertex.size(), "the vertices of the patches");
+    reading.below(state.local_vertex, model.vertex_count, "state.local_vertex");
+    reading.require(state.local_unit > 0, "state.local_unit is not positive");
+    reading.require(state.hinges.empty(), "a state has hinges and local shape");
+    for (std::size_t c = 0; c < state.controls.size(); ++c)
+        state.local_mean.push_back(
+            vector_of(part_of(mean, StateReader::k_local_numbers * state.local_begin[c], state.local_size(c))));
+}
+
 void read_state(const Reading& reading, CurvatureModel& model) {
     StateReader& state = model.state;
     state.kind = model.kind;
@@ -220,18 +258,18 @@ void read_state(const Reading& reading, CurvatureModel& model) {
     for (std::size_t i = 0; i < hinges.size(); i += 4)
         state.hinges.push_back({hinges[i], hinges[i + 1], hinges[i + 2], hinges[i + 3]});
     state.mean_angles = vector_of(reading.floats("state.mean_angles", {state.hinges.size()}));
-    if (is_rig) return;
+    read_local_state(reading, model);
+    if (is_rig) {
+        reading.require(!state.is_local(), "a rig has local shape");
+        return;
+    }
+    if (state.is_local()) {
+        reading.words("state.hinge_begin", {0});
+        return read_unmixing(reading, state, [&](std::size_t c) { return state.local_size(c); });
+    }
     state.hinge_begin = reading.words("state.hinge_begin", {state.controls.size() + 1});
     reading.rows(state.hinge_begin, state.controls.size(), state.hinges.size(), "the hinges of the patches");
-    const Floats unmixing = reading.floats("state.unmixing", {k_any});
-    std::size_t at = 0;
-    for (std::size_t c = 0; c < state.controls.size(); ++c) {
-        const std::size_t rows = state.controls[c].input_count,
-                          columns = state.hinge_begin[c + 1] - state.hinge_begin[c];
-        reading.require(rows * columns <= unmixing.size() - at, "state.unmixing is too short");
-        state.unmixing.push_back(matrix_of(part_of(unmixing, at, rows * columns), rows, columns));
-        at += rows * columns;
-    }
+    read_unmixing(reading, state, [&](std::size_t c) { return state.hinge_begin[c + 1] - state.hinge_begin[c]; });
 }
 
 void read_range(const Reading& reading, CurvatureModel& model) {
@@ -263,6 +301,7 @@ void read_segments(const Reading& reading, CurvatureModel& model) {
     const Words patches = reading.words("segments.patches", {k_any, 3, Segments::Triangle::k_patch});
     reading.below(patches, model.vertex_count, "segments.patches");
     const std::size_t count = patches.size() / (3 * Segments::Triangle::k_patch);
+    reading.require(!model.state.is_local() || count == model.state.controls.size(), "patches and segments differ");
     const Floats frames = reading.floats("segments.frame", {count, 3, 3});
     for (std::size_t s = 0; s < count; ++s) {
         Segments::Triangle triangle;
@@ -302,7 +341,7 @@ void read_tiles(const Reading& reading, CurvatureModel& model) {
     tiles.vertex_count = model.vertex_count;
     tiles.segment = reading.words("tiles.segment", {k_any});
     const std::size_t count = tiles.segment.size();
-    reading.below(tiles.segment, tiles.set == AttributeSet::tensor ? 1 : model.segments.count(), "tiles.segment");
+    reading.below(tiles.segment, std::max<std::size_t>(model.segments.count(), 1), "tiles.segment");
     tiles.vertex = reading.words("tiles.vertex", {count, lanes});
     reading.below(tiles.vertex, model.vertex_count, "tiles.vertex");
     tiles.scale = reading.floats("tiles.scale", {attributes});

@@ -24,7 +24,7 @@ struct CurvatureModel {
     float feature_size = 0;  ///< of the surface in training (see lines)
     StateReader state;
     PoseRange range;
-    Segments segments;  ///< principal attributes only; the tiles tell which vertices are of which
+    Segments segments;  ///< of principal attributes and local shape; the tiles tell which vertices are of which
     ComponentRegression regression;
     BasisTiles tiles;
     std::map<std::string, std::string> training;  ///< remarks: animation, clips, options, in words

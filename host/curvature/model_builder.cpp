@@ -36,4 +36,19 @@ void PredictorBuilder::add_basis(std::size_t attribute, const std::vector<std::u
     }
 }
 
+std::uint32_t PredictorBuilder::add_inputs(std::span<const Monomial> inputs) {
+    const std::uint32_t feature = add_monomials(inputs);
+    const auto first = static_cast<std::uint32_t>(regression_.components.size());
+    for (std::uint32_t i = 0; i < inputs.size(); ++i) {
+        regression_.components.push_back({feature + i, 1, static_cast<std::uint32_t>(regression_.coefficients.size())});
+        regression_.coefficients.push_back(1);
+    }
+    return first;
+}
+
+void PredictorBuilder::add_shared_basis(std::size_t attribute, const std::vector<std::uint32_t>& vertices,
+                                        const Eigen::Ref<const Eigen::MatrixXf>& basis, std::uint32_t first_component) {
+    if (basis.cols() > 0) bases_.push_back({attribute, vertices, basis, first_component});
+}
+
 }  // namespace exemplar

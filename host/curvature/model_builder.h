@@ -28,6 +28,13 @@ class PredictorBuilder {
                    const Eigen::Ref<const Eigen::MatrixXf>& basis, std::uint32_t first_feature,
                    const Eigen::Ref<const Eigen::MatrixXf>& regression);
 
+    /// Adds components that are the inputs themselves; returns the index of the first.
+    std::uint32_t add_inputs(std::span<const Monomial> inputs);
+    /// Adds a basis of an attribute for components that are there, from `first_component` on; attributes can share
+    /// them.
+    void add_shared_basis(std::size_t attribute, const std::vector<std::uint32_t>& vertices,
+                          const Eigen::Ref<const Eigen::MatrixXf>& basis, std::uint32_t first_component);
+
     const ComponentRegression& regression() const { return regression_; }
     const std::vector<VertexBasis>& bases() const { return bases_; }
 

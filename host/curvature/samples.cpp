@@ -119,20 +119,6 @@ std::vector<std::uint32_t> steadiest_neighbors(const TriangleMesh& rest, const s
     return neighbor;
 }
 
-std::vector<SurfaceMoment> read_moments(const Animation& animation, const Segments& segments,
-                                        std::span<const FrameRef> frames, const CurvatureOptions& truth) {
-    std::vector<SurfaceMoment> moments(frames.size());
-    Progress progress("measuring curvature", frames.size());
-    parallel_ranges(frames.size(), 8, [&](std::size_t begin, std::size_t end) {
-        MomentReader reader(animation, segments, truth);
-        for (std::size_t i = begin; i < end; ++i) {
-            moments[i] = reader.read(frames[i]);
-            progress.advance();
-        }
-    });
-    return moments;
-}
-
 }  // namespace
 
 std::vector<FrameRef> select_frames(const Animation& animation, const FrameSelection& selection) {
@@ -192,22 +178,41 @@ StateReader make_state(const Animation& animation, std::span<const FrameRef> fra
     return make_rig_state(animation, poses);
 }
 
-void read_state(const StateReader& reader, const Animation& animation, FrameRef frame, std::span<float> x) {
-    const Clip& clip = animation.clips[frame.clip];
+void read_state(const StateReader& reader, const Animation& animation, FrameRef frame, const SurfaceMoment& moment,
+                std::span<float> x) {
     if (animation.kind == AnimationKind::sequence)
-        reader.read_vertices(clip.frames[frame.frame], x);
+        reader.read_surface(moment.vertices, moment.normals, moment.rotations, x);
     else
-        reader.read_pose(clip.poses[frame.frame], x);
+        reader.read_pose(animation.clips[frame.clip].poses[frame.frame], x);
+}
+
+std::vector<SurfaceMoment> read_moments(const Animation& animation, const Segments& segments,
+                                        std::span<const FrameRef> frames, const CurvatureOptions& truth) {
+    std::vector<SurfaceMoment> moments(frames.size());
+    Progress progress("measuring curvature", frames.size());
+    parallel_ranges(frames.size(), 8, [&](std::size_t begin, std::size_t end) {
+        MomentReader reader(animation, segments, truth);
+        for (std::size_t i = begin; i < end; ++i) {
+            moments[i] = reader.read(frames[i]);
+            progress.advance();
+        }
+    });
+    return moments;
+}
+
+AttributeFrames make_attribute_frames(AttributeSet set, const TriangleMesh& rest, const Segments& segments,
+                                      const std::vector<SurfaceMoment>& moments) {
+    if (set == AttributeSet::principal) return make_principal_frames(segments, sum_frames(moments, segments));
+    AttributeFrames frames;
+    frames.neighbor = steadiest_neighbors(rest, moments);
+    return frames;
 }
 
 TrainingSamples collect_samples(const Animation& animation, const Segments& segments, const StateReader& reader,
                                 std::span<const FrameRef> frames, AttributeSet set, const CurvatureOptions& truth) {
     const std::vector<SurfaceMoment> moments = read_moments(animation, segments, frames, truth);
     TrainingSamples samples;
-    if (set == AttributeSet::principal)
-        samples.frames = make_principal_frames(segments, sum_frames(moments, segments));
-    else
-        samples.frames.neighbor = steadiest_neighbors(animation.rest, moments);
+    samples.frames = make_attribute_frames(set, animation.rest, segments, moments);
     const std::size_t count = animation.rest.vertex_count();
     const auto poses = static_cast<Eigen::Index>(frames.size());
     samples.attributes.assign(attribute_count(set), Eigen::MatrixXf(poses, static_cast<Eigen::Index>(count)));
@@ -220,7 +225,7 @@ TrainingSamples collect_samples(const Animation& animation, const Segments& segm
         for (std::size_t a = 0; a < samples.attributes.size(); ++a)
             samples.attributes[a].row(row) =
                 Eigen::Map<const Eigen::RowVectorXf>(attributes.data() + a * count, static_cast<Eigen::Index>(count));
-        read_state(reader, animation, frames[i], x);
+        read_state(reader, animation, frames[i], moment, x);
         samples.states.row(row) = Eigen::Map<const Eigen::RowVectorXf>(x.data(), static_cast<Eigen::Index>(x.size()));
         samples.feature_size += feature_size(moment.vertices, moment.curvature) / static_cast<float>(frames.size());
     }

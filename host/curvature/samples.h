@@ -58,8 +58,15 @@ Segments segment_animation(const Animation& animation, std::span<const FrameRef>
 /// The reader of its state, made from the given frames.
 StateReader make_state(const Animation& animation, std::span<const FrameRef> frames,
                        const SequenceStateOptions& options);
-/// x of a frame.
-void read_state(const StateReader& reader, const Animation& animation, FrameRef frame, std::span<float> x);
+/// x of a frame, read before as a moment.
+void read_state(const StateReader& reader, const Animation& animation, FrameRef frame, const SurfaceMoment& moment,
+                std::span<float> x);
+/// Moments of an animation with their curvature, on all cores.
+std::vector<SurfaceMoment> read_moments(const Animation& animation, const Segments& segments,
+                                        std::span<const FrameRef> frames, const CurvatureOptions& truth);
+/// The frames of attributes that suit some moments with curvature.
+AttributeFrames make_attribute_frames(AttributeSet set, const TriangleMesh& rest, const Segments& segments,
+                                      const std::vector<SurfaceMoment>& moments);
 
 /// Training poses: inputs and attributes.
 struct TrainingSamples {

@@ -158,9 +158,12 @@ Segments segment_sequence(const TriangleMesh& rest, std::span<const std::vector<
                          rotations.middleCols(static_cast<Eigen::Index>(9 * i), 9));
     rotations /= std::sqrt(static_cast<float>(taken));
     const Pca pca = fit_pca(rotations, 0.99, k_rotation_dimensions);
-    Segments segments;
-    segments.segment_of_vertex = mean_shift(pca.project(rotations), k_rotation_bandwidth, k_smallest_patch).cluster;
+    return segment_patches(rest, mean_shift(pca.project(rotations), k_rotation_bandwidth, k_smallest_patch).cluster);
+}
 
+Segments segment_patches(const TriangleMesh& rest, const std::vector<std::uint32_t>& patch_of_vertex) {
+    Segments segments;
+    segments.segment_of_vertex = patch_of_vertex;
     std::vector<std::vector<std::uint32_t>> members;
     for (std::uint32_t v = 0; v < rest.vertex_count(); ++v) {
         const std::uint32_t s = segments.segment_of_vertex[v];

@@ -37,6 +37,9 @@ Segments segment_rig(const Rig& rig, std::size_t vertex_count);
 /// (after James and Twigg 2005).
 Segments segment_sequence(const TriangleMesh& rest, std::span<const std::vector<Vec3>> frames);
 
+/// Segments that are given: of each vertex the number of its own, without gaps.
+Segments segment_patches(const TriangleMesh& rest, const std::vector<std::uint32_t>& patch_of_vertex);
+
 /// The rotation nearest to `linear` (its polar part), by Newton's iteration; the identity if it is singular.
 Eigen::Matrix3f nearest_rotation(const Eigen::Matrix3f& linear);
 

@@ -150,7 +150,36 @@ void StateReader::read_pose(const Pose& pose, std::span<float> x) const {
     }
 }
 
-void StateReader::read_vertices(std::span<const Vec3> vertices, std::span<float> x) const {
+void StateReader::read_local(std::size_t control, std::span<const Vec3> vertices, std::span<const Vec3> normals,
+                             const Eigen::Matrix3f& rotation, std::span<float> shape) const {
+    const std::span<const std::uint32_t> members(local_vertex.data() + local_begin[control],
+                                                 local_begin[control + 1] - local_begin[control]);
+    Vec3 center = Vec3::Zero();
+    for (const std::uint32_t v : members) center += vertices[v];
+    center /= static_cast<float>(std::max<std::size_t>(members.size(), 1));
+    const Eigen::Matrix3f turn = rotation.transpose(), scaled = turn / local_unit;
+    float* out = shape.data();
+    for (const std::uint32_t v : members) {
+        Eigen::Map<Vec3>(out).noalias() = turn * normals[v];
+        Eigen::Map<Vec3>(out + 3).noalias() = scaled * (vertices[v] - center);
+        out += k_local_numbers;
+    }
+}
+
+void StateReader::read_surface(std::span<const Vec3> vertices, std::span<const Vec3> normals,
+                               std::span<const Eigen::Matrix3f> rotations, std::span<float> x) const {
+    if (!is_local()) return read_hinges(vertices, x);
+    Eigen::VectorXf shape;
+    for (std::size_t c = 0; c < controls.size(); ++c) {
+        shape.resize(static_cast<Eigen::Index>(local_size(c)));
+        read_local(c, vertices, normals, rotations[c], {shape.data(), local_size(c)});
+        shape -= local_mean[c];
+        Eigen::Map<Eigen::VectorXf>(x.data() + controls[c].first_input, controls[c].input_count).noalias() =
+            unmixing[c] * shape;
+    }
+}
+
+void StateReader::read_hinges(std::span<const Vec3> vertices, std::span<float> x) const {
     Eigen::VectorXf angles;
     for (std::size_t c = 0; c < controls.size(); ++c) {
         const std::uint32_t first = hinge_begin[c], count = hinge_begin[c + 1] - first;
@@ -204,6 +233,11 @@ PoseRange make_pose_range(const StateReader& reader, const Eigen::Ref<const Eige
     range.mean = states.colwise().mean();
     const Eigen::MatrixXf centered = states.rowwise() - range.mean.transpose();
     for (const Control& control : reader.controls) {
+        if (control.input_count == 0) {  // a patch that does not bend
+            range.whitening.emplace_back(0, 0);
+            range.largest.push_back(1);
+            continue;
+        }
         const Eigen::MatrixXd part = centered.middleCols(control.first_input, control.input_count).cast<double>();
         const Eigen::MatrixXd covariance =
             part.transpose() * part / static_cast<double>(std::max<Eigen::Index>(part.rows(), 1));
@@ -245,7 +279,7 @@ PoseRange::Farthest PoseRange::bound(const StateReader& reader, std::span<float>
 }
 
 PoseRange::Farthest PoseRange::prepare(const StateReader& reader, std::span<float> x) const {
-    const Farthest result = bound(reader, x);
+    const Farthest result = reader.is_local() ? farthest(reader, x) : bound(reader, x);
     Eigen::Map<Eigen::VectorXf>(x.data(), mean.size()) -= mean;
     return result;
 }

@@ -23,8 +23,9 @@ struct Control {
 /// Skeleton (Sec. 5.4.1): of each joint the rotation against its mean in training, as sin(theta / 2) times the axis:
 /// the vector part of the unit quaternion. For a hinge this is the thesis' cos(theta / 2) with the angle counted, as a
 /// dihedral angle is, from pi at rest; in that form it tells the two directions of bending apart and has no gimbal
-/// lock. Blend shapes (Sec. 5.6): the weights. Mesh sequence (Sec. 5.5.1): independent components of the dihedral
-/// angles.
+/// lock. Blend shapes (Sec. 5.6): the weights. Mesh sequence: independent components of the dihedral angles (Sec.
+/// 5.5.1), or what a linear map makes of the normals and positions of a patch's vertices in the frame of the patch (see
+/// learn_local), which takes no angle and follows the curvature more closely.
 struct StateReader {
     AnimationKind kind = AnimationKind::sequence;
     std::vector<Control> controls;
@@ -42,13 +43,35 @@ struct StateReader {
     std::vector<Hinge> hinges;
     std::vector<std::uint32_t> hinge_begin;        ///< those of control c are [hinge_begin[c], hinge_begin[c + 1])
     Eigen::VectorXf mean_angles;                   ///< of each hinge
-    std::vector<Eigen::MatrixXf> unmixing;         ///< of each control: inputs x hinges
+    std::vector<Eigen::MatrixXf> unmixing;         ///< of each control: inputs x hinges, or x local shape
     std::vector<std::uint32_t> control_of_vertex;  ///< in training: the patch of each vertex
+
+    // mesh sequence by local shape; then there are no hinges, and control c is segment c
+    std::vector<std::uint32_t> local_begin;   ///< the vertices of control c: [local_begin[c], local_begin[c + 1])
+    std::vector<std::uint32_t> local_vertex;  ///< some of a patch and of what surrounds it
+    std::vector<Eigen::VectorXf> local_mean;  ///< of each control, in training: local shape
+    float local_unit = 1;                     ///< mesh units that positions are divided by
+
+    bool is_local() const { return !local_begin.empty(); }
+    /// Length of the local shape of a control: six numbers per vertex.
+    std::size_t local_size(std::size_t control) const {
+        return k_local_numbers * (local_begin[control + 1] - local_begin[control]);
+    }
+    /// The local shape of a control, local_size numbers: of each vertex its normal and its position about the center of
+    /// all, divided by local_unit, in the frame of the patch, `rotation`.
+    void read_local(std::size_t control, std::span<const Vec3> vertices, std::span<const Vec3> normals,
+                    const Eigen::Matrix3f& rotation, std::span<float> shape) const;
+    static constexpr std::size_t k_local_numbers = 6;
 
     /// x of a rig's pose. `x` has input_count numbers.
     void read_pose(const Pose& pose, std::span<float> x) const;
-    /// x of a mesh sequence's vertices.
-    void read_vertices(std::span<const Vec3> vertices, std::span<float> x) const;
+    /// x of a mesh sequence's vertices and their unit normals; `rotations` are those of the segments. Normals and
+    /// rotations matter to local shape only.
+    void read_surface(std::span<const Vec3> vertices, std::span<const Vec3> normals,
+                      std::span<const Eigen::Matrix3f> rotations, std::span<float> x) const;
+
+  private:
+    void read_hinges(std::span<const Vec3> vertices, std::span<float> x) const;
 };
 
 /// Signed angle that a hinge is bent by, in radians: zero where flat, positive where convex.
@@ -83,7 +106,8 @@ struct PoseRange {
     /// Pulls the inputs of controls beyond their largest distance back to it, towards the mean: polynomials that fit
     /// within run away beyond. Returns what farthest() says of x as it was.
     Farthest bound(const StateReader& reader, std::span<float> x) const;
-    /// Makes of a state what components are predicted from: bound() and less the mean. Returns what bound() returns.
+    /// Makes of a state what components are predicted from: bound(), unless it is of local shape, whose map is linear
+    /// and stays right beyond training; then less the mean. Returns what bound() returns.
     Farthest prepare(const StateReader& reader, std::span<float> x) const;
 
   private:

@@ -8,6 +8,7 @@
 #include "host/core/errors.h"
 #include "host/core/stopwatch.h"
 #include "host/curvature/augmentation.h"
+#include "host/curvature/learn_local.h"
 #include "host/curvature/learners.h"
 
 namespace exemplar {
@@ -113,6 +114,8 @@ void learn(const LearningTask& task, PredictorBuilder& builder) {
             return learn_network(task, builder);
         case Learner::global:
             return learn_global(task, builder);
+        case Learner::local:
+            break;  // has a state of its own, learned with the map; see learn_local
     }
 }
 
@@ -154,10 +157,10 @@ void find_state(const Animation& animation, std::span<const FrameRef> frames, co
                                      animation.name, frames.size()));
 }
 
-CurvatureModel train_on(const Animation& animation, std::span<const FrameRef> frames, const CurvatureTraining& options,
-                        CurvatureTrainingReport& report) {
+/// All learners that start from a state which is found first.
+void learn_by_controls(const Animation& animation, std::span<const FrameRef> frames, const CurvatureTraining& options,
+                       CurvatureModel& model, CurvatureTrainingReport& report) {
     Stopwatch watch;
-    CurvatureModel model = blank_model(animation, frames.front(), options);
     find_state(animation, frames, options, model);
     TrainingSamples samples =
         collect_samples(animation, model.segments, model.state, frames, options.attributes, model.truth);
@@ -187,6 +190,15 @@ CurvatureModel train_on(const Animation& animation, std::span<const FrameRef> fr
     report.varying_vertices = static_cast<std::size_t>(std::count(varies.begin(), varies.end(), true));
     report.possible_controls = mean_controls(possible, varies);
     report.kept_controls = mean_controls(task.groups, varies);
+}
+
+CurvatureModel train_on(const Animation& animation, std::span<const FrameRef> frames, const CurvatureTraining& options,
+                        CurvatureTrainingReport& report) {
+    CurvatureModel model = blank_model(animation, frames.front(), options);
+    if (options.learner == Learner::local)
+        learn_local(animation, frames, options, model, report);
+    else
+        learn_by_controls(animation, frames, options, model, report);
     return model;
 }
 
@@ -210,15 +222,24 @@ std::string_view name_of(Learner learner) {
             return "averaged";
         case Learner::network:
             return "network";
+        case Learner::local:
+            return "local";
         case Learner::global:
             break;
     }
     return "global";
 }
 
+Learner default_learner(AnimationKind kind) {
+    return kind == AnimationKind::sequence ? Learner::local : Learner::additive;
+}
+
 CurvatureModel train_curvature(const Animation& animation, std::span<const FrameRef> frames,
                                const CurvatureTraining& options, CurvatureTrainingReport& report) {
     require_learnable(animation, frames);
+    if (options.learner == Learner::local && animation.kind != AnimationKind::sequence)
+        throw UsageError(fmt::format("{}: the local learner is for mesh sequences; take another for a {}",
+                                     animation.name, name_of(animation.kind)));
     report.poses = frames.size();
     const bool augments = animation.kind != AnimationKind::sequence && options.augmented_poses > 0;
     CurvatureModel model = augments ? train_augmented(animation, {frames.begin(), frames.end()}, options, report)

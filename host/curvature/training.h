@@ -16,8 +16,11 @@ namespace exemplar {
 /// reduced to a few components. averaged: the thesis' (Sec. 5.4): the attributes of the vertices that a control matters
 /// to are reduced first, each control predicts them alone from its joint's and its parent's angles, and predictions are
 /// averaged by their residuals (Eq. 5.11). network: the thesis' for faces (Sec. 5.6): one hidden layer from all inputs
-/// to the components. global: the thesis' for cloth (Sec. 5.5): a polynomial of all inputs.
-enum class Learner { additive, averaged, network, global };
+/// to the components. global: the thesis' for cloth (Sec. 5.5): a polynomial of all inputs. local: of mesh sequences; a
+/// linear map of each patch from its normals and positions (see learn_local).
+enum class Learner { additive, averaged, network, global, local };
+/// The learner that suits a kind of animation best.
+Learner default_learner(AnimationKind kind);
 std::string_view name_of(Learner learner);
 
 struct CurvatureTraining {

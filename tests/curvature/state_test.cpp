@@ -69,10 +69,10 @@ TEST(State, OfASequenceDoesNotChangeWhenItMovesAsAWhole) {
     ASSERT_EQ(reader.controls.size(), 2u);
     ASSERT_GT(reader.input_count, 2u);
     std::vector<float> before(reader.input_count), after(reader.input_count);
-    reader.read_vertices(frames[5], before);
+    reader.read_surface(frames[5], {}, {}, before);
     const Eigen::AngleAxisf turn(2, Vec3(1, 1, 0).normalized());
     for (Vec3& p : frames[5]) p = turn * p + Vec3(3, 2, 1);
-    reader.read_vertices(frames[5], after);
+    reader.read_surface(frames[5], {}, {}, after);
     for (std::size_t i = 0; i < before.size(); ++i) EXPECT_NEAR(after[i], before[i], 1e-3);
 }
 

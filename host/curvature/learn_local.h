@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+
+#include "host/animation/animation.h"
+#include "host/curvature/model.h"
+#include "host/curvature/samples.h"
+#include "host/curvature/training.h"
+
+namespace exemplar {
+
+/// Learns the curvature of a mesh sequence patch by patch from the shape of the patch and its surroundings: fills
+/// segments (the patches), state, range, regression, tiles and feature_size of `model`, whose truth is set. Throws
+/// UsageError if nothing moves.
+void learn_local(const Animation& animation, std::span<const FrameRef> frames, const CurvatureTraining& options,
+                 CurvatureModel& model, CurvatureTrainingReport& report);
+
+}  // namespace exemplar

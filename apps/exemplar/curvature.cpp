@@ -14,6 +14,7 @@ void add_curvature_command(CLI::App& app) {
         "  exemplar curvature evaluate figure.safetensors figure.glb --frames 100: --json errors.json");
     add_curvature_train_command(*command);
     add_curvature_evaluate_command(*command);
+    add_curvature_study_command(*command);
 }
 
 }  // namespace exemplar

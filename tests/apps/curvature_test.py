@@ -49,6 +49,24 @@ class Curvature(ProgramTest):
                 done = self.call("curvature", "evaluate", "k.safetensors", source, "--poses", "3")
                 self.assertIn("suggestive_contours", done.stdout)
 
+    def test_study_varies_one_thing_at_a_time(self):
+        done = self.call("curvature", "study", "figure_001.glb", "--test", "figure_002.glb", "--test-poses", "4",
+                         "--augment", "20", "--json", "study.json")
+        rows = json.loads((self.folder / "study.json").read_text())["rows"]
+        self.assertEqual({row["what"] for row in rows},
+                         {"as given", "poses", "variance", "bases", "sparsity", "attributes"})
+        self.assertIn("zero order", done.stdout)
+        bytes_of = {(row["what"], row["value"]): row["training"]["tile_bytes"] for row in rows}
+        self.assertLess(bytes_of["variance", "0.8"], bytes_of["variance", "0.999"])
+        self.assertLess(bytes_of["sparsity", "0.05"], bytes_of["sparsity", "0"])
+        self.assertTrue(all(row["evaluation"]["frames"] == 4 for row in rows))
+
+    def test_study_tests_on_nothing_it_has_learned_from(self):
+        self.call("curvature", "study", "figure_001.glb", "--frames", ":20", "--augment", "0", "--json", "study.json")
+        study = json.loads((self.folder / "study.json").read_text())
+        self.assertEqual((study["poses"], study["test_frames"]), (20, 4))
+        self.refused("curvature", "study", "figure_001.glb", code=2, says="--test")
+
     def test_wrong_input_is_one_line(self):
         self.train("m.safetensors")
         self.call("synth", "face", *self.SIZE, "--out", ".")

@@ -53,8 +53,11 @@ GpuLearnedCurvature::GpuLearnedCurvature(Device& device, const CurvatureModel& m
     for (const Influence& influence : segments_.influences)
         fewest_bones_ = std::max<std::size_t>(fewest_bones_, influence.bone + 1);
     for (const std::uint32_t node : reader_.nodes) fewest_controls_ = std::max<std::size_t>(fewest_controls_, node + 1);
-    state_ = Buffer(device,
-                    k_rows_per_segment * sizeof(vec4) * rotations_.size() + sizeof(float) * predictor_.padded_inputs());
+    if (reader_.is_local())
+        local_.emplace(device, model, predictor_.padded_inputs());
+    else
+        state_ = Buffer(
+            device, k_rows_per_segment * sizeof(vec4) * rotations_.size() + sizeof(float) * predictor_.padded_inputs());
 }
 
 void GpuLearnedCurvature::record(Stream& stream, const Rig& rig, const Pose& pose, const Buffer& vertices,
@@ -74,16 +77,32 @@ void GpuLearnedCurvature::record(Stream& stream, const Rig& rig, const Pose& pos
     record_state(stream, vertices, normals);
 }
 
-void GpuLearnedCurvature::record(Stream& stream, std::span<const Vec3> vertices_on_host, const Buffer& vertices,
-                                 const Buffer& normals) {
+void GpuLearnedCurvature::check_frame(std::size_t vertices) const {
     if (reader_.kind != AnimationKind::sequence)
         throw UsageError("curvature learned on a rig is not that of vertices; give a pose");
-    if (vertices_on_host.size() != vertex_count_)
-        throw UsageError(
-            fmt::format("a frame of {} vertices is not of a surface of {}", vertices_on_host.size(), vertex_count_));
+    if (vertices != vertex_count_)
+        throw UsageError(fmt::format("a frame of {} vertices is not of a surface of {}", vertices, vertex_count_));
+}
+
+void GpuLearnedCurvature::record(Stream& stream, std::span<const Vec3> vertices_on_host, const Buffer& vertices,
+                                 const Buffer& normals) {
+    check_frame(vertices_on_host.size());
+    if (local_) return record(stream, vertices, normals);
+    reader_.read_surface(vertices_on_host, {}, {}, x_);
     if (segments_.count() != 0) segments_.rotations_of_sequence(vertices_on_host, rotations_);
-    reader_.read_surface(vertices_on_host, {}, rotations_, x_);
     record_state(stream, vertices, normals);
+}
+
+void GpuLearnedCurvature::record(Stream& stream, const Buffer& vertices, const Buffer& normals) {
+    check_frame(vertices.bytes() / sizeof(vec4));
+    if (!local_) throw UsageError("the state of this curvature model is read on the host; give the vertices there");
+    if (normals.bytes() != vertices.bytes())
+        throw UsageError(
+            fmt::format("{} vertices cannot have {} normals", vertex_count_, normals.bytes() / sizeof(vec4)));
+    local_->record(stream, vertices, normals);
+    predictor_.record(stream, local_->inputs(), 0);
+    reprojection_.record(stream, predictor_.components(),
+                         {.vertices = vertices, .normals = normals, .rotations = local_->rotations()});
 }
 
 void GpuLearnedCurvature::record_state(Stream& stream, const Buffer& vertices, const Buffer& normals) {

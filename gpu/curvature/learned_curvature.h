@@ -3,10 +3,12 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "gpu/curvature/component_predictor.h"
+#include "gpu/curvature/local_state.h"
 #include "gpu/curvature/reprojection.h"
 #include "gpu/runtime/buffer.h"
 #include "gpu/runtime/device.h"
@@ -29,10 +31,14 @@ class GpuLearnedCurvature {
     /// dispatches, more where the device's limits are low. Throws UsageError if the model was learned on mesh
     /// sequences, or if rig, pose, vertices or normals are not those it was learned on.
     void record(Stream& stream, const Rig& rig, const Pose& pose, const Buffer& vertices, const Buffer& normals);
-    /// The same of a frame of a mesh sequence, whose state is read on the host.
+    /// The same of a frame of a mesh sequence: five dispatches, and nothing goes up, if the state is that of local
+    /// shape. One of hinges is read on the host from the same vertices.
     void record(Stream& stream, std::span<const Vec3> vertices_on_host, const Buffer& vertices, const Buffer& normals);
+    /// The same of vertices that only the device has. Throws UsageError if the state is not that of local shape.
+    void record(Stream& stream, const Buffer& vertices, const Buffer& normals);
 
-    /// The control of the last call that was farthest from the training poses.
+    /// The control of the last call that was farthest from the training poses; zero of local shape, which the host does
+    /// not see.
     PoseRange::Farthest farthest() const { return farthest_; }
 
     /// The unit principal direction e1 and its curvature k1 >= k2, in 1 / mesh units.
@@ -43,6 +49,7 @@ class GpuLearnedCurvature {
     const Buffer& derivative() const { return reprojection_.derivative(); }
 
   private:
+    void check_frame(std::size_t vertices) const;
     void record_state(Stream& stream, const Buffer& vertices, const Buffer& normals);
     void write_state(std::span<std::byte> memory) const;
     std::size_t vertex_count_;
@@ -52,7 +59,8 @@ class GpuLearnedCurvature {
     std::size_t fewest_bones_ = 0, fewest_controls_ = 0;  // of a rig: nodes or targets
     GpuComponentPredictor predictor_;
     GpuReprojection reprojection_;
-    Buffer state_;  // rotations, then inputs
+    std::optional<GpuLocalState> local_;
+    Buffer state_;  // rotations, then inputs; not of local shape
     PoseRange::Farthest farthest_;
     std::vector<float> x_;
     std::vector<Eigen::Matrix3f> rotations_;

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "host/core/errors.h"
+#include "host/core/half.h"
 #include "host/core/parallel.h"
 #include "host/core/progress.h"
 #include "host/core/stopwatch.h"
@@ -116,7 +117,9 @@ class LocalLearner {
             reader_.controls.push_back(
                 {"patch " + std::to_string(p), static_cast<std::uint32_t>(reader_.input_count), inputs});
             reader_.input_count += inputs;
-            reader_.unmixing.push_back(maps[p].projection);
+            // Files hold halves.
+            reader_.unmixing.push_back(
+                maps[p].projection.unaryExpr([](float value) { return from_half(to_half(value)); }));
         }
         PredictorBuilder builder(reader_.input_count);
         for (std::size_t p = 0; p < patches_.size(); ++p) add_bases(p, maps[p], builder);

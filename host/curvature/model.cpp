@@ -44,6 +44,12 @@ Eigen::VectorXf vector_of(const Floats& values) {
     return Eigen::Map<const Eigen::VectorXf>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
+Floats as_floats(const std::vector<Half>& halves) {
+    Floats values(halves.size());
+    std::transform(halves.begin(), halves.end(), values.begin(), from_half);
+    return values;
+}
+
 // Writing, part by part.
 
 Json describe(const CurvatureModel& model) {
@@ -77,7 +83,13 @@ void add_state(TensorFile& file, const StateReader& state) {
         const Floats values = row_major(part);
         unmixing.insert(unmixing.end(), values.begin(), values.end());
     }
+    std::vector<Half> local_map;
+    if (state.is_local()) {
+        std::transform(unmixing.begin(), unmixing.end(), std::back_inserter(local_map), to_half);
+        unmixing.clear();
+    }
     file.add("state.unmixing", {unmixing.size()}, unmixing);
+    file.add("state.local_map", {local_map.size()}, local_map);
     Floats local_mean;
     for (const Eigen::VectorXf& part : state.local_mean) local_mean.insert(local_mean.end(), part.begin(), part.end());
     file.add("state.local_begin", {state.local_begin.size()}, state.local_begin);
@@ -212,12 +224,11 @@ void read_description(const Reading& reading, CurvatureModel& model) {
 
 /// The unmixing matrices of all controls, one after the other; `columns` tells how wide each is.
 template <typename Columns>
-void read_unmixing(const Reading& reading, StateReader& state, Columns&& columns) {
-    const Floats unmixing = reading.floats("state.unmixing", {k_any});
+void split_unmixing(const Reading& reading, const Floats& unmixing, StateReader& state, Columns&& columns) {
     std::size_t at = 0;
     for (std::size_t c = 0; c < state.controls.size(); ++c) {
         const std::size_t rows = state.controls[c].input_count, width = columns(c);
-        reading.require(rows * width <= unmixing.size() - at, "state.unmixing is too short");
+        reading.require(rows * width <= unmixing.size() - at, "its map to the inputs is too short");
         state.unmixing.push_back(matrix_of(part_of(unmixing, at, rows * width), rows, width));
         at += rows * width;
     }
@@ -265,11 +276,13 @@ void read_state(const Reading& reading, CurvatureModel& model) {
     }
     if (state.is_local()) {
         reading.words("state.hinge_begin", {0});
-        return read_unmixing(reading, state, [&](std::size_t c) { return state.local_size(c); });
+        return split_unmixing(reading, as_floats(reading.halves("state.local_map", {k_any})), state,
+                              [&](std::size_t c) { return state.local_size(c); });
     }
     state.hinge_begin = reading.words("state.hinge_begin", {state.controls.size() + 1});
     reading.rows(state.hinge_begin, state.controls.size(), state.hinges.size(), "the hinges of the patches");
-    read_unmixing(reading, state, [&](std::size_t c) { return state.hinge_begin[c + 1] - state.hinge_begin[c]; });
+    split_unmixing(reading, reading.floats("state.unmixing", {k_any}), state,
+                   [&](std::size_t c) { return state.hinge_begin[c + 1] - state.hinge_begin[c]; });
 }
 
 void read_range(const Reading& reading, CurvatureModel& model) {

@@ -90,6 +90,27 @@ struct ComponentParameters {
     uint components;
 };
 
+// Learned curvature of mesh sequences reads its inputs from the local shape of patches. The corners of a patch' triangle
+// are this many vertices each, four to a texel.
+const uint k_corner_vertices = 8;
+
+struct PatchParameters {
+    uint patches;
+};
+
+// An input that is read from local shape: halves for the vertices of its patch, a texel each (normal, position, 0, 0).
+struct LocalInput {
+    uint surface_patch;
+    uint first_vertex;  // in the list of all patches' vertices
+    uint vertices;
+    uint first_texel;
+};
+
+struct LocalInputParameters {
+    uint inputs;
+    float inverse_unit;
+};
+
 // Vertices of learned curvature come in tiles of four quads. A tile is a run of texels: numbers of pairs, one for each
 // attribute, two to a word; the vertices of each quad; of tensors, the neighbor of each of these that its first axis leads
 // to; then pairs of rows of halves, four texels to a pair, one for each quad, in which the first row has the first two words:
@@ -119,6 +140,9 @@ EXEMPLAR_LAYOUT(CurvatureFeature, first, second, third, neuron)
 EXEMPLAR_LAYOUT(CurvatureComponent, first_feature, feature_texels, first_coefficient, unused)
 EXEMPLAR_LAYOUT(FeatureParameters, features, first_input, input_texels)
 EXEMPLAR_LAYOUT(ComponentParameters, components)
+EXEMPLAR_LAYOUT(PatchParameters, patches)
+EXEMPLAR_LAYOUT(LocalInput, surface_patch, first_vertex, vertices, first_texel)
+EXEMPLAR_LAYOUT(LocalInputParameters, inputs, inverse_unit)
 EXEMPLAR_LAYOUT(CurvatureTile, first_texel, first_pair, segment, unused)
 EXEMPLAR_LAYOUT(ReprojectionParameters, low_scales, high_scales, first_tile, tiles, first_texel, first_pair)
 EXEMPLAR_LAYOUT(RestVertex, x, y, z, influences)

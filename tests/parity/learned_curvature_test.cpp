@@ -218,6 +218,34 @@ TEST(LearnedCurvatureParity, TrainedOnASequence) {
     }
 }
 
+TEST(LearnedCurvatureParity, ReadsLocalShapeOnTheDevice) {
+    Animation sheet = waving_sheet();
+    for (const AttributeSet set : {AttributeSet::tensor, AttributeSet::principal}) {
+        const CurvatureModel model = trained(sheet, {.attributes = set, .learner = Learner::local});
+        GpuLearnedCurvature curvature(shared_device(), model);
+        CurvatureEvaluator reference(model);
+        Stream stream(shared_device());
+        for (std::vector<Vec3> vertices : {sheet.clips[0].frames[3], sheet.clips[0].frames[20]}) {
+            for (Vec3& p : vertices) p = Eigen::AngleAxisf(1.1f, Vec3(1, 2, -1).normalized()) * p + Vec3(2, 0, 1);
+            TriangleMesh frame = sheet.rest;
+            frame.vertices = vertices;
+            const std::vector<Vec3> normals = vertex_normals(frame);
+            const DeviceSurface on_device({vertices, normals});
+            curvature.record(stream, on_device.vertices, on_device.normals);
+            stream.finish();
+            expect_near(testing::download_curvature(curvature), reference.evaluate(vertices, normals));
+        }
+    }
+    const CurvatureModel hinges = trained(sheet, {.learner = Learner::additive});
+    GpuLearnedCurvature read_on_host(shared_device(), hinges);
+    Stream stream(shared_device());
+    const Buffer vertices = testing::upload_vertices(shared_device(), sheet.rest.vertices);
+    EXPECT_THROW(read_on_host.record(stream, vertices, vertices), UsageError);
+    CurvatureModel damaged = trained(sheet, {.learner = Learner::local});
+    damaged.segments.triangles.pop_back();
+    EXPECT_THROW(GpuLearnedCurvature(shared_device(), damaged), ModelError);
+}
+
 TEST(LearnedCurvatureParity, RefusesWhatIsOfAnotherModel) {
     RandomModel random({}, 5);
     GpuLearnedCurvature curvature(shared_device(), random.model);

@@ -1,0 +1,43 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/dispatch.glsl"
+#include "shaders/shared/curvature.h"
+
+// Inputs of learned curvature from the local shape of patches (exemplar::StateReader::read_local), one per invocation. Reads
+// 16 bytes and 16 per vertex of its patch; normals and positions come from caches, which the inputs of a patch share. Writes 4.
+layout(local_size_x = 64) in;
+layout(push_constant) uniform Push { LocalInputParameters parameters; };
+layout(set = 0, binding = 0) uniform usamplerBuffer table;    // LocalInput
+layout(set = 0, binding = 1) uniform usamplerBuffer members;  // vertices of patches
+layout(set = 0, binding = 2) uniform usamplerBuffer weights;
+layout(set = 0, binding = 3) uniform samplerBuffer biases;     // what the mean shape and the mean input take away
+layout(set = 0, binding = 4) uniform samplerBuffer rotations;  // three rows a patch
+layout(set = 0, binding = 5) uniform samplerBuffer vertices;
+layout(set = 0, binding = 6) uniform samplerBuffer normals;
+layout(set = 0, binding = 7, std430) writeonly buffer Inputs { float inputs[]; };
+
+vec3 center(uint first, uint count) {
+    vec3 sum = vec3(0.0);
+    for (uint i = 0; i < count; ++i) sum += texelFetch(vertices, int(texelFetch(members, int(first + i)).x)).xyz;
+    return sum / float(max(count, 1u));
+}
+
+void main() {
+    const uint thread = linear_thread();
+    if (thread >= parameters.inputs) return;
+
+    const uvec4 entry = texelFetch(table, int(thread));
+    const vec3 middle = center(entry.y, entry.z);
+    const int row = int(3 * entry.x);
+    // Into the frame of the patch: by the columns of its rotation.
+    const mat3 turn = mat3(texelFetch(rotations, row).xyz, texelFetch(rotations, row + 1).xyz, texelFetch(rotations, row + 2).xyz);
+    float sum = texelFetch(biases, int(thread)).x;
+    for (uint i = 0; i < entry.z; ++i) {
+        const int vertex = int(texelFetch(members, int(entry.y + i)).x);
+        const uvec4 words = texelFetch(weights, int(entry.w + i));
+        const vec2 low = unpackHalf2x16(words.x), mid = unpackHalf2x16(words.y), high = unpackHalf2x16(words.z);
+        sum += dot(vec3(low, mid.x), turn * texelFetch(normals, vertex).xyz) +
+               dot(vec3(mid.y, high), turn * (parameters.inverse_unit * (texelFetch(vertices, vertex).xyz - middle)));
+    }
+    inputs[thread] = sum;
+}

@@ -62,6 +62,7 @@ GpuLearnedCurvature::GpuLearnedCurvature(Device& device, const CurvatureModel& m
 
 void GpuLearnedCurvature::record(Stream& stream, const Rig& rig, const Pose& pose, const Buffer& vertices,
                                  const Buffer& normals) {
+    if (local_) return record(stream, vertices, normals);
     if (reader_.kind == AnimationKind::sequence)
         throw UsageError("curvature learned on a mesh sequence is not that of a pose; give vertices");
     const bool shapes = reader_.kind == AnimationKind::blend_shapes;

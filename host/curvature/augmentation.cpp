@@ -12,9 +12,9 @@ namespace {
 using Eigen::Quaternionf;
 
 /// How much more or less than in the frames a joint turns.
-constexpr double k_least_stretch = 0.6, k_most_stretch = 1.4;
-/// Deviation of the turn about a random axis that is added, in radians: six degrees.
-constexpr double k_stray = 0.105;
+constexpr double k_least_stretch = 0.6, k_most_stretch = 1.6;
+/// Deviation of the turn about a random axis that is added, in radians: seventeen degrees.
+constexpr double k_stray = 0.3;
 /// How often a blend shape takes any weight in [0, 1] in place of one that it has in a frame.
 constexpr double k_free_weight = 0.08;
 

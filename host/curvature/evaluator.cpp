@@ -10,6 +10,7 @@ CurvatureEvaluator::CurvatureEvaluator(const CurvatureModel& model)
 
 const VertexCurvature& CurvatureEvaluator::evaluate(const Rig& rig, const Pose& pose, std::span<const Vec3> vertices,
                                                     std::span<const Vec3> normals) {
+    if (model_->state.is_local()) return evaluate(vertices, normals);
     model_->state.read_pose(pose, x_);
     if (model_->tiles.set == AttributeSet::principal)
         model_->segments.rotations_of_rig(bone_transforms(rig, pose), rotations_);

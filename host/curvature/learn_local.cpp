@@ -33,7 +33,7 @@ constexpr int k_rings = 2;
 /// Of the regression, relative to the variance of the shape.
 constexpr double k_ridge = 1e-3;
 /// A component that predicts less than this share of the mean variance of a patch is not worth its place.
-constexpr double k_least_explained = 1e-4;
+constexpr double k_least_explained = 1e-3;
 
 using Neighbors = std::vector<std::vector<std::uint32_t>>;
 
@@ -84,21 +84,23 @@ std::vector<MatrixXf> encode_all(const AttributeFrames& frames, const std::vecto
 
 class LocalLearner {
   public:
-    LocalLearner(const std::vector<SurfaceMoment>& moments, const AttributeFrames& frames, std::size_t most_inputs,
-                 StateReader& reader)
+    LocalLearner(const std::vector<SurfaceMoment>& moments, std::size_t real, const AttributeFrames& frames,
+                 std::size_t most_inputs, StateReader& reader)
         : moments_(moments),
-          set_(frames.set),
+          real_(Index(real)),
           most_inputs_(most_inputs),
           reader_(reader),
           attributes_(encode_all(frames, moments)),
           means_(Index(attributes_.size()), Index(frames.vertex_count())),
           patches_(reader.local_begin.size() - 1) {
+        for (std::size_t a = 0; a < attributes_.size(); ++a)
+            means_.row(Index(a)) = attributes_[a].topRows(real_).colwise().mean();
+        scales_ = error_scales(deviations(attributes_, means_));
         for (std::size_t a = 0; a < attributes_.size(); ++a) {
-            means_.row(Index(a)) = attributes_[a].colwise().mean();
             attributes_[a].rowwise() -= means_.row(Index(a));
+            attributes_[a] *= scales_.row(Index(a)).cwiseInverse().asDiagonal();
         }
         for (std::uint32_t v = 0; v < frames.vertex_count(); ++v) patches_[frames.segment[v]].push_back(v);
-        scale_orders();
     }
 
     /// Fills what is learned of the reader's state and gives the bases to a builder.
@@ -127,6 +129,12 @@ class LocalLearner {
     }
 
     const MatrixXf& means() const { return means_; }
+    const MatrixXf& scales() const { return scales_; }
+    PoseRange range() const {
+        return make_pose_range(reader_, states(), static_cast<std::size_t>(real_));
+    }
+
+  private:
     /// x of all moments: poses x inputs.
     MatrixXf states() const {
         MatrixXf states(Index(moments_.size()), Index(reader_.input_count));
@@ -138,22 +146,6 @@ class LocalLearner {
         }
         return states;
     }
-
-  private:
-    /// Attributes of second and third order have different units; each order counts as much.
-    void scale_orders() {
-        double variance[2] = {0, 0}, count[2] = {0, 0};
-        for (std::size_t a = 0; a < attributes_.size(); ++a) {
-            const bool order = is_derivative(set_, a);
-            variance[order] += attributes_[a].cast<double>().squaredNorm();
-            count[order] += static_cast<double>(attributes_[a].size());
-        }
-        for (std::size_t order = 0; order < 2; ++order) {
-            const double deviation = std::sqrt(variance[order] / std::max(count[order], 1.0));
-            scale_[order] = deviation > 0 ? static_cast<float>(1 / deviation) : 1.0f;
-        }
-    }
-    float scale_of(std::size_t attribute) const { return scale_[is_derivative(set_, attribute)]; }
 
     /// poses x local shape
     MatrixXf shapes(std::size_t patch) const {
@@ -167,17 +159,17 @@ class LocalLearner {
 
     ReducedRank fit_patch(std::size_t patch) {
         MatrixXf x = shapes(patch);
-        reader_.local_mean[patch] = x.colwise().mean().transpose();
+        reader_.local_mean[patch] = x.topRows(real_).colwise().mean().transpose();
         x.rowwise() -= reader_.local_mean[patch].transpose();
         const std::vector<std::uint32_t>& vertices = patches_[patch];
         MatrixXf y(x.rows(), Index(vertices.size() * attributes_.size()));
         for (std::size_t a = 0; a < attributes_.size(); ++a)
             for (std::size_t i = 0; i < vertices.size(); ++i)
-                y.col(Index(a * vertices.size() + i)) = scale_of(a) * attributes_[a].col(vertices[i]);
+                y.col(Index(a * vertices.size() + i)) = attributes_[a].col(vertices[i]);
         return fit_reduced_rank(x, y, k_ridge, most_inputs_);
     }
 
-    /// Drops components that hardly matter. The variance of an attribute is one in the mean over the surface.
+    /// Drops components that hardly matter. The variance of an attribute of a vertex is one or less.
     void keep_strongest(ReducedRank& map) const {
         const double mean = static_cast<double>(means_.size()) / static_cast<double>(patches_.size());
         Index kept = 0;
@@ -194,19 +186,20 @@ class LocalLearner {
         for (std::uint32_t i = 0; i < control.input_count; ++i) inputs.push_back({control.first_input + i, one, one});
         const std::uint32_t first = builder.add_inputs(inputs);
         const auto count = Index(patches_[patch].size());
-        for (std::size_t a = 0; a < attributes_.size(); ++a)
-            builder.add_shared_basis(a, patches_[patch], map.basis.middleRows(Index(a) * count, count) / scale_of(a),
-                                     first);
+        for (std::size_t a = 0; a < attributes_.size(); ++a) {
+            MatrixXf basis = map.basis.middleRows(Index(a) * count, count);
+            for (Index i = 0; i < count; ++i) basis.row(i) *= scales_(Index(a), patches_[patch][std::size_t(i)]);
+            builder.add_shared_basis(a, patches_[patch], basis, first);
+        }
     }
 
     const std::vector<SurfaceMoment>& moments_;
-    AttributeSet set_;
+    Index real_;
     std::size_t most_inputs_;
     StateReader& reader_;
-    std::vector<MatrixXf> attributes_;  // centered
-    MatrixXf means_;
+    std::vector<MatrixXf> attributes_;  // centered, over their scales
+    MatrixXf means_, scales_;           // attributes x vertices
     std::vector<std::vector<std::uint32_t>> patches_;
-    float scale_[2] = {1, 1};
 };
 
 /// The reader of the local shape of patches, before anything is learned.
@@ -229,12 +222,13 @@ StateReader local_reader(const TriangleMesh& rest, const Segments& segments, flo
 
 }  // namespace
 
-void learn_local(const Animation& animation, std::span<const FrameRef> frames, const CurvatureTraining& options,
+void learn_local(const Animation& animation, std::span<const FrameRef> frames, std::size_t real, const CurvatureTraining& options,
                  CurvatureModel& model, CurvatureTrainingReport& report) {
     Stopwatch watch;
-    model.segments = segment_patches(animation.rest, surface_patches(animation.rest, options.sequence.patch_vertices));
+    const TriangleMesh rest = layout_shape(animation, frames.front());
+    model.segments = segment_patches(rest, surface_patches(rest, options.sequence.patch_vertices));
     const auto unit = static_cast<float>(model.truth.smoothing_unit);
-    model.state = local_reader(animation.rest, model.segments, unit > 0 ? unit : 1.0f);
+    model.state = local_reader(rest, model.segments, unit > 0 ? unit : 1.0f);
     const std::vector<SurfaceMoment> moments = read_moments(animation, model.segments, frames, model.truth);
     for (const SurfaceMoment& moment : moments)
         model.feature_size += feature_size(moment.vertices, moment.curvature) / static_cast<float>(frames.size());
@@ -242,17 +236,17 @@ void learn_local(const Animation& animation, std::span<const FrameRef> frames, c
 
     watch = Stopwatch();
     AttributeFrames attribute_frames =
-        make_attribute_frames(options.attributes, animation.rest, model.segments, moments);
+        make_attribute_frames(options.attributes, rest, model.segments, moments);
     attribute_frames.segment = model.segments.segment_of_vertex;  // tiles of one patch need the components of no other
-    LocalLearner learner(moments, attribute_frames, options.sequence.most_inputs, model.state);
+    LocalLearner learner(moments, real, attribute_frames, options.sequence.most_inputs, model.state);
     const PredictorBuilder builder = learner.learn();
     if (model.state.input_count == 0)
         throw UsageError(fmt::format("{}: nothing bends in the {} poses given; name other clips or frames",
                                      animation.name, frames.size()));
-    model.range = make_pose_range(model.state, learner.states());
+    model.range = learner.range();
     model.regression = builder.regression();
-    model.tiles = make_tiles(attribute_frames, animation.rest.vertices, learner.means(), builder.bases(),
-                             {.dropped_variance = options.dropped_variance});
+    model.tiles = make_tiles(attribute_frames, rest.vertices, learner.means(), builder.bases(),
+                             {.dropped_variance = options.dropped_variance, .scales = learner.scales()});
     report.seconds_fit = watch.wall();
     report.varying_vertices = model.vertex_count;
     report.possible_controls = report.kept_controls = 1;

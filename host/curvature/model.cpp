@@ -247,7 +247,6 @@ void read_local_state(const Reading& reading, CurvatureModel& model) {
     reading.rows(state.local_begin, state.controls.size(), state.local_vertex.size(), "the vertices of the patches");
     reading.below(state.local_vertex, model.vertex_count, "state.local_vertex");
     reading.require(state.local_unit > 0, "state.local_unit is not positive");
-    reading.require(state.hinges.empty(), "a state has hinges and local shape");
     for (std::size_t c = 0; c < state.controls.size(); ++c)
         state.local_mean.push_back(
             vector_of(part_of(mean, StateReader::k_local_numbers * state.local_begin[c], state.local_size(c))));
@@ -255,10 +254,11 @@ void read_local_state(const Reading& reading, CurvatureModel& model) {
 
 void read_state(const Reading& reading, CurvatureModel& model) {
     StateReader& state = model.state;
-    state.kind = model.kind;
-    const bool is_rig = model.kind != AnimationKind::sequence;
+    read_local_state(reading, model);
+    state.kind = state.is_local() ? AnimationKind::sequence : model.kind;
+    const bool is_rig = state.kind != AnimationKind::sequence;
     state.nodes = reading.words("state.nodes", {is_rig ? state.controls.size() : 0});
-    const bool turns = model.kind == AnimationKind::skeleton;
+    const bool turns = state.kind == AnimationKind::skeleton;
     const Floats reference = reading.floats("state.reference", {turns ? state.controls.size() : 0, 4});
     for (std::size_t i = 0; i + 3 < reference.size(); i += 4)
         state.reference.emplace_back(reference[i + 3], reference[i], reference[i + 1], reference[i + 2]);
@@ -269,12 +269,9 @@ void read_state(const Reading& reading, CurvatureModel& model) {
     for (std::size_t i = 0; i < hinges.size(); i += 4)
         state.hinges.push_back({hinges[i], hinges[i + 1], hinges[i + 2], hinges[i + 3]});
     state.mean_angles = vector_of(reading.floats("state.mean_angles", {state.hinges.size()}));
-    read_local_state(reading, model);
-    if (is_rig) {
-        reading.require(!state.is_local(), "a rig has local shape");
-        return;
-    }
+    if (is_rig) return;
     if (state.is_local()) {
+        reading.require(state.hinges.empty(), "a state has hinges and local shape");
         reading.words("state.hinge_begin", {0});
         return split_unmixing(reading, as_floats(reading.halves("state.local_map", {k_any})), state,
                               [&](std::size_t c) { return state.local_size(c); });
@@ -305,7 +302,7 @@ void read_segments(const Reading& reading, CurvatureModel& model) {
     const Words bones = reading.words("segments.bone", {k_any});
     const Floats weights = reading.floats("segments.weight", {bones.size()});
     for (std::size_t i = 0; i < bones.size(); ++i) segments.influences.push_back({bones[i], weights[i]});
-    if (model.kind != AnimationKind::sequence) {
+    if (model.state.kind != AnimationKind::sequence) {
         if (model.tiles.set == AttributeSet::principal || !segments.influence_begin.empty())
             reading.rows(segments.influence_begin, std::max<std::size_t>(segments.influence_begin.size(), 1) - 1,
                          bones.size(), "the segments");

@@ -150,13 +150,20 @@ SurfaceMoment MomentReader::read(FrameRef frame) {
     SurfaceMoment moment;
     const Clip& clip = animation_->clips[frame.clip];
     moment.vertices = frame_vertices(*animation_, clip, frame.frame);
-    if (animation_->kind == AnimationKind::sequence)
+    if (segments_->influence_begin.empty())
         segments_->rotations_of_sequence(moment.vertices, moment.rotations);
     else
         segments_->rotations_of_rig(bone_transforms(animation_->rig, clip.poses[frame.frame]), moment.rotations);
     moment.curvature = estimator_.estimate(moment.vertices, truth_);
     moment.normals = estimator_.normals();
     return moment;
+}
+
+TriangleMesh layout_shape(const Animation& animation, FrameRef frame) {
+    TriangleMesh shape = animation.rest;
+    if (animation.kind != AnimationKind::sequence)
+        shape.vertices = frame_vertices(animation, animation.clips[frame.clip], frame.frame);
+    return shape;
 }
 
 Segments segment_animation(const Animation& animation, std::span<const FrameRef> frames) {
@@ -206,6 +213,32 @@ AttributeFrames make_attribute_frames(AttributeSet set, const TriangleMesh& rest
     AttributeFrames frames;
     frames.neighbor = steadiest_neighbors(rest, moments);
     return frames;
+}
+
+double largest_but_outliers(const Eigen::VectorXd& values) {
+    std::vector<double> sorted(values.begin(), values.end());
+    const auto place = sorted.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sorted.size() - 1));
+    std::nth_element(sorted.begin(), place, sorted.end());
+    return *place;
+}
+
+Eigen::MatrixXf deviations(const std::vector<Eigen::MatrixXf>& attributes, const Eigen::MatrixXf& means) {
+    Eigen::MatrixXf result(means.rows(), means.cols());
+    for (Eigen::Index a = 0; a < means.rows(); ++a) {
+        const Eigen::MatrixXf& values = attributes[static_cast<std::size_t>(a)];
+        for (Eigen::Index v = 0; v < means.cols(); ++v)
+            result(a, v) = std::sqrt((values.col(v).array() - means(a, v)).square().mean());
+    }
+    return result;
+}
+
+Eigen::MatrixXf error_scales(Eigen::MatrixXf deviations) {
+    constexpr double k_least_share = 0.005;
+    for (Eigen::Index a = 0; a < deviations.rows(); ++a) {
+        const double most = largest_but_outliers(deviations.row(a).transpose().cast<double>());
+        deviations.row(a) = deviations.row(a).cwiseMax(static_cast<float>(std::max(k_least_share * most, 1e-20)));
+    }
+    return deviations;
 }
 
 TrainingSamples collect_samples(const Animation& animation, const Segments& segments, const StateReader& reader,

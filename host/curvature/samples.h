@@ -53,6 +53,9 @@ class MomentReader {
     CurvatureEstimator estimator_;
 };
 
+/// The shape that patches and tiles are laid out on: of a rig the pose at a frame, as its bind space may be no shape at
+/// all.
+TriangleMesh layout_shape(const Animation& animation, FrameRef frame);
 /// The segments of an animation: by weights, or by motion in the given frames of a sequence.
 Segments segment_animation(const Animation& animation, std::span<const FrameRef> frames);
 /// The reader of its state, made from the given frames.
@@ -75,6 +78,15 @@ struct TrainingSamples {
     std::vector<Eigen::MatrixXf> attributes;  ///< of each attribute: poses x vertices
     float feature_size = 0;                   ///< mean over the poses (see lines)
 };
+/// Standard deviation of each attribute at each vertex over the poses, about `means` (attributes x vertices): of the
+/// same size.
+Eigen::MatrixXf deviations(const std::vector<Eigen::MatrixXf>& attributes, const Eigen::MatrixXf& means);
+/// What errors are counted in, so that gentle surfaces, where suggestive contours run, count as much as creases:
+/// deviations, but at least half a percent of the largest of the attribute, for what hardly changes is rounding.
+Eigen::MatrixXf error_scales(Eigen::MatrixXf deviations);
+/// The largest value, but for the hundredth that are even larger: one crumpled face should not stand for a surface.
+double largest_but_outliers(const Eigen::VectorXd& values);
+
 TrainingSamples collect_samples(const Animation& animation, const Segments& segments, const StateReader& reader,
                                 std::span<const FrameRef> frames, AttributeSet set, const CurvatureOptions& truth);
 

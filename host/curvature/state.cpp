@@ -228,9 +228,11 @@ StateReader make_sequence_state(const TriangleMesh& rest, std::span<const std::v
     return reader;
 }
 
-PoseRange make_pose_range(const StateReader& reader, const Eigen::Ref<const Eigen::MatrixXf>& states) {
+PoseRange make_pose_range(const StateReader& reader, const Eigen::Ref<const Eigen::MatrixXf>& states,
+                          std::size_t real) {
     PoseRange range;
-    range.mean = states.colwise().mean();
+    const std::size_t averaged = std::min(real, static_cast<std::size_t>(states.rows()));
+    range.mean = states.topRows(static_cast<Eigen::Index>(averaged)).colwise().mean();
     const Eigen::MatrixXf centered = states.rowwise() - range.mean.transpose();
     for (const Control& control : reader.controls) {
         if (control.input_count == 0) {  // a patch that does not bend

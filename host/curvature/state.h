@@ -27,7 +27,7 @@ struct Control {
 /// 5.5.1), or what a linear map makes of the normals and positions of a patch's vertices in the frame of the patch (see
 /// learn_local), which takes no angle and follows the curvature more closely.
 struct StateReader {
-    AnimationKind kind = AnimationKind::sequence;
+    AnimationKind kind = AnimationKind::sequence;  ///< rigs are read as sequences are if by local shape
     std::vector<Control> controls;
     std::size_t input_count = 0;
 
@@ -46,7 +46,7 @@ struct StateReader {
     std::vector<Eigen::MatrixXf> unmixing;         ///< of each control: inputs x hinges, or x local shape
     std::vector<std::uint32_t> control_of_vertex;  ///< in training: the patch of each vertex
 
-    // mesh sequence by local shape; then there are no hinges, and control c is segment c
+    // any surface by local shape; then there are no hinges, and control c is segment c
     std::vector<std::uint32_t> local_begin;   ///< the vertices of control c: [local_begin[c], local_begin[c + 1])
     std::vector<std::uint32_t> local_vertex;  ///< some of a patch and of what surrounds it
     std::vector<Eigen::VectorXf> local_mean;  ///< of each control, in training: local shape
@@ -81,9 +81,9 @@ float bend(const StateReader::Hinge& hinge, std::span<const Vec3> vertices);
 StateReader make_rig_state(const Animation& animation, std::span<const Pose* const> poses);
 
 struct SequenceStateOptions {
-    std::size_t patch_vertices = 64;  ///< about; 0 makes the whole surface one patch
+    std::size_t patch_vertices = 32;  ///< about; 0 makes the whole surface one patch
     double share = 0.95;              ///< of the variance of a patch' angles
-    std::size_t most_inputs = 12;     ///< of a patch, if there is more than one
+    std::size_t most_inputs = 16;     ///< of a patch, if there is more than one
     std::size_t most_hinges = 3000;   ///< of a patch that are measured; evenly taken
     std::uint64_t seed = 1;
 };
@@ -113,6 +113,8 @@ struct PoseRange {
   private:
     float distance(const Control& control, std::size_t index, std::span<const float> x) const;
 };
-PoseRange make_pose_range(const StateReader& reader, const Eigen::Ref<const Eigen::MatrixXf>& states);
+/// Of states of training (poses x inputs). Distances are from the mean of the first `real` of them, or of all.
+PoseRange make_pose_range(const StateReader& reader, const Eigen::Ref<const Eigen::MatrixXf>& states,
+                          std::size_t real = static_cast<std::size_t>(-1));
 
 }  // namespace exemplar

@@ -21,15 +21,6 @@ constexpr int k_surrounding_rings = 3;
 /// (Sec. 5.4.1).
 constexpr double k_least_variation = 0.005;
 
-/// The most, but for the hundredth of the vertices that vary even more: one crumpled face should not make the rest of a
-/// surface rigid.
-double largest_but_outliers(const Eigen::VectorXd& values) {
-    std::vector<double> sorted(values.begin(), values.end());
-    const auto place = sorted.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sorted.size() - 1));
-    std::nth_element(sorted.begin(), place, sorted.end());
-    return *place;
-}
-
 /// (k1 + k2) / 2, which both sets of attributes have: poses x vertices.
 Eigen::MatrixXf mean_curvature(const TrainingSamples& samples) {
     const std::size_t second = samples.frames.set == AttributeSet::principal ? 1 : 2;
@@ -41,17 +32,6 @@ Eigen::MatrixXf mean_attributes(const TrainingSamples& samples) {
     for (std::size_t a = 0; a < samples.attributes.size(); ++a)
         means.row(static_cast<Eigen::Index>(a)) = samples.attributes[a].colwise().mean();
     return means;
-}
-
-/// Standard deviation of each attribute at each vertex over the poses: attributes x vertices.
-Eigen::MatrixXf deviations(const TrainingSamples& samples, const Eigen::MatrixXf& means) {
-    Eigen::MatrixXf result(means.rows(), means.cols());
-    for (Eigen::Index a = 0; a < means.rows(); ++a) {
-        const Eigen::MatrixXf& values = samples.attributes[static_cast<std::size_t>(a)];
-        for (Eigen::Index v = 0; v < means.cols(); ++v)
-            result(a, v) = std::sqrt((values.col(v).array() - means(a, v)).square().mean());
-    }
-    return result;
 }
 
 /// Whether the curvature at each vertex varies, all attributes of second order together.
@@ -66,16 +46,6 @@ std::vector<bool> varying(AttributeSet set, const Eigen::MatrixXf& deviations) {
     varies.reserve(static_cast<std::size_t>(deviation.size()));
     for (const double d : deviation) varies.push_back(d > least);
     return varies;
-}
-
-/// What errors are counted in: deviations, but at least a tenth of the largest of the attribute.
-Eigen::MatrixXf error_scales(Eigen::MatrixXf deviations) {
-    constexpr double k_least_share = 0.1;
-    for (Eigen::Index a = 0; a < deviations.rows(); ++a) {
-        const double most = largest_but_outliers(deviations.row(a).transpose().cast<double>());
-        deviations.row(a) = deviations.row(a).cwiseMax(static_cast<float>(std::max(k_least_share * most, 1e-20)));
-    }
-    return deviations;
 }
 
 /// A control that nothing is predicted from, such as the heading of a figure, may do as it likes: no pose is far for
@@ -119,12 +89,6 @@ void learn(const LearningTask& task, PredictorBuilder& builder) {
     }
 }
 
-/// The shape that tiles are laid out on: of a rig the first pose, as its bind space may be no shape at all.
-std::vector<Vec3> layout_shape(const Animation& animation, FrameRef frame) {
-    if (animation.kind == AnimationKind::sequence) return animation.rest.vertices;
-    return frame_vertices(animation, animation.clips[frame.clip], frame.frame);
-}
-
 void require_learnable(const Animation& animation, std::span<const FrameRef> frames) {
     if (frames.size() < k_fewest_poses)
         throw UsageError(
@@ -142,7 +106,7 @@ CurvatureModel blank_model(const Animation& animation, FrameRef first, const Cur
     model.truth = options.truth;
     if (model.truth.smoothing_unit <= 0)
         model.truth.smoothing_unit = CurvatureEstimator(animation.rest.faces, model.vertex_count)
-                                         .median_edge_length(layout_shape(animation, first));
+                                         .median_edge_length(layout_shape(animation, first).vertices);
     return model;
 }
 
@@ -172,7 +136,7 @@ void learn_by_controls(const Animation& animation, std::span<const FrameRef> fra
 
     watch = Stopwatch();
     LearningTask task{animation, model.state, samples, mean_attributes(samples), {}, {}, options};
-    const Eigen::MatrixXf deviation = deviations(samples, task.means);
+    const Eigen::MatrixXf deviation = deviations(samples.attributes, task.means);
     task.scales = error_scales(deviation);
     const std::vector<bool> varies = varying(options.attributes, deviation);
     const std::vector<InfluenceGroup> possible = possible_influences(animation, model.state, k_surrounding_rings);
@@ -184,7 +148,7 @@ void learn_by_controls(const Animation& animation, std::span<const FrameRef> fra
     learn(task, builder);
     model.regression = builder.regression();
     leave_out_unused(model);
-    model.tiles = make_tiles(samples.frames, layout_shape(animation, frames.front()), task.means, builder.bases(),
+    model.tiles = make_tiles(samples.frames, layout_shape(animation, frames.front()).vertices, task.means, builder.bases(),
                              {.dropped_variance = options.dropped_variance, .scales = task.scales});
     report.seconds_fit = watch.wall();
     report.varying_vertices = static_cast<std::size_t>(std::count(varies.begin(), varies.end(), true));
@@ -192,11 +156,12 @@ void learn_by_controls(const Animation& animation, std::span<const FrameRef> fra
     report.kept_controls = mean_controls(task.groups, varies);
 }
 
-CurvatureModel train_on(const Animation& animation, std::span<const FrameRef> frames, const CurvatureTraining& options,
-                        CurvatureTrainingReport& report) {
+/// `real` of the frames, the first, are of the animation; the others are augmented.
+CurvatureModel train_on(const Animation& animation, std::span<const FrameRef> frames, std::size_t real,
+                        const CurvatureTraining& options, CurvatureTrainingReport& report) {
     CurvatureModel model = blank_model(animation, frames.front(), options);
     if (options.learner == Learner::local)
-        learn_local(animation, frames, options, model, report);
+        learn_local(animation, frames, real, options, model, report);
     else
         learn_by_controls(animation, frames, options, model, report);
     return model;
@@ -206,10 +171,11 @@ CurvatureModel train_on(const Animation& animation, std::span<const FrameRef> fr
 CurvatureModel train_augmented(Animation animation, std::vector<FrameRef> frames, const CurvatureTraining& options,
                                CurvatureTrainingReport& report) {
     const auto clip = static_cast<std::uint32_t>(animation.clips.size());
+    const std::size_t real = frames.size();
     animation.clips.push_back(augmented_poses(animation, frames, options.augmented_poses, options.seed));
     for (std::uint32_t i = 0; i < options.augmented_poses; ++i) frames.push_back({clip, i});
     report.poses += options.augmented_poses;
-    return train_on(animation, frames, options, report);
+    return train_on(animation, frames, real, options, report);
 }
 
 }  // namespace
@@ -230,20 +196,13 @@ std::string_view name_of(Learner learner) {
     return "global";
 }
 
-Learner default_learner(AnimationKind kind) {
-    return kind == AnimationKind::sequence ? Learner::local : Learner::additive;
-}
-
 CurvatureModel train_curvature(const Animation& animation, std::span<const FrameRef> frames,
                                const CurvatureTraining& options, CurvatureTrainingReport& report) {
     require_learnable(animation, frames);
-    if (options.learner == Learner::local && animation.kind != AnimationKind::sequence)
-        throw UsageError(fmt::format("{}: the local learner is for mesh sequences; take another for a {}",
-                                     animation.name, name_of(animation.kind)));
     report.poses = frames.size();
     const bool augments = animation.kind != AnimationKind::sequence && options.augmented_poses > 0;
     CurvatureModel model = augments ? train_augmented(animation, {frames.begin(), frames.end()}, options, report)
-                                    : train_on(animation, frames, options, report);
+                                    : train_on(animation, frames, frames.size(), options, report);
     report.vertices = model.vertex_count;
     report.segments = model.segments.count();
     report.controls = model.state.controls.size();

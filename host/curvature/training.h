@@ -16,21 +16,19 @@ namespace exemplar {
 /// reduced to a few components. averaged: the thesis' (Sec. 5.4): the attributes of the vertices that a control matters
 /// to are reduced first, each control predicts them alone from its joint's and its parent's angles, and predictions are
 /// averaged by their residuals (Eq. 5.11). network: the thesis' for faces (Sec. 5.6): one hidden layer from all inputs
-/// to the components. global: the thesis' for cloth (Sec. 5.5): a polynomial of all inputs. local: of mesh sequences; a
-/// linear map of each patch from its normals and positions (see learn_local).
+/// to the components. global: the thesis' for cloth (Sec. 5.5): a polynomial of all inputs. local: a linear map of each
+/// patch of the surface from its normals and positions (see learn_local), whatever moves it.
 enum class Learner { additive, averaged, network, global, local };
-/// The learner that suits a kind of animation best.
-Learner default_learner(AnimationKind kind);
 std::string_view name_of(Learner learner);
 
 struct CurvatureTraining {
     AttributeSet attributes = AttributeSet::tensor;
-    Learner learner = Learner::additive;
+    Learner learner = Learner::local;   
     bool independent = true;            ///< ICA bases, else PCA
     double variance = 0.99;             ///< kept by the bases of each control
     SequenceStateOptions sequence{};    ///< the state of mesh sequences; `global` takes the whole surface as one patch
     double dropped_variance = 0.002;    ///< left out by sparsity (see TilingOptions)
-    std::size_t augmented_poses = 200;  ///< of rigs, beside the frames (see augmented_poses)
+    std::size_t augmented_poses = 300;  ///< of rigs, beside the frames (see augmented_poses)
     CurvatureOptions truth{.derivatives = true, .smoothing = 1};
     std::uint64_t seed = 1;
 };

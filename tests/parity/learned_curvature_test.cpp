@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "gpu/curvature/learned_curvature.h"
+#include "gpu/curvature/local_state.h"
 #include "gpu/curvature/normals.h"
 #include "gpu/curvature/poser.h"
 #include "gpu/runtime/errors.h"
@@ -218,26 +221,53 @@ TEST(LearnedCurvatureParity, TrainedOnASequence) {
     }
 }
 
-TEST(LearnedCurvatureParity, ReadsLocalShapeOnTheDevice) {
-    Animation sheet = waving_sheet();
-    for (const AttributeSet set : {AttributeSet::tensor, AttributeSet::principal}) {
-        const CurvatureModel model = trained(sheet, {.attributes = set, .learner = Learner::local});
-        GpuLearnedCurvature curvature(shared_device(), model);
-        CurvatureEvaluator reference(model);
-        Stream stream(shared_device());
-        for (std::vector<Vec3> vertices : {sheet.clips[0].frames[3], sheet.clips[0].frames[20]}) {
-            for (Vec3& p : vertices) p = Eigen::AngleAxisf(1.1f, Vec3(1, 2, -1).normalized()) * p + Vec3(2, 0, 1);
-            TriangleMesh frame = sheet.rest;
-            frame.vertices = vertices;
-            const std::vector<Vec3> normals = vertex_normals(frame);
-            const DeviceSurface on_device({vertices, normals});
-            curvature.record(stream, on_device.vertices, on_device.normals);
-            stream.finish();
-            expect_near(testing::download_curvature(curvature), reference.evaluate(vertices, normals));
-        }
+/// The same sheet elsewhere, as the device has it too.
+struct MovedSheet {
+    MovedSheet(const Animation& sheet, std::size_t frame) : mesh(sheet.rest) {
+        mesh.vertices = sheet.clips[0].frames[frame];
+        for (Vec3& p : mesh.vertices) p = Eigen::AngleAxisf(1.1f, Vec3(1, 2, -1).normalized()) * p + Vec3(2, 0, 1);
+        normals = vertex_normals(mesh);
+        on_device.emplace(testing::Surface{mesh.vertices, normals});
     }
-    const CurvatureModel hinges = trained(sheet, {.learner = Learner::additive});
-    GpuLearnedCurvature read_on_host(shared_device(), hinges);
+    TriangleMesh mesh;
+    std::vector<Vec3> normals;
+    std::optional<DeviceSurface> on_device;
+};
+
+TEST(LearnedCurvatureParity, ReadsLocalShapeOnTheDevice) {
+    const Animation sheet = waving_sheet();
+    const CurvatureModel model = trained(sheet, {.learner = Learner::local});
+    const std::size_t inputs = model.state.input_count;
+    GpuLocalState state(shared_device(), model, inputs + 3);
+    GpuLearnedCurvature curvature(shared_device(), model);
+    CurvatureEvaluator reference(model);
+    Stream stream(shared_device());
+    for (const std::size_t frame : {3u, 20u}) {
+        const MovedSheet moved(sheet, frame);
+        state.record(stream, moved.on_device->vertices, moved.on_device->normals);
+        curvature.record(stream, moved.on_device->vertices, moved.on_device->normals);
+        stream.finish();
+        std::vector<Eigen::Matrix3f> rotations;
+        model.segments.rotations_of_sequence(moved.mesh.vertices, rotations);
+        std::vector<float> expected(inputs), actual(inputs + 3);
+        state.inputs().download(std::span(actual));
+        model.state.read_surface(moved.mesh.vertices, moved.normals, rotations, expected);
+        model.range.prepare(model.state, expected);
+        // Positions are rounded to 2e-7 of their places, which are forty edges away, and go in as edges.
+        for (std::size_t i = 0; i < inputs; ++i) EXPECT_NEAR(actual[i], expected[i], 1e-4f) << "input " << i;
+        EXPECT_EQ(std::vector<float>(actual.begin() + std::ptrdiff_t(inputs), actual.end()),
+                  (std::vector<float>{1, 0, 0}));
+        const std::vector<vec4> rows = download(state.rotations());
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            EXPECT_LT((testing::xyz(rows[i]) - rotations[i / 3].row(Eigen::Index(i % 3)).transpose()).norm(), 1e-5f);
+        expect_near(testing::download_curvature(curvature), reference.evaluate(moved.mesh.vertices, moved.normals),
+                    1e-4);
+    }
+}
+
+TEST(LearnedCurvatureParity, LocalShapeIsOfSequencesThatAreWhole) {
+    const Animation sheet = waving_sheet();
+    GpuLearnedCurvature read_on_host(shared_device(), trained(sheet, {.learner = Learner::additive}));
     Stream stream(shared_device());
     const Buffer vertices = testing::upload_vertices(shared_device(), sheet.rest.vertices);
     EXPECT_THROW(read_on_host.record(stream, vertices, vertices), UsageError);

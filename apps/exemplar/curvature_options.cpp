@@ -16,16 +16,15 @@ const std::map<std::string, RobustEstimator>& robust_names() {
     return names;
 }
 
-Learner learner_of(const std::string& name, AnimationKind kind) {
-    if (name == "auto") return default_learner(kind);
+Learner learner_of(const std::string& name) {
     for (const Learner learner : {Learner::additive, Learner::averaged, Learner::network, Learner::local})
         if (name == name_of(learner)) return learner;
     return Learner::global;
 }
 
 /// What training hardly shows another motion of a rig hardly shows either, but another fold of a cloth may.
-double suitable_sparsity(Learner learner) {
-    return learner == Learner::local ? 0 : CurvatureTraining{}.dropped_variance;
+double suitable_sparsity(AnimationKind kind) {
+    return kind == AnimationKind::sequence ? 0 : CurvatureTraining{}.dropped_variance;
 }
 
 }  // namespace
@@ -43,11 +42,10 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
         ->capture_default_str()
         ->check(CLI::IsMember({"none", "cauchy", "geman-mcclure"}));
     command
-        .add_option(
-            "--learner", arguments.learner,
-            "auto, additive, averaged, network, global (these three as in the thesis) or local (mesh sequences)")
+        .add_option("--learner", arguments.learner,
+                    "local, additive (rigs), or averaged, network, global (as in the thesis)")
         ->capture_default_str()
-        ->check(CLI::IsMember({"auto", "additive", "averaged", "network", "global", "local"}));
+        ->check(CLI::IsMember({"additive", "averaged", "network", "global", "local"}));
     command
         .add_option("--attributes", arguments.attributes,
                     "tensor: seven numbers that stay smooth; principal: the thesis' eight")
@@ -61,8 +59,8 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
         ->check(CLI::Range(0.01, 1.0));
     command
         .add_option("--sparsity", arguments.dropped_variance,
-                    "share of what the bases explain that is left out to make the model smaller; default: 0.002, or 0 "
-                    "for the local learner")
+                    "share of what the bases explain that is left out to make the model smaller; default: 0.001, or 0 "
+                    "for mesh sequences")
         ->check(CLI::Range(0.0, 0.5));
     command
         .add_option(
@@ -71,12 +69,11 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
         ->capture_default_str()
         ->check(whole_number(0, 100000));
     command
-        .add_option(
-            "--patch", arguments.patch_vertices,
-            "mesh sequences: vertices of the patches whose folds are told apart, about; 0 takes the whole surface")
+        .add_option("--patch", arguments.patch_vertices,
+                    "vertices of the patches whose shapes are told apart, about; 0 takes the whole surface")
         ->capture_default_str()
         ->check(whole_number(0));
-    command.add_option("--patch-inputs", arguments.patch_inputs, "mesh sequences: most numbers that describe a patch")
+    command.add_option("--patch-inputs", arguments.patch_inputs, "most numbers that describe a patch")
         ->capture_default_str()
         ->check(whole_number(1, 1000));
     command
@@ -92,10 +89,10 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
 CurvatureTraining training_of(const CurvatureArguments& arguments, AnimationKind kind) {
     CurvatureTraining training;
     training.attributes = arguments.attributes == "principal" ? AttributeSet::principal : AttributeSet::tensor;
-    training.learner = learner_of(arguments.learner, kind);
+    training.learner = learner_of(arguments.learner);
     training.independent = arguments.bases == "ica";
     training.variance = arguments.variance;
-    training.dropped_variance = arguments.dropped_variance.value_or(suitable_sparsity(training.learner));
+    training.dropped_variance = arguments.dropped_variance.value_or(suitable_sparsity(kind));
     training.truth.smoothing = arguments.smoothing;
     training.truth.robust = robust_names().at(arguments.robust);
     training.seed = arguments.seed;

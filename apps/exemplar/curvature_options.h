@@ -15,9 +15,9 @@ namespace exemplar {
 struct CurvatureArguments {
     double frames_per_second = 30;
     double smoothing = 1;
-    std::string robust = "none", learner = "auto", attributes = "tensor", bases = "ica";
+    std::string robust = "none", learner = "local", attributes = "tensor", bases = "ica";
     double variance = CurvatureTraining{}.variance;
-    std::optional<double> dropped_variance;  ///< none: what suits the learner
+    std::optional<double> dropped_variance;  ///< none: what suits the animation
     std::size_t augmented_poses = CurvatureTraining{}.augmented_poses;
     std::size_t patch_vertices = SequenceStateOptions{}.patch_vertices,
                 patch_inputs = SequenceStateOptions{}.most_inputs;
@@ -26,7 +26,7 @@ struct CurvatureArguments {
 };
 
 void add_curvature_options(CLI::App& command, CurvatureArguments& arguments);
-/// `kind` decides the learner where none is named.
+/// `kind` decides what suits where nothing is named.
 CurvatureTraining training_of(const CurvatureArguments& arguments, AnimationKind kind);
 
 /// The arguments that decide what is learned, by the names of their options: what a model file keeps of its training.

@@ -11,10 +11,6 @@ namespace {
 
 using Eigen::Quaternionf;
 
-/// How much more or less than in the frames a joint turns.
-constexpr double k_least_stretch = 0.6, k_most_stretch = 1.6;
-/// Deviation of the turn about a random axis that is added, in radians: seventeen degrees.
-constexpr double k_stray = 0.3;
 /// How often a blend shape takes any weight in [0, 1] in place of one that it has in a frame.
 constexpr double k_free_weight = 0.08;
 
@@ -36,7 +32,7 @@ Quaternionf stretched(const Quaternionf& from, const Quaternionf& to, float fact
 }  // namespace
 
 Clip augmented_poses(const Animation& animation, std::span<const FrameRef> frames, std::size_t count,
-                     std::uint64_t seed) {
+                     std::uint64_t seed, const PoseSpread& spread) {
     Random random(seed);
     const auto any_pose = [&]() -> const Pose& {
         const FrameRef frame = frames[random.index(frames.size())];
@@ -48,8 +44,8 @@ Clip augmented_poses(const Animation& animation, std::span<const FrameRef> frame
     for (std::size_t i = 0; i < count; ++i) {
         Pose pose = any_pose();
         for (std::size_t node = 0; node < pose.nodes.size(); ++node) {
-            const auto factor = static_cast<float>(random.uniform(k_least_stretch, k_most_stretch));
-            const Eigen::AngleAxisf stray(static_cast<float>(k_stray * random.normal()), random_direction(random));
+            const auto factor = static_cast<float>(random.uniform(spread.least_stretch, spread.most_stretch));
+            const Eigen::AngleAxisf stray(static_cast<float>(spread.stray * random.normal()), random_direction(random));
             pose.nodes[node].rotation =
                 (stretched(middle.nodes[node].rotation, any_pose().nodes[node].rotation, factor) * Quaternionf(stray))
                     .normalized();

@@ -29,7 +29,9 @@ using Eigen::Index;
 using Eigen::MatrixXf;
 
 /// How far around a patch its shape is read: curvature at its border is that of what lies around.
-constexpr int k_rings = 2;
+constexpr int k_rings = 1;
+/// Root mean square of the local shape about its mean, below which a patch does not bend: it is rounding.
+constexpr double k_least_motion = 1e-5;
 /// Of the regression, relative to the variance of the shape.
 constexpr double k_ridge = 1e-3;
 /// A component that predicts less than this share of the mean variance of a patch is not worth its place.
@@ -130,9 +132,7 @@ class LocalLearner {
 
     const MatrixXf& means() const { return means_; }
     const MatrixXf& scales() const { return scales_; }
-    PoseRange range() const {
-        return make_pose_range(reader_, states(), static_cast<std::size_t>(real_));
-    }
+    PoseRange range() const { return make_pose_range(reader_, states(), static_cast<std::size_t>(real_)); }
 
   private:
     /// x of all moments: poses x inputs.
@@ -161,6 +161,7 @@ class LocalLearner {
         MatrixXf x = shapes(patch);
         reader_.local_mean[patch] = x.topRows(real_).colwise().mean().transpose();
         x.rowwise() -= reader_.local_mean[patch].transpose();
+        if (x.squaredNorm() < k_least_motion * k_least_motion * static_cast<double>(x.size())) x.setZero();
         const std::vector<std::uint32_t>& vertices = patches_[patch];
         MatrixXf y(x.rows(), Index(vertices.size() * attributes_.size()));
         for (std::size_t a = 0; a < attributes_.size(); ++a)
@@ -222,8 +223,8 @@ StateReader local_reader(const TriangleMesh& rest, const Segments& segments, flo
 
 }  // namespace
 
-void learn_local(const Animation& animation, std::span<const FrameRef> frames, std::size_t real, const CurvatureTraining& options,
-                 CurvatureModel& model, CurvatureTrainingReport& report) {
+void learn_local(const Animation& animation, std::span<const FrameRef> frames, std::size_t real,
+                 const CurvatureTraining& options, CurvatureModel& model, CurvatureTrainingReport& report) {
     Stopwatch watch;
     const TriangleMesh rest = layout_shape(animation, frames.front());
     model.segments = segment_patches(rest, surface_patches(rest, options.sequence.patch_vertices));
@@ -235,8 +236,7 @@ void learn_local(const Animation& animation, std::span<const FrameRef> frames, s
     report.seconds_truth = watch.wall();
 
     watch = Stopwatch();
-    AttributeFrames attribute_frames =
-        make_attribute_frames(options.attributes, rest, model.segments, moments);
+    AttributeFrames attribute_frames = make_attribute_frames(options.attributes, rest, model.segments, moments);
     attribute_frames.segment = model.segments.segment_of_vertex;  // tiles of one patch need the components of no other
     LocalLearner learner(moments, real, attribute_frames, options.sequence.most_inputs, model.state);
     const PredictorBuilder builder = learner.learn();

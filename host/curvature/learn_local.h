@@ -13,7 +13,7 @@ namespace exemplar {
 /// (the patches), state, range, regression, tiles and feature_size of `model`, whose truth is set. `real` of the
 /// frames, the first, are of the animation: predictions are exact where curvature and shape are at the mean of these,
 /// whatever other poses follow. Throws UsageError if nothing moves.
-void learn_local(const Animation& animation, std::span<const FrameRef> frames, std::size_t real, const CurvatureTraining& options,
-                 CurvatureModel& model, CurvatureTrainingReport& report);
+void learn_local(const Animation& animation, std::span<const FrameRef> frames, std::size_t real,
+                 const CurvatureTraining& options, CurvatureModel& model, CurvatureTrainingReport& report);
 
 }  // namespace exemplar

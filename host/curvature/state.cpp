@@ -169,9 +169,11 @@ void StateReader::read_local(std::size_t control, std::span<const Vec3> vertices
 void StateReader::read_surface(std::span<const Vec3> vertices, std::span<const Vec3> normals,
                                std::span<const Eigen::Matrix3f> rotations, std::span<float> x) const {
     if (!is_local()) return read_hinges(vertices, x);
-    Eigen::VectorXf shape;
+    std::size_t largest = 0;
+    for (std::size_t c = 0; c < controls.size(); ++c) largest = std::max(largest, local_size(c));
+    Eigen::VectorXf room(static_cast<Eigen::Index>(largest));
     for (std::size_t c = 0; c < controls.size(); ++c) {
-        shape.resize(static_cast<Eigen::Index>(local_size(c)));
+        auto shape = room.head(static_cast<Eigen::Index>(local_size(c)));
         read_local(c, vertices, normals, rotations[c], {shape.data(), local_size(c)});
         shape -= local_mean[c];
         Eigen::Map<Eigen::VectorXf>(x.data() + controls[c].first_input, controls[c].input_count).noalias() =
@@ -256,7 +258,9 @@ PoseRange make_pose_range(const StateReader& reader, const Eigen::Ref<const Eige
 
 float PoseRange::distance(const Control& control, std::size_t index, std::span<const float> x) const {
     const Eigen::Map<const Eigen::VectorXf> here(x.data() + control.first_input, control.input_count);
-    return (whitening[index] * (here - mean.segment(control.first_input, control.input_count))).norm() / largest[index];
+    const auto middle = mean.segment(control.first_input, control.input_count);
+    // Coefficients one by one: many controls are small, and none should ask for memory.
+    return whitening[index].lazyProduct(here - middle).norm() / largest[index];
 }
 
 PoseRange::Farthest PoseRange::farthest(const StateReader& reader, std::span<const float> x) const {

@@ -148,8 +148,8 @@ void learn_by_controls(const Animation& animation, std::span<const FrameRef> fra
     learn(task, builder);
     model.regression = builder.regression();
     leave_out_unused(model);
-    model.tiles = make_tiles(samples.frames, layout_shape(animation, frames.front()).vertices, task.means, builder.bases(),
-                             {.dropped_variance = options.dropped_variance, .scales = task.scales});
+    model.tiles = make_tiles(samples.frames, layout_shape(animation, frames.front()).vertices, task.means,
+                             builder.bases(), {.dropped_variance = options.dropped_variance, .scales = task.scales});
     report.seconds_fit = watch.wall();
     report.varying_vertices = static_cast<std::size_t>(std::count(varies.begin(), varies.end(), true));
     report.possible_controls = mean_controls(possible, varies);
@@ -172,7 +172,8 @@ CurvatureModel train_augmented(Animation animation, std::vector<FrameRef> frames
                                CurvatureTrainingReport& report) {
     const auto clip = static_cast<std::uint32_t>(animation.clips.size());
     const std::size_t real = frames.size();
-    animation.clips.push_back(augmented_poses(animation, frames, options.augmented_poses, options.seed));
+    animation.clips.push_back(augmented_poses(animation, frames, options.augmented_poses, options.seed,
+                                              options.learner == Learner::local ? k_wide_spread : PoseSpread{}));
     for (std::uint32_t i = 0; i < options.augmented_poses; ++i) frames.push_back({clip, i});
     report.poses += options.augmented_poses;
     return train_on(animation, frames, real, options, report);

@@ -23,11 +23,11 @@ std::string_view name_of(Learner learner);
 
 struct CurvatureTraining {
     AttributeSet attributes = AttributeSet::tensor;
-    Learner learner = Learner::local;   
+    Learner learner = Learner::local;
     bool independent = true;            ///< ICA bases, else PCA
     double variance = 0.99;             ///< kept by the bases of each control
     SequenceStateOptions sequence{};    ///< the state of mesh sequences; `global` takes the whole surface as one patch
-    double dropped_variance = 0.002;    ///< left out by sparsity (see TilingOptions)
+    double dropped_variance = 0.001;    ///< left out by sparsity (see TilingOptions)
     std::size_t augmented_poses = 300;  ///< of rigs, beside the frames (see augmented_poses)
     CurvatureOptions truth{.derivatives = true, .smoothing = 1};
     std::uint64_t seed = 1;

@@ -123,7 +123,7 @@ TEST(CurvatureModel, FilesHoldTheWholeModel) {
 }
 
 TEST(CurvatureModel, OfAnotherSurfaceIsRefused) {
-    const CurvatureModel model = trained(tube(), {});
+    const CurvatureModel model = trained(tube(), {.learner = Learner::additive});
     EXPECT_NO_THROW(require_fit(model, tube()));
     const Animation finer = shapes::tube_rig(40, 16);
     EXPECT_THROW(require_fit(model, finer), ModelError);
@@ -138,7 +138,7 @@ TEST(CurvatureModel, OfAnotherSurfaceIsRefused) {
 TEST(CurvatureModel, DamagedFilesAreRefused) {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder.path() / "m.safetensors", damaged = folder.path() / "d.safetensors";
-    save_curvature_model(path, trained(tube(), {}));
+    save_curvature_model(path, trained(tube(), {.learner = Learner::additive}));
     const auto refused = [&](auto&& change) {
         TensorFile file = read_safetensors(path);
         change(file);

@@ -170,7 +170,7 @@ TEST(LearnedCurvatureParity, TrainedOnARig) {
     GpuNormals normals(surface);
     Stream stream(shared_device());
     for (const AttributeSet set : k_sets)
-        for (const Learner learner : {Learner::additive, Learner::averaged}) {
+        for (const Learner learner : {Learner::local, Learner::additive, Learner::averaged}) {
             const CurvatureModel model = trained(tube, {.attributes = set, .learner = learner, .augmented_poses = 20});
             GpuLearnedCurvature curvature(shared_device(), model);
             CurvatureEvaluator reference(model);
@@ -206,7 +206,7 @@ Animation waving_sheet() {
 
 TEST(LearnedCurvatureParity, TrainedOnASequence) {
     const Animation sheet = waving_sheet();
-    const CurvatureModel model = trained(sheet, {});
+    const CurvatureModel model = trained(sheet, {.learner = Learner::additive});
     GpuLearnedCurvature curvature(shared_device(), model);
     CurvatureEvaluator reference(model);
     Stream stream(shared_device());

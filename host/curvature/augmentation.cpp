@@ -12,7 +12,7 @@ namespace {
 using Eigen::Quaternionf;
 
 /// How often a blend shape takes any weight in [0, 1] in place of one that it has in a frame.
-constexpr double k_free_weight = 0.2;
+constexpr double k_free_weight = 0.08;
 
 Vec3 random_direction(Random& random) {
     Vec3 v;

@@ -35,7 +35,7 @@ constexpr double k_least_motion = 1e-5;
 /// Of the regression, relative to the variance of the shape.
 constexpr double k_ridge = 1e-3;
 /// A component that predicts less than this share of the mean variance of a patch is not worth its place.
-constexpr double k_least_explained = 1e-3;
+constexpr double k_least_explained = 2e-4;
 
 using Neighbors = std::vector<std::vector<std::uint32_t>>;
 

@@ -233,7 +233,7 @@ Eigen::MatrixXf deviations(const std::vector<Eigen::MatrixXf>& attributes, const
 }
 
 Eigen::MatrixXf error_scales(Eigen::MatrixXf deviations) {
-    constexpr double k_least_share = 0.005;
+    constexpr double k_least_share = 0.0005;
     for (Eigen::Index a = 0; a < deviations.rows(); ++a) {
         const double most = largest_but_outliers(deviations.row(a).transpose().cast<double>());
         deviations.row(a) = deviations.row(a).cwiseMax(static_cast<float>(std::max(k_least_share * most, 1e-20)));

@@ -82,7 +82,7 @@ struct TrainingSamples {
 /// same size.
 Eigen::MatrixXf deviations(const std::vector<Eigen::MatrixXf>& attributes, const Eigen::MatrixXf& means);
 /// What errors are counted in, so that gentle surfaces, where suggestive contours run, count as much as creases:
-/// deviations, but at least half a percent of the largest of the attribute, for what hardly changes is rounding.
+/// deviations, but at least a two-thousandth of the largest of the attribute: what changes less is rounding.
 Eigen::MatrixXf error_scales(Eigen::MatrixXf deviations);
 /// The largest value, but for the hundredth that are even larger: one crumpled face should not stand for a surface.
 double largest_but_outliers(const Eigen::VectorXd& values);

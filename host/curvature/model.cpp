@@ -4,11 +4,13 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "host/core/errors.h"
 #include "host/data/safetensors.h"
+#include "host/mesh/io_text.h"
 
 namespace exemplar {
 
@@ -201,12 +203,20 @@ std::uint64_t whole_number(const Reading& reading, const Json& value, std::uint6
     return value.get<std::uint64_t>();
 }
 
+std::uint64_t topology_of(const Reading& reading, const std::string& digits) {
+    std::uint64_t value = 0;
+    const char* const last = digits.data() + digits.size();
+    const auto [end, error] = std::from_chars(digits.data(), last, value, 16);
+    reading.require(digits.size() == 16 && end == last && error == std::errc(), "its topology is not 16 digits");
+    return value;
+}
+
 void read_description(const Reading& reading, CurvatureModel& model) {
     const Json json = Json::parse(reading.file.meta("model"));
     model.kind = static_cast<AnimationKind>(whole_number(reading, json.at("animation"), 2));
     model.tiles.set = static_cast<AttributeSet>(whole_number(reading, json.at("attributes"), 1));
     model.vertex_count = whole_number(reading, json.at("vertices"), 0xFFFFFFFEu);
-    model.topology = std::stoull(json.at("topology").get<std::string>(), nullptr, 16);
+    model.topology = topology_of(reading, json.at("topology").get<std::string>());
     model.truth.smoothing = json.at("smoothing");
     model.truth.smoothing_unit = json.at("smoothing_unit");
     model.truth.robust = static_cast<RobustEstimator>(whole_number(reading, json.at("robust"), 2));
@@ -311,6 +321,7 @@ void read_segments(const Reading& reading, CurvatureModel& model) {
                          bones.size(), "the segments");
         return;
     }
+    reading.require(segments.influence_begin.empty(), "segments of a mesh sequence have bones");
     const Words patches = reading.words("segments.patches", {k_any, 3, Segments::Triangle::k_patch});
     reading.below(patches, model.vertex_count, "segments.patches");
     const std::size_t count = patches.size() / (3 * Segments::Triangle::k_patch);
@@ -354,7 +365,9 @@ void read_tiles(const Reading& reading, CurvatureModel& model) {
     tiles.vertex_count = model.vertex_count;
     tiles.segment = reading.words("tiles.segment", {k_any});
     const std::size_t count = tiles.segment.size();
-    reading.below(tiles.segment, std::max<std::size_t>(model.segments.count(), 1), "tiles.segment");
+    const bool tensor = tiles.set == AttributeSet::tensor;
+    const std::size_t segments = model.segments.count();
+    reading.below(tiles.segment, tensor ? std::max<std::size_t>(segments, 1) : segments, "tiles.segment");
     tiles.vertex = reading.words("tiles.vertex", {count, lanes});
     reading.below(tiles.vertex, model.vertex_count, "tiles.vertex");
     tiles.scale = reading.floats("tiles.scale", {attributes});
@@ -365,10 +378,10 @@ void read_tiles(const Reading& reading, CurvatureModel& model) {
     reading.rows(tiles.entry_begin, count * attributes, tiles.component.size(), "the entries of the tiles");
     tiles.basis = reading.halves("tiles.basis", {tiles.component.size(), lanes});
     tiles.mean = reading.halves("tiles.mean", {count, attributes, lanes});
-    const bool tensor = tiles.set == AttributeSet::tensor;
     tiles.neighbor = reading.words("tiles.neighbor", {tensor ? count : 0, lanes});
     reading.below(tiles.neighbor, model.vertex_count, "tiles.neighbor");
     tiles.reference = reading.halves("tiles.reference", {tensor ? 0 : count, 3, lanes});
+    reading.require(model.vertex_count <= tiles.vertex.size(), "a vertex is in no tile");
     std::vector<bool> seen(model.vertex_count, false);
     for (const std::uint32_t v : tiles.vertex) seen[v] = true;
     reading.require(std::find(seen.begin(), seen.end(), false) == seen.end(), "a vertex is in no tile");
@@ -412,8 +425,6 @@ CurvatureModel load_curvature_model(const std::filesystem::path& path) {
         read_description(reading, model);
     } catch (const Json::exception&) {
         reading.damaged("its description cannot be read");
-    } catch (const std::logic_error&) {
-        reading.damaged("its description holds no number where one should be");
     }
     read_state(reading, model);
     read_range(reading, model);
@@ -440,7 +451,8 @@ void require_fit(const CurvatureModel& model, const Animation& animation) {
         const std::size_t count = skeleton ? animation.rig.nodes.size() : animation.rig.targets.size();
         const std::string& name = model.state.controls[c].name;
         if (index >= count || name != (skeleton ? animation.rig.nodes[index].name : animation.rig.targets[index].name))
-            refuse(fmt::format("it has no {} '{}' in that place", skeleton ? "joint" : "blend shape", name));
+            refuse(
+                fmt::format("it has no {} {} in that place", skeleton ? "joint" : "blend shape", mesh_io::quote(name)));
     }
     for (const Influence& influence : model.segments.influences)
         if (influence.bone >= animation.rig.bones.size()) refuse("it has fewer bones");

@@ -15,6 +15,7 @@
 #include "host/animation/write_animation.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/curvature/model.h"
 #include "host/data/corpus.h"
 #include "host/data/safetensors.h"
 #include "host/labeling/model.h"
@@ -273,6 +274,19 @@ bool reads_model(std::string_view content) {
     return true;
 }
 
+bool reads_curvature(std::string_view content) {
+    const fs::path path = scratch_file("x.curvature", content), again = scratch() / "again.curvature";
+    CurvatureModel model;
+    const auto load = [&] { model = load_curvature_model(path); };
+    if (!accepts<ModelError>(path.string(), content.size(), k_usual_bound, load)) return false;
+    save_curvature_model(again, model);
+    const std::string bytes = read_file(again);
+    save_curvature_model(again, load_curvature_model(again));
+    require(read_file(again) == bytes, "equal models give equal bytes");
+    require_promises(model);
+    return true;
+}
+
 bool reads_list(std::string_view content) {
     const fs::path path = scratch_file("list.txt", content);
     std::vector<fs::path> meshes;
@@ -284,7 +298,7 @@ bool reads_list(std::string_view content) {
     return true;
 }
 
-constexpr std::array<Reader, 11> k_readers{{{"off", reads_off},
+constexpr std::array<Reader, 12> k_readers{{{"off", reads_off},
                                             {"obj", reads_obj},
                                             {"ply", reads_ply},
                                             {"stl", reads_stl},
@@ -294,6 +308,7 @@ constexpr std::array<Reader, 11> k_readers{{{"off", reads_off},
                                             {"seg", reads_seg},
                                             {"safetensors", reads_safetensors},
                                             {"model", reads_model},
+                                            {"curvature", reads_curvature},
                                             {"list", reads_list}}};
 
 }  // namespace

@@ -29,7 +29,9 @@ void add_frame_options(CLI::App& command, FrameArguments& arguments, const std::
     command.add_option("--" + prefix + "clips", arguments.clips, "names of the clips to " + what + "; default: all")
         ->type_name("NAME")
         ->delimiter(',');
-    command.add_option("--" + prefix + "frames", arguments.range, "frames of each clip, from A up to but without B")
+    command
+        .add_option("--" + prefix + "frames", arguments.range,
+                    "frames of each clip, from A up to but without B; or a single one")
         ->type_name("A:B");
     command.add_option("--" + prefix + "poses", arguments.most, "at most so many frames, evenly taken; 0 takes all")
         ->capture_default_str()

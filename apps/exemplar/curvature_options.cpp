@@ -23,6 +23,11 @@ Learner learner_of(const std::string& name, AnimationKind kind) {
     return Learner::global;
 }
 
+/// What training hardly shows another motion of a rig hardly shows either, but another fold of a cloth may.
+double suitable_sparsity(Learner learner) {
+    return learner == Learner::local ? 0 : CurvatureTraining{}.dropped_variance;
+}
+
 }  // namespace
 
 void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
@@ -56,8 +61,8 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
         ->check(CLI::Range(0.01, 1.0));
     command
         .add_option("--sparsity", arguments.dropped_variance,
-                    "share of what the bases explain that is left out to make the model smaller")
-        ->capture_default_str()
+                    "share of what the bases explain that is left out to make the model smaller; default: 0.002, or 0 "
+                    "for the local learner")
         ->check(CLI::Range(0.0, 0.5));
     command
         .add_option(
@@ -90,7 +95,7 @@ CurvatureTraining training_of(const CurvatureArguments& arguments, AnimationKind
     training.learner = learner_of(arguments.learner, kind);
     training.independent = arguments.bases == "ica";
     training.variance = arguments.variance;
-    training.dropped_variance = arguments.dropped_variance;
+    training.dropped_variance = arguments.dropped_variance.value_or(suitable_sparsity(training.learner));
     training.truth.smoothing = arguments.smoothing;
     training.truth.robust = robust_names().at(arguments.robust);
     training.seed = arguments.seed;
@@ -102,14 +107,15 @@ CurvatureTraining training_of(const CurvatureArguments& arguments, AnimationKind
     return training;
 }
 
-std::map<std::string, std::string> words_of(const CurvatureArguments& arguments) {
+std::map<std::string, std::string> words_of(const CurvatureArguments& arguments, AnimationKind kind) {
+    const CurvatureTraining training = training_of(arguments, kind);
     return {{"smoothing", fmt::format("{}", arguments.smoothing)},
             {"robust", arguments.robust},
-            {"learner", arguments.learner},
+            {"learner", std::string(name_of(training.learner))},
             {"attributes", arguments.attributes},
             {"bases", arguments.bases},
             {"variance", fmt::format("{}", arguments.variance)},
-            {"sparsity", fmt::format("{}", arguments.dropped_variance)},
+            {"sparsity", fmt::format("{}", training.dropped_variance)},
             {"augment", std::to_string(arguments.augmented_poses)},
             {"patch", std::to_string(arguments.patch_vertices)},
             {"patch-inputs", std::to_string(arguments.patch_inputs)},

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "host/curvature/evaluation.h"
@@ -16,7 +17,7 @@ struct CurvatureArguments {
     double smoothing = 1;
     std::string robust = "none", learner = "auto", attributes = "tensor", bases = "ica";
     double variance = CurvatureTraining{}.variance;
-    double dropped_variance = CurvatureTraining{}.dropped_variance;
+    std::optional<double> dropped_variance;  ///< none: what suits the learner
     std::size_t augmented_poses = CurvatureTraining{}.augmented_poses;
     std::size_t patch_vertices = SequenceStateOptions{}.patch_vertices,
                 patch_inputs = SequenceStateOptions{}.most_inputs;
@@ -29,7 +30,7 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments);
 CurvatureTraining training_of(const CurvatureArguments& arguments, AnimationKind kind);
 
 /// The arguments that decide what is learned, by the names of their options: what a model file keeps of its training.
-std::map<std::string, std::string> words_of(const CurvatureArguments& arguments);
+std::map<std::string, std::string> words_of(const CurvatureArguments& arguments, AnimationKind kind);
 
 nlohmann::json describe_training(const CurvatureTrainingReport& report);
 nlohmann::json describe_evaluation(const CurvatureEvaluation& evaluation);

@@ -72,7 +72,7 @@ std::vector<Variation> variations(const CurvatureArguments& given, std::size_t p
         vary("variance", &CurvatureArguments::variance, std::vector<double>{0.8, 0.9, 0.95, 0.99, 0.999});
         vary("bases", &CurvatureArguments::bases, std::vector<std::string>{"ica", "pca"});
     }
-    vary("sparsity", &CurvatureArguments::dropped_variance, std::vector<double>{0, 0.001, 0.01, 0.05});
+    vary("sparsity", &CurvatureArguments::dropped_variance, std::vector<double>{0, 0.002, 0.01, 0.05});
     vary("attributes", &CurvatureArguments::attributes, std::vector<std::string>{"tensor", "principal"});
     return result;
 }
@@ -137,8 +137,10 @@ void run_study(const StudyOptions& options) {
     if (same) test_frames = unseen_frames(std::move(test_frames), frames);
 
     nlohmann::json rows = nlohmann::json::array();
-    const Learner learner = training_of(options.curvature, animation.kind).learner;
-    for (const Variation& variation : variations(options.curvature, frames.size(), learner))
+    const CurvatureTraining training = training_of(options.curvature, animation.kind);
+    CurvatureArguments given = options.curvature;
+    given.dropped_variance = training.dropped_variance;
+    for (const Variation& variation : variations(given, frames.size(), training.learner))
         rows.push_back(run_variation(variation, animation, frames, test, test_frames));
     write_report(options.common, {{"animation", options.animation.string()},
                                   {"test", same ? options.animation.string() : options.test.string()},

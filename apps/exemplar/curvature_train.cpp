@@ -29,7 +29,7 @@ void run_train(const TrainOptions& options) {
     CurvatureModel model = train_curvature(animation, frames, training_of(options.curvature, animation.kind), report);
     model.training["animation"] = options.animation.filename().string();
     model.training["poses"] = std::to_string(frames.size());
-    for (const auto& [option, value] : words_of(options.curvature)) model.training[option] = value;
+    for (const auto& [option, value] : words_of(options.curvature, animation.kind)) model.training[option] = value;
     save_curvature_model(options.out, model);
 
     fmt::print("{}, {} vertices ({} vary), {} poses: {} controls with {} inputs, {:.1f} of {:.1f} matter to a vertex\n",

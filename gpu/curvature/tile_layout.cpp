@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include "gpu/runtime/errors.h"
 #include "host/core/errors.h"
@@ -115,11 +117,36 @@ void append_tile(const BasisTiles& tiles, std::size_t tile, TileLayout& layout) 
     for (std::size_t a = 0; a < attributes; ++a) append_entries(tiles, entries_at(tiles, tile, a), layout);
 }
 
+std::size_t pairs_of(const BasisTiles& tiles, std::size_t tile) {
+    std::size_t pairs = 0;
+    for (std::size_t a = 0; a < attribute_count(tiles.set); ++a) pairs += entries_at(tiles, tile, a).pairs();
+    return pairs;
+}
+
 std::size_t texels_of(const BasisTiles& tiles, std::size_t tile) {
-    const std::size_t attributes = attribute_count(tiles.set);
-    std::size_t pairs = (attributes + (is_tensor(tiles) ? 0 : 3) + 1) / 2;
-    for (std::size_t a = 0; a < attributes; ++a) pairs += entries_at(tiles, tile, a).pairs();
-    return (is_tensor(tiles) ? k_tensor_head : k_principal_head) + k_tile_quads * pairs;
+    const std::size_t constants = attribute_count(tiles.set) + (is_tensor(tiles) ? 0 : 3);
+    return (is_tensor(tiles) ? k_tensor_head : k_principal_head) +
+           k_tile_quads * ((constants + 1) / 2 + pairs_of(tiles, tile));
+}
+
+// Invocations that run in step wait for the one with the most pairs, so that tiles with about as many stand together,
+// in runs as long as such invocations are many. Runs are dealt in rounds from few pairs to many: cores that take equal
+// shares of the tiles get equal shares of the work.
+std::vector<std::uint32_t> order_by_work(const BasisTiles& tiles) {
+    constexpr std::size_t k_run = 8, k_rounds = 16;
+    std::vector<std::size_t> pairs;
+    for (std::size_t t = 0; t < tiles.tile_count(); ++t) pairs.push_back(pairs_of(tiles, t));
+    std::vector<std::uint32_t> sorted(tiles.tile_count()), dealt;
+    std::iota(sorted.begin(), sorted.end(), 0u);
+    std::ranges::stable_sort(sorted, {}, [&](std::uint32_t t) { return pairs[t]; });
+    const std::size_t runs = sorted.size() / k_run;
+    const auto deal = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) dealt.push_back(sorted[i]);
+    };
+    for (std::size_t round = 0; round < k_rounds; ++round)
+        for (std::size_t run = round; run < runs; run += k_rounds) deal(run * k_run, (run + 1) * k_run);
+    deal(runs * k_run, sorted.size());
+    return dealt;
 }
 
 void pad(std::size_t alignment, TileLayout& layout) {
@@ -133,7 +160,7 @@ TileLayout lay_out_tiles(const BasisTiles& tiles, std::size_t components, std::s
                          std::size_t alignment) {
     check_tiles(tiles, components, segments);
     TileLayout layout;
-    for (std::uint32_t t = 0; t < tiles.tile_count(); ++t) {
+    for (const std::uint32_t t : order_by_work(tiles)) {
         const std::size_t texels = texels_of(tiles, t);
         if (texels > most_texels)
             throw DeviceLimitError(fmt::format("16 vertices of a curvature model need {} texels, over the device's "
@@ -142,7 +169,8 @@ TileLayout lay_out_tiles(const BasisTiles& tiles, std::size_t components, std::s
                                    texels, most_texels);
         if (layout.ranges.empty() || layout.ranges.back().texels + texels > most_texels) {
             pad(alignment, layout);
-            layout.ranges.push_back({t, 0, layout.texels.size(), 0, layout.pairs.size(), 0});
+            layout.ranges.push_back(
+                {static_cast<std::uint32_t>(layout.table.size()), 0, layout.texels.size(), 0, layout.pairs.size(), 0});
         }
         layout.table.push_back({.first_texel = static_cast<std::uint32_t>(layout.texels.size()),
                                 .first_pair = static_cast<std::uint32_t>(layout.pairs.size()),

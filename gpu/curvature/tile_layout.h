@@ -9,7 +9,8 @@
 
 namespace exemplar {
 
-/// BasisTiles as kernels read them (see shared::CurvatureTile), in ranges of which one binding sees each.
+/// BasisTiles as kernels read them (see shared::CurvatureTile), ordered by what there is to add up, in ranges of which
+/// one binding sees each.
 struct TileLayout {
     struct Range {
         std::uint32_t first_tile, tiles;

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+
+#include "host/core/eight.h"
 #ifdef __F16C__
 #include <immintrin.h>
 #endif
@@ -25,15 +27,14 @@ inline float from_half(Half half) {
 }
 
 /// Eight halves, one after the other, as floats.
-using EightFloats = Eigen::Array<float, 8, 1>;
 inline EightFloats eight_from_halves(const Half* halves) {
-    EightFloats values;
 #ifdef __F16C__
-    _mm256_storeu_ps(values.data(), _mm256_cvtph_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(halves))));
+    return _mm256_cvtph_ps(_mm_loadu_si128(reinterpret_cast<const __m128i*>(halves)));
 #else
+    EightFloats values;
     for (int i = 0; i < 8; ++i) values[i] = from_half(halves[i]);
-#endif
     return values;
+#endif
 }
 
 }  // namespace exemplar

@@ -133,6 +133,19 @@ struct Tally {
     }
 };
 
+const VertexCurvature& evaluate_frame(CurvatureEvaluator& evaluator, const Animation& animation, FrameRef frame,
+                                      const SurfaceMoment& moment) {
+    if (animation.kind == AnimationKind::sequence) return evaluator.evaluate(moment.vertices, moment.normals);
+    return evaluator.evaluate(animation.rig, animation.clips[frame.clip].poses[frame.frame], moment.vertices,
+                              moment.normals);
+}
+
+/// With all components at their mean.
+void predict_zero_order(const CurvatureModel& model, const SurfaceMoment& moment, VertexCurvature& curvature) {
+    const std::vector<float> nothing(model.regression.components.size(), 0.0f);
+    reproject_curvature(model.tiles, nothing, moment.surface(), curvature);
+}
+
 /// Compares frame after frame, on one thread.
 class FrameComparison {
   public:
@@ -142,17 +155,12 @@ class FrameComparison {
           animation_(animation),
           reader_(animation, model.segments, model.truth),
           evaluator_(model),
-          stride_(stride),
-          nothing_(model.regression.components.size(), 0.0f) {}
+          stride_(stride) {}
 
     void compare(FrameRef frame, Tally& tally) {
         const SurfaceMoment moment = reader_.read(frame);
-        const Clip& clip = animation_.clips[frame.clip];
-        const VertexCurvature& learned =
-            model_.kind == AnimationKind::sequence
-                ? evaluator_.evaluate(moment.vertices, moment.normals)
-                : evaluator_.evaluate(animation_.rig, clip.poses[frame.frame], moment.vertices, moment.normals);
-        reproject_curvature(model_.tiles, nothing_, moment.surface(), mean_);
+        const VertexCurvature& learned = evaluate_frame(evaluator_, animation_, frame, moment);
+        predict_zero_order(model_, moment, mean_);
         add_errors(moment.curvature, learned, stride_, tally.learned);
         add_errors(moment.curvature, mean_, stride_, tally.zero_order);
         for (std::size_t v = 0; v < moment.curvature.k1.size(); ++v) {
@@ -174,7 +182,6 @@ class FrameComparison {
     MomentReader reader_;
     CurvatureEvaluator evaluator_;
     std::size_t stride_;
-    std::vector<float> nothing_;  // all components at their mean: the zero-order prediction
     VertexCurvature mean_;
 };
 
@@ -182,6 +189,15 @@ class FrameComparison {
 
 std::span<const LineType> compared_lines() {
     return k_compared;
+}
+
+FrameCurvature curvature_at(const CurvatureModel& model, const Animation& animation, FrameRef frame) {
+    require_fit(model, animation);
+    FrameCurvature result{MomentReader(animation, model.segments, model.truth).read(frame), {}, {}};
+    CurvatureEvaluator evaluator(model);
+    result.learned = evaluate_frame(evaluator, animation, frame, result.moment);
+    predict_zero_order(model, result.moment, result.zero_order);
+    return result;
 }
 
 CurvatureEvaluation evaluate_curvature(const CurvatureModel& model, const Animation& animation,

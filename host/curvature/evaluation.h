@@ -49,4 +49,11 @@ std::span<const LineType> compared_lines();
 CurvatureEvaluation evaluate_curvature(const CurvatureModel& model, const Animation& animation,
                                        std::span<const FrameRef> frames);
 
+/// A frame with its measured curvature, beside what the model predicts and the mean of training.
+struct FrameCurvature {
+    SurfaceMoment moment;
+    VertexCurvature learned, zero_order;
+};
+FrameCurvature curvature_at(const CurvatureModel& model, const Animation& animation, FrameRef frame);
+
 }  // namespace exemplar

@@ -81,7 +81,7 @@ float bend(const StateReader::Hinge& hinge, std::span<const Vec3> vertices);
 StateReader make_rig_state(const Animation& animation, std::span<const Pose* const> poses);
 
 struct SequenceStateOptions {
-    std::size_t patch_vertices = 64;  ///< about; 0 makes the whole surface one patch
+    std::size_t patch_vertices = 32;  ///< about; 0 makes the whole surface one patch
     double share = 0.95;              ///< of the variance of a patch' angles
     std::size_t most_inputs = 12;     ///< of a patch, if there is more than one
     std::size_t most_hinges = 3000;   ///< of a patch that are measured; evenly taken

@@ -46,16 +46,17 @@ void read_constants() {
         }
 }
 
+// A CPU driver calls a function for every fetch, around which all that is being computed goes to memory and back: a pair is
+// fetched whole before anything is done with it.
 void add_components(uint row, uint count, float scale) {
     vec4 sum[k_quads];
     for (uint q = 0; q < k_quads; ++q) sum[q] = rows[row * k_quads + q];
     for (const uint end = next_pair + count; next_pair < end; ++next_pair, next_texel += k_tile_quads) {
         const uint pair = texelFetch(pairs, int(next_pair)).x;
+        uvec4 both[k_quads];
+        for (uint q = 0; q < k_quads; ++q) both[q] = texelFetch(tiles, int(next_texel + q));
         const float z0 = texelFetch(components, int(pair & 0xffffu)).x, z1 = texelFetch(components, int(pair >> 16)).x;
-        for (uint q = 0; q < k_quads; ++q) {
-            const uvec4 both = texelFetch(tiles, int(next_texel + q));
-            sum[q] += z0 * four_halves(both.xy) + z1 * four_halves(both.zw);
-        }
+        for (uint q = 0; q < k_quads; ++q) sum[q] += z0 * four_halves(both[q].xy) + z1 * four_halves(both[q].zw);
     }
     for (uint q = 0; q < k_quads; ++q) rows[row * k_quads + q] = scale * sum[q];
 }

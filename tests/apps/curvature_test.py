@@ -20,7 +20,11 @@ class Curvature(ProgramTest):
 
     def test_learns_what_zero_order_does_not_know(self):
         model = self.train("m.safetensors", "--json", "train.json")
-        self.call("curvature", "evaluate", "m.safetensors", "figure_002.glb", "--json", "errors.json")
+        self.call("curvature", "evaluate", "m.safetensors", "figure_002.glb", "--json", "errors.json",
+                  "--pictures", "pictures")
+        pictures = sorted(path.name for path in (self.folder / "pictures").iterdir())
+        self.assertEqual(len(pictures), 3 * 6)
+        self.assertIn("motion_2_0012_ridges.png", pictures)
         training = json.loads((self.folder / "train.json").read_text())
         errors = json.loads((self.folder / "errors.json").read_text())
         self.assertEqual(training["bytes"], len(model))

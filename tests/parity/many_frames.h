@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "tests/parity/tensors.h"
+#include "tests/support/resident_bytes.h"
 
 namespace exemplar::testing {
 
-/// Runs `frames` again and again, 2000 in all: each must give the bits of its first run, and memory must not grow.
+/// Runs `frames` again and again, 10,000 in all: each must give the bits of its first run, and memory must not grow.
 /// `run` returns an array of what it downloads.
 template <typename Frame, typename Run>
 void expect_repeatable_without_growth(const std::vector<Frame>& frames, Run&& run) {
@@ -18,7 +19,7 @@ void expect_repeatable_without_growth(const std::vector<Frame>& frames, Run&& ru
     for (const Frame& frame : frames) first.push_back(run(frame));
     for (int i = 0; i < 200; ++i) run(frames[0]);
     const std::size_t before = resident_bytes();
-    for (std::size_t frame = 0; frame < 2000; ++frame) {
+    for (std::size_t frame = 0; frame < 10'000; ++frame) {
         const auto again = run(frames[frame % frames.size()]);
         for (std::size_t i = 0; i < again.size(); ++i)
             ASSERT_TRUE(same_bits(again[i], first[frame % frames.size()][i])) << "frame " << frame;

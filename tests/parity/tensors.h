@@ -1,12 +1,9 @@
 #pragma once
 
-#include <unistd.h>
-
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <fstream>
 #include <vector>
 
 #include "host/mesh/curvature.h"
@@ -64,14 +61,6 @@ inline double distance(const Tensor3& a, const Tensor3& b) {
 
 inline bool same_bits(const std::vector<shared::vec4>& a, const std::vector<shared::vec4>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(shared::vec4)) == 0;
-}
-
-/// Of this process; 0 where there is no /proc.
-inline std::size_t resident_bytes() {
-    std::ifstream file("/proc/self/statm");
-    std::size_t total = 0, resident = 0;
-    file >> total >> resident;
-    return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
 }  // namespace exemplar::testing

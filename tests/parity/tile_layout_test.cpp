@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numeric>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -34,6 +36,57 @@ TEST(TileLayout, IsCutToTheLimit) {
             }
             EXPECT_EQ(next, tiles.tile_count());
         }
+}
+
+// Tile t has t / 4 pairs of its first attribute.
+BasisTiles growing_tiles(std::uint32_t count) {
+    BasisTiles tiles;
+    tiles.vertex_count = count * BasisTiles::k_lanes;
+    tiles.vertex.resize(tiles.vertex_count);
+    std::iota(tiles.vertex.begin(), tiles.vertex.end(), 0u);
+    tiles.neighbor = tiles.vertex;
+    tiles.segment.resize(count);
+    tiles.scale.resize(7);
+    tiles.mean.resize(7 * tiles.vertex_count);
+    tiles.entry_begin = {0};
+    for (std::uint32_t t = 0; t < count; ++t)
+        tiles.entry_begin.insert(tiles.entry_begin.end(), 7, tiles.entry_begin.back() + t / 4 * 2);
+    tiles.component.resize(tiles.entry_begin.back());
+    tiles.basis.resize(tiles.component.size() * BasisTiles::k_lanes);
+    return tiles;
+}
+
+TEST(TileLayout, HasEveryTileOnce) {
+    for (const std::uint32_t count : {1u, 7u, 8u, 9u, 130u}) {
+        const TileLayout layout = lay_out_tiles(growing_tiles(count), 1, 0, 1 << 20, 16);
+        ASSERT_EQ(layout.table.size(), count);
+        std::set<std::uint32_t> vertices;
+        for (const shared::CurvatureTile& tile : layout.table)
+            for (std::size_t quad = 0; quad < shared::k_tile_quads; ++quad) {
+                const shared::uvec4& four = layout.texels[tile.first_texel + 1 + quad];
+                vertices.insert({four.x, four.y, four.z, four.w});
+            }
+        EXPECT_EQ(vertices.size(), count * BasisTiles::k_lanes);
+    }
+}
+
+TEST(TileLayout, GivesEqualSharesOfTilesAboutEqualWork) {
+    constexpr std::uint32_t k_count = 1280;
+    const TileLayout layout = lay_out_tiles(growing_tiles(k_count), 1, 0, 1 << 24, 16);
+    const auto first_pair = [&](std::size_t tile) {
+        return tile < k_count ? layout.table[tile].first_pair : static_cast<std::uint32_t>(layout.pairs.size());
+    };
+    const double all = first_pair(k_count);
+    for (const std::size_t shares : {2u, 4u, 5u, 8u})
+        for (std::size_t i = 0; i < shares; ++i) {
+            const double share = first_pair((i + 1) * k_count / shares) - first_pair(i * k_count / shares);
+            EXPECT_NEAR(share * static_cast<double>(shares) / all, 1, 0.15) << i << " of " << shares;
+        }
+    // And those that run in step have alike.
+    for (std::size_t run = 0; run < k_count; run += 8) {
+        const double first = first_pair(run + 1) - first_pair(run), last = first_pair(run + 8) - first_pair(run + 7);
+        EXPECT_LE(last - first, 2);
+    }
 }
 
 TEST(TileLayout, RefusesATileOverTheLimit) {

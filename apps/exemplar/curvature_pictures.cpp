@@ -1,0 +1,58 @@
+#include "apps/exemplar/curvature_pictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "host/imaging/camera.h"
+#include "host/imaging/png.h"
+#include "host/imaging/raster.h"
+
+namespace exemplar {
+namespace {
+
+constexpr int k_width = 480, k_height = 560;
+constexpr Color k_plain{236, 236, 232}, k_right{0, 0, 0}, k_missing{40, 90, 230}, k_wrong{225, 40, 30};
+
+using Marks = std::vector<std::uint8_t>;
+
+std::vector<Color> colors_of(const Marks& truth, const Marks& guess) {
+    std::vector<Color> colors(truth.size(), k_plain);
+    for (std::size_t f = 0; f < truth.size(); ++f)
+        if (truth[f] || guess[f]) colors[f] = !guess[f] ? k_missing : !truth[f] ? k_wrong : k_right;
+    return colors;
+}
+
+void paste(const Image& part, int left, Image& image) {
+    for (int y = 0; y < part.height; ++y)
+        for (int x = 0; x < part.width; ++x) std::ranges::copy(part.pixel(x, y), image.pixel(left + x, y).begin());
+}
+
+}  // namespace
+
+void write_line_pictures(const std::filesystem::path& folder, const CurvatureModel& model, const Animation& animation,
+                         FrameRef frame) {
+    const FrameCurvature at = curvature_at(model, animation, frame);
+    TriangleMesh mesh = animation.rest;
+    mesh.vertices = at.moment.vertices;
+    const Camera camera = fit_camera(mesh, Vec3(0.5f, 0.3f, 1), float(k_width) / k_height);
+    for (const LineType type : compared_lines()) {
+        const auto marks = [&](const VertexCurvature& curvature) {
+            return classify_faces({mesh.faces, mesh.vertices, at.moment.normals, curvature}, type,
+                                  {.eye = camera.position(), .feature_size = model.feature_size, .thresholds = {}});
+        };
+        const Marks truth = marks(at.moment.curvature);
+        Image image(3 * k_width, k_height, 3);
+        int left = 0;
+        for (const VertexCurvature* curvature : {&at.moment.curvature, &at.learned, &at.zero_order}) {
+            paste(render_mesh(mesh, colors_of(truth, marks(*curvature)), camera, k_width, k_height), left, image);
+            left += k_width;
+        }
+        write_png(
+            folder / fmt::format("{}_{:04d}_{}.png", animation.clips[frame.clip].name, frame.frame, name_of(type)),
+            image);
+    }
+}
+
+}  // namespace exemplar

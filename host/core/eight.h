@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
+
+namespace exemplar {
+
+/// Eight numbers side by side, a short vector of the compiler's: operators go lane by lane, `mask ? a : b` selects.
+/// They work on every instruction set and give the same bits; with AVX an operation is one instruction.
+using EightFloats [[gnu::vector_size(32)]] = float;
+using EightBits [[gnu::vector_size(32)]] = std::int32_t;  ///< what comparisons give: all bits of a lane or none
+using FourFloats [[gnu::vector_size(16)]] = float;
+using TwoFloats [[gnu::vector_size(8)]] = float;
+
+inline EightFloats eight_of(float value) {
+    return EightFloats{} + value;
+}
+
+inline EightFloats square_root(EightFloats x) {
+#ifdef __AVX__
+    return _mm256_sqrt_ps(x);
+#else
+    for (int i = 0; i < 8; ++i) x[i] = std::sqrt(x[i]);
+    return x;
+#endif
+}
+
+inline EightFloats magnitude(EightFloats x) {
+    return reinterpret_cast<EightFloats>(reinterpret_cast<EightBits>(x) & 0x7FFFFFFF);
+}
+
+inline EightFloats joined(FourFloats low, FourFloats high) {
+    return __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+inline FourFloats low_half(EightFloats a) {
+    return __builtin_shufflevector(a, a, 0, 1, 2, 3);
+}
+inline FourFloats high_half(EightFloats a) {
+    return __builtin_shufflevector(a, a, 4, 5, 6, 7);
+}
+
+struct FourEights {
+    EightFloats a, b, c, d;
+};
+/// Four numbers of each of eight items: from a vector for each number to the vectors of items 0 and 4, 1 and 5, 2 and
+/// 6, 3 and 7, and back.
+inline FourEights transposed(const FourEights& m) {
+    const EightFloats ab = __builtin_shufflevector(m.a, m.b, 0, 8, 1, 9, 4, 12, 5, 13),
+                      cd = __builtin_shufflevector(m.c, m.d, 0, 8, 1, 9, 4, 12, 5, 13),
+                      ab_end = __builtin_shufflevector(m.a, m.b, 2, 10, 3, 11, 6, 14, 7, 15),
+                      cd_end = __builtin_shufflevector(m.c, m.d, 2, 10, 3, 11, 6, 14, 7, 15);
+    return {__builtin_shufflevector(ab, cd, 0, 1, 8, 9, 4, 5, 12, 13),
+            __builtin_shufflevector(ab, cd, 2, 3, 10, 11, 6, 7, 14, 15),
+            __builtin_shufflevector(ab_end, cd_end, 0, 1, 8, 9, 4, 5, 12, 13),
+            __builtin_shufflevector(ab_end, cd_end, 2, 3, 10, 11, 6, 7, 14, 15)};
+}
+
+}  // namespace exemplar

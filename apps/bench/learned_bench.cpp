@@ -1,9 +1,14 @@
 // The kernels of learned curvature (see kernel_bench.h), on models of random bases as large as trained ones.
 
+#include <algorithm>
+#include <string>
+
 #include "apps/bench/surface_bench.h"
+#include "embedded/runtime_copy_comp.h"
 #include "gpu/curvature/learned_curvature.h"
 #include "host/curvature/model_builder.h"
 #include "host/curvature/tiling.h"
+#include "shaders/shared/ceilings.h"
 
 namespace exemplar {
 namespace {
@@ -146,6 +151,28 @@ void time_learned_curvature(benchmark::State& state, const Density& density) {
     for (const auto& [kernel, entry] : profiler.entries()) state.counters[kernel] = entry.milliseconds;
 }
 
+// Device milliseconds of a kernel that does nothing but copy: half of `bytes` are read, half written. The median of
+// some.
+double copying_ms(double bytes) {
+    constexpr std::size_t k_runs = 21;
+    const auto vectors = static_cast<std::uint32_t>(bytes / (2 * sizeof(shared::vec4)));
+    Device& device = bench().device;
+    const Kernel kernel(device, shaders::runtime_copy_comp, {.push_constants = layout_of<shared::CopyParameters>()});
+    const Buffer source(device, vectors * sizeof(shared::vec4)), target(device, source.bytes());
+    Profiler profiler;
+    Stream stream(device, &profiler);
+    stream.fill(source, 0);
+    std::vector<double> runs;
+    for (std::size_t run = 0; run <= k_runs; ++run) {
+        stream.dispatch(kernel, vectors, {source, target}, shared::CopyParameters{vectors});
+        stream.finish();
+        if (run > 0) runs.push_back(profiler.milliseconds(std::string(kernel.name())));
+        profiler.reset();
+    }
+    std::nth_element(runs.begin(), runs.begin() + k_runs / 2, runs.end());
+    return runs[k_runs / 2];
+}
+
 void time_reprojection(benchmark::State& state, const Density& density) {
     const LearnedScene scene(static_cast<std::uint32_t>(state.range(0)), density);
     const BasisTiles& tiles = scene.model.tiles;
@@ -168,6 +195,7 @@ void time_reprojection(benchmark::State& state, const Density& density) {
     };
     call();
     if (!verified(state, reprojection, expected)) return;
+    state.counters["copying"] = copying_ms(scene.reprojection().bytes);
     time_call(state, profiler, scene.reprojection(), call);
     state.counters["reference_cpu"] = reference_ms;
     scene.count_entries(state);

@@ -104,6 +104,7 @@ void add_apply_command(CLI::App& label) {
     command->add_option("--cache", options->cache, "folder that remembers features; '' remembers none")
         ->capture_default_str()
         ->type_name("FOLDER");
+    add_device_option(*command, options->common);
     add_common_options(*command, options->common);
     command->callback([options] { run_apply(*options); });
 }

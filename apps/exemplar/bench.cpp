@@ -89,6 +89,7 @@ void add_bench_command(CLI::App& app) {
         ->type_name("NAME");
     command->add_flag("--full", options->full, "also how costs grow up to two million faces, which takes many minutes");
     command->add_flag("--quick", options->quick, "one run of each, and none on one thread that takes long");
+    add_device_option(*command, options->common);
     add_common_options(*command, options->common);
     command->callback([options] { run_bench(*options); });
 }

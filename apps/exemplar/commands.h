@@ -8,7 +8,7 @@
 
 namespace exemplar {
 
-/// Options that every subcommand shares.
+/// Options that subcommands share.
 struct CommonOptions {
     std::string device;          ///< index or name; empty = EXEMPLAR_DEVICE or the best
     std::size_t threads = 0;     ///< 0 = all cores
@@ -16,7 +16,9 @@ struct CommonOptions {
     std::filesystem::path json;  ///< report as JSON; empty = none
 };
 
-/// Adds --device, --threads, --quiet and --json to a subcommand.
+/// Adds --device to a subcommand that computes on a device.
+void add_device_option(CLI::App& command, CommonOptions& options);
+/// Adds --threads, --quiet and --json to a subcommand.
 void add_common_options(CLI::App& command, CommonOptions& options);
 /// Puts --threads and --quiet into effect; called first by every subcommand. The result holds the thread limit.
 std::shared_ptr<void> apply_common_options(const CommonOptions& options);

@@ -5,6 +5,8 @@
 #include <map>
 
 #include "apps/exemplar/arguments.h"
+#include "host/core/text.h"
+#include "host/mesh/io_text.h"
 
 namespace exemplar {
 namespace {
@@ -166,9 +168,9 @@ void print_evaluation(const CurvatureEvaluation& evaluation) {
         fmt::print("{:<24}{:>12.4g}{:>12.4g}{:>14.4g}{:>14.4g}\n", error.name, error.rms, error.percentile_95,
                    error.zero_order_rms, error.truth_rms);
     fmt::print(
-        "{} frames; the farthest pose is {:.2f} times as far from the mean as any in training ('{}'); {} frames "
-        "are beyond {:.1f}\n",
-        evaluation.frames, evaluation.farthest_pose, evaluation.farthest_control, evaluation.far_frames, k_far_pose);
+        "{}; the farthest pose is {:.2f} times as far from the mean as any in training ('{}'); beyond {:.1f}: {}\n",
+        counted(evaluation.frames, "frame"), evaluation.farthest_pose,
+        mesh_io::printable(evaluation.farthest_control, 100), k_far_pose, counted(evaluation.far_frames, "frame"));
 }
 
 }  // namespace exemplar

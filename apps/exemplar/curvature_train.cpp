@@ -32,10 +32,12 @@ void run_train(const TrainOptions& options) {
     for (const auto& [option, value] : words_of(options.curvature, animation.kind)) model.training[option] = value;
     save_curvature_model(options.out, model);
 
-    fmt::print("{}, {} vertices ({} vary), {} poses: {} controls with {} inputs, {:.1f} of {:.1f} matter to a vertex\n",
-               name_of(animation.kind), report.vertices, report.varying_vertices, report.poses, report.controls,
-               report.inputs, report.kept_controls, report.possible_controls);
-    fmt::print("{} components, {:.2f} MB: {} in {} (curvature {}, influence {}, fit {})\n", report.components,
+    fmt::print("{}, {} ({} varying), {}: {} with {}, {:.1f} of {:.1f} matter to a vertex\n", name_of(animation.kind),
+               counted(report.vertices, "vertex", "vertices"), report.varying_vertices, counted(report.poses, "pose"),
+               counted(report.controls, "control"), counted(report.inputs, "input"), report.kept_controls,
+               report.possible_controls);
+    fmt::print("{}, {:.2f} MB: {} in {} (curvature {}, influence {}, fit {})\n",
+               counted(report.components, "component"),
                static_cast<double>(std::filesystem::file_size(options.out)) * 1e-6, options.out.string(),
                format_seconds(watch.wall()), format_seconds(report.seconds_truth),
                format_seconds(report.seconds_influence), format_seconds(report.seconds_fit));

@@ -105,6 +105,7 @@ void add_demo_command(CLI::App& app) {
     command->add_option("--seed", options->seed, "seed of the shapes and the training")
         ->capture_default_str()
         ->check(whole_number(0));
+    add_device_option(*command, options->common);
     add_common_options(*command, options->common);
     command->callback([options] { run_demo(*options); });
 }

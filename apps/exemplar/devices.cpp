@@ -111,6 +111,7 @@ void add_devices_command(CLI::App& app) {
     command->footer(
         "Example:\n  exemplar devices\n  EXEMPLAR_DEVICE=llvmpipe exemplar devices --no-measure --json devices.json");
     command->add_flag("--no-measure", options->no_measure, "skip the speeds, which take about a second per device");
+    add_device_option(*command, options->common);
     add_common_options(*command, options->common);
     command->callback([options] { run_devices(*options); });
 }

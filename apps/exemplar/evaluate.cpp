@@ -273,6 +273,7 @@ void add_evaluate_command(CLI::App& label) {
         ->type_name("FOLDER");
     command->add_flag("--fresh", options->fresh, "start over instead of going on from what is in --out");
     add_training_options(*command, options->train, options->cache);
+    add_device_option(*command, options->common);
     add_common_options(*command, options->common);
     command->callback([options] { run_evaluate(*options); });
 }

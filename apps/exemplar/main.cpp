@@ -97,9 +97,12 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-void add_common_options(CLI::App& command, CommonOptions& options) {
+void add_device_option(CLI::App& command, CommonOptions& options) {
     command.add_option("--device", options.device, "Vulkan device: index or part of its name (see 'exemplar devices')")
         ->type_name("NAME");
+}
+
+void add_common_options(CLI::App& command, CommonOptions& options) {
     command.add_option("--threads", options.threads, "CPU threads; 0 uses all cores")
         ->capture_default_str()
         ->check(whole_number(0, 4096));

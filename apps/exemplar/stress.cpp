@@ -14,6 +14,7 @@
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
 #include "host/core/stopwatch.h"
+#include "host/core/text.h"
 #include "host/data/corpus.h"
 #include "host/labeling/feature_cache.h"
 #include "host/labeling/mesh_labeling.h"
@@ -135,9 +136,9 @@ class StressRun {
                        *mean(row, [](const Outcome& o) { return std::optional(o.seconds); }), row.what);
         }
         fmt::print(
-            "unchanged: share of the area with the label of the undamaged mesh, mean and worst over {} mesh{}\n"
+            "unchanged: share of the area with the label of the undamaged mesh, mean and worst over {}\n"
             "right: share of the area with its true label, where the meshes have labels; seconds: per mesh\n",
-            subjects_.size(), subjects_.size() == 1 ? "" : "es");
+            counted(subjects_.size(), "mesh", "meshes"));
         for (const StressRow& row : rows_)
             for (const Outcome& outcome : row.outcomes)
                 if (!outcome.error.empty()) fmt::print(stderr, "error: {}\n", outcome.error);
@@ -305,6 +306,7 @@ void add_stress_command(CLI::App& label) {
         ->add_option("--cache", options->cache, "folder that remembers features of undamaged meshes; '' remembers none")
         ->capture_default_str()
         ->type_name("FOLDER");
+    add_device_option(*command, options->common);
     add_common_options(*command, options->common);
     command->callback([options] { run_stress(*options); });
 }

@@ -89,8 +89,7 @@ void run_synth(const SynthOptions& options) {
         progress.advance();
     }
     progress.finish();
-    const char* noun = is_animation ? "animation" : "shape";
-    fmt::print("{} {}{} in {}\n", options.count, noun, options.count == 1 ? "" : "s", options.out.string());
+    fmt::print("{} in {}\n", counted(options.count, is_animation ? "animation" : "shape"), options.out.string());
     write_report(
         options.common,
         {{"kind", options.kind}, {"seed", options.seed}, {is_animation ? "animations" : "shapes", std::move(made)}});

@@ -106,6 +106,7 @@ void add_train_command(CLI::App& label) {
         ->type_name("FOLDER");
     command->add_option("--out", options->out, "model file to write, .safetensors")->required()->type_name("FILE");
     add_training_options(*command, options->train, options->cache);
+    add_device_option(*command, options->common);
     add_common_options(*command, options->common);
     command->callback([options] { run_train(*options); });
 }

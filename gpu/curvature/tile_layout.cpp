@@ -129,24 +129,32 @@ std::size_t texels_of(const BasisTiles& tiles, std::size_t tile) {
            k_tile_quads * ((constants + 1) / 2 + pairs_of(tiles, tile));
 }
 
+// So far apart that any stretch of multiples, modulo `count`, is spread evenly (by the golden ratio), and all are met.
+std::size_t spreading_step(std::size_t count) {
+    auto step = static_cast<std::size_t>(0.618 * static_cast<double>(count));
+    while (std::gcd(step, count) != 1) ++step;
+    return step;
+}
+
 // Invocations that run in step wait for the one with the most pairs, so that tiles with about as many stand together,
-// in runs as long as such invocations are many. Runs are dealt in rounds from few pairs to many: cores that take equal
-// shares of the tiles get equal shares of the work.
+// in runs as long as such invocations are many. Short and long runs are mixed: cores that take equal shares of the
+// tiles get about equal shares of the work. All that only within windows: what is near on the surface is still near in
+// time.
 std::vector<std::uint32_t> order_by_work(const BasisTiles& tiles) {
-    constexpr std::size_t k_run = 8, k_rounds = 16;
+    constexpr std::size_t k_run = 8, k_window = 512;
     std::vector<std::size_t> pairs;
     for (std::size_t t = 0; t < tiles.tile_count(); ++t) pairs.push_back(pairs_of(tiles, t));
-    std::vector<std::uint32_t> sorted(tiles.tile_count()), dealt;
-    std::iota(sorted.begin(), sorted.end(), 0u);
-    std::ranges::stable_sort(sorted, {}, [&](std::uint32_t t) { return pairs[t]; });
-    const std::size_t runs = sorted.size() / k_run;
-    const auto deal = [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) dealt.push_back(sorted[i]);
-    };
-    for (std::size_t round = 0; round < k_rounds; ++round)
-        for (std::size_t run = round; run < runs; run += k_rounds) deal(run * k_run, (run + 1) * k_run);
-    deal(runs * k_run, sorted.size());
-    return dealt;
+    std::vector<std::uint32_t> order;
+    for (std::size_t first = 0; first < pairs.size(); first += k_window) {
+        std::vector<std::uint32_t> sorted(std::min(k_window, pairs.size() - first));
+        std::iota(sorted.begin(), sorted.end(), static_cast<std::uint32_t>(first));
+        std::ranges::stable_sort(sorted, {}, [&](std::uint32_t t) { return pairs[t]; });
+        const std::size_t runs = sorted.size() / k_run, step = spreading_step(runs);
+        for (std::size_t i = 0; i < runs * k_run; ++i)
+            order.push_back(sorted[i / k_run * step % runs * k_run + i % k_run]);
+        order.insert(order.end(), sorted.begin() + static_cast<std::ptrdiff_t>(runs * k_run), sorted.end());
+    }
+    return order;
 }
 
 void pad(std::size_t alignment, TileLayout& layout) {

@@ -92,6 +92,11 @@ bool is_utf8(std::string_view text) {
     return true;
 }
 
+std::string counted(std::size_t count, std::string_view one, std::string_view more) {
+    if (count != 1 && more.empty()) return fmt::format("{} {}s", count, one);
+    return fmt::format("{} {}", count, count == 1 ? one : more);
+}
+
 std::string format_seconds(double seconds) {
     if (seconds < 9.95) return fmt::format("{:.{}f} s", seconds, seconds < 0.995 ? 2 : 1);
     const long whole = std::lround(seconds);

@@ -4,11 +4,13 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "host/core/errors.h"
 #include "host/data/safetensors.h"
+#include "host/mesh/io_text.h"
 
 namespace exemplar {
 
@@ -160,6 +162,7 @@ void add_tiles(TensorFile& file, const BasisTiles& tiles) {
 /// A file that is being read.
 struct Reading {
     const TensorFile& file;
+    mutable std::size_t arrays = 0;  ///< that were read, each once
 
     [[noreturn]] void damaged(const std::string& what) const {
         throw ModelError(fmt::format("{}: damaged file: {}; train it again", file.path, what));
@@ -167,17 +170,22 @@ struct Reading {
     void require(bool holds, const char* what) const {
         if (!holds) damaged(what);
     }
+    template <typename T>
+    std::vector<T> get(const std::string& name, const std::vector<std::size_t>& shape) const {
+        ++arrays;
+        return file.get<T>(name, shape);
+    }
     Words words(const std::string& name, const std::vector<std::size_t>& shape) const {
-        return file.get<std::uint32_t>(name, shape);
+        return get<std::uint32_t>(name, shape);
     }
     Floats floats(const std::string& name, const std::vector<std::size_t>& shape) const {
-        Floats values = file.get<float>(name, shape);
+        Floats values = get<float>(name, shape);
         if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
             damaged(name + " holds a value that is not finite");
         return values;
     }
     std::vector<Half> halves(const std::string& name, const std::vector<std::size_t>& shape) const {
-        std::vector<Half> values = file.get<Half>(name, shape);
+        std::vector<Half> values = get<Half>(name, shape);
         constexpr std::uint16_t k_exponent = 0x7C00;
         if (std::any_of(values.begin(), values.end(), [](Half h) { return (h.bits & k_exponent) == k_exponent; }))
             damaged(name + " holds a value that is not finite");
@@ -201,12 +209,20 @@ std::uint64_t whole_number(const Reading& reading, const Json& value, std::uint6
     return value.get<std::uint64_t>();
 }
 
+std::uint64_t topology_of(const Reading& reading, const std::string& digits) {
+    std::uint64_t value = 0;
+    const char* const last = digits.data() + digits.size();
+    const auto [end, error] = std::from_chars(digits.data(), last, value, 16);
+    reading.require(digits.size() == 16 && end == last && error == std::errc(), "its topology is not 16 digits");
+    return value;
+}
+
 void read_description(const Reading& reading, CurvatureModel& model) {
     const Json json = Json::parse(reading.file.meta("model"));
     model.kind = static_cast<AnimationKind>(whole_number(reading, json.at("animation"), 2));
     model.tiles.set = static_cast<AttributeSet>(whole_number(reading, json.at("attributes"), 1));
     model.vertex_count = whole_number(reading, json.at("vertices"), 0xFFFFFFFEu);
-    model.topology = std::stoull(json.at("topology").get<std::string>(), nullptr, 16);
+    model.topology = topology_of(reading, json.at("topology").get<std::string>());
     model.truth.smoothing = json.at("smoothing");
     model.truth.smoothing_unit = json.at("smoothing_unit");
     model.truth.robust = static_cast<RobustEstimator>(whole_number(reading, json.at("robust"), 2));
@@ -232,9 +248,25 @@ void split_unmixing(const Reading& reading, const Floats& unmixing, StateReader&
         state.unmixing.push_back(matrix_of(part_of(unmixing, at, rows * width), rows, width));
         at += rows * width;
     }
+    reading.require(at == unmixing.size(), "its map to the inputs is too long");
 }
 
-void read_local_state(const Reading& reading, CurvatureModel& model) {
+void read_hinges(const Reading& reading, CurvatureModel& model) {
+    StateReader& state = model.state;
+    const Words hinges = reading.words("state.hinges", {state.kind == AnimationKind::sequence ? k_any : 0, 4});
+    reading.below(hinges, model.vertex_count, "state.hinges");
+    for (std::size_t i = 0; i < hinges.size(); i += 4)
+        state.hinges.push_back({hinges[i], hinges[i + 1], hinges[i + 2], hinges[i + 3]});
+    state.mean_angles = vector_of(reading.floats("state.mean_angles", {state.hinges.size()}));
+    const bool has_hinges = state.kind == AnimationKind::sequence && !state.is_local();
+    state.hinge_begin = reading.words("state.hinge_begin", {has_hinges ? state.controls.size() + 1 : 0});
+    if (has_hinges)
+        reading.rows(state.hinge_begin, state.controls.size(), state.hinges.size(), "the hinges of the patches");
+    else
+        reading.require(state.hinges.empty(), "a state has hinges and local shape");
+}
+
+void read_local_shape(const Reading& reading, CurvatureModel& model) {
     StateReader& state = model.state;
     state.local_begin = reading.words("state.local_begin", {k_any});
     state.local_vertex = reading.words("state.local_vertex", {k_any});
@@ -252,34 +284,30 @@ void read_local_state(const Reading& reading, CurvatureModel& model) {
             vector_of(part_of(mean, StateReader::k_local_numbers * state.local_begin[c], state.local_size(c))));
 }
 
-void read_state(const Reading& reading, CurvatureModel& model) {
+void read_joints(const Reading& reading, CurvatureModel& model) {
     StateReader& state = model.state;
-    read_local_state(reading, model);
-    state.kind = state.is_local() ? AnimationKind::sequence : model.kind;
-    const bool is_rig = state.kind != AnimationKind::sequence;
+    const bool is_rig = state.kind != AnimationKind::sequence, turns = state.kind == AnimationKind::skeleton;
     state.nodes = reading.words("state.nodes", {is_rig ? state.controls.size() : 0});
-    const bool turns = state.kind == AnimationKind::skeleton;
     const Floats reference = reading.floats("state.reference", {turns ? state.controls.size() : 0, 4});
     for (std::size_t i = 0; i + 3 < reference.size(); i += 4)
         state.reference.emplace_back(reference[i + 3], reference[i], reference[i + 1], reference[i + 2]);
     for (const Control& control : state.controls)
         reading.require(!is_rig || control.input_count == (turns ? 3u : 1u), "a control has a wrong number of inputs");
-    const Words hinges = reading.words("state.hinges", {k_any, 4});
-    reading.below(hinges, model.vertex_count, "state.hinges");
-    for (std::size_t i = 0; i < hinges.size(); i += 4)
-        state.hinges.push_back({hinges[i], hinges[i + 1], hinges[i + 2], hinges[i + 3]});
-    state.mean_angles = vector_of(reading.floats("state.mean_angles", {state.hinges.size()}));
+}
+
+void read_state(const Reading& reading, CurvatureModel& model) {
+    StateReader& state = model.state;
+    read_local_shape(reading, model);
+    state.kind = state.is_local() ? AnimationKind::sequence : model.kind;
+    read_joints(reading, model);
+    read_hinges(reading, model);
+    const bool is_local = state.is_local(), is_rig = state.kind != AnimationKind::sequence;
+    const Floats of_hinges = reading.floats("state.unmixing", {is_local || is_rig ? 0 : k_any}),
+                 of_shape = as_floats(reading.halves("state.local_map", {is_local ? k_any : 0}));
     if (is_rig) return;
-    if (state.is_local()) {
-        reading.require(state.hinges.empty(), "a state has hinges and local shape");
-        reading.words("state.hinge_begin", {0});
-        return split_unmixing(reading, as_floats(reading.halves("state.local_map", {k_any})), state,
-                              [&](std::size_t c) { return state.local_size(c); });
-    }
-    state.hinge_begin = reading.words("state.hinge_begin", {state.controls.size() + 1});
-    reading.rows(state.hinge_begin, state.controls.size(), state.hinges.size(), "the hinges of the patches");
-    split_unmixing(reading, reading.floats("state.unmixing", {k_any}), state,
-                   [&](std::size_t c) { return state.hinge_begin[c + 1] - state.hinge_begin[c]; });
+    split_unmixing(reading, is_local ? of_shape : of_hinges, state, [&](std::size_t c) {
+        return is_local ? state.local_size(c) : state.hinge_begin[c + 1] - state.hinge_begin[c];
+    });
 }
 
 void read_range(const Reading& reading, CurvatureModel& model) {
@@ -293,22 +321,23 @@ void read_range(const Reading& reading, CurvatureModel& model) {
         model.range.whitening.push_back(matrix_of(part_of(whitening, at, n * n), n, n));
         at += n * n;
     }
+    reading.require(at == whitening.size(), "range.whitening is too long");
     for (const float largest : model.range.largest) reading.require(largest > 0, "range.largest is not positive");
 }
 
 void read_segments(const Reading& reading, CurvatureModel& model) {
     Segments& segments = model.segments;
-    segments.influence_begin = reading.words("segments.influence_begin", {k_any});
-    const Words bones = reading.words("segments.bone", {k_any});
+    const bool is_rig = model.state.kind != AnimationKind::sequence,
+               principal = model.tiles.set == AttributeSet::principal;
+    const bool has_bones = is_rig && principal, has_patches = !is_rig && (principal || model.state.is_local());
+    segments.influence_begin = reading.words("segments.influence_begin", {has_bones ? k_any : 0});
+    const Words bones = reading.words("segments.bone", {has_bones ? k_any : 0});
     const Floats weights = reading.floats("segments.weight", {bones.size()});
     for (std::size_t i = 0; i < bones.size(); ++i) segments.influences.push_back({bones[i], weights[i]});
-    if (model.state.kind != AnimationKind::sequence) {
-        if (model.tiles.set == AttributeSet::principal || !segments.influence_begin.empty())
-            reading.rows(segments.influence_begin, std::max<std::size_t>(segments.influence_begin.size(), 1) - 1,
-                         bones.size(), "the segments");
-        return;
-    }
-    const Words patches = reading.words("segments.patches", {k_any, 3, Segments::Triangle::k_patch});
+    if (has_bones)
+        reading.rows(segments.influence_begin, std::max<std::size_t>(segments.influence_begin.size(), 1) - 1,
+                     bones.size(), "the segments");
+    const Words patches = reading.words("segments.patches", {has_patches ? k_any : 0, 3, Segments::Triangle::k_patch});
     reading.below(patches, model.vertex_count, "segments.patches");
     const std::size_t count = patches.size() / (3 * Segments::Triangle::k_patch);
     reading.require(!model.state.is_local() || count == model.state.controls.size(), "patches and segments differ");
@@ -336,13 +365,16 @@ void read_regression(const Reading& reading, CurvatureModel& model) {
                                    regression.input_count);
     regression.coefficients = reading.floats("regression.coefficients", {k_any});
     const Words components = reading.words("regression.components", {k_any, 3});
+    std::size_t coefficients = 0;
     for (std::size_t i = 0; i < components.size(); i += 3) {
-        const std::uint64_t first = components[i], count = components[i + 1], coefficient = components[i + 2];
+        const std::uint64_t first = components[i], count = components[i + 1];
         reading.require(first + count <= regression.feature_count(), "a component uses features that are not there");
-        reading.require(coefficient + count <= regression.coefficients.size(),
-                        "a component uses coefficients that are not there");
+        reading.require(components[i + 2] == coefficients && count <= regression.coefficients.size() - coefficients,
+                        "a component has not the coefficients that follow those of the one before");
+        coefficients += count;
         regression.components.push_back({components[i], components[i + 1], components[i + 2]});
     }
+    reading.require(coefficients == regression.coefficients.size(), "coefficients are listed for no component");
 }
 
 void read_tiles(const Reading& reading, CurvatureModel& model) {
@@ -351,21 +383,23 @@ void read_tiles(const Reading& reading, CurvatureModel& model) {
     tiles.vertex_count = model.vertex_count;
     tiles.segment = reading.words("tiles.segment", {k_any});
     const std::size_t count = tiles.segment.size();
-    reading.below(tiles.segment, std::max<std::size_t>(model.segments.count(), 1), "tiles.segment");
+    const bool tensor = tiles.set == AttributeSet::tensor;
+    const std::size_t segments = model.segments.count();
+    reading.below(tiles.segment, tensor ? std::max<std::size_t>(segments, 1) : segments, "tiles.segment");
     tiles.vertex = reading.words("tiles.vertex", {count, lanes});
     reading.below(tiles.vertex, model.vertex_count, "tiles.vertex");
     tiles.scale = reading.floats("tiles.scale", {attributes});
-    tiles.component = reading.file.get<std::uint16_t>("tiles.component", {k_any});
+    tiles.component = reading.get<std::uint16_t>("tiles.component", {k_any});
     for (const std::uint16_t component : tiles.component)
         reading.require(component < model.regression.components.size(), "a tile uses a component that is not there");
     tiles.entry_begin = reading.words("tiles.entry_begin", {k_any});
     reading.rows(tiles.entry_begin, count * attributes, tiles.component.size(), "the entries of the tiles");
     tiles.basis = reading.halves("tiles.basis", {tiles.component.size(), lanes});
     tiles.mean = reading.halves("tiles.mean", {count, attributes, lanes});
-    const bool tensor = tiles.set == AttributeSet::tensor;
     tiles.neighbor = reading.words("tiles.neighbor", {tensor ? count : 0, lanes});
     reading.below(tiles.neighbor, model.vertex_count, "tiles.neighbor");
     tiles.reference = reading.halves("tiles.reference", {tensor ? 0 : count, 3, lanes});
+    reading.require(model.vertex_count <= tiles.vertex.size(), "a vertex is in no tile");
     std::vector<bool> seen(model.vertex_count, false);
     for (const std::uint32_t v : tiles.vertex) seen[v] = true;
     reading.require(std::find(seen.begin(), seen.end(), false) == seen.end(), "a vertex is in no tile");
@@ -409,14 +443,13 @@ CurvatureModel load_curvature_model(const std::filesystem::path& path) {
         read_description(reading, model);
     } catch (const Json::exception&) {
         reading.damaged("its description cannot be read");
-    } catch (const std::logic_error&) {
-        reading.damaged("its description holds no number where one should be");
     }
     read_state(reading, model);
     read_range(reading, model);
     read_segments(reading, model);
     read_regression(reading, model);
     read_tiles(reading, model);
+    reading.require(reading.arrays == file.tensors.size(), "it has arrays of no meaning");
     return model;
 }
 
@@ -437,7 +470,8 @@ void require_fit(const CurvatureModel& model, const Animation& animation) {
         const std::size_t count = skeleton ? animation.rig.nodes.size() : animation.rig.targets.size();
         const std::string& name = model.state.controls[c].name;
         if (index >= count || name != (skeleton ? animation.rig.nodes[index].name : animation.rig.targets[index].name))
-            refuse(fmt::format("it has no {} '{}' in that place", skeleton ? "joint" : "blend shape", name));
+            refuse(
+                fmt::format("it has no {} {} in that place", skeleton ? "joint" : "blend shape", mesh_io::quote(name)));
     }
     for (const Influence& influence : model.segments.influences)
         if (influence.bone >= animation.rig.bones.size()) refuse("it has fewer bones");

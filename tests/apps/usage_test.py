@@ -6,7 +6,9 @@ import unittest
 
 from program import DOCS, ProgramTest, CUBE, CUBE_QUADS, CUBE_TRIANGLES, read_labels, read_off, write_off
 
-COMMANDS = ["label train", "label apply", "label evaluate", "label stress", "features", "synth", "devices", "demo", "bench"]
+DEVICE_COMMANDS = ["label train", "label apply", "label evaluate", "label stress", "devices", "demo", "bench"]
+HOST_COMMANDS = ["features", "synth", "curvature train", "curvature evaluate", "curvature study"]
+COMMANDS = DEVICE_COMMANDS + HOST_COMMANDS
 
 
 class Help(ProgramTest):
@@ -21,8 +23,15 @@ class Help(ProgramTest):
         for command in COMMANDS:
             with self.subTest(command):
                 text = self.call(*command.split(), "--help").stdout
-                for option in ["--json", "--threads", "--quiet", "--device"]:
+                for option in ["--json", "--threads", "--quiet"]:
                     self.assertIn(option, text)
+
+    def test_a_device_is_chosen_where_one_computes(self):
+        for command in COMMANDS:
+            with self.subTest(command):
+                text = self.call(*command.split(), "--help").stdout
+                (self.assertIn if command in DEVICE_COMMANDS else self.assertNotIn)("--device", text)
+        self.refused("curvature", "train", "x.glb", "--out", "x", "--device", "0", code=2, says="'--device'")
 
     def test_version_is_a_number(self):
         self.assertRegex(self.call("--version").stdout, r"^\d+\.\d+\.\d+\n$")

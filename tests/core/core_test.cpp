@@ -109,6 +109,14 @@ TEST(Text, TellsUtf8FromOtherEncodings) {
         EXPECT_FALSE(is_utf8(bad)) << bad;
 }
 
+TEST(Text, CountsInSingularAndPlural) {
+    EXPECT_EQ(counted(0, "pose"), "0 poses");
+    EXPECT_EQ(counted(1, "pose"), "1 pose");
+    EXPECT_EQ(counted(12, "pose"), "12 poses");
+    EXPECT_EQ(counted(1, "vertex", "vertices"), "1 vertex");
+    EXPECT_EQ(counted(0, "vertex", "vertices"), "0 vertices");
+}
+
 TEST(Text, FormatsSeconds) {
     EXPECT_EQ(format_seconds(0.421), "0.42 s");
     EXPECT_EQ(format_seconds(3.14), "3.1 s");

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "host/animation/animation.h"
+#include "host/curvature/model.h"
 #include "host/mesh/io.h"
 #include "tests/fuzz/allocation.h"
 
@@ -26,6 +27,10 @@ void require_promises(const MeshFile& file);
 
 /// What Rig says of its lists, indices in range, readable warnings; and posed vertices for each frame of a clip.
 void require_promises(const Animation& animation);
+
+/// Gives curvature on surfaces of its vertex count, and on a rig that it fits, without touching what is not its own;
+/// says in a readable error what it does not fit.
+void require_promises(const CurvatureModel& model);
 
 /// The most memory that reading may take at any time: `fixed` plus `per_byte` times the size of the file.
 struct MemoryBound {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <tuple>
 
@@ -15,6 +16,7 @@
 #include "host/animation/write_animation.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/curvature/model.h"
 #include "host/data/corpus.h"
 #include "host/data/safetensors.h"
 #include "host/labeling/model.h"
@@ -234,6 +236,11 @@ bool same(const Tensor& a, const Tensor& b) {
     return a.type == b.type && a.shape == b.shape && std::ranges::equal(a.bytes, b.bytes);
 }
 
+bool same(const std::map<std::string, Tensor>& a, const std::map<std::string, Tensor>& b) {
+    return std::ranges::equal(
+        a, b, [](const auto& x, const auto& y) { return x.first == y.first && same(x.second, y.second); });
+}
+
 bool reads_safetensors(std::string_view content) {
     const fs::path path = scratch_file("x.safetensors", content);
     TensorFile file;
@@ -244,10 +251,7 @@ bool reads_safetensors(std::string_view content) {
     write_safetensors(again, file);
     const TensorFile written = read_safetensors(again);
     require(written.metadata == file.metadata, "written metadata are read again");
-    require(
-        std::ranges::equal(written.tensors, file.tensors,
-                           [](const auto& a, const auto& b) { return a.first == b.first && same(a.second, b.second); }),
-        "written arrays are read again");
+    require(same(written.tensors, file.tensors), "written arrays are read again");
     return true;
 }
 
@@ -273,6 +277,20 @@ bool reads_model(std::string_view content) {
     return true;
 }
 
+bool reads_curvature(std::string_view content) {
+    const fs::path path = scratch_file("x.curvature", content), again = scratch() / "again.curvature";
+    CurvatureModel model;
+    const auto load = [&] { model = load_curvature_model(path); };
+    if (!accepts<ModelError>(path.string(), content.size(), k_usual_bound, load)) return false;
+    save_curvature_model(again, model);
+    require(same(read_safetensors(path).tensors, read_safetensors(again).tensors), "all of the arrays are kept");
+    const std::string bytes = read_file(again);
+    save_curvature_model(again, load_curvature_model(again));
+    require(read_file(again) == bytes, "equal models give equal bytes");
+    require_promises(model);
+    return true;
+}
+
 bool reads_list(std::string_view content) {
     const fs::path path = scratch_file("list.txt", content);
     std::vector<fs::path> meshes;
@@ -284,7 +302,7 @@ bool reads_list(std::string_view content) {
     return true;
 }
 
-constexpr std::array<Reader, 11> k_readers{{{"off", reads_off},
+constexpr std::array<Reader, 12> k_readers{{{"off", reads_off},
                                             {"obj", reads_obj},
                                             {"ply", reads_ply},
                                             {"stl", reads_stl},
@@ -294,6 +312,7 @@ constexpr std::array<Reader, 11> k_readers{{{"off", reads_off},
                                             {"seg", reads_seg},
                                             {"safetensors", reads_safetensors},
                                             {"model", reads_model},
+                                            {"curvature", reads_curvature},
                                             {"list", reads_list}}};
 
 }  // namespace

@@ -35,10 +35,6 @@ using testing::derivative_in_space;
 using testing::distance;
 using testing::download;
 using testing::form_in_space;
-using testing::random_pose;
-using testing::random_vec3;
-using testing::resident_bytes;
-using testing::same_bits;
 using testing::shared_device;
 using testing::size_of;
 

@@ -55,7 +55,7 @@ class Curvature(ProgramTest):
 
     def test_study_varies_one_thing_at_a_time(self):
         done = self.call("curvature", "study", "figure_001.glb", "--test", "figure_002.glb", "--test-poses", "4",
-                         "--augment", "20", "--json", "study.json")
+                         "--augment", "20", "--learner", "additive", "--json", "study.json")
         rows = json.loads((self.folder / "study.json").read_text())["rows"]
         self.assertEqual({row["what"] for row in rows},
                          {"as given", "poses", "variance", "bases", "sparsity", "attributes"})

@@ -39,6 +39,7 @@ class Medians {
         std::nth_element(samples.begin(), middle, samples.end());
         return *middle;
     }
+    bool has(const std::string& name) const { return samples_.contains(name); }
 
   private:
     std::map<std::string, std::vector<double>> samples_;
@@ -59,7 +60,22 @@ std::vector<Frame> read_frames(const Animation& animation, const CurvatureModel&
     return frames;
 }
 
-// The parts of a frame, each with warm caches: pose to inputs, inputs to components, components to curvature.
+// Pose, or local shape, to inputs.
+void time_inputs(const CurvatureModel& model, const Frame& frame, std::span<float> x, Medians& medians) {
+    if (!model.state.is_local()) {
+        if (frame.pose) medians.time("pose", [&] { model.state.read_pose(*frame.pose, x); });
+    } else {
+        LocalShapeReader reader(model.state);
+        std::vector<Eigen::Matrix3f> rotations;
+        for (std::size_t round = 0; round < 2; ++round) {  // the first asks for memory
+            medians.time("rotations", [&] { model.segments.rotations_of_sequence(frame.moment.vertices, rotations); });
+            medians.time("shape", [&] { reader.read(frame.moment.vertices, frame.moment.normals, rotations, x); });
+        }
+    }
+    medians.time("range", [&] { model.range.prepare(model.state, x); });
+}
+
+// The parts of a frame, each with warm caches: to inputs, inputs to components, components to curvature.
 void time_parts(const CurvatureModel& model, const Frame& frame, std::span<const float> components, Medians& medians) {
     std::vector<float> x(model.state.input_count), features(model.regression.feature_count()),
         z(model.regression.components.size());
@@ -67,11 +83,7 @@ void time_parts(const CurvatureModel& model, const Frame& frame, std::span<const
     const PosedSurface surface = frame.moment.surface();
     reproject_curvature(model.tiles, components, surface, curvature);
     for (std::size_t round = 0; round < k_rounds; ++round) {
-        if (frame.pose)
-            medians.time("inputs", [&] {
-                model.state.read_pose(*frame.pose, x);
-                model.range.prepare(model.state, x);
-            });
+        time_inputs(model, frame, x, medians);
         medians.time("components", [&] { model.regression.evaluate(x, features, z); });
         medians.time("reprojection", [&] { reproject_curvature(model.tiles, components, surface, curvature); });
     }
@@ -112,9 +124,8 @@ void run(const char* model_path, const char* animation_path) {
     const double learned = medians.of("learned");
     for (const char* name : {"estimated", "smoothed", "learned"})
         fmt::print("{:12} {:8.4f} ms {:8.1f} x learned\n", name, medians.of(name), medians.of(name) / learned);
-    for (const char* name : {"inputs", "components", "reprojection"})
-        if (animation.kind != AnimationKind::sequence || std::string_view(name) != "inputs")
-            fmt::print("  {:12} {:8.4f} ms\n", name, medians.of(name));
+    for (const char* name : {"pose", "rotations", "shape", "range", "components", "reprojection"})
+        if (medians.has(name)) fmt::print("  {:12} {:8.4f} ms\n", name, medians.of(name));
 }
 
 }  // namespace

@@ -4,9 +4,12 @@ namespace exemplar {
 
 CurvatureEvaluator::CurvatureEvaluator(const CurvatureModel& model)
     : model_(&model),
+      copies_inputs_(model.regression.copies_inputs()),
       x_(model.state.input_count),
       features_(model.regression.feature_count()),
-      z_(model.regression.components.size()) {}
+      z_(model.regression.components.size()) {
+    if (model.state.is_local()) local_.emplace(model.state);
+}
 
 const VertexCurvature& CurvatureEvaluator::evaluate(const Rig& rig, const Pose& pose, std::span<const Vec3> vertices,
                                                     std::span<const Vec3> normals) {
@@ -19,13 +22,19 @@ const VertexCurvature& CurvatureEvaluator::evaluate(const Rig& rig, const Pose& 
 
 const VertexCurvature& CurvatureEvaluator::evaluate(std::span<const Vec3> vertices, std::span<const Vec3> normals) {
     if (model_->segments.count() > 0) model_->segments.rotations_of_sequence(vertices, rotations_);
-    model_->state.read_surface(vertices, normals, rotations_, x_);
+    if (local_)
+        local_->read(vertices, normals, rotations_, x_);
+    else
+        model_->state.read_surface(vertices, normals, rotations_, x_);
     return reproject(vertices, normals);
 }
 
 const VertexCurvature& CurvatureEvaluator::reproject(std::span<const Vec3> vertices, std::span<const Vec3> normals) {
     farthest_ = model_->range.prepare(model_->state, x_);
-    model_->regression.evaluate(x_, features_, z_);
+    if (copies_inputs_)
+        z_ = x_;
+    else
+        model_->regression.evaluate(x_, features_, z_);
     reproject_curvature(model_->tiles, z_, {vertices, normals, rotations_}, curvature_);
     return curvature_;
 }

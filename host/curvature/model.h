@@ -3,11 +3,13 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "host/animation/animation.h"
+#include "host/curvature/local_shape.h"
 #include "host/curvature/predictor.h"
 #include "host/curvature/segments.h"
 #include "host/curvature/state.h"
@@ -60,6 +62,8 @@ class CurvatureEvaluator {
   private:
     const VertexCurvature& reproject(std::span<const Vec3> vertices, std::span<const Vec3> normals);
     const CurvatureModel* model_;
+    std::optional<LocalShapeReader> local_;
+    bool copies_inputs_;
     std::vector<float> x_, features_, z_;
     PoseRange::Farthest farthest_;
     std::vector<Eigen::Matrix3f> rotations_;

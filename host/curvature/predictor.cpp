@@ -2,6 +2,17 @@
 
 namespace exemplar {
 
+bool ComponentRegression::copies_inputs() const {
+    const auto one = static_cast<std::uint32_t>(input_count);
+    if (components.size() != input_count || monomials.size() < input_count) return false;
+    for (std::uint32_t i = 0; i < components.size(); ++i) {
+        const auto& [feature, count, coefficient] = components[i];
+        if (feature != i || count != 1 || coefficients[coefficient] != 1 || monomials[i] != Monomial{i, one, one})
+            return false;
+    }
+    return true;
+}
+
 void ComponentRegression::evaluate(std::span<const float> x, std::span<float> features, std::span<float> z) const {
     const auto input = [&](std::uint32_t i) { return i < x.size() ? x[i] : 1.0f; };
     for (std::size_t m = 0; m < monomials.size(); ++m)

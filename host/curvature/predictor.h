@@ -28,6 +28,8 @@ struct ComponentRegression {
     std::vector<Component> components;
     std::vector<float> coefficients;
 
+    /// Whether the components are the inputs, one by one, as a linear map of local shape has them.
+    bool copies_inputs() const;
     std::size_t feature_count() const { return monomials.size() + static_cast<std::size_t>(neurons.rows()); }
     /// features: feature_count() numbers of work space; z: components.size() numbers.
     void evaluate(std::span<const float> x, std::span<float> features, std::span<float> z) const;

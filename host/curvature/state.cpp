@@ -259,8 +259,13 @@ PoseRange make_pose_range(const StateReader& reader, const Eigen::Ref<const Eige
 float PoseRange::distance(const Control& control, std::size_t index, std::span<const float> x) const {
     const Eigen::Map<const Eigen::VectorXf> here(x.data() + control.first_input, control.input_count);
     const auto middle = mean.segment(control.first_input, control.input_count);
-    // Coefficients one by one: many controls are small, and none should ask for memory.
-    return whitening[index].lazyProduct(here - middle).norm() / largest[index];
+    // Many controls are small, and none of those should ask for memory.
+    constexpr int k_small = 32;
+    if (control.input_count > k_small) return (whitening[index] * (here - middle)).norm() / largest[index];
+    using Small = Eigen::Matrix<float, Eigen::Dynamic, 1, Eigen::ColMajor, k_small, 1>;
+    const Small offset = here - middle;
+    const Small white = whitening[index].lazyProduct(offset);
+    return white.norm() / largest[index];
 }
 
 PoseRange::Farthest PoseRange::farthest(const StateReader& reader, std::span<const float> x) const {

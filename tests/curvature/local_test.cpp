@@ -60,6 +60,31 @@ TEST(LocalLearner, PredictsMotionItHasNotSeen) {
     }
 }
 
+TEST(LocalLearner, IsEvaluatedAsItsStateIsRead) {
+    const Animation sheet = waving_sheet();
+    CurvatureTraining options;
+    for (const std::size_t inputs : {3u, 16u, 21u}) {
+        options.sequence.most_inputs = inputs;
+        const CurvatureModel model = trained(sheet, options);
+        EXPECT_TRUE(model.regression.copies_inputs());
+        CurvatureEvaluator evaluator(model);
+        TriangleMesh mesh = sheet.rest;
+        mesh.vertices = sheet.clips[1].frames[7];
+        const std::vector<Vec3> normals = vertex_normals(mesh);
+        evaluator.evaluate(mesh.vertices, normals);
+        std::vector<Eigen::Matrix3f> rotations;
+        std::vector<float> x(model.state.input_count), features(model.regression.feature_count()), z(x.size());
+        model.segments.rotations_of_sequence(mesh.vertices, rotations);
+        model.state.read_surface(mesh.vertices, normals, rotations, x);
+        const PoseRange::Farthest farthest = model.range.prepare(model.state, x);
+        model.regression.evaluate(x, features, z);
+        ASSERT_EQ(evaluator.components().size(), z.size());
+        for (std::size_t i = 0; i < z.size(); ++i) EXPECT_NEAR(evaluator.components()[i], z[i], 1e-4f);
+        EXPECT_EQ(evaluator.farthest().control, farthest.control);
+        EXPECT_NEAR(evaluator.farthest().distance, farthest.distance, 1e-4f * farthest.distance);
+    }
+}
+
 TEST(LocalLearner, DoesNotCareWhereTheSurfaceIs) {
     const Animation sheet = waving_sheet();
     const CurvatureModel model = trained(sheet);

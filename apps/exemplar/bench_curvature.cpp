@@ -29,55 +29,66 @@ Cost per_frame(std::size_t runs, std::size_t frames, const std::function<void(st
     return cost;
 }
 
-void bench_frames(BenchContext& context, const Character& character, const CurvatureModel& model,
-                  const std::function<void(const BenchRow&)>& row) {
-    const std::size_t count = character.unseen_frames.size(), runs = 3 * context.runs();
-    MomentReader reader(character.unseen, model.segments, model.truth);
+struct Moments {
     std::vector<SurfaceMoment> moments;
-    for (const FrameRef& frame : character.unseen_frames) moments.push_back(reader.read(frame));
+    Cost estimated, diffused;
+};
+
+/// The unseen frames, and what measuring their curvature costs.
+Moments measure_estimation(const BenchContext& context, const Character& character, const CurvatureModel& model) {
+    MomentReader reader(character.unseen, model.segments, model.truth);
+    Moments result;
+    for (const FrameRef& frame : character.unseen_frames) result.moments.push_back(reader.read(frame));
     CurvatureEstimator estimator(character.unseen.rest.faces, model.vertex_count);
     const auto estimate = [&](double smoothing) {
-        return per_frame(runs, count, [&](std::size_t i) {
-            estimator.estimate(moments[i].vertices,
+        return per_frame(3 * context.runs(), result.moments.size(), [&](std::size_t i) {
+            estimator.estimate(result.moments[i].vertices,
                                {.smoothing = smoothing, .smoothing_unit = model.truth.smoothing_unit});
         });
     };
+    result.estimated = estimate(0);
+    result.diffused = estimate(model.truth.smoothing);
+    return result;
+}
+
+void bench_learner(BenchContext& context, const Character& character, Learner learner,
+                   const std::function<void(const BenchRow&)>& row) {
+    CurvatureModel model;
+    CurvatureTrainingReport report;
+    const Cost training = measure(
+        1, [&] { model = train_curvature(character.seen, character.seen_frames, {.learner = learner}, report); });
+    row({.name = "curvature",
+         .what = fmt::format("training, {}, 100 poses of 20k vertices", name_of(learner)),
+         .goal = "2 min",
+         .cost = training,
+         .remarks = {fmt::format("{:.2f} MB of bases and means", 1e-6 * static_cast<double>(report.model_bytes))},
+         .numbers = {{"bytes", report.model_bytes}}});
+    const Moments moments = measure_estimation(context, character, model);
     CurvatureEvaluator evaluator(model);
-    const Cost learned = per_frame(runs, count, [&](std::size_t i) {
+    const Cost learned = per_frame(3 * context.runs(), moments.moments.size(), [&](std::size_t i) {
         const FrameRef& frame = character.unseen_frames[i];
         evaluator.evaluate(character.unseen.rig, character.unseen.clips[frame.clip].poses[frame.frame],
-                           moments[i].vertices, moments[i].normals);
+                           moments.moments[i].vertices, moments.moments[i].normals);
     });
-    const Cost plain = estimate(0), smoothed = estimate(model.truth.smoothing);
     row({.name = "curvature",
          .what = "estimated with derivatives, 20k vertices, one thread",
          .others = "trimesh2 17.8 ms",
-         .cost = plain});
-    row({.name = "curvature", .what = "the same with its diffusion", .cost = smoothed});
+         .cost = moments.estimated});
+    row({.name = "curvature", .what = "the same with its diffusion", .cost = moments.diffused});
+    const double speedup = moments.estimated.cpu / learned.cpu, diffused = moments.diffused.cpu / learned.cpu;
     row({.name = "curvature",
-         .what = "learned, given vertices and normals, one thread",
+         .what = fmt::format("learned, {}, given vertices and normals, one thread", name_of(learner)),
          .goal = "a fifteenth of estimated, a fiftieth of diffused",
          .cost = learned,
-         .remarks = {fmt::format("{:.1f} times as fast as estimated, {:.1f} times as diffused", plain.cpu / learned.cpu,
-                                 smoothed.cpu / learned.cpu)},
-         .numbers = {{"speedup", plain.cpu / learned.cpu}, {"speedup_diffused", smoothed.cpu / learned.cpu}}});
+         .remarks = {fmt::format("{:.1f} times as fast as estimated, {:.1f} times as diffused", speedup, diffused)},
+         .numbers = {{"speedup", speedup}, {"speedup_diffused", diffused}}});
 }
 
 }  // namespace
 
 void bench_curvature(BenchContext& context, const std::function<void(const BenchRow&)>& row) {
     const Character character;
-    CurvatureModel model;
-    CurvatureTrainingReport report;
-    const Cost training =
-        measure(1, [&] { model = train_curvature(character.seen, character.seen_frames, {}, report); });
-    row({.name = "curvature",
-         .what = "training, 100 poses of 20k vertices",
-         .goal = "2 min",
-         .cost = training,
-         .remarks = {fmt::format("{:.2f} MB of bases and means", 1e-6 * static_cast<double>(report.model_bytes))},
-         .numbers = {{"bytes", report.model_bytes}}});
-    bench_frames(context, character, model, row);
+    for (const Learner learner : {Learner::local, Learner::additive}) bench_learner(context, character, learner, row);
 }
 
 }  // namespace exemplar

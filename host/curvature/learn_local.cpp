@@ -182,6 +182,7 @@ class LocalLearner {
 
     void add_bases(std::size_t patch, const ReducedRank& map, PredictorBuilder& builder) const {
         const Control& control = reader_.controls[patch];
+        if (control.input_count == 0) return;  // it does not bend
         const auto one = static_cast<std::uint32_t>(reader_.input_count);
         std::vector<Monomial> inputs;
         for (std::uint32_t i = 0; i < control.input_count; ++i) inputs.push_back({control.first_input + i, one, one});

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <string>
 
 #include "host/imaging/camera.h"
 #include "host/imaging/png.h"
@@ -22,6 +24,14 @@ std::vector<Color> colors_of(const Marks& truth, const Marks& guess) {
     for (std::size_t f = 0; f < truth.size(); ++f)
         if (truth[f] || guess[f]) colors[f] = !guess[f] ? k_missing : !truth[f] ? k_wrong : k_right;
     return colors;
+}
+
+/// Clips may be called anything, and "../x" should not lead out of the folder.
+std::string file_name_of(std::string clip) {
+    for (char& c : clip)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
+    constexpr std::size_t k_longest = 60;
+    return clip.substr(0, k_longest);
 }
 
 void paste(const Image& part, int left, Image& image) {
@@ -49,9 +59,9 @@ void write_line_pictures(const std::filesystem::path& folder, const CurvatureMod
             paste(render_mesh(mesh, colors_of(truth, marks(*curvature)), camera, k_width, k_height), left, image);
             left += k_width;
         }
-        write_png(
-            folder / fmt::format("{}_{:04d}_{}.png", animation.clips[frame.clip].name, frame.frame, name_of(type)),
-            image);
+        write_png(folder / fmt::format("{}_{:04d}_{}.png", file_name_of(animation.clips[frame.clip].name), frame.frame,
+                                       name_of(type)),
+                  image);
     }
 }
 

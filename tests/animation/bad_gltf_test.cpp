@@ -7,7 +7,6 @@
 namespace exemplar {
 namespace {
 
-using made_up::arm;
 using made_up::bending_arm;
 using made_up::face;
 using made_up::Gltf;

@@ -22,25 +22,6 @@ std::uint32_t spread_bits(std::uint32_t value) {
     return (value | value << 2) & 0x09249249;
 }
 
-/// Place of each vertex on a curve through space (Morton 1966) over the box of all.
-std::vector<std::uint32_t> curve_places(std::span<const Vec3> points) {
-    Vec3 low = Vec3::Constant(std::numeric_limits<float>::max()), high = -low;
-    for (const Vec3& p : points) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-    }
-    const float cell = std::max((high - low).maxCoeff(), std::numeric_limits<float>::min()) / 1023.0f;
-    std::vector<std::uint32_t> places;
-    places.reserve(points.size());
-    for (const Vec3& p : points) {
-        const Vec3 at = (p - low) / cell;
-        places.push_back(spread_bits(static_cast<std::uint32_t>(at.x())) |
-                         spread_bits(static_cast<std::uint32_t>(at.y())) << 1 |
-                         spread_bits(static_cast<std::uint32_t>(at.z())) << 2);
-    }
-    return places;
-}
-
 /// Orders the vertices by segment and curve, and pads each segment to whole tiles with its last vertex.
 void lay_out_vertices(const AttributeFrames& frames, std::span<const Vec3> rest, BasisTiles& tiles) {
     const std::vector<std::uint32_t> place = curve_places(rest);
@@ -126,6 +107,24 @@ float half_scale(const Eigen::Ref<const Eigen::RowVectorXf>& mean, const std::ve
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> curve_places(std::span<const Vec3> points) {
+    Vec3 low = Vec3::Constant(std::numeric_limits<float>::max()), high = -low;
+    for (const Vec3& p : points) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    const float cell = std::max((high - low).maxCoeff(), std::numeric_limits<float>::min()) / 1023.0f;
+    std::vector<std::uint32_t> places;
+    places.reserve(points.size());
+    for (const Vec3& p : points) {
+        const Vec3 at = (p - low) / cell;
+        places.push_back(spread_bits(static_cast<std::uint32_t>(at.x())) |
+                         spread_bits(static_cast<std::uint32_t>(at.y())) << 1 |
+                         spread_bits(static_cast<std::uint32_t>(at.z())) << 2);
+    }
+    return places;
+}
 
 BasisTiles make_tiles(const AttributeFrames& frames, std::span<const Vec3> rest,
                       const Eigen::Ref<const Eigen::MatrixXf>& means, const std::vector<VertexBasis>& bases,

@@ -26,6 +26,10 @@ struct TilingOptions {
     Eigen::MatrixXf scales{};
 };
 
+/// Place of each point on a curve that fills space (Morton 1966), over the box of all: points whose places are near
+/// each other mostly lie near each other.
+std::vector<std::uint32_t> curve_places(std::span<const Vec3> points);
+
 /// Cuts bases into tiles: vertices of a segment are ordered along a space-filling curve over `rest`, so that the
 /// sixteen of a tile are neighbors, and where a component is weak in a tile its entry is left out, the weakest first.
 /// means: attributes x vertices. Throws UsageError if there are more than 65536 components.

@@ -83,6 +83,7 @@ void drop_weakest(std::vector<TileEntry>& entries, double share) {
     double total = 0;
     for (const TileEntry& entry : entries) total += entry.variance;
     std::vector<float> variances;
+    variances.reserve(entries.size());
     for (const TileEntry& entry : entries) variances.push_back(entry.variance);
     std::sort(variances.begin(), variances.end());
     double dropped = 0;

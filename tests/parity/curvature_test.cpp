@@ -22,13 +22,11 @@
 namespace exemplar {
 namespace {
 
-using shared::vec4;
 using testing::derivative_in_space;
 using testing::distance;
 using testing::download;
 using testing::form_in_space;
 using testing::random_pose;
-using testing::resident_bytes;
 using testing::same_bits;
 using testing::shared_device;
 using testing::size_of;

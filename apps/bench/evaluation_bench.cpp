@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <ctime>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,19 +62,27 @@ std::vector<Frame> read_frames(const Animation& animation, const CurvatureModel&
 }
 
 // Pose, or local shape, to inputs.
-void time_inputs(const CurvatureModel& model, const Frame& frame, std::span<float> x, Medians& medians) {
-    if (!model.state.is_local()) {
-        if (frame.pose) medians.time("pose", [&] { model.state.read_pose(*frame.pose, x); });
-    } else {
-        LocalShapeReader reader(model.state);
-        std::vector<Eigen::Matrix3f> rotations;
-        for (std::size_t round = 0; round < 2; ++round) {  // the first asks for memory
-            medians.time("rotations", [&] { model.segments.rotations_of_sequence(frame.moment.vertices, rotations); });
-            medians.time("shape", [&] { reader.read(frame.moment.vertices, frame.moment.normals, rotations, x); });
-        }
+class InputParts {
+  public:
+    explicit InputParts(const CurvatureModel& model) : model_(model) {
+        if (model.state.is_local()) local_.emplace(model.state);
     }
-    medians.time("range", [&] { model.range.prepare(model.state, x); });
-}
+    void time(const Frame& frame, std::span<float> x, Medians& medians) {
+        const SurfaceMoment& moment = frame.moment;
+        if (local_) {
+            medians.time("rotations", [&] { model_.segments.rotations_of_sequence(moment.vertices, rotations_); });
+            medians.time("shape", [&] { local_->read(moment.vertices, moment.normals, rotations_, x); });
+        } else if (frame.pose) {
+            medians.time("pose", [&] { model_.state.read_pose(*frame.pose, x); });
+        }
+        medians.time("range", [&] { model_.range.prepare(model_.state, x); });
+    }
+
+  private:
+    const CurvatureModel& model_;
+    std::optional<LocalShapeReader> local_;
+    std::vector<Eigen::Matrix3f> rotations_;
+};
 
 // The parts of a frame, each with warm caches: to inputs, inputs to components, components to curvature.
 void time_parts(const CurvatureModel& model, const Frame& frame, std::span<const float> components, Medians& medians) {
@@ -81,10 +90,12 @@ void time_parts(const CurvatureModel& model, const Frame& frame, std::span<const
         z(model.regression.components.size());
     VertexCurvature curvature;
     const PosedSurface surface = frame.moment.surface();
+    InputParts inputs(model);
     reproject_curvature(model.tiles, components, surface, curvature);
     for (std::size_t round = 0; round < k_rounds; ++round) {
-        time_inputs(model, frame, x, medians);
-        medians.time("components", [&] { model.regression.evaluate(x, features, z); });
+        inputs.time(frame, x, medians);
+        if (!model.regression.copies_inputs())
+            medians.time("components", [&] { model.regression.evaluate(x, features, z); });
         medians.time("reprojection", [&] { reproject_curvature(model.tiles, components, surface, curvature); });
     }
 }

@@ -17,6 +17,7 @@ namespace {
 
 using mesh_io::GltfReader;
 
+/// Exporters leave smaller weights on joints that move nothing.
 constexpr float k_used_weight = 1e-3f;
 
 /// Collects the vertices, faces, bones and morph targets of a scene.

@@ -22,13 +22,13 @@ void check_inputs(const CurvatureModel& model) {
     if (model.regression.input_count != inputs)
         refuse(fmt::format("it has {} inputs and predicts from {}", inputs, model.regression.input_count));
     const PoseRange& range = model.range;
-    if (range.mean.size() != static_cast<Eigen::Index>(inputs) || range.whitening.size() != controls ||
+    if (range.mean.size() != static_cast<Eigen::Index>(inputs) || range.whitening.size() != (model.state.is_local() ? 0 : controls) ||
         range.largest.size() != controls)
         refuse(fmt::format("its range is not of {} inputs of {} controls", inputs, controls));
     for (std::size_t c = 0; c < controls; ++c) {
         const auto& [name, first, count] = model.state.controls[c];
-        if (std::size_t{first} + count > inputs || range.whitening[c].rows() != Eigen::Index{count} ||
-            range.whitening[c].cols() != Eigen::Index{count})
+        const auto is_square = [&](const Eigen::MatrixXf& m) { return m.rows() == count && m.cols() == count; };
+        if (std::size_t{first} + count > inputs || (!model.state.is_local() && !is_square(range.whitening[c])))
             refuse(fmt::format("control '{}' has inputs that do not exist", name));
     }
 }
@@ -46,6 +46,7 @@ GpuLearnedCurvature::GpuLearnedCurvature(Device& device, const CurvatureModel& m
       range_(model.range),
       segments_(needed_segments(model)),
       predictor_(device, model.regression),
+      copies_inputs_(model.regression.copies_inputs()),
       reprojection_(device, model.tiles, model.regression.components.size(), segments_.count(), options),
       x_(model.state.input_count),
       rotations_(segments_.count()) {
@@ -101,8 +102,8 @@ void GpuLearnedCurvature::record(Stream& stream, const Buffer& vertices, const B
         throw UsageError(
             fmt::format("{} vertices cannot have {} normals", vertex_count_, normals.bytes() / sizeof(vec4)));
     local_->record(stream, vertices, normals);
-    predictor_.record(stream, local_->inputs(), 0);
-    reprojection_.record(stream, predictor_.components(),
+    if (!copies_inputs_) predictor_.record(stream, local_->inputs(), 0);
+    reprojection_.record(stream, copies_inputs_ ? local_->inputs() : predictor_.components(),
                          {.vertices = vertices, .normals = normals, .rotations = local_->rotations()});
 }
 

@@ -58,6 +58,7 @@ class GpuLearnedCurvature {
     Segments segments_;                                   // none for tensors
     std::size_t fewest_bones_ = 0, fewest_controls_ = 0;  // of a rig: nodes or targets
     GpuComponentPredictor predictor_;
+    bool copies_inputs_;
     GpuReprojection reprojection_;
     std::optional<GpuLocalState> local_;
     Buffer state_;  // rotations, then inputs; not of local shape

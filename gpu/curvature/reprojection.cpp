@@ -33,7 +33,7 @@ Kernel make_kernel(Device& device, AttributeSet set, std::uint32_t quads) {
     return {device,
             shaders::curvature_reproject_comp,
             {.push_constants = layout_of<ReprojectionParameters>(),
-             .elements = {layout_of<uvec4>(), layout_of<uvec4>(), layout_of<std::uint32_t>(), layout_of<float>(),
+             .elements = {layout_of<uvec4>(), layout_of<uvec4>(), layout_of<uvec4>(), layout_of<float>(),
                           layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(),
                           layout_of<vec4>()},
              .constants = {{0, set == AttributeSet::principal ? 1u : 0u}, {1, quads}}}};
@@ -58,7 +58,7 @@ GpuReprojection::GpuReprojection(Device& device, const BasisTiles& tiles, std::s
     ranges_ = layout.ranges;
     table_ = Buffer::of<CurvatureTile>(device, layout.table);
     tiles_ = Buffer::of<uvec4>(device, layout.texels);
-    pairs_ = Buffer::of<std::uint32_t>(device, layout.pairs);
+    groups_ = Buffer::of<uvec4>(device, layout.groups);
     for (Buffer* const output : {&first_, &second_, &derivative_})
         *output = Buffer(device, vertex_count_ * sizeof(vec4));
 }
@@ -78,14 +78,14 @@ void GpuReprojection::record(Stream& stream, const Buffer& components, const Sur
         stream.dispatch(
             kernel_, std::size_t{range.tiles} * (k_tile_quads / quads_),
             {table_, BufferRange(tiles_, range.first_texel * sizeof(uvec4), range.texels * sizeof(uvec4)),
-             BufferRange(pairs_, range.first_pair * sizeof(std::uint32_t), range.pairs * sizeof(std::uint32_t)),
+             BufferRange(groups_, range.first_group * sizeof(uvec4), range.groups * sizeof(uvec4)),
              components, surface.rotations, surface.vertices, surface.normals, first_, second_, derivative_},
             ReprojectionParameters{.low_scales = {scale_[0], scale_[1], scale_[2], scale_[3]},
                                    .high_scales = {scale_[4], scale_[5], scale_[6], scale_[7]},
                                    .first_tile = range.first_tile,
                                    .tiles = range.tiles,
                                    .first_texel = static_cast<std::uint32_t>(range.first_texel),
-                                   .first_pair = static_cast<std::uint32_t>(range.first_pair)});
+                                   .first_group = static_cast<std::uint32_t>(range.first_group)});
 }
 
 }  // namespace exemplar

@@ -52,7 +52,7 @@ class GpuReprojection {
     std::uint32_t quads_;  // of vertices per invocation
     Kernel kernel_;
     std::vector<TileLayout::Range> ranges_;
-    Buffer table_, tiles_, pairs_, first_, second_, derivative_;
+    Buffer table_, tiles_, groups_, first_, second_, derivative_;
 };
 
 }  // namespace exemplar

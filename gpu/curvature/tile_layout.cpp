@@ -20,6 +20,7 @@ using shared::k_tile_quads;
 using shared::uvec4;
 
 constexpr std::size_t k_lanes = BasisTiles::k_lanes;
+constexpr std::uint32_t k_group = 4;  // entries
 static_assert(k_lanes == std::size_t{4} * k_tile_quads);
 static_assert(k_most_attributes == 8, "the counts of a tile are one texel");
 
@@ -40,8 +41,8 @@ void check_tiles(const BasisTiles& tiles, std::size_t components, std::size_t se
     if (tiles.vertex.size() != count * k_lanes || tiles.mean.size() != count * attributes * k_lanes ||
         tiles.neighbor.size() != (is_tensor(tiles) ? count * k_lanes : 0) ||
         tiles.reference.size() != (is_tensor(tiles) ? 0 : count * 3 * k_lanes) ||
-        begin.size() != count * attributes + 1 || begin.back() != tiles.component.size() ||
-        tiles.basis.size() != tiles.component.size() * k_lanes || tiles.scale.size() != attributes ||
+        begin.size() != count * attributes + 1 || begin.back() != tiles.entry.size() ||
+        tiles.basis.size() != tiles.entry.size() * k_lanes || tiles.scale.size() != attributes ||
         !std::is_sorted(begin.begin(), begin.end()))
         refuse(fmt::format("its parts are not those of {} tiles of {} attributes", count, attributes));
     const auto beyond = [](const auto& values, std::size_t most) {
@@ -49,7 +50,8 @@ void check_tiles(const BasisTiles& tiles, std::size_t components, std::size_t se
     };
     if (beyond(tiles.vertex, tiles.vertex_count) || beyond(tiles.neighbor, tiles.vertex_count))
         refuse("a tile has a vertex that does not exist");
-    if (beyond(tiles.component, components)) refuse("a tile has a component that does not exist");
+    if (std::ranges::any_of(tiles.entry, [&](auto entry) { return BasisTiles::component_of(entry) >= components; }))
+        refuse("a tile has a component that does not exist");
     if (!is_tensor(tiles) && beyond(tiles.segment, segments)) refuse("a tile is of a segment that does not exist");
 }
 
@@ -61,6 +63,12 @@ Row row_at(const std::vector<Half>& halves, std::size_t index) {
 
 std::uint32_t packed(Half low, Half high) {
     return low.bits | static_cast<std::uint32_t>(high.bits) << 16;
+}
+
+std::uint32_t packed(const std::int8_t* four) {
+    std::uint32_t word = 0;
+    for (std::uint32_t i = 0; i < 4; ++i) word |= std::uint32_t{static_cast<std::uint8_t>(four[i])} << 8 * i;
+    return word;
 }
 
 void append_pair(const Row& a, const Row& b, std::vector<uvec4>& texels) {
@@ -88,7 +96,7 @@ void append_indices(const std::vector<std::uint32_t>& indices, std::size_t tile,
 // Where the entries of an attribute of a tile end.
 struct Entries {
     std::uint32_t begin, end;
-    std::uint32_t pairs() const { return (end - begin + 1) / 2; }
+    std::uint32_t groups() const { return (end - begin + k_group - 1) / k_group; }
 };
 
 Entries entries_at(const BasisTiles& tiles, std::size_t tile, std::size_t attribute) {
@@ -97,19 +105,26 @@ Entries entries_at(const BasisTiles& tiles, std::size_t tile, std::size_t attrib
 }
 
 void append_entries(const BasisTiles& tiles, Entries entries, TileLayout& layout) {
-    for (std::uint32_t e = entries.begin; e < entries.end; e += 2) {
-        const bool alone = e + 1 == entries.end;
-        append_pair(row_at(tiles.basis, e), alone ? Row{} : row_at(tiles.basis, e + 1), layout.texels);
-        // Zero times a component that the tile has anyway: what is not finite comes into nothing else.
-        layout.pairs.push_back(tiles.component[e] | std::uint32_t{tiles.component[alone ? e : e + 1]} << 16);
+    for (std::uint32_t first = entries.begin; first < entries.end; first += k_group) {
+        std::array<std::uint32_t, k_group> group;
+        std::array<std::array<std::uint32_t, k_group>, k_tile_quads> words{};
+        for (std::uint32_t i = 0; i < k_group; ++i) {
+            const std::uint32_t e = first + i;
+            // Zero times a component that the tile has anyway: what is not finite comes into nothing else.
+            group[i] = e < entries.end ? tiles.entry[e] : BasisTiles::component_of(tiles.entry[first]);
+            for (std::size_t q = 0; e < entries.end && q < k_tile_quads; ++q)
+                words[q][i] = packed(&tiles.basis[e * k_lanes + 4 * q]);
+        }
+        layout.groups.push_back({group[0], group[1], group[2], group[3]});
+        for (const auto& w : words) layout.texels.push_back({w[0], w[1], w[2], w[3]});
     }
 }
 
 void append_tile(const BasisTiles& tiles, std::size_t tile, TileLayout& layout) {
     const std::size_t attributes = attribute_count(tiles.set);
-    std::array<std::uint32_t, k_most_attributes> pairs{};
-    for (std::size_t a = 0; a < attributes; ++a) pairs[a] = entries_at(tiles, tile, a).pairs();
-    const auto counts = [&](std::size_t a) { return pairs[a] | pairs[a + 1] << 16; };
+    std::array<std::uint32_t, k_most_attributes> groups{};
+    for (std::size_t a = 0; a < attributes; ++a) groups[a] = entries_at(tiles, tile, a).groups();
+    const auto counts = [&](std::size_t a) { return groups[a] | groups[a + 1] << 16; };
     layout.texels.push_back({counts(0), counts(2), counts(4), counts(6)});
     append_indices(tiles.vertex, tile, layout.texels);
     if (is_tensor(tiles)) append_indices(tiles.neighbor, tile, layout.texels);
@@ -117,16 +132,16 @@ void append_tile(const BasisTiles& tiles, std::size_t tile, TileLayout& layout) 
     for (std::size_t a = 0; a < attributes; ++a) append_entries(tiles, entries_at(tiles, tile, a), layout);
 }
 
-std::size_t pairs_of(const BasisTiles& tiles, std::size_t tile) {
-    std::size_t pairs = 0;
-    for (std::size_t a = 0; a < attribute_count(tiles.set); ++a) pairs += entries_at(tiles, tile, a).pairs();
-    return pairs;
+std::size_t groups_of(const BasisTiles& tiles, std::size_t tile) {
+    std::size_t groups = 0;
+    for (std::size_t a = 0; a < attribute_count(tiles.set); ++a) groups += entries_at(tiles, tile, a).groups();
+    return groups;
 }
 
 std::size_t texels_of(const BasisTiles& tiles, std::size_t tile) {
     const std::size_t constants = attribute_count(tiles.set) + (is_tensor(tiles) ? 0 : 3);
     return (is_tensor(tiles) ? k_tensor_head : k_principal_head) +
-           k_tile_quads * ((constants + 1) / 2 + pairs_of(tiles, tile));
+           k_tile_quads * ((constants + 1) / 2 + groups_of(tiles, tile));
 }
 
 // So far apart that any stretch of multiples, modulo `count`, is spread evenly (by the golden ratio), and all are met.
@@ -136,19 +151,19 @@ std::size_t spreading_step(std::size_t count) {
     return step;
 }
 
-// Invocations that run in step wait for the one with the most pairs, so that tiles with about as many stand together,
+// Invocations that run in step wait for the one with the most groups, so that tiles with about as many stand together,
 // in runs as long as such invocations are many. Short and long runs are mixed: cores that take equal shares of the
 // tiles get about equal shares of the work. All that only within windows: what is near on the surface is still near in
 // time.
 std::vector<std::uint32_t> order_by_work(const BasisTiles& tiles) {
     constexpr std::size_t k_run = 8, k_window = 512;
-    std::vector<std::size_t> pairs;
-    for (std::size_t t = 0; t < tiles.tile_count(); ++t) pairs.push_back(pairs_of(tiles, t));
+    std::vector<std::size_t> groups;
+    for (std::size_t t = 0; t < tiles.tile_count(); ++t) groups.push_back(groups_of(tiles, t));
     std::vector<std::uint32_t> order;
-    for (std::size_t first = 0; first < pairs.size(); first += k_window) {
-        std::vector<std::uint32_t> sorted(std::min(k_window, pairs.size() - first));
+    for (std::size_t first = 0; first < groups.size(); first += k_window) {
+        std::vector<std::uint32_t> sorted(std::min(k_window, groups.size() - first));
         std::iota(sorted.begin(), sorted.end(), static_cast<std::uint32_t>(first));
-        std::ranges::stable_sort(sorted, {}, [&](std::uint32_t t) { return pairs[t]; });
+        std::ranges::stable_sort(sorted, {}, [&](std::uint32_t t) { return groups[t]; });
         const std::size_t runs = sorted.size() / k_run, step = spreading_step(runs);
         for (std::size_t i = 0; i < runs * k_run; ++i)
             order.push_back(sorted[i / k_run * step % runs * k_run + i % k_run]);
@@ -159,7 +174,7 @@ std::vector<std::uint32_t> order_by_work(const BasisTiles& tiles) {
 
 void pad(std::size_t alignment, TileLayout& layout) {
     while (layout.texels.size() * sizeof(uvec4) % alignment != 0) layout.texels.push_back({});
-    while (layout.pairs.size() * sizeof(std::uint32_t) % alignment != 0) layout.pairs.push_back(0);
+    while (layout.groups.size() * sizeof(uvec4) % alignment != 0) layout.groups.push_back({});
 }
 
 }  // namespace
@@ -178,17 +193,17 @@ TileLayout lay_out_tiles(const BasisTiles& tiles, std::size_t components, std::s
         if (layout.ranges.empty() || layout.ranges.back().texels + texels > most_texels) {
             pad(alignment, layout);
             layout.ranges.push_back(
-                {static_cast<std::uint32_t>(layout.table.size()), 0, layout.texels.size(), 0, layout.pairs.size(), 0});
+                {static_cast<std::uint32_t>(layout.table.size()), 0, layout.texels.size(), 0, layout.groups.size(), 0});
         }
         layout.table.push_back({.first_texel = static_cast<std::uint32_t>(layout.texels.size()),
-                                .first_pair = static_cast<std::uint32_t>(layout.pairs.size()),
+                                .first_group = static_cast<std::uint32_t>(layout.groups.size()),
                                 .segment = tiles.segment[t],
                                 .unused = 0});
         append_tile(tiles, t, layout);
         TileLayout::Range& range = layout.ranges.back();
         ++range.tiles;
         range.texels = layout.texels.size() - range.first_texel;
-        range.pairs = layout.pairs.size() - range.first_pair;
+        range.groups = layout.groups.size() - range.first_group;
     }
     return layout;
 }

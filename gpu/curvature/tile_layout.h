@@ -14,11 +14,11 @@ namespace exemplar {
 struct TileLayout {
     struct Range {
         std::uint32_t first_tile, tiles;
-        std::size_t first_texel, texels, first_pair, pairs;
+        std::size_t first_texel, texels, first_group, groups;
     };
     std::vector<shared::CurvatureTile> table;
     std::vector<shared::uvec4> texels;
-    std::vector<std::uint32_t> pairs;  ///< of components: the second in the upper half
+    std::vector<shared::uvec4> groups;  ///< of four entries
     std::vector<Range> ranges;
 };
 

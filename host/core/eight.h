@@ -28,6 +28,17 @@ inline EightFloats square_root(EightFloats x) {
 #endif
 }
 
+/// Eight numbers of a byte, one after the other.
+inline EightFloats eight_from_bytes(const std::int8_t* bytes) {
+#ifdef __AVX2__
+    return _mm256_cvtepi32_ps(_mm256_cvtepi8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(bytes))));
+#else
+    EightFloats values;
+    for (int i = 0; i < 8; ++i) values[i] = static_cast<float>(bytes[i]);
+    return values;
+#endif
+}
+
 inline EightFloats magnitude(EightFloats x) {
     return reinterpret_cast<EightFloats>(reinterpret_cast<EightBits>(x) & 0x7FFFFFFF);
 }

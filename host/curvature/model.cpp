@@ -21,7 +21,7 @@ using Words = std::vector<std::uint32_t>;
 using Floats = std::vector<float>;
 
 constexpr const char* k_kind = "exemplar curvature";
-constexpr int k_format_version = 2;
+constexpr int k_format_version = 3;
 constexpr std::size_t k_any = TensorFile::k_any;
 
 Floats row_major(const Eigen::Ref<const Eigen::MatrixXf>& matrix) {
@@ -149,8 +149,8 @@ void add_tiles(TensorFile& file, const BasisTiles& tiles) {
     file.add("tiles.segment", {count}, tiles.segment);
     file.add("tiles.scale", {tiles.scale.size()}, tiles.scale);
     file.add("tiles.entry_begin", {tiles.entry_begin.size()}, tiles.entry_begin);
-    file.add("tiles.component", {tiles.component.size()}, tiles.component);
-    file.add("tiles.basis", {tiles.component.size(), lanes}, tiles.basis);
+    file.add("tiles.entry", {tiles.entry.size()}, tiles.entry);
+    file.add("tiles.basis", {tiles.entry.size(), lanes}, tiles.basis);
     file.add("tiles.mean", {count, tiles.scale.size(), lanes}, tiles.mean);
     const bool tensor = tiles.set == AttributeSet::tensor;
     file.add("tiles.neighbor", {tensor ? count : 0, lanes}, tiles.neighbor);
@@ -316,6 +316,7 @@ void read_range(const Reading& reading, CurvatureModel& model) {
     const Floats whitening = reading.floats("range.whitening", {k_any});
     std::size_t at = 0;
     for (const Control& control : model.state.controls) {
+        if (model.state.is_local()) break;
         const std::size_t n = control.input_count;
         reading.require(n * n <= whitening.size() - at, "range.whitening is too short");
         model.range.whitening.push_back(matrix_of(part_of(whitening, at, n * n), n, n));
@@ -389,12 +390,15 @@ void read_tiles(const Reading& reading, CurvatureModel& model) {
     tiles.vertex = reading.words("tiles.vertex", {count, lanes});
     reading.below(tiles.vertex, model.vertex_count, "tiles.vertex");
     tiles.scale = reading.floats("tiles.scale", {attributes});
-    tiles.component = reading.get<std::uint16_t>("tiles.component", {k_any});
-    for (const std::uint16_t component : tiles.component)
-        reading.require(component < model.regression.components.size(), "a tile uses a component that is not there");
+    tiles.entry = reading.words("tiles.entry", {k_any});
+    for (const std::uint32_t entry : tiles.entry) {
+        reading.require(BasisTiles::component_of(entry) < model.regression.components.size(),
+                        "a tile uses a component that is not there");
+        reading.require(std::isfinite(BasisTiles::step_of(entry)), "tiles.entry holds a step that is not finite");
+    }
     tiles.entry_begin = reading.words("tiles.entry_begin", {k_any});
-    reading.rows(tiles.entry_begin, count * attributes, tiles.component.size(), "the entries of the tiles");
-    tiles.basis = reading.halves("tiles.basis", {tiles.component.size(), lanes});
+    reading.rows(tiles.entry_begin, count * attributes, tiles.entry.size(), "the entries of the tiles");
+    tiles.basis = reading.get<std::int8_t>("tiles.basis", {tiles.entry.size(), lanes});
     tiles.mean = reading.halves("tiles.mean", {count, attributes, lanes});
     tiles.neighbor = reading.words("tiles.neighbor", {tensor ? count : 0, lanes});
     reading.below(tiles.neighbor, model.vertex_count, "tiles.neighbor");

@@ -32,8 +32,8 @@ void ComponentRegression::evaluate(std::span<const float> x, std::span<float> fe
 
 std::size_t BasisTiles::bytes() const {
     return vertex.size() * sizeof(vertex[0]) + segment.size() * sizeof(segment[0]) +
-           entry_begin.size() * sizeof(entry_begin[0]) + component.size() * sizeof(component[0]) +
-           (basis.size() + mean.size() + reference.size()) * sizeof(Half) + neighbor.size() * sizeof(neighbor[0]);
+           entry_begin.size() * sizeof(entry_begin[0]) + entry.size() * sizeof(entry[0]) + basis.size() +
+           (mean.size() + reference.size()) * sizeof(Half) + neighbor.size() * sizeof(neighbor[0]);
 }
 
 void reproject(const BasisTiles& tiles, std::span<const float> z, std::span<float> attributes) {
@@ -41,11 +41,12 @@ void reproject(const BasisTiles& tiles, std::span<const float> z, std::span<floa
     const std::size_t count = attribute_count(tiles.set);
     for (std::size_t row = 0; row < tiles.tile_count() * count; ++row)
         for (std::size_t lane = 0; lane < k_lanes; ++lane) {
-            float sum = from_half(tiles.mean[row * k_lanes + lane]);
-            for (std::uint32_t e = tiles.entry_begin[row]; e < tiles.entry_begin[row + 1]; ++e)
-                sum += from_half(tiles.basis[e * k_lanes + lane]) * z[tiles.component[e]];
             const std::size_t attribute = row % count, vertex = tiles.vertex[row / count * k_lanes + lane];
-            attributes[attribute * tiles.vertex_count + vertex] = tiles.scale[attribute] * sum;
+            float sum = tiles.scale[attribute] * from_half(tiles.mean[row * k_lanes + lane]);
+            for (std::uint32_t e = tiles.entry_begin[row]; e < tiles.entry_begin[row + 1]; ++e)
+                sum += BasisTiles::step_of(tiles.entry[e]) * static_cast<float>(tiles.basis[e * k_lanes + lane]) *
+                       z[BasisTiles::component_of(tiles.entry[e])];
+            attributes[attribute * tiles.vertex_count + vertex] = sum;
         }
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -36,23 +37,31 @@ struct ComponentRegression {
 };
 
 /// The bases W and means of all attributes (Eq. 5.10: y = sum_j w_j W_j z_j + mean, the weights w multiplied into the
-/// bases), in halves. Vertices stand in tiles of k_lanes that lie side by side on the surface and belong to one
-/// segment; a tile lists only the components that matter there.
+/// bases). Vertices stand in tiles of k_lanes that lie side by side on the surface and belong to one segment; a tile
+/// lists only the components that matter there. Means are halves; a basis at the lanes of a tile is sixteen bytes, in
+/// steps of a 127th of the largest or a little more.
 struct BasisTiles {
     static constexpr std::size_t k_lanes = 16;
     AttributeSet set = AttributeSet::tensor;
     std::size_t vertex_count = 0;
     std::vector<std::uint32_t> vertex;   ///< of each lane; those of the last tile of a segment may repeat a vertex
     std::vector<std::uint32_t> segment;  ///< of each tile; 0 where attributes need no segments
-    std::vector<float> scale;            ///< of each attribute: what its halves are multiplied with
+    std::vector<float> scale;            ///< of each attribute: what its means are multiplied with
     /// The entries of attribute a of tile t: entry_begin[t * attributes + a] to the next.
     std::vector<std::uint32_t> entry_begin;
-    std::vector<std::uint16_t> component;  ///< of each entry
-    std::vector<Half> basis;               ///< entries x k_lanes
-    std::vector<Half> mean;                ///< tiles x attributes x k_lanes
-    std::vector<std::uint32_t> neighbor;   ///< tensor, of each lane: see AttributeFrames
-    std::vector<Half> reference;           ///< principal: tiles x 3 x k_lanes: reference normals (see AttributeFrames)
+    std::vector<std::uint32_t> entry;     ///< see component_of and step_of
+    std::vector<std::int8_t> basis;       ///< entries x k_lanes, in steps
+    std::vector<Half> mean;               ///< tiles x attributes x k_lanes
+    std::vector<std::uint32_t> neighbor;  ///< tensor, of each lane: see AttributeFrames
+    std::vector<Half> reference;          ///< principal: tiles x 3 x k_lanes: reference normals (see AttributeFrames)
 
+    /// An entry is the number of its component, and above it the upper half of the float that is its step.
+    static std::uint32_t component_of(std::uint32_t entry) { return entry & 0xFFFFu; }
+    static float step_of(std::uint32_t entry) { return std::bit_cast<float>(entry & 0xFFFF0000u); }
+    /// With a step of at least `least_step` and at most a 128th more; least_step >= 0.
+    static std::uint32_t make_entry(std::uint16_t component, float least_step) {
+        return ((std::bit_cast<std::uint32_t>(least_step) + 0xFFFFu) & 0xFFFF0000u) | component;
+    }
     std::size_t tile_count() const { return segment.size(); }
     std::size_t bytes() const;
 };

@@ -98,23 +98,27 @@ using EightAttributes = std::array<EightFloats, k_most_attributes>;
 Sixteen sixteen_from_halves(const Half* halves) {
     return {{eight_from_halves(halves), eight_from_halves(halves + k_eight)}};
 }
-void add_product(float z, const Half* basis, Sixteen& sum) {
-    const Sixteen row = sixteen_from_halves(basis);
-    sum.eights[0] += z * row.eights[0];
-    sum.eights[1] += z * row.eights[1];
+void add_product(float factor, const std::int8_t* basis, Sixteen& sum) {
+    sum.eights[0] += factor * eight_from_bytes(basis);
+    sum.eights[1] += factor * eight_from_bytes(basis + k_eight);
 }
 
 /// One row: an attribute of a tile. In two sums that take turns, since an addition waits for the one before.
-Sixteen reprojected(const BasisTiles& tiles, std::span<const float> z, std::size_t row) {
+Sixteen reprojected(const BasisTiles& tiles, std::span<const float> z, std::size_t row, float scale) {
     Sixteen even = sixteen_from_halves(tiles.mean.data() + row * k_lanes), odd{};
-    const std::uint16_t* next = tiles.component.data() + tiles.entry_begin[row];
-    const std::uint16_t* const end = tiles.component.data() + tiles.entry_begin[row + 1];
-    const Half* basis = tiles.basis.data() + tiles.entry_begin[row] * k_lanes;
+    even.eights[0] *= scale;
+    even.eights[1] *= scale;
+    const std::uint32_t* next = tiles.entry.data() + tiles.entry_begin[row];
+    const std::uint32_t* const end = tiles.entry.data() + tiles.entry_begin[row + 1];
+    const std::int8_t* basis = tiles.basis.data() + tiles.entry_begin[row] * k_lanes;
+    const auto factor = [&](std::uint32_t entry) {
+        return z[BasisTiles::component_of(entry)] * BasisTiles::step_of(entry);
+    };
     for (; end - next >= 2; next += 2, basis += 2 * k_lanes) {
-        add_product(z[next[0]], basis, even);
-        add_product(z[next[1]], basis + k_lanes, odd);
+        add_product(factor(next[0]), basis, even);
+        add_product(factor(next[1]), basis + k_lanes, odd);
     }
-    if (next != end) add_product(z[*next], basis, even);
+    if (next != end) add_product(factor(*next), basis, even);
     return {{even.eights[0] + odd.eights[0], even.eights[1] + odd.eights[1]}};
 }
 
@@ -122,8 +126,8 @@ std::array<EightAttributes, 2> tile_attributes(const BasisTiles& tiles, std::spa
     std::array<EightAttributes, 2> y;
     const std::size_t count = attribute_count(tiles.set);
     for (std::size_t a = 0; a < count; ++a) {
-        const Sixteen row = reprojected(tiles, z, tile * count + a);
-        for (std::size_t half = 0; half < 2; ++half) y[half][a] = tiles.scale[a] * row.eights[half];
+        const Sixteen row = reprojected(tiles, z, tile * count + a, tiles.scale[a]);
+        for (std::size_t half = 0; half < 2; ++half) y[half][a] = row.eights[half];
     }
     return y;
 }

@@ -128,6 +128,16 @@ Eigen::MatrixXf angles_of(const std::vector<StateReader::Hinge>& hinges, std::sp
     return angles;
 }
 
+/// Makes the inputs of a control uncorrelated and of unit variance. centered: poses x inputs.
+Eigen::MatrixXf whitening_of(const Eigen::MatrixXd& centered) {
+    const Eigen::MatrixXd covariance = centered.transpose() * centered / static_cast<double>(centered.rows());
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
+    // A direction that hardly varied in training still has some slack: a hundredth of the largest variance.
+    const double floor = std::max(1e-2 * solver.eigenvalues().maxCoeff(), 1e-8);
+    const Eigen::VectorXd scale = solver.eigenvalues().cwiseMax(floor).cwiseSqrt().cwiseInverse();
+    return (scale.asDiagonal() * solver.eigenvectors().transpose()).cast<float>();
+}
+
 }  // namespace
 
 float bend(const StateReader::Hinge& hinge, std::span<const Vec3> vertices) {
@@ -238,19 +248,15 @@ PoseRange make_pose_range(const StateReader& reader, const Eigen::Ref<const Eige
     const Eigen::MatrixXf centered = states.rowwise() - range.mean.transpose();
     for (const Control& control : reader.controls) {
         if (control.input_count == 0) {  // a patch that does not bend
-            range.whitening.emplace_back(0, 0);
+            if (!reader.is_local()) range.whitening.emplace_back(0, 0);
             range.largest.push_back(1);
             continue;
         }
-        const Eigen::MatrixXd part = centered.middleCols(control.first_input, control.input_count).cast<double>();
-        const Eigen::MatrixXd covariance =
-            part.transpose() * part / static_cast<double>(std::max<Eigen::Index>(part.rows(), 1));
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-        // A direction that hardly varied in training still has some slack: a hundredth of the largest variance.
-        const double floor = std::max(1e-2 * solver.eigenvalues().maxCoeff(), 1e-8);
-        const Eigen::VectorXd scale = solver.eigenvalues().cwiseMax(floor).cwiseSqrt().cwiseInverse();
-        range.whitening.emplace_back((scale.asDiagonal() * solver.eigenvectors().transpose()).cast<float>());
-        const Eigen::MatrixXf white = part.cast<float>() * range.whitening.back().transpose();
+        Eigen::MatrixXf white = centered.middleCols(control.first_input, control.input_count);
+        if (!reader.is_local()) {
+            range.whitening.push_back(whitening_of(white.cast<double>()));
+            white *= range.whitening.back().transpose();
+        }
         range.largest.push_back(std::max(white.rowwise().norm().maxCoeff(), 1e-6f));
     }
     return range;
@@ -259,6 +265,7 @@ PoseRange make_pose_range(const StateReader& reader, const Eigen::Ref<const Eige
 float PoseRange::distance(const Control& control, std::size_t index, std::span<const float> x) const {
     const Eigen::Map<const Eigen::VectorXf> here(x.data() + control.first_input, control.input_count);
     const auto middle = mean.segment(control.first_input, control.input_count);
+    if (whitening.empty()) return (here - middle).norm() / largest[index];
     // Many controls are small, and none of those should ask for memory.
     constexpr int k_small = 32;
     if (control.input_count > k_small) return (whitening[index] * (here - middle)).norm() / largest[index];

@@ -98,13 +98,20 @@ void drop_weakest(std::vector<TileEntry>& entries, double share) {
         entries.end());
 }
 
-/// What halves are multiplied with so that the largest magnitude of an attribute is 1024, which leaves the small ones
-/// their precision.
-float half_scale(const Eigen::Ref<const Eigen::RowVectorXf>& mean, const std::vector<TileEntry>& entries) {
-    float largest = mean.size() ? mean.cwiseAbs().maxCoeff() : 0.0f;
-    for (const TileEntry& entry : entries)
-        for (const float value : entry.basis) largest = std::max(largest, std::abs(value));
+/// What halves are multiplied with so that the largest mean of an attribute is 1024, which leaves the small ones their
+/// precision.
+float half_scale(const Eigen::Ref<const Eigen::RowVectorXf>& mean) {
+    const float largest = mean.size() ? mean.cwiseAbs().maxCoeff() : 0.0f;
     return largest > 0 ? largest / 1024.0f : 1.0f;
+}
+
+void append_entry(const TileEntry& entry, BasisTiles& tiles) {
+    constexpr float k_steps = 127;
+    float largest = 0;
+    for (const float value : entry.basis) largest = std::max(largest, std::abs(value));
+    tiles.entry.push_back(BasisTiles::make_entry(entry.component, largest / k_steps));
+    const float step = BasisTiles::step_of(tiles.entry.back());
+    for (const float value : entry.basis) tiles.basis.push_back(static_cast<std::int8_t>(std::lround(value / step)));
 }
 
 }  // namespace
@@ -143,18 +150,15 @@ BasisTiles make_tiles(const AttributeFrames& frames, std::span<const Vec3> rest,
     for (std::size_t a = 0; a < count; ++a) {
         entries[a] = entries_of(tiles, a, bases, options.scales);
         drop_weakest(entries[a], options.dropped_variance);
-        tiles.scale.push_back(half_scale(means.row(static_cast<Eigen::Index>(a)), entries[a]));
+        tiles.scale.push_back(half_scale(means.row(static_cast<Eigen::Index>(a))));
     }
     std::vector<std::size_t> next(count, 0);
     tiles.entry_begin.push_back(0);
     for (std::uint32_t t = 0; t < tiles.tile_count(); ++t)
         for (std::size_t a = 0; a < count; ++a) {
-            for (; next[a] < entries[a].size() && entries[a][next[a]].tile == t; ++next[a]) {
-                const TileEntry& entry = entries[a][next[a]];
-                tiles.component.push_back(entry.component);
-                for (const float value : entry.basis) tiles.basis.push_back(to_half(value / tiles.scale[a]));
-            }
-            tiles.entry_begin.push_back(static_cast<std::uint32_t>(tiles.component.size()));
+            for (; next[a] < entries[a].size() && entries[a][next[a]].tile == t; ++next[a])
+                append_entry(entries[a][next[a]], tiles);
+            tiles.entry_begin.push_back(static_cast<std::uint32_t>(tiles.entry.size()));
             for (std::size_t lane = 0; lane < k_lanes; ++lane)
                 tiles.mean.push_back(
                     to_half(means(static_cast<Eigen::Index>(a), tiles.vertex[t * k_lanes + lane]) / tiles.scale[a]));

@@ -34,9 +34,11 @@ template <>
 constexpr const char* k_type_name<std::uint64_t> = "U64";
 template <>
 constexpr const char* k_type_name<std::int32_t> = "I32";
+template <>
+constexpr const char* k_type_name<std::int8_t> = "I8";
 
 std::size_t element_size(const std::string& type) {
-    if (type == "U8") return 1;
+    if (type == "U8" || type == "I8") return 1;
     if (type == "F16" || type == "U16") return 2;
     if (type == "F32" || type == "U32" || type == "I32") return 4;
     if (type == "U64") return 8;
@@ -200,6 +202,7 @@ EXEMPLAR_INSTANTIATE(std::uint16_t)
 EXEMPLAR_INSTANTIATE(std::uint32_t)
 EXEMPLAR_INSTANTIATE(std::uint64_t)
 EXEMPLAR_INSTANTIATE(std::int32_t)
+EXEMPLAR_INSTANTIATE(std::int8_t)
 #undef EXEMPLAR_INSTANTIATE
 
 void write_safetensors(const std::filesystem::path& path, const TensorFile& file) {

@@ -14,7 +14,7 @@ namespace exemplar {
 
 /// One named array of a safetensors file, row-major, little-endian.
 struct Tensor {
-    std::string type;                     ///< "F32", "F16", "U8", "U16", "U32", "U64" or "I32"
+    std::string type;                     ///< "F32", "F16", "U8", "U16", "U32", "U64", "I8" or "I32"
     std::vector<std::size_t> shape;       ///< product = number of elements
     std::span<const std::uint8_t> bytes;  ///< elements x element size
     std::shared_ptr<const void> owner;    ///< of the bytes: all arrays of a file that was read share its content
@@ -26,7 +26,7 @@ struct TensorFile {
     std::map<std::string, std::string> metadata;
     std::map<std::string, Tensor> tensors;
 
-    /// Adds an array; T is float, Half, std::int32_t or std::uint8_t, 16_t, 32_t or 64_t, and the product of `shape`
+    /// Adds an array; T is float, Half, std::int8_t, 32_t or std::uint8_t, 16_t, 32_t or 64_t, and the product of `shape`
     /// equals values.size().
     template <typename T>
     void add(const std::string& name, std::vector<std::size_t> shape, std::span<const T> values);

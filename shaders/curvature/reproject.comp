@@ -6,7 +6,7 @@
 #include "shaders/shared/curvature.h"
 
 // Curvature from its components (exemplar::reproject_curvature), k_quads x 4 vertices of a tile per invocation. Reads each
-// tile, 2 bytes per vertex and row and 4 per pair of rows, 16 of a normal, 16 of a point and those of its neighbor, and writes
+// tile, a byte per vertex and entry, 4 per entry and 2 per vertex and mean, 16 of a normal, 16 of a point and those of its neighbor, and writes
 // 48 per vertex, each once; components, rotations and most neighbors come from caches. The vertices of a tile's last quads may repeat; all of one get the same.
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool k_principal = false;  // the thesis' eight attributes, else the seven of tensors
@@ -14,7 +14,7 @@ layout(constant_id = 1) const uint k_quads = 1;          // 1, 2 or 4
 layout(push_constant) uniform Push { ReprojectionParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer table;  // CurvatureTile
 layout(set = 0, binding = 1) uniform usamplerBuffer tiles;
-layout(set = 0, binding = 2) uniform usamplerBuffer pairs;  // two components each
+layout(set = 0, binding = 2) uniform usamplerBuffer groups;  // of four entries: component and step each
 layout(set = 0, binding = 3) uniform samplerBuffer components;
 layout(set = 0, binding = 4) uniform samplerBuffer rotations;  // principal: three rows for each segment
 layout(set = 0, binding = 5) uniform samplerBuffer vertices;   // not of principal
@@ -32,10 +32,14 @@ vec4 four_halves(uvec2 words) {
     return vec4(unpackHalf2x16(words.x), unpackHalf2x16(words.y));
 }
 
+vec4 four_bytes(uint word) {
+    return vec4(ivec4(int(word) << 24, int(word) << 16, int(word) << 8, int(word)) >> 24);
+}
+
 // Rows of this invocation's quads: attributes, then the reference normal of principal ones.
 vec4 rows[12 * k_quads];
 // What is read next.
-uint next_texel, next_pair;
+uint next_texel, next_group;
 
 void read_constants() {
     for (uint p = 0; p < k_constant_pairs; ++p, next_texel += k_tile_quads)
@@ -46,19 +50,23 @@ void read_constants() {
         }
 }
 
-// A CPU driver calls a function for every fetch, around which all that is being computed goes to memory and back: a pair is
+// A CPU driver calls a function for every fetch, around which all that is being computed goes to memory and back: a group is
 // fetched whole before anything is done with it.
 void add_components(uint row, uint count, float scale) {
     vec4 sum[k_quads];
-    for (uint q = 0; q < k_quads; ++q) sum[q] = rows[row * k_quads + q];
-    for (const uint end = next_pair + count; next_pair < end; ++next_pair, next_texel += k_tile_quads) {
-        const uint pair = texelFetch(pairs, int(next_pair)).x;
-        uvec4 both[k_quads];
-        for (uint q = 0; q < k_quads; ++q) both[q] = texelFetch(tiles, int(next_texel + q));
-        const float z0 = texelFetch(components, int(pair & 0xffffu)).x, z1 = texelFetch(components, int(pair >> 16)).x;
-        for (uint q = 0; q < k_quads; ++q) sum[q] += z0 * four_halves(both[q].xy) + z1 * four_halves(both[q].zw);
+    for (uint q = 0; q < k_quads; ++q) sum[q] = scale * rows[row * k_quads + q];
+    for (const uint end = next_group + count; next_group < end; ++next_group, next_texel += k_tile_quads) {
+        const uvec4 group = texelFetch(groups, int(next_group)), component = group & 0xffffu;
+        uvec4 bases[k_quads];
+        for (uint q = 0; q < k_quads; ++q) bases[q] = texelFetch(tiles, int(next_texel + q));
+        const vec4 z = vec4(texelFetch(components, int(component.x)).x, texelFetch(components, int(component.y)).x,
+                            texelFetch(components, int(component.z)).x, texelFetch(components, int(component.w)).x) *
+                       uintBitsToFloat(group & 0xffff0000u);
+        for (uint q = 0; q < k_quads; ++q)
+            sum[q] += z.x * four_bytes(bases[q].x) + z.y * four_bytes(bases[q].y) + z.z * four_bytes(bases[q].z) +
+                      z.w * four_bytes(bases[q].w);
     }
-    for (uint q = 0; q < k_quads; ++q) rows[row * k_quads + q] = scale * sum[q];
+    for (uint q = 0; q < k_quads; ++q) rows[row * k_quads + q] = sum[q];
 }
 
 // Written out, so that `rows` need not be indexed by a variable.
@@ -144,7 +152,7 @@ void main() {
     const uvec4 entry = texelFetch(table, int(parameters.first_tile + tile));
     const uint head = entry.x - parameters.first_texel;
     next_texel = head + k_head + first_quad;
-    next_pair = entry.y - parameters.first_pair;
+    next_group = entry.y - parameters.first_group;
     read_constants();
     add_all_components(texelFetch(tiles, int(head)));
 

@@ -111,28 +111,29 @@ struct LocalInputParameters {
     float inverse_unit;
 };
 
-// Vertices of learned curvature come in tiles of four quads. A tile is a run of texels: numbers of pairs, one for each
+// Vertices of learned curvature come in tiles of four quads. A tile is a run of texels: numbers of groups, one for each
 // attribute, two to a word; the vertices of each quad; of tensors, the neighbor of each of these that its first axis leads
 // to; then pairs of rows of halves, four texels to a pair, one for each quad, in which the first row has the first two words:
-// the means of all attributes and, of principal curvatures, the reference normals, then the bases of the attributes, one after
-// the other. An odd row has zeros beside it.
+// the means of all attributes and, of principal curvatures, the reference normals (an odd row has zeros beside it); then
+// the bases of the attributes, one after the other, in groups of four entries, four texels to a group, one for each quad,
+// in which each entry has a word, a byte for each vertex. The last group of an attribute has zeros for what it lacks.
 const uint k_tile_quads = 4;
-const uint k_principal_head = 5;  // texels before the pairs
+const uint k_principal_head = 5;  // texels before the rows
 const uint k_tensor_head = 9;
 struct CurvatureTile {
     uint first_texel;
-    uint first_pair;  // of components
+    uint first_group;  // of entries
     uint segment;
     uint unused;
 };
 
 struct ReprojectionParameters {
-    vec4 low_scales;   // what the rows of attributes 0 to 3 are multiplied with
+    vec4 low_scales;   // what the means of attributes 0 to 3 are multiplied with
     vec4 high_scales;  // and of 4 to 7
     uint first_tile;
     uint tiles;
     uint first_texel;  // with which what is bound begins
-    uint first_pair;
+    uint first_group;
 };
 
 #ifdef __cplusplus
@@ -143,8 +144,8 @@ EXEMPLAR_LAYOUT(ComponentParameters, components)
 EXEMPLAR_LAYOUT(PatchParameters, patches)
 EXEMPLAR_LAYOUT(LocalInput, surface_patch, first_vertex, vertices, first_texel)
 EXEMPLAR_LAYOUT(LocalInputParameters, inputs, inverse_unit)
-EXEMPLAR_LAYOUT(CurvatureTile, first_texel, first_pair, segment, unused)
-EXEMPLAR_LAYOUT(ReprojectionParameters, low_scales, high_scales, first_tile, tiles, first_texel, first_pair)
+EXEMPLAR_LAYOUT(CurvatureTile, first_texel, first_group, segment, unused)
+EXEMPLAR_LAYOUT(ReprojectionParameters, low_scales, high_scales, first_tile, tiles, first_texel, first_group)
 EXEMPLAR_LAYOUT(RestVertex, x, y, z, influences)
 EXEMPLAR_LAYOUT(InfluencePair, first_bone, first_weight, second_bone, second_weight)
 EXEMPLAR_LAYOUT(MorphOffset, x, y, z, target)

@@ -99,7 +99,7 @@ TEST(Training, SparsityMakesModelsSmallerAndErrorsHardlyLarger) {
     dense.dropped_variance = 0;
     sparse.dropped_variance = 0.02;
     const CurvatureModel large = trained(tube(), dense), small = trained(tube(), sparse);
-    EXPECT_LT(small.tiles.component.size(), large.tiles.component.size());
+    EXPECT_LT(small.tiles.entry.size(), large.tiles.entry.size());
     EXPECT_LT(relative_errors(small, tube(), 1).first, relative_errors(large, tube(), 1).first + 0.15);
 }
 
@@ -168,10 +168,12 @@ TEST(CurvatureModel, DamagedFilesAreRefused) {
         values[0] = std::numeric_limits<float>::quiet_NaN();
         f.add("regression.coefficients", {values.size()}, values);
     });
+    change_word("tiles.entry", 0, 0x3F80FFFFu);  // the last component there can be
+    change_word("tiles.entry", 0, 0x7F800000u);  // an infinite step
     refused([](TensorFile& f) {
-        auto values = f.get<Half>("tiles.basis");
+        auto values = f.get<Half>("tiles.mean");
         values[0].bits = 0x7C00;
-        f.add("tiles.basis", f.tensors.at("tiles.basis").shape, values);
+        f.add("tiles.mean", f.tensors.at("tiles.mean").shape, values);
     });
     for (const auto& [name, tensor] : read_safetensors(path).tensors) {
         const std::string key = name;
@@ -204,6 +206,8 @@ TEST(Tiling, GivesWhatTheBasesGive) {
     const std::vector<float> z = {0.5f, -1, 2, 0.25f, 1};
     std::vector<float> attributes(7 * 37);
     reproject(tiles, z, attributes);
+    // Bases are at most one, so that half a step is at most a 254th, and a 128th of it.
+    const float rounding = (1.0f / 254) * (129.0f / 128) * (0.5f + 1 + 2 + 0.25f + 1) + 1e-3f;
     for (std::size_t v = 0; v < 37; ++v) {
         float expected = means(0, Eigen::Index(v));
         if (v < 25)
@@ -211,8 +215,17 @@ TEST(Tiling, GivesWhatTheBasesGive) {
         if (v >= 10)
             expected +=
                 bases[1].basis.row(Eigen::Index(v - 10)).dot(Eigen::Map<const Eigen::RowVectorXf>(z.data() + 3, 2));
-        EXPECT_NEAR(attributes[v], expected, 4e-3);
+        EXPECT_NEAR(attributes[v], expected, rounding);
         EXPECT_NEAR(attributes[37 + v], means(1, Eigen::Index(v)), 1e-3);
+    }
+}
+
+TEST(Tiling, TakesTheFinestStepsThatReach) {
+    for (const float least : {0.0f, 1e-30f, 0.3f, 1.0f, 1.00001f, 255.0f / 128, 3e30f}) {
+        const std::uint32_t entry = BasisTiles::make_entry(54321, least);
+        EXPECT_EQ(BasisTiles::component_of(entry), 54321u);
+        EXPECT_GE(BasisTiles::step_of(entry), least);
+        EXPECT_LE(BasisTiles::step_of(entry), least * (129.0f / 128));
     }
 }
 
@@ -232,9 +245,9 @@ TEST(Tiling, DropsTheWeakestFirstAndNoMoreThanAllowed) {
         basis.basis(v, 0) = v < 16 ? 10.0f : 1.0f;  // a strong tile, three weak ones of one percent each
     }
     const Eigen::MatrixXf means = Eigen::MatrixXf::Zero(7, 64);
-    EXPECT_EQ(make_tiles(frames, rest, means, {basis}, {}).component.size(), 4u);
-    EXPECT_EQ(make_tiles(frames, rest, means, {basis}, {.dropped_variance = 0.05}).component.size(), 1u);
-    EXPECT_EQ(make_tiles(frames, rest, means, {basis}, {.dropped_variance = 0.001}).component.size(), 4u);
+    EXPECT_EQ(make_tiles(frames, rest, means, {basis}, {}).entry.size(), 4u);
+    EXPECT_EQ(make_tiles(frames, rest, means, {basis}, {.dropped_variance = 0.05}).entry.size(), 1u);
+    EXPECT_EQ(make_tiles(frames, rest, means, {basis}, {.dropped_variance = 0.001}).entry.size(), 4u);
 }
 
 // One pass with decoding gives what re-projection and decoding give apart.

@@ -28,17 +28,17 @@ TEST(TileLayout, IsCutToTheLimit) {
             for (const TileLayout::Range& range : layout.ranges) {
                 EXPECT_EQ(range.first_tile, next);
                 EXPECT_EQ(range.first_texel * sizeof(shared::uvec4) % alignment, 0u);
-                EXPECT_EQ(range.first_pair * sizeof(std::uint32_t) % alignment, 0u);
+                EXPECT_EQ(range.first_group * sizeof(shared::uvec4) % alignment, 0u);
                 EXPECT_LE(range.texels, most);
                 EXPECT_EQ(layout.table[next].first_texel, range.first_texel);
-                EXPECT_EQ(layout.table[next].first_pair, range.first_pair);
+                EXPECT_EQ(layout.table[next].first_group, range.first_group);
                 next += range.tiles;
             }
             EXPECT_EQ(next, tiles.tile_count());
         }
 }
 
-// Tile t has t / 4 pairs of its first attribute.
+// Tile t has t / 4 groups of each attribute.
 BasisTiles growing_tiles(std::uint32_t count) {
     BasisTiles tiles;
     tiles.vertex_count = count * BasisTiles::k_lanes;
@@ -50,9 +50,9 @@ BasisTiles growing_tiles(std::uint32_t count) {
     tiles.mean.resize(7 * tiles.vertex_count);
     tiles.entry_begin = {0};
     for (std::uint32_t t = 0; t < count; ++t)
-        tiles.entry_begin.insert(tiles.entry_begin.end(), 7, tiles.entry_begin.back() + t / 4 * 2);
-    tiles.component.resize(tiles.entry_begin.back());
-    tiles.basis.resize(tiles.component.size() * BasisTiles::k_lanes);
+        tiles.entry_begin.insert(tiles.entry_begin.end(), 7, tiles.entry_begin.back() + t / 4 * 4);
+    tiles.entry.resize(tiles.entry_begin.back());
+    tiles.basis.resize(tiles.entry.size() * BasisTiles::k_lanes);
     return tiles;
 }
 
@@ -73,19 +73,19 @@ TEST(TileLayout, HasEveryTileOnce) {
 TEST(TileLayout, GivesEqualSharesOfTilesAboutEqualWork) {
     constexpr std::uint32_t k_count = 512;
     const TileLayout layout = lay_out_tiles(growing_tiles(k_count), 1, 0, 1 << 24, 16);
-    const auto first_pair = [&](std::size_t tile) {
-        return tile < k_count ? layout.table[tile].first_pair : static_cast<std::uint32_t>(layout.pairs.size());
+    const auto first_group = [&](std::size_t tile) {
+        return tile < k_count ? layout.table[tile].first_group : static_cast<std::uint32_t>(layout.groups.size());
     };
-    const double all = first_pair(k_count);
+    const double all = first_group(k_count);
     for (const std::size_t shares : {2u, 4u})
         for (std::size_t i = 0; i < shares; ++i) {
-            const double share = first_pair((i + 1) * k_count / shares) - first_pair(i * k_count / shares);
+            const double share = first_group((i + 1) * k_count / shares) - first_group(i * k_count / shares);
             EXPECT_NEAR(share * static_cast<double>(shares) / all, 1, 0.15) << i << " of " << shares;
         }
     // And those that run in step have alike.
     for (std::size_t run = 0; run < k_count; run += 8) {
-        const double first = first_pair(run + 1) - first_pair(run), last = first_pair(run + 8) - first_pair(run + 7);
-        EXPECT_LE(last - first, 2);
+        const double first = first_group(run + 1) - first_group(run), last = first_group(run + 8) - first_group(run + 7);
+        EXPECT_LE(last - first, 2 * 7);
     }
 }
 

@@ -23,7 +23,7 @@ using shared::vec4;
 // The kernel fetches it as one four-component vector.
 static_assert(sizeof(LocalInput) == 16);
 static_assert(shared::k_corner_vertices == Segments::Triangle::k_patch && shared::k_corner_vertices % 4 == 0);
-static_assert(StateReader::k_local_numbers == 6);  // a texel of halves has room for two more
+static_assert(StateReader::k_local_numbers == 4);  // a texel of halves has two vertices
 
 void check(const CurvatureModel& model) {
     const StateReader& state = model.state;
@@ -44,23 +44,14 @@ std::vector<std::uint32_t> corner_vertices(const Segments& segments) {
     return vertices;
 }
 
-std::vector<vec4> rest_columns(const Segments& segments) {
-    std::vector<vec4> columns;
-    for (const Segments::Triangle& triangle : segments.triangles)
-        for (Eigen::Index i = 0; i < 3; ++i) {
-            const Vec3 column = triangle.rest_frame.col(i);
-            columns.push_back({column.x(), column.y(), column.z(), 0.0f});
-        }
-    return columns;
-}
-
-// A row of a control's map, a texel per vertex.
+// A row of a control's map, a texel per two vertices.
 void append_weights(const Eigen::Ref<const Eigen::RowVectorXf>& row, std::vector<uvec4>& texels) {
     const auto word = [&](Eigen::Index at) {
+        if (at >= row.size()) return std::uint32_t{0};
         return std::uint32_t{to_half(row[at]).bits} | std::uint32_t{to_half(row[at + 1]).bits} << 16;
     };
-    for (Eigen::Index at = 0; at < row.size(); at += StateReader::k_local_numbers)
-        texels.push_back({word(at), word(at + 2), word(at + 4), 0});
+    for (Eigen::Index at = 0; at < row.size(); at += 2 * StateReader::k_local_numbers)
+        texels.push_back({word(at), word(at + 2), word(at + 4), word(at + 6)});
 }
 
 struct LocalInputs {
@@ -93,7 +84,7 @@ GpuLocalState::GpuLocalState(Device& device, const CurvatureModel& model, std::s
       unit_(model.state.local_unit),
       rotation_kernel_(device, shaders::curvature_patch_rotations_comp,
                        {.push_constants = layout_of<PatchParameters>(),
-                        .elements = {layout_of<uvec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>()}}),
+                        .elements = {layout_of<uvec4>(), layout_of<vec4>(), layout_of<vec4>()}}),
       input_kernel_(
           device, shaders::curvature_local_state_comp,
           {.push_constants = layout_of<LocalInputParameters>(),
@@ -104,7 +95,6 @@ GpuLocalState::GpuLocalState(Device& device, const CurvatureModel& model, std::s
     check_texels(device, std::max({inputs.weights.size(), model.state.local_vertex.size(), 6 * patch_count_}),
                  "the patches of a curvature model");
     corners_ = Buffer::of<std::uint32_t>(device, corner_vertices(model.segments));
-    rest_frames_ = Buffer::of<vec4>(device, rest_columns(model.segments));
     table_ = Buffer::of<LocalInput>(device, inputs.table);
     members_ = Buffer::of<std::uint32_t>(device, model.state.local_vertex);
     weights_ = Buffer::of<uvec4>(device, inputs.weights);
@@ -116,7 +106,7 @@ GpuLocalState::GpuLocalState(Device& device, const CurvatureModel& model, std::s
 }
 
 void GpuLocalState::record(Stream& stream, const Buffer& vertices, const Buffer& normals) {
-    stream.dispatch(rotation_kernel_, patch_count_, {corners_, rest_frames_, vertices, rotations_},
+    stream.dispatch(rotation_kernel_, patch_count_, {corners_, vertices, rotations_},
                     PatchParameters{static_cast<std::uint32_t>(patch_count_)});
     stream.dispatch(input_kernel_, input_count_,
                     {table_, members_, weights_, biases_, rotations_, vertices, normals, inputs_},

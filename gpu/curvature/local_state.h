@@ -30,7 +30,7 @@ class GpuLocalState {
     std::size_t patch_count_, input_count_;
     float unit_;
     Kernel rotation_kernel_, input_kernel_;
-    Buffer corners_, rest_frames_, table_, members_, weights_, biases_;
+    Buffer corners_, table_, members_, weights_, biases_;
     Buffer rotations_, inputs_;
 };
 

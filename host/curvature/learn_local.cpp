@@ -206,27 +206,6 @@ class LocalLearner {
     std::vector<std::vector<std::uint32_t>> patches_;
 };
 
-/// Patches in another order: those that follow each other lie near each other, so that a frame, which goes from patch
-/// to patch, finds most of what it reads in the cache.
-std::vector<std::uint32_t> ordered_along_surface(const std::vector<std::uint32_t>& patch_of_vertex,
-                                                 std::span<const Vec3> vertices) {
-    const std::size_t count = 1 + *std::max_element(patch_of_vertex.begin(), patch_of_vertex.end());
-    std::vector<Vec3> center(count, Vec3::Zero());
-    std::vector<float> size(count, 0);
-    for (std::size_t v = 0; v < vertices.size(); ++v) {
-        center[patch_of_vertex[v]] += vertices[v];
-        ++size[patch_of_vertex[v]];
-    }
-    for (std::size_t p = 0; p < count; ++p) center[p] /= std::max(size[p], 1.0f);
-    const std::vector<std::uint32_t> place = curve_places(center);
-    std::vector<std::uint32_t> order(count), number(count), result;
-    std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return place[a] < place[b]; });
-    for (std::uint32_t i = 0; i < count; ++i) number[order[i]] = i;
-    for (const std::uint32_t p : patch_of_vertex) result.push_back(number[p]);
-    return result;
-}
-
 /// The reader of the local shape of patches, before anything is learned.
 StateReader local_reader(const TriangleMesh& rest, const Segments& segments, float unit) {
     StateReader reader;
@@ -251,8 +230,7 @@ void learn_local(const Animation& animation, std::span<const FrameRef> frames, s
                  const CurvatureTraining& options, CurvatureModel& model, CurvatureTrainingReport& report) {
     Stopwatch watch;
     const TriangleMesh rest = layout_shape(animation, frames.front());
-    model.segments = segment_patches(
-        rest, ordered_along_surface(surface_patches(rest, options.sequence.patch_vertices), rest.vertices));
+    model.segments = segment_patches(rest, surface_patches(rest, options.sequence.patch_vertices));
     const auto unit = static_cast<float>(model.truth.smoothing_unit);
     model.state = local_reader(rest, model.segments, unit > 0 ? unit : 1.0f);
     const std::vector<SurfaceMoment> moments = read_moments(animation, model.segments, frames, model.truth);

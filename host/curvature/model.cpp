@@ -113,21 +113,17 @@ void add_range(TensorFile& file, const PoseRange& range) {
 
 void add_segments(TensorFile& file, const Segments& segments) {
     Words bones, patches;
-    Floats weights, frames;
+    Floats weights;
     for (const Influence& influence : segments.influences) {
         bones.push_back(influence.bone);
         weights.push_back(influence.weight);
     }
-    for (const Segments::Triangle& triangle : segments.triangles) {
+    for (const Segments::Triangle& triangle : segments.triangles)
         for (const auto& patch : triangle.patches) patches.insert(patches.end(), patch.begin(), patch.end());
-        const Floats frame = row_major(triangle.rest_frame);
-        frames.insert(frames.end(), frame.begin(), frame.end());
-    }
     file.add("segments.influence_begin", {segments.influence_begin.size()}, segments.influence_begin);
     file.add("segments.bone", {bones.size()}, bones);
     file.add("segments.weight", {weights.size()}, weights);
     file.add("segments.patches", {segments.triangles.size(), 3, Segments::Triangle::k_patch}, patches);
-    file.add("segments.frame", {segments.triangles.size(), 3, 3}, frames);
 }
 
 void add_regression(TensorFile& file, const ComponentRegression& regression) {
@@ -342,13 +338,11 @@ void read_segments(const Reading& reading, CurvatureModel& model) {
     reading.below(patches, model.vertex_count, "segments.patches");
     const std::size_t count = patches.size() / (3 * Segments::Triangle::k_patch);
     reading.require(!model.state.is_local() || count == model.state.controls.size(), "patches and segments differ");
-    const Floats frames = reading.floats("segments.frame", {count, 3, 3});
     for (std::size_t s = 0; s < count; ++s) {
         Segments::Triangle triangle;
         for (std::size_t i = 0; i < 3; ++i)
             std::copy_n(patches.begin() + static_cast<std::ptrdiff_t>((3 * s + i) * Segments::Triangle::k_patch),
                         Segments::Triangle::k_patch, triangle.patches[i].begin());
-        triangle.rest_frame = matrix_of(part_of(frames, 9 * s, 9), 3, 3);
         segments.triangles.push_back(triangle);
     }
 }
@@ -387,6 +381,10 @@ void read_tiles(const Reading& reading, CurvatureModel& model) {
     const bool tensor = tiles.set == AttributeSet::tensor;
     const std::size_t segments = model.segments.count();
     reading.below(tiles.segment, tensor ? std::max<std::size_t>(segments, 1) : segments, "tiles.segment");
+    const auto last = std::max_element(tiles.segment.begin(), tiles.segment.end());
+    reading.require(model.segments.triangles.empty() ||
+                        (last != tiles.segment.end() && *last + 1 == model.segments.triangles.size()),
+                    "a segment has no tile");
     tiles.vertex = reading.words("tiles.vertex", {count, lanes});
     reading.below(tiles.vertex, model.vertex_count, "tiles.vertex");
     tiles.scale = reading.floats("tiles.scale", {attributes});

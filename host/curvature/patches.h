@@ -8,9 +8,10 @@
 
 namespace exemplar {
 
-/// Cuts a surface into connected patches of about `vertices` vertices each, compact and of like size: the vertices
-/// nearest, over edges, to seeds that are far from each other. 0 makes the whole surface one patch. Returns the patch
-/// of each vertex, numbered from 0; vertices without edges join a patch of their own or, without seeds left, the first.
+/// Cuts a surface into the fewest patches of at most `vertices` vertices each, compact and nearly all of them full: in
+/// halves along its length, as it is measured over edges, and the halves in halves. Patches that follow each other
+/// mostly lie near each other. A patch has vertices of several pieces of the surface only where it would not be full
+/// otherwise. 0 makes the whole surface one patch. Returns the patch of each vertex, numbered from 0.
 std::vector<std::uint32_t> surface_patches(const TriangleMesh& mesh, std::size_t vertices);
 
 }  // namespace exemplar

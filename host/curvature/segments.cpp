@@ -40,14 +40,16 @@ Matrix3f triangle_frame(const Segments::Triangle& triangle, std::span<const Vec3
         for (const std::uint32_t v : triangle.patches[i]) center[i] += vertices[v];
     }
     const Matrix3f frame = orthonormal_frame(center[1] - center[0], center[2] - center[0]);
-    return frame.allFinite() ? frame : Matrix3f::Identity();
+    constexpr float k_least = 0.5f;  // the determinant is 1, or 0 where the corners are on a line
+    return frame.determinant() > k_least ? frame : Matrix3f::Identity();
 }
 
-/// The vertices among `candidates` nearest to `at`, repeated if there are too few.
+/// The vertices among `candidates` nearest to `at`, but at most a quarter, so that those in three places differ;
+/// repeated if these are too few.
 std::array<std::uint32_t, Segments::Triangle::k_patch> patch_around(const std::vector<std::uint32_t>& candidates,
                                                                     std::span<const Vec3> vertices, const Vec3& at) {
     std::vector<std::uint32_t> sorted = candidates;
-    const std::size_t wanted = std::min<std::size_t>(Segments::Triangle::k_patch, sorted.size());
+    const std::size_t wanted = std::clamp<std::size_t>(sorted.size() / 4, 1, Segments::Triangle::k_patch);
     std::partial_sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(wanted), sorted.end(),
                       [&](std::uint32_t a, std::uint32_t b) {
                           const float da = (vertices[a] - at).squaredNorm(), db = (vertices[b] - at).squaredNorm();
@@ -72,7 +74,6 @@ Segments::Triangle spread_triangle(const std::vector<std::uint32_t>& members, st
     const Vec3 c = rest[farthest([&](const Vec3& p) { return (p - a).cross(along).squaredNorm(); })];
     Segments::Triangle triangle;
     triangle.patches = {patch_around(members, rest, a), patch_around(members, rest, b), patch_around(members, rest, c)};
-    triangle.rest_frame = triangle_frame(triangle, rest);
     return triangle;
 }
 
@@ -127,7 +128,7 @@ void Segments::rotations_of_rig(std::span<const Affine> bones, std::vector<Matri
 void Segments::rotations_of_sequence(std::span<const Vec3> vertices, std::vector<Matrix3f>& out) const {
     out.resize(count());
     for (std::size_t s = 0; s < out.size(); ++s)
-        out[s] = triangle_frame(triangles[s], vertices) * triangles[s].rest_frame.transpose();
+        out[s] = triangle_frame(triangles[s], vertices);
 }
 
 Segments segment_rig(const Rig& rig, std::size_t vertex_count) {

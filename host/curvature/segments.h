@@ -16,11 +16,11 @@ struct Segments {
     /// Of a rig: the mean influences of each segment's vertices (compressed rows, by rising bone).
     std::vector<std::uint32_t> influence_begin;
     std::vector<Influence> influences;
-    /// Of a mesh sequence: three patches of vertices per segment; their centers make a triangle that turns with it.
+    /// Of a mesh sequence: three patches of vertices per segment; their centers make a triangle whose axes are those of
+    /// the segment: along its first edge, in its plane, and upright.
     struct Triangle {
         static constexpr std::size_t k_patch = 8;
         std::array<std::array<std::uint32_t, k_patch>, 3> patches;
-        Eigen::Matrix3f rest_frame;  ///< at rest: columns are its axes
     };
     std::vector<Triangle> triangles;
 

@@ -167,11 +167,11 @@ void StateReader::read_local(std::size_t control, std::span<const Vec3> vertices
     Vec3 center = Vec3::Zero();
     for (const std::uint32_t v : members) center += vertices[v];
     center /= static_cast<float>(std::max<std::size_t>(members.size(), 1));
-    const Eigen::Matrix3f turn = rotation.transpose(), scaled = turn / local_unit;
+    const Vec3 up = rotation.col(2) / local_unit;
     float* out = shape.data();
     for (const std::uint32_t v : members) {
-        Eigen::Map<Vec3>(out).noalias() = turn * normals[v];
-        Eigen::Map<Vec3>(out + 3).noalias() = scaled * (vertices[v] - center);
+        Eigen::Map<Vec3>(out).noalias() = rotation.transpose() * normals[v];
+        out[3] = up.dot(vertices[v] - center);
         out += k_local_numbers;
     }
 }

@@ -53,15 +53,15 @@ struct StateReader {
     float local_unit = 1;                     ///< mesh units that positions are divided by
 
     bool is_local() const { return !local_begin.empty(); }
-    /// Length of the local shape of a control: six numbers per vertex.
+    /// Length of the local shape of a control: four numbers per vertex.
     std::size_t local_size(std::size_t control) const {
         return k_local_numbers * (local_begin[control + 1] - local_begin[control]);
     }
-    /// The local shape of a control, local_size numbers: of each vertex its normal and its position about the center of
-    /// all, divided by local_unit, in the frame of the patch, `rotation`.
+    /// The local shape of a control, local_size numbers: of each vertex its normal in the frame of the patch,
+    /// `rotation`, and its height over the center of all along the third axis, divided by local_unit.
     void read_local(std::size_t control, std::span<const Vec3> vertices, std::span<const Vec3> normals,
                     const Eigen::Matrix3f& rotation, std::span<float> shape) const;
-    static constexpr std::size_t k_local_numbers = 6;
+    static constexpr std::size_t k_local_numbers = 4;
 
     /// x of a rig's pose. `x` has input_count numbers.
     void read_pose(const Pose& pose, std::span<float> x) const;

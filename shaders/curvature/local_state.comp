@@ -4,7 +4,7 @@
 #include "shaders/shared/curvature.h"
 
 // Inputs of learned curvature from the local shape of patches (exemplar::StateReader::read_local), one per invocation. Reads
-// 16 bytes and 16 per vertex of its patch; normals and positions come from caches, which the inputs of a patch share. Writes 4.
+// 16 bytes and 8 per vertex of its patch; normals and positions come from caches, which the inputs of a patch share. Writes 4.
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push { LocalInputParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer table;    // LocalInput
@@ -22,6 +22,10 @@ vec3 center(uint first, uint count) {
     return sum / float(max(count, 1u));
 }
 
+float weighted(uvec2 weights, vec3 normal, float height) {
+    return dot(vec4(unpackHalf2x16(weights.x), unpackHalf2x16(weights.y)), vec4(normal, height));
+}
+
 void main() {
     const uint thread = linear_thread();
     if (thread >= parameters.inputs) return;
@@ -31,13 +35,14 @@ void main() {
     const int row = int(3 * entry.x);
     // Into the frame of the patch: by the columns of its rotation.
     const mat3 turn = mat3(texelFetch(rotations, row).xyz, texelFetch(rotations, row + 1).xyz, texelFetch(rotations, row + 2).xyz);
+    const vec3 up = parameters.inverse_unit * vec3(turn[0].z, turn[1].z, turn[2].z);
     float sum = texelFetch(biases, int(thread)).x;
-    for (uint i = 0; i < entry.z; ++i) {
-        const int vertex = int(texelFetch(members, int(entry.y + i)).x);
-        const uvec4 words = texelFetch(weights, int(entry.w + i));
-        const vec2 low = unpackHalf2x16(words.x), mid = unpackHalf2x16(words.y), high = unpackHalf2x16(words.z);
-        sum += dot(vec3(low, mid.x), turn * texelFetch(normals, vertex).xyz) +
-               dot(vec3(mid.y, high), turn * (parameters.inverse_unit * (texelFetch(vertices, vertex).xyz - middle)));
+    for (uint i = 0; i < entry.z; i += 2) {
+        const uvec4 words = texelFetch(weights, int(entry.w + i / 2));
+        const uint last = entry.z - 1;  // once more with no weight, if their number is odd
+        const int a = int(texelFetch(members, int(entry.y + i)).x), b = int(texelFetch(members, int(entry.y + min(i + 1, last))).x);
+        sum += weighted(words.xy, turn * texelFetch(normals, a).xyz, dot(up, texelFetch(vertices, a).xyz - middle)) +
+               weighted(words.zw, turn * texelFetch(normals, b).xyz, dot(up, texelFetch(vertices, b).xyz - middle));
     }
     inputs[thread] = sum;
 }

@@ -3,14 +3,13 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/curvature.h"
 
-// Rotations of patches against their rest (exemplar::Segments::rotations_of_sequence), one per invocation, from the triangle
-// of three groups of vertices. Per patch 144 bytes are read, 24 positions through caches, and 48 written.
+// Rotations of patches (exemplar::Segments::rotations_of_sequence), one per invocation, from the triangle
+// of three groups of vertices. Per patch 96 bytes are read, 24 positions through caches, and 48 written.
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push { PatchParameters parameters; };
-layout(set = 0, binding = 0) uniform usamplerBuffer corners;     // three times k_corner_vertices a patch, four to a texel
-layout(set = 0, binding = 1) uniform samplerBuffer rest_frames;  // three columns a patch
-layout(set = 0, binding = 2) uniform samplerBuffer vertices;
-layout(set = 0, binding = 3, std430) writeonly buffer Rotations { vec4 rotations[]; };  // three rows a patch
+layout(set = 0, binding = 0) uniform usamplerBuffer corners;  // three times k_corner_vertices a patch, four to a texel
+layout(set = 0, binding = 1) uniform samplerBuffer vertices;
+layout(set = 0, binding = 2, std430) writeonly buffer Rotations { vec4 rotations[]; };  // three rows a patch
 
 vec3 position(uint vertex) {
     return texelFetch(vertices, int(vertex)).xyz;
@@ -44,9 +43,6 @@ void main() {
     const vec3 a = corner(texel), b = corner(texel + k_corner_vertices / 4), c = corner(texel + 2 * (k_corner_vertices / 4));
     mat3 frame = orthonormal_frame(b - a, c - a);
     if (!is_frame(frame)) frame = mat3(1.0);
-    const int column = int(3 * patch_index);
-    const mat3 rest = mat3(texelFetch(rest_frames, column).xyz, texelFetch(rest_frames, column + 1).xyz,
-                           texelFetch(rest_frames, column + 2).xyz);
-    const mat3 columns = rest * transpose(frame);  // the rows of the rotation
-    for (uint i = 0; i < 3; ++i) rotations[3 * patch_index + i] = vec4(columns[i], 0.0);
+    const mat3 rows = transpose(frame);
+    for (uint i = 0; i < 3; ++i) rotations[3 * patch_index + i] = vec4(rows[i], 0.0);
 }

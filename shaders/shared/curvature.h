@@ -98,7 +98,7 @@ struct PatchParameters {
     uint patches;
 };
 
-// An input that is read from local shape: halves for the vertices of its patch, a texel each (normal, position, 0, 0).
+// An input that is read from local shape: halves for the vertices of its patch, two to a texel (normal, height).
 struct LocalInput {
     uint surface_patch;
     uint first_vertex;  // in the list of all patches' vertices

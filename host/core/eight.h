@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #ifdef __AVX__
 #include <immintrin.h>
 #endif
@@ -41,6 +42,13 @@ inline EightFloats eight_from_bytes(const std::int8_t* bytes) {
 
 inline EightFloats magnitude(EightFloats x) {
     return reinterpret_cast<EightFloats>(reinterpret_cast<EightBits>(x) & 0x7FFFFFFF);
+}
+
+/// Three numbers, one after the other, and zero.
+inline FourFloats load_three(const float* numbers) {
+    TwoFloats two;
+    std::memcpy(&two, numbers, sizeof(two));
+    return __builtin_shufflevector(two, TwoFloats{numbers[2], 0}, 0, 1, 2, 3);
 }
 
 inline EightFloats joined(FourFloats low, FourFloats high) {

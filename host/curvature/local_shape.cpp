@@ -38,9 +38,32 @@ void LocalShapeReader::read(std::span<const Vec3> vertices, std::span<const Vec3
         const std::uint32_t control = blocks_[b].control;
         const std::size_t numbers = state_.local_size(control);
         if (b == 0 || blocks_[b - 1].control != control)
-            state_.read_local(control, vertices, normals, rotations[control], {shape_.data(), numbers});
+            read_shape(control, vertices, normals, rotations[control]);
         read_block(blocks_[b], numbers, x);
     }
+}
+
+void LocalShapeReader::read_shape(std::uint32_t control, std::span<const Vec3> vertices, std::span<const Vec3> normals,
+                                  const Eigen::Matrix3f& rotation) {
+    static_assert(StateReader::k_local_numbers == 4);
+    const std::uint32_t* const begin = state_.local_vertex.data() + state_.local_begin[control];
+    const std::uint32_t* const end = state_.local_vertex.data() + state_.local_begin[control + 1];
+    if (begin == end) return;
+    const auto turning = [&](int j) { return FourFloats{rotation(j, 0), rotation(j, 1), rotation(j, 2), 0}; };
+    const auto rising = [&](int j) { return FourFloats{0, 0, 0, rotation(j, 2) / state_.local_unit}; };
+    const FourFloats turn[] = {turning(0), turning(1), turning(2)}, rise[] = {rising(0), rising(1), rising(2)};
+    const FourFloats start = load_three(vertices[*begin].data());
+    FourFloats sum{};
+    float* out = shape_.data();
+    for (const std::uint32_t* v = begin; v != end; ++v, out += 4) {
+        const FourFloats n = load_three(normals[*v].data()), p = load_three(vertices[*v].data()) - start;
+        const FourFloats numbers =
+            n[0] * turn[0] + n[1] * turn[1] + n[2] * turn[2] + p[0] * rise[0] + p[1] * rise[1] + p[2] * rise[2];
+        sum += numbers;
+        std::memcpy(out, &numbers, sizeof(numbers));
+    }
+    const float middle = sum[3] / static_cast<float>(end - begin);
+    for (float* height = shape_.data() + 3; height < out; height += 4) *height -= middle;
 }
 
 void LocalShapeReader::read_block(const Block& block, std::size_t numbers, std::span<float> x) const {

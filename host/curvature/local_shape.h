@@ -24,6 +24,9 @@ class LocalShapeReader {
         std::size_t map;                             ///< its first half: k_lanes for each number of the shape
     };
     void append_blocks(std::uint32_t control);
+    /// StateReader::read_local into shape_.
+    void read_shape(std::uint32_t control, std::span<const Vec3> vertices, std::span<const Vec3> normals,
+                    const Eigen::Matrix3f& rotation);
     void read_block(const Block& block, std::size_t numbers, std::span<float> x) const;
 
     const StateReader& state_;

@@ -41,11 +41,6 @@ EightVectors turned_by(const Eigen::Matrix3f& r, const EightVectors& v) {
             r(2, 0) * v.x + r(2, 1) * v.y + r(2, 2) * v.z};
 }
 
-FourFloats load(const Vec3& v) {
-    TwoFloats xy;
-    std::memcpy(&xy, v.data(), sizeof(xy));
-    return __builtin_shufflevector(xy, TwoFloats{v.z(), 0}, 0, 1, 2, 3);
-}
 void store(FourFloats row, Vec3& v) {
     const TwoFloats xy = __builtin_shufflevector(row, row, 0, 1);
     std::memcpy(v.data(), &xy, sizeof(xy));
@@ -53,7 +48,7 @@ void store(FourFloats row, Vec3& v) {
 }
 
 EightVectors gathered(std::span<const Vec3> vectors, const std::uint32_t* at) {
-    const auto row = [&](std::size_t i) { return load(vectors[at[i]]); };
+    const auto row = [&](std::size_t i) { return load_three(vectors[at[i]].data()); };
     const FourEights m =
         transposed({joined(row(0), row(4)), joined(row(1), row(5)), joined(row(2), row(6)), joined(row(3), row(7))});
     return {m.a, m.b, m.c};
@@ -208,16 +203,11 @@ EightCurvatures decode_principal(const EightAttributes& y, const EightVectors& r
     return {is_in_order ? y[0] : y[1], is_in_order ? y[1] : y[0], turned_by(rotation, e1), {y[4], y[5], y[6], y[7]}};
 }
 
-// In the order of tiles, positions and normals lie anywhere. All are asked for in their own order, which memory serves
-// fastest, and those of a tile again a while before its turn. Always inline: a call of what only prefetches has no
+// In the order of tiles, positions and normals lie anywhere: those of a tile are asked for a while before its turn. Always inline: a call of what only prefetches has no
 // effect, so gcc leaves it out.
 [[gnu::always_inline]] inline void prefetch(const PosedSurface& surface, std::size_t vertex) {
     __builtin_prefetch(&surface.vertices[vertex]);
     __builtin_prefetch(&surface.normals[vertex]);
-}
-[[gnu::always_inline]] inline void prefetch_all(const BasisTiles& tiles, const PosedSurface& surface) {
-    constexpr std::size_t k_in_cache_line = 64 / sizeof(Vec3);
-    for (std::size_t v = 0; v < tiles.vertex_count; v += k_in_cache_line) prefetch(surface, v);
 }
 [[gnu::always_inline]] inline void prefetch_after(const BasisTiles& tiles, const PosedSurface& surface,
                                                   std::size_t tile) {
@@ -236,7 +226,6 @@ void reproject_curvature(const BasisTiles& tiles, std::span<const float> z, cons
     curvature.e1.resize(tiles.vertex_count);
     curvature.e2.resize(tiles.vertex_count);
     curvature.derivative.resize(tiles.vertex_count);
-    prefetch_all(tiles, surface);
     for (std::size_t t = 0; t < tiles.tile_count(); ++t) {
         prefetch_after(tiles, surface, t);
         const std::array<EightAttributes, 2> y = tile_attributes(tiles, z, t);

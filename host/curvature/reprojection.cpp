@@ -203,20 +203,6 @@ EightCurvatures decode_principal(const EightAttributes& y, const EightVectors& r
     return {is_in_order ? y[0] : y[1], is_in_order ? y[1] : y[0], turned_by(rotation, e1), {y[4], y[5], y[6], y[7]}};
 }
 
-// In the order of tiles, positions and normals lie anywhere: those of a tile are asked for a while before its turn. Always inline: a call of what only prefetches has no
-// effect, so gcc leaves it out.
-[[gnu::always_inline]] inline void prefetch(const PosedSurface& surface, std::size_t vertex) {
-    __builtin_prefetch(&surface.vertices[vertex]);
-    __builtin_prefetch(&surface.normals[vertex]);
-}
-[[gnu::always_inline]] inline void prefetch_after(const BasisTiles& tiles, const PosedSurface& surface,
-                                                  std::size_t tile) {
-    constexpr std::size_t k_tiles_ahead = 16;
-    if (tile + k_tiles_ahead >= tiles.tile_count()) return;
-    const std::uint32_t* const vertex = &tiles.vertex[(tile + k_tiles_ahead) * k_lanes];
-    for (std::size_t i = 0; i < k_lanes; ++i) prefetch(surface, vertex[i]);
-}
-
 }  // namespace
 
 void reproject_curvature(const BasisTiles& tiles, std::span<const float> z, const PosedSurface& surface,
@@ -227,7 +213,6 @@ void reproject_curvature(const BasisTiles& tiles, std::span<const float> z, cons
     curvature.e2.resize(tiles.vertex_count);
     curvature.derivative.resize(tiles.vertex_count);
     for (std::size_t t = 0; t < tiles.tile_count(); ++t) {
-        prefetch_after(tiles, surface, t);
         const std::array<EightAttributes, 2> y = tile_attributes(tiles, z, t);
         for (std::size_t half = 0; half < 2; ++half) {
             const std::size_t first = t * k_lanes + half * k_eight;

@@ -7,6 +7,7 @@
 #include "embedded/runtime_copy_comp.h"
 #include "gpu/curvature/learned_curvature.h"
 #include "host/curvature/model_builder.h"
+#include "host/curvature/patches.h"
 #include "host/curvature/tiling.h"
 #include "shaders/shared/ceilings.h"
 
@@ -85,6 +86,58 @@ CurvatureModel chain_model(const TriangleMesh& rest, const Rig& rig, const Densi
         for (std::size_t a = 0; a < attribute_count(frames.set); ++a)
             builder.add_basis(a, vertices, random_matrix(vertices.size(), density.components, 0.03f, random), first,
                               random_matrix(density.components, monomials.size(), 0.1f, random));
+    }
+    model.regression = builder.regression();
+    const Eigen::MatrixXf means = random_matrix(attribute_count(frames.set), rest.vertex_count(), 0.3f, random);
+    model.tiles = make_tiles(frames, rest.vertices, means, builder.bases(), {});
+    return model;
+}
+
+constexpr std::size_t k_inputs = 12;  // of a patch
+
+// Patches of which 13 vertices are read, in a random map to the inputs.
+StateReader local_state(const std::vector<std::uint32_t>& patch_of_vertex, std::size_t patches, Random& random) {
+    constexpr std::size_t k_read = 13;
+    std::vector<std::vector<std::uint32_t>> members(patches);
+    for (std::uint32_t v = 0; v < patch_of_vertex.size(); ++v)
+        if (auto& patch = members[patch_of_vertex[v]]; patch.size() < k_read) patch.push_back(v);
+    StateReader state;
+    state.local_begin.push_back(0);
+    for (std::size_t p = 0; p < patches; ++p) {
+        state.local_vertex.insert(state.local_vertex.end(), members[p].begin(), members[p].end());
+        state.local_begin.push_back(static_cast<std::uint32_t>(state.local_vertex.size()));
+        state.controls.push_back({"patch " + std::to_string(p), static_cast<std::uint32_t>(k_inputs * p),
+                                  static_cast<std::uint32_t>(k_inputs)});
+        state.local_mean.emplace_back(Eigen::VectorXf::Zero(static_cast<Eigen::Index>(state.local_size(p))));
+        state.unmixing.push_back(random_matrix(k_inputs, state.local_size(p), 0.05f, random));
+    }
+    state.input_count = k_inputs * patches;
+    return state;
+}
+
+// A model of random bases that are read from local shape: each input matters to all vertices of its patch.
+CurvatureModel local_model(const TriangleMesh& rest, Random& random) {
+    CurvatureModel model;
+    model.kind = AnimationKind::sequence;
+    model.vertex_count = rest.vertex_count();
+    model.segments = segment_patches(rest, surface_patches(rest, 32));
+    model.state = local_state(model.segments.segment_of_vertex, model.segments.count(), random);
+    model.range.mean = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(model.state.input_count));
+    model.range.largest.assign(model.state.controls.size(), 1.0f);
+    AttributeFrames frames = first_edges(rest);
+    frames.segment = model.segments.segment_of_vertex;
+    std::vector<std::vector<std::uint32_t>> members(model.segments.count());
+    for (std::uint32_t v = 0; v < rest.vertex_count(); ++v) members[frames.segment[v]].push_back(v);
+    PredictorBuilder builder(model.state.input_count);
+    const auto one = static_cast<std::uint32_t>(model.state.input_count);
+    for (std::size_t p = 0; p < members.size(); ++p) {
+        const Control& control = model.state.controls[p];
+        std::vector<Monomial> inputs;
+        for (std::uint32_t i = 0; i < control.input_count; ++i) inputs.push_back({control.first_input + i, one, one});
+        const std::uint32_t first = builder.add_inputs(inputs);
+        for (std::size_t a = 0; a < attribute_count(frames.set); ++a)
+            builder.add_shared_basis(a, members[p],
+                                     random_matrix(members[p].size(), control.input_count, 0.03f, random), first);
     }
     model.regression = builder.regression();
     const Eigen::MatrixXf means = random_matrix(attribute_count(frames.set), rest.vertex_count(), 0.3f, random);
@@ -200,6 +253,36 @@ void time_reprojection(benchmark::State& state, const Density& density) {
     state.counters["reference_cpu"] = reference_ms;
     scene.count_entries(state);
 }
+
+// Positions and normals that are on the device, to curvature.
+void local_learned_curvature(benchmark::State& state) {
+    Random random{4};
+    const TriangleMesh rest = wavy_torus(static_cast<std::uint32_t>(state.range(0)));
+    const CurvatureModel model = local_model(rest, random);
+    const std::vector<Vec3> host_normals = vertex_normals(rest);
+    CurvatureEvaluator reference(model);
+    const double reference_ms = reference_cpu([&] { reference.evaluate(rest.vertices, host_normals); });
+    const Buffer vertices = uploaded(rest.vertices), normals = uploaded(host_normals);
+    Profiler profiler;
+    Stream stream(bench().device, &profiler);
+    GpuLearnedCurvature curvature(bench().device, model);
+    const auto call = [&] {
+        curvature.record(stream, vertices, normals);
+        stream.finish();
+    };
+    call();
+    if (!verified(state, curvature, reference.evaluate(rest.vertices, host_normals))) return;
+    const auto count = static_cast<double>(rest.vertex_count()),
+               numbers = static_cast<double>(StateReader::k_local_numbers * model.state.local_vertex.size());
+    // Each once: tiles, the map in halves, vertices, normals, and what comes out.
+    time_call(state, profiler,
+              {.bytes = static_cast<double>(model.tiles.bytes()) + 2 * k_inputs * numbers + count * (32 + 48),
+               .operations = 2 * static_cast<double>(model.tiles.basis.size()) + 2 * k_inputs * numbers + 150 * count},
+              call);
+    state.counters["reference_cpu"] = reference_ms;
+    for (const auto& [kernel, entry] : profiler.entries()) state.counters[kernel] = entry.milliseconds;
+}
+BENCHMARK(local_learned_curvature)->Apply(three_sizes);
 
 // Two controls at a vertex, three components of each for each attribute.
 constexpr Density k_typical{.controls = 2, .components = 3}, k_dense{.controls = 5, .components = 4};

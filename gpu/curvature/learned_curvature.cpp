@@ -22,8 +22,8 @@ void check_inputs(const CurvatureModel& model) {
     if (model.regression.input_count != inputs)
         refuse(fmt::format("it has {} inputs and predicts from {}", inputs, model.regression.input_count));
     const PoseRange& range = model.range;
-    if (range.mean.size() != static_cast<Eigen::Index>(inputs) || range.whitening.size() != (model.state.is_local() ? 0 : controls) ||
-        range.largest.size() != controls)
+    if (range.mean.size() != static_cast<Eigen::Index>(inputs) ||
+        range.whitening.size() != (model.state.is_local() ? 0 : controls) || range.largest.size() != controls)
         refuse(fmt::format("its range is not of {} inputs of {} controls", inputs, controls));
     for (std::size_t c = 0; c < controls; ++c) {
         const auto& [name, first, count] = model.state.controls[c];

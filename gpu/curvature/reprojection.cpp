@@ -30,13 +30,13 @@ std::uint32_t suitable_quads(const Device& device) {
 }
 
 Kernel make_kernel(Device& device, AttributeSet set, std::uint32_t quads) {
-    return {device,
-            shaders::curvature_reproject_comp,
-            {.push_constants = layout_of<ReprojectionParameters>(),
-             .elements = {layout_of<uvec4>(), layout_of<uvec4>(), layout_of<uvec4>(), layout_of<float>(),
-                          layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(),
-                          layout_of<vec4>()},
-             .constants = {{0, set == AttributeSet::principal ? 1u : 0u}, {1, quads}}}};
+    return {
+        device,
+        shaders::curvature_reproject_comp,
+        {.push_constants = layout_of<ReprojectionParameters>(),
+         .elements = {layout_of<uvec4>(), layout_of<uvec4>(), layout_of<uvec4>(), layout_of<float>(), layout_of<vec4>(),
+                      layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>()},
+         .constants = {{0, set == AttributeSet::principal ? 1u : 0u}, {1, quads}}}};
 }
 
 }  // namespace
@@ -78,8 +78,8 @@ void GpuReprojection::record(Stream& stream, const Buffer& components, const Sur
         stream.dispatch(
             kernel_, std::size_t{range.tiles} * (k_tile_quads / quads_),
             {table_, BufferRange(tiles_, range.first_texel * sizeof(uvec4), range.texels * sizeof(uvec4)),
-             BufferRange(groups_, range.first_group * sizeof(uvec4), range.groups * sizeof(uvec4)),
-             components, surface.rotations, surface.vertices, surface.normals, first_, second_, derivative_},
+             BufferRange(groups_, range.first_group * sizeof(uvec4), range.groups * sizeof(uvec4)), components,
+             surface.rotations, surface.vertices, surface.normals, first_, second_, derivative_},
             ReprojectionParameters{.low_scales = {scale_[0], scale_[1], scale_[2], scale_[3]},
                                    .high_scales = {scale_[4], scale_[5], scale_[6], scale_[7]},
                                    .first_tile = range.first_tile,

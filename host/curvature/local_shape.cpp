@@ -37,8 +37,7 @@ void LocalShapeReader::read(std::span<const Vec3> vertices, std::span<const Vec3
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
         const std::uint32_t control = blocks_[b].control;
         const std::size_t numbers = state_.local_size(control);
-        if (b == 0 || blocks_[b - 1].control != control)
-            read_shape(control, vertices, normals, rotations[control]);
+        if (b == 0 || blocks_[b - 1].control != control) read_shape(control, vertices, normals, rotations[control]);
         read_block(blocks_[b], numbers, x);
     }
 }

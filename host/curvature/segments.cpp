@@ -23,33 +23,42 @@ constexpr float k_rotation_bandwidth = 0.3f;
 constexpr std::size_t k_smallest_patch = 40;
 constexpr std::size_t k_most_rotation_frames = 24, k_rotation_dimensions = 12;
 
-Matrix3f orthonormal_frame(const Vec3& first, const Vec3& second) {
-    Matrix3f frame;
-    const Vec3 x = first.normalized();
-    const Vec3 z = first.cross(second).normalized();
-    frame.col(0) = x;
-    frame.col(1) = z.cross(x);
-    frame.col(2) = z;
-    return frame;
-}
-
-Matrix3f triangle_frame(const Segments::Triangle& triangle, std::span<const Vec3> vertices) {
+/// The edges of a triangle that meet in its first corner.
+struct TriangleEdges {
+    Vec3 first, second;
+};
+TriangleEdges triangle_edges(const Segments::Triangle& triangle, std::span<const Vec3> vertices) {
     std::array<Vec3, 3> center;
     for (std::size_t i = 0; i < 3; ++i) {
         center[i].setZero();
         for (const std::uint32_t v : triangle.patches[i]) center[i] += vertices[v];
     }
-    const Matrix3f frame = orthonormal_frame(center[1] - center[0], center[2] - center[0]);
-    constexpr float k_least = 0.5f;  // the determinant is 1, or 0 where the corners are on a line
-    return frame.determinant() > k_least ? frame : Matrix3f::Identity();
+    return {center[1] - center[0], center[2] - center[0]};
 }
 
-/// The vertices among `candidates` nearest to `at`, but at most a quarter, so that those in three places differ;
-/// repeated if these are too few.
+/// How wide a triangle is: 0 if its corners are on a line.
+float width(const TriangleEdges& edges) {
+    const float longest = std::max(edges.first.squaredNorm(), edges.second.squaredNorm());
+    return longest > 0 ? edges.first.cross(edges.second).norm() / longest : 0;
+}
+
+/// The identity if the corners are on a line.
+Matrix3f triangle_frame(const Segments::Triangle& triangle, std::span<const Vec3> vertices) {
+    constexpr float k_least_width = 1e-4f;  // far more than rounding makes of a line
+    const TriangleEdges edges = triangle_edges(triangle, vertices);
+    if (!(width(edges) > k_least_width)) return Matrix3f::Identity();
+    Matrix3f frame;
+    frame.col(0) = edges.first.normalized();
+    frame.col(2) = edges.first.cross(edges.second).normalized();
+    frame.col(1) = frame.col(2).cross(frame.col(0));
+    return frame;
+}
+
+/// So many of the vertices among `candidates` as are nearest to `at`, repeated to make k_patch.
 std::array<std::uint32_t, Segments::Triangle::k_patch> patch_around(const std::vector<std::uint32_t>& candidates,
-                                                                    std::span<const Vec3> vertices, const Vec3& at) {
+                                                                    std::span<const Vec3> vertices, const Vec3& at,
+                                                                    std::size_t wanted) {
     std::vector<std::uint32_t> sorted = candidates;
-    const std::size_t wanted = std::clamp<std::size_t>(sorted.size() / 4, 1, Segments::Triangle::k_patch);
     std::partial_sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(wanted), sorted.end(),
                       [&](std::uint32_t a, std::uint32_t b) {
                           const float da = (vertices[a] - at).squaredNorm(), db = (vertices[b] - at).squaredNorm();
@@ -60,7 +69,8 @@ std::array<std::uint32_t, Segments::Triangle::k_patch> patch_around(const std::v
     return patch;
 }
 
-/// Three patches far from each other and from one line.
+/// Three patches far from each other and from one line; of fewer vertices where larger ones would lie on a line, as
+/// they do in a part that is small or a narrow crescent.
 Segments::Triangle spread_triangle(const std::vector<std::uint32_t>& members, std::span<const Vec3> rest) {
     const auto farthest = [&](auto&& distance) {
         return *std::max_element(members.begin(), members.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -72,9 +82,22 @@ Segments::Triangle spread_triangle(const std::vector<std::uint32_t>& members, st
     const Vec3 b = rest[farthest([&](const Vec3& p) { return (p - a).squaredNorm(); })];
     const Vec3 along = (b - a).normalized();
     const Vec3 c = rest[farthest([&](const Vec3& p) { return (p - a).cross(along).squaredNorm(); })];
-    Segments::Triangle triangle;
-    triangle.patches = {patch_around(members, rest, a), patch_around(members, rest, b), patch_around(members, rest, c)};
-    return triangle;
+    constexpr std::size_t k_patch = Segments::Triangle::k_patch;
+    constexpr float k_good_width = 0.2f;
+    Segments::Triangle best;
+    float best_width = -1;
+    // Of a quarter of the vertices at most: those around the ends differ then.
+    for (std::size_t size = std::clamp<std::size_t>(members.size() / 4, 1, k_patch); size > 0; size /= 2) {
+        const auto around = [&](const Vec3& at) { return patch_around(members, rest, at, size); };
+        const Segments::Triangle triangle{{around(a), around(b), around(c)}};
+        const float wide = width(triangle_edges(triangle, rest));
+        if (wide > best_width) {
+            best = triangle;
+            best_width = wide;
+        }
+        if (wide > k_good_width) break;
+    }
+    return best;
 }
 
 /// Rotation of the edges around each vertex from rest to a frame (Kabsch), as nine numbers a row.
@@ -127,8 +150,7 @@ void Segments::rotations_of_rig(std::span<const Affine> bones, std::vector<Matri
 
 void Segments::rotations_of_sequence(std::span<const Vec3> vertices, std::vector<Matrix3f>& out) const {
     out.resize(count());
-    for (std::size_t s = 0; s < out.size(); ++s)
-        out[s] = triangle_frame(triangles[s], vertices);
+    for (std::size_t s = 0; s < out.size(); ++s) out[s] = triangle_frame(triangles[s], vertices);
 }
 
 Segments segment_rig(const Rig& rig, std::size_t vertex_count) {

@@ -92,8 +92,8 @@ StateReader make_sequence_state(const TriangleMesh& rest, std::span<const std::v
                                 const SequenceStateOptions& options);
 
 /// How far a pose is from those a model has seen, control by control: the Mahalanobis distance over the largest that a
-/// training pose has. Up to 1 is within the training poses. Inputs read from local shape are white as they are: learning
-/// makes them uncorrelated and of unit variance.
+/// training pose has. Up to 1 is within the training poses. Inputs read from local shape are white as they are:
+/// learning makes them uncorrelated and of unit variance.
 struct PoseRange {
     Eigen::VectorXf mean;                    ///< of the inputs
     std::vector<Eigen::MatrixXf> whitening;  ///< of each control: inputs x inputs; none of local shape

@@ -26,8 +26,8 @@ struct TensorFile {
     std::map<std::string, std::string> metadata;
     std::map<std::string, Tensor> tensors;
 
-    /// Adds an array; T is float, Half, std::int8_t, 32_t or std::uint8_t, 16_t, 32_t or 64_t, and the product of `shape`
-    /// equals values.size().
+    /// Adds an array; T is float, Half, std::int8_t, 32_t or std::uint8_t, 16_t, 32_t or 64_t, and the product of
+    /// `shape` equals values.size().
     template <typename T>
     void add(const std::string& name, std::vector<std::size_t> shape, std::span<const T> values);
     template <typename T>

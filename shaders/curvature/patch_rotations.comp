@@ -24,15 +24,12 @@ vec3 corner(uint first_texel) {
     return sum;
 }
 
-// Along the first, in the plane of both, upright.
-mat3 orthonormal_frame(vec3 first, vec3 second) {
-    const vec3 x = normalize(first), z = normalize(cross(first, second));
-    return mat3(x, cross(z, x), z);
-}
-
-bool is_frame(mat3 frame) {
-    const float sum = dot(frame[0], frame[0]) + dot(frame[1], frame[1]) + dot(frame[2], frame[2]);
-    return sum > 2.5 && sum < 3.5;  // neither of zero vectors nor of numbers that are none
+// x along the first, z upright on both; none if they are on a line.
+mat3 triangle_frame(vec3 first, vec3 second) {
+    const float k_least_width = 1e-4;  // as that of exemplar
+    const vec3 up = cross(first, second), x = normalize(first), z = normalize(up);
+    const float longest = max(dot(first, first), dot(second, second));
+    return length(up) > k_least_width * longest ? mat3(x, cross(z, x), z) : mat3(1.0);
 }
 
 void main() {
@@ -41,8 +38,6 @@ void main() {
 
     const uint texel = patch_index * 3 * (k_corner_vertices / 4);
     const vec3 a = corner(texel), b = corner(texel + k_corner_vertices / 4), c = corner(texel + 2 * (k_corner_vertices / 4));
-    mat3 frame = orthonormal_frame(b - a, c - a);
-    if (!is_frame(frame)) frame = mat3(1.0);
-    const mat3 rows = transpose(frame);
+    const mat3 rows = transpose(triangle_frame(b - a, c - a));
     for (uint i = 0; i < 3; ++i) rotations[3 * patch_index + i] = vec4(rows[i], 0.0);
 }

@@ -235,7 +235,8 @@ struct MovedSheet {
     std::optional<DeviceSurface> on_device;
 };
 
-// What rounding may do to each input: numbers of the shape are of size one, but heights, which are differences of positions.
+// What rounding may do to each input: numbers of the shape are of size one, but heights, which are differences of
+// positions.
 std::vector<float> input_roundings(const StateReader& state, const std::vector<Vec3>& vertices) {
     constexpr float k_rounding = 2 * std::numeric_limits<float>::epsilon();
     float farthest = 0;

@@ -84,7 +84,8 @@ TEST(TileLayout, GivesEqualSharesOfTilesAboutEqualWork) {
         }
     // And those that run in step have alike.
     for (std::size_t run = 0; run < k_count; run += 8) {
-        const double first = first_group(run + 1) - first_group(run), last = first_group(run + 8) - first_group(run + 7);
+        const double first = first_group(run + 1) - first_group(run),
+                     last = first_group(run + 8) - first_group(run + 7);
         EXPECT_LE(last - first, 2 * 7);
     }
 }

@@ -46,9 +46,13 @@ inline EightFloats magnitude(EightFloats x) {
 
 /// Three numbers, one after the other, and zero.
 inline FourFloats load_three(const float* numbers) {
+#ifdef __AVX__
+    return _mm_maskload_ps(numbers, _mm_setr_epi32(-1, -1, -1, 0));
+#else
     TwoFloats two;
     std::memcpy(&two, numbers, sizeof(two));
     return __builtin_shufflevector(two, TwoFloats{numbers[2], 0}, 0, 1, 2, 3);
+#endif
 }
 
 inline EightFloats joined(FourFloats low, FourFloats high) {

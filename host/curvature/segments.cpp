@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/core/eight.h"
 #include "host/core/parallel.h"
 #include "host/learn/mean_shift.h"
 #include "host/learn/pca.h"
@@ -28,25 +29,24 @@ struct TriangleEdges {
     Vec3 first, second;
 };
 TriangleEdges triangle_edges(const Segments::Triangle& triangle, std::span<const Vec3> vertices) {
-    std::array<Vec3, 3> center;
-    for (std::size_t i = 0; i < 3; ++i) {
-        center[i].setZero();
-        for (const std::uint32_t v : triangle.patches[i]) center[i] += vertices[v];
-    }
-    return {center[1] - center[0], center[2] - center[0]};
+    std::array<FourFloats, 3> corner{};
+    for (std::size_t i = 0; i < 3; ++i)
+        for (const std::uint32_t v : triangle.patches[i]) corner[i] += load_three(vertices[v].data());
+    const FourFloats first = corner[1] - corner[0], second = corner[2] - corner[0];
+    return {{first[0], first[1], first[2]}, {second[0], second[1], second[2]}};
 }
 
-/// How wide a triangle is: 0 if its corners are on a line.
-float width(const TriangleEdges& edges) {
+/// How wide a triangle is: 0 if its corners are on a line. Squared.
+float squared_width(const TriangleEdges& edges) {
     const float longest = std::max(edges.first.squaredNorm(), edges.second.squaredNorm());
-    return longest > 0 ? edges.first.cross(edges.second).norm() / longest : 0;
+    return longest > 0 ? (edges.first.cross(edges.second) / longest).squaredNorm() : 0;
 }
 
 /// The identity if the corners are on a line.
 Matrix3f triangle_frame(const Segments::Triangle& triangle, std::span<const Vec3> vertices) {
     constexpr float k_least_width = 1e-4f;  // far more than rounding makes of a line
     const TriangleEdges edges = triangle_edges(triangle, vertices);
-    if (!(width(edges) > k_least_width)) return Matrix3f::Identity();
+    if (!(squared_width(edges) > k_least_width * k_least_width)) return Matrix3f::Identity();
     Matrix3f frame;
     frame.col(0) = edges.first.normalized();
     frame.col(2) = edges.first.cross(edges.second).normalized();
@@ -90,12 +90,12 @@ Segments::Triangle spread_triangle(const std::vector<std::uint32_t>& members, st
     for (std::size_t size = std::clamp<std::size_t>(members.size() / 4, 1, k_patch); size > 0; size /= 2) {
         const auto around = [&](const Vec3& at) { return patch_around(members, rest, at, size); };
         const Segments::Triangle triangle{{around(a), around(b), around(c)}};
-        const float wide = width(triangle_edges(triangle, rest));
+        const float wide = squared_width(triangle_edges(triangle, rest));
         if (wide > best_width) {
             best = triangle;
             best_width = wide;
         }
-        if (wide > k_good_width) break;
+        if (wide > k_good_width * k_good_width) break;
     }
     return best;
 }

@@ -109,8 +109,9 @@ class PatchCutter {
         points.colwise() -= points.rowwise().mean().eval();
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver(points * points.transpose());
         const Vec3 axis = solver.eigenvectors().col(2);
-        std::vector<Place> places;
-        for (const std::uint32_t v : piece) places.emplace_back(axis.dot(vertices_[v]), v);
+        std::vector<Place> places(piece.size());
+        std::transform(piece.begin(), piece.end(), places.begin(),
+                       [&](std::uint32_t v) { return Place(axis.dot(vertices_[v]), v); });
         return places;
     }
 

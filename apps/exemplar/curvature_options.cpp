@@ -72,7 +72,7 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
         ->check(whole_number(0, 100000));
     command
         .add_option("--patch", arguments.patch_vertices,
-                    "vertices of the patches whose shapes are told apart, about; 0 takes the whole surface")
+                    "vertices of the patches whose shapes are told apart, at most; 0 takes the whole surface")
         ->capture_default_str()
         ->check(whole_number(0));
     command.add_option("--patch-inputs", arguments.patch_inputs, "most numbers that describe a patch")

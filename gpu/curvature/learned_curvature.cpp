@@ -26,10 +26,12 @@ void check_inputs(const CurvatureModel& model) {
         range.whitening.size() != (model.state.is_local() ? 0 : controls) || range.largest.size() != controls)
         refuse(fmt::format("its range is not of {} inputs of {} controls", inputs, controls));
     for (std::size_t c = 0; c < controls; ++c) {
-        const auto& [name, first, count] = model.state.controls[c];
+        const Control& control = model.state.controls[c];
+        const Eigen::Index count = control.input_count;
         const auto is_square = [&](const Eigen::MatrixXf& m) { return m.rows() == count && m.cols() == count; };
-        if (std::size_t{first} + count > inputs || (!model.state.is_local() && !is_square(range.whitening[c])))
-            refuse(fmt::format("control '{}' has inputs that do not exist", name));
+        if (std::size_t{control.first_input} + control.input_count > inputs ||
+            (!model.state.is_local() && !is_square(range.whitening[c])))
+            refuse(fmt::format("control '{}' has inputs that do not exist", control.name));
     }
 }
 

@@ -24,7 +24,7 @@ struct Control {
 /// the vector part of the unit quaternion. For a hinge this is the thesis' cos(theta / 2) with the angle counted, as a
 /// dihedral angle is, from pi at rest; in that form it tells the two directions of bending apart and has no gimbal
 /// lock. Blend shapes (Sec. 5.6): the weights. Mesh sequence: independent components of the dihedral angles (Sec.
-/// 5.5.1), or what a linear map makes of the normals and positions of a patch's vertices in the frame of the patch (see
+/// 5.5.1), or what a linear map makes of the normals and heights of a patch's vertices in the frame of the patch (see
 /// learn_local), which takes no angle and follows the curvature more closely.
 struct StateReader {
     AnimationKind kind = AnimationKind::sequence;  ///< rigs are read as sequences are if by local shape
@@ -81,7 +81,7 @@ float bend(const StateReader::Hinge& hinge, std::span<const Vec3> vertices);
 StateReader make_rig_state(const Animation& animation, std::span<const Pose* const> poses);
 
 struct SequenceStateOptions {
-    std::size_t patch_vertices = 32;  ///< about; 0 makes the whole surface one patch
+    std::size_t patch_vertices = 32;  ///< at most; 0 makes the whole surface one patch
     double share = 0.95;              ///< of the variance of a patch' angles
     std::size_t most_inputs = 16;     ///< of a patch, if there is more than one
     std::size_t most_hinges = 3000;   ///< of a patch that are measured; evenly taken

@@ -17,7 +17,7 @@ namespace exemplar {
 /// to are reduced first, each control predicts them alone from its joint's and its parent's angles, and predictions are
 /// averaged by their residuals (Eq. 5.11). network: the thesis' for faces (Sec. 5.6): one hidden layer from all inputs
 /// to the components. global: the thesis' for cloth (Sec. 5.5): a polynomial of all inputs. local: a linear map of each
-/// patch of the surface from its normals and positions (see learn_local), whatever moves it.
+/// patch of the surface from its normals and heights (see learn_local), whatever moves it.
 enum class Learner { additive, averaged, network, global, local };
 std::string_view name_of(Learner learner);
 

@@ -75,7 +75,7 @@ std::vector<LineField> apparent_ridge_field(const LineSurface& surface, const Li
     parallel_for(
         count,
         [&](std::size_t i) {
-            const Vec3 w = (options.eye - surface.vertices[i]).normalized();
+            const Vec3 w = options.to_eye(surface.vertices[i]);
             view[i] = view_curvature(c.k1[i], c.k2[i], c.e1[i].dot(w), c.e2[i].dot(w), surface.normals[i].dot(w));
         },
         k_grain);

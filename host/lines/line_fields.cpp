@@ -16,8 +16,8 @@ struct ViewVector {
     float u, v;    ///< along e1 and e2
     float cosine;  ///< along the normal
 };
-ViewVector view_at(const LineSurface& surface, std::size_t vertex, const Vec3& eye) {
-    const Vec3 w = (eye - surface.vertices[vertex]).normalized();
+ViewVector view_at(const LineSurface& surface, std::size_t vertex, const LineOptions& options) {
+    const Vec3 w = options.to_eye(surface.vertices[vertex]);
     return {surface.curvature.e1[vertex].dot(w), surface.curvature.e2[vertex].dot(w), surface.normals[vertex].dot(w)};
 }
 
@@ -45,7 +45,7 @@ float radial_derivative(const VertexCurvature& curvature, std::size_t i, const V
 std::vector<LineField> contour_field(const LineSurface& surface, const LineOptions& options) {
     return field_of(surface, [&](std::size_t i) {
         LineField field;
-        field.value = surface.normals[i].dot((options.eye - surface.vertices[i]).normalized());
+        field.value = surface.normals[i].dot(options.to_eye(surface.vertices[i]));
         field.strength = field.margin = 1;
         return field;
     });
@@ -57,7 +57,7 @@ std::vector<LineField> radial_curvature_field(const LineSurface& surface, LineTy
     const float threshold =
         contours ? options.thresholds.suggestive_contours : options.thresholds.suggestive_highlights;
     return field_of(surface, [&](std::size_t i) {
-        const ViewVector view = view_at(surface, i, options.eye);
+        const ViewVector view = view_at(surface, i, options);
         const float derivative = sign * radial_derivative(surface.curvature, i, view) * squared_unit;
         LineField field;
         // Radial curvature times the squared sine has the same zeros and no pole.
@@ -73,7 +73,7 @@ std::vector<LineField> radial_curvature_field(const LineSurface& surface, LineTy
 std::vector<LineField> principal_highlight_field(const LineSurface& surface, int axis, const LineOptions& options) {
     const VertexCurvature& c = surface.curvature;
     return field_of(surface, [&](std::size_t i) {
-        const ViewVector view = view_at(surface, i, options.eye);
+        const ViewVector view = view_at(surface, i, options);
         const float k = axis == 0 ? c.k1[i] : c.k2[i], other = axis == 0 ? c.k2[i] : c.k1[i];
         const float across = axis == 0 ? view.v : view.u;
         // Along e1, n.w changes by k1 u: its extrema are the zeros of u. There its second derivative is
@@ -105,8 +105,7 @@ std::vector<LineField> crest_field(const LineSurface& surface, LineType type, co
         field.margin = field.strength - options.thresholds.ridges_valleys;
         // Turning the axis around turns the sign of the derivative, so this does not depend on the choice of either.
         field.direction = sign * derivative * (first ? c.e1[i] : c.e2[i]);
-        if (options.front_facing_only)
-            field.front = surface.normals[i].dot((options.eye - surface.vertices[i]).normalized());
+        if (options.front_facing_only) field.front = surface.normals[i].dot(options.to_eye(surface.vertices[i]));
         return field;
     });
 }

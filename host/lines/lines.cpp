@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
@@ -51,13 +54,21 @@ void clip(float first, float last, float& from, float& to) {
         from = std::max(from, zero);
 }
 
+/// A point of a face with its place in it.
+struct PlacedPoint {
+    Barycentric at;
+    SegmentEnd place;
+};
+
 /// Adds the part of the segment that faces the eye and passes its test, if any.
-void add_segment(const Corners& corners, const Barycentric& a, const Barycentric& b, FaceLines& lines) {
+void add_segment(const Corners& corners, const PlacedPoint& first, const PlacedPoint& second, FaceLines& lines) {
+    const Barycentric &a = first.at, &b = second.at;
     float from = 0, to = 1;
     for (float LineField::*const member : {&LineField::front, &LineField::margin})
         clip(interpolated(corners, member, a), interpolated(corners, member, b), from, to);
     if (!(from < to)) return;
     LineSegment& segment = lines.segments[lines.count++];
+    segment.places = {from > 0 ? k_inside_face : first.place, to < 1 ? k_inside_face : second.place};
     for (std::size_t i = 0; i < 3; ++i) {
         segment.ends[0][i] = a[i] + from * (b[i] - a[i]);
         segment.ends[1][i] = a[i] + to * (b[i] - a[i]);
@@ -82,19 +93,20 @@ void add_zero_set(const Corners& corners, FaceLines& lines) {
     const auto by_size = [](float a, float b) { return std::abs(a) < std::abs(b); };
     if (axis[0] != Vec3::Zero() && *std::max_element(value.begin(), value.end(), by_size) < 0)
         for (float& v : value) v = -v;
-    std::array<Barycentric, 2> ends;
-    std::size_t found = 0;
+    // Around the face, values turn positive on one side and negative on another, or on none.
+    std::optional<PlacedPoint> falls, rises;
     for (std::size_t i = 0; i < 3; ++i) {
         const float a = value[i], b = value[(i + 1) % 3];
-        if ((a > 0) != (b > 0) && found < 2) ends[found++] = on_edge(i, a / (a - b));
+        if ((a > 0) == (b > 0)) continue;
+        (a > 0 ? falls : rises) = PlacedPoint{on_edge(i, a / (a - b)), static_cast<SegmentEnd>(i)};
     }
-    if (found == 2) add_segment(corners, ends[0], ends[1], lines);
+    if (falls && rises) add_segment(corners, *falls, *rises, lines);
 }
 
 /// The maxima along `direction` in a face (Ohtake et al. 2004): on an edge, where the directions at its ends are
 /// opposed, and point to each other rather than away.
 void add_extrema(const Corners& corners, const std::array<Vec3, 3>& points, FaceLines& lines) {
-    std::array<Barycentric, 3> ends;
+    std::array<PlacedPoint, 3> ends;
     std::size_t found = 0;
     for (std::size_t i = 0; i < 3; ++i) {
         if (!(corners[i]->value > 0)) return;
@@ -102,12 +114,50 @@ void add_extrema(const Corners& corners, const std::array<Vec3, 3>& points, Face
         const Vec3 &a = corners[i]->direction, &b = corners[j]->direction;
         if (!(a.dot(b) < 0 && (a - b).dot(points[j] - points[i]) > 0)) continue;
         const float at_a = a.norm(), at_b = b.norm();
-        ends[found++] = on_edge(i, at_a / (at_a + at_b));
+        ends[found++] = {on_edge(i, at_a / (at_a + at_b)), static_cast<SegmentEnd>(i)};
     }
-    constexpr Barycentric k_center = {1.0f / 3, 1.0f / 3, 1.0f / 3};
+    constexpr PlacedPoint k_center{{1.0f / 3, 1.0f / 3, 1.0f / 3}, k_inside_face};
     if (found == 2) add_segment(corners, ends[0], ends[1], lines);
     if (found == 3)
-        for (const Barycentric& end : ends) add_segment(corners, end, k_center, lines);
+        for (const PlacedPoint& end : ends) add_segment(corners, end, k_center, lines);
+}
+
+/// Normal of a face, as long as twice its area.
+Vec3 face_cross(const LineSurface& surface, std::size_t face) {
+    const auto& [a, b, c] = surface.faces[face];
+    const Vec3& origin = surface.vertices[a];
+    return (surface.vertices[b] - origin).cross(surface.vertices[c] - origin);
+}
+
+/// Between the normals of two faces; zero if one of them has none, where the mesh is to blame and not the surface.
+float angle_between(const LineSurface& surface, std::size_t f, std::size_t g) {
+    const Vec3 a = face_cross(surface, f), b = face_cross(surface, g);
+    if (!(a.squaredNorm() > 0) || !(b.squaredNorm() > 0)) return 0;
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// The sides of face `f` that are creases, or boundaries.
+void add_edges(const LineSurface& surface, std::size_t f, LineType type, float crease_angle, FaceLines& lines) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t across = surface.neighbors[f][i];
+        float strength = 1;
+        if (type == LineType::boundaries) {
+            if (across != k_no_neighbor) continue;
+        } else if (across == k_many_neighbors) {
+            strength = std::numbers::pi_v<float>;
+        } else {
+            if (across > k_last_neighbor || across / 4 < f) continue;
+            strength = angle_between(surface, f, across / 4);
+            if (!(strength > crease_angle)) continue;
+        }
+        LineSegment& segment = lines.segments[lines.count++];
+        for (std::size_t end : {0, 1}) {
+            const std::size_t corner = (i + end) % 3;
+            segment.ends[end] = on_edge(corner, 0);
+            segment.places[end] = static_cast<SegmentEnd>(k_at_corner + corner);
+            segment.strength[end] = strength;
+        }
+    }
 }
 
 bool is_extremum(LineType type) {
@@ -129,6 +179,9 @@ std::vector<std::vector<LineField>> fields_of(const LineSurface& surface, LineTy
             return {apparent_ridge_field(surface, options)};
         case LineType::principal_highlights:
             return {principal_highlight_field(surface, 0, options), principal_highlight_field(surface, 1, options)};
+        case LineType::creases:
+        case LineType::boundaries:
+            break;  // of no field
     }
     return {};
 }
@@ -140,8 +193,14 @@ void check(const LineSurface& surface, LineType type, const LineOptions& options
         if (have != count)
             throw UsageError(fmt::format("{} {} for {} vertices: compute them for the same mesh", have, what, count));
     };
+    if (type == LineType::creases || type == LineType::boundaries) {
+        if (surface.neighbors.size() != surface.faces.size())
+            throw UsageError(fmt::format("neighbors of {} faces for {}: compute them for the same mesh",
+                                         surface.neighbors.size(), surface.faces.size()));
+        return;
+    }
     expect(surface.normals.size(), "normals");
-    if (type == LineType::contours) return;
+    if (!needs_curvature(type)) return;
     for (const std::size_t have : {c.k1.size(), c.k2.size(), c.e1.size(), c.e2.size()}) expect(have, "curvatures");
     expect(c.derivative.size(), "derivatives of curvature");
     if (!(options.feature_size > 0 && std::isfinite(options.feature_size)))
@@ -159,12 +218,17 @@ void for_each_face(const LineSurface& surface, LineType type, const LineOptions&
         [&](std::size_t f) {
             const auto& [a, b, c] = surface.faces[f];
             FaceLines lines;
-            for (const std::vector<LineField>& field : fields) {
+            if (fields.empty()) add_edges(surface, f, type, options.thresholds.crease_angle, lines);
+            for (std::size_t family = 0; family < fields.size(); ++family) {
+                const std::vector<LineField>& field = fields[family];
                 const Corners corners = {&field[a], &field[b], &field[c]};
+                const std::size_t before = lines.count;
                 if (extremum)
                     add_extrema(corners, {surface.vertices[a], surface.vertices[b], surface.vertices[c]}, lines);
                 else
                     add_zero_set(corners, lines);
+                for (std::size_t i = before; i < lines.count; ++i)
+                    lines.segments[i].family = static_cast<std::uint8_t>(family);
             }
             use(f, lines);
         },

@@ -16,11 +16,19 @@ HOST = {
     'imaging': {'core', 'mesh'},
     'animation': {'core', 'mesh'},
     'synth': {'core', 'mesh', 'animation'},
-    'lines': {'core', 'mesh'},
-    'curvature': {'core', 'mesh', 'learn', 'data', 'animation', 'lines'},
+    'lines': {'core', 'mesh', 'imaging'},
+    'curvature': {'core', 'mesh', 'learn', 'data', 'animation', 'lines', 'imaging'},
     'labeling': {'core', 'mesh', 'learn', 'graphcut', 'data', 'imaging'},
 }
-GPU = {'runtime': set(), 'learn': {'runtime'}, 'labeling': {'runtime', 'learn'}, 'imaging': {'runtime'}, 'curvature': {'runtime'}}
+GPU = {
+    'runtime': set(),
+    'learn': {'runtime'},
+    'labeling': {'runtime', 'learn'},
+    'imaging': {'runtime'},
+    'curvature': {'runtime'},
+    'lines': {'runtime', 'imaging', 'curvature'},
+    'window': {'runtime', 'imaging'},
+}
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]')
 
 

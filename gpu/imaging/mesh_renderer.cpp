@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "embedded/imaging_resolve_comp.h"
-#include "gpu/imaging/image_layout.h"
+#include "gpu/runtime/image_layout.h"
 #include "gpu/runtime/errors.h"
 #include "shaders/shared/render.h"
 

@@ -57,12 +57,12 @@ void Commands::begin() {
     state_ = State::recording;
 }
 
-void Commands::submit() {
+void Commands::submit(const SubmitOrder& order) {
     begin();
     make_visible(buffer_);
     try {
         check(vkEndCommandBuffer(buffer_), "record commands");
-        device_.submit(buffer_, fence_.get());
+        device_.submit(buffer_, fence_.get(), order);
     } catch (const DeviceError&) {
         reset();
         throw;

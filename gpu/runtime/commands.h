@@ -8,6 +8,13 @@ namespace exemplar {
 
 class Device;
 
+/// What work waits for and tells on the device, beside the fence: null is nothing.
+struct SubmitOrder {
+    VkSemaphore wait = VK_NULL_HANDLE;
+    VkPipelineStageFlags2 wait_stage = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;  ///< which of its stages waits
+    VkSemaphore signal = VK_NULL_HANDLE;
+};
+
 /// One command buffer, recorded, submitted and waited for, then recorded again. What its commands wrote is visible to
 /// all later submissions and to the host: sequences need no barriers between them. One thread at a time may use it.
 class Commands {
@@ -28,7 +35,7 @@ class Commands {
     void begin();
     /// Makes everything recorded visible and hands it to the device; returns at once. Nothing is left recorded if it
     /// throws.
-    void submit();
+    void submit(const SubmitOrder& order = {});
     /// Waits until submitted work is done, if there is any. Throws DeviceLostError if the device was lost.
     void wait();
 

@@ -28,9 +28,9 @@ RangeLimits limits_of(const ReflectedBinding& binding, const DeviceInfo& info) {
     return {info.max_storage_range, info.storage_alignment};
 }
 
-void check_binding(const Kernel& kernel, const ReflectedBinding& binding, const BufferRange& range,
+void check_binding(const Program& program, const ReflectedBinding& binding, const BufferRange& range,
                    const DeviceInfo& info) {
-    const auto start = [&] { return fmt::format("kernel {}: buffer '{}': ", kernel.name(), binding.name); };
+    const auto start = [&] { return fmt::format("{}: buffer '{}': ", program.name, binding.name); };
     if (!*range.buffer) throw ShaderError(start() + "it has no memory");
     if (range.offset > range.buffer->bytes() || range.bytes > range.buffer->bytes() - range.offset)
         throw ShaderError(fmt::format("{}bytes {} to {} are outside its {} bytes", start(), range.offset,
@@ -59,22 +59,21 @@ VkDescriptorBufferInfo bound_range(const ReflectedBinding& binding, const Buffer
 
 }  // namespace
 
-void Descriptors::check_bindings(const Kernel& kernel, std::span<const BufferRange> ranges) const {
-    const std::vector<ReflectedBinding>& bindings = kernel.reflection().bindings;
+void Descriptors::check_bindings(const Program& program, std::span<const BufferRange> ranges) const {
+    const std::vector<ReflectedBinding>& bindings = program.reflection.bindings;
     if (ranges.size() != bindings.size())
-        throw ShaderError(
-            fmt::format("kernel {} binds {} buffers, not {}", kernel.name(), bindings.size(), ranges.size()));
-    for (std::size_t i = 0; i < ranges.size(); ++i) check_binding(kernel, bindings[i], ranges[i], device_.info());
+        throw ShaderError(fmt::format("{} binds {} buffers, not {}", program.name, bindings.size(), ranges.size()));
+    for (std::size_t i = 0; i < ranges.size(); ++i) check_binding(program, bindings[i], ranges[i], device_.info());
 }
 
-void Descriptors::bind(VkCommandBuffer commands, const Kernel& kernel, std::span<const BufferRange> ranges) {
+void Descriptors::bind(VkCommandBuffer commands, const Program& program, std::span<const BufferRange> ranges) {
     if (ranges.empty()) return;
-    const VkDescriptorSet set = allocate(kernel.program()->set_layout.get());
+    const VkDescriptorSet set = allocate(program.set_layout.get());
     std::vector<VkDescriptorBufferInfo> infos(ranges.size());
     std::vector<VkBufferView> views(ranges.size());
     std::vector<VkWriteDescriptorSet> writes(ranges.size());
     for (std::size_t i = 0; i < ranges.size(); ++i) {
-        const ReflectedBinding& binding = kernel.reflection().bindings[i];
+        const ReflectedBinding& binding = program.reflection.bindings[i];
         infos[i] = bound_range(binding, ranges[i], device_.info());
         writes[i] = empty_structure<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
         writes[i].dstSet = set;
@@ -89,8 +88,9 @@ void Descriptors::bind(VkCommandBuffer commands, const Kernel& kernel, std::span
         }
     }
     vkUpdateDescriptorSets(device_.handle(), static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, kernel.program()->layout.get(), 0, 1, &set, 0,
-                            nullptr);
+    const bool computes = program.stages == VK_SHADER_STAGE_COMPUTE_BIT;
+    vkCmdBindDescriptorSets(commands, computes ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS,
+                            program.layout.get(), 0, 1, &set, 0, nullptr);
 }
 
 VkBufferView Descriptors::texel_view(const ReflectedBinding& binding, const VkDescriptorBufferInfo& range) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "gpu/runtime/buffer.h"
-#include "gpu/runtime/kernel.h"
+#include "gpu/runtime/program.h"
 #include "gpu/runtime/unique_handle.h"
 
 namespace exemplar {
@@ -21,11 +21,11 @@ class Descriptors {
     Descriptors(const Descriptors&) = delete;
     Descriptors& operator=(const Descriptors&) = delete;
 
-    /// Throws ShaderError unless the ranges are what the kernel binds, DeviceLimitError if one is over the device's
+    /// Throws ShaderError unless the ranges are what the program binds, DeviceLimitError if one is over the device's
     /// limits or at an offset that it cannot bind.
-    void check_bindings(const Kernel& kernel, std::span<const BufferRange> ranges) const;
+    void check_bindings(const Program& program, std::span<const BufferRange> ranges) const;
     /// Records the binding of ranges that are fit for it.
-    void bind(VkCommandBuffer commands, const Kernel& kernel, std::span<const BufferRange> ranges);
+    void bind(VkCommandBuffer commands, const Program& program, std::span<const BufferRange> ranges);
     /// Takes all sets back; call it when the commands are done.
     void reset();
 

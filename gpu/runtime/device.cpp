@@ -74,14 +74,23 @@ Device::~Device() {
     vkDestroyDevice(device_, nullptr);
 }
 
-void Device::submit(VkCommandBuffer commands, VkFence fence) {
+void Device::submit(VkCommandBuffer commands, VkFence fence, const SubmitOrder& order) {
     const VkCommandBufferSubmitInfo command_info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
                                                  .pNext = nullptr,
                                                  .commandBuffer = commands,
                                                  .deviceMask = 0};
+    auto wait = empty_structure<VkSemaphoreSubmitInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO), signal = wait;
+    wait.semaphore = order.wait;
+    wait.stageMask = order.wait_stage;
+    signal.semaphore = order.signal;
+    signal.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     auto info = empty_structure<VkSubmitInfo2>(VK_STRUCTURE_TYPE_SUBMIT_INFO_2);
     info.commandBufferInfoCount = 1;
     info.pCommandBufferInfos = &command_info;
+    info.waitSemaphoreInfoCount = order.wait ? 1 : 0;
+    info.pWaitSemaphoreInfos = &wait;
+    info.signalSemaphoreInfoCount = order.signal ? 1 : 0;
+    info.pSignalSemaphoreInfos = &signal;
     const std::lock_guard lock(queue_mutex_);
     check(vkQueueSubmit2(queue_, 1, &info, fence),
           [&] { return fmt::format("submit work to device '{}'", info_.name); });

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "gpu/runtime/commands.h"
 #include "gpu/runtime/device_info.h"
 #include "gpu/runtime/instance.h"
 #include "gpu/runtime/pipeline_cache.h"
@@ -44,7 +45,7 @@ class Device {
     PipelineCache& pipeline_cache() { return *pipeline_cache_; }
 
     /// Submits recorded commands; any thread may call it. `fence` is signaled when they are done.
-    void submit(VkCommandBuffer commands, VkFence fence);
+    void submit(VkCommandBuffer commands, VkFence fence, const SubmitOrder& order = {});
     /// Waits until the device has nothing to do.
     void wait_idle();
 

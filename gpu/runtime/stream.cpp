@@ -15,9 +15,9 @@ namespace {
 constexpr std::size_t k_staging_block = std::size_t{4} << 20;
 constexpr std::size_t k_staging_alignment = 16;
 
-Access access_of(const ReflectedBinding& binding, const BufferRange& range) {
+Access access_of(const ReflectedBinding& binding, const BufferRange& range, VkPipelineStageFlags2 stage) {
     return {.buffer = range.buffer->handle(),
-            .stage = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+            .stage = stage,
             .reads = binding.type == BindingType::texels ? VK_ACCESS_2_SHADER_SAMPLED_READ_BIT
                      : binding.reads                     ? VK_ACCESS_2_SHADER_STORAGE_READ_BIT
                                                          : VK_ACCESS_2_NONE,
@@ -34,6 +34,52 @@ Access copy_write(const Buffer& buffer) {
     return {.buffer = buffer.handle(),
             .stage = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
             .writes = VK_ACCESS_2_TRANSFER_WRITE_BIT};
+}
+
+Access indirect_read(const Buffer& buffer) {
+    return {.buffer = buffer.handle(),
+            .stage = VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+            .reads = VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT};
+}
+
+void check_push(const Program& program, std::span<const std::byte> push) {
+    if (push.size() != program.reflection.push_bytes)
+        throw ShaderError(fmt::format("{} takes {} bytes of push constants, not {}", program.name,
+                                      program.reflection.push_bytes, push.size()));
+}
+
+void begin_rendering(VkCommandBuffer commands, const PassTarget& target) {
+    const auto attachment = [](VkImageView view, VkImageLayout layout, bool clears) {
+        auto info = empty_structure<VkRenderingAttachmentInfo>(VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO);
+        info.imageView = view;
+        info.imageLayout = layout;
+        info.loadOp = clears ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
+        info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+        return info;
+    };
+    auto color = attachment(target.color, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, target.clear_color.has_value());
+    if (target.clear_color) std::ranges::copy(*target.clear_color, color.clearValue.color.float32);
+    auto depth = attachment(target.depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, target.clear_depth.has_value());
+    if (target.clear_depth) depth.clearValue.depthStencil = {*target.clear_depth, 0};
+    auto rendering = empty_structure<VkRenderingInfo>(VK_STRUCTURE_TYPE_RENDERING_INFO);
+    rendering.renderArea = {{0, 0}, target.extent};
+    rendering.layerCount = 1;
+    rendering.colorAttachmentCount = target.color ? 1 : 0;
+    rendering.pColorAttachments = &color;
+    rendering.pDepthAttachment = target.depth ? &depth : nullptr;
+    vkCmdBeginRendering(commands, &rendering);
+    const VkViewport viewport{0, 0, static_cast<float>(target.extent.width), static_cast<float>(target.extent.height),
+                              0, 1};
+    vkCmdSetViewport(commands, 0, 1, &viewport);
+}
+
+void record_draw(VkCommandBuffer commands, const Draw& draw, VkExtent2D extent) {
+    const VkRect2D scissor = draw.scissor.value_or(VkRect2D{{0, 0}, extent});
+    vkCmdSetScissor(commands, 0, 1, &scissor);
+    if (draw.indirect)
+        vkCmdDrawIndirect(commands, draw.indirect->handle(), draw.indirect_offset, 1, sizeof(VkDrawIndirectCommand));
+    else if (draw.vertices > 0)
+        vkCmdDraw(commands, draw.vertices, 1, draw.first_vertex, 0);
 }
 
 void check_bytes(const Buffer& buffer, std::size_t offset, std::size_t bytes) {
@@ -90,31 +136,101 @@ void Stream::order(std::span<const Access> accesses) {
     barriers_.insert(barriers_.end(), barriers.begin(), barriers.end());
 }
 
-void Stream::dispatch_bytes(const Kernel& kernel, Threads threads, std::span<const BufferRange> ranges,
-                            std::span<const std::byte> push) {
-    const Reflection& reflection = kernel.reflection();
-    if (push.size() != reflection.push_bytes)
-        throw ShaderError(fmt::format("kernel {} takes {} bytes of push constants, not {}", kernel.name(),
-                                      reflection.push_bytes, push.size()));
-    descriptors_.check_bindings(kernel, ranges);
-    if (threads.x == 0 || threads.y == 0 || threads.z == 0) return;
-    const std::array<std::uint32_t, 3> groups = workgroups(kernel, threads, device_.info());
-    begin();
-    std::vector<Access> accesses;
+// All of a dispatch but the dispatch itself; `accesses` are those beside its bindings.
+void Stream::prepare(const Kernel& kernel, std::span<const BufferRange> ranges, std::span<const std::byte> push,
+                     std::vector<Access> accesses) {
+    const Program& program = *kernel.program();
     for (std::size_t i = 0; i < ranges.size(); ++i) {
-        accesses.push_back(access_of(reflection.bindings[i], ranges[i]));
+        accesses.push_back(
+            access_of(program.reflection.bindings[i], ranges[i], VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT));
         use(*ranges[i].buffer);
     }
     programs_.insert(kernel.program());
     order(accesses);
-    vkCmdBindPipeline(commands_.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, kernel.program()->pipeline.get());
-    descriptors_.bind(commands_.handle(), kernel, ranges);
+    vkCmdBindPipeline(commands_.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, program.pipeline.get());
+    descriptors_.bind(commands_.handle(), program, ranges);
     if (!push.empty())
-        vkCmdPushConstants(commands_.handle(), kernel.program()->layout.get(), VK_SHADER_STAGE_COMPUTE_BIT, 0,
+        vkCmdPushConstants(commands_.handle(), program.layout.get(), program.stages, 0,
                            static_cast<std::uint32_t>(push.size()), push.data());
-    timestamps_.start(commands_.handle(), kernel);
+    timestamps_.start(commands_.handle(), program.name);
+}
+
+void Stream::dispatch_bytes(const Kernel& kernel, Threads threads, std::span<const BufferRange> ranges,
+                            std::span<const std::byte> push) {
+    check_push(*kernel.program(), push);
+    descriptors_.check_bindings(*kernel.program(), ranges);
+    if (threads.x == 0 || threads.y == 0 || threads.z == 0) return;
+    const std::array<std::uint32_t, 3> groups = workgroups(kernel, threads, device_.info());
+    begin();
+    prepare(kernel, ranges, push, {});
     vkCmdDispatch(commands_.handle(), groups[0], groups[1], groups[2]);
-    timestamps_.stop(commands_.handle());
+    timestamps_.stop(commands_.handle(), VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+}
+
+void Stream::dispatch_indirect_bytes(const Kernel& kernel, const Buffer& arguments, std::size_t offset,
+                                     std::span<const BufferRange> ranges, std::span<const std::byte> push) {
+    check_push(*kernel.program(), push);
+    descriptors_.check_bindings(*kernel.program(), ranges);
+    check_bytes(arguments, offset, sizeof(VkDispatchIndirectCommand));
+    begin();
+    use(arguments);
+    prepare(kernel, ranges, push, {indirect_read(arguments)});
+    vkCmdDispatchIndirect(commands_.handle(), arguments.handle(), offset);
+    timestamps_.stop(commands_.handle(), VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+}
+
+void Stream::render(const Pass& pass) {
+    constexpr VkPipelineStageFlags2 k_shaders =
+        VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+    std::vector<Access> accesses;
+    begin();
+    for (const Pass::Item& item : pass.items()) {
+        check_push(*item.program, item.push);
+        descriptors_.check_bindings(*item.program, item.bindings);
+        for (std::size_t i = 0; i < item.bindings.size(); ++i) {
+            accesses.push_back(access_of(item.program->reflection.bindings[i], item.bindings[i], k_shaders));
+            use(*item.bindings[i].buffer);
+        }
+        programs_.insert(item.program);
+        if (!item.draw.indirect) continue;
+        check_bytes(*item.draw.indirect, item.draw.indirect_offset, sizeof(VkDrawIndirectCommand));
+        accesses.push_back(indirect_read(*item.draw.indirect));
+        use(*item.draw.indirect);
+    }
+    // Within a pass nothing can wait.
+    order(accesses);
+    timestamps_.start(commands_.handle(), pass.name());
+    begin_rendering(commands_.handle(), pass.target());
+    for (const Pass::Item& item : pass.items()) {
+        const Program& program = *item.program;
+        vkCmdBindPipeline(commands_.handle(), VK_PIPELINE_BIND_POINT_GRAPHICS, program.pipeline.get());
+        descriptors_.bind(commands_.handle(), program, item.bindings);
+        if (!item.push.empty())
+            vkCmdPushConstants(commands_.handle(), program.layout.get(), program.stages, 0,
+                               static_cast<std::uint32_t>(item.push.size()), item.push.data());
+        record_draw(commands_.handle(), item.draw, pass.target().extent);
+    }
+    vkCmdEndRendering(commands_.handle());
+    timestamps_.stop(commands_.handle(), VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT);
+}
+
+void Stream::transition(VkImage image, VkImageAspectFlags aspect, VkImageLayout from, VkImageLayout to,
+                        const Transition& transition) {
+    begin();
+    change_layout(commands_.handle(), image, aspect, from, to, transition);
+}
+
+void Stream::copy_image(VkImage image, VkImageAspectFlags aspect, VkExtent2D extent, std::size_t texel_bytes,
+                        const Buffer& target) {
+    check_bytes(target, 0, std::size_t{extent.width} * extent.height * texel_bytes);
+    begin();
+    use(target);
+    order(std::array{copy_write(target)});
+    VkBufferImageCopy region{};
+    region.imageSubresource = {aspect, 0, 0, 1};
+    region.imageExtent = {extent.width, extent.height, 1};
+    vkCmdCopyImageToBuffer(commands_.handle(), image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target.handle(), 1,
+                           &region);
 }
 
 std::pair<Stream::Staging*, std::size_t> Stream::stage(std::vector<Staging>& blocks, std::size_t bytes,
@@ -182,10 +298,10 @@ void Stream::fill(const Buffer& target, std::uint32_t word) {
     vkCmdFillBuffer(commands_.handle(), target.handle(), 0, VK_WHOLE_SIZE, word);
 }
 
-void Stream::submit() {
+void Stream::submit(const SubmitOrder& order) {
     begin();
     try {
-        commands_.submit();
+        commands_.submit(order);
     } catch (const DeviceError&) {
         release();
         throw;

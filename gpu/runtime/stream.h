@@ -15,7 +15,9 @@
 #include "gpu/runtime/commands.h"
 #include "gpu/runtime/descriptors.h"
 #include "gpu/runtime/hazards.h"
+#include "gpu/runtime/image_layout.h"
 #include "gpu/runtime/kernel.h"
+#include "gpu/runtime/pass.h"
 #include "gpu/runtime/profiler.h"
 #include "gpu/runtime/threads.h"
 #include "gpu/runtime/timestamps.h"
@@ -48,6 +50,33 @@ class Stream {
     void dispatch_bytes(const Kernel& kernel, Threads threads, std::span<const BufferRange> bindings,
                         std::span<const std::byte> push);
 
+    /// Runs a kernel over as many workgroups as the device finds in `arguments` at byte `offset` (a multiple of 4): a
+    /// VkDispatchIndirectCommand of no more than the device allows. Throws as dispatch.
+    void dispatch_indirect(const Kernel& kernel, const Buffer& arguments, std::size_t offset,
+                           std::initializer_list<BufferRange> bindings) {
+        dispatch_indirect_bytes(kernel, arguments, offset, {bindings.begin(), bindings.size()}, {});
+    }
+    template <typename Push>
+    void dispatch_indirect(const Kernel& kernel, const Buffer& arguments, std::size_t offset,
+                           std::initializer_list<BufferRange> bindings, const Push& push) {
+        static_assert(std::is_trivially_copyable_v<Push>);
+        dispatch_indirect_bytes(kernel, arguments, offset, {bindings.begin(), bindings.size()},
+                                std::as_bytes(std::span(&push, 1)));
+    }
+    void dispatch_indirect_bytes(const Kernel& kernel, const Buffer& arguments, std::size_t offset,
+                                 std::span<const BufferRange> bindings, std::span<const std::byte> push);
+
+    /// Draws. Throws ShaderError and DeviceLimitError as dispatch.
+    void render(const Pass& pass);
+    /// Changes an image's layout; its contents survive unless `from` is VK_IMAGE_LAYOUT_UNDEFINED. Images are not
+    /// tracked: `transition` says what is waited for.
+    void transition(VkImage image, VkImageAspectFlags aspect, VkImageLayout from, VkImageLayout to,
+                    const Transition& transition);
+    /// Copies the first mip of an image in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL to the start of a buffer, row by row
+    /// without gaps. The caller has made its contents visible to copies.
+    void copy_image(VkImage image, VkImageAspectFlags aspect, VkExtent2D extent, std::size_t texel_bytes,
+                    const Buffer& target);
+
     /// Copies host values into `target` at byte `offset`; `values` may end as soon as this returns.
     template <typename T>
     void upload(Buffer& target, std::span<const T> values, std::size_t offset = 0) {
@@ -75,7 +104,7 @@ class Stream {
     void fill(const Buffer& target, std::uint32_t word);
 
     /// Hands the recorded work to the device and returns at once; nothing may be recorded until wait().
-    void submit();
+    void submit(const SubmitOrder& order = {});
     /// Waits until the submitted work is done and downloads have arrived. Throws DeviceLostError if the device was
     /// lost.
     void wait();
@@ -110,6 +139,8 @@ class Stream {
     void begin();
     void release();
     void use(const Buffer& buffer);
+    void prepare(const Kernel& kernel, std::span<const BufferRange> bindings, std::span<const std::byte> push,
+                 std::vector<Access> accesses);
     void order(std::span<const Access> accesses);
     void upload_bytes(Buffer& target, std::span<const std::byte> data, std::size_t offset);
     void download_bytes(const Buffer& source, std::span<std::byte> data, std::size_t offset);
@@ -124,7 +155,7 @@ class Stream {
     std::vector<Staging> uploads_, readbacks_;
     std::vector<Download> downloads_;
     std::set<std::shared_ptr<Buffer::Resource>> buffers_;
-    std::set<std::shared_ptr<const Kernel::Program>> programs_;
+    std::set<std::shared_ptr<const Program>> programs_;
     Descriptors descriptors_;
     Timestamps timestamps_;
     Commands commands_;

@@ -27,20 +27,20 @@ void Timestamps::add_pool() {
 }
 
 // The first timestamp waits for all earlier commands, copies too, so that a dispatch is not charged for them.
-void Timestamps::start(VkCommandBuffer commands, const Kernel& kernel) {
+void Timestamps::start(VkCommandBuffer commands, std::string_view name) {
     if (!enabled()) return;
     const std::size_t pool = dispatches_.size() / k_dispatches_per_pool;
     const auto query = static_cast<std::uint32_t>(2 * (dispatches_.size() % k_dispatches_per_pool));
     if (pool == pools_.size()) add_pool();
     if (query == 0) vkCmdResetQueryPool(commands, pools_[pool].get(), 0, 2 * k_dispatches_per_pool);
     vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pools_[pool].get(), query);
-    dispatches_.push_back(kernel.program());
+    dispatches_.emplace_back(name);
 }
 
-void Timestamps::stop(VkCommandBuffer commands) {
+void Timestamps::stop(VkCommandBuffer commands, VkPipelineStageFlags2 stage) {
     if (!enabled()) return;
     const std::size_t last = dispatches_.size() - 1;
-    vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, pools_[last / k_dispatches_per_pool].get(),
+    vkCmdWriteTimestamp2(commands, stage, pools_[last / k_dispatches_per_pool].get(),
                          static_cast<std::uint32_t>(2 * (last % k_dispatches_per_pool) + 1));
 }
 
@@ -57,8 +57,7 @@ std::uint64_t Timestamps::elapsed_ticks(std::size_t dispatch) const {
 
 void Timestamps::collect() {
     for (std::size_t i = 0; i < dispatches_.size(); ++i)
-        profiler_->add(dispatches_[i]->name,
-                       static_cast<double>(elapsed_ticks(i)) * device_.info().timestamp_period * 1e-6);
+        profiler_->add(dispatches_[i], static_cast<double>(elapsed_ticks(i)) * device_.info().timestamp_period * 1e-6);
     clear();
 }
 

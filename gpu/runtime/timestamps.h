@@ -3,10 +3,10 @@
 #include <volk.h>
 
 #include <cstdint>
-#include <memory>
+#include <string>
+#include <string_view>
 #include <vector>
 
-#include "gpu/runtime/kernel.h"
 #include "gpu/runtime/profiler.h"
 #include "gpu/runtime/unique_handle.h"
 
@@ -14,14 +14,14 @@ namespace exemplar {
 
 class Device;
 
-/// Timestamps around the dispatches of one command sequence: start() and stop() are recorded, collect() reads them when
-/// the work is done. Does nothing without a profiler or on a device without timestamps.
+/// Timestamps around the dispatches and passes of one command sequence: start() and stop() are recorded, collect()
+/// reads them when the work is done. Does nothing without a profiler or on a device without timestamps.
 class Timestamps {
   public:
     Timestamps(Device& device, Profiler* profiler) : device_(device), profiler_(profiler) {}
 
-    void start(VkCommandBuffer commands, const Kernel& kernel);
-    void stop(VkCommandBuffer commands);
+    void start(VkCommandBuffer commands, std::string_view name);
+    void stop(VkCommandBuffer commands, VkPipelineStageFlags2 stage);
     /// Adds the recorded times to the profiler; call it when the commands are done.
     void collect();
     /// Forgets what was recorded.
@@ -34,7 +34,7 @@ class Timestamps {
     Device& device_;
     Profiler* profiler_;
     std::vector<UniqueQueryPool> pools_;
-    std::vector<std::shared_ptr<const Kernel::Program>> dispatches_;
+    std::vector<std::string> dispatches_;
 };
 
 }  // namespace exemplar

@@ -1,4 +1,4 @@
-#include "gpu/imaging/image_layout.h"
+#include "gpu/runtime/image_layout.h"
 
 #include "gpu/runtime/errors.h"
 

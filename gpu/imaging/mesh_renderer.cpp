@@ -4,8 +4,9 @@
 
 #include <algorithm>
 
+#include "embedded/imaging_mesh_frag.h"
+#include "embedded/imaging_mesh_vert.h"
 #include "embedded/imaging_resolve_comp.h"
-#include "gpu/runtime/image_layout.h"
 #include "gpu/runtime/errors.h"
 #include "shaders/shared/render.h"
 
@@ -87,15 +88,13 @@ std::vector<std::uint32_t> packed_colors(std::span<const Color> colors) {
     return packed;
 }
 
-VkRenderingAttachmentInfo attachment_info(const Attachment& attachment, VkImageLayout layout, VkClearValue clear,
-                                          bool clears, bool stores) {
-    auto info = empty_structure<VkRenderingAttachmentInfo>(VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO);
-    info.imageView = attachment.view();
-    info.imageLayout = layout;
-    info.loadOp = clears ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
-    info.storeOp = stores ? VK_ATTACHMENT_STORE_OP_STORE : VK_ATTACHMENT_STORE_OP_DONT_CARE;
-    info.clearValue = clear;
-    return info;
+// Corners, positions, normals and colors; see shaders/imaging/mesh.vert.
+DrawPipeline mesh_pipeline(Device& device, VkFormat depth) {
+    return {device,
+            shaders::imaging_mesh_vert,
+            shaders::imaging_mesh_frag,
+            {.push_constants = layout_of<shared::RenderParameters>()},
+            {.color = k_color_format, .depth = depth}};
 }
 
 void check_arguments(const TriangleMesh& mesh, std::span<const Color> face_colors, int width, int height) {
@@ -112,9 +111,8 @@ MeshRenderer::MeshRenderer(Device& device, int tile_size, std::size_t part_bytes
       tile_size_(tile_size),
       part_bytes_(buffer_limit(device.info(), part_bytes)),
       depth_format_(depth_format(device)),
-      pipeline_(device, k_color_format, depth_format_),
+      pipeline_(mesh_pipeline(device, depth_format_)),
       resolve_(device, shaders::imaging_resolve_comp, {.push_constants = layout_of<shared::ResolveParameters>()}),
-      commands_(device),
       stream_(device) {
     if (tile_size <= 0) throw UsageError(fmt::format("render: tiles of {} pixels; give at least 1", tile_size));
 }
@@ -166,7 +164,6 @@ void MeshRenderer::upload(const MeshSurface& surface) {
     normals_ = Buffer::of(device_, coordinates(surface.normals));
     colors_ = Buffer::of<std::uint32_t>(device_, packed_colors(surface.colors));
     corner_count_ = static_cast<std::uint32_t>(3 * surface.faces.size());
-    pipeline_.bind({&corners_, &positions_, &normals_, &colors_});
 }
 
 void MeshRenderer::reserve_tile(int width, int height) {
@@ -187,56 +184,28 @@ void MeshRenderer::reserve_tile(int width, int height) {
     tile_height_ = height;
 }
 
-void MeshRenderer::record_draw(VkCommandBuffer commands, const PictureTile& tile, const MeshDraw& draw,
-                               Turn turn) const {
-    VkClearValue background{}, far{};
-    std::ranges::copy(draw.background, background.color.float32);
-    far.depthStencil.depth = 1.0f;
-    const auto color = attachment_info(color_, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, background, turn.first, true);
-    const auto depth = attachment_info(depth_, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, far, turn.first, !turn.last);
-    const VkExtent2D extent = sample_extent(tile);
-    auto rendering = empty_structure<VkRenderingInfo>(VK_STRUCTURE_TYPE_RENDERING_INFO);
-    rendering.renderArea = {{0, 0}, extent};
-    rendering.layerCount = 1;
-    rendering.colorAttachmentCount = 1;
-    rendering.pColorAttachments = &color;
-    rendering.pDepthAttachment = &depth;
-    vkCmdBeginRendering(commands, &rendering);
-    const VkViewport viewport{0, 0, static_cast<float>(extent.width), static_cast<float>(extent.height), 0, 1};
-    vkCmdSetViewport(commands, 0, 1, &viewport);
-    vkCmdSetScissor(commands, 0, 1, &rendering.renderArea);
-    vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.handle());
-    const VkDescriptorSet set = pipeline_.set();
-    vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.layout(), 0, 1, &set, 0, nullptr);
-    const shared::RenderParameters parameters = tile_parameters(draw, tile);
-    vkCmdPushConstants(commands, pipeline_.layout(), VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                       sizeof parameters, &parameters);
-    if (corner_count_ > 0) vkCmdDraw(commands, corner_count_, 1, 0, 0);
-    vkCmdEndRendering(commands);
-}
-
 void MeshRenderer::draw_part(const PictureTile& tile, const MeshDraw& draw, Turn turn) {
-    commands_.begin();
     if (turn.first) {
-        change_layout(commands_.handle(), color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
-                      VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, k_color_begins);
-        change_layout(commands_.handle(), depth_.image(), VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
-                      VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, k_depth_begins);
+        stream_.transition(color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+                           VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, k_color_begins);
+        stream_.transition(depth_.image(), VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+                           VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, k_depth_begins);
     }
-    record_draw(commands_.handle(), tile, draw, turn);
-    if (turn.last) record_copy(commands_.handle(), tile);
-    commands_.submit();
-    commands_.wait();
-}
-
-void MeshRenderer::record_copy(VkCommandBuffer commands, const PictureTile& tile) const {
-    change_layout(commands, color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                  VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, k_color_drawn);
-    VkBufferImageCopy region{};
-    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    region.imageExtent = {sample_extent(tile).width, sample_extent(tile).height, 1};
-    vkCmdCopyImageToBuffer(commands, color_.image(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, samples_.handle(), 1,
-                           &region);
+    PassTarget target{.color = color_.view(), .depth = depth_.view(), .extent = sample_extent(tile)};
+    if (turn.first) {
+        target.clear_color = draw.background;
+        target.clear_depth = 1.0f;
+    }
+    Pass pass("mesh", target);
+    pass.draw(pipeline_, {.vertices = corner_count_}, {corners_, positions_, normals_, colors_},
+              tile_parameters(draw, tile));
+    stream_.render(pass);
+    if (turn.last) {
+        stream_.transition(color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, k_color_drawn);
+        stream_.copy_image(color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, sample_extent(tile), k_sample_bytes, samples_);
+    }
+    stream_.finish();
 }
 
 void MeshRenderer::resolve_tile(const PictureTile& tile, Image& image) {

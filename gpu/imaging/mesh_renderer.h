@@ -8,10 +8,9 @@
 
 #include "gpu/imaging/attachment.h"
 #include "gpu/imaging/mesh_part.h"
-#include "gpu/imaging/mesh_pipeline.h"
 #include "gpu/runtime/buffer.h"
-#include "gpu/runtime/commands.h"
 #include "gpu/runtime/device.h"
+#include "gpu/runtime/draw_pipeline.h"
 #include "gpu/runtime/kernel.h"
 #include "gpu/runtime/stream.h"
 #include "host/imaging/camera.h"
@@ -53,17 +52,14 @@ class MeshRenderer {
     void reserve_tile(int width, int height);
     void draw_parts(const PictureTile& tile, const struct MeshDraw& draw, const MeshSurface& surface);
     void draw_part(const PictureTile& tile, const struct MeshDraw& draw, Turn turn);
-    void record_draw(VkCommandBuffer commands, const PictureTile& tile, const struct MeshDraw& draw, Turn turn) const;
-    void record_copy(VkCommandBuffer commands, const PictureTile& tile) const;
     void resolve_tile(const PictureTile& tile, Image& image);
 
     Device& device_;
     int tile_size_;
     std::size_t part_bytes_;
     VkFormat depth_format_;
-    MeshPipeline pipeline_;
+    DrawPipeline pipeline_;
     Kernel resolve_;
-    Commands commands_;
     Stream stream_;
     Buffer corners_, positions_, normals_, colors_;
     std::uint32_t corner_count_ = 0;

@@ -54,3 +54,6 @@ exemplar_shaders(exemplar_gpu_imaging imaging)
 
 exemplar_library(gpu_curvature gpu/curvature exemplar_runtime exemplar_animation exemplar_curvature)
 exemplar_shaders(exemplar_gpu_curvature curvature)
+
+exemplar_library(gpu_lines gpu/lines exemplar_gpu_imaging exemplar_gpu_curvature exemplar_lines)
+exemplar_shaders(exemplar_gpu_lines lines)

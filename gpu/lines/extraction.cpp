@@ -1,0 +1,159 @@
+#include "gpu/lines/extraction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "embedded/lines_apparent_ridges_comp.h"
+#include "embedded/lines_count_comp.h"
+#include "embedded/lines_fields_comp.h"
+#include "embedded/lines_scan_comp.h"
+#include "embedded/lines_segments_comp.h"
+#include "embedded/lines_view_curvature_comp.h"
+#include "gpu/curvature/texels.h"
+#include "host/core/errors.h"
+#include "shaders/shared/lines.h"
+
+namespace exemplar {
+namespace {
+
+using shared::FaceLineParameters;
+using shared::FieldParameters;
+using shared::uvec4;
+using shared::vec4;
+
+constexpr std::size_t k_most_segments = std::size_t{1} << shared::k_line_rounds;
+
+std::size_t divide_up(std::size_t count, std::size_t size) {
+    return (count + size - 1) / size;
+}
+
+FieldParameters field_parameters(const LineOptions& options, std::uint32_t vertices, std::uint32_t families) {
+    const LineThresholds& thresholds = options.thresholds;
+    return {.eye = {options.eye.x(), options.eye.y(), options.eye.z(), options.parallel_eye ? 0.0f : 1.0f},
+            .vertices = vertices,
+            .families = families,
+            .feature_size = options.feature_size,
+            .suggestive_contours = thresholds.suggestive_contours,
+            .suggestive_highlights = thresholds.suggestive_highlights,
+            .principal_highlights = thresholds.principal_highlights,
+            .ridges_valleys = thresholds.ridges_valleys,
+            .apparent_ridges = thresholds.apparent_ridges};
+}
+
+Kernel field_kernel(Device& device, const Shader& shader, std::size_t texels) {
+    return {device,
+            shader,
+            {.push_constants = layout_of<FieldParameters>(),
+             .elements = std::vector<StructLayout>(texels, layout_of<vec4>())}};
+}
+
+Kernel face_kernel(Device& device, const Shader& shader, std::vector<StructLayout> outputs) {
+    std::vector<StructLayout> elements{layout_of<vec4>(), layout_of<uvec4>(), layout_of<uvec4>(), layout_of<vec4>(),
+                                       layout_of<vec4>()};
+    elements.insert(elements.end(), outputs.begin(), outputs.end());
+    return {device, shader, {.push_constants = layout_of<FaceLineParameters>(), .elements = std::move(elements)}};
+}
+
+void check(const GpuCurvedSurface& moment, std::uint32_t families, const LineOptions& options) {
+    if (!(families & shared::k_curvature_families)) return;
+    if (!moment.first || !moment.second || !moment.derivative)
+        throw UsageError("these lines need curvature with derivatives; estimate or learn it");
+    if (!(options.feature_size > 0 && std::isfinite(options.feature_size)))
+        throw UsageError(fmt::format("a feature size of {}: give a positive length", options.feature_size));
+}
+
+}  // namespace
+
+GpuLineExtraction::GpuLineExtraction(const GpuLineSurface& surface, std::size_t most_segments)
+    : surface_(surface),
+      room_(std::min(
+          {std::max<std::size_t>(surface.surface().face_count(), k_least_room), most_segments, k_most_segments})),
+      field_kernel_(field_kernel(surface.surface().device(), shaders::lines_fields_comp, 7)),
+      view_kernel_(field_kernel(surface.surface().device(), shaders::lines_view_curvature_comp, 5)),
+      count_kernel_(face_kernel(surface.surface().device(), shaders::lines_count_comp,
+                                {layout_of<std::uint32_t>(), layout_of<std::uint32_t>()})),
+      scan_kernel_(surface.surface().device(), shaders::lines_scan_comp,
+                   {.push_constants = layout_of<shared::ScanParameters>(), .constants = {{0, 0}}}),
+      segment_kernel_(face_kernel(
+          surface.surface().device(), shaders::lines_segments_comp,
+          {layout_of<std::uint32_t>(), layout_of<std::uint32_t>(), layout_of<shared::LineSegmentRecord>()})) {
+    Device& device = surface.surface().device();
+    ridge_kernel_ = Kernel(device, shaders::lines_apparent_ridges_comp,
+                           {.push_constants = layout_of<FieldParameters>(),
+                            .elements = {layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(),
+                                         layout_of<std::uint32_t>(), layout_of<uvec4>()}});
+    check_texels(device, 2 * room_, "the lines of a surface");
+    const std::size_t faces = surface.surface().face_count();
+    face_counts_ = Buffer(device, faces * sizeof(std::uint32_t));
+    face_groups_ = Buffer(device, divide_up(faces, shared::k_count_group) * sizeof(std::uint32_t));
+    segments_ = Buffer(device, room_ * sizeof(shared::LineSegmentRecord));
+    counts_ = Buffer(device, sizeof(shared::LineCounts));
+    reserve_fields(0);
+}
+
+void GpuLineExtraction::reserve_fields(std::uint32_t families) {
+    Device& device = surface_.surface().device();
+    const std::size_t vertices = surface_.surface().vertex_count();
+    const auto room_for = [&](std::uint32_t of) {
+        const std::size_t texels = static_cast<std::size_t>(std::popcount(families & of)) * vertices;
+        check_texels(device, texels, "the fields of lines");
+        return texels * sizeof(vec4);
+    };
+    reserve(device, fields_, room_for(shared::k_field_families));
+    reserve(device, directions_, room_for(shared::k_axis_families));
+    const bool apparent = families & 1u << shared::k_apparent_ridges;
+    reserve(device, views_, apparent ? vertices * sizeof(vec4) : 0);
+}
+
+void GpuLineExtraction::record_fields(Stream& stream, const GpuCurvedSurface& moment, std::uint32_t families,
+                                      const LineOptions& options) {
+    const GpuSurface& surface = surface_.surface();
+    const std::uint32_t vertices = surface.vertex_count();
+    const FieldParameters parameters = field_parameters(options, vertices, families);
+    // Kernels bind something even where they read nothing.
+    const Buffer &first = moment.first ? *moment.first : moment.vertices,
+                 &second = moment.second ? *moment.second : moment.vertices,
+                 &derivative = moment.derivative ? *moment.derivative : moment.vertices;
+    const std::uint32_t apparent = 1u << shared::k_apparent_ridges;
+    if (families & shared::k_field_families & ~apparent)
+        stream.dispatch(field_kernel_, vertices,
+                        {moment.vertices, moment.normals, first, second, derivative, fields_, directions_}, parameters);
+    if (!(families & apparent)) return;
+    stream.dispatch(view_kernel_, vertices, {moment.vertices, moment.normals, first, second, views_}, parameters);
+    stream.dispatch(
+        ridge_kernel_, vertices,
+        {moment.vertices, first, second, views_, surface.ring_begin(), surface.rings(), fields_, directions_},
+        parameters);
+}
+
+void GpuLineExtraction::record(Stream& stream, const GpuCurvedSurface& moment, std::uint32_t families,
+                               const LineOptions& options) {
+    check(moment, families, options);
+    const GpuSurface& surface = surface_.surface();
+    surface.check_vertices(moment.vertices);
+    reserve_fields(families);
+    record_fields(stream, moment, families, options);
+    const std::uint32_t faces = surface.face_count();
+    const FaceLineParameters parameters{.faces = faces,
+                                        .vertices = surface.vertex_count(),
+                                        .families = families,
+                                        .crease_angle = options.thresholds.crease_angle,
+                                        .most_segments = static_cast<std::uint32_t>(room_)};
+    stream.dispatch(
+        count_kernel_, faces,
+        {moment.vertices, surface.faces(), surface_.neighbors(), fields_, directions_, face_counts_, face_groups_},
+        parameters);
+    stream.dispatch(
+        scan_kernel_, 1, {face_groups_, counts_},
+        shared::ScanParameters{.groups = static_cast<std::uint32_t>(divide_up(faces, shared::k_count_group)),
+                               .most = static_cast<std::uint32_t>(room_)});
+    stream.dispatch(segment_kernel_, faces,
+                    {moment.vertices, surface.faces(), surface_.neighbors(), fields_, directions_, face_counts_,
+                     face_groups_, segments_},
+                    parameters);
+}
+
+}  // namespace exemplar

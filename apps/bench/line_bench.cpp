@@ -5,7 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <optional>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -50,6 +50,26 @@ LinePicture picture_of(const Animation& animation, const std::vector<FrameRef>& 
     return picture;
 }
 
+/// What is recorded for a frame, one stage more each time.
+struct Stage {
+    const char* name;
+    std::function<void(const FrameRef&)> record;
+};
+
+double median_milliseconds(Stream& stream, const std::vector<FrameRef>& frames,
+                           const std::function<void(const FrameRef&)>& record) {
+    std::vector<double> milliseconds;
+    for (std::size_t i = 0; i < frames.size() + k_warm_up; ++i) {
+        const Stopwatch watch;
+        record(frames[i % frames.size()]);
+        stream.finish();
+        if (i >= k_warm_up) milliseconds.push_back(1e3 * watch.wall());
+    }
+    const auto middle = milliseconds.begin() + static_cast<std::ptrdiff_t>(milliseconds.size() / 2);
+    std::nth_element(milliseconds.begin(), middle, milliseconds.end());
+    return *middle;
+}
+
 void run(const std::string& path, const std::string& model, const std::string& png) {
     const Animation animation = read_animation(path);
     const std::vector<FrameRef> frames = select_frames(animation, {.clips = {}, .most = k_frames});
@@ -60,35 +80,51 @@ void run(const std::string& path, const std::string& model, const std::string& p
     if (!model.empty()) moving.set_model(load_curvature_model(model));
     LineRenderer renderer(device, line_surface);
     const LinePicture picture = picture_of(animation, frames);
-    Profiler profiler;
-    Stream stream(device), profiled(device, &profiler);
-    const auto record = [&](Stream& into, const FrameRef& at) {
-        const Clip& clip = animation.clips[at.clip];
-        const CurvatureSource source = model.empty() ? CurvatureSource::estimated : CurvatureSource::learned;
-        if (clip.poses.empty())
-            moving.record(into, clip.frames[at.frame], source);
-        else
-            moving.record(into, clip.poses[at.frame], source);
+    Stream stream(device);
+    const CurvatureSource source = model.empty() ? CurvatureSource::estimated : CurvatureSource::learned;
+    GpuLineExtraction lines(line_surface);
+    GpuChains chains(lines);
+    const auto moment = [&]() -> GpuCurvedSurface {
         const auto [first, second, derivative] = moving.curvature();
-        renderer.record(into, {moving.vertices(), moving.normals(), first, second, derivative}, picture);
-        renderer.record_download(into);
-        into.finish();
+        return {moving.vertices(), moving.normals(), first, second, derivative};
     };
-    std::vector<double> seconds;
-    for (std::size_t i = 0; i < frames.size() + k_warm_up; ++i) {
-        const Stopwatch watch;
-        record(stream, frames[i % frames.size()]);
-        if (i >= k_warm_up) seconds.push_back(watch.wall());
+    const auto pose = [&](const FrameRef& at) {
+        const Clip& clip = animation.clips[at.clip];
+        if (clip.poses.empty())
+            moving.record(stream, clip.frames[at.frame], source);
+        else
+            moving.record(stream, clip.poses[at.frame], source);
+    };
+    const auto extract = [&](const FrameRef& at) {
+        pose(at);
+        lines.record(
+            stream, moment(), picture.families,
+            {.eye = picture.view.camera.position(), .feature_size = picture.view.feature_size, .thresholds = {}});
+    };
+    const auto chain = [&](const FrameRef& at) {
+        extract(at);
+        chains.record(stream, moving.vertices(), picture.view.camera, k_width, k_height);
+    };
+    const auto draw = [&](const FrameRef& at) {
+        pose(at);
+        renderer.record(stream, moment(), picture);
+    };
+    const auto draw_and_download = [&](const FrameRef& at) {
+        draw(at);
+        renderer.record_download(stream);
+    };
+    const std::vector<Stage> stages = {{"pose, normals, curvature", pose},
+                                       {"and segments", extract},
+                                       {"and chains", chain},
+                                       {"and the surface, visibility and strokes: the image", draw},
+                                       {"and the image on the host", draw_and_download}};
+    fmt::print("{} vertices, {} faces, {} x {}; medians over {} frames, milliseconds\n", animation.rest.vertex_count(),
+               animation.rest.face_count(), k_width, k_height, frames.size());
+    for (const Stage& stage : stages) {
+        const double median = median_milliseconds(stream, frames, stage.record);
+        fmt::print("{:>55} {:8.2f}  ({:.1f} a second)\n", stage.name, median, 1e3 / median);
     }
     if (!png.empty()) write_png(png, renderer.read_image());
-    for (const FrameRef& at : frames) record(profiled, at);
-    std::sort(seconds.begin(), seconds.end());
-    const double median = seconds[seconds.size() / 2];
-    fmt::print("{} vertices: {:.2f} ms a frame, {:.1f} frames/s (median of {})\n", animation.rest.vertex_count(),
-               1e3 * median, 1 / median, seconds.size());
-    for (const auto& [name, entry] : profiler.entries())
-        fmt::print("{:>40} {:8.3f} ms in {} dispatches\n", name, entry.milliseconds / double(frames.size()),
-                   entry.dispatches / frames.size());
 }
 
 }  // namespace

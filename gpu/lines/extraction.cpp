@@ -30,31 +30,17 @@ std::size_t divide_up(std::size_t count, std::size_t size) {
     return (count + size - 1) / size;
 }
 
-FieldParameters field_parameters(const LineOptions& options, std::uint32_t vertices, std::uint32_t families) {
+FieldParameters field_parameters(const LineOptions& options, std::uint32_t vertices) {
     const LineThresholds& thresholds = options.thresholds;
     return {.eye = {options.eye.x(), options.eye.y(), options.eye.z(), options.parallel_eye ? 0.0f : 1.0f},
             .vertices = vertices,
-            .families = families,
             .feature_size = options.feature_size,
             .suggestive_contours = thresholds.suggestive_contours,
             .suggestive_highlights = thresholds.suggestive_highlights,
             .principal_highlights = thresholds.principal_highlights,
             .ridges_valleys = thresholds.ridges_valleys,
-            .apparent_ridges = thresholds.apparent_ridges};
-}
-
-Kernel field_kernel(Device& device, const Shader& shader, std::size_t texels) {
-    return {device,
-            shader,
-            {.push_constants = layout_of<FieldParameters>(),
-             .elements = std::vector<StructLayout>(texels, layout_of<vec4>())}};
-}
-
-Kernel face_kernel(Device& device, const Shader& shader, std::vector<StructLayout> outputs) {
-    std::vector<StructLayout> elements{layout_of<vec4>(), layout_of<uvec4>(), layout_of<uvec4>(), layout_of<vec4>(),
-                                       layout_of<vec4>()};
-    elements.insert(elements.end(), outputs.begin(), outputs.end());
-    return {device, shader, {.push_constants = layout_of<FaceLineParameters>(), .elements = std::move(elements)}};
+            .apparent_ridges = thresholds.apparent_ridges,
+            .unused = 0};
 }
 
 void check(const GpuCurvedSurface& moment, std::uint32_t families, const LineOptions& options) {
@@ -71,30 +57,39 @@ GpuLineExtraction::GpuLineExtraction(const GpuLineSurface& surface, std::size_t 
     : surface_(surface),
       room_(std::min(
           {std::max<std::size_t>(surface.surface().face_count(), k_least_room), most_segments, k_most_segments})),
-      field_kernel_(field_kernel(surface.surface().device(), shaders::lines_fields_comp, 7)),
-      view_kernel_(field_kernel(surface.surface().device(), shaders::lines_view_curvature_comp, 5)),
-      count_kernel_(face_kernel(surface.surface().device(), shaders::lines_count_comp,
-                                {layout_of<std::uint32_t>(), layout_of<std::uint32_t>()})),
       scan_kernel_(surface.surface().device(), shaders::lines_scan_comp,
-                   {.push_constants = layout_of<shared::ScanParameters>(), .constants = {{0, 0}}}),
-      segment_kernel_(face_kernel(
-          surface.surface().device(), shaders::lines_segments_comp,
-          {layout_of<std::uint32_t>(), layout_of<std::uint32_t>(), layout_of<shared::LineSegmentRecord>()})) {
+                   {.push_constants = layout_of<shared::ScanParameters>(), .constants = {{0, 0}}}) {
     Device& device = surface.surface().device();
-    ridge_kernel_ = Kernel(device, shaders::lines_apparent_ridges_comp,
-                           {.push_constants = layout_of<FieldParameters>(),
-                            .elements = {layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(),
-                                         layout_of<std::uint32_t>(), layout_of<uvec4>()}});
     check_texels(device, 2 * room_, "the lines of a surface");
     const std::size_t faces = surface.surface().face_count();
     face_counts_ = Buffer(device, faces * sizeof(std::uint32_t));
     face_groups_ = Buffer(device, divide_up(faces, shared::k_count_group) * sizeof(std::uint32_t));
     segments_ = Buffer(device, room_ * sizeof(shared::LineSegmentRecord));
     counts_ = Buffer(device, sizeof(shared::LineCounts));
-    reserve_fields(0);
 }
 
-void GpuLineExtraction::reserve_fields(std::uint32_t families) {
+// Kernels know the families, so that what is not wanted takes no time: CPU drivers run both sides of branches.
+void GpuLineExtraction::make_kernels() {
+    Device& device = surface_.surface().device();
+    const StructLayout word = layout_of<std::uint32_t>(), four = layout_of<vec4>(), words = layout_of<uvec4>();
+    const auto kernel = [&](const Shader& shader, const StructLayout& push, std::vector<StructLayout> elements) {
+        return Kernel(device, shader,
+                      {.push_constants = push, .elements = std::move(elements), .constants = {{0, families_}}});
+    };
+    const StructLayout field = layout_of<FieldParameters>(), face = layout_of<FaceLineParameters>();
+    field_kernel_ = kernel(shaders::lines_fields_comp, field, std::vector<StructLayout>(7, four));
+    count_kernel_ = kernel(shaders::lines_count_comp, face, {four, words, words, four, four, word, word});
+    segment_kernel_ = kernel(shaders::lines_segments_comp, face,
+                             {four, words, words, four, four, word, word, layout_of<shared::LineSegmentRecord>()});
+    if (!(families_ & 1u << shared::k_apparent_ridges)) return;
+    view_kernel_ = Kernel(device, shaders::lines_view_curvature_comp,
+                          {.push_constants = field, .elements = std::vector<StructLayout>(5, four)});
+    ridge_kernel_ =
+        kernel(shaders::lines_apparent_ridges_comp, field, {four, four, four, four, word, words, four, four});
+}
+
+void GpuLineExtraction::prepare(std::uint32_t families) {
+    if (segment_kernel_ && families == families_) return;
     Device& device = surface_.surface().device();
     const std::size_t vertices = surface_.surface().vertex_count();
     const auto room_for = [&](std::uint32_t of) {
@@ -106,22 +101,23 @@ void GpuLineExtraction::reserve_fields(std::uint32_t families) {
     reserve(device, directions_, room_for(shared::k_axis_families));
     const bool apparent = families & 1u << shared::k_apparent_ridges;
     reserve(device, views_, apparent ? vertices * sizeof(vec4) : 0);
+    families_ = families;
+    make_kernels();
 }
 
-void GpuLineExtraction::record_fields(Stream& stream, const GpuCurvedSurface& moment, std::uint32_t families,
-                                      const LineOptions& options) {
+void GpuLineExtraction::record_fields(Stream& stream, const GpuCurvedSurface& moment, const LineOptions& options) {
     const GpuSurface& surface = surface_.surface();
     const std::uint32_t vertices = surface.vertex_count();
-    const FieldParameters parameters = field_parameters(options, vertices, families);
+    const FieldParameters parameters = field_parameters(options, vertices);
     // Kernels bind something even where they read nothing.
     const Buffer &first = moment.first ? *moment.first : moment.vertices,
                  &second = moment.second ? *moment.second : moment.vertices,
                  &derivative = moment.derivative ? *moment.derivative : moment.vertices;
     const std::uint32_t apparent = 1u << shared::k_apparent_ridges;
-    if (families & shared::k_field_families & ~apparent)
+    if (families_ & shared::k_field_families & ~apparent)
         stream.dispatch(field_kernel_, vertices,
                         {moment.vertices, moment.normals, first, second, derivative, fields_, directions_}, parameters);
-    if (!(families & apparent)) return;
+    if (!(families_ & apparent)) return;
     stream.dispatch(view_kernel_, vertices, {moment.vertices, moment.normals, first, second, views_}, parameters);
     stream.dispatch(
         ridge_kernel_, vertices,
@@ -134,12 +130,11 @@ void GpuLineExtraction::record(Stream& stream, const GpuCurvedSurface& moment, s
     check(moment, families, options);
     const GpuSurface& surface = surface_.surface();
     surface.check_vertices(moment.vertices);
-    reserve_fields(families);
-    record_fields(stream, moment, families, options);
+    prepare(families);
+    record_fields(stream, moment, options);
     const std::uint32_t faces = surface.face_count();
     const FaceLineParameters parameters{.faces = faces,
                                         .vertices = surface.vertex_count(),
-                                        .families = families,
                                         .crease_angle = options.thresholds.crease_angle,
                                         .most_segments = static_cast<std::uint32_t>(room_)};
     stream.dispatch(

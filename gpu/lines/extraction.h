@@ -20,8 +20,9 @@ class GpuLineExtraction {
     explicit GpuLineExtraction(const GpuLineSurface& surface,
                                std::size_t most_segments = std::numeric_limits<std::size_t>::max());
 
-    /// Lines of all families at once: four dispatches, one for each of view-dependent curvature and its growth if there
-    /// are apparent ridges. Throws UsageError if the surface lacks what they need, or the feature size is not positive.
+    /// Lines of all families at once: four dispatches, one more for each of view-dependent curvature and its growth if
+    /// there are apparent ridges. Other families than the last time take other kernels. Throws UsageError if the
+    /// surface lacks what they need, or the feature size is not positive.
     void record(Stream& stream, const GpuCurvedSurface& moment, std::uint32_t families, const LineOptions& options);
 
     /// shared::LineSegmentRecord each.
@@ -39,11 +40,12 @@ class GpuLineExtraction {
     static constexpr std::size_t k_least_room = 4096;
 
   private:
-    void reserve_fields(std::uint32_t families);
-    void record_fields(Stream& stream, const GpuCurvedSurface& moment, std::uint32_t families,
-                       const LineOptions& options);
+    void prepare(std::uint32_t families);
+    void make_kernels();
+    void record_fields(Stream& stream, const GpuCurvedSurface& moment, const LineOptions& options);
     const GpuLineSurface& surface_;
     std::size_t room_;
+    std::uint32_t families_ = 0;  // that the kernels find
     Kernel field_kernel_, view_kernel_, ridge_kernel_, count_kernel_, scan_kernel_, segment_kernel_;
     Buffer fields_, directions_, views_;
     Buffer face_counts_, face_groups_, segments_, counts_;

@@ -1,8 +1,9 @@
 // The segments of lines in a face (host/lines/lines.cpp). The including shader declares `positions`, `faces`, `neighbors`,
-// `fields`, `directions` and FaceLineParameters `parameters`, and defines what is done with each segment:
+// `fields`, `directions`, the constant `k_families` and FaceLineParameters `parameters`, and defines what is done with each segment:
 //   void emit(uint family, uint first_place, uint second_place, vec3 first_end, vec3 second_end, vec2 strength)
 #ifndef EXEMPLAR_FACE_LINES_GLSL
 #define EXEMPLAR_FACE_LINES_GLSL
+#include "shaders/lib/when.glsl"
 #include "shaders/shared/lines.h"
 
 // Cuts from [range.x, range.y] the part where the function that runs from `first` (at 0) to `last` (at 1) is not positive.
@@ -53,36 +54,38 @@ void add_zero_set(uint family, mat3x4 corners, mat3 axes) {
         if (largest < 0.0 && axes[0] != vec3(0.0)) value = -value;
     }
     const bvec3 above = greaterThan(value, vec3(0.0));
-    if (all(above) || !any(above)) return;
-    // Around the face, values turn positive on one side and negative on another.
-    uint falls = 0, rises = 0;
-    for (uint i = 0; i < 3; ++i) {
-        const uint next = i == 2u ? 0u : i + 1u;
-        if (above[i] && !above[next]) falls = i;
-        if (!above[i] && above[next]) rises = i;
+    when (any(above) && !all(above)) {
+        // Around the face, values turn positive on one side and negative on another.
+        uint falls = 0, rises = 0;
+        for (uint i = 0; i < 3; ++i) {
+            const uint next = i == 2u ? 0u : i + 1u;
+            if (above[i] && !above[next]) falls = i;
+            if (!above[i] && above[next]) rises = i;
+        }
+        const uint after_falls = falls == 2u ? 0u : falls + 1u, after_rises = rises == 2u ? 0u : rises + 1u;
+        add_segment(family, corners, on_side(falls, value[falls] / (value[falls] - value[after_falls])), falls,
+                    on_side(rises, value[rises] / (value[rises] - value[after_rises])), rises);
     }
-    const uint after_falls = falls == 2u ? 0u : falls + 1u, after_rises = rises == 2u ? 0u : rises + 1u;
-    add_segment(family, corners, on_side(falls, value[falls] / (value[falls] - value[after_falls])), falls,
-                on_side(rises, value[rises] / (value[rises] - value[after_rises])), rises);
 }
 
 void add_extrema(uint family, mat3x4 corners, mat3 growing, mat3 points) {
-    if (!(corners[0].x > 0.0 && corners[1].x > 0.0 && corners[2].x > 0.0)) return;
-    vec3 ends[3];
-    uint places[3];
-    uint found = 0;
-    for (uint i = 0; i < 3; ++i) {
-        const uint j = i == 2u ? 0u : i + 1u;
-        const vec3 a = growing[i], b = growing[j];
-        if (!(dot(a, b) < 0.0 && dot(a - b, points[j] - points[i]) > 0.0)) continue;
-        const float at_a = length(a), at_b = length(b);
-        ends[found] = on_side(i, at_a / (at_a + at_b));
-        places[found++] = i;
+    when (corners[0].x > 0.0 && corners[1].x > 0.0 && corners[2].x > 0.0) {
+        vec3 ends[3];
+        uint places[3];
+        uint found = 0;
+        for (uint i = 0; i < 3; ++i) {
+            const uint j = i == 2u ? 0u : i + 1u;
+            const vec3 a = growing[i], b = growing[j];
+            if (!(dot(a, b) < 0.0 && dot(a - b, points[j] - points[i]) > 0.0)) continue;
+            const float at_a = length(a), at_b = length(b);
+            ends[found] = on_side(i, at_a / (at_a + at_b));
+            places[found++] = i;
+        }
+        if (found == 2u) add_segment(family, corners, ends[0], places[0], ends[1], places[1]);
+        if (found == 3u)
+            for (uint i = 0; i < 3; ++i)
+                add_segment(family, corners, ends[i], places[i], vec3(1.0 / 3.0), k_place_inside);
     }
-    if (found == 2u) add_segment(family, corners, ends[0], places[0], ends[1], places[1]);
-    if (found == 3u)
-        for (uint i = 0; i < 3; ++i)
-            add_segment(family, corners, ends[i], places[i], vec3(1.0 / 3.0), k_place_inside);
 }
 
 vec3 face_cross(uvec3 face) {
@@ -116,23 +119,34 @@ mat3 three(samplerBuffer source, uint slot, uvec3 corners) {
                 texelFetch(source, int(begin + corners.z)).xyz);
 }
 
+// What the fields of a family tell of a face; `k_families` decides at compile time which there are.
+void find_lines_of(uint family, uint face, uvec3 corners) {
+    const uint bit = 1u << family, before = bit - 1u;
+    if ((k_families & bit) == 0u) return;
+    const uint begin = bitCount(k_families & k_field_families & before) * parameters.vertices;
+    const mat3x4 field = mat3x4(texelFetch(fields, int(begin + corners.x)), texelFetch(fields, int(begin + corners.y)),
+                                texelFetch(fields, int(begin + corners.z)));
+    mat3 axes = mat3(0.0);
+    if ((bit & k_axis_families) != 0u)
+        axes = three(directions, bitCount(k_families & k_axis_families & before), corners);
+    if ((bit & k_extremum_families) != 0u)
+        add_extrema(family, field, axes, three(positions, 0u, corners));
+    else
+        add_zero_set(family, field, axes);
+}
+
 void find_lines(uint face) {
     const uvec3 corners = texelFetch(faces, int(face)).xyz;
-    uint slot = 0, axis_slot = 0;
-    for (uint left = parameters.families & k_field_families; left != 0u; left &= left - 1u) {
-        const uint family = uint(findLSB(left)), bit = 1u << family;
-        const uint begin = slot++ * parameters.vertices;
-        const mat3x4 field = mat3x4(texelFetch(fields, int(begin + corners.x)), texelFetch(fields, int(begin + corners.y)),
-                                    texelFetch(fields, int(begin + corners.z)));
-        mat3 axes = mat3(0.0);
-        if ((bit & k_axis_families) != 0u) axes = three(directions, axis_slot++, corners);
-        if ((bit & k_extremum_families) != 0u)
-            add_extrema(family, field, axes, three(positions, 0u, corners));
-        else
-            add_zero_set(family, field, axes);
-    }
-    for (uint left = parameters.families & k_edge_families; left != 0u; left &= left - 1u)
-        add_edges(uint(findLSB(left)), face, corners);
+    find_lines_of(k_contours, face, corners);
+    find_lines_of(k_suggestive_contours, face, corners);
+    find_lines_of(k_suggestive_highlights, face, corners);
+    find_lines_of(k_ridges, face, corners);
+    find_lines_of(k_valleys, face, corners);
+    find_lines_of(k_apparent_ridges, face, corners);
+    find_lines_of(k_first_highlights, face, corners);
+    find_lines_of(k_second_highlights, face, corners);
+    if ((k_families & 1u << k_creases) != 0u) add_edges(k_creases, face, corners);
+    if ((k_families & 1u << k_boundaries) != 0u) add_edges(k_boundaries, face, corners);
 }
 
 #endif

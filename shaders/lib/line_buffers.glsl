@@ -5,6 +5,7 @@
 #include "shaders/shared/lines.h"
 
 layout(local_size_x = k_count_group) in;
+layout(constant_id = 0) const uint k_families = 0;
 layout(push_constant) uniform Push { FaceLineParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer positions;
 layout(set = 0, binding = 1) uniform usamplerBuffer faces;      // three corners each

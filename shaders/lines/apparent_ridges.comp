@@ -8,6 +8,7 @@
 // the faces that this leads into, one vertex per invocation. Per vertex of six faces 4 + 32 bytes of topology and 64 of
 // its own are read and 32 written; what the ring reads comes from caches.
 layout(local_size_x = 64) in;
+layout(constant_id = 0) const uint k_families = 0;
 layout(push_constant) uniform Push { FieldParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer positions;
 layout(set = 0, binding = 1) uniform samplerBuffer first;
@@ -65,10 +66,10 @@ void main() {
     }
     const float strength = view.x * parameters.feature_size * parameters.feature_size;
     const uint before = (1u << k_apparent_ridges) - 1u;
-    const uint slot = bitCount(parameters.families & k_field_families & before);
+    const uint slot = bitCount(k_families & k_field_families & before);
     fields[slot * parameters.vertices + vertex] = vec4(1.0, strength, strength - parameters.apparent_ridges, view.w);
     const vec2 direction = normalize(view.yz);
     const float growth = slope.y > 0.0 ? slope.x / slope.y : 0.0;
-    const uint axis_slot = bitCount(parameters.families & k_axis_families & before);
+    const uint axis_slot = bitCount(k_families & k_axis_families & before);
     directions[axis_slot * parameters.vertices + vertex] = vec4(growth * (direction.x * e1 + direction.y * e2), 0.0);
 }

@@ -6,6 +6,7 @@
 // What decides at the vertices about lines in the faces around them (host/lines/line_fields.cpp), one vertex per invocation,
 // but for apparent ridges. Reads 80 bytes, without curvature 32; writes 16 for each family, and 16 more for its direction.
 layout(local_size_x = 64) in;
+layout(constant_id = 0) const uint k_families = 0;
 layout(push_constant) uniform Push { FieldParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer positions;
 layout(set = 0, binding = 1) uniform samplerBuffer normals;
@@ -18,10 +19,10 @@ layout(set = 0, binding = 6, std430) writeonly buffer Directions { vec4 directio
 uint vertex;
 
 bool wants(uint family) {
-    return (parameters.families >> family & 1u) != 0u;
+    return (k_families >> family & 1u) != 0u;
 }
 uint slot_of(uint family, uint of) {
-    return bitCount(parameters.families & of & ((1u << family) - 1u));
+    return bitCount(k_families & of & ((1u << family) - 1u));
 }
 void put(uint family, vec4 field) {
     fields[slot_of(family, k_field_families) * parameters.vertices + vertex] = field;
@@ -89,7 +90,7 @@ void main() {
     const vec3 w = parameters.eye.w != 0.0 ? normalize(parameters.eye.xyz - here) : parameters.eye.xyz;
     const float cosine = dot(normal, w);
     if (wants(k_contours)) put(k_contours, vec4(cosine, 1.0, 1.0, 1.0));
-    if ((parameters.families & k_curvature_families) == 0u) return;
+    if ((k_families & k_curvature_families) == 0u) return;
 
     const vec4 e1 = texelFetch(first, int(vertex)), e2 = texelFetch(second, int(vertex));
     const vec4 c = texelFetch(derivatives, int(vertex));

@@ -22,7 +22,8 @@ void main() {
     this_face = linear_thread();
     if (this_face >= parameters.faces) return;
     const uint count = counts[this_face];
-    if ((count & 0xffu) == 0u) return;
-    next_segment = groups[this_face / k_count_group] + (count >> 8);
-    find_lines(this_face);
+    when ((count & 0xffu) != 0u) {
+        next_segment = groups[this_face / k_count_group] + (count >> 8);
+        find_lines(this_face);
+    }
 }

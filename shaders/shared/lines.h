@@ -26,16 +26,17 @@ const uint k_edge_families = 0x300u;     // edges of the mesh
 
 // Fields have a vec4 per vertex: value, strength, margin and front of exemplar::LineField; those of all families that are
 // wanted follow each other, as do the directions of those that have some.
+// The bits of the families that are wanted are a constant of the kernels (id 0).
 struct FieldParameters {
     vec4 eye;       // its position and 1, or for a parallel projection the unit direction to it and 0
     uint vertices;
-    uint families;  // bits of those wanted
     float feature_size;
     float suggestive_contours;  // thresholds
     float suggestive_highlights;
     float principal_highlights;
     float ridges_valleys;
     float apparent_ridges;
+    uint unused;
 };
 
 // What is across the sides of a face; exemplar::k_no_neighbor and the like.
@@ -49,7 +50,6 @@ const uint k_count_group = 64;
 struct FaceLineParameters {
     uint faces;
     uint vertices;
-    uint families;
     float crease_angle;  // radians
     uint most_segments;  // what there is room for
 };
@@ -173,9 +173,9 @@ struct SurfaceDrawParameters {
 };
 
 #ifdef __cplusplus
-EXEMPLAR_LAYOUT(FieldParameters, eye, vertices, families, feature_size, suggestive_contours, suggestive_highlights,
-                principal_highlights, ridges_valleys, apparent_ridges)
-EXEMPLAR_LAYOUT(FaceLineParameters, faces, vertices, families, crease_angle, most_segments)
+EXEMPLAR_LAYOUT(FieldParameters, eye, vertices, feature_size, suggestive_contours, suggestive_highlights,
+                principal_highlights, ridges_valleys, apparent_ridges, unused)
+EXEMPLAR_LAYOUT(FaceLineParameters, faces, vertices, crease_angle, most_segments)
 EXEMPLAR_LAYOUT(LineSegmentRecord, face, kind, first_strength, second_strength, ends)
 EXEMPLAR_LAYOUT(ScanParameters, groups, most)
 EXEMPLAR_LAYOUT(LinkParameters, matrix, width, height, unused0, unused1)

@@ -11,7 +11,9 @@ namespace exemplar {
 
 namespace {
 
-constexpr std::size_t k_grain = 16;  // chains that one thread takes at a time
+constexpr std::size_t k_grain = 16;     // chains that one thread takes at a time
+constexpr float k_taper_step = 0.2f;    // the longest way between two points, of a taper
+constexpr float k_most_pieces = 10000;  // of a link
 
 void check(const LineSurface& surface, std::span<const LineSegment> segments, std::span<const Chain> chains,
            const VisibleParts* visible) {
@@ -137,11 +139,16 @@ class StrokeMaker {
                 break;
             }
     }
-    /// Adds the point a link begins with and those where its visibility changes.
+    /// Adds the point a link begins with, those where its visibility changes, and so many that tapers show.
     void add_link(const ChainLink& link, const StrokePoint& first, const StrokePoint& last,
                   std::vector<StrokePoint>& points) const {
+        const std::size_t begin = points.size();
         points.push_back(first);
-        if (!visible_) return;
+        if (visible_) add_changes(link, first, last, points);
+        refine(link, first, last, begin, points);
+    }
+    void add_changes(const ChainLink& link, const StrokePoint& first, const StrokePoint& last,
+                     std::vector<StrokePoint>& points) const {
         points.back().visible = false;
         const std::span<const VisiblePart> parts = visible_->of(link.segment);
         for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -153,6 +160,23 @@ class StrokeMaker {
             points.push_back(between(link, first, last, to));
             points.back().visible = false;
         }
+    }
+    void refine(const ChainLink& link, const StrokePoint& first, const StrokePoint& last, std::size_t begin,
+                std::vector<StrokePoint>& points) const {
+        const float step = k_taper_step * thickness_.taper, length = last.parameter - first.parameter;
+        const float wanted = std::ceil(std::min(length / step, k_most_pieces));
+        if (!(step > 0 && wanted > 1)) return;
+        std::vector<StrokePoint> added;
+        std::size_t i = begin;
+        for (float k = 1; k < wanted; ++k) {
+            StrokePoint point = between(link, first, last, k / wanted);
+            while (i < points.size() && points[i].parameter <= point.parameter) added.push_back(points[i++]);
+            point.visible = added.back().visible;
+            added.push_back(point);
+        }
+        added.insert(added.end(), points.begin() + static_cast<std::ptrdiff_t>(i), points.end());
+        points.resize(begin);
+        points.insert(points.end(), added.begin(), added.end());
     }
     StrokePoint between(const ChainLink& link, const StrokePoint& first, const StrokePoint& last, float t) const {
         StrokePoint point = point_of(link, t);

@@ -56,7 +56,8 @@ struct StrokePoint {
 };
 
 /// A chain as it is drawn: the points where its links begin and the last one's end, and points between them where
-/// visibility changes. Of a closed one the last point is the first.
+/// visibility changes; links longer than a fifth of the taper are cut into even pieces, so that it shows on them. Of a
+/// closed one the last point is the first.
 struct Stroke {
     std::vector<StrokePoint> points;
     bool closed = false;

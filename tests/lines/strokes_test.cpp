@@ -101,27 +101,27 @@ TEST(Strokes, TaperTowardsTheirEnds) {
 
 TEST(Strokes, HavePointsWhereVisibilityChanges) {
     const Ribbon ribbon;
-    const VisibleParts parts = ribbon.visible_between(1.2f, 2.9f);
+    const VisibleParts parts = ribbon.visible_between(1.23f, 2.87f);
     const auto points =
         ribbon.strokes({.width = 4, .epsilon = 1, .least = 1, .most = 9, .taper = 50}, &parts)[0].points;
-    ASSERT_EQ(points.size(), 9 + 2);
+    ASSERT_EQ(points.size(), 1 + 8 * 5 + 2);
     float visible = 0;
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
         const float x = points[i].position.x(), next = points[i + 1].position.x();
         EXPECT_GT(points[i + 1].parameter, points[i].parameter);
         EXPECT_NEAR(points[i].normal.norm(), 1, 1e-5);
         const float middle = 0.5f * (x + next) / 100 - 2;
-        EXPECT_EQ(points[i].visible, middle > 1.2f && middle < 2.9f) << middle;
+        EXPECT_EQ(points[i].visible, middle > 1.23f && middle < 2.87f) << middle;
         if (points[i].visible) visible += std::abs(next - x);
-        const float distance = std::min(std::abs(x - 320), std::abs(x - 490));
-        const bool inside = x > 320 && x < 490;
+        const float distance = std::min(std::abs(x - 323), std::abs(x - 487));
+        const bool inside = x > 323 && x < 487;
         EXPECT_NEAR(points[i].width, inside ? 4 * stroke_taper(distance, 50) : 0, 0.05);
     }
-    EXPECT_NEAR(visible, 170, 0.01);
+    EXPECT_NEAR(visible, 164, 0.01);
     const VisibleParts none = ribbon.visible_between(7, 8), all = ribbon.visible_between(-1, 8);
     for (const Stroke& stroke : ribbon.strokes({}, &none))
         for (const StrokePoint& point : stroke.points) EXPECT_FALSE(point.visible);
-    EXPECT_EQ(ribbon.strokes({}, &all)[0].points.size(), 9);
+    EXPECT_EQ(ribbon.strokes({.taper = 0}, &all)[0].points.size(), 9);
 }
 
 /// A ball's contour seen in parallel is a circle.
@@ -156,7 +156,7 @@ TEST(Strokes, OfABallsContourRunAroundIt) {
     const Ball ball;
     const Stroke stroke = ball.stroke({});
     EXPECT_TRUE(stroke.closed);
-    ASSERT_EQ(stroke.points.size(), ball.segments.size() + 1);
+    ASSERT_GT(stroke.points.size(), ball.segments.size());
     const StrokePoint &first = stroke.points.front(), &last = stroke.points.back();
     EXPECT_EQ(first.position, last.position);
     EXPECT_EQ(first.normal, last.normal);

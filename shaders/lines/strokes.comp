@@ -99,7 +99,8 @@ float visible_length(int point, int way, float most) {
 float tapered(int point, StrokeLook look) {
     if (!(look.taper > 0.0)) return 1.0;
     const float d = min(visible_length(point, 1, look.taper), visible_length(point, -1, look.taper));
-    return sqrt(clamp(d / look.taper, 0.0, 1.0));
+    const float x = clamp(d / look.taper, 0.0, 1.0);
+    return sqrt(x * (2.0 - x));
 }
 
 void main() {

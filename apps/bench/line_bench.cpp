@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gpu/curvature/animated_surface.h"
+#include "gpu/imaging/picture.h"
 #include "gpu/lines/line_renderer.h"
 #include "gpu/runtime/device.h"
 #include "host/animation/read_animation.h"
@@ -46,7 +47,8 @@ LinePicture picture_of(const Animation& animation, const std::vector<FrameRef>& 
     picture.view.unit_depth = (picture.view.camera.position() - area_centroid(mesh)).norm();
     const LineType types[] = {LineType::contours, LineType::suggestive_contours};
     picture.families = line_families(types);
-    picture.looks = plain_looks(picture.thresholds, {});
+    picture.thresholds = family_thresholds({});
+    picture.looks = plain_looks({}, {});
     return picture;
 }
 
@@ -97,9 +99,10 @@ void run(const std::string& path, const std::string& model, const std::string& p
     };
     const auto extract = [&](const FrameRef& at) {
         pose(at);
-        lines.record(
-            stream, moment(), picture.families,
-            {.eye = picture.view.camera.position(), .feature_size = picture.view.feature_size, .thresholds = {}});
+        lines.record(stream, moment(), picture.families,
+                     {.eye = homogeneous_eye(picture.view.camera),
+                      .feature_size = picture.view.feature_size,
+                      .thresholds = picture.thresholds});
     };
     const auto chain = [&](const FrameRef& at) {
         extract(at);

@@ -30,20 +30,18 @@ std::size_t divide_up(std::size_t count, std::size_t size) {
     return (count + size - 1) / size;
 }
 
-FieldParameters field_parameters(const LineOptions& options, std::uint32_t vertices) {
-    const LineThresholds& thresholds = options.thresholds;
-    return {.eye = {options.eye.x(), options.eye.y(), options.eye.z(), options.parallel_eye ? 0.0f : 1.0f},
+FieldParameters field_parameters(const GpuLineOptions& options, std::uint32_t vertices) {
+    const FamilyThresholds& t = options.thresholds;
+    return {.eye = options.eye,
+            .low_thresholds = {t[0], t[1], t[2], t[3]},
+            .high_thresholds = {t[4], t[5], t[6], t[7]},
             .vertices = vertices,
             .feature_size = options.feature_size,
-            .suggestive_contours = thresholds.suggestive_contours,
-            .suggestive_highlights = thresholds.suggestive_highlights,
-            .principal_highlights = thresholds.principal_highlights,
-            .ridges_valleys = thresholds.ridges_valleys,
-            .apparent_ridges = thresholds.apparent_ridges,
-            .unused = 0};
+            .unused0 = 0,
+            .unused1 = 0};
 }
 
-void check(const GpuCurvedSurface& moment, std::uint32_t families, const LineOptions& options) {
+void check(const GpuCurvedSurface& moment, std::uint32_t families, const GpuLineOptions& options) {
     if (!(families & shared::k_curvature_families)) return;
     if (!moment.first || !moment.second || !moment.derivative)
         throw UsageError("these lines need curvature with derivatives; estimate or learn it");
@@ -52,6 +50,14 @@ void check(const GpuCurvedSurface& moment, std::uint32_t families, const LineOpt
 }
 
 }  // namespace
+
+FamilyThresholds family_thresholds(const LineThresholds& thresholds) {
+    FamilyThresholds result{};
+    for (std::uint32_t family = 0; family < shared::k_line_families; ++family)
+        if (const auto fading = line_fading(type_of_family(family), thresholds)) result[family] = fading->threshold;
+    result[shared::k_creases] = thresholds.crease_angle;
+    return result;
+}
 
 GpuLineExtraction::GpuLineExtraction(const GpuLineSurface& surface, std::size_t most_segments)
     : surface_(surface),
@@ -105,7 +111,7 @@ void GpuLineExtraction::prepare(std::uint32_t families) {
     make_kernels();
 }
 
-void GpuLineExtraction::record_fields(Stream& stream, const GpuCurvedSurface& moment, const LineOptions& options) {
+void GpuLineExtraction::record_fields(Stream& stream, const GpuCurvedSurface& moment, const GpuLineOptions& options) {
     const GpuSurface& surface = surface_.surface();
     const std::uint32_t vertices = surface.vertex_count();
     const FieldParameters parameters = field_parameters(options, vertices);
@@ -126,7 +132,7 @@ void GpuLineExtraction::record_fields(Stream& stream, const GpuCurvedSurface& mo
 }
 
 void GpuLineExtraction::record(Stream& stream, const GpuCurvedSurface& moment, std::uint32_t families,
-                               const LineOptions& options) {
+                               const GpuLineOptions& options) {
     check(moment, families, options);
     const GpuSurface& surface = surface_.surface();
     surface.check_vertices(moment.vertices);
@@ -135,7 +141,7 @@ void GpuLineExtraction::record(Stream& stream, const GpuCurvedSurface& moment, s
     const std::uint32_t faces = surface.face_count();
     const FaceLineParameters parameters{.faces = faces,
                                         .vertices = surface.vertex_count(),
-                                        .crease_angle = options.thresholds.crease_angle,
+                                        .crease_angle = options.thresholds[shared::k_creases],
                                         .most_segments = static_cast<std::uint32_t>(room_)};
     stream.dispatch(
         count_kernel_, faces,

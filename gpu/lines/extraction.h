@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -8,8 +9,19 @@
 #include "gpu/runtime/buffer.h"
 #include "gpu/runtime/kernel.h"
 #include "gpu/runtime/stream.h"
+#include "shaders/shared/lines.h"
 
 namespace exemplar {
+
+/// Thresholds of each family, in the units of LineThresholds.
+using FamilyThresholds = std::array<float, shared::k_line_families>;
+FamilyThresholds family_thresholds(const LineThresholds& thresholds);
+
+struct GpuLineOptions {
+    shared::vec4 eye;        ///< homogeneous_eye() of the camera
+    float feature_size = 0;  ///< mesh units; positive if there are families of curvature
+    FamilyThresholds thresholds{};
+};
 
 /// Finds the segments of lines on the device, as extract_lines does; they stay there. Segments are ordered by face,
 /// then by family, whatever the device's scheduling.
@@ -23,7 +35,8 @@ class GpuLineExtraction {
     /// Lines of all families at once: four dispatches, one more for each of view-dependent curvature and its growth if
     /// there are apparent ridges. Other families than the last time take other kernels. Throws UsageError if the
     /// surface lacks what they need, or the feature size is not positive.
-    void record(Stream& stream, const GpuCurvedSurface& moment, std::uint32_t families, const LineOptions& options);
+    /// Ridges and valleys are not cut off where they face away: visibility does that.
+    void record(Stream& stream, const GpuCurvedSurface& moment, std::uint32_t families, const GpuLineOptions& options);
 
     /// shared::LineSegmentRecord each.
     const Buffer& segments() const { return segments_; }
@@ -42,7 +55,7 @@ class GpuLineExtraction {
   private:
     void prepare(std::uint32_t families);
     void make_kernels();
-    void record_fields(Stream& stream, const GpuCurvedSurface& moment, const LineOptions& options);
+    void record_fields(Stream& stream, const GpuCurvedSurface& moment, const GpuLineOptions& options);
     const GpuLineSurface& surface_;
     std::size_t room_;
     std::uint32_t families_ = 0;  // that the kernels find

@@ -58,7 +58,7 @@ DrawPipeline stroke_pipeline(Device& device) {
             {.color = LineRenderer::k_format, .blends = true}};
 }
 
-vec4 linear_color(const Color& color, float last) {
+vec4 color_and(const Color& color, float last) {
     return {static_cast<float>(color[0]) / 255, static_cast<float>(color[1]) / 255, static_cast<float>(color[2]) / 255,
             last};
 }
@@ -68,11 +68,11 @@ SurfaceDrawParameters surface_parameters(const LinePicture& picture, bool curved
     if (look.coloring == SurfaceLook::Coloring::curvature && !curved) look.coloring = SurfaceLook::Coloring::paper;
     SurfaceDrawParameters parameters{.matrix = {},
                                      .eye = homogeneous_eye(picture.view.camera),
-                                     .paper = linear_color(look.paper, static_cast<float>(look.shading)),
+                                     .paper = color_and(look.paper, static_cast<float>(look.shading)),
                                      .coloring = static_cast<std::uint32_t>(look.coloring),
                                      .scale = picture.view.feature_size * 4,
-                                     .unused0 = 0,
-                                     .unused1 = 0};
+                                     .alpha = look.transparent && look.transparent_paper ? 0.0f : 1.0f,
+                                     .unused = 0};
     put_matrix(picture.view.camera.view_projection(), parameters.matrix);
     return parameters;
 }
@@ -139,7 +139,8 @@ void LineRenderer::draw_surface(Stream& stream, const GpuCurvedSurface& moment, 
                       VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, k_color_begins);
     stream.transition(depth_.image(), VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                       VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, k_depth_begins);
-    const vec4 background = linear_color(picture.surface.background, 1);
+    const bool opaque = !picture.surface.transparent;
+    const vec4 background = opaque ? color_and(picture.surface.background, 1) : vec4{0, 0, 0, 0};
     Pass pass("lines/surface", {.color = color_.view(),
                                 .depth = depth_.view(),
                                 .extent = extent_,
@@ -172,12 +173,10 @@ void LineRenderer::draw_strokes(Stream& stream, const LinePicture& picture) {
 void LineRenderer::record(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture) {
     const StrokeView& view = picture.view;
     resize(view.width, view.height);
-    const bool parallel = is_parallel(view.camera);
-    lines_.record(stream, moment, picture.families,
-                  {.eye = parallel ? view.camera.to_eye(Vec3::Zero()) : view.camera.position(),
-                   .parallel_eye = parallel,
-                   .feature_size = view.feature_size,
-                   .thresholds = picture.thresholds});
+    transparent_ = picture.surface.transparent;
+    lines_.record(
+        stream, moment, picture.families,
+        {.eye = homogeneous_eye(view.camera), .feature_size = view.feature_size, .thresholds = picture.thresholds});
     chains_.record(stream, moment.vertices, view.camera, view.width, view.height);
     draw_surface(stream, moment, picture);
     strokes_.record(stream, moment, depths_, view, picture.looks);
@@ -192,9 +191,18 @@ void LineRenderer::record_download(Stream& stream) {
 Image LineRenderer::read_image() const {
     std::vector<std::uint8_t> rgba(std::size_t{4} * extent_.width * extent_.height);
     pixels_.download<std::uint8_t>(rgba);
-    Image image(static_cast<int>(extent_.width), static_cast<int>(extent_.height), 3);
-    for (std::size_t i = 0; i < rgba.size() / 4; ++i)
-        for (std::size_t c = 0; c < 3; ++c) image.data[3 * i + c] = rgba[4 * i + c];
+    const std::size_t channels = transparent_ ? 4 : 3;
+    Image image(static_cast<int>(extent_.width), static_cast<int>(extent_.height), static_cast<int>(channels));
+    for (std::size_t i = 0; i < rgba.size() / 4; ++i) {
+        const std::uint8_t alpha = rgba[4 * i + 3];
+        for (std::size_t c = 0; c < 3; ++c) {
+            const unsigned value = rgba[4 * i + c];
+            // Colors were multiplied by alpha.
+            const unsigned straight = alpha ? std::min(255u, (255 * value + alpha / 2) / alpha) : 0;
+            image.data[channels * i + c] = static_cast<std::uint8_t>(transparent_ ? straight : value);
+        }
+        if (transparent_) image.data[channels * i + 3] = alpha;
+    }
     return image;
 }
 

@@ -22,6 +22,8 @@ struct SurfaceLook {
     enum class Shading { none, smooth, steps };
     enum class Coloring { paper, faces, curvature };
     Color background{255, 255, 255};
+    bool transparent = false;       ///< no background
+    bool transparent_paper = true;  ///< nor paper, if there is no background
     Color paper{255, 255, 255};
     Shading shading = Shading::none;
     Coloring coloring = Coloring::paper;  ///< `curvature`: mean curvature, blue where hollow, red where it bulges
@@ -31,7 +33,7 @@ struct SurfaceLook {
 struct LinePicture {
     StrokeView view;
     std::uint32_t families = 0;  ///< line_families() of the types to draw
-    LineThresholds thresholds;
+    FamilyThresholds thresholds{};
     StrokeLooks looks{};
     SurfaceLook surface;
 };
@@ -57,7 +59,7 @@ class LineRenderer {
     VkExtent2D extent() const { return extent_; }
     static constexpr VkFormat k_format = VK_FORMAT_R8G8B8A8_UNORM;
 
-    /// Records, runs and downloads a picture: RGB.
+    /// Records, runs and downloads a picture: RGB, or RGBA if it is transparent.
     Image render(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture);
     /// Records the download of the image; after finish(), read_image() has it.
     void record_download(Stream& stream);
@@ -77,6 +79,7 @@ class LineRenderer {
     VkFormat depth_format_;
     DrawPipeline surface_pipeline_, stroke_pipeline_;
     VkExtent2D extent_{};
+    bool transparent_ = false;
     Attachment color_, depth_;
     Buffer depths_, pixels_, face_colors_, textures_;
 };

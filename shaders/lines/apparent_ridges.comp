@@ -67,7 +67,7 @@ void main() {
     const float strength = view.x * parameters.feature_size * parameters.feature_size;
     const uint before = (1u << k_apparent_ridges) - 1u;
     const uint slot = bitCount(k_families & k_field_families & before);
-    fields[slot * parameters.vertices + vertex] = vec4(1.0, strength, strength - parameters.apparent_ridges, view.w);
+    fields[slot * parameters.vertices + vertex] = vec4(1.0, strength, strength - parameters.high_thresholds.y, view.w);
     const vec2 direction = normalize(view.yz);
     const float growth = slope.y > 0.0 ? slope.x / slope.y : 0.0;
     const uint axis_slot = bitCount(k_families & k_axis_families & before);

@@ -24,6 +24,9 @@ bool wants(uint family) {
 uint slot_of(uint family, uint of) {
     return bitCount(k_families & of & ((1u << family) - 1u));
 }
+float threshold_of(uint family) {
+    return family < 4u ? parameters.low_thresholds[family] : parameters.high_thresholds[family - 4u];
+}
 void put(uint family, vec4 field) {
     fields[slot_of(family, k_field_families) * parameters.vertices + vertex] = field;
 }
@@ -51,10 +54,10 @@ void put_radial(View view, float k1, float k2, vec4 c) {
     const float cosine = max(view.cosine, 0.01);
     if (wants(k_suggestive_contours))
         put(k_suggestive_contours,
-            vec4(value, derivative / cosine, derivative - parameters.suggestive_contours * view.cosine, view.cosine));
+            vec4(value, derivative / cosine, derivative - threshold_of(k_suggestive_contours) * view.cosine, view.cosine));
     if (wants(k_suggestive_highlights))
         put(k_suggestive_highlights,
-            vec4(value, -derivative / cosine, -derivative - parameters.suggestive_highlights * view.cosine, view.cosine));
+            vec4(value, -derivative / cosine, -derivative - threshold_of(k_suggestive_highlights) * view.cosine, view.cosine));
 }
 
 // The curvature of larger magnitude, positive for ridges and negative for valleys.
@@ -65,7 +68,7 @@ void put_crests(vec4 e1, vec4 e2, vec4 c) {
     for (uint family = k_ridges; family <= k_valleys; ++family) {
         if (!wants(family)) continue;
         const float side = family == k_ridges ? 1.0 : -1.0, strength = side * k * parameters.feature_size;
-        put(family, vec4(side * k, strength, strength - parameters.ridges_valleys, 1.0));
+        put(family, vec4(side * k, strength, strength - threshold_of(family), 1.0));
         put_direction(family, side * growing);
     }
 }
@@ -77,7 +80,7 @@ void put_highlights(uint family, View view, float k, float other, float turning,
     const float squared_unit = parameters.feature_size * parameters.feature_size;
     const float bend = k * k * view.cosine, strength = bend * squared_unit;
     const float maximum = (bend - k * turn * across) * squared_unit;
-    put(family, vec4(along_first ? view.u : view.v, strength, min(strength - parameters.principal_highlights, maximum),
+    put(family, vec4(along_first ? view.u : view.v, strength, min(strength - threshold_of(family), maximum),
                      view.cosine));
     put_direction(family, axis);
 }

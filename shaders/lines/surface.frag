@@ -15,5 +15,7 @@ void main() {
         const float facing = abs(dot(normalize(to_eye), normal * inversesqrt(max(dot(normal, normal), 1e-30))));
         light = parameters.paper.w == 1.0 ? 0.45 + 0.55 * facing : facing > 0.55 ? 1.0 : facing > 0.25 ? 0.86 : 0.72;
     }
-    drawn = vec4(color * light, 1.0);
+    // As strokes are blended over it: multiplied by its alpha.
+    const float alpha = parameters.coloring == 0u ? parameters.alpha : 1.0;
+    drawn = vec4(color * light * alpha, alpha);
 }

@@ -28,15 +28,13 @@ const uint k_edge_families = 0x300u;     // edges of the mesh
 // wanted follow each other, as do the directions of those that have some.
 // The bits of the families that are wanted are a constant of the kernels (id 0).
 struct FieldParameters {
-    vec4 eye;       // its position and 1, or for a parallel projection the unit direction to it and 0
+    vec4 eye;  // its position and 1, or for a parallel projection the unit direction to it and 0
+    vec4 low_thresholds;   // of families 0 to 3
+    vec4 high_thresholds;  // of families 4 to 7
     uint vertices;
     float feature_size;
-    float suggestive_contours;  // thresholds
-    float suggestive_highlights;
-    float principal_highlights;
-    float ridges_valleys;
-    float apparent_ridges;
-    uint unused;
+    uint unused0;
+    uint unused1;
 };
 
 // What is across the sides of a face; exemplar::k_no_neighbor and the like.
@@ -168,13 +166,12 @@ struct SurfaceDrawParameters {
     vec4 paper;    // color, and how it is shaded: 0 not at all, 1 smoothly, 2 in steps
     uint coloring;  // 0: paper, 1: a color per face, 2: by curvature
     float scale;   // of curvature, in mesh units
-    uint unused0;
-    uint unused1;
+    float alpha;   // of paper
+    uint unused;
 };
 
 #ifdef __cplusplus
-EXEMPLAR_LAYOUT(FieldParameters, eye, vertices, feature_size, suggestive_contours, suggestive_highlights,
-                principal_highlights, ridges_valleys, apparent_ridges, unused)
+EXEMPLAR_LAYOUT(FieldParameters, eye, low_thresholds, high_thresholds, vertices, feature_size, unused0, unused1)
 EXEMPLAR_LAYOUT(FaceLineParameters, faces, vertices, crease_angle, most_segments)
 EXEMPLAR_LAYOUT(LineSegmentRecord, face, kind, first_strength, second_strength, ends)
 EXEMPLAR_LAYOUT(ScanParameters, groups, most)
@@ -185,7 +182,7 @@ EXEMPLAR_LAYOUT(StrokeLook, color, width, epsilon, least, most, taper, threshold
                 unused2)
 EXEMPLAR_LAYOUT(StrokeParameters, eye, axis, feature_size, unit_depth, parallel, curved)
 EXEMPLAR_LAYOUT(StrokeDrawParameters, width, height)
-EXEMPLAR_LAYOUT(SurfaceDrawParameters, matrix, eye, paper, coloring, scale, unused0, unused1)
+EXEMPLAR_LAYOUT(SurfaceDrawParameters, matrix, eye, paper, coloring, scale, alpha, unused)
 #endif
 
 SHARED_END

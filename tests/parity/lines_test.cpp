@@ -85,6 +85,12 @@ TriangleMesh mixed() {
                                          shapes::translated(shapes::cylinder(1, 2, 20, 5, false), Vec3(4, 5, 1))));
 }
 
+GpuLineOptions on_device(const LineOptions& options) {
+    return {.eye = {options.eye.x(), options.eye.y(), options.eye.z(), options.parallel_eye ? 0.0f : 1.0f},
+            .feature_size = options.feature_size,
+            .thresholds = family_thresholds(options.thresholds)};
+}
+
 struct Found {
     LineCounts counts;
     std::vector<LineSegmentRecord> segments;
@@ -93,7 +99,7 @@ struct Found {
 Found extract_on_device(const Scene& scene, GpuLineExtraction& lines, std::uint32_t families,
                         const LineOptions& options) {
     Stream stream(shared_device());
-    lines.record(stream, scene.moment(), families, options);
+    lines.record(stream, scene.moment(), families, on_device(options));
     stream.finish();
     Found found{};
     lines.counts().download(std::span(&found.counts, 1));
@@ -223,9 +229,9 @@ TEST(LineParityOfAll, CurvatureIsAskedForWhereItIsNeeded) {
     GpuLineExtraction lines(scene.line_surface);
     Stream stream(shared_device());
     const GpuCurvedSurface flat{scene.vertices, scene.device_normals};
-    EXPECT_THROW(lines.record(stream, flat, 2, {.feature_size = 1, .thresholds = {}}), UsageError);
-    EXPECT_THROW(lines.record(stream, scene.moment(), 2, {.feature_size = 0, .thresholds = {}}), UsageError);
-    EXPECT_NO_THROW(lines.record(stream, flat, 1, {.eye = {6.13f, 4.29f, 8.41f}, .thresholds = {}}));
+    EXPECT_THROW(lines.record(stream, flat, 2, on_device({.feature_size = 1, .thresholds = {}})), UsageError);
+    EXPECT_THROW(lines.record(stream, scene.moment(), 2, on_device({.feature_size = 0, .thresholds = {}})), UsageError);
+    EXPECT_NO_THROW(lines.record(stream, flat, 1, on_device({.eye = {6.13f, 4.29f, 8.41f}, .thresholds = {}})));
 }
 
 /// A chain as the numbers of its segments, with what is walked from the second end.
@@ -243,7 +249,7 @@ FoundChains chain_on_device(const Scene& scene, std::uint32_t families, const Li
     GpuLineExtraction lines(scene.line_surface);
     GpuChains chains(lines);
     Stream stream(shared_device());
-    lines.record(stream, scene.moment(), families, options);
+    lines.record(stream, scene.moment(), families, on_device(options));
     chains.record(stream, scene.vertices, camera, k_width, k_height);
     stream.finish();
     FoundChains result{};

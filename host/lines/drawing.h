@@ -32,9 +32,13 @@ struct Drawing {
 std::span<const LineType> drawing_order();
 
 /// The drawing of all lines of some types that a camera sees, with thresholds and thickness of the style; hidden parts
-/// are marked in the strokes. Throws UsageError as extract_lines and make_strokes.
+/// are marked in the strokes, but for gaps of up to three pixels in lines across smooth surfaces (see close_gaps).
+/// Creases and boundaries are those of `edges`: the same surface with the same faces, where `surface` was cut open
+/// along them (see split_at_creases); null: of `surface`. With contours, creases that are outlines, as one of their
+/// faces is turned away from the eye, are drawn as contours. Throws UsageError as extract_lines and make_strokes.
 Drawing draw_lines(const LineSurface& surface, std::span<const LineType> types, const DrawingStyle& style,
-                   const StrokeView& view, const VisibilityOptions& visibility = {});
+                   const StrokeView& view, const LineSurface* edges = nullptr,
+                   const VisibilityOptions& visibility = {});
 
 /// What is visible of a stroke without a gap.
 struct StrokeRun {

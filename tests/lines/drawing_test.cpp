@@ -13,6 +13,7 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/lines/drawing_svg.h"
+#include "host/lines/split_surface.h"
 #include "host/lines/stroke_raster.h"
 #include "host/mesh/curvature_estimator.h"
 #include "tests/support/shapes.h"
@@ -155,6 +156,31 @@ TEST(Drawings, KeepTheirLayersInOrder) {
     for (std::size_t i = 0; i < drawing.layers.size(); ++i) EXPECT_EQ(drawing.layers[i].type, drawing_order()[i]);
     EXPECT_EQ(drawing.layers.back().type, LineType::contours);
     EXPECT_TRUE(draw(scene, load_style("ink"), {}).layers.empty());
+}
+
+TEST(Drawings, OfACutCubeHaveItsOutlineAndNothingElseAsContours) {
+    const Scene cube(shapes::box(1, 1, 1, 3));
+    const SplitSurface split = split_at_creases(cube.mesh.faces, cube.mesh.vertices, cube.neighbors, 0.7f);
+    const std::vector<Vec3> positions = split.positions(cube.mesh.vertices);
+    CurvatureEstimator estimator(split.faces, positions.size());
+    const VertexCurvature& curvature = estimator.estimate(positions, {});
+    const LineSurface cut{split.faces, positions, estimator.normals(), curvature, cube.neighbors},
+        edges = cube.surface();
+    const std::array types = {LineType::creases, LineType::contours, LineType::boundaries};
+    const Drawing drawing = draw_lines(cut, types, load_style("technical"), cube.view, &edges);
+    // Of a cube's nine visible edges six are its outline, three meet in front; three more are hidden.
+    const auto visible = [](const DrawingLayer& layer) {
+        std::size_t runs = 0;
+        for (const Stroke& stroke : layer.strokes) runs += visible_runs(stroke).size();
+        return runs;
+    };
+    ASSERT_EQ(drawing.layers.size(), 3);
+    EXPECT_EQ(drawing.layers[0].type, LineType::creases);
+    EXPECT_EQ(visible(drawing.layers[0]), 3);
+    EXPECT_EQ(visible(drawing.layers[1]), 0);  // the cuts are no boundaries
+    EXPECT_EQ(drawing.layers[2].type, LineType::contours);
+    EXPECT_EQ(drawing.layers[2].segments, 6 * 3);
+    EXPECT_EQ(visible(drawing.layers[2]), 1);  // around it, as at its corners two of them meet
 }
 
 TEST(VisibleRuns, AreWhatIsVisible) {

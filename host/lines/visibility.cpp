@@ -20,6 +20,7 @@ constexpr float k_near_edges = 3;             // how far faces nearby may be ove
 constexpr float k_touching_edges = 1e-3f;     // the same for faces that touch that of the point, of any line
 constexpr float k_precision = 0.05f;          // pixels to which changes of visibility are found
 constexpr std::size_t k_most_samples = 4096;  // of one segment
+constexpr float k_same_pixels = 0.01f;        // apart, two points along a chain are one
 constexpr int k_most_hits = 64;               // that are overlooked on one ray
 
 TriangleMesh mesh_of(const LineSurface& surface) {
@@ -210,6 +211,56 @@ VisibleParts joined(const std::vector<std::vector<VisiblePart>>& parts) {
     return result;
 }
 
+/// What is visible along a chain, in pixels from its start, with short gaps closed.
+std::vector<VisiblePart> spans_without_gaps(const Chain& chain, float most_pixels, const VisibleParts& visible) {
+    std::vector<VisiblePart> spans;
+    float start = 0;
+    for (const ChainLink& link : chain.links) {
+        const float length = visible.pixels[link.segment];
+        const std::span<const VisiblePart> own = visible.of(link.segment);
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            const VisiblePart part = turned(own[link.reversed ? own.size() - 1 - i : i], link.reversed);
+            const float from = start + part.from * length, to = start + part.to * length;
+            if (!spans.empty() && from - spans.back().to <= most_pixels)
+                spans.back().to = to;
+            else
+                spans.push_back({from, to});
+        }
+        start += length;
+    }
+    if (chain.closed && !spans.empty() && start - spans.back().to + spans.front().from <= most_pixels) {
+        spans.front().from = 0;
+        spans.back().to = start;
+    }
+    return spans;
+}
+
+/// The parts of a chain's segments that lie in the spans.
+void cut_to_segments(const Chain& chain, std::span<const float> pixels, const std::vector<VisiblePart>& spans,
+                     std::vector<std::vector<VisiblePart>>& parts) {
+    float start = 0;
+    std::size_t first = 0;
+    for (const ChainLink& link : chain.links) {
+        const float length = pixels[link.segment], end = start + length;
+        while (first < spans.size() && spans[first].to < start) ++first;
+        std::vector<VisiblePart> cut;
+        if (!(length > 0)) {  // a point, which should not break a span
+            if (first < spans.size() && spans[first].from <= start) parts[link.segment] = {{0, 1}};
+            continue;
+        }
+        for (std::size_t i = first; i < spans.size() && spans[i].from < end; ++i) {
+            // Ends of spans that are ends of segments must stay that, however pixels are rounded.
+            const float from = spans[i].from - k_same_pixels < start ? 0 : (spans[i].from - start) / length;
+            const float to = spans[i].to + k_same_pixels > end ? 1 : (spans[i].to - start) / length;
+            const VisiblePart part{std::min(from, 1.0f), std::max(to, 0.0f)};
+            if (part.from < part.to) cut.push_back(turned(part, link.reversed));
+        }
+        if (link.reversed) std::reverse(cut.begin(), cut.end());
+        parts[link.segment] = std::move(cut);
+        start = end;
+    }
+}
+
 /// Where between a and b, visible at exactly one of them, visibility changes.
 template <typename Visible>
 float change_between(float a, float b, bool visible_at_a, float precision, const Visible& visible) {
@@ -284,39 +335,10 @@ void close_gaps(std::span<const Chain> chains, float most_pixels, VisibleParts& 
     std::vector<std::vector<VisiblePart>> parts(count);
     for (std::size_t s = 0; s < count; ++s) parts[s].assign(visible.of(s).begin(), visible.of(s).end());
     for (const Chain& chain : chains) {
-        // Visible spans in pixels from the start of the chain, with short gaps between them closed.
-        std::vector<VisiblePart> spans;
-        float start = 0;
-        for (const ChainLink& link : chain.links) {
+        for (const ChainLink& link : chain.links)
             if (link.segment >= count)
                 throw UsageError(fmt::format("a chain names segment {}, but there are {}", link.segment, count));
-            const float length = visible.pixels[link.segment];
-            const auto own = visible.of(link.segment);
-            for (std::size_t i = 0; i < own.size(); ++i) {
-                const VisiblePart part = turned(own[link.reversed ? own.size() - 1 - i : i], link.reversed);
-                const float from = start + part.from * length, to = start + part.to * length;
-                if (!spans.empty() && from - spans.back().to <= most_pixels)
-                    spans.back().to = to;
-                else
-                    spans.push_back({from, to});
-            }
-            start += length;
-        }
-        start = 0;
-        std::size_t first = 0;
-        for (const ChainLink& link : chain.links) {
-            const float length = visible.pixels[link.segment], end = start + length;
-            while (first < spans.size() && spans[first].to < start) ++first;
-            std::vector<VisiblePart> cut;
-            for (std::size_t i = first; i < spans.size() && spans[i].from < end && length > 0; ++i) {
-                const VisiblePart part{std::clamp((spans[i].from - start) / length, 0.0f, 1.0f),
-                                       std::clamp((spans[i].to - start) / length, 0.0f, 1.0f)};
-                if (part.from < part.to) cut.push_back(turned(part, link.reversed));
-            }
-            if (link.reversed) std::reverse(cut.begin(), cut.end());
-            if (length > 0) parts[link.segment] = std::move(cut);
-            start = end;
-        }
+        cut_to_segments(chain, visible.pixels, spans_without_gaps(chain, most_pixels, visible), parts);
     }
     std::vector<float> pixels = std::move(visible.pixels);
     visible = joined(parts);

@@ -308,6 +308,23 @@ TEST(Gaps, ThatAreShortAreClosed) {
     EXPECT_EQ(same.pixels(), (Pixels{{0, 3, 5, 9}, {0, 1, 6, 8}, {2, 10}, {}}));
     close_gaps(same.chains, 100, same.visible);
     EXPECT_EQ(same.pixels(), (Pixels{{0, 10}, {0, 10}, {0, 10}, {}}));  // behind the last part there is no gap
+    same.chains[0].closed = true;
+    close_gaps(same.chains, 9, same.visible);
+    EXPECT_EQ(same.pixels(), (Pixels{{0, 10}, {0, 10}, {0, 10}, {}}));
+    close_gaps(same.chains, 11, same.visible);
+    EXPECT_EQ(same.pixels(), (Pixels{{0, 10}, {0, 10}, {0, 10}, {0, 10}}));
+}
+
+TEST(Gaps, LeaveWholeSegmentsWhole) {
+    Row row(std::vector<std::vector<VisiblePart>>(1000, {{0, 1}}));
+    for (std::size_t i = 0; i < row.visible.pixels.size(); ++i)
+        row.visible.pixels[i] = 3.7f + 0.001f * static_cast<float>(i);  // sums are rounded
+    close_gaps(row.chains, 3, row.visible);
+    ASSERT_EQ(row.visible.parts.size(), 1000);
+    for (const VisiblePart& part : row.visible.parts) {
+        EXPECT_EQ(part.from, 0);
+        EXPECT_EQ(part.to, 1);
+    }
 }
 
 TEST(Gaps, RefuseOtherChains) {

@@ -19,7 +19,7 @@ struct LinesArguments {
     LinesJob job;
     std::vector<std::string> types = {"contours", "suggestive_contours", "boundaries"};
     std::vector<std::string> thresholds;
-    std::string style = "ink", form = "lines", fading = "opacity";
+    std::string style = "ink", form = "lines", fading;
     std::string print_style;
     bool no_background = false;
 };
@@ -103,7 +103,10 @@ LinesJob job_of(const LinesArguments& arguments) {
     job.style = load_style(arguments.style);
     for (const std::string& word : arguments.thresholds) set_threshold_of_word(word, job.style);
     job.svg.form = choice<SvgForm>(arguments.form, "--form", {"lines", "outlines"});
-    job.svg.fading = choice<SvgFading>(arguments.fading, "--fading", {"opacity", "width", "none"});
+    const std::string fading = !arguments.fading.empty()        ? arguments.fading
+                               : job.svg.form == SvgForm::lines ? "opacity"
+                                                                : "width";
+    job.svg.fading = choice<SvgFading>(fading, "--fading", {"opacity", "width", "none"});
     job.svg.background = !arguments.no_background;
     job.source.derivatives = std::any_of(job.types.begin(), job.types.end(), needs_curvature);
     if (std::find(job.types.begin(), job.types.end(), LineType::creases) != job.types.end())
@@ -155,9 +158,10 @@ void add_svg_options(CLI::App& command, LinesArguments& arguments) {
                     "lines: center lines with a stroke width, for plotters; outlines: filled shapes of varying width")
         ->type_name("FORM")
         ->capture_default_str();
-    command.add_option("--fading", arguments.fading, "weak lines fade by opacity, width, or not (none)")
-        ->type_name("HOW")
-        ->capture_default_str();
+    command
+        .add_option("--fading", arguments.fading,
+                    "weak lines fade by opacity (default of lines), width (of outlines), or not (none)")
+        ->type_name("HOW");
     command.add_flag("--no-background", arguments.no_background, "leaves the background out");
 }
 

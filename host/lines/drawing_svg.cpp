@@ -23,7 +23,8 @@ constexpr float k_least_opacity = 0.02f;  // paler ones, too
 struct Piece {
     std::vector<StrokePoint> points;
     bool closed = false;
-    float width = 0, opacity = 1;  ///< means along it
+    bool begins = true, ends = true;  ///< where its run does
+    float width = 0, opacity = 1;     ///< means along it
 
     const Vec2& begin() const { return points.front().position; }
     const Vec2& end() const { return points.back().position; }
@@ -107,6 +108,8 @@ std::vector<Piece> pieces_of(const StrokeRun& run, const SvgOptions& options) {
         piece.points.assign(run.points.begin() + static_cast<std::ptrdiff_t>(first),
                             run.points.begin() + static_cast<std::ptrdiff_t>(last) + 1);
         set_means(piece);
+        piece.begins = first == 0;
+        piece.ends = last + 1 == run.points.size();
         first = last;
     }
     if (pieces.size() == 1) pieces.front().closed = run.closed;
@@ -139,9 +142,9 @@ std::vector<Piece> pieces_of(const DrawingLayer& layer, const SvgOptions& option
     return pieces;
 }
 
-/// The way of a pen: always on to the nearest end of what is not drawn yet, turning center lines around if it is their
-/// second.
-std::vector<Piece> ordered(std::vector<Piece> pieces) {
+/// The way of a pen: always on to the nearest end of what is not drawn yet, turning a center line around if it is its
+/// second. Outlines begin where they do.
+std::vector<Piece> ordered(std::vector<Piece> pieces, SvgForm form) {
     std::vector<Piece> result;
     result.reserve(pieces.size());
     std::vector<std::size_t> left(pieces.size());
@@ -153,7 +156,8 @@ std::vector<Piece> ordered(std::vector<Piece> pieces) {
         bool turned = false;
         for (std::size_t i = 0; i < left.size() && nearest > 0; ++i) {
             const Piece& piece = pieces[left[i]];
-            const float to_begin = (piece.begin() - pen).squaredNorm(), to_end = (piece.end() - pen).squaredNorm();
+            const float to_begin = (piece.begin() - pen).squaredNorm();
+            const float to_end = form == SvgForm::lines ? (piece.end() - pen).squaredNorm() : to_begin;
             if (std::min(to_begin, to_end) >= nearest) continue;
             nearest = std::min(to_begin, to_end);
             chosen = i;
@@ -190,9 +194,9 @@ std::string outline(const Piece& piece) {
     SvgPath path;
     path.move_to(side(points.front(), 1));
     for (std::size_t i = 1; i < points.size(); ++i) path.line_to(side(points[i], 1));
-    const auto turn = [&](const StrokePoint& end, const Vec2& to, float forward) {
+    const auto turn = [&](const StrokePoint& end, bool round, const Vec2& to, float forward) {
         const Vec2 tangent(end.normal.y(), -end.normal.x());
-        if (end.width > k_round)
+        if (round && end.width > k_round)
             for (const float angle : {0.25f, 0.5f, 0.75f}) {
                 const float a = angle * 3.14159265f;
                 path.line_to(end.position +
@@ -204,10 +208,10 @@ std::string outline(const Piece& piece) {
         path.close();
         path.move_to(side(points.back(), -1));
     } else {
-        turn(points.back(), side(points.back(), -1), 1);
+        turn(points.back(), piece.ends, side(points.back(), -1), 1);
     }
     for (std::size_t i = points.size() - 1; i-- > 0;) path.line_to(side(points[i], -1));
-    if (!piece.closed) turn(points.front(), side(points.front(), 1), -1);
+    if (!piece.closed) turn(points.front(), piece.begins, side(points.front(), 1), -1);
     path.close();
     return path.data();
 }
@@ -234,7 +238,7 @@ class SvgWriter {
             attributes = {
                 {"fill", "none"}, {"stroke", color}, {"stroke-linecap", "round"}, {"stroke-linejoin", "round"}};
         document_.open_layer(name_of(layer.type), attributes);
-        for (const Piece& piece : ordered(pieces_of(layer, options_, summary_))) add_piece(piece, line);
+        for (const Piece& piece : ordered(pieces_of(layer, options_, summary_), options_.form)) add_piece(piece, line);
         document_.close();
     }
     const SvgSummary& summary() const { return summary_; }
@@ -271,7 +275,8 @@ class SvgWriter {
 /// Shows a group only during its frame.
 void add_animation(SvgDocument& document, std::size_t frame, std::size_t count, double frames_per_second) {
     const auto time = [&](std::size_t f) { return svg_number(static_cast<double>(f) / static_cast<double>(count), 6); };
-    std::string values = frame > 0 ? "none;inline" : "inline", times = frame > 0 ? fmt::format("0;{}", time(frame)) : "0";
+    std::string values = frame > 0 ? "none;inline" : "inline",
+                times = frame > 0 ? fmt::format("0;{}", time(frame)) : "0";
     if (frame + 1 < count) {
         values += ";none";
         times += fmt::format(";{}", time(frame + 1));

@@ -149,6 +149,9 @@ float LinesSource::feature_size() {
             feature_size_ = exemplar::feature_size(first.vertices, first.curvature);
         }
     }
+    if (!(*feature_size_ > 0))
+        throw MeshError(fmt::format("{}: has no extent, all vertices are at one place; there is nothing to draw",
+                                    arguments_.input.string()));
     return *feature_size_;
 }
 

@@ -56,8 +56,9 @@ void write_lines_svg(const LinesJob& job) {
     double curvature = watch.wall();
     std::vector<Drawing> drawings;
     Drawing::Seconds seconds;
-    Progress progress = Progress("drawing", source.frame_count());
-    for (std::size_t frame = 0; frame < source.frame_count(); ++frame) {
+    const std::size_t count = source.frame_count();
+    Progress progress = count > 1 ? Progress("drawing", count) : Progress();
+    for (std::size_t frame = 0; frame < count; ++frame) {
         check_interrupt();
         watch = {};
         const LineSurface surface = source.surface(frame);

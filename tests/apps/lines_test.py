@@ -153,7 +153,19 @@ class Lines(ProgramTest):
         refused("lines", "cube.off", "--out", "cube.off/x.svg", code=2, says="no folder")
         write_off(self.folder / "empty.off", CUBE, [])
         refused("lines", "empty.off", "--out", "x.svg", code=1, says="empty.off")
+        write_off(self.folder / "point.off", [(5, 5, 5)] * 3, [(0, 1, 2)])
+        refused("lines", "point.off", "--out", "x.svg", code=1, says=["point.off", "one place"])
         self.assertFalse((self.folder / "x.svg").exists())
+
+    def test_poor_meshes_are_drawn(self):
+        write_off(self.folder / "triangle.off", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+        self.assertEqual(len(self.paths(self.draw("triangle.off", "--types", "all", "--style", "technical"))), 1)
+        write_off(self.folder / "flat.off", [(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2), (0, 0, 1)])
+        self.draw("flat.off", "--types", "all")
+        fan = [(0, 0, 0), (0, 0, 1), (1, 0, 0.5), (-0.5, 0.8, 0.5), (-0.5, -0.8, 0.5)]
+        write_off(self.folder / "fan.off", fan, [(0, 1, 2), (0, 1, 3), (1, 0, 4)])
+        layers = self.layers(self.draw("fan.off", "--types", "all"))
+        self.assertGreaterEqual(len(self.paths(layers["creases"])), 1)
 
 
 if __name__ == "__main__":

@@ -340,8 +340,9 @@ void fill(const Path& path, FloatImage& image) {
     for (int y = std::max(0, int(low.y())); y < std::min(k_size, int(high.y()) + 1); ++y)
         for (int x = std::max(0, int(low.x())); x < std::min(k_size, int(high.x()) + 1); ++x) {
             int inside = 0;
-            for (int s = 0; s < k_samples * k_samples; ++s)
-                inside += winding(x + (s % k_samples + 0.5) / k_samples, y + (s / k_samples + 0.5) / k_samples) != 0;
+            for (int i = 0; i < k_samples; ++i)
+                for (int j = 0; j < k_samples; ++j)
+                    inside += winding(x + (i + 0.5) / k_samples, y + (j + 0.5) / k_samples) != 0;
             for (float& channel : image.pixel(x, y))
                 channel *= 1 - static_cast<float>(inside) / (k_samples * k_samples);
         }

@@ -132,6 +132,7 @@ void add_look_options(CLI::App& command, LinesArguments& arguments) {
                                 fmt::join(type_words(), ", ")))
         ->type_name("TYPE")
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->capture_default_str();
     command
         .add_option("--style", arguments.style,
@@ -144,7 +145,8 @@ void add_look_options(CLI::App& command, LinesArguments& arguments) {
         .add_option("--threshold", arguments.thresholds,
                     "how strong lines of a type must be, as valleys=0.2; of creases the angle in degrees")
         ->type_name("TYPE=NUMBER")
-        ->delimiter(',');
+        ->delimiter(',')
+        ->allow_extra_args(false);
     command
         .add_option("--smoothing", arguments.job.source.smoothing,
                     "width, in edge lengths, that measured curvature is smoothed with")

@@ -55,6 +55,7 @@ class Lines(ProgramTest):
         paths = self.paths(self.layers(root)["creases"])
         self.assertEqual(len(paths), 9)
         self.assertEqual({path.get("stroke-width") for path in paths}, {"0.9"})
+        self.call("lines", "--types", "crease,bound", "--threshold", "crease=30", "cube.off", "--out", "order.svg")
         front = self.draw("cube.off", "--types", "crease", "--view", "front", "--fov", "0", "--style", "technical")
         self.assertEqual(len(self.paths(front)), 4)
 

@@ -164,6 +164,12 @@ void add_svg_options(CLI::App& command, LinesArguments& arguments) {
         .add_option("--fading", arguments.fading,
                     "weak lines fade by opacity (default of lines), width (of outlines), or not (none)")
         ->type_name("HOW");
+    command.add_flag("--curves", arguments.job.svg.curves, "center lines of Bezier curves, which stay smooth enlarged");
+    command
+        .add_option("--tolerance", arguments.job.svg.tolerance,
+                    "pixels that paths may be off where that saves points; more than the default calms uneven lines")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 100.0));
     command.add_flag("--no-background", arguments.no_background, "leaves the background out");
 }
 

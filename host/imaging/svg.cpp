@@ -76,6 +76,12 @@ void SvgPath::add(char command, const Vec2& point) {
     add(point);
 }
 
+void SvgPath::curve_to(const Vec2& first, const Vec2& second, const Vec2& point) {
+    add('C', first);
+    add(' ', second);
+    add(' ', point);
+}
+
 SvgDocument::SvgDocument(int width, int height, std::string_view title)
     : width_(width), height_(height), title_(svg_escaped(title)) {
     if (width <= 0 || height <= 0)

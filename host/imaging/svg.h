@@ -25,6 +25,8 @@ class SvgPath {
   public:
     void move_to(const Vec2& point) { add('M', point); }
     void line_to(const Vec2& point) { add('L', point); }
+    /// A cubic Bezier curve with two control points.
+    void curve_to(const Vec2& first, const Vec2& second, const Vec2& point);
     void close() { data_ += 'Z'; }
     const std::string& data() const { return data_; }
 

@@ -16,6 +16,8 @@ namespace {
 
 constexpr float k_width_step = 0.2f;      // largest change of width within a center line, of the run's largest width
 constexpr float k_opacity_step = 0.2f;    // largest change of opacity within a path
+constexpr float k_most_bulge = 0.5f;      // pixels that control points are off the straight way
+constexpr float k_least_cosine = 0.7f;    // between a stroke and its tangent, but at corners
 constexpr float k_least_width = 0.05f;    // pixels; thinner paths are left out
 constexpr float k_least_opacity = 0.02f;  // paler ones, too
 
@@ -173,11 +175,31 @@ std::vector<Piece> ordered(std::vector<Piece> pieces, SvgForm form) {
     return result;
 }
 
-std::string center_line(const Piece& piece) {
+/// The control point beside a point, on the way to another: along the stroke, which is across its normal. A curve's
+/// control points bulge it by up to three quarters of their distance from the straight way.
+Vec2 control_point(const StrokePoint& at, const Vec2& other) {
+    const Vec2 way = other - at.position;
+    const float length = way.norm();
+    if (!(length > 0)) return at.position;
+    Vec2 tangent(at.normal.y(), -at.normal.x());
+    if (tangent.dot(way) < 0) tangent = -tangent;
+    const float cosine = tangent.dot(way) / length;
+    if (cosine < k_least_cosine) return at.position + way / 3;  // a corner
+    const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
+    return at.position + std::min(length / 3, k_most_bulge / std::max(sine, 1e-6f)) * tangent;
+}
+
+std::string center_line(const Piece& piece, bool curves) {
     SvgPath path;
     path.move_to(piece.begin());
-    const std::size_t count = piece.points.size() - (piece.closed ? 1 : 0);
-    for (std::size_t i = 1; i < count; ++i) path.line_to(piece.points[i].position);
+    const std::size_t count = piece.points.size() - (piece.closed && !curves ? 1 : 0);
+    for (std::size_t i = 1; i < count; ++i) {
+        const StrokePoint &from = piece.points[i - 1], &to = piece.points[i];
+        if (curves)
+            path.curve_to(control_point(from, to.position), control_point(to, from.position), to.position);
+        else
+            path.line_to(to.position);
+    }
     if (piece.closed) path.close();
     return path.data();
 }
@@ -246,7 +268,7 @@ class SvgWriter {
   private:
     void add_piece(const Piece& piece, const LineStyle& line) {
         const bool lines = options_.form == SvgForm::lines;
-        std::vector<SvgAttribute> attributes = {{"d", lines ? center_line(piece) : outline(piece)}};
+        std::vector<SvgAttribute> attributes = {{"d", lines ? center_line(piece, options_.curves) : outline(piece)}};
         if (lines) attributes.emplace_back("stroke-width", svg_number(static_cast<double>(piece.width)));
         const float opacity = piece.opacity * line.opacity;
         if (opacity < 0.995f && style_.background)

@@ -25,8 +25,11 @@ enum class SvgFading {
 struct SvgOptions {
     SvgForm form = SvgForm::lines;
     SvgFading fading = SvgFading::opacity;
-    float tolerance = 0.1f;         ///< pixels that simplified paths may be off; 0 keeps all points
-    float shortest = 1.5f;          ///< pixels; visible runs that are shorter are left out
+    float tolerance = 0.1f;  ///< pixels that simplified paths may be off; 0 keeps all points
+    float shortest = 1.5f;   ///< pixels; visible runs that are shorter are left out
+    /// Center lines are curves through their points, at most half a pixel from the straight ways, and stay smooth when
+    /// they are enlarged.
+    bool curves = false;
     bool background = true;         ///< a rectangle of the style's background, if it has one, in a layer of its own
     double frames_per_second = 30;  ///< of more than one frame
     std::string title = "Drawing";

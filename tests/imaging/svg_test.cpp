@@ -61,6 +61,7 @@ TEST(SvgDocuments, NestLayersAndGroups) {
     SvgPath path;
     path.move_to({0, 1});
     path.line_to({2.5f, -3});
+    path.curve_to({1, 2}, {3, 4}, {5, 6});
     path.close();
     document.add("path", std::vector<SvgAttribute>{{"d", path.data()}});
     document.open_group();
@@ -74,7 +75,7 @@ TEST(SvgDocuments, NestLayersAndGroups) {
               "width=\"30px\" height=\"20px\" viewBox=\"0 0 30 20\">\n"
               "  <title>A &amp; B</title>\n"
               "  <g id=\"layer1\" inkscape:groupmode=\"layer\" inkscape:label=\"ink\" fill=\"none\">\n"
-              "    <path d=\"M0 1L2.5 -3Z\"/>\n"
+              "    <path d=\"M0 1L2.5 -3C1 2 3 4 5 6Z\"/>\n"
               "    <g>\n"
               "    </g>\n"
               "  </g>\n"

@@ -316,6 +316,52 @@ TEST(SvgDrawings, OfCenterLinesLookLikeTheStrokes) {
     fs::remove(file);
 }
 
+TEST(SvgDrawings, OfCurvesStayBesideTheStraightLinesAndHaveNoKinks) {
+    const Scene scene(knobbly(5));
+    const DrawingStyle style = load_style("technical");
+    const std::array types = {LineType::contours};
+    const Drawing drawing = draw(scene, style, types);
+    const fs::path file = svg_file("curves.svg");
+    SvgOptions options{.fading = SvgFading::none};
+    write_drawing_svg(file, {&drawing, 1}, style, options);
+    const auto straight = read_paths(file);
+    options.curves = true;
+    write_drawing_svg(file, {&drawing, 1}, style, options);
+    const std::string text = read_file(file);
+    std::size_t path = 0, turns = 0, kinks = 0;
+    for (std::size_t at = text.find(" d=\"M"); at != std::string::npos; at = text.find(" d=\"M", at + 1), ++path) {
+        // M p then C a b p, again and again.
+        std::vector<Vec2> points;
+        for (const char* c = text.c_str() + at + 4; *c != '"' && *c != 'Z';) {
+            char* next = nullptr;
+            const float x = std::strtof(c + 1, &next), y = std::strtof(next, &next);
+            points.emplace_back(x, y);
+            c = next;
+        }
+        ASSERT_EQ(points.size() % 3, 1);
+        const auto& line = straight.at(path).lines.at(0);
+        const bool closed = straight[path].closed[0];
+        ASSERT_EQ((points.size() - 1) / 3, line.size() - (closed ? 0 : 1));
+        for (std::size_t i = 0; i + 1 < points.size(); i += 3) {
+            EXPECT_EQ(points[i], line[i / 3]);
+            const Vec2 way = (points[i + 3] - points[i]).normalized();
+            for (std::size_t k : {1, 2}) {
+                const Vec2 off = points[i + k] - points[i];
+                EXPECT_LE(std::abs(way.x() * off.y() - way.y() * off.x()), 0.52f);
+            }
+            if (i == 0) continue;
+            const Vec2 in = points[i] - points[i - 1], out = points[i + 1] - points[i];
+            if (std::min(in.norm(), out.norm()) < 0.3f) continue;  // rounded to hundredths
+            ++turns;
+            kinks += in.normalized().dot(out.normalized()) < 0.99f ? 1u : 0u;
+        }
+    }
+    EXPECT_EQ(path, straight.size());
+    EXPECT_GT(turns, 100);
+    EXPECT_LT(kinks, turns / 10);
+    fs::remove(file);
+}
+
 /// What filled polygons cover, in 4 x 4 samples a pixel, by the nonzero rule.
 void fill(const Path& path, FloatImage& image) {
     constexpr int k_samples = 4;

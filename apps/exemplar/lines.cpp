@@ -83,21 +83,29 @@ Value choice(const std::string& word, const char* option, const std::vector<std:
     return static_cast<Value>(at - words.begin());
 }
 
-bool is_svg(const std::filesystem::path& path) {
+/// By the end of the name; a name without one is a folder.
+LinesOutput output_of(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension == ".svg";
+    if (extension == ".svg") return LinesOutput::svg;
+    if (extension == ".png") return LinesOutput::picture;
+    for (const char* video : {".mp4", ".mkv", ".webm", ".mov"})
+        if (extension == video) return LinesOutput::video;
+    if (extension.empty()) return LinesOutput::folder;
+    throw UsageError(fmt::format("{}: '{}' is not written; give a name that ends in .svg, .png or .mp4, or a folder",
+                                 path.string(), extension));
 }
 
 LinesJob job_of(const LinesArguments& arguments) {
     LinesJob job = arguments.job;
     if (job.source.input.empty()) throw UsageError("no MESH or ANIM is given; see 'exemplar lines --help'");
     if (job.out.empty()) throw UsageError("--out is missing; give the file to write, as drawing.svg");
-    require_output_file(job.out);
-    if (!is_svg(job.out))
-        throw UsageError(
-            fmt::format("{}: only SVG is written so far; give a name that ends in .svg", job.out.string()));
+    job.output = output_of(job.out);
+    if (job.output == LinesOutput::folder)
+        require_output_folder(job.out);
+    else
+        require_output_file(job.out);
     require_camera(job.camera);
     job.types = types_of(arguments.types);
     job.style = load_style(arguments.style);
@@ -109,9 +117,11 @@ LinesJob job_of(const LinesArguments& arguments) {
     job.svg.fading = choice<SvgFading>(fading, "--fading", {"opacity", "width", "none"});
     job.svg.background = !arguments.no_background;
     job.source.derivatives = std::any_of(job.types.begin(), job.types.end(), needs_curvature);
-    if (std::find(job.types.begin(), job.types.end(), LineType::creases) != job.types.end())
+    const bool on_host = job.output == LinesOutput::svg;
+    if (on_host && std::find(job.types.begin(), job.types.end(), LineType::creases) != job.types.end())
         job.source.split_angle = job.style.thresholds(LineType::creases).crease_angle;
-    job.source.first_frame_only = is_svg(job.out);
+    job.source.first_frame_only = job.output == LinesOutput::svg || job.output == LinesOutput::picture;
+    if (arguments.no_background) job.style.background.reset();
     job.source.quiet = job.common.quiet;
     return job;
 }
@@ -122,7 +132,11 @@ void run_lines(const LinesArguments& arguments) {
         fmt::print("{}", builtin_style_text(arguments.print_style));
         return;
     }
-    write_lines_svg(job_of(arguments));
+    const LinesJob job = job_of(arguments);
+    if (job.output == LinesOutput::svg)
+        write_lines_svg(job);
+    else
+        write_lines_pictures(job);
 }
 
 void add_look_options(CLI::App& command, LinesArguments& arguments) {
@@ -197,15 +211,18 @@ void add_lines_command(CLI::App& app) {
     auto arguments = std::make_shared<LinesArguments>();
     CLI::App* command = app.add_subcommand("lines", "Draws a mesh or an animation in lines");
     command->footer(
-        "Hidden lines are not in the file. Each type of lines is a layer. Frames of an animation (--frames) make an\n"
-        "SVG file that plays.\n\nExamples:\n"
+        "SVG is made on the CPU: hidden lines are not in the file, each type of lines is a layer, and frames of an\n"
+        "animation (--frames) play. Pictures (.png, or a folder: one a frame) and videos (.mp4, by ffmpeg) are drawn "
+        "on\n"
+        "the Vulkan device.\n\nExamples:\n"
         "  exemplar lines bunny.off --out bunny.svg\n"
         "  exemplar lines part.obj --types contours,creases,boundaries --style technical --view top --out part.svg\n"
-        "  exemplar lines figure.glb --model figure.safetensors --frames 0:40 --style pencil --out walk.svg");
+        "  exemplar lines figure.glb --model figure.safetensors --frames 0:40 --style pencil --out walk.mp4");
     LinesJob& job = arguments->job;
     command->add_option("INPUT", job.source.input, "mesh (OFF, OBJ, PLY, STL, glTF) or animation (glTF, folder)")
         ->type_name("");
-    command->add_option("--out", job.out, "file to write, .svg")->type_name("FILE");
+    command->add_option("--out", job.out, "what to write: .svg, .png, .mp4, or a folder for a picture of each frame")
+        ->type_name("FILE|FOLDER");
     add_look_options(*command, *arguments);
     add_camera_options(*command, job.camera);
     add_svg_options(*command, *arguments);
@@ -218,6 +235,7 @@ void add_lines_command(CLI::App& app) {
         ->add_option("--fps", job.source.frames_per_second, "frames a second that clips of glTF files are sampled at")
         ->capture_default_str()
         ->check(CLI::Range(0.1, 1000.0));
+    add_device_option(*command, job.common);
     add_common_options(*command, job.common);
     command->callback([arguments] { run_lines(*arguments); });
 }

@@ -11,6 +11,9 @@
 
 namespace exemplar {
 
+/// What is written: a file, or a folder of pictures.
+enum class LinesOutput { svg, picture, video, folder };
+
 /// What 'exemplar lines' is asked to draw, checked: one function per kind of output takes it.
 struct LinesJob {
     CommonOptions common;
@@ -19,6 +22,7 @@ struct LinesJob {
     std::vector<LineType> types;  ///< in the order in which they are drawn
     DrawingStyle style;           ///< with the thresholds of the command line
     std::filesystem::path out;
+    LinesOutput output = LinesOutput::svg;
     SvgOptions svg;
 };
 
@@ -27,5 +31,7 @@ nlohmann::json describe_job(const LinesJob& job, const LinesSource& source, cons
 
 /// Draws on the host and writes an SVG file, with frames as an animation.
 void write_lines_svg(const LinesJob& job);
+/// Draws on the device and writes a picture, a folder of them or a video.
+void write_lines_pictures(const LinesJob& job);
 
 }  // namespace exemplar

@@ -57,5 +57,5 @@ exemplar_shaders(exemplar_gpu_curvature curvature)
 
 # Windows are of the caller: nothing here knows GLFW. libimgui's Vulkan backend stays out, for volk has names it uses.
 pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
-exemplar_library(gpu_window gpu/window exemplar_runtime exemplar_imaging PkgConfig::IMGUI)
+exemplar_library(gpu_window gpu/window exemplar_gpu_imaging exemplar_runtime exemplar_imaging PkgConfig::IMGUI)
 exemplar_shaders(exemplar_gpu_window window)

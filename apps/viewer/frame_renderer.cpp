@@ -1,0 +1,106 @@
+#include "apps/viewer/frame_renderer.h"
+
+#include <algorithm>
+
+#include "gpu/runtime/errors.h"
+
+namespace exemplar {
+namespace {
+
+std::array<float, 4> color_of(const Color& color) {
+    return {static_cast<float>(color[0]) / 255, static_cast<float>(color[1]) / 255, static_cast<float>(color[2]) / 255,
+            1};
+}
+
+VkExtent2D half_of(ViewSize size, std::size_t parts, std::size_t part) {
+    const auto width = static_cast<std::size_t>(std::max(size.width, 1));
+    const std::size_t left = part * width / parts, right = (part + 1) * width / parts;
+    return {static_cast<std::uint32_t>(std::max<std::size_t>(right - left, 1)),
+            static_cast<std::uint32_t>(std::max(size.height, 1))};
+}
+
+}  // namespace
+
+FrameRenderer::FrameRenderer(Device& device) : device_(device), stream_(device, &profiler_) {
+    for (int i = 0; i < 2; ++i) pictures_.emplace_back(device);
+}
+
+void FrameRenderer::follow(ViewerState& state) {
+    if (document_version_ != state.document_version()) {
+        scene_.reset();
+        document_version_ = state.document_version();
+        model_version_ = 0;
+        state.times.clear();
+        if (state.has_document()) scene_ = std::make_unique<SurfaceScene>(device_, state.document());
+    }
+    if (!scene_ || model_version_ == state.model_version()) return;
+    model_version_ = state.model_version();
+    scene_->set_model(state.model());
+}
+
+void FrameRenderer::record(const ViewerState& state, ViewSize size) {
+    const bool both = scene_ && scene_->has_model() && state.settings.source == CurvatureSource::both &&
+                      state.settings.needs_curvature();
+    shown_ = both ? 2 : 1;
+    for (std::size_t i = 0; i < shown_; ++i) pictures_[i].resize(half_of(size, shown_, i));
+    if (scene_) scene_->record_moment(stream_, state.moment(), state.settings);
+    const bool learned = scene_ && scene_->has_model() && state.settings.source != CurvatureSource::estimated;
+    for (std::size_t i = 0; i < shown_; ++i) record_view(state, pictures_[i], learned && i == 0);
+}
+
+void FrameRenderer::record_view(const ViewerState& state, const Picture& picture, bool learned) {
+    picture.begin(stream_);
+    PassTarget target = picture.target();
+    target.clear_color = color_of(state.settings.background);
+    target.clear_depth = 1.0f;
+    Pass pass("surface", target);
+    const ViewSize size{static_cast<int>(picture.extent().width), static_cast<int>(picture.extent().height)};
+    if (scene_) scene_->draw(pass, state.camera.camera(size), state.settings, learned);
+    stream_.render(pass);
+    picture.end(stream_);
+}
+
+void FrameRenderer::blit(VkImage target, VkRect2D part) {
+    for (std::size_t i = 0; i < shown_; ++i) {
+        const auto count = static_cast<std::uint32_t>(shown_), place = static_cast<std::uint32_t>(i);
+        const std::uint32_t left = place * part.extent.width / count, right = (place + 1) * part.extent.width / count;
+        stream_.blit(
+            pictures_[i].image(), pictures_[i].extent(), target,
+            {{part.offset.x + static_cast<std::int32_t>(left), part.offset.y}, {right - left, part.extent.height}});
+    }
+}
+
+void FrameRenderer::finish(FrameTimes& times) {
+    stream_.wait();
+    times.begin_frame();
+    for (const auto& [kernel, entry] : profiler_.entries()) times.add(kernel, entry.milliseconds);
+    profiler_.reset();
+}
+
+Image FrameRenderer::read() {
+    std::vector<Image> parts;
+    for (std::size_t i = 0; i < shown_; ++i) parts.push_back(read_picture(pictures_[i]));
+    if (parts.size() == 1) return std::move(parts.front());
+    Image image(parts[0].width + parts[1].width, parts[0].height, 3);
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < parts[0].width; ++x) std::ranges::copy(parts[0].pixel(x, y), image.pixel(x, y).begin());
+        for (int x = 0; x < parts[1].width; ++x)
+            std::ranges::copy(parts[1].pixel(x, y), image.pixel(parts[0].width + x, y).begin());
+    }
+    return image;
+}
+
+Image FrameRenderer::read_picture(const Picture& picture) {
+    const VkExtent2D extent = picture.extent();
+    std::vector<std::uint32_t> texels(std::size_t{extent.width} * extent.height);
+    const Buffer buffer(device_, texels.size() * sizeof(std::uint32_t));
+    stream_.copy_image(picture.image(), VK_IMAGE_ASPECT_COLOR_BIT, extent, sizeof(std::uint32_t), buffer);
+    stream_.fetch<std::uint32_t>(buffer, texels);
+    profiler_.reset();
+    Image image(static_cast<int>(extent.width), static_cast<int>(extent.height), 3);
+    for (std::size_t i = 0; i < texels.size(); ++i)
+        for (std::size_t c = 0; c < 3; ++c) image.data[3 * i + c] = static_cast<std::uint8_t>(texels[i] >> (8 * c));
+    return image;
+}
+
+}  // namespace exemplar

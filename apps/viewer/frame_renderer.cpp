@@ -39,9 +39,7 @@ void FrameRenderer::follow(ViewerState& state) {
 }
 
 void FrameRenderer::record(const ViewerState& state, ViewSize size) {
-    const bool both = scene_ && scene_->has_model() && state.settings.source == CurvatureSource::both &&
-                      state.settings.needs_curvature();
-    shown_ = both ? 2 : 1;
+    shown_ = scene_ && state.shows_both() ? 2 : 1;
     for (std::size_t i = 0; i < shown_; ++i) pictures_[i].resize(half_of(size, shown_, i));
     if (scene_) scene_->record_moment(stream_, state.moment(), state.settings);
     const bool learned = scene_ && scene_->has_model() && state.settings.source != CurvatureSource::estimated;

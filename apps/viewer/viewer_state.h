@@ -50,6 +50,11 @@ class ViewerState {
     /// With what sliders change of it.
     Moment moment() const;
 
+    /// Whether learned and estimated curvature are shown side by side.
+    bool shows_both() const {
+        return document_ && model_ && settings.source == CurvatureSource::both && settings.needs_curvature();
+    }
+
     Playback playback;
     PoseControls pose;
     OrbitCamera camera;

@@ -249,14 +249,6 @@ void Stream::blit(VkImage source, VkExtent2D extent, VkImage target, VkRect2D pa
                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, scales ? VK_FILTER_LINEAR : VK_FILTER_NEAREST);
 }
 
-void Stream::clear_image(VkImage image, const std::array<float, 4>& color) {
-    begin();
-    VkClearColorValue value{};
-    std::ranges::copy(color, value.float32);
-    const VkImageSubresourceRange range{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    vkCmdClearColorImage(commands_.handle(), image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &value, 1, &range);
-}
-
 std::pair<Stream::Staging*, std::size_t> Stream::stage(std::vector<Staging>& blocks, std::size_t bytes,
                                                        BufferMemory memory) {
     const std::size_t padded = (bytes + k_staging_alignment - 1) / k_staging_alignment * k_staging_alignment;

@@ -2,7 +2,6 @@
 
 #include <volk.h>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -81,8 +80,6 @@ class Stream {
     /// Fills a part of an image in VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL with all of another's color, of `extent` pixels
     /// and in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL; scales it if sizes differ. The caller has made the source visible.
     void blit(VkImage source, VkExtent2D extent, VkImage target, VkRect2D part);
-    /// Clears an image in VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL.
-    void clear_image(VkImage image, const std::array<float, 4>& color);
 
     /// Copies host values into `target` at byte `offset`; `values` may end as soon as this returns.
     template <typename T>

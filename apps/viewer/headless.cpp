@@ -37,7 +37,7 @@ void draw_frames(ViewerState& state, FrameRenderer& renderer, const ViewerOption
         check_interrupt();
         if (i == k_warm_frames) warm_memory = own_memory();
         const std::size_t count = std::max<std::size_t>(state.playback.frame_count(), 1);
-        state.playback.scrub((options.first_frame + i) % count);
+        state.playback.scrub((options.first_frame.value_or(0) + i) % count);
         renderer.follow(state);
         renderer.record(state, options.size);
         renderer.stream().submit();

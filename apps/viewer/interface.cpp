@@ -46,8 +46,8 @@ void set_colors(ImGuiStyle& style) {
     colors[ImGuiCol_Button] = gray(0.26f);
     colors[ImGuiCol_ButtonHovered] = gray(0.33f);
     colors[ImGuiCol_ButtonActive] = accent;
-    colors[ImGuiCol_SliderGrab] = accent;
-    colors[ImGuiCol_SliderGrabActive] = strong;
+    colors[ImGuiCol_SliderGrab] = ImVec4(0.25f, 0.41f, 0.58f, 1);
+    colors[ImGuiCol_SliderGrabActive] = accent;
     colors[ImGuiCol_CheckMark] = strong;
     colors[ImGuiCol_PlotHistogram] = accent;
     colors[ImGuiCol_TextSelectedBg] = ImVec4(accent.x, accent.y, accent.z, 0.45f);

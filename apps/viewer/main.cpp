@@ -58,7 +58,7 @@ void add_options(CLI::App& app, ViewerOptions& options, std::string& size) {
         ->type_name("");
     app.add_option("--model", options.model, "model of the animation's curvature, .safetensors")->type_name("FILE");
     app.add_option("--clip", options.clip, "clip to play; default: the first")->type_name("NAME");
-    app.add_option("--first-frame", options.first_frame, "frame of the clip to begin with")->capture_default_str();
+    app.add_option("--first-frame", options.first_frame, "frame of the clip to begin with; a window stands there");
     add_choice(app, "--paint", options.paint, "colors: labels, curvature (mean, gauss, k1, k2), ...", k_paints);
     add_choice(app, "--light", options.light, "shading", k_lights);
     add_choice(app, "--curvature", options.source, "curvature that is shown", k_sources);

@@ -29,11 +29,12 @@ void apply_options(ViewerState& state, const ViewerOptions& options, ViewSize vi
     if (options.side) state.camera.look_from(*options.side);
     state.camera.set_parallel(options.parallel);
     state.fit(view);
+    if (options.first_frame) state.playback.scrub(*options.first_frame);
 }
 
 void open_files(ViewerState& state, const ViewerOptions& options, ViewSize view) {
     if (!options.file.empty()) state.open(options.file, view);
-    if (!options.model.empty()) state.open(options.model, view);
+    if (!options.model.empty()) state.open_model(options.model);
     if (!options.clip.empty()) {
         if (!state.has_document()) throw UsageError("--clip needs an animation; name its FILE");
         choose_clip(state, options.clip);

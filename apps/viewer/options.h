@@ -15,8 +15,8 @@ struct ViewerOptions {
     std::filesystem::path file, model, out;
     std::string device, clip;
     ViewSize size{1280, 720};
-    std::size_t frames = 0;  ///< to draw before it ends; 0: until the window is closed
-    std::size_t first_frame = 0;
+    std::size_t frames = 0;                  ///< to draw before it ends; 0: until the window is closed
+    std::optional<std::size_t> first_frame;  ///< playback stands there; none: it plays from the start
     bool headless = false, quiet = false, plain_window = false;
     std::optional<SurfacePaint> paint;
     std::optional<SurfaceLight> light;

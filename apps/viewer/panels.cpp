@@ -173,6 +173,7 @@ void draw_help(ViewerState& state, const ViewArea& view, float scale) {
     ImGui::Separator();
     if (ImGui::BeginTable("keys", 4)) {
         for (const Shortcut& shortcut : shortcuts()) {
+            if (keys_of(shortcut.action) != shortcut.keys) continue;
             ImGui::TableNextColumn();
             ImGui::TextUnformatted(shortcut.keys.data(), shortcut.keys.data() + shortcut.keys.size());
             ImGui::TableNextColumn();

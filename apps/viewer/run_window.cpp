@@ -29,6 +29,9 @@ constexpr Transition k_interface_drawn{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTP
                                        VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_PIPELINE_STAGE_2_NONE,
                                        VK_ACCESS_2_NONE};
 
+// Frames that are drawn after something happened: an interface takes more than one to settle.
+constexpr int k_settling_frames = 3;
+
 /// STEM_0.png, or the next number that is free, in the working folder.
 std::filesystem::path free_name(const std::filesystem::path& file, const std::string& extension) {
     for (int i = 0;; ++i) {
@@ -126,7 +129,7 @@ class Viewer {
     void run();
 
   private:
-    void run_session();
+    void run_session(Session& session);
     void wait_for_work();
     void handle_events();
     void perform(Action action, Session& session);
@@ -142,7 +145,7 @@ class Viewer {
     Interface interface_;
     ViewerState state_;
     std::size_t frames_ = 0;
-    int restless_ = 3;  // frames to draw though nothing happens: interfaces settle
+    int restless_ = k_settling_frames;
     bool fitted_ = false, lost_ = false;
 };
 
@@ -166,13 +169,13 @@ void Viewer::wait_for_work() {
     const bool busy = (state_.playback.playing() && state_.playback.frame_count() > 1) || options_.frames > 0;
     const bool waits = !busy && restless_ <= 0;
     const bool event = waits ? window_.wait(state_.training ? k_progress_seconds : k_idle_seconds) : window_.poll();
-    if (event) restless_ = 3;
+    if (event) restless_ = k_settling_frames;
     if (state_.training || !state_.messages.all().empty()) restless_ = std::max(restless_, 1);
     --restless_;
 }
 
 void Viewer::perform(Action action, Session& session) {
-    restless_ = 3;
+    restless_ = k_settling_frames;
     if (action == Action::quit) {
         window_.close();
     } else if (action == Action::save_png && state_.has_document()) {
@@ -186,9 +189,7 @@ void Viewer::perform(Action action, Session& session) {
     }
 }
 
-void Viewer::run_session() {
-    Session session(window_, interface_, options_.device);
-    const std::shared_ptr<const ValidationLog> log = session.device().validation_log();
+void Viewer::run_session(Session& session) {
     while (!ended()) {
         wait_for_work();
         const Clock::time_point now = Clock::now();
@@ -200,6 +201,7 @@ void Viewer::run_session() {
         InterfaceRequests requests;
         if (!session.draw(state_, requests)) {
             window_.wait(0.1);
+            restless_ = k_settling_frames;  // there is something to draw as soon as it can be shown
             continue;
         }
         if (!options_.quiet && frames_ == 0)
@@ -212,16 +214,20 @@ void Viewer::run_session() {
         for (const std::filesystem::path& path : requests.open) open(path);
         for (const Action action : requests.actions) perform(action, session);
         for (const Action action : window_.take_actions()) perform(action, session);
+        // Only now it is known how much of the window panels take.
         if (!std::exchange(fitted_, true)) state_.fit(interface_.view().size());
-        require_silence(*log);
+        require_silence(*session.device().validation_log());
     }
 }
 
 void Viewer::run() {
     constexpr int k_most_losses = 3;
     for (int losses = 0; !ended(); ++losses) {
+        std::shared_ptr<const ValidationLog> log;
         try {
-            run_session();
+            Session session(window_, interface_, options_.device);
+            log = session.device().validation_log();
+            run_session(session);
         } catch (const DeviceLostError& error) {
             if (losses >= k_most_losses) throw;
             state_.messages.error(error.what());
@@ -229,6 +235,7 @@ void Viewer::run() {
             if (losses >= k_most_losses) throw;
             state_.messages.error(error.what());
         }
+        if (log) require_silence(*log);
     }
     check_interrupt();
 }

@@ -114,6 +114,11 @@ void draw_weights(ViewerState& state) {
     }
 }
 
+// "curvature/pose.comp" is "curvature/pose".
+std::string short_name(const std::string& program) {
+    return program.substr(0, program.find('.'));
+}
+
 // The frames side by side, newest at the right, with what each kernel took on top of one another.
 void draw_stack(const FrameTimes& times, const std::vector<std::string>& names) {
     const ImVec2 origin = ImGui::GetCursorScreenPos();
@@ -182,13 +187,13 @@ void draw_frame_times(ViewerState& state) {
     const std::vector<std::string> names = state.times.names();
     draw_stack(state.times, names);
     for (std::size_t i = 0; i < names.size(); ++i) {
-        ImGui::PushStyleColor(ImGuiCol_Text, series_color(i));
-        ImGui::TextUnformatted("\xE2\x96\xA0");
-        ImGui::PopStyleColor();
+        const float size = ImGui::GetFontSize() * 0.7f;
+        ImGui::ColorButton(names[i].c_str(), ImGui::ColorConvertU32ToFloat4(series_color(i)),
+                           ImGuiColorEditFlags_NoTooltip, ImVec2(size, size));
         ImGui::SameLine(0, 4);
-        ImGui::Text("%7.3f ms  %s", static_cast<double>(state.times.average(names[i])), names[i].c_str());
+        ImGui::Text("%7.3f ms  %s", static_cast<double>(state.times.average(names[i])), short_name(names[i]).c_str());
     }
-    ImGui::Text("  %7.3f ms  all on the device", static_cast<double>(state.times.average_total()));
+    ImGui::Text("     %7.3f ms  all on the device", static_cast<double>(state.times.average_total()));
 }
 
 }  // namespace exemplar

@@ -224,7 +224,6 @@ bool ViewerState::perform(Action action, ViewSize view) {
             show_help = !show_help;
             return true;
         case Action::save_png:
-        case Action::save_svg:
         case Action::quit:
             break;
     }

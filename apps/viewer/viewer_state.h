@@ -25,6 +25,8 @@ class ViewerState {
     /// Opens a mesh, animation, model (.safetensors), labels (_labels.txt, .seg), whatever it is. Throws an Error; what
     /// was open stays then.
     void open(const std::filesystem::path& path, ViewSize view);
+    /// A model, whatever its name. Throws ModelError if it is none, or not of the document.
+    void open_model(const std::filesystem::path& path);
     void close();
     void set_clip(std::size_t clip);
     void set_model(std::shared_ptr<const CurvatureModel> model, std::string name);
@@ -66,7 +68,6 @@ class ViewerState {
 
   private:
     void open_document(const std::filesystem::path& path, ViewSize view);
-    void open_model(const std::filesystem::path& path);
     void open_labels(const std::filesystem::path& path);
     std::unique_ptr<Document> document_;  // scenes refer to it
     std::uint64_t document_version_ = 0, model_version_ = 0;

@@ -8,7 +8,7 @@ namespace exemplar {
 namespace {
 
 constexpr float k_field_of_view = 0.6f;  // radians, along the shorter side of the picture when it fits
-constexpr float k_free_margin = 1.06f;
+constexpr float k_free_margin = 1.02f;
 
 // A cursor as a point on a ball of radius 1 in front of the picture, which far out becomes a hyperbola, so that there
 // is a point for every cursor.

@@ -40,10 +40,9 @@ constexpr std::array k_shortcuts = {
     Shortcut{Action::curvature_source, GLFW_KEY_V, false, "V", "Learned, re-estimated, or both"},
     Shortcut{Action::reset_pose, GLFW_KEY_R, false, "R", "Undo what sliders changed of the pose"},
     Shortcut{Action::save_png, GLFW_KEY_S, true, "Ctrl+S", "Save the picture as PNG"},
-    Shortcut{Action::save_svg, GLFW_KEY_E, true, "Ctrl+E", "Save the lines as SVG"},
     Shortcut{Action::panels, GLFW_KEY_P, false, "P", "Show or hide the panels"},
     Shortcut{Action::frame_times, GLFW_KEY_G, false, "G", "Show or hide frame times"},
-    Shortcut{Action::help, GLFW_KEY_F1, false, "F1", "Show or hide this help"},
+    Shortcut{Action::help, GLFW_KEY_F1, false, "F1, H", "Show or hide this help"},
     Shortcut{Action::help, GLFW_KEY_H, false, "H", "Show or hide this help"},
     Shortcut{Action::quit, GLFW_KEY_Q, true, "Ctrl+Q", "Quit"},
 };

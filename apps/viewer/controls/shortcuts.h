@@ -38,7 +38,6 @@ enum class Action {
     curvature_source,
     reset_pose,
     save_png,
-    save_svg,
     panels,
     frame_times,
     help,
@@ -53,7 +52,7 @@ struct Shortcut {
     std::string_view what;
 };
 
-/// All shortcuts, in the order they are shown. An action may have several.
+/// All shortcuts, in the order they are shown. An action may have several, of which the first is shown.
 std::span<const Shortcut> shortcuts();
 /// The action of a key, if it has one.
 std::optional<Action> action_of(int key, bool control);
@@ -62,7 +61,7 @@ struct MouseHint {
     std::string_view mouse, what;
 };
 std::span<const MouseHint> mouse_hints();
-/// The keys of an action as they are shown, the first if there are several; empty if there is none.
+/// The keys of an action as they are shown; empty if there is none.
 std::string_view keys_of(Action action);
 
 }  // namespace exemplar

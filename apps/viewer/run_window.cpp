@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <functional>
 
 #include "apps/viewer/frame_renderer.h"
 #include "apps/viewer/interface.h"
@@ -53,7 +54,7 @@ class Session {
 
     /// Draws and shows a frame; nothing if the window has no pixels. Returns whether it did.
     bool draw(ViewerState& state, InterfaceRequests& requests);
-    void save_png(ViewerState& state);
+    Image picture() { return renderer_.read(); }
     Device& device() { return device_; }
 
   private:
@@ -108,12 +109,6 @@ void Session::record(const ViewerState& state, const WindowImage& image) {
                       VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, k_interface_drawn);
 }
 
-void Session::save_png(ViewerState& state) {
-    const std::filesystem::path path = free_name(state.document().path, ".png");
-    write_png(path, renderer_.read());
-    state.messages.remark(fmt::format("Saved {}", std::filesystem::absolute(path).string()));
-}
-
 /// From the window's events to frames.
 class Viewer {
   public:
@@ -131,7 +126,7 @@ class Viewer {
   private:
     void run_session(Session& session);
     void wait_for_work();
-    void handle_events();
+    void save(const std::string& extension, const std::function<void(const std::filesystem::path&)>& write);
     void perform(Action action, Session& session);
     void open(const std::filesystem::path& path);
     void set_title();
@@ -174,16 +169,25 @@ void Viewer::wait_for_work() {
     --restless_;
 }
 
+// In the working folder, beside what was saved before.
+void Viewer::save(const std::string& extension, const std::function<void(const std::filesystem::path&)>& write) {
+    const std::filesystem::path path = free_name(state_.document().path, extension);
+    try {
+        write(path);
+        state_.messages.remark(fmt::format("Saved {}", std::filesystem::absolute(path).string()));
+    } catch (const DataError& error) {
+        state_.messages.error(error.what());
+    }
+}
+
 void Viewer::perform(Action action, Session& session) {
     restless_ = k_settling_frames;
     if (action == Action::quit) {
         window_.close();
     } else if (action == Action::save_png && state_.has_document()) {
-        try {
-            session.save_png(state_);
-        } catch (const DataError& error) {
-            state_.messages.error(error.what());
-        }
+        save(".png", [&](const std::filesystem::path& path) { write_png(path, session.picture()); });
+    } else if (action == Action::save_model && state_.model()) {
+        save(".safetensors", [&](const std::filesystem::path& path) { save_curvature_model(path, *state_.model()); });
     } else {
         state_.perform(action, interface_.view().size());
     }

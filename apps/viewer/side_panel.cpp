@@ -159,7 +159,7 @@ void draw_look(ViewerState& state) {
     if (ImGui::Checkbox("Parallel view", &parallel)) state.camera.set_parallel(parallel);
 }
 
-void draw_curvature(ViewerState& state) {
+void draw_curvature(ViewerState& state, InterfaceRequests& requests) {
     if (state.model()) {
         ImGui::TextDisabled("Model: %s", state.model_name().c_str());
         auto source = static_cast<int>(state.settings.source);
@@ -169,6 +169,7 @@ void draw_curvature(ViewerState& state) {
         ImGui::SameLine();
         ImGui::RadioButton("Both", &source, static_cast<int>(CurvatureSource::both));
         state.settings.source = static_cast<CurvatureSource>(source);
+        if (ImGui::Button("Save the model", ImVec2(-1, 0))) requests.actions.push_back(Action::save_model);
     } else {
         ImGui::TextDisabled("Re-estimated on every frame");
     }

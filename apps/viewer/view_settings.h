@@ -26,7 +26,7 @@ struct ViewSettings {
     Color plain{214, 212, 206};
     Color background{250, 250, 248};
     /// The curvature of the strongest color, times the feature size.
-    float curvature_range = 0.15f;
+    float curvature_range = 0.25f;
     CurvatureSource source = CurvatureSource::estimated;
     LineSettings lines;
 

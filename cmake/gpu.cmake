@@ -59,3 +59,6 @@ exemplar_shaders(exemplar_gpu_curvature curvature)
 pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
 exemplar_library(gpu_window gpu/window exemplar_gpu_imaging exemplar_runtime exemplar_imaging PkgConfig::IMGUI)
 exemplar_shaders(exemplar_gpu_window window)
+
+exemplar_library(gpu_lines gpu/lines exemplar_gpu_imaging exemplar_gpu_curvature exemplar_lines)
+exemplar_shaders(exemplar_gpu_lines lines)

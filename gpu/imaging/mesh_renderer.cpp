@@ -7,6 +7,7 @@
 #include "embedded/imaging_mesh_frag.h"
 #include "embedded/imaging_mesh_vert.h"
 #include "embedded/imaging_resolve_comp.h"
+#include "gpu/imaging/picture.h"
 #include "gpu/runtime/errors.h"
 #include "shaders/shared/render.h"
 
@@ -44,13 +45,6 @@ VkExtent2D sample_extent(const PictureTile& tile) {
     return {static_cast<std::uint32_t>(tile.width * k_samples), static_cast<std::uint32_t>(tile.height * k_samples)};
 }
 
-// The eye as a homogeneous point; a parallel projection's last row is (0, 0, 0, 1), and its eye lies in one direction.
-shared::vec4 homogeneous_eye(const Camera& camera) {
-    const bool parallel = camera.projection(3, 3) != 0;
-    const Vec3 eye = parallel ? camera.to_eye(Vec3::Zero()) : camera.position();
-    return {eye.x(), eye.y(), eye.z(), parallel ? 0.0f : 1.0f};
-}
-
 // Stretches the part [begin, begin + size) of `whole` pixels to the full clip space along one axis.
 void zoom(Eigen::Matrix4f& matrix, int axis, int begin, int size, int whole) {
     const float center = static_cast<float>(2 * begin + size) / static_cast<float>(whole) - 1;
@@ -68,8 +62,7 @@ shared::RenderParameters tile_parameters(const MeshDraw& draw, const PictureTile
                                         .ground = draw.options.ground,
                                         .headlight = draw.options.headlight,
                                         .vertex_normals = draw.options.smooth ? 1u : 0u};
-    for (int column = 0; column < 4; ++column)
-        parameters.matrix[column] = {matrix(0, column), matrix(1, column), matrix(2, column), matrix(3, column)};
+    put_matrix(matrix, parameters.matrix);
     return parameters;
 }
 

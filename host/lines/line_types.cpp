@@ -41,25 +41,19 @@ bool needs_curvature(LineType type) {
     return type != LineType::contours && type != LineType::creases && type != LineType::boundaries;
 }
 
-namespace {
-
-/// The threshold of a type, and by how much a line of half its opacity is above it.
-struct Fading {
-    float threshold, half;
-};
-std::optional<Fading> fading(LineType type, const LineThresholds& thresholds) {
+std::optional<LineFading> line_fading(LineType type, const LineThresholds& thresholds) {
     switch (type) {
         case LineType::suggestive_contours:
-            return Fading{thresholds.suggestive_contours, thresholds.fade};
+            return LineFading{thresholds.suggestive_contours, thresholds.fade};
         case LineType::suggestive_highlights:
-            return Fading{thresholds.suggestive_highlights, thresholds.fade};
+            return LineFading{thresholds.suggestive_highlights, thresholds.fade};
         case LineType::principal_highlights:
-            return Fading{thresholds.principal_highlights, thresholds.fade};
+            return LineFading{thresholds.principal_highlights, thresholds.fade};
         case LineType::apparent_ridges:
-            return Fading{thresholds.apparent_ridges, thresholds.fade};
+            return LineFading{thresholds.apparent_ridges, thresholds.fade};
         case LineType::ridges:
         case LineType::valleys:
-            return Fading{thresholds.ridges_valleys, thresholds.ridges_valleys};
+            return LineFading{thresholds.ridges_valleys, thresholds.ridges_valleys};
         case LineType::contours:
         case LineType::creases:
         case LineType::boundaries:
@@ -68,10 +62,8 @@ std::optional<Fading> fading(LineType type, const LineThresholds& thresholds) {
     return std::nullopt;
 }
 
-}  // namespace
-
 float line_opacity(LineType type, float strength, const LineThresholds& thresholds) {
-    const std::optional<Fading> f = fading(type, thresholds);
+    const std::optional<LineFading> f = line_fading(type, thresholds);
     if (!f) return 1;
     const float above = strength - f->threshold;
     return above > 0 ? above / (above + f->half) : 0;

@@ -52,6 +52,13 @@ struct LineThresholds {
     float fade = 0.03f;
 };
 
+/// The threshold of a type, and by how much a line of half its opacity is above it.
+struct LineFading {
+    float threshold, half;
+};
+/// Nothing for contours, creases and boundaries.
+std::optional<LineFading> line_fading(LineType type, const LineThresholds& thresholds);
+
 /// How opaque a line is at a strength x above its threshold: x / (x + f) with f the fade, or of ridges and valleys the
 /// threshold itself, so that lines begin and end softly. In [0, 1]; 1 for contours, creases and boundaries.
 float line_opacity(LineType type, float strength, const LineThresholds& thresholds);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -7,6 +9,7 @@
 #include "host/imaging/camera.h"
 #include "host/lines/chains.h"
 #include "host/lines/lines.h"
+#include "host/lines/visibility.h"
 
 namespace exemplar {
 
@@ -19,6 +22,19 @@ struct StrokeThickness {
     float least = 0.6f, most = 6;  ///< pixels
     float taper = 12;              ///< pixels over which a stroke grows from nothing at its ends; 0: blunt
 };
+/// T at a point of a radial curvature (times the feature size) and a depth (in units): pixels, not tapered.
+inline float stroke_width(const StrokeThickness& thickness, float radial_curvature, float depth) {
+    const float width =
+        thickness.width * thickness.epsilon / (depth * (std::max(radial_curvature, 0.0f) + thickness.epsilon));
+    return std::clamp(width, thickness.least, thickness.most);
+}
+/// The share of its width that a stroke has `distance` pixels from the end of what is visible of it: a quarter of an
+/// ellipse, sqrt(x (2 - x)) with x = min(1, distance / taper).
+inline float stroke_taper(float distance, float taper) {
+    if (!(distance < taper)) return 1;
+    const float x = std::max(distance, 0.0f) / taper;
+    return std::sqrt(x * (2 - x));
+}
 
 /// Where strokes are seen from.
 struct StrokeView {
@@ -39,17 +55,25 @@ struct StrokePoint {
     bool visible = true;           ///< the way on to the next point is not hidden
 };
 
-/// A chain as it is drawn: one point more than it has links; of a closed one the last point is the first.
+/// A chain as it is drawn: the points where its links begin and the last one's end, and points between them where
+/// visibility changes; links longer than a fifth of the taper are cut into even pieces, so that it shows on them. Of a
+/// closed one the last point is the first.
 struct Stroke {
     std::vector<StrokePoint> points;
     bool closed = false;
 };
 
-/// The strokes of chains, in their order. `hidden` has a flag per segment (see hidden_segments); empty: all are
-/// visible. Throws UsageError if sizes do not fit.
+/// The strokes of chains, in their order. With i counting a chain's own points, before those of visibility are
+/// inserted: the normal at i is perpendicular to the way from point i - 2 to point i + 2 (clamped to an open chain,
+/// around a closed one), the parameter is the sum of the pixel distances up to it, the width stroke_width() of the
+/// depth and the radial curvature there (at a vertex (k1 u^2 + k2 v^2) / (u^2 + v^2), or the mean curvature where the
+/// eye is along the normal; zero if the surface has no curvature), times stroke_taper() of the distance along the chain
+/// to the nearest end of the visible run that the point is in. Where a closed chain's first point is visible, its runs
+/// go on over it, and if all is visible nothing is tapered. `visible` has the visible parts of each segment; null: all
+/// are. Throws UsageError if sizes do not fit, or a thickness is out of range (width, epsilon and most positive, least
+/// in [0, most], taper not negative).
 std::vector<Stroke> make_strokes(const LineSurface& surface, LineType type, std::span<const LineSegment> segments,
-                                 std::span<const Chain> chains, std::span<const std::uint8_t> hidden,
-                                 const StrokeView& view, const LineThresholds& thresholds,
-                                 const StrokeThickness& thickness);
+                                 std::span<const Chain> chains, const VisibleParts* visible, const StrokeView& view,
+                                 const LineThresholds& thresholds, const StrokeThickness& thickness);
 
 }  // namespace exemplar

@@ -1,0 +1,102 @@
+#include "gpu/lines/device_style.h"
+
+#include <map>
+#include <string>
+
+#include "host/lines/stroke_textures.h"
+
+namespace exemplar {
+namespace {
+
+/// Textures that several types share are there once; StrokeLook::texture is one more than where it begins.
+class Textures {
+  public:
+    struct Place {
+        std::uint32_t texture;
+        float period;
+    };
+    Place place_of(const std::string& name) {
+        const auto known = places_.find(name);
+        if (known != places_.end()) return known->second;
+        const Image image = load_stroke_texture(name);
+        Place place{0, 1};
+        if (image.width > 0) {
+            place = {static_cast<std::uint32_t>(texels_.size()) + 1, static_cast<float>(image.width)};
+            append(image);
+        }
+        places_[name] = place;
+        return place;
+    }
+    std::vector<std::uint8_t> texels() const { return texels_; }
+
+  private:
+    // Images of another size are sampled at the centers of the texels.
+    void append(const Image& image) {
+        for (std::uint32_t y = 0; y < shared::k_texture_height; ++y)
+            for (std::uint32_t x = 0; x < shared::k_texture_width; ++x) {
+                const float along = (static_cast<float>(x) + 0.5f) / float(shared::k_texture_width);
+                const float across = (static_cast<float>(y) + 0.5f) / float(shared::k_texture_height);
+                const float opacity =
+                    sample_stroke_texture(image, along * static_cast<float>(image.width), 2 * across - 1);
+                texels_.push_back(static_cast<std::uint8_t>(255 * opacity + 0.5f));
+            }
+    }
+    std::map<std::string, Place> places_;
+    std::vector<std::uint8_t> texels_;
+};
+
+shared::StrokeLook look_of(const LineStyle& line, float threshold, float fade, Textures& textures) {
+    const Textures::Place texture = textures.place_of(line.texture);
+    return {.color = {static_cast<float>(line.color[0]) / 255, static_cast<float>(line.color[1]) / 255,
+                      static_cast<float>(line.color[2]) / 255, line.opacity},
+            .width = line.thickness.width,
+            .epsilon = line.thickness.epsilon,
+            .least = line.thickness.least,
+            .most = line.thickness.most,
+            .taper = line.thickness.taper,
+            .threshold = threshold,
+            .fade = fade,
+            .texture = texture.texture,
+            .period = texture.period,
+            .unused0 = 0,
+            .unused1 = 0,
+            .unused2 = 0};
+}
+
+SurfaceLook surface_look(const DrawingStyle& style) {
+    SurfaceLook look;
+    look.background = style.background.value_or(Color{255, 255, 255});
+    look.transparent = !style.background;
+    look.paper = style.shading == SurfaceShading::none ? look.background : style.surface;
+    if (style.shading != SurfaceShading::none) look.transparent_paper = false;
+    if (style.shading == SurfaceShading::shaded) look.shading = SurfaceLook::Shading::smooth;
+    if (style.shading == SurfaceShading::toon) look.shading = SurfaceLook::Shading::steps;
+    return look;
+}
+
+}  // namespace
+
+DeviceStyle device_style(const DrawingStyle& style) {
+    DeviceStyle result;
+    Textures textures;
+    for (std::uint32_t family = 0; family < shared::k_line_families; ++family) {
+        const LineType type = type_of_family(family);
+        const LineThresholds thresholds = style.thresholds(type);
+        result.thresholds[family] = family_thresholds(thresholds)[family];
+        const auto fading = line_fading(type, thresholds);
+        result.looks[family] =
+            look_of(style.of(type), fading ? fading->threshold : 0, fading ? fading->half : 0, textures);
+    }
+    result.surface = surface_look(style);
+    result.textures = textures.texels();
+    return result;
+}
+
+void apply_style(const DeviceStyle& style, std::span<const LineType> types, LinePicture& picture) {
+    picture.families = line_families(types);
+    picture.thresholds = style.thresholds;
+    picture.looks = style.looks;
+    picture.surface = style.surface;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,160 @@
+#include "gpu/lines/extraction.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "embedded/lines_apparent_ridges_comp.h"
+#include "embedded/lines_count_comp.h"
+#include "embedded/lines_fields_comp.h"
+#include "embedded/lines_scan_comp.h"
+#include "embedded/lines_segments_comp.h"
+#include "embedded/lines_view_curvature_comp.h"
+#include "gpu/curvature/texels.h"
+#include "host/core/errors.h"
+#include "shaders/shared/lines.h"
+
+namespace exemplar {
+namespace {
+
+using shared::FaceLineParameters;
+using shared::FieldParameters;
+using shared::uvec4;
+using shared::vec4;
+
+constexpr std::size_t k_most_segments = std::size_t{1} << shared::k_line_rounds;
+
+std::size_t divide_up(std::size_t count, std::size_t size) {
+    return (count + size - 1) / size;
+}
+
+FieldParameters field_parameters(const GpuLineOptions& options, std::uint32_t vertices) {
+    const FamilyThresholds& t = options.thresholds;
+    return {.eye = options.eye,
+            .low_thresholds = {t[0], t[1], t[2], t[3]},
+            .high_thresholds = {t[4], t[5], t[6], t[7]},
+            .vertices = vertices,
+            .feature_size = options.feature_size,
+            .unused0 = 0,
+            .unused1 = 0};
+}
+
+void check(const GpuCurvedSurface& moment, std::uint32_t families, const GpuLineOptions& options) {
+    if (!(families & shared::k_curvature_families)) return;
+    if (!moment.first || !moment.second || !moment.derivative)
+        throw UsageError("these lines need curvature with derivatives; estimate or learn it");
+    if (!(options.feature_size > 0 && std::isfinite(options.feature_size)))
+        throw UsageError(fmt::format("a feature size of {}: give a positive length", options.feature_size));
+}
+
+}  // namespace
+
+FamilyThresholds family_thresholds(const LineThresholds& thresholds) {
+    FamilyThresholds result{};
+    for (std::uint32_t family = 0; family < shared::k_line_families; ++family)
+        if (const auto fading = line_fading(type_of_family(family), thresholds)) result[family] = fading->threshold;
+    result[shared::k_creases] = thresholds.crease_angle;
+    return result;
+}
+
+GpuLineExtraction::GpuLineExtraction(const GpuLineSurface& surface, std::size_t most_segments)
+    : surface_(surface),
+      room_(std::min(
+          {std::max<std::size_t>(surface.surface().face_count(), k_least_room), most_segments, k_most_segments})),
+      scan_kernel_(surface.surface().device(), shaders::lines_scan_comp,
+                   {.push_constants = layout_of<shared::ScanParameters>(), .constants = {{0, 0}}}) {
+    Device& device = surface.surface().device();
+    check_texels(device, 2 * room_, "the lines of a surface");
+    const std::size_t faces = surface.surface().face_count();
+    face_counts_ = Buffer(device, faces * sizeof(std::uint32_t));
+    face_groups_ = Buffer(device, divide_up(faces, shared::k_count_group) * sizeof(std::uint32_t));
+    segments_ = Buffer(device, room_ * sizeof(shared::LineSegmentRecord));
+    counts_ = Buffer(device, sizeof(shared::LineCounts));
+}
+
+// Kernels know the families, so that what is not wanted takes no time: CPU drivers run both sides of branches.
+void GpuLineExtraction::make_kernels() {
+    Device& device = surface_.surface().device();
+    const StructLayout word = layout_of<std::uint32_t>(), four = layout_of<vec4>(), words = layout_of<uvec4>();
+    const auto kernel = [&](const Shader& shader, const StructLayout& push, std::vector<StructLayout> elements) {
+        return Kernel(device, shader,
+                      {.push_constants = push, .elements = std::move(elements), .constants = {{0, families_}}});
+    };
+    const StructLayout field = layout_of<FieldParameters>(), face = layout_of<FaceLineParameters>();
+    field_kernel_ = kernel(shaders::lines_fields_comp, field, std::vector<StructLayout>(7, four));
+    count_kernel_ = kernel(shaders::lines_count_comp, face, {four, words, words, four, four, word, word});
+    segment_kernel_ = kernel(shaders::lines_segments_comp, face,
+                             {four, words, words, four, four, word, word, layout_of<shared::LineSegmentRecord>()});
+    if (!(families_ & 1u << shared::k_apparent_ridges)) return;
+    view_kernel_ = Kernel(device, shaders::lines_view_curvature_comp,
+                          {.push_constants = field, .elements = std::vector<StructLayout>(5, four)});
+    ridge_kernel_ =
+        kernel(shaders::lines_apparent_ridges_comp, field, {four, four, four, four, word, words, four, four});
+}
+
+void GpuLineExtraction::prepare(std::uint32_t families) {
+    if (segment_kernel_ && families == families_) return;
+    Device& device = surface_.surface().device();
+    const std::size_t vertices = surface_.surface().vertex_count();
+    const auto room_for = [&](std::uint32_t of) {
+        const std::size_t texels = static_cast<std::size_t>(std::popcount(families & of)) * vertices;
+        check_texels(device, texels, "the fields of lines");
+        return texels * sizeof(vec4);
+    };
+    reserve(device, fields_, room_for(shared::k_field_families));
+    reserve(device, directions_, room_for(shared::k_axis_families));
+    const bool apparent = families & 1u << shared::k_apparent_ridges;
+    reserve(device, views_, apparent ? vertices * sizeof(vec4) : 0);
+    families_ = families;
+    make_kernels();
+}
+
+void GpuLineExtraction::record_fields(Stream& stream, const GpuCurvedSurface& moment, const GpuLineOptions& options) {
+    const GpuSurface& surface = surface_.surface();
+    const std::uint32_t vertices = surface.vertex_count();
+    const FieldParameters parameters = field_parameters(options, vertices);
+    // Kernels bind something even where they read nothing.
+    const Buffer &first = moment.first ? *moment.first : moment.vertices,
+                 &second = moment.second ? *moment.second : moment.vertices,
+                 &derivative = moment.derivative ? *moment.derivative : moment.vertices;
+    const std::uint32_t apparent = 1u << shared::k_apparent_ridges;
+    if (families_ & shared::k_field_families & ~apparent)
+        stream.dispatch(field_kernel_, vertices,
+                        {moment.vertices, moment.normals, first, second, derivative, fields_, directions_}, parameters);
+    if (!(families_ & apparent)) return;
+    stream.dispatch(view_kernel_, vertices, {moment.vertices, moment.normals, first, second, views_}, parameters);
+    stream.dispatch(
+        ridge_kernel_, vertices,
+        {moment.vertices, first, second, views_, surface.ring_begin(), surface.rings(), fields_, directions_},
+        parameters);
+}
+
+void GpuLineExtraction::record(Stream& stream, const GpuCurvedSurface& moment, std::uint32_t families,
+                               const GpuLineOptions& options) {
+    check(moment, families, options);
+    const GpuSurface& surface = surface_.surface();
+    surface.check_vertices(moment.vertices);
+    prepare(families);
+    record_fields(stream, moment, options);
+    const std::uint32_t faces = surface.face_count();
+    const FaceLineParameters parameters{.faces = faces,
+                                        .vertices = surface.vertex_count(),
+                                        .crease_angle = options.thresholds[shared::k_creases],
+                                        .most_segments = static_cast<std::uint32_t>(room_)};
+    stream.dispatch(
+        count_kernel_, faces,
+        {moment.vertices, surface.faces(), surface_.neighbors(), fields_, directions_, face_counts_, face_groups_},
+        parameters);
+    stream.dispatch(
+        scan_kernel_, 1, {face_groups_, counts_},
+        shared::ScanParameters{.groups = static_cast<std::uint32_t>(divide_up(faces, shared::k_count_group)),
+                               .most = static_cast<std::uint32_t>(room_)});
+    stream.dispatch(segment_kernel_, faces,
+                    {moment.vertices, surface.faces(), surface_.neighbors(), fields_, directions_, face_counts_,
+                     face_groups_, segments_},
+                    parameters);
+}
+
+}  // namespace exemplar

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <volk.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gpu/imaging/attachment.h"
+#include "gpu/lines/chains.h"
+#include "gpu/lines/extraction.h"
+#include "gpu/lines/strokes.h"
+#include "gpu/runtime/draw_pipeline.h"
+#include "gpu/runtime/stream.h"
+#include "host/imaging/image.h"
+#include "host/mesh/labels.h"
+
+namespace exemplar {
+
+/// How the surface under the lines is drawn.
+struct SurfaceLook {
+    enum class Shading { none, smooth, steps };
+    enum class Coloring { paper, faces, curvature };
+    Color background{255, 255, 255};
+    bool transparent = false;       ///< no background
+    bool transparent_paper = true;  ///< nor paper, if there is no background
+    Color paper{255, 255, 255};
+    Shading shading = Shading::none;
+    Coloring coloring = Coloring::paper;  ///< `curvature`: mean curvature, blue where hollow, red where it bulges
+};
+
+/// What one picture of lines shows.
+struct LinePicture {
+    StrokeView view;
+    std::uint32_t families = 0;  ///< line_families() of the types to draw
+    FamilyThresholds thresholds{};
+    StrokeLooks looks{};
+    SurfaceLook surface;
+};
+
+/// Draws line drawings of a surface, from buffers of its vertices, normals and curvature to an image, without anything
+/// going back to the host: extraction, chains, the surface with its depths, visibility, strokes.
+class LineRenderer {
+  public:
+    /// `surface` must live as long as this. Throws DeviceError if the device cannot draw, DeviceLimitError if the
+    /// surface is too large for it.
+    LineRenderer(Device& device, const GpuLineSurface& surface);
+
+    /// One color per face, for SurfaceLook::Coloring::faces. Throws UsageError for another number.
+    void set_face_colors(std::span<const Color> colors);
+    /// Opacities of shared::k_texture_width x k_texture_height, row by row, one texture after the other; StrokeLook
+    /// refers to them. Throws UsageError if they are not whole textures.
+    void set_textures(std::span<const std::uint8_t> opacities);
+
+    /// Records a picture. Afterwards image() has it, in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL.
+    void record(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture);
+    /// 8-bit RGBA, sRGB-encoded; of the size of the last picture.
+    VkImage image() const { return color_.image(); }
+    VkExtent2D extent() const { return extent_; }
+    static constexpr VkFormat k_format = VK_FORMAT_R8G8B8A8_UNORM;
+
+    /// Records, runs and downloads a picture: RGB, or RGBA if it is transparent.
+    Image render(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture);
+    /// Records the download of the image; after finish(), read_image() has it.
+    void record_download(Stream& stream);
+    Image read_image() const;
+
+    const GpuStrokes& strokes() const { return strokes_; }
+
+  private:
+    void resize(int width, int height);
+    void draw_surface(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture);
+    void draw_strokes(Stream& stream, const LinePicture& picture);
+    Device& device_;
+    const GpuLineSurface& surface_;
+    GpuLineExtraction lines_;
+    GpuChains chains_;
+    GpuStrokes strokes_;
+    VkFormat depth_format_;
+    DrawPipeline surface_pipeline_, stroke_pipeline_;
+    VkExtent2D extent_{};
+    bool transparent_ = false;
+    Attachment color_, depth_;
+    Buffer depths_, pixels_, face_colors_, textures_;
+};
+
+}  // namespace exemplar

@@ -1,0 +1,106 @@
+#include "gpu/lines/strokes.h"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+
+#include "embedded/lines_strokes_comp.h"
+#include "embedded/lines_visibility_comp.h"
+#include "gpu/imaging/picture.h"
+#include "host/core/errors.h"
+
+namespace exemplar {
+namespace {
+
+using shared::LineCounts;
+using shared::StrokeLook;
+using shared::StrokeParameters;
+using shared::uvec4;
+using shared::vec4;
+using shared::VisibilityParameters;
+
+// Points lie on the surface that is drawn; what they may seem to be behind it is rounding.
+constexpr float k_tolerance = 2e-3f;  // of unit_depth... per thousand of the distance
+
+VisibilityParameters visibility_parameters(const StrokeView& view) {
+    const Eigen::Matrix4f& m = view.camera.projection;
+    const bool parallel = is_parallel(view.camera);
+    return {.width = static_cast<std::uint32_t>(view.width),
+            .height = static_cast<std::uint32_t>(view.height),
+            .near_term = parallel ? m(2, 3) / m(2, 2) : -m(2, 3),
+            .far_term = parallel ? -1 / m(2, 2) : -m(2, 2),
+            .parallel = parallel ? 1u : 0u,
+            .tolerance = k_tolerance * view.unit_depth};
+}
+
+StrokeParameters stroke_parameters(const StrokeView& view, bool curved) {
+    const auto toward = view.camera.view.row(2);
+    return {.eye = homogeneous_eye(view.camera),
+            .axis = {-toward[0], -toward[1], -toward[2], -toward[3]},
+            .feature_size = view.feature_size,
+            .unit_depth = view.unit_depth,
+            .parallel = is_parallel(view.camera) ? 1u : 0u,
+            .curved = curved ? 1u : 0u};
+}
+
+}  // namespace
+
+StrokeLooks plain_looks(const LineThresholds& thresholds, const StrokeThickness& thickness) {
+    StrokeLooks looks;
+    for (std::uint32_t family = 0; family < shared::k_line_families; ++family) {
+        const std::optional<LineFading> fading = line_fading(type_of_family(family), thresholds);
+        looks[family] = {.color = {0, 0, 0, 1},
+                         .width = thickness.width,
+                         .epsilon = thickness.epsilon,
+                         .least = thickness.least,
+                         .most = thickness.most,
+                         .taper = thickness.taper,
+                         .threshold = fading ? fading->threshold : 0,
+                         .fade = fading ? fading->half : 0,
+                         .texture = 0,
+                         .period = 1,
+                         .unused0 = 0,
+                         .unused1 = 0,
+                         .unused2 = 0};
+    }
+    return looks;
+}
+
+GpuStrokes::GpuStrokes(const GpuChains& chains) : chains_(chains) {
+    Device& device = chains.lines().surface().surface().device();
+    const std::size_t room = 2 * chains.lines().room();
+    visibility_kernel_ = Kernel(
+        device, shaders::lines_visibility_comp,
+        {.push_constants = layout_of<VisibilityParameters>(), .elements = {layout_of<float>(), layout_of<vec4>()}});
+    stroke_kernel_ =
+        Kernel(device, shaders::lines_strokes_comp,
+               {.push_constants = layout_of<StrokeParameters>(),
+                .elements = {layout_of<vec4>(), layout_of<std::uint32_t>(), layout_of<uvec4>(), layout_of<uvec4>(),
+                             layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>()}});
+    visible_ = Buffer(device, 2 * room * sizeof(std::uint32_t));
+    strokes_ = Buffer(device, room * sizeof(vec4));
+    looks_ = Buffer(device, sizeof(StrokeLooks));
+}
+
+void GpuStrokes::record(Stream& stream, const GpuCurvedSurface& moment, const Buffer& depths, const StrokeView& view,
+                        const StrokeLooks& looks) {
+    const std::size_t wanted = std::size_t{4} * static_cast<std::size_t>(view.width) * view.height;
+    if (depths.bytes() < wanted)
+        throw UsageError(fmt::format("depths of {} bytes for a picture of {} x {}; give a float per pixel",
+                                     depths.bytes(), view.width, view.height));
+    const GpuLineExtraction& lines = chains_.lines();
+    const Buffer& counts = lines.counts();
+    constexpr std::size_t k_points = offsetof(LineCounts, point_groups);
+    stream.upload(looks_, std::span<const StrokeLook>(looks));
+    stream.dispatch_indirect(visibility_kernel_, counts, k_points,
+                             {BufferRange(depths, 0, wanted), chains_.points(), counts, visible_},
+                             visibility_parameters(view));
+    const bool curved = moment.first && moment.second;
+    stream.dispatch_indirect(
+        stroke_kernel_, counts, k_points,
+        {chains_.points(), visible_, lines.segments(), lines.surface().surface().faces(), moment.vertices,
+         curved ? *moment.first : moment.vertices, curved ? *moment.second : moment.vertices, counts, looks_, strokes_},
+        stroke_parameters(view, curved));
+}
+
+}  // namespace exemplar

@@ -1,0 +1,254 @@
+#include "host/lines/visibility.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "host/core/disjoint_sets.h"
+#include "host/core/errors.h"
+#include "host/core/parallel.h"
+
+namespace exemplar {
+
+namespace {
+
+constexpr std::size_t k_grain = 64;           // segments that one thread takes at a time
+constexpr float k_near_edges = 3;             // how far faces nearby may be overlooked, in edges of the point's face
+constexpr float k_touching_edges = 1e-3f;     // the same for faces that touch that of the point, of any line
+constexpr float k_precision = 0.05f;          // pixels to which changes of visibility are found
+constexpr std::size_t k_most_samples = 4096;  // of one segment
+constexpr int k_most_hits = 64;               // that are overlooked on one ray
+
+TriangleMesh mesh_of(const LineSurface& surface) {
+    TriangleMesh mesh;
+    mesh.vertices.assign(surface.vertices.begin(), surface.vertices.end());
+    mesh.faces.assign(surface.faces.begin(), surface.faces.end());
+    return mesh;
+}
+
+const LineSurface& checked(const LineSurface& surface) {
+    if (surface.normals.size() != surface.vertices.size())
+        throw UsageError(fmt::format("{} normals for {} vertices: compute them for the same mesh",
+                                     surface.normals.size(), surface.vertices.size()));
+    return surface;
+}
+
+/// For each face whether no face that it is connected with, across edges, has a free side.
+std::vector<std::uint8_t> closed_components(std::span<const FaceNeighbors> neighbors) {
+    DisjointSets sets(neighbors.size());
+    for (std::uint32_t f = 0; f < neighbors.size(); ++f)
+        for (const std::uint32_t across : neighbors[f])
+            if (across <= k_last_neighbor) sets.join(f, across / 4);
+    std::vector<std::uint8_t> closed_set(neighbors.size(), 1), closed(neighbors.size());
+    for (std::uint32_t f = 0; f < neighbors.size(); ++f)
+        for (const std::uint32_t across : neighbors[f])
+            if (across == k_no_neighbor) closed_set[sets.find(f)] = 0;
+    for (std::uint32_t f = 0; f < neighbors.size(); ++f) closed[f] = closed_set[sets.find(f)];
+    return closed;
+}
+
+}  // namespace
+
+LineVisibility::LineVisibility(const LineSurface& surface)
+    : surface_(checked(surface)), rays_(mesh_of(surface)), vertex_begin_(surface.vertices.size() + 1, 0) {
+    closed_ = surface.neighbors.size() == surface.faces.size()
+                  ? closed_components(surface.neighbors)
+                  : closed_components(build_face_neighbors(surface.faces, surface.vertices.size()));
+    for (const Face& face : surface.faces)
+        for (const std::uint32_t v : face) ++vertex_begin_[v + 1];
+    for (std::size_t v = 1; v < vertex_begin_.size(); ++v) vertex_begin_[v] += vertex_begin_[v - 1];
+    vertex_faces_.resize(3 * surface.faces.size());
+    std::vector<std::uint32_t> next = vertex_begin_;
+    for (std::uint32_t f = 0; f < surface.faces.size(); ++f)
+        for (const std::uint32_t v : surface.faces[f]) vertex_faces_[next[v]++] = f;
+    float largest = 0;
+    for (const Vec3& p : surface.vertices) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+    rounding_ = 8 * std::numeric_limits<float>::epsilon() * largest;
+}
+
+bool LineVisibility::touch(std::uint32_t face, std::uint32_t other) const {
+    for (const std::uint32_t a : surface_.faces[face])
+        for (const std::uint32_t b : surface_.faces[other])
+            if (a == b) return true;
+    return false;
+}
+
+bool LineVisibility::are_near(std::uint32_t face, std::uint32_t other) const {
+    for (const std::uint32_t v : surface_.faces[other])
+        for (const std::uint32_t between : faces_at(v))
+            if (touch(face, between)) return true;
+    return false;
+}
+
+/// The points of one segment, tested against the eye of one camera.
+class LineVisibility::Query {
+  public:
+    Query(const LineVisibility& scene, LineType type, const LineSegment& segment, const Camera& camera,
+          const Eigen::Matrix4f& matrix, int width, int height, const VisibilityOptions& options)
+        : scene_(scene),
+          segment_(segment),
+          camera_(camera),
+          matrix_(matrix),
+          face_(scene.surface_.faces[segment.face]) {
+        room_ = {1 + 2 * options.margin / static_cast<float>(width),
+                 1 + 2 * options.margin / static_cast<float>(height)};
+        const auto corner = [&](std::size_t i) -> const Vec3& { return scene.surface_.vertices[face_[i]]; };
+        cross_ = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+        for (std::size_t i = 0; i < 3; ++i) longest_ = std::max(longest_, (corner((i + 1) % 3) - corner(i)).norm());
+        edge_ = type == LineType::creases || type == LineType::boundaries;
+        contour_turned_ = type == LineType::contours && turned_to_eye();
+        contour_ = type == LineType::contours;
+    }
+
+    /// The point at t on the way from the first end to the second.
+    Vec3 point(float t) const {
+        Vec3 p = Vec3::Zero();
+        for (std::size_t i = 0; i < 3; ++i) p += weight(i, t) * scene_.surface_.vertices[face_[i]];
+        return p;
+    }
+    bool visible(float t) const {
+        const Vec3 p = point(t);
+        const Eigen::Vector4f clip = matrix_ * p.homogeneous();
+        const float w = clip.w();
+        if (!(w > 0 && clip.z() >= 0 && clip.z() <= w)) return false;
+        if (std::abs(clip.x()) > w * room_.x() || std::abs(clip.y()) > w * room_.y()) return false;
+        return !hidden(p, t);
+    }
+
+  private:
+    float weight(std::size_t corner, float t) const {
+        const float a = segment_.ends[0][corner], b = segment_.ends[1][corner];
+        return a + t * (b - a);
+    }
+    /// Whether, on the face of a contour, n.w grows towards the eye: the surface bends away from the ray, which passes
+    /// in front of it.
+    bool turned_to_eye() const {
+        // The gradient of what is linear in a face, times the squared length of the cross product, which is positive.
+        Vec3 gradient = Vec3::Zero();
+        const auto& surface = scene_.surface_;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3 &a = surface.vertices[face_[(i + 1) % 3]], &b = surface.vertices[face_[(i + 2) % 3]];
+            const Vec3& p = surface.vertices[face_[i]];
+            gradient += surface.normals[face_[i]].dot(camera_.to_eye(p)) * cross_.cross(b - a);
+        }
+        return gradient.dot(camera_.to_eye(point(0.5f))) > 0;
+    }
+    /// Whether faces nearby may lie in front of the point without hiding it; see visible_parts.
+    bool overlooks_near_faces(const Vec3& to_eye, float t) const {
+        if (edge_) return false;
+        if (contour_) return contour_turned_ || !scene_.closed_[segment_.face];
+        float cosine = 0;
+        for (std::size_t i = 0; i < 3; ++i) cosine += weight(i, t) * scene_.surface_.normals[face_[i]].dot(to_eye);
+        return cosine > 0 && !(cross_.dot(to_eye) > 0);
+    }
+    bool hidden(const Vec3& p, float t) const {
+        const Vec3 to_eye = camera_.to_eye(p);
+        const bool overlooks = overlooks_near_faces(to_eye, t);
+        // What is nearer to the eye than the near plane is not in the picture.
+        const float to_near_plane = depth_from_near(p) / std::max(1e-6f, to_eye.dot(backward()));
+        float near = scene_.rounding_;
+        for (int hits = 0; hits < k_most_hits; ++hits) {
+            const auto hit = scene_.rays_.first_hit(p, to_eye, near);
+            if (!hit || hit->distance > to_near_plane) return false;
+            if (!is_overlooked(*hit, overlooks)) return true;
+            near = hit->distance + std::max(scene_.rounding_, hit->distance * 1e-6f);
+        }
+        return true;
+    }
+    bool is_overlooked(const RayScene::Hit& hit, bool overlooks) const {
+        if (hit.face == segment_.face) return true;
+        if (hit.distance > k_near_edges * longest_) return false;
+        if (hit.distance <= k_touching_edges * longest_ && scene_.touch(segment_.face, hit.face)) return true;
+        return overlooks && scene_.are_near(segment_.face, hit.face);
+    }
+    Vec3 backward() const { return camera_.view.block<1, 3>(2, 0).transpose(); }
+    /// From the near plane to the point, along the camera's axis.
+    float depth_from_near(const Vec3& p) const {
+        const Eigen::Matrix4f& projection = camera_.projection;
+        return -backward().dot(p) - camera_.view(2, 3) - projection(2, 3) / projection(2, 2);
+    }
+
+    const LineVisibility& scene_;
+    const LineSegment& segment_;
+    const Camera& camera_;
+    const Eigen::Matrix4f& matrix_;
+    const Face& face_;
+    Vec2 room_;
+    Vec3 cross_;
+    float longest_ = 0;
+    bool edge_ = false, contour_ = false, contour_turned_ = false;
+};
+
+namespace {
+
+/// Where between a and b, visible at exactly one of them, visibility changes.
+template <typename Visible>
+float change_between(float a, float b, bool visible_at_a, float precision, const Visible& visible) {
+    while (b - a > precision) {
+        const float middle = 0.5f * (a + b);
+        if (!(middle > a && middle < b)) break;
+        (visible(middle) == visible_at_a ? a : b) = middle;
+    }
+    return 0.5f * (a + b);
+}
+
+/// The visible parts of a segment of so many pixels.
+template <typename Visible>
+void add_parts(float pixels, float spacing, const Visible& visible, std::vector<VisiblePart>& parts) {
+    const float wanted = std::ceil(std::min(pixels / spacing, static_cast<float>(k_most_samples)));
+    const std::size_t count = std::max<std::size_t>(1, static_cast<std::size_t>(wanted));
+    const float step = 1 / static_cast<float>(count), precision = k_precision / std::max(pixels, k_precision);
+    bool before = visible(0.5f * step);
+    if (before) parts.push_back({0, 1});
+    for (std::size_t i = 1; i < count; ++i) {
+        const float t = (static_cast<float>(i) + 0.5f) * step;
+        const bool now = visible(t);
+        if (now == before) continue;
+        const float change = change_between(t - step, t, before, precision, visible);
+        if (now)
+            parts.push_back({change, 1});
+        else
+            parts.back().to = change;
+        before = now;
+    }
+}
+
+}  // namespace
+
+VisibleParts LineVisibility::visible_parts(LineType type, std::span<const LineSegment> segments, const Camera& camera,
+                                           int width, int height, const VisibilityOptions& options) const {
+    if (!(options.spacing > 0 && options.margin >= 0) || width <= 0 || height <= 0)
+        throw UsageError(fmt::format("a picture of {} x {} pixels, tested every {} pixels: give positive numbers",
+                                     width, height, options.spacing));
+    for (std::size_t s = 0; s < segments.size(); ++s)
+        if (segments[s].face >= surface_.faces.size())
+            throw UsageError(fmt::format("segment {} names face {}, but there are {}: extract the lines of this mesh",
+                                         s, segments[s].face, surface_.faces.size()));
+    const Eigen::Matrix4f matrix = camera.view_projection();
+    const Vec2 half_size(0.5f * static_cast<float>(width), 0.5f * static_cast<float>(height));
+    std::vector<std::vector<VisiblePart>> parts(segments.size());
+    parallel_for(
+        segments.size(),
+        [&](std::size_t s) {
+            const Query query(*this, type, segments[s], camera, matrix, width, height, options);
+            const Eigen::Vector4f a = matrix * query.point(0).homogeneous(), b = matrix * query.point(1).homogeneous();
+            float pixels = std::numeric_limits<float>::max();  // of what passes the eye
+            if (a.w() > 0 && b.w() > 0)
+                pixels = (a.head<2>() / a.w() - b.head<2>() / b.w()).cwiseProduct(half_size).norm();
+            if (!std::isfinite(pixels)) pixels = 0;
+            add_parts(
+                pixels, options.spacing, [&](float t) { return query.visible(t); }, parts[s]);
+        },
+        k_grain);
+    VisibleParts result;
+    for (const std::vector<VisiblePart>& of_segment : parts) {
+        result.parts.insert(result.parts.end(), of_segment.begin(), of_segment.end());
+        result.begin.push_back(static_cast<std::uint32_t>(result.parts.size()));
+    }
+    return result;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,23 @@
+// View-dependent curvature (Judd et al. 2007): how much the normal turns over a step on the screen
+// (host/lines/apparent_ridges.cpp).
+#ifndef EXEMPLAR_VIEW_CURVATURE_GLSL
+#define EXEMPLAR_VIEW_CURVATURE_GLSL
+
+const float k_grazing = 1e-3;  // least |n.w| that the foreshortening is computed with
+
+// The largest view-dependent curvature, squared, and its direction on the surface in (e1, e2), a step of length 1 on the
+// screen, from k1, k2, the unit vector to the eye along e1 and e2, and n.w.
+vec3 view_curvature(vec2 k, vec2 uv, float cosine) {
+    const float sine = length(uv), stretch = 1.0 / max(abs(cosine), k_grazing) - 1.0;
+    const vec2 a = sine > 0.0 ? uv / sine : vec2(0.0);
+    const mat2 to_surface = mat2(1.0 + stretch * a.x * a.x, stretch * a.x * a.y, stretch * a.x * a.y,
+                                 1.0 + stretch * a.y * a.y);
+    const mat2 to_normal = mat2(k * to_surface[0], k * to_surface[1]);
+    const float xx = dot(to_normal[0], to_normal[0]), xy = dot(to_normal[0], to_normal[1]),
+                yy = dot(to_normal[1], to_normal[1]);
+    const float half_difference = 0.5 * (xx - yy), radius = sqrt(half_difference * half_difference + xy * xy);
+    const float angle = 0.5 * (radius > 0.0 ? atan(xy, half_difference) : 0.0);
+    return vec3(0.5 * (xx + yy) + radius, to_surface * vec2(cos(angle), sin(angle)));
+}
+
+#endif

@@ -1,0 +1,24 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/line_buffers.glsl"
+
+// How many segments each face has, so that the next kernel knows where to write them in the order of the faces, whatever the
+// order in which they are found. One face per invocation: reads 16 bytes and those of its corners' fields (48 a family, from
+// caches), writes 4, and 4 a group.
+layout(set = 0, binding = 5, std430) writeonly buffer Counts { uint counts[]; };  // before it in its group, its own
+layout(set = 0, binding = 6, std430) writeonly buffer Groups { uint groups[]; };
+
+uint found = 0;
+void emit(uint family, uint first_place, uint second_place, vec3 first_end, vec3 second_end, vec2 strength) {
+    ++found;
+}
+#include "shaders/lib/face_lines.glsl"
+#include "shaders/lib/group_sum.glsl"
+
+void main() {
+    const uint face = linear_thread();
+    if (face < parameters.faces) find_lines(face);
+    const uint before = sum_before(found);
+    if (face < parameters.faces) counts[face] = before << 8 | found;
+    if (gl_LocalInvocationID.x == 0u && face < parameters.faces) groups[face / k_count_group] = group_total;
+}

@@ -1,0 +1,29 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/dispatch.glsl"
+#include "shaders/shared/lines.h"
+
+// Doubles how far each node sees along its chain. A node has two texels: the node it leads to, how many steps that takes, the
+// pixels of the segments after its own, and whether the chain ends there; of the nodes before that one the one of the
+// smallest segment, with steps and pixels to it. One node per invocation: reads 64 bytes and writes 32.
+layout(local_size_x = k_count_group) in;
+layout(set = 0, binding = 0) uniform usamplerBuffer source;
+layout(set = 0, binding = 1, std430) readonly buffer Counts { LineCounts counts; };
+layout(set = 0, binding = 2, std430) writeonly buffer Target { uvec4 target[]; };
+
+float added(uint a, uint b) {
+    return uintBitsToFloat(a) + uintBitsToFloat(b);
+}
+
+void main() {
+    const uint node = linear_thread();
+    if (node >= 2u * counts.segments) return;
+
+    const uvec4 way = texelFetch(source, int(2u * node)), least = texelFetch(source, int(2u * node + 1u));
+    const uvec4 way_on = texelFetch(source, int(2u * way.x)), least_on = texelFetch(source, int(2u * way.x + 1u));
+    target[2u * node] = uvec4(way_on.x, way.y + way_on.y, floatBitsToUint(added(way.z, way_on.z)), way_on.w);
+    target[2u * node + 1u] =
+        least_on.x / 2u < least.x / 2u
+            ? uvec4(least_on.x, way.y + least_on.y, floatBitsToUint(added(way.z, least_on.z)), 0u)
+            : least;
+}

@@ -1,0 +1,88 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/dispatch.glsl"
+#include "shaders/shared/lines.h"
+
+// Where segments end in the picture, and which others continue them there (host/lines/chains.cpp); then the nodes of both
+// directions, as the jumps begin. One segment per invocation: reads 32 bytes and, from caches, its face, that face's
+// neighbors and their segments; writes 32 + 8 + 64.
+layout(local_size_x = k_count_group) in;
+layout(push_constant) uniform Push { LinkParameters parameters; };
+layout(set = 0, binding = 0) uniform samplerBuffer positions;
+layout(set = 0, binding = 1) uniform usamplerBuffer faces;
+layout(set = 0, binding = 2) uniform usamplerBuffer neighbors;
+layout(set = 0, binding = 3) uniform usamplerBuffer face_begin;  // per vertex, where its faces begin, and where the last end
+layout(set = 0, binding = 4) uniform usamplerBuffer vertex_faces;
+layout(set = 0, binding = 5) uniform usamplerBuffer face_counts;
+layout(set = 0, binding = 6) uniform usamplerBuffer groups;
+layout(set = 0, binding = 7) uniform usamplerBuffer segments;
+layout(set = 0, binding = 8, std430) readonly buffer Counts { LineCounts counts; };
+layout(set = 0, binding = 9, std430) writeonly buffer Ends { vec4 picture_ends[]; };  // pixels, depth, view depth; two a segment
+layout(set = 0, binding = 10, std430) writeonly buffer Links { uvec2 links[]; };
+#include "shaders/lib/segments.glsl"
+
+// The segments of a face: the first and the one after the last.
+uvec2 segments_of(uint face) {
+    const uint count = texelFetch(face_counts, int(face)).x;
+    const uint first = texelFetch(groups, int(face / k_count_group)).x + (count >> 8);
+    return min(uvec2(first, first + (count & 0xffu)), uvec2(counts.segments));
+}
+
+uint link_across(LineSegmentRecord segment, uint side) {
+    const uint across = texelFetch(neighbors, int(segment.face))[side];
+    if (across > k_last_side) return k_no_link;
+    const uvec2 others = segments_of(across / 4u);
+    for (uint i = others.x; i < others.y; ++i) {
+        const uint kind = texelFetch(segments, int(2u * i)).y;
+        if ((kind & k_kind_family) != family_of(segment)) continue;
+        for (uint end = 0; end < 2; ++end)
+            if (place_of(kind, end) == across % 4u) return 2u * i + end;
+    }
+    return k_no_link;
+}
+
+// The other end at a vertex, if there is one and not two.
+uint link_at(LineSegmentRecord segment, uint self, uint vertex) {
+    uint found = k_no_link, ends = 0;
+    const uint last = texelFetch(face_begin, int(vertex + 1u)).x;
+    for (uint at = texelFetch(face_begin, int(vertex)).x; at < last; ++at) {
+        const uint face = texelFetch(vertex_faces, int(at)).x;
+        const uvec2 others = segments_of(face);
+        for (uint i = others.x; i < others.y; ++i) {
+            const uint kind = texelFetch(segments, int(2u * i)).y;
+            if ((kind & k_kind_family) != family_of(segment)) continue;
+            for (uint end = 0; end < 2; ++end) {
+                if (texelFetch(faces, int(face))[place_of(kind, end) - k_place_corner] != vertex) continue;
+                ++ends;
+                if (2u * i + end != self) found = 2u * i + end;
+            }
+        }
+    }
+    return ends == 2u ? found : k_no_link;
+}
+
+uint link_of(LineSegmentRecord segment, uint index, uint end) {
+    const uint place = place_of(segment.kind, end);
+    if (place == k_place_inside) return k_no_link;
+    if (place < k_place_corner) return link_across(segment, place);
+    return link_at(segment, 2u * index + end, texelFetch(faces, int(segment.face))[place - k_place_corner]);
+}
+
+void main() {
+    const uint index = linear_thread();
+    if (index >= counts.segments) return;
+
+    const LineSegmentRecord segment = segment_at(index);
+    const uvec3 corners = texelFetch(faces, int(segment.face)).xyz;
+    const mat3 points = mat3(texelFetch(positions, int(corners.x)).xyz, texelFetch(positions, int(corners.y)).xyz,
+                             texelFetch(positions, int(corners.z)).xyz);
+    for (uint end = 0; end < 2; ++end) {
+        const vec3 at = points * end_of(segment, end);
+        const vec4 clip = parameters.matrix[0] * at.x + parameters.matrix[1] * at.y + parameters.matrix[2] * at.z +
+                          parameters.matrix[3];
+        const vec3 on_screen = clip.xyz / clip.w;
+        picture_ends[2u * index + end] = vec4((on_screen.xy * 0.5 + 0.5) * vec2(parameters.width, parameters.height),
+                                              on_screen.z, clip.w);
+    }
+    links[index] = uvec2(link_of(segment, index, 0u), link_of(segment, index, 1u));
+}

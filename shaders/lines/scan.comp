@@ -1,0 +1,61 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/lines.h"
+
+// Replaces the sums of groups by what is before each, and writes how much there is in all, with the arguments of the
+// commands that follow. A single workgroup: 4 bytes are read and 4 written for each group.
+layout(local_size_x = 128) in;
+layout(constant_id = 0) const bool k_of_points = false;  // else of segments
+layout(push_constant) uniform Push { ScanParameters parameters; };
+layout(set = 0, binding = 0, std430) buffer Groups { uint groups[]; };
+layout(set = 0, binding = 1, std430) buffer Counts { LineCounts counts; };
+
+#include "shaders/lib/group_sum.glsl"
+
+uint groups_of(uint items) {
+    return (items + k_count_group - 1u) / k_count_group;
+}
+
+void put_segments(uint total) {
+    const uint segments = min(total, parameters.most);
+    counts.segments = segments;
+    counts.dropped_segments = total - segments;
+    counts.segment_groups[0] = groups_of(segments);
+    counts.node_groups[0] = groups_of(2u * segments);
+    // As many jumps as the longest chain may take, an even number: the result is where the first began.
+    uint rounds = segments > 1u ? uint(findMSB(segments - 1u)) + 1u : 0u;
+    rounds += rounds & 1u;
+    for (uint i = 0; i < k_line_rounds; ++i) {
+        counts.round_groups[3u * i] = i < rounds ? groups_of(2u * segments) : 0u;
+        counts.round_groups[3u * i + 1u] = counts.round_groups[3u * i + 2u] = 1u;
+    }
+    counts.segment_groups[1] = counts.segment_groups[2] = counts.node_groups[1] = counts.node_groups[2] = 1u;
+}
+
+void put_points(uint total) {
+    counts.points = total;
+    counts.point_groups[0] = groups_of(total);
+    counts.point_groups[1] = counts.point_groups[2] = 1u;
+    counts.draw[0] = 6u * total;
+    counts.draw[1] = 1u;
+    counts.draw[2] = counts.draw[3] = 0u;
+}
+
+void main() {
+    const uint count = k_of_points ? counts.segment_groups[0] : parameters.groups;
+    const uint share = (count + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
+    const uint begin = min(gl_LocalInvocationID.x * share, count), end = min(begin + share, count);
+    uint sum = 0;
+    for (uint i = begin; i < end; ++i) sum += groups[i];
+    uint before = sum_before(sum);
+    for (uint i = begin; i < end; ++i) {
+        const uint own = groups[i];
+        groups[i] = before;
+        before += own;
+    }
+    if (gl_LocalInvocationID.x != 0u) return;
+    if (k_of_points)
+        put_points(group_total);
+    else
+        put_segments(group_total);
+}

@@ -1,0 +1,41 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/lines.h"
+
+// A quad from each point of a chain to the next, as wide as the stroke and a pixel more to each side for soft edges. Those
+// that follow each other share their corners, so nothing is drawn twice.
+layout(push_constant) uniform Push { StrokeDrawParameters parameters; };
+layout(set = 0, binding = 0) uniform samplerBuffer points;
+layout(set = 0, binding = 1) uniform samplerBuffer strokes;
+layout(set = 0, binding = 2) uniform usamplerBuffer visible;
+layout(set = 0, binding = 3, std430) readonly buffer Looks { StrokeLook looks[]; };
+
+layout(location = 0) out vec4 along;       // place across in pixels, half width, opacity, way to the next point (0 to 1)
+layout(location = 1) out float parameter;  // pixels along the chain
+layout(location = 2) flat out uvec2 seen;  // samples that are visible, and their number
+layout(location = 3) flat out vec4 color;
+layout(location = 4) flat out vec2 texture_of;  // where it begins, its period
+
+void main() {
+    const int corner = gl_VertexIndex % 6, point = gl_VertexIndex / 6;
+    // Two triangles: 0 1 2, 2 1 3; odd corners lie at the next point, upper two on the other side.
+    const int which = corner < 3 ? corner : corner == 3 ? 2 : corner == 4 ? 1 : 3;
+    const bool next = (which & 1) != 0;
+    const float side = which < 2 ? -1.0 : 1.0;
+    const vec4 kind = texelFetch(points, 2 * point + 1);
+    seen = uvec2(texelFetch(visible, 2 * point).x, texelFetch(visible, 2 * point + 1).x);
+    if ((floatBitsToUint(kind.x) & k_point_last) != 0u || seen.x == 0u) {
+        gl_Position = vec4(0.0, 0.0, 0.0, 1.0);  // nothing
+        return;
+    }
+    const int at = next ? point + 1 : point;
+    const vec4 place = texelFetch(points, 2 * at), stroke = texelFetch(strokes, at);
+    const StrokeLook look = looks[floatBitsToUint(kind.x) & k_kind_family];
+    const float reach = 0.5 * stroke.z + 1.0;
+    const vec2 pixel = place.xy + side * reach * stroke.xy;
+    along = vec4(side * reach, 0.5 * stroke.z, stroke.w * look.color.a, next ? 1.0 : 0.0);
+    parameter = place.w;
+    color = look.color;
+    texture_of = vec2(uintBitsToFloat(look.texture), look.period);
+    gl_Position = vec4(2.0 * pixel / vec2(parameters.width, parameters.height) - 1.0, 0.0, 1.0);
+}

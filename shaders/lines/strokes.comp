@@ -1,0 +1,123 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/dispatch.glsl"
+#include "shaders/shared/lines.h"
+
+// How points are drawn (host/lines/strokes.cpp): the normal across the stroke, its width, tapered towards the ends of what is
+// visible, and its opacity. One point per invocation: reads its segment, its face's corners and the points around it, all
+// from caches, and writes 16.
+layout(local_size_x = k_count_group) in;
+layout(push_constant) uniform Push { StrokeParameters parameters; };
+layout(set = 0, binding = 0) uniform samplerBuffer points;  // LinePoint, two texels each
+layout(set = 0, binding = 1) uniform usamplerBuffer visible;  // two words a point
+layout(set = 0, binding = 2) uniform usamplerBuffer segments;
+layout(set = 0, binding = 3) uniform usamplerBuffer faces;
+layout(set = 0, binding = 4) uniform samplerBuffer positions;
+layout(set = 0, binding = 5) uniform samplerBuffer first;
+layout(set = 0, binding = 6) uniform samplerBuffer second;
+layout(set = 0, binding = 7, std430) readonly buffer Counts { LineCounts counts; };
+layout(set = 0, binding = 8, std430) readonly buffer Looks { StrokeLook looks[]; };  // per family
+layout(set = 0, binding = 9, std430) writeonly buffer Strokes { vec4 strokes[]; };   // normal, width, opacity
+#include "shaders/lib/segments.glsl"
+
+const int k_tangent_reach = 2;  // points to each side
+const uint k_most_taper_points = 64;
+
+uint kind_of(int point) {
+    return floatBitsToUint(texelFetch(points, 2 * point + 1).x);
+}
+bool is_first(int point) {
+    return (kind_of(point) & k_point_first) != 0u;
+}
+bool is_last(int point) {
+    return (kind_of(point) & k_point_last) != 0u;
+}
+
+// The point before or after; of a closed chain, whose last point is its first, around; of an open one itself at the end.
+int neighbor(int point, int way) {
+    const uint kind = kind_of(point);
+    if ((kind & (way > 0 ? k_point_last : k_point_first)) == 0u) return point + way;
+    if ((kind & k_point_closed) == 0u) return point;
+    do
+        point -= way;
+    while ((kind_of(point) & (way > 0 ? k_point_first : k_point_last)) == 0u);
+    return point + way;
+}
+
+vec2 tangent_at(int point) {
+    int before = point, after = point;
+    for (int i = 0; i < k_tangent_reach; ++i) {
+        before = neighbor(before, -1);
+        after = neighbor(after, 1);
+    }
+    return texelFetch(points, 2 * after).xy - texelFetch(points, 2 * before).xy;
+}
+
+// Radial curvature at a vertex, times the feature size.
+float radial_curvature(int vertex) {
+    const vec3 here = texelFetch(positions, vertex).xyz;
+    const vec3 w = parameters.eye.w != 0.0 ? normalize(parameters.eye.xyz - here) : parameters.eye.xyz;
+    const vec4 e1 = texelFetch(first, vertex), e2 = texelFetch(second, vertex);
+    const float u = dot(e1.xyz, w), v = dot(e2.xyz, w), squared = u * u + v * v;
+    return parameters.feature_size * (squared > 0.0 ? (e1.w * u * u + e2.w * v * v) / squared : 0.5 * (e1.w + e2.w));
+}
+
+float thickness(uvec2 walked_end, StrokeLook look) {
+    const LineSegmentRecord segment = segment_at(walked_end.x);
+    const vec3 weights = end_of(segment, walked_end.y);
+    const uvec3 corners = texelFetch(faces, int(segment.face)).xyz;
+    float curvature = 0.0, z = 0.0;
+    for (uint i = 0; i < 3; ++i) {
+        if (parameters.curved != 0u) curvature += weights[i] * radial_curvature(int(corners[i]));
+        z += weights[i] * (dot(parameters.axis.xyz, texelFetch(positions, int(corners[i])).xyz) + parameters.axis.w);
+    }
+    z = parameters.parallel != 0u ? 1.0 : max(z / parameters.unit_depth, 1e-6);
+    return clamp(look.width * look.epsilon / (z * (max(curvature, 0.0) + look.epsilon)), look.least, look.most);
+}
+
+// Pixels from a point along its chain to where the way is hidden or ends, but no more than `most`.
+float visible_length(int point, int way, float most) {
+    float sum = 0.0;
+    for (uint i = 0; i < k_most_taper_points && sum < most; ++i) {
+        const int next = neighbor(point, way);
+        if (next == point) return sum;
+        const int link = way > 0 ? (next == point + 1 ? point : next - 1) : next;
+        const uint mask = texelFetch(visible, 2 * link).x, samples = texelFetch(visible, 2 * link + 1).x;
+        const uint all = samples == 32u ? 0xffffffffu : (1u << samples) - 1u;
+        const float pixels = distance(texelFetch(points, 2 * link).xy, texelFetch(points, 2 * link + 2).xy);
+        if (mask != all) {
+            const uint hidden = ~mask & all;
+            const uint seen = way > 0 ? uint(findLSB(hidden)) : samples - 1u - uint(findMSB(hidden));
+            return min(sum + pixels * float(seen) / float(samples), most);
+        }
+        sum += pixels;
+        point = next;
+    }
+    return most;
+}
+
+float tapered(int point, StrokeLook look) {
+    if (!(look.taper > 0.0)) return 1.0;
+    const float d = min(visible_length(point, 1, look.taper), visible_length(point, -1, look.taper));
+    const float x = clamp(d / look.taper, 0.0, 1.0);
+    return sqrt(x * (2.0 - x));
+}
+
+void main() {
+    const int point = int(linear_thread());
+    if (point >= int(counts.points)) return;
+
+    const vec4 more = texelFetch(points, 2 * point + 1);
+    const uint kind = floatBitsToUint(more.x), walked = floatBitsToUint(more.z);
+    const StrokeLook look = looks[kind & k_kind_family];
+    const vec2 tangent = tangent_at(point);
+    const float size = length(tangent);
+    const vec2 normal = size > 0.0 ? vec2(-tangent.y, tangent.x) / size : vec2(0.0, 1.0);
+    const bool last = (kind & k_point_last) != 0u;
+    const uint begin_end = walked & 1u;
+    const float width = thickness(uvec2(walked >> 1, last ? 1u - begin_end : begin_end), look) * tapered(point, look);
+    const float above = max(more.w - look.threshold, 0.0);
+    const float opacity = look.fade > 0.0 ? above / (above + look.fade) : 1.0;
+    // The normal is a unit vector: half of an angle's worth of it would do, but a vec4 has the room.
+    strokes[point] = vec4(normal, width, opacity);
+}

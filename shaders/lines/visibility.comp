@@ -1,0 +1,51 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/dispatch.glsl"
+#include "shaders/shared/lines.h"
+
+// Which samples of the way from each point to the next are not hidden: a bit each, and their number. A sample is hidden if
+// all of the 3 x 3 pixels around it show something nearer. One point per invocation: reads 64 bytes and 36 a sample, from
+// caches, and writes 8.
+layout(local_size_x = k_count_group) in;
+layout(push_constant) uniform Push { VisibilityParameters parameters; };
+layout(set = 0, binding = 0) uniform samplerBuffer depths;  // rows of pixels from the top
+layout(set = 0, binding = 1) uniform samplerBuffer points;  // LinePoint, two texels each
+layout(set = 0, binding = 2, std430) readonly buffer Counts { LineCounts counts; };
+layout(set = 0, binding = 3, std430) writeonly buffer Visible { uvec2 visible[]; };
+
+float view_depth(float depth) {
+    return parameters.parallel != 0u ? parameters.near_term + parameters.far_term * depth
+                                     : parameters.near_term / (parameters.far_term - depth);
+}
+
+bool is_visible(vec2 at, float depth) {
+    if (any(lessThan(at, vec2(0.0))) || at.x >= float(parameters.width) || at.y >= float(parameters.height)) return false;
+    const ivec2 low = max(ivec2(at) - 1, ivec2(0));
+    const ivec2 high = min(ivec2(at) + 1, ivec2(parameters.width, parameters.height) - 1);
+    float farthest = 0.0;
+    for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x)
+            farthest = max(farthest, texelFetch(depths, y * int(parameters.width) + x).x);
+    return farthest >= 1.0 || view_depth(depth) <= view_depth(farthest) + parameters.tolerance;
+}
+
+void main() {
+    const uint index = linear_thread();
+    if (index >= counts.points) return;
+
+    const vec4 here = texelFetch(points, int(2u * index)), kind = texelFetch(points, int(2u * index + 1u));
+    if ((floatBitsToUint(kind.x) & k_point_last) != 0u) {
+        visible[index] = uvec2(is_visible(here.xy, here.z) ? 1u : 0u, 1u);
+        return;
+    }
+    const vec3 there = texelFetch(points, int(2u * index + 2u)).xyz;
+    // A piece behind the eye or far outside of the picture has no length to speak of.
+    const float pixels = distance(here.xy, there.xy);
+    const uint samples = uint(clamp(ceil(pixels / k_sample_spacing), 1.0, 32.0));
+    uint mask = 0;
+    for (uint i = 0; i < samples; ++i) {
+        const vec3 at = mix(here.xyz, there, (float(i) + 0.5) / float(samples));
+        if (at.z >= 0.0 && at.z <= 1.0 && is_visible(at.xy, at.z)) mask |= 1u << i;
+    }
+    visible[index] = uvec2(mask, samples);
+}

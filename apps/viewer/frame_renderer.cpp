@@ -12,7 +12,7 @@ std::array<float, 4> color_of(const Color& color) {
             1};
 }
 
-VkExtent2D half_of(ViewSize size, std::size_t parts, std::size_t part) {
+VkExtent2D part_of(ViewSize size, std::size_t parts, std::size_t part) {
     const auto width = static_cast<std::size_t>(std::max(size.width, 1));
     const std::size_t left = part * width / parts, right = (part + 1) * width / parts;
     return {static_cast<std::uint32_t>(std::max<std::size_t>(right - left, 1)),
@@ -21,9 +21,7 @@ VkExtent2D half_of(ViewSize size, std::size_t parts, std::size_t part) {
 
 }  // namespace
 
-FrameRenderer::FrameRenderer(Device& device) : device_(device), stream_(device, &profiler_) {
-    for (int i = 0; i < 2; ++i) pictures_.emplace_back(device);
-}
+FrameRenderer::FrameRenderer(Device& device) : device_(device), stream_(device, &profiler_), empty_(device) {}
 
 void FrameRenderer::follow(ViewerState& state) {
     if (document_version_ != state.document_version()) {
@@ -39,32 +37,33 @@ void FrameRenderer::follow(ViewerState& state) {
 }
 
 void FrameRenderer::record(const ViewerState& state, ViewSize size) {
-    shown_ = scene_ && state.shows_both() ? 2 : 1;
-    for (std::size_t i = 0; i < shown_; ++i) pictures_[i].resize(half_of(size, shown_, i));
-    if (scene_) scene_->record_moment(stream_, state.moment(), state.settings);
-    const bool learned = scene_ && scene_->has_model() && state.settings.source != CurvatureSource::estimated;
-    for (std::size_t i = 0; i < shown_; ++i) record_view(state, pictures_[i], learned && i == 0);
+    const std::size_t parts = scene_ && state.shows_both() ? 2 : 1;
+    std::vector<VkExtent2D> extents;
+    for (std::size_t i = 0; i < parts; ++i) extents.push_back(part_of(size, parts, i));
+    shown_.clear();
+    if (!scene_) return record_empty(state, extents.front());
+    scene_->record(stream_, state.moment(), state.camera, extents, state.settings);
+    for (std::size_t i = 0; i < parts; ++i) shown_.push_back({scene_->view(i).image(), scene_->view(i).extent()});
 }
 
-void FrameRenderer::record_view(const ViewerState& state, const Picture& picture, bool learned) {
-    picture.begin(stream_);
-    PassTarget target = picture.target();
+void FrameRenderer::record_empty(const ViewerState& state, VkExtent2D extent) {
+    empty_.resize(extent);
+    empty_.begin(stream_);
+    PassTarget target = empty_.target();
     target.clear_color = color_of(state.settings.background);
     target.clear_depth = 1.0f;
-    Pass pass("surface", target);
-    const ViewSize size{static_cast<int>(picture.extent().width), static_cast<int>(picture.extent().height)};
-    if (scene_) scene_->draw(pass, state.camera.camera(size), state.settings, learned);
-    stream_.render(pass);
-    picture.end(stream_);
+    stream_.render(Pass("surface", target));
+    empty_.end(stream_);
+    shown_.push_back({empty_.image(), extent});
 }
 
 void FrameRenderer::blit(VkImage target, VkRect2D part) {
-    for (std::size_t i = 0; i < shown_; ++i) {
-        const auto count = static_cast<std::uint32_t>(shown_), place = static_cast<std::uint32_t>(i);
-        const std::uint32_t left = place * part.extent.width / count, right = (place + 1) * part.extent.width / count;
-        stream_.blit(
-            pictures_[i].image(), pictures_[i].extent(), target,
-            {{part.offset.x + static_cast<std::int32_t>(left), part.offset.y}, {right - left, part.extent.height}});
+    std::int32_t left = part.offset.x;
+    for (std::size_t i = 0; i < shown_.size(); ++i) {
+        const VkExtent2D extent =
+            part_of({static_cast<int>(part.extent.width), static_cast<int>(part.extent.height)}, shown_.size(), i);
+        stream_.blit(shown_[i].image, shown_[i].extent, target, {{left, part.offset.y}, extent});
+        left += static_cast<std::int32_t>(extent.width);
     }
 }
 
@@ -77,7 +76,8 @@ void FrameRenderer::finish(FrameTimes& times) {
 
 Image FrameRenderer::read() {
     std::vector<Image> parts;
-    for (std::size_t i = 0; i < shown_; ++i) parts.push_back(read_picture(pictures_[i]));
+    for (const Shown& shown : shown_) parts.push_back(read_picture(shown));
+    if (parts.empty()) throw UsageError("there is no frame to read; record one first");
     if (parts.size() == 1) return std::move(parts.front());
     Image image(parts[0].width + parts[1].width, parts[0].height, 3);
     for (int y = 0; y < image.height; ++y) {
@@ -88,11 +88,11 @@ Image FrameRenderer::read() {
     return image;
 }
 
-Image FrameRenderer::read_picture(const Picture& picture) {
-    const VkExtent2D extent = picture.extent();
+Image FrameRenderer::read_picture(const Shown& shown) {
+    const VkExtent2D extent = shown.extent;
     std::vector<std::uint32_t> texels(std::size_t{extent.width} * extent.height);
     const Buffer buffer(device_, texels.size() * sizeof(std::uint32_t));
-    stream_.copy_image(picture.image(), VK_IMAGE_ASPECT_COLOR_BIT, extent, sizeof(std::uint32_t), buffer);
+    stream_.copy_image(shown.image, VK_IMAGE_ASPECT_COLOR_BIT, extent, sizeof(std::uint32_t), buffer);
     stream_.fetch<std::uint32_t>(buffer, texels);
     profiler_.reset();
     Image image(static_cast<int>(extent.width), static_cast<int>(extent.height), 3);

@@ -36,13 +36,17 @@ class FrameRenderer {
     Device& device() { return device_; }
 
   private:
-    void record_view(const ViewerState& state, const Picture& picture, bool learned);
-    Image read_picture(const Picture& picture);
+    struct Shown {
+        VkImage image;
+        VkExtent2D extent;
+    };
+    void record_empty(const ViewerState& state, VkExtent2D extent);
+    Image read_picture(const Shown& shown);
     Device& device_;
     Profiler profiler_;
     Stream stream_;
-    std::vector<Picture> pictures_;
-    std::size_t shown_ = 1;  // of the pictures
+    Picture empty_;             // without a document
+    std::vector<Shown> shown_;  // side by side
     std::unique_ptr<SurfaceScene> scene_;
     std::uint64_t document_version_ = 0, model_version_ = 0;
 };

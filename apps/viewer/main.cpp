@@ -13,6 +13,7 @@
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
+#include "host/core/text.h"
 
 namespace exemplar {
 namespace {
@@ -24,10 +25,12 @@ const Names<SurfacePaint> k_paints{{"plain", SurfacePaint::plain},         {"lab
                                    {"mean", SurfacePaint::mean_curvature}, {"gauss", SurfacePaint::gaussian_curvature},
                                    {"k1", SurfacePaint::first_curvature},  {"k2", SurfacePaint::second_curvature},
                                    {"normals", SurfacePaint::normals}};
-const Names<SurfaceLight> k_lights{
-    {"smooth", SurfaceLight::smooth}, {"flat", SurfaceLight::flat}, {"none", SurfaceLight::none}};
-const Names<CurvatureSource> k_sources{
-    {"estimated", CurvatureSource::estimated}, {"learned", CurvatureSource::learned}, {"both", CurvatureSource::both}};
+const Names<SurfaceLight> k_lights{{"smooth", SurfaceLight::smooth},
+                                   {"flat", SurfaceLight::flat},
+                                   {"steps", SurfaceLight::steps},
+                                   {"none", SurfaceLight::none}};
+const Names<ShownCurvature> k_sources{
+    {"estimated", ShownCurvature::estimated}, {"learned", ShownCurvature::learned}, {"both", ShownCurvature::both}};
 const Names<ViewSide> k_sides{{"front", ViewSide::front}, {"back", ViewSide::back}, {"left", ViewSide::left},
                               {"right", ViewSide::right}, {"top", ViewSide::top},   {"bottom", ViewSide::bottom}};
 
@@ -37,6 +40,20 @@ void add_choice(CLI::App& app, const std::string& name, std::optional<T>& value,
     app.add_option_function<std::string>(
            name, [&value, &names](const std::string& word) { value = names.at(word); }, help)
         ->check(CLI::IsMember(&names));
+}
+
+// "contours,ridges"; "none" for no lines.
+std::vector<LineType> parse_lines(const std::vector<std::string>& words) {
+    std::vector<LineType> types;
+    std::vector<std::string> names{"none"};
+    for (const LineType type : k_line_types) names.emplace_back(name_of(type));
+    for (const std::string& word : words) {
+        const std::optional<LineType> type = line_type_named(word);
+        if (!type && word != "none")
+            throw UsageError(fmt::format("there are no lines '{}'{}", word, suggestion(word, names)));
+        if (type) types.push_back(*type);
+    }
+    return types;
 }
 
 ViewSize parse_size(const std::string& text) {
@@ -59,6 +76,12 @@ void add_options(CLI::App& app, ViewerOptions& options, std::string& size) {
     app.add_option("--model", options.model, "model of the animation's curvature, .safetensors")->type_name("FILE");
     app.add_option("--clip", options.clip, "clip to play; default: the first")->type_name("NAME");
     app.add_option("--first-frame", options.first_frame, "frame of the clip to begin with; a window stands there");
+    app.add_option_function<std::vector<std::string>>(
+           "--lines", [&options](const std::vector<std::string>& words) { options.lines = parse_lines(words); },
+           "lines to draw, as in contours,suggestive_contours (the default); none for no lines")
+        ->delimiter(',')
+        ->type_name("TYPE");
+    app.add_option("--style", options.style, "style of the drawing: a built-in name or a file")->type_name("STYLE");
     add_choice(app, "--paint", options.paint, "colors: labels, curvature (mean, gauss, k1, k2), ...", k_paints);
     add_choice(app, "--light", options.light, "shading", k_lights);
     add_choice(app, "--curvature", options.source, "curvature that is shown", k_sources);

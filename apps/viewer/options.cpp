@@ -23,6 +23,10 @@ void choose_clip(ViewerState& state, const std::string& name) {
 }  // namespace
 
 void apply_options(ViewerState& state, const ViewerOptions& options, ViewSize view) {
+    if (!options.style.empty()) state.settings.set_style(load_style(options.style));
+    if (options.lines)
+        for (std::size_t i = 0; i < k_line_types.size(); ++i)
+            state.settings.lines[i] = std::ranges::find(*options.lines, k_line_types[i]) != options.lines->end();
     if (options.paint) state.settings.paint = *options.paint;
     if (options.light) state.settings.light = *options.light;
     if (options.source) state.settings.source = *options.source;

@@ -18,9 +18,11 @@ struct ViewerOptions {
     std::size_t frames = 0;                  ///< to draw before it ends; 0: until the window is closed
     std::optional<std::size_t> first_frame;  ///< playback stands there; none: it plays from the start
     bool headless = false, quiet = false, plain_window = false;
+    std::string style;  ///< built in, or a file; empty: ink on a shaded surface
+    std::optional<std::vector<LineType>> lines;
     std::optional<SurfacePaint> paint;
     std::optional<SurfaceLight> light;
-    std::optional<CurvatureSource> source;
+    std::optional<ShownCurvature> source;
     std::optional<ViewSide> side;
     bool parallel = false;
     std::optional<std::size_t> losing_frame;  ///< tests: the device counts as lost at this frame

@@ -79,9 +79,9 @@ void draw_side_panel(ViewerState& state, const PanelSizes& sizes, std::string& p
     if (state.has_document()) {
         ImGui::Spacing();
         if (ImGui::CollapsingHeader("Look", ImGuiTreeNodeFlags_DefaultOpen)) draw_look(state);
+        if (ImGui::CollapsingHeader("Lines", ImGuiTreeNodeFlags_DefaultOpen)) draw_lines(state);
         if (ImGui::CollapsingHeader("Curvature", ImGuiTreeNodeFlags_DefaultOpen)) draw_curvature(state, requests);
-        if (state.document().posable() && ImGui::CollapsingHeader("Pose", ImGuiTreeNodeFlags_DefaultOpen))
-            draw_pose(state);
+        if (state.document().posable() && ImGui::CollapsingHeader("Pose")) draw_pose(state);
         ImGui::SetNextItemOpen(state.show_times);
         state.show_times = ImGui::CollapsingHeader("Frame times (G)");
         if (state.show_times) draw_frame_times(state);

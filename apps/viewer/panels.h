@@ -26,6 +26,7 @@ void draw_help(ViewerState& state, const ViewArea& view, float scale);
 
 // Parts of the side panel.
 void draw_look(ViewerState& state);
+void draw_lines(ViewerState& state);
 void draw_curvature(ViewerState& state, InterfaceRequests& requests);
 void draw_pose(ViewerState& state);
 void draw_frame_times(ViewerState& state);

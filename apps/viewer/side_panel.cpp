@@ -24,7 +24,12 @@ constexpr std::array k_paint_names = {PaintName{SurfacePaint::plain, "Plain"},
                                       PaintName{SurfacePaint::first_curvature, "Curvature k1"},
                                       PaintName{SurfacePaint::second_curvature, "Curvature k2"},
                                       PaintName{SurfacePaint::normals, "Normals"}};
-constexpr std::array k_light_names = {"Smooth", "Flat", "None"};
+struct LightName {
+    SurfaceLight light;
+    const char* name;
+};
+constexpr std::array k_light_names = {LightName{SurfaceLight::smooth, "Smooth"}, LightName{SurfaceLight::flat, "Flat"},
+                                      LightName{SurfaceLight::steps, "Steps"}, LightName{SurfaceLight::none, "None"}};
 
 // Well-separated colors, less bright than those of labels would be on a dark panel.
 ImU32 series_color(std::size_t index) {
@@ -46,7 +51,18 @@ void choose_paint(ViewerState& state) {
     if (!ImGui::BeginCombo("Colors", current->name)) return;
     for (const PaintName& entry : k_paint_names) {
         if (entry.paint == SurfacePaint::faces && state.document().face_colors.empty()) continue;
+        if (state.settings.shows_lines() && !goes_with_lines(entry.paint)) continue;
         if (ImGui::Selectable(entry.name, entry.paint == state.settings.paint)) state.settings.paint = entry.paint;
+    }
+    ImGui::EndCombo();
+}
+
+void choose_light(ViewerState& state) {
+    const auto current = std::ranges::find(k_light_names, state.settings.light, &LightName::light);
+    if (!ImGui::BeginCombo("Shading", current->name)) return;
+    for (const LightName& entry : k_light_names) {
+        if (state.settings.shows_lines() && !goes_with_lines(entry.light)) continue;
+        if (ImGui::Selectable(entry.name, entry.light == state.settings.light)) state.settings.light = entry.light;
     }
     ImGui::EndCombo();
 }
@@ -145,12 +161,10 @@ void draw_stack(const FrameTimes& times, const std::vector<std::string>& names) 
 }  // namespace
 
 void draw_look(ViewerState& state) {
-    auto light = static_cast<int>(state.settings.light);
-    if (ImGui::Combo("Shading", &light, k_light_names.data(), static_cast<int>(k_light_names.size())))
-        state.settings.light = static_cast<SurfaceLight>(light);
+    choose_light(state);
     choose_paint(state);
     if (state.settings.paint == SurfacePaint::faces) draw_legend(state.document());
-    if (paints_curvature(state.settings.paint))
+    if (paints_curvature(state.settings.paint) && !state.settings.shows_lines())
         ImGui::SliderFloat("Range", &state.settings.curvature_range, 0.005f, 5, "%.3f", ImGuiSliderFlags_Logarithmic);
     edit_color("Surface", state.settings.plain);
     ImGui::SameLine();
@@ -163,12 +177,12 @@ void draw_curvature(ViewerState& state, InterfaceRequests& requests) {
     if (state.model()) {
         ImGui::TextDisabled("Model: %s", state.model_name().c_str());
         auto source = static_cast<int>(state.settings.source);
-        ImGui::RadioButton("Learned", &source, static_cast<int>(CurvatureSource::learned));
+        ImGui::RadioButton("Learned", &source, static_cast<int>(ShownCurvature::learned));
         ImGui::SameLine();
-        ImGui::RadioButton("Re-estimated", &source, static_cast<int>(CurvatureSource::estimated));
+        ImGui::RadioButton("Re-estimated", &source, static_cast<int>(ShownCurvature::estimated));
         ImGui::SameLine();
-        ImGui::RadioButton("Both", &source, static_cast<int>(CurvatureSource::both));
-        state.settings.source = static_cast<CurvatureSource>(source);
+        ImGui::RadioButton("Both", &source, static_cast<int>(ShownCurvature::both));
+        state.settings.source = static_cast<ShownCurvature>(source);
         if (ImGui::Button("Save the model", ImVec2(-1, 0))) requests.actions.push_back(Action::save_model);
     } else {
         ImGui::TextDisabled("Re-estimated on every frame");

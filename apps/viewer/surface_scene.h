@@ -1,17 +1,17 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "apps/viewer/controls/orbit_camera.h"
 #include "apps/viewer/document.h"
+#include "apps/viewer/scene_view.h"
 #include "apps/viewer/view_settings.h"
-#include "gpu/curvature/curvature.h"
-#include "gpu/curvature/learned_curvature.h"
-#include "gpu/curvature/normals.h"
-#include "gpu/curvature/poser.h"
+#include "gpu/curvature/animated_surface.h"
 #include "gpu/runtime/stream.h"
 #include "host/curvature/model.h"
 
@@ -20,7 +20,7 @@ namespace exemplar {
 /// What a surface looks like at a moment: a pose of its rig, or vertices of a sequence.
 struct Moment {
     std::optional<Pose> pose;
-    std::span<const Vec3> vertices{};  ///< empty for rigs, and for meshes that do not move
+    std::span<const Vec3> vertices{};  ///< empty for rigs
 };
 
 /// The moment of a frame of a document, which must live as long.
@@ -32,34 +32,29 @@ std::vector<Vec3> vertices_at(const Document& document, const Moment& moment);
 /// of them coming back.
 class SurfaceScene {
   public:
-    /// The document must live as long. Throws MeshError or DeviceLimitError if the device cannot show it.
+    /// The document must live as long as this. Throws MeshError or DeviceLimitError if the device cannot show it.
     SurfaceScene(Device& device, const Document& document);
 
     /// Takes learned curvature from a model, or from none. Throws ModelError if it is of another surface.
     void set_model(std::shared_ptr<const CurvatureModel> model);
-    bool has_model() const { return learned_.has_value(); }
+    bool has_model() const { return model_ != nullptr; }
 
-    /// Poses the surface; with curvature by `source` where `settings` need it.
-    void record_moment(Stream& stream, const Moment& moment, const ViewSettings& settings);
-    /// Adds the surface to a pass; curvature is the learned one or else the estimated one.
-    void draw(Pass& pass, const Camera& camera, const ViewSettings& settings, bool learned);
+    /// Records a moment in one view, or in two side by side of learned and estimated curvature.
+    void record(Stream& stream, const Moment& moment, const OrbitCamera& camera, std::span<const VkExtent2D> extents,
+                const ViewSettings& settings);
+    const SceneView& view(std::size_t index) const { return views_[index]; }
 
   private:
-    void make_estimator();
-    void record_learned(Stream& stream, const Moment& moment);
-    const Buffer& normals() const;
+    void record_moment(Stream& stream, const Moment& moment, CurvatureSource source);
+    void find_feature_size();
     const Document& document_;
-    Device& device_;
     GpuSurface surface_;
-    GpuPoser poser_;
-    GpuNormals normals_;
-    SurfacePainter painter_;
+    GpuLineSurface line_surface_;
     Buffer colors_;
-    float feature_size_ = 0;
     std::shared_ptr<const CurvatureModel> model_;
-    std::optional<GpuCurvature> estimated_;
-    std::optional<GpuLearnedCurvature> learned_;
-    bool estimates_ = false;  // at the moment recorded last
+    std::optional<GpuAnimatedSurface> animated_;
+    float feature_size_ = 0;  // 0: not yet found
+    std::deque<SceneView> views_;
 };
 
 }  // namespace exemplar

@@ -38,13 +38,15 @@ T next_of(const std::array<T, count>& values, T value) {
     return place == values.end() || place + 1 == values.end() ? values.front() : *(place + 1);
 }
 
-SurfacePaint next_paint(SurfacePaint paint, bool has_colors) {
+SurfacePaint next_paint(SurfacePaint paint, bool has_colors, bool with_lines) {
     constexpr std::array k_paints{SurfacePaint::plain,           SurfacePaint::faces,
                                   SurfacePaint::mean_curvature,  SurfacePaint::gaussian_curvature,
                                   SurfacePaint::first_curvature, SurfacePaint::second_curvature,
                                   SurfacePaint::normals};
-    paint = next_of(k_paints, paint);
-    return paint == SurfacePaint::faces && !has_colors ? next_of(k_paints, paint) : paint;
+    do {
+        paint = next_of(k_paints, paint);
+    } while ((paint == SurfacePaint::faces && !has_colors) || (with_lines && !goes_with_lines(paint)));
+    return paint;
 }
 
 }  // namespace
@@ -109,7 +111,7 @@ void ViewerState::set_model(std::shared_ptr<const CurvatureModel> model, std::st
     model_ = std::move(model);
     model_name_ = std::move(name);
     ++model_version_;
-    settings.source = model_ ? CurvatureSource::learned : CurvatureSource::estimated;
+    settings.source = model_ ? ShownCurvature::learned : ShownCurvature::estimated;
 }
 
 void ViewerState::fit(ViewSize view) {
@@ -199,16 +201,20 @@ bool ViewerState::perform(Action action, ViewSize view) {
             camera.zoom(1 / k_zoom, center, view);
             return true;
         case Action::next_light:
-            settings.light =
-                next_of(std::array{SurfaceLight::smooth, SurfaceLight::flat, SurfaceLight::none}, settings.light);
+            do {
+                settings.light = next_of(
+                    std::array{SurfaceLight::smooth, SurfaceLight::flat, SurfaceLight::steps, SurfaceLight::none},
+                    settings.light);
+            } while (settings.shows_lines() && !goes_with_lines(settings.light));
             return true;
         case Action::next_paint:
-            settings.paint = next_paint(settings.paint, document_ && !document_->face_colors.empty());
+            settings.paint =
+                next_paint(settings.paint, document_ && !document_->face_colors.empty(), settings.shows_lines());
             return true;
         case Action::curvature_source:
             if (model_)
                 settings.source =
-                    next_of(std::array{CurvatureSource::learned, CurvatureSource::estimated, CurvatureSource::both},
+                    next_of(std::array{ShownCurvature::learned, ShownCurvature::estimated, ShownCurvature::both},
                             settings.source);
             return true;
         case Action::reset_pose:

@@ -54,7 +54,7 @@ class ViewerState {
 
     /// Whether learned and estimated curvature are shown side by side.
     bool shows_both() const {
-        return document_ && model_ && settings.source == CurvatureSource::both && settings.needs_curvature();
+        return document_ && model_ && settings.source == ShownCurvature::both && settings.needs_curvature();
     }
 
     Playback playback;

@@ -7,7 +7,7 @@
 namespace exemplar {
 namespace {
 
-shared::PaintParameters parameters_of(const Camera& camera, const SurfaceLook& look) {
+shared::PaintParameters parameters_of(const Camera& camera, const PaintLook& look) {
     const bool parallel = camera.projection(3, 3) != 0;
     const Vec3 eye = parallel ? camera.to_eye(Vec3::Zero()) : camera.position();
     const Eigen::Matrix4f matrix = camera.view_projection();
@@ -37,7 +37,7 @@ SurfacePainter::SurfacePainter(Device& device, VkFormat color, VkFormat depth)
                 {.color = color, .depth = depth}) {}
 
 void SurfacePainter::draw(Pass& pass, const PaintedSurface& surface, const Camera& camera,
-                          const SurfaceLook& look) const {
+                          const PaintLook& look) const {
     // What the look does without is not read, but something must be bound.
     const Buffer& colors = surface.colors ? *surface.colors : *surface.faces;
     const Buffer& first = surface.first ? *surface.first : *surface.normals;

@@ -24,11 +24,12 @@ enum class SurfacePaint : std::uint32_t {
 enum class SurfaceLight : std::uint32_t {
     smooth = shared::k_light_smooth,
     flat = shared::k_light_flat,
-    none = shared::k_light_none
+    none = shared::k_light_none,
+    steps = shared::k_light_steps  ///< in three steps, by vertex normals
 };
 
 /// How a surface is painted and lit. Curvature goes from blue (hollow) over gray to red (convex).
-struct SurfaceLook {
+struct PaintLook {
     SurfacePaint paint = SurfacePaint::plain;
     SurfaceLight light = SurfaceLight::smooth;
     Color plain{214, 212, 206};
@@ -55,7 +56,7 @@ class SurfacePainter {
   public:
     SurfacePainter(Device& device, VkFormat color, VkFormat depth);
     /// Adds the surface to a pass with color and depth.
-    void draw(Pass& pass, const PaintedSurface& surface, const Camera& camera, const SurfaceLook& look) const;
+    void draw(Pass& pass, const PaintedSurface& surface, const Camera& camera, const PaintLook& look) const;
 
   private:
     DrawPipeline pipeline_;

@@ -33,6 +33,7 @@ const uint k_paint_normals = 6;
 const uint k_light_smooth = 0;  // by vertex normals
 const uint k_light_flat = 1;    // by the normals of faces
 const uint k_light_none = 2;
+const uint k_light_steps = 3;  // smooth, in three steps
 
 struct PaintParameters {
     vec4 matrix[4];  // columns: world to clip space

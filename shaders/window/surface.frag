@@ -37,8 +37,10 @@ void main() {
         painted = 0.5 + 0.5 * normal;
     else if (parameters.paint >= k_paint_mean)
         painted = curvature_color(curvature);
+    const float facing = max(dot(n, to_eye), 0.0);
     const float hemisphere = mix(k_ground, 1.0, (1.0 + n.y) / 2.0);
-    const float light =
-        parameters.light == k_light_none ? 1.0 : k_ambient * hemisphere + k_headlight * max(dot(n, to_eye), 0.0);
+    float light = k_ambient * hemisphere + k_headlight * facing;
+    if (parameters.light == k_light_none) light = 1.0;
+    if (parameters.light == k_light_steps) light = facing > 0.55 ? 1.0 : facing > 0.25 ? 0.7 : 0.48;
     encoded = vec4(linear_to_srgb(min(painted * light, 1.0)), 1.0);
 }

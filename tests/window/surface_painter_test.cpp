@@ -18,7 +18,7 @@ constexpr std::uint32_t k_size = 48;
 // Two triangles that fill the view of a parallel camera along -z, with what gpu/curvature would say of them.
 class SurfacePainting : public ::testing::Test {
   protected:
-    std::vector<std::uint32_t> draw(const SurfaceLook& look) {
+    std::vector<std::uint32_t> draw(const PaintLook& look) {
         Device& device = shared_device();
         const SurfacePainter painter(device, Canvas::k_format, depth_format(device));
         const Buffer faces = Buffer::of<uvec4>(device, std::vector<uvec4>{{0, 1, 2, 0}, {0, 2, 3, 0}});
@@ -38,7 +38,7 @@ class SurfacePainting : public ::testing::Test {
             stream.render(pass);
         });
     }
-    std::uint32_t middle(const SurfaceLook& look) { return draw(look)[(k_size / 2 + 4) * k_size + k_size / 2]; }
+    std::uint32_t middle(const PaintLook& look) { return draw(look)[(k_size / 2 + 4) * k_size + k_size / 2]; }
 
     vec4 normal{0, 0, 1, 0};
     float k1 = 0, k2 = 0;
@@ -79,7 +79,7 @@ TEST_F(SurfacePainting, LightIsThatOfTheReference) {
 }
 
 TEST_F(SurfacePainting, ConvexIsRedAndHollowIsBlue) {
-    SurfaceLook look{.paint = SurfacePaint::mean_curvature, .light = SurfaceLight::none, .strongest_curvature = 4};
+    PaintLook look{.paint = SurfacePaint::mean_curvature, .light = SurfaceLight::none, .strongest_curvature = 4};
     const std::uint32_t flat = middle(look);
     EXPECT_EQ(red(flat), blue(flat));
     k1 = 3;

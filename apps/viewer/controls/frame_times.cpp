@@ -26,6 +26,7 @@ std::vector<std::string> FrameTimes::names() const {
     for (const auto& [name, series] : series_) ordered.emplace_back(-average(name), name);
     std::ranges::sort(ordered);
     std::vector<std::string> names;
+    names.reserve(ordered.size());
     for (const auto& [average, name] : ordered) names.push_back(name);
     return names;
 }

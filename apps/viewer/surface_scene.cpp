@@ -81,7 +81,7 @@ void SurfaceScene::record(Stream& stream, const Moment& moment, const OrbitCamer
                           std::span<const VkExtent2D> extents, const ViewSettings& settings) {
     const bool curved = settings.needs_curvature();
     const bool learned = has_model() && settings.source != ShownCurvature::estimated;
-    if (curved || settings.shows_lines()) find_feature_size();
+    if (curved) find_feature_size();
     record_moment(stream, moment,
                   !curved   ? CurvatureSource::none
                   : learned ? CurvatureSource::learned

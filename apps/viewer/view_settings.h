@@ -35,14 +35,10 @@ struct ViewSettings {
             if (lines[i]) types.push_back(k_line_types[i]);
         return types;
     }
-    bool needs_curvature() const {
-        return paints_curvature(paint) || std::ranges::any_of(shown_lines(), needs_curvature_of_lines);
-    }
+    /// All lines do, for strokes are thinner where the surface bends.
+    bool needs_curvature() const { return paints_curvature(paint) || shows_lines(); }
     /// Takes a style with its surface and background.
     void set_style(const DrawingStyle& next);
-
-  private:
-    static bool needs_curvature_of_lines(LineType type) { return exemplar::needs_curvature(type); }
 };
 
 /// Whether surfaces under lines can be painted or lit like that; else they are plain, or smooth.

@@ -63,21 +63,11 @@ bool edit_threshold(DrawingStyle& style, LineType type) {
     return changed;
 }
 
-bool edit_color(const char* label, Color& color) {
-    std::array<float, 3> value{};
-    for (std::size_t c = 0; c < 3; ++c) value[c] = static_cast<float>(color[c]) / 255;
-    if (!ImGui::ColorEdit3(label, value.data(), ImGuiColorEditFlags_NoInputs | ImGuiColorEditFlags_NoLabel))
-        return false;
-    for (std::size_t c = 0; c < 3; ++c)
-        color[c] = static_cast<std::uint8_t>(std::clamp(value[c], 0.0f, 1.0f) * 255 + 0.5f);
-    return true;
-}
-
 // A line of the list: whether it is shown, its color, and below, when it is, threshold and width.
 void draw_type(ViewSettings& settings, std::size_t index) {
     const LineType type = k_line_types[index];
     LineStyle& line = settings.style.of(type);
-    bool changed = edit_color("color", line.color);
+    bool changed = edit_color("##color", line.color);
     ImGui::SameLine();
     ImGui::Checkbox(words_of(type).c_str(), &settings.lines[index]);
     if (settings.lines[index]) {

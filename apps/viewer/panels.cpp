@@ -141,9 +141,11 @@ void draw_messages(ViewerState& state, const ViewArea& view, float scale) {
 
 void draw_view_captions(const ViewerState& state, const ViewArea& view) {
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
-    constexpr ImU32 k_ink = IM_COL32(70, 70, 76, 255);
+    const Color& paper = state.settings.background;
+    const bool dark = 2 * paper[0] + 5 * paper[1] + paper[2] < 8 * 128;  // about the eye's weights
+    const ImU32 ink = dark ? IM_COL32(225, 225, 230, 255) : IM_COL32(70, 70, 76, 255);
     const auto centered = [&](const char* text, float x, float y) {
-        list.AddText(ImVec2(x - ImGui::CalcTextSize(text).x / 2, y), k_ink, text);
+        list.AddText(ImVec2(x - ImGui::CalcTextSize(text).x / 2, y), ink, text);
     };
     const float height = ImGui::GetFontSize();
     if (!state.has_document() && view.width > 300)

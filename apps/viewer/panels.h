@@ -25,6 +25,9 @@ void draw_view_captions(const ViewerState& state, const ViewArea& view);
 void draw_help(ViewerState& state, const ViewArea& view, float scale);
 
 // Parts of the side panel.
+
+/// A swatch that opens a color picker; "##name" has no label. Returns whether the color was changed.
+bool edit_color(const char* label, Color& color);
 void draw_look(ViewerState& state);
 void draw_lines(ViewerState& state);
 void draw_curvature(ViewerState& state, InterfaceRequests& requests);

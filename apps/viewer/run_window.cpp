@@ -36,7 +36,7 @@ constexpr int k_settling_frames = 3;
 /// STEM_0.png, or the next number that is free, in the working folder.
 std::filesystem::path free_name(const std::filesystem::path& file, const std::string& extension) {
     for (int i = 0;; ++i) {
-        const std::filesystem::path name = fmt::format("{}_{}{}", file.stem().string(), i, extension);
+        std::filesystem::path name = fmt::format("{}_{}{}", file.stem().string(), i, extension);
         if (!std::filesystem::exists(name)) return name;
     }
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "apps/viewer/panels.h"
 #include "host/core/errors.h"
@@ -35,15 +36,6 @@ constexpr std::array k_light_names = {LightName{SurfaceLight::smooth, "Smooth"},
 ImU32 series_color(std::size_t index) {
     const Color color = label_color(index);
     return IM_COL32(color[0], color[1], color[2], 255);
-}
-
-bool edit_color(const char* label, Color& color) {
-    std::array<float, 3> value{};
-    for (std::size_t c = 0; c < 3; ++c) value[c] = static_cast<float>(color[c]) / 255;
-    if (!ImGui::ColorEdit3(label, value.data(), ImGuiColorEditFlags_NoInputs)) return false;
-    for (std::size_t c = 0; c < 3; ++c)
-        color[c] = static_cast<std::uint8_t>(std::clamp(value[c], 0.0f, 1.0f) * 255 + 0.5f);
-    return true;
 }
 
 void choose_paint(ViewerState& state) {
@@ -159,6 +151,15 @@ void draw_stack(const FrameTimes& times, const std::vector<std::string>& names) 
 }
 
 }  // namespace
+
+bool edit_color(const char* label, Color& color) {
+    std::array<float, 3> value{};
+    for (std::size_t c = 0; c < 3; ++c) value[c] = static_cast<float>(color[c]) / 255;
+    if (!ImGui::ColorEdit3(label, value.data(), ImGuiColorEditFlags_NoInputs)) return false;
+    for (std::size_t c = 0; c < 3; ++c)
+        color[c] = static_cast<std::uint8_t>(std::lround(std::clamp(value[c], 0.0f, 1.0f) * 255));
+    return true;
+}
 
 void draw_look(ViewerState& state) {
     choose_light(state);

@@ -54,6 +54,8 @@ SurfacePaint next_paint(SurfacePaint paint, bool has_colors, bool with_lines) {
 void ViewerState::open(const fs::path& path, ViewSize view) {
     if (path.extension() == ".safetensors")
         open_model(path);
+    else if (path.extension() == ".json")
+        settings.set_style(load_style(path.string()));
     else if (is_labels_file(path))
         open_labels(path);
     else

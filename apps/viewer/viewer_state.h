@@ -22,8 +22,8 @@ namespace exemplar {
 /// All that a viewer knows on the host, with or without a window; what is on the device follows from it.
 class ViewerState {
   public:
-    /// Opens a mesh, animation, model (.safetensors), labels (_labels.txt, .seg), whatever it is. Throws an Error; what
-    /// was open stays then.
+    /// Opens a mesh, animation, model (.safetensors), style (.json), labels (_labels.txt, .seg), whatever it is. Throws
+    /// an Error; what was open stays then.
     void open(const std::filesystem::path& path, ViewSize view);
     /// A model, whatever its name. Throws ModelError if it is none, or not of the document.
     void open_model(const std::filesystem::path& path);

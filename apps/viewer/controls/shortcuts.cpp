@@ -53,7 +53,7 @@ constexpr std::array k_mouse_hints = {
     MouseHint{"Right or middle drag, or Shift and left", "Pan"},
     MouseHint{"Wheel", "Zoom to the cursor"},
     MouseHint{"Double click", "Show all of the surface"},
-    MouseHint{"Drop a file", "Open it: mesh, animation, model or labels"},
+    MouseHint{"Drop a file", "Open it: mesh, animation, model, labels or style"},
 };
 
 }  // namespace

@@ -24,10 +24,10 @@ class SurfacePainting : public ::testing::Test {
         const Buffer faces = Buffer::of<uvec4>(device, std::vector<uvec4>{{0, 1, 2, 0}, {0, 2, 3, 0}});
         const Buffer vertices =
             Buffer::of<vec4>(device, std::vector<vec4>{{-1, -1, 0, 1}, {1, -1, 0, 1}, {1, 1, 0, 1}, {-1, 1, 0, 1}});
-        const Buffer normals = Buffer::of<vec4>(device, std::vector<vec4>(4, normal));
+        const Buffer normals = Buffer::of<vec4>(device, std::vector<vec4>(4, normal_));
         const Buffer colors = Buffer::of<std::uint32_t>(device, std::vector<std::uint32_t>{0x0000ff, 0x00ff00});
-        const Buffer first = Buffer::of<vec4>(device, std::vector<vec4>(4, {1, 0, 0, k1}));
-        const Buffer second = Buffer::of<vec4>(device, std::vector<vec4>(4, {0, 1, 0, k2}));
+        const Buffer first = Buffer::of<vec4>(device, std::vector<vec4>(4, {1, 0, 0, k1_}));
+        const Buffer second = Buffer::of<vec4>(device, std::vector<vec4>(4, {0, 1, 0, k2_}));
         Camera camera;
         camera.view = look_at(Vec3(0, 0, 2), Vec3::Zero());
         camera.projection = orthographic(1, 1, 1, 3);
@@ -40,8 +40,8 @@ class SurfacePainting : public ::testing::Test {
     }
     std::uint32_t middle(const PaintLook& look) { return draw(look)[(k_size / 2 + 4) * k_size + k_size / 2]; }
 
-    vec4 normal{0, 0, 1, 0};
-    float k1 = 0, k2 = 0;
+    vec4 normal_{0, 0, 1, 0};
+    float k1_ = 0, k2_ = 0;
 };
 
 int red(std::uint32_t texel) {
@@ -72,9 +72,9 @@ TEST_F(SurfacePainting, LightIsThatOfTheReference) {
     const std::uint32_t smooth = middle({.plain = gray});
     EXPECT_NEAR(red(smooth), 255 * expected, 2);
     EXPECT_EQ(middle({.light = SurfaceLight::flat, .plain = gray}), smooth);
-    normal = {0, 0, -1, 0};  // surfaces have two sides
+    normal_ = {0, 0, -1, 0};  // surfaces have two sides
     EXPECT_EQ(middle({.plain = gray}), smooth);
-    normal = {0, 0, 0, 0};
+    normal_ = {0, 0, 0, 0};
     EXPECT_EQ(middle({.plain = gray}) >> 24, 0xffu);
 }
 
@@ -82,18 +82,18 @@ TEST_F(SurfacePainting, ConvexIsRedAndHollowIsBlue) {
     PaintLook look{.paint = SurfacePaint::mean_curvature, .light = SurfaceLight::none, .strongest_curvature = 4};
     const std::uint32_t flat = middle(look);
     EXPECT_EQ(red(flat), blue(flat));
-    k1 = 3;
-    k2 = 1;
+    k1_ = 3;
+    k2_ = 1;
     const std::uint32_t convex = middle(look);
     EXPECT_GT(red(convex), blue(convex) + 30);
-    std::swap(k1, k2);
+    std::swap(k1_, k2_);
     EXPECT_EQ(middle(look), convex);  // of both
-    k1 = -3;
-    k2 = -1;
+    k1_ = -3;
+    k2_ = -1;
     const std::uint32_t hollow = middle(look);
     EXPECT_GT(blue(hollow), red(hollow) + 30);
-    k1 = 5;
-    k2 = -5;
+    k1_ = 5;
+    k2_ = -5;
     EXPECT_EQ(middle(look), flat);
     look.paint = SurfacePaint::gaussian_curvature;
     EXPECT_GT(blue(middle(look)), red(middle(look)));

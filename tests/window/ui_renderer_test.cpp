@@ -91,7 +91,8 @@ TEST_F(Interface, DrawsTextAsTheAtlasHasIt) {
         for (int x = 0; x < static_cast<int>(glyph.X1 - glyph.X0); ++x) {
             const int at_x = static_cast<int>(std::lround(glyph.U0 * static_cast<float>(width))) + x,
                       at_y = static_cast<int>(std::lround(glyph.V0 * static_cast<float>(height))) + y;
-            const int expected = pixels[static_cast<std::size_t>(at_y * width + at_x)];
+            const int expected = pixels[static_cast<std::size_t>(at_y) * static_cast<std::size_t>(width) +
+                                        static_cast<std::size_t>(at_x)];
             const auto place = (8 + static_cast<std::size_t>(glyph.Y0) + static_cast<std::size_t>(y)) * k_width + 8 +
                                static_cast<std::size_t>(glyph.X0) + static_cast<std::size_t>(x);
             EXPECT_NEAR(channel(texels[place], 0), expected, 1);

@@ -55,5 +55,10 @@ exemplar_shaders(exemplar_gpu_imaging imaging)
 exemplar_library(gpu_curvature gpu/curvature exemplar_runtime exemplar_animation exemplar_curvature)
 exemplar_shaders(exemplar_gpu_curvature curvature)
 
+# Windows are of the caller: nothing here knows GLFW. libimgui's Vulkan backend stays out, for volk has names it uses.
+pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
+exemplar_library(gpu_window gpu/window exemplar_gpu_imaging exemplar_runtime exemplar_imaging PkgConfig::IMGUI)
+exemplar_shaders(exemplar_gpu_window window)
+
 exemplar_library(gpu_lines gpu/lines exemplar_gpu_imaging exemplar_gpu_curvature exemplar_lines)
 exemplar_shaders(exemplar_gpu_lines lines)

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <cstring>
 
 #include "gpu/runtime/errors.h"
 
@@ -19,9 +21,21 @@ bool wants_validation() {
     return !value.empty() && value != "0";
 }
 
+bool has_extension(VkPhysicalDevice device, const char* name) {
+    std::uint32_t count = 0;
+    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+    std::vector<VkExtensionProperties> extensions(count);
+    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
+    return std::ranges::any_of(extensions,
+                               [&](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
 }  // namespace
 
-Device::Device(const DeviceOptions& options) : validating_(wants_validation()), instance_(validating_) {
+Device::Device(const DeviceOptions& options)
+    : validating_(wants_validation()),
+      instance_(validating_,
+                options.presentation ? options.presentation->instance_extensions : std::vector<std::string>{}) {
     const std::vector<DeviceInfo> devices = instance_.devices();
     const std::size_t index =
         select_device(devices, options.name.empty() ? environment("EXEMPLAR_DEVICE") : options.name);
@@ -29,7 +43,8 @@ Device::Device(const DeviceOptions& options) : validating_(wants_validation()), 
     physical_ = instance_.physical_devices()[index];
     queue_family_ = find_compute_queue(physical_).value();
     vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
-    create();
+    if (options.presentation) require_presentation(*options.presentation);
+    create(options.presentation.has_value());
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
     try {
         pipeline_cache_ = std::make_unique<PipelineCache>(device_, info_);
@@ -39,7 +54,16 @@ Device::Device(const DeviceOptions& options) : validating_(wants_validation()), 
     }
 }
 
-void Device::create() {
+// The queue for compute and drawing is the one that presents; drivers with windows have it so.
+void Device::require_presentation(const PresentationOptions& presentation) const {
+    if (has_extension(physical_, VK_KHR_SWAPCHAIN_EXTENSION_NAME) &&
+        presentation.can_present(instance_.handle(), physical_, queue_family_))
+        return;
+    throw DeviceError(
+        fmt::format("device '{}' cannot show images in a window; choose another with --device", info_.name));
+}
+
+void Device::create(bool presents) {
     const float priority = 1.0f;
     const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                         .pNext = nullptr,
@@ -53,6 +77,7 @@ void Device::create() {
     features13.dynamicRendering = VK_TRUE;
     auto features =
         empty_structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &features13);
+    const char* const swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
     const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                   .pNext = &features,
                                   .flags = 0,
@@ -60,8 +85,8 @@ void Device::create() {
                                   .pQueueCreateInfos = &queue,
                                   .enabledLayerCount = 0,
                                   .ppEnabledLayerNames = nullptr,
-                                  .enabledExtensionCount = 0,
-                                  .ppEnabledExtensionNames = nullptr,
+                                  .enabledExtensionCount = presents ? 1u : 0u,
+                                  .ppEnabledExtensionNames = &swapchain,
                                   .pEnabledFeatures = nullptr};
     check(vkCreateDevice(physical_, &info, nullptr, &device_),
           [&] { return fmt::format("open device '{}'", info_.name); });
@@ -94,6 +119,11 @@ void Device::submit(VkCommandBuffer commands, VkFence fence, const SubmitOrder& 
     const std::lock_guard lock(queue_mutex_);
     check(vkQueueSubmit2(queue_, 1, &info, fence),
           [&] { return fmt::format("submit work to device '{}'", info_.name); });
+}
+
+VkResult Device::present(const VkPresentInfoKHR& info) {
+    const std::lock_guard lock(queue_mutex_);
+    return vkQueuePresentKHR(queue_, &info);
 }
 
 void Device::wait_idle() {

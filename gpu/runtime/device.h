@@ -3,8 +3,10 @@
 #include <volk.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,17 +17,26 @@
 
 namespace exemplar {
 
+/// What a device needs to show images in windows, as the window system says.
+struct PresentationOptions {
+    std::vector<std::string> instance_extensions;  ///< for surfaces
+    /// Whether queues of that family can present.
+    std::function<bool(VkInstance, VkPhysicalDevice, std::uint32_t family)> can_present;
+};
+
 struct DeviceOptions {
     /// An index of list_devices() or a part of a name in any case; empty: the environment's EXEMPLAR_DEVICE, else the
     /// best.
     std::string name{};
+    std::optional<PresentationOptions> presentation{};  ///< none: nothing is shown in windows
 };
 
 /// An opened Vulkan device with one queue for compute, copies and drawing. Everything made from it must end before it.
 /// With EXEMPLAR_VALIDATION=1 in the environment the validation layer watches; see validation_messages().
 class Device {
   public:
-    /// Throws NoDeviceError (no such device; the message lists those there are) or another DeviceError.
+    /// Throws NoDeviceError (no such device; the message lists those there are) or another DeviceError, such as for a
+    /// device that cannot present though it should.
     explicit Device(const DeviceOptions& options = {});
     ~Device();
     Device(const Device&) = delete;
@@ -38,6 +49,7 @@ class Device {
     std::shared_ptr<const ValidationLog> validation_log() const { return instance_.validation_log(); }
     bool validating() const { return validating_; }
 
+    VkInstance instance() const { return instance_.handle(); }
     VkPhysicalDevice physical() const { return physical_; }
     VkDevice handle() const { return device_; }
     VkQueue queue() const { return queue_; }
@@ -46,6 +58,8 @@ class Device {
 
     /// Submits recorded commands; any thread may call it. `fence` is signaled when they are done.
     void submit(VkCommandBuffer commands, VkFence fence, const SubmitOrder& order = {});
+    /// Hands images of swapchains back for showing, as vkQueuePresentKHR; any thread may call it.
+    VkResult present(const VkPresentInfoKHR& info);
     /// Waits until the device has nothing to do.
     void wait_idle();
 
@@ -58,7 +72,8 @@ class Device {
     }
 
   private:
-    void create();
+    void require_presentation(const PresentationOptions& presentation) const;
+    void create(bool presents);
     bool validating_;
     Instance instance_;
     DeviceInfo info_;

@@ -37,6 +37,14 @@ std::string result_name(VkResult result) {
             return "VK_ERROR_TOO_MANY_OBJECTS";
         case VK_ERROR_FORMAT_NOT_SUPPORTED:
             return "VK_ERROR_FORMAT_NOT_SUPPORTED";
+        case VK_SUBOPTIMAL_KHR:
+            return "VK_SUBOPTIMAL_KHR";
+        case VK_ERROR_OUT_OF_DATE_KHR:
+            return "VK_ERROR_OUT_OF_DATE_KHR";
+        case VK_ERROR_SURFACE_LOST_KHR:
+            return "VK_ERROR_SURFACE_LOST_KHR";
+        case VK_ERROR_NATIVE_WINDOW_IN_USE_KHR:
+            return "VK_ERROR_NATIVE_WINDOW_IN_USE_KHR";
         case VK_ERROR_OUT_OF_POOL_MEMORY:
             return "VK_ERROR_OUT_OF_POOL_MEMORY";
         default:
@@ -48,6 +56,8 @@ void check(VkResult result, std::string_view what) {
     if (result == VK_SUCCESS) return;
     if (result == VK_ERROR_DEVICE_LOST)
         throw DeviceLostError(fmt::format("cannot {}: the device was lost (it hung or was reset); start again", what));
+    if (result == VK_ERROR_SURFACE_LOST_KHR)
+        throw SurfaceLostError(fmt::format("cannot {}: the window system took the window's surface away", what));
     if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
         throw DeviceMemoryError(fmt::format("cannot {}: the {} memory is used up; use smaller inputs or another device",
                                             what, result == VK_ERROR_OUT_OF_DEVICE_MEMORY ? "device's" : "host's"));

@@ -23,6 +23,12 @@ class DeviceLostError : public DeviceError {
     using DeviceError::DeviceError;
 };
 
+/// What a window showed images on is gone; a new surface must be made of it.
+class SurfaceLostError : public DeviceError {
+  public:
+    using DeviceError::DeviceError;
+};
+
 /// The device's or the host's memory is used up.
 class DeviceMemoryError : public DeviceError {
   public:

@@ -1,6 +1,7 @@
 #include "gpu/runtime/instance.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstring>
@@ -22,10 +23,11 @@ void load_loader() {
         throw NoDeviceError("the Vulkan loader is older than 1.3; update libvulkan1");
 }
 
-// The loader's functions work for the handles of every instance, so they are loaded once.
-void load_functions(VkInstance instance) {
-    static std::once_flag loaded;
-    std::call_once(loaded, [&] { volkLoadInstance(instance); });
+// The loader's functions work for the handles of every instance, so they are loaded once; those of extensions when the
+// first instance with some is there.
+void load_functions(VkInstance instance, bool extended) {
+    static std::once_flag loaded, loaded_extended;
+    std::call_once(extended ? loaded_extended : loaded, [&] { volkLoadInstance(instance); });
 }
 
 bool has_layer(const char* name) {
@@ -51,12 +53,12 @@ VkDebugUtilsMessengerCreateInfoEXT messenger_info(PFN_vkDebugUtilsMessengerCallb
 }  // namespace
 
 // Delegates, so that the destructor ends what is there when the rest fails.
-Instance::Instance(bool validation) : Instance() {
+Instance::Instance(bool validation, const std::vector<std::string>& extensions) : Instance() {
     load_loader();
-    create(validation);
+    create(validation, extensions);
 }
 
-void Instance::create(bool validation) {
+void Instance::create(bool validation, const std::vector<std::string>& wanted_extensions) {
     if (validation && !has_layer(k_validation_layer))
         throw DeviceError(
             "EXEMPLAR_VALIDATION is set but the validation layer is missing; install vulkan-validationlayers");
@@ -65,6 +67,7 @@ void Instance::create(bool validation) {
         layers.push_back(k_validation_layer);
         extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     }
+    for (const std::string& extension : wanted_extensions) extensions.push_back(extension.c_str());
     VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(&Instance::collect, log_.get());
     const VkValidationFeatureEnableEXT enabled = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
     const VkValidationFeaturesEXT features{.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
@@ -91,8 +94,11 @@ void Instance::create(bool validation) {
     const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
         throw NoDeviceError("no Vulkan driver found; install one (mesa-vulkan-drivers has one for any CPU)");
+    if (result == VK_ERROR_EXTENSION_NOT_PRESENT)
+        throw DeviceError(fmt::format("no Vulkan driver here knows the extensions {}; update the driver",
+                                      fmt::join(wanted_extensions, ", ")));
     check(result, "create a Vulkan instance");
-    load_functions(instance_);
+    load_functions(instance_, !wanted_extensions.empty());
     if (!validation) return;
     const auto create_messenger = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
         vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));

@@ -35,8 +35,8 @@ class ValidationLog {
 class Instance {
   public:
     /// `validation` loads VK_LAYER_KHRONOS_validation with synchronization validation. Throws NoDeviceError if there is
-    /// no loader, DeviceError if the layer is missing.
-    explicit Instance(bool validation);
+    /// no loader, DeviceError if the layer or one of `extensions` is missing.
+    explicit Instance(bool validation, const std::vector<std::string>& extensions = {});
     ~Instance();
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
@@ -51,7 +51,7 @@ class Instance {
     static VKAPI_ATTR VkBool32 VKAPI_CALL collect(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                                   VkDebugUtilsMessageTypeFlagsEXT,
                                                   const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
-    void create(bool validation);
+    void create(bool validation, const std::vector<std::string>& wanted_extensions);
     VkInstance instance_ = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     std::shared_ptr<ValidationLog> log_ = std::make_shared<ValidationLog>();

@@ -233,6 +233,22 @@ void Stream::copy_image(VkImage image, VkImageAspectFlags aspect, VkExtent2D ext
                            &region);
 }
 
+void Stream::blit(VkImage source, VkExtent2D extent, VkImage target, VkRect2D part) {
+    begin();
+    const auto corner = [](std::int64_t x, std::int64_t y, std::int32_t z) {
+        return VkOffset3D{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), z};
+    };
+    VkImageBlit region{};
+    region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.srcOffsets[1] = corner(extent.width, extent.height, 1);
+    region.dstOffsets[0] = corner(part.offset.x, part.offset.y, 0);
+    region.dstOffsets[1] =
+        corner(std::int64_t{part.offset.x} + part.extent.width, std::int64_t{part.offset.y} + part.extent.height, 1);
+    const bool scales = extent.width != part.extent.width || extent.height != part.extent.height;
+    vkCmdBlitImage(commands_.handle(), source, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target,
+                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, scales ? VK_FILTER_LINEAR : VK_FILTER_NEAREST);
+}
+
 std::pair<Stream::Staging*, std::size_t> Stream::stage(std::vector<Staging>& blocks, std::size_t bytes,
                                                        BufferMemory memory) {
     const std::size_t padded = (bytes + k_staging_alignment - 1) / k_staging_alignment * k_staging_alignment;

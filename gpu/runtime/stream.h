@@ -77,6 +77,10 @@ class Stream {
     void copy_image(VkImage image, VkImageAspectFlags aspect, VkExtent2D extent, std::size_t texel_bytes,
                     const Buffer& target);
 
+    /// Fills a part of an image in VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL with all of another's color, of `extent` pixels
+    /// and in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL; scales it if sizes differ. The caller has made the source visible.
+    void blit(VkImage source, VkExtent2D extent, VkImage target, VkRect2D part);
+
     /// Copies host values into `target` at byte `offset`; `values` may end as soon as this returns.
     template <typename T>
     void upload(Buffer& target, std::span<const T> values, std::size_t offset = 0) {

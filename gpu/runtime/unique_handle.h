@@ -45,6 +45,8 @@ using UniqueDescriptorPool = UniqueHandle<VkDescriptorPool, &vkDestroyDescriptor
 using UniquePipelineLayout = UniqueHandle<VkPipelineLayout, &vkDestroyPipelineLayout>;
 using UniquePipeline = UniqueHandle<VkPipeline, &vkDestroyPipeline>;
 using UniqueCommandPool = UniqueHandle<VkCommandPool, &vkDestroyCommandPool>;
+using UniqueSemaphore = UniqueHandle<VkSemaphore, &vkDestroySemaphore>;
+using UniqueSwapchain = UniqueHandle<VkSwapchainKHR, &vkDestroySwapchainKHR>;
 using UniqueFence = UniqueHandle<VkFence, &vkDestroyFence>;
 using UniqueQueryPool = UniqueHandle<VkQueryPool, &vkDestroyQueryPool>;
 

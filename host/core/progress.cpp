@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
+#include <memory>
+#include <utility>
 
 #include "host/core/text.h"
 
@@ -13,6 +15,15 @@ namespace exemplar {
 namespace {
 
 std::atomic<bool> quiet_output{false};
+
+using Listener = std::function<void(const ProgressState&)>;
+std::mutex listener_mutex;
+std::shared_ptr<const Listener> current_listener;
+
+std::shared_ptr<const Listener> listener() {
+    const std::lock_guard lock(listener_mutex);
+    return current_listener;
+}
 
 using Clock = std::chrono::steady_clock;
 
@@ -38,6 +49,11 @@ Progress::~Progress() {
     finish();
 }
 
+void Progress::set_listener(Listener listener) {
+    const std::lock_guard lock(listener_mutex);
+    current_listener = listener ? std::make_shared<const Listener>(std::move(listener)) : nullptr;
+}
+
 void Progress::set_quiet(bool quiet) {
     quiet_output = quiet;
 }
@@ -47,6 +63,10 @@ void Progress::advance(std::size_t steps, const std::string& detail) {
     if (finished_) return;
     done_ += steps;
     detail_ = detail;
+    if (const auto hears = listener()) {
+        (*hears)({what_, done_, total_});
+        return;
+    }
     const double interval = on_terminal_ ? 0.1 : 5.0;
     if (seconds_since(printed_) >= interval) print(false);
 }
@@ -60,7 +80,7 @@ void Progress::finish() {
 
 void Progress::print(bool last) {
     printed_ = Clock::now();
-    if (quiet_output) return;
+    if (quiet_output || listener()) return;
     const double elapsed = seconds_since(start_);
     // Some tasks end early because nothing is left to gain: the last line tells what was done, not what might have
     // been.

@@ -2,10 +2,17 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <mutex>
 #include <string>
 
 namespace exemplar {
+
+/// How far a task is.
+struct ProgressState {
+    std::string what;
+    std::size_t done = 0, total = 0;
+};
 
 /// Reports how far a long task is, with the time left, to stderr: one line rewritten in place on a terminal, a line
 /// every few seconds elsewhere. Thread-safe. Silent progress (the default-constructed) costs nothing.
@@ -21,6 +28,10 @@ class Progress {
     void advance(std::size_t steps = 1, const std::string& detail = {});
     /// Ends the line; the destructor does it too.
     void finish();
+
+    /// Tells all progress to `listener` instead of stderr; an empty one ends that. It is called from the threads that
+    /// work, one at a time per task, and may throw to end the task.
+    static void set_listener(std::function<void(const ProgressState&)> listener);
 
     /// Turns all progress output off or on (programs set it from --quiet).
     static void set_quiet(bool quiet);

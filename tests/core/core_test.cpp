@@ -8,6 +8,7 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/parallel.h"
+#include "host/core/progress.h"
 #include "host/core/random.h"
 #include "host/core/text.h"
 #include "tests/support/temporary_folder.h"
@@ -171,6 +172,27 @@ TEST(Parallel, ErrorsReachTheCaller) {
                                   if (i == 57) throw MeshError("57");
                               }),
                  MeshError);
+}
+
+TEST(Progress, TellsItsListenerFromAllThreadsAndLetsItEndTheTask) {
+    std::atomic<std::size_t> steps = 0;
+    Progress::set_listener([&](const ProgressState& state) {
+        EXPECT_EQ(state.what, "counting");
+        EXPECT_EQ(state.total, 100u);
+        if (++steps == 40) throw Interrupted();
+    });
+    const auto count = [] {
+        Progress progress("counting", 100);
+        parallel_for(100, [&](std::size_t) { progress.advance(); });
+    };
+    EXPECT_THROW(count(), Interrupted);
+    EXPECT_GE(steps, 40u);
+    EXPECT_LT(steps, 100u);
+    Progress::set_listener({});
+    steps = 0;
+    Progress::set_quiet(true);
+    count();
+    EXPECT_EQ(steps, 0u);
 }
 
 }  // namespace

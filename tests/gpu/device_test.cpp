@@ -230,5 +230,22 @@ TEST_F(PipelineCacheTest, AFolderThatCannotBeWrittenDoesNoHarm) {
     EXPECT_EQ(run(), 0u);
 }
 
+// The window system says which queues present; here none does, and one that needs what no driver has.
+TEST(Presentation, DevicesThatCannotPresentSaySo) {
+    const PresentationOptions never{.instance_extensions = {},
+                                    .can_present = [](VkInstance, VkPhysicalDevice, std::uint32_t) { return false; }};
+    const PresentationOptions unknown{.instance_extensions = {"VK_EXEMPLAR_no_such_thing"}, .can_present = {}};
+    const auto message = [](const PresentationOptions& presentation) -> std::string {
+        try {
+            const Device device({.presentation = presentation});
+        } catch (const DeviceError& error) {
+            return error.what();
+        }
+        return {};
+    };
+    EXPECT_THAT(message(never), AllOf(HasSubstr(shared_device().info().name), HasSubstr("--device")));
+    EXPECT_THAT(message(unknown), HasSubstr("VK_EXEMPLAR_no_such_thing"));
+}
+
 }  // namespace
 }  // namespace exemplar

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <span>
+
+#include "host/imaging/camera.h"
+#include "host/mesh/mesh.h"
+
+namespace exemplar {
+
+/// A ball around what is looked at, in mesh units.
+struct ViewBall {
+    Vec3 center = Vec3::Zero();
+    float radius = 1;
+};
+/// A ball around all points, at least a little larger than nothing.
+ViewBall ball_around(std::span<const Vec3> points);
+
+/// Size of a picture in pixels.
+struct ViewSize {
+    int width = 1, height = 1;
+};
+
+enum class ViewSide { front, back, left, right, top, bottom };
+
+/// A camera that a hand moves: it turns around a target as a ball under the cursor does (after Bell's trackball, which
+/// never jumps or flips), pans with the target under the cursor, and zooms towards it. Cursors are in pixels, (0, 0)
+/// the upper left corner.
+class OrbitCamera {
+  public:
+    /// Shows the whole ball from where the camera is turned to.
+    void fit(const ViewBall& ball, ViewSize size);
+    /// Turns by the way from one place of the cursor to another.
+    void orbit(const Vec2& from, const Vec2& to, ViewSize size);
+    /// Turns around the picture's up axis and its right axis, in radians.
+    void turn(float around_up, float around_right);
+    /// Moves so that what is at the target's depth follows the cursor.
+    void pan(const Vec2& from, const Vec2& to, ViewSize size);
+    /// Comes nearer by a factor (below 1: goes away); what is under the cursor at the target's depth stays there.
+    void zoom(float factor, const Vec2& cursor, ViewSize size);
+    /// Looks from a side, or with +y up from where it is.
+    void look_from(ViewSide side);
+    void turn_upright();
+    void set_parallel(bool parallel) { parallel_ = parallel; }
+    bool parallel() const { return parallel_; }
+
+    Camera camera(ViewSize size) const;
+    const Vec3& target() const { return target_; }
+    float distance() const { return distance_; }
+    /// From view space to the world.
+    const Eigen::Quaternionf& rotation() const { return rotation_; }
+
+  private:
+    float half_height() const;  // of what is seen at the target's depth, in mesh units
+    Vec2 on_target_plane(const Vec2& cursor, ViewSize size) const;
+    ViewBall ball_;
+    Vec3 target_ = Vec3::Zero();
+    Eigen::Quaternionf rotation_ = Eigen::Quaternionf::Identity();
+    float distance_ = 5;
+    bool parallel_ = false;
+};
+
+}  // namespace exemplar

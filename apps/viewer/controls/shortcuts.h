@@ -1,0 +1,68 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace exemplar {
+
+/// What keys do. One table says which; the help panel shows the same.
+enum class Action {
+    play_pause,
+    next_frame,
+    previous_frame,
+    first_frame,
+    last_frame,
+    faster,
+    slower,
+    loop,
+    next_clip,
+    fit,
+    upright,
+    front,
+    back,
+    left,
+    right,
+    top,
+    bottom,
+    parallel,
+    turn_left,
+    turn_right,
+    turn_up,
+    turn_down,
+    zoom_in,
+    zoom_out,
+    next_light,
+    next_paint,
+    curvature_source,
+    reset_pose,
+    save_png,
+    save_model,
+    panels,
+    frame_times,
+    help,
+    quit
+};
+
+struct Shortcut {
+    Action action;
+    int key;  ///< as GLFW numbers them
+    bool control;
+    std::string_view keys;  ///< as they are shown
+    std::string_view what;
+};
+
+/// All shortcuts, in the order they are shown. An action may have several, of which the first is shown.
+std::span<const Shortcut> shortcuts();
+/// The action of a key, if it has one.
+std::optional<Action> action_of(int key, bool control);
+/// What moves the camera, for the same panel: buttons or wheel, and what they do.
+struct MouseHint {
+    std::string_view mouse, what;
+};
+std::span<const MouseHint> mouse_hints();
+/// The keys of an action as they are shown; empty if there is none.
+std::string_view keys_of(Action action);
+
+}  // namespace exemplar

@@ -1,0 +1,151 @@
+// exemplar-viewer: shows meshes and animations, with what was learned of them. Exit codes: 0 success, 1 error (one line
+// on stderr), 2 wrong usage, 130 interrupted.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdio>
+#include <exception>
+#include <map>
+
+#include "apps/viewer/options.h"
+#include "host/core/errors.h"
+#include "host/core/interrupt.h"
+#include "host/core/progress.h"
+#include "host/core/text.h"
+
+namespace exemplar {
+namespace {
+
+template <typename T>
+using Names = std::map<std::string, T>;
+
+const Names<SurfacePaint> k_paints{{"plain", SurfacePaint::plain},         {"labels", SurfacePaint::faces},
+                                   {"mean", SurfacePaint::mean_curvature}, {"gauss", SurfacePaint::gaussian_curvature},
+                                   {"k1", SurfacePaint::first_curvature},  {"k2", SurfacePaint::second_curvature},
+                                   {"normals", SurfacePaint::normals}};
+const Names<SurfaceLight> k_lights{{"smooth", SurfaceLight::smooth},
+                                   {"flat", SurfaceLight::flat},
+                                   {"steps", SurfaceLight::steps},
+                                   {"none", SurfaceLight::none}};
+const Names<ShownCurvature> k_sources{
+    {"estimated", ShownCurvature::estimated}, {"learned", ShownCurvature::learned}, {"both", ShownCurvature::both}};
+const Names<ViewSide> k_sides{{"front", ViewSide::front}, {"back", ViewSide::back}, {"left", ViewSide::left},
+                              {"right", ViewSide::right}, {"top", ViewSide::top},   {"bottom", ViewSide::bottom}};
+
+template <typename T>
+void add_choice(CLI::App& app, const std::string& name, std::optional<T>& value, const std::string& help,
+                const Names<T>& names) {
+    app.add_option_function<std::string>(
+           name, [&value, &names](const std::string& word) { value = names.at(word); }, help)
+        ->check(CLI::IsMember(&names));
+}
+
+// "contours,ridges"; "none" for no lines.
+std::vector<LineType> parse_lines(const std::vector<std::string>& words) {
+    std::vector<LineType> types;
+    std::vector<std::string> names{"none"};
+    for (const LineType type : k_line_types) names.emplace_back(name_of(type));
+    for (const std::string& word : words) {
+        const std::optional<LineType> type = line_type_named(word);
+        if (!type && word != "none")
+            throw UsageError(fmt::format("there are no lines '{}'{}", word, suggestion(word, names)));
+        if (type) types.push_back(*type);
+    }
+    return types;
+}
+
+ViewSize parse_size(const std::string& text) {
+    constexpr int k_largest = 16384;
+    ViewSize size{0, 0};
+    const char* const end = text.data() + text.size();
+    const auto [middle, width_error] = std::from_chars(text.data(), end, size.width);
+    if (width_error == std::errc() && middle != end && *middle == 'x') {
+        const auto [stop, height_error] = std::from_chars(middle + 1, end, size.height);
+        if (height_error == std::errc() && stop == end && size.width > 0 && size.height > 0 &&
+            size.width <= k_largest && size.height <= k_largest)
+            return size;
+    }
+    throw UsageError(fmt::format("'{}' is no size; write WIDTHxHEIGHT, up to {} each", text, k_largest));
+}
+
+void add_options(CLI::App& app, ViewerOptions& options, std::string& size) {
+    app.add_option("FILE", options.file, "mesh (OFF, OBJ, PLY, STL, glTF), animation (glTF), or folder of meshes")
+        ->type_name("");
+    app.add_option("--model", options.model, "model of the animation's curvature, .safetensors")->type_name("FILE");
+    app.add_option("--clip", options.clip, "clip to play; default: the first")->type_name("NAME");
+    app.add_option("--first-frame", options.first_frame, "frame of the clip to begin with; a window stands there");
+    app.add_option_function<std::vector<std::string>>(
+           "--lines", [&options](const std::vector<std::string>& words) { options.lines = parse_lines(words); },
+           "lines to draw, as in contours,suggestive_contours (the default); none for no lines")
+        ->delimiter(',')
+        ->type_name("TYPE");
+    app.add_option("--style", options.style, "style of the drawing: a built-in name or a file")->type_name("STYLE");
+    add_choice(app, "--paint", options.paint, "colors: labels, curvature (mean, gauss, k1, k2), ...", k_paints);
+    add_choice(app, "--light", options.light, "shading", k_lights);
+    add_choice(app, "--curvature", options.source, "curvature that is shown", k_sources);
+    add_choice(app, "--side", options.side, "side to look from", k_sides);
+    app.add_flag("--parallel", options.parallel, "parallel projection");
+    app.add_option("--size", size, "size of window or pictures, in pixels")->capture_default_str()->type_name("WxH");
+    app.add_option("--device", options.device, "Vulkan device: index or part of its name (see 'exemplar devices')")
+        ->type_name("NAME");
+    app.add_flag("--headless", options.headless, "draws without a window");
+    app.add_option("--frames", options.frames, "frames to draw before it ends; 0: until the window is closed")
+        ->capture_default_str();
+    app.add_option("--out", options.out,
+                   "with --headless: folder for frame_0000.png and so on; none is written without")
+        ->type_name("FOLDER");
+    app.add_flag("--plain", options.plain_window, "shows no panels to begin with");
+    app.add_flag("--quiet", options.quiet, "no progress and no remarks");
+    app.add_option("--lose-device-at", options.losing_frame, "")->group("");
+}
+
+int run(int argc, char** argv) {
+    CLI::App app("Shows meshes and animations, with their curvature estimated and learned.");
+    app.name("exemplar-viewer");
+    app.footer(
+        "F1 in the window shows its keys.\n"
+        "Exit codes: 0 done, 1 error (one line says what), 2 wrong usage, 130 interrupted.\n\nExamples:\n"
+        "  exemplar synth figure --seed 1 --out shapes\n"
+        "  exemplar-viewer shapes/figure_001.glb\n"
+        "  exemplar-viewer shapes/figure_001.glb --headless --frames 30 --out frames");
+    app.set_version_flag("--version", EXEMPLAR_VERSION);
+    ViewerOptions options;
+    std::string size = "1280x720";
+    add_options(app, options, size);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+        fmt::print(stderr, "error: {}; see 'exemplar-viewer --help'\n", error.what());
+        return 2;
+    }
+    options.size = parse_size(size);
+    if (!options.headless && !options.out.empty()) throw UsageError("--out needs --headless");
+    Progress::set_quiet(options.quiet);
+    options.headless ? run_headless(options) : run_window(options);
+    return 0;
+}
+
+}  // namespace
+}  // namespace exemplar
+
+int main(int argc, char** argv) {
+    exemplar::install_interrupt_handler();
+    try {
+        return exemplar::run(argc, argv);
+    } catch (const exemplar::Interrupted&) {
+        fmt::print(stderr, "interrupted\n");
+        return 130;
+    } catch (const exemplar::UsageError& error) {
+        fmt::print(stderr, "error: {}\n", error.what());
+        return 2;
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "error: out of memory; use a smaller mesh\n");
+        return 1;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "error: {}\n", error.what());
+        return 1;
+    }
+}

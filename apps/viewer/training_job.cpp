@@ -1,0 +1,52 @@
+#include "apps/viewer/training_job.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "host/core/errors.h"
+#include "host/core/progress.h"
+
+namespace exemplar {
+
+TrainingJob::TrainingJob(Animation animation, std::uint64_t seed) {
+    Progress::set_listener([this](const ProgressState& state) {
+        if (canceled_) throw Interrupted();
+        const std::lock_guard lock(mutex_);
+        status_.what = state.what;
+        status_.share = static_cast<float>(state.done) / static_cast<float>(std::max<std::size_t>(state.total, 1));
+    });
+    result_ = std::async(std::launch::async,
+                         [this, animation = std::move(animation), seed] { return train(animation, seed); });
+}
+
+TrainingJob::~TrainingJob() {
+    cancel();
+    if (result_.valid()) result_.wait();
+    Progress::set_listener({});
+}
+
+CurvatureModel TrainingJob::train(const Animation& animation, std::uint64_t seed) {
+    const std::vector<FrameRef> frames = select_frames(animation, {});
+    CurvatureTraining options;
+    options.seed = seed;
+    // As the command line has it: another fold of a cloth may show what training hardly does.
+    if (animation.kind == AnimationKind::sequence) options.dropped_variance = 0;
+    CurvatureTrainingReport report;
+    CurvatureModel model = train_curvature(animation, frames, options, report);
+    if (canceled_) throw Interrupted();
+    model.training = {{"animation", animation.name}, {"poses", std::to_string(frames.size())}};
+    return model;
+}
+
+TrainingJob::Status TrainingJob::status() const {
+    const std::lock_guard lock(mutex_);
+    Status status = status_;
+    status.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    return status;
+}
+
+bool TrainingJob::finished() const {
+    return result_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+}  // namespace exemplar

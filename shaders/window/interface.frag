@@ -1,0 +1,29 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/window.h"
+
+// Text and shapes of the interface: the color, as opaque as the atlas is there.
+layout(push_constant) uniform Push { InterfaceParameters parameters; };
+// Of each texel (x, y) the opacities at (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1), a byte each: all that is needed
+// between their centers.
+layout(set = 0, binding = 2) uniform usamplerBuffer atlas;
+
+layout(location = 0) in vec2 place;
+layout(location = 1) in vec4 color;
+layout(location = 0) out vec4 premultiplied;
+
+float opacity() {
+    // Most of an interface is plain areas.
+    if (all(lessThan(abs(place - parameters.white), vec2(1e-6)))) return 1.0;
+    const vec2 size = vec2(parameters.atlas_width, parameters.atlas_height);
+    const vec2 at = clamp(place * size - 0.5, vec2(0.0), size - 1.0);
+    const uvec2 texel = uvec2(at);
+    const vec4 around = unpackUnorm4x8(texelFetch(atlas, int(texel.y * parameters.atlas_width + texel.x)).x);
+    const vec2 part = fract(at);
+    return mix(mix(around.x, around.y, part.x), mix(around.z, around.w, part.x), part.y);
+}
+
+void main() {
+    const float alpha = color.a * opacity();
+    premultiplied = vec4(color.rgb * alpha, alpha);
+}

@@ -1,0 +1,280 @@
+"""exemplar-viewer from outside: its pictures without a window, and its window on a display of its own (Xvfb).
+
+Skipped where there is no Xvfb or xdotool.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import struct
+import subprocess
+import time
+import unittest
+import zlib
+
+from program import CUBE, CUBE_QUADS, ProgramTest, write_off
+
+VIEWER = pathlib.Path(os.environ.get("EXEMPLAR_VIEWER", "build/exemplar-viewer")).absolute()
+WIDTH, HEIGHT = 1280, 720  # of the display
+
+
+def read_png(path):
+    """Width, height and bytes of an 8-bit RGB image."""
+    data = path.read_bytes()
+    chunks, at = {}, 8
+    while at < len(data):
+        size, kind = struct.unpack(">I4s", data[at:at + 8])
+        chunks[kind] = chunks.get(kind, b"") + data[at + 8:at + 8 + size]
+        at += size + 12
+    width, height, depth, color = struct.unpack(">IIBB", chunks[b"IHDR"][:10])
+    assert (depth, color) == (8, 2)
+    rows, stride, before = [], 3 * width, bytes(3 * width)
+    raw = zlib.decompress(chunks[b"IDAT"])
+    for y in range(height):
+        kind, row = raw[y * (stride + 1)], bytearray(raw[y * (stride + 1) + 1:(y + 1) * (stride + 1)])
+        for i in range(stride):
+            left, up = row[i - 3] if i >= 3 else 0, before[i]
+            corner = before[i - 3] if i >= 3 else 0
+            if kind == 1:
+                add = left
+            elif kind == 2:
+                add = up
+            elif kind == 3:
+                add = (left + up) // 2
+            elif kind == 4:
+                guess = left + up - corner
+                add = min((left, up, corner), key=lambda value: abs(guess - value))
+            else:
+                add = 0
+            row[i] = (row[i] + add) & 255
+        before = bytes(row)
+        rows.append(before)
+    return width, height, b"".join(rows)
+
+
+class Viewer(ProgramTest):
+    """Without a window."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.environment.setdefault("XDG_RUNTIME_DIR", str(cls.folder))
+        cls.environment["EXEMPLAR_VALIDATION"] = "1"
+        cls.call("synth", "figure", "--vertices", "800", "--frames", "30", "--seed", "1", "--out", ".")
+
+    @classmethod
+    def start_viewer(cls, *arguments):
+        return subprocess.Popen([VIEWER, *map(str, arguments)], cwd=cls.folder, env=cls.environment, text=True,
+                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+    @classmethod
+    def view(cls, *arguments, code=0):
+        process = cls.start_viewer(*arguments)
+        output, errors = process.communicate(timeout=240)
+        if process.returncode != code:
+            raise AssertionError(f"exemplar-viewer {arguments} gave {process.returncode}: {output}{errors}")
+        return output, errors
+
+    def picture(self, *arguments):
+        self.view(*arguments, "--headless", "--out", "out", "--quiet")
+        return read_png(self.folder / "out" / "frame_0000.png")
+
+
+class Headless(Viewer):
+    def test_frames_are_those_of_the_animation(self):
+        self.view("figure_001.glb", "--headless", "--frames", "3", "--out", "frames", "--size", "160x120")
+        files = sorted((self.folder / "frames").iterdir())
+        self.assertEqual([file.name for file in files], ["frame_0000.png", "frame_0001.png", "frame_0002.png"])
+        third = read_png(files[2])
+        self.assertEqual(third[:2], (160, 120))
+        self.assertGreater(len(set(zip(*[iter(third[2])] * 3))), 20)
+        self.assertFalse(third[2] == read_png(files[0])[2])
+        again = self.picture("figure_001.glb", "--size", "160x120", "--first-frame", "2")
+        self.assertTrue(again == third)
+
+    def test_labels_color_a_mesh(self):
+        write_off(self.folder / "cube.off", CUBE, CUBE_QUADS)
+        plain = self.picture("cube.off", "--size", "64x64", "--light", "none")[2]
+        (self.folder / "cube_labels.txt").write_text("side\n1 3 4 5 6\nlid\n2\n")
+        colored = self.picture("cube.off", "--size", "64x64", "--light", "none")[2]
+        self.assertEqual(colored[3 * (32 * 64 + 32):][:3], bytes([64, 120, 200]))  # the second label's color
+        self.assertFalse(plain == colored)
+
+    def test_learned_curvature_is_shown_beside_that_of_every_frame(self):
+        self.call("curvature", "train", "figure_001.glb", "--out", "m.safetensors", "--augment", "40")
+        size = ["--size", "200x100", "--paint", "mean", "--first-frame", "4", "--lines", "none"]
+        both = self.picture("figure_001.glb", "--model", "m.safetensors", "--curvature", "both", *size)
+        half = self.picture("figure_001.glb", *size[2:], "--size", "100x100")
+        right = b"".join(both[2][600 * y + 300:600 * (y + 1)] for y in range(100))
+        left = b"".join(both[2][600 * y:600 * y + 300] for y in range(100))
+        self.assertFalse(left == right)
+        for picture in (left, half[2]):  # the model also has its own unit of smoothing
+            self.assertLess(sum(abs(a - b) for a, b in zip(picture, right)) / 30000, 3)
+
+    def test_lines_and_styles_are_drawn(self):
+        arguments = ["figure_001.glb", "--size", "200x150", "--first-frame", "3"]
+        none = self.picture(*arguments, "--lines", "none", "--light", "none")
+        contours = self.picture(*arguments, "--lines", "contours", "--light", "none")
+        more = self.picture(*arguments, "--lines", "contours,ridges,valleys", "--light", "none")
+        dark = [sum(max(pixel) < 100 for pixel in zip(*[iter(picture[2])] * 3)) for picture in (none, contours, more)]
+        self.assertEqual(dark[0], 0)
+        self.assertGreater(dark[1], 100)
+        self.assertGreater(dark[2], dark[1])
+        blue = self.picture(*arguments, "--style", "blueprint")
+        self.assertEqual(blue[2][:3], bytes.fromhex("16407c"))
+
+    def test_memory_does_not_grow(self):
+        output, _ = self.view("figure_001.glb", "--headless", "--frames", "500", "--size", "96x64", "--paint", "mean")
+        before, after = map(float, re.search(r"memory: ([\d.]+) MiB after .*, ([\d.]+) MiB after 500", output).groups())
+        self.assertLess(after - before, 2)  # MiB; a kilobyte a frame would be half of that
+
+    def test_wrong_arguments_are_refused_in_one_line(self):
+        for arguments, code, says in [(["nowhere.glb", "--headless"], 1, "nowhere.glb"),
+                                      (["--headless"], 2, "FILE"),
+                                      (["figure_001.glb", "--size", "0x9"], 2, "0x9"),
+                                      (["figure_001.glb", "--out", "x"], 2, "--headless"),
+                                      (["figure_001.glb", "--headless", "--clip", "moton_1"], 2, "'motion_1'"),
+                                      (["figure_001.glb", "--headless", "--model", "figure_001.glb"], 1, "figure"),
+                                      (["figure_001.glb", "--lines", "contour"], 2, "'contours'"),
+                                      (["figure_001.glb", "--headless", "--style", "inc"], 1, "'ink'"),
+                                      (["figure_001.glb", "--paint", "red"], 2, "red")]:
+            lines = self.view(*arguments, code=code)[1].splitlines()
+            self.assertEqual(len(lines), 1, lines)
+            self.assertTrue(lines[0].startswith("error: "), lines)
+            self.assertIn(says, lines[0])
+
+    def test_without_a_display_it_says_how_to_do_without(self):
+        environment = dict(self.environment)
+        self.environment.pop("DISPLAY", None)
+        self.environment.pop("WAYLAND_DISPLAY", None)
+        try:
+            self.assertIn("--headless", self.view("figure_001.glb", code=2)[1])
+        finally:
+            self.environment.update(environment)
+
+
+@unittest.skipUnless(shutil.which("Xvfb") and shutil.which("xdotool"), "needs Xvfb and xdotool")
+class InWindow(Viewer):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        reader, writer = os.pipe()
+        cls.display = subprocess.Popen(["Xvfb", "-displayfd", str(writer), "-screen", "0", f"{WIDTH}x{HEIGHT}x24",
+                                        "-fbdir", str(cls.folder), "-nolisten", "tcp", "-nocursor"], pass_fds=[writer],
+                                       stderr=subprocess.DEVNULL)
+        cls.addClassCleanup(cls.end_display)
+        os.close(writer)
+        with os.fdopen(reader) as file:
+            cls.environment["DISPLAY"] = ":" + file.readline().strip()
+        cls.environment.pop("WAYLAND_DISPLAY", None)
+
+    @classmethod
+    def end_display(cls):
+        cls.display.terminate()
+        cls.display.wait()
+
+    def screen(self, width, height):
+        """RGB of the upper left part of the screen, where windows open without a window manager."""
+        data = (self.folder / "Xvfb_screen0").read_bytes()
+        head = struct.unpack(">25I", data[:100])
+        at, stride = head[0] + 12 * head[19], head[12]
+        self.assertEqual((head[11], head[7]), (32, 0))  # bits per pixel, lowest byte first
+        rows = []
+        for y in range(height):
+            row = data[at + y * stride:at + y * stride + 4 * width]
+            rgb = bytearray(3 * width)
+            rgb[0::3], rgb[1::3], rgb[2::3] = row[2::4], row[1::4], row[0::4]
+            rows.append(bytes(rgb))
+        return b"".join(rows)
+
+    def difference(self, picture):
+        width, height, pixels = picture
+        screen = self.screen(width, height)
+        return max(abs(a - b) for a, b in zip(screen, pixels))
+
+    def until(self, condition, what):
+        end = time.monotonic() + 60
+        while not condition():
+            if time.monotonic() > end:
+                self.fail(f"waited in vain until {what}")
+            time.sleep(0.1)
+
+    def open(self, *arguments):
+        process = self.start_viewer("--quiet", *arguments)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        self.until(lambda: process.poll() is not None or self.windows(process), "the window opens")
+        self.assertIsNone(process.poll(), process.poll() and process.communicate())
+        return process, self.windows(process)[0]
+
+    def windows(self, process):
+        return self.xdotool("search", "--pid", process.pid, "--name", "Exemplar", check=False).split()
+
+    def xdotool(self, *arguments, check=True):
+        result = subprocess.run(["xdotool", *map(str, arguments)], env=self.environment, text=True, timeout=60,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
+        if check:
+            self.assertEqual(result.returncode, 0, result.stderr)
+        return result.stdout
+
+    def closes_well(self, process):
+        """By its key; validation messages make the exit code 1."""
+        self.xdotool("mousemove", 200, 100, "key", "ctrl+q")
+        errors = process.communicate(timeout=60)[1]
+        self.assertEqual((process.returncode, errors), (0, ""))
+
+    def test_shows_the_headless_picture_in_every_size(self):
+        frame = ["figure_001.glb", "--first-frame", "7"]
+        process, window = self.open(*frame, "--plain", "--size", "640x480")
+        picture = self.picture(*frame, "--size", "640x480")
+        self.until(lambda: self.difference(picture) <= 2, "the window shows the headless picture")
+        for width, height in [(400, 300), (1, 1), (3, 700), (800, 600)]:
+            self.xdotool("windowsize", window, width, height)
+            time.sleep(0.3)
+            self.assertIsNone(process.poll())
+        larger = self.picture(*frame, "--size", "800x600")
+        self.until(lambda: self.difference(larger) <= 2, "the larger window shows the larger picture")
+        self.closes_well(process)
+
+    def test_survives_being_hidden_and_dragged_to_sizes(self):
+        process, window = self.open("figure_001.glb")
+        self.xdotool("windowunmap", window)
+        time.sleep(0.5)
+        self.xdotool("windowmap", window)
+        for i in range(30):
+            self.xdotool("windowsize", window, 300 + 31 * i, 680 - 17 * i)
+        time.sleep(0.5)
+        self.closes_well(process)
+
+    def test_hands_move_the_camera_and_keys_do_what_they_say(self):
+        process, window = self.open("figure_001.glb", "--first-frame", "3", "--plain", "--size", "640x480")
+        picture = self.picture("figure_001.glb", "--first-frame", "3", "--size", "640x480")
+        self.until(lambda: self.difference(picture) <= 2, "the window shows the picture")
+        for step in [("mousemove", 320, 240), ("mousedown", 1), ("mousemove", 400, 200), ("mouseup", 1)]:
+            self.xdotool(*step)
+            time.sleep(0.3)
+        self.until(lambda: self.difference(picture) > 50, "a drag turns the camera")
+        self.xdotool("key", "4")
+        right = self.picture("figure_001.glb", "--first-frame", "3", "--size", "640x480", "--side", "right")
+        self.until(lambda: self.difference(right) <= 2, "4 looks from the right")
+        for key in ["1", "5", "f", "s", "c", "c", "c", "o", "p", "g", "h", "space", "period", "Tab", "v", "r"]:
+            self.xdotool("key", key)
+            time.sleep(0.05)
+        self.xdotool("key", "ctrl+s")
+        self.until(lambda: list(self.folder.glob("figure_001_*.png")), "Ctrl+S saves a picture")
+        self.closes_well(process)
+
+    def test_a_lost_device_is_opened_again(self):
+        process, _ = self.open("figure_001.glb", "--first-frame", "7", "--plain", "--size", "640x480",
+                               "--lose-device-at", "2")
+        time.sleep(2)
+        self.closes_well(process)
+
+    def test_ends_after_as_many_frames_as_asked(self):
+        output = self.view("figure_001.glb", "--frames", "40", "--size", "320x240")[0]
+        self.assertRegex(output, r"first frame after \d+ ms")
+
+
+if __name__ == "__main__":
+    unittest.main()

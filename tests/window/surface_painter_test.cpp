@@ -1,0 +1,128 @@
+#include "gpu/window/surface_painter.h"
+
+#include <gtest/gtest.h>
+
+#include "host/imaging/raster.h"
+#include "tests/window/canvas.h"
+
+namespace exemplar {
+namespace {
+
+using shared::uvec4;
+using shared::vec4;
+using testing::Canvas;
+using testing::shared_device;
+
+constexpr std::uint32_t k_size = 48;
+
+// Two triangles that fill the view of a parallel camera along -z, with what gpu/curvature would say of them.
+class SurfacePainting : public ::testing::Test {
+  protected:
+    std::vector<std::uint32_t> draw(const PaintLook& look) {
+        Device& device = shared_device();
+        const SurfacePainter painter(device, Canvas::k_format, depth_format(device));
+        const Buffer faces = Buffer::of<uvec4>(device, std::vector<uvec4>{{0, 1, 2, 0}, {0, 2, 3, 0}});
+        const Buffer vertices =
+            Buffer::of<vec4>(device, std::vector<vec4>{{-1, -1, 0, 1}, {1, -1, 0, 1}, {1, 1, 0, 1}, {-1, 1, 0, 1}});
+        const Buffer normals = Buffer::of<vec4>(device, std::vector<vec4>(4, normal_));
+        const Buffer colors = Buffer::of<std::uint32_t>(device, std::vector<std::uint32_t>{0x0000ff, 0x00ff00});
+        const Buffer first = Buffer::of<vec4>(device, std::vector<vec4>(4, {1, 0, 0, k1_}));
+        const Buffer second = Buffer::of<vec4>(device, std::vector<vec4>(4, {0, 1, 0, k2_}));
+        Camera camera;
+        camera.view = look_at(Vec3(0, 0, 2), Vec3::Zero());
+        camera.projection = orthographic(1, 1, 1, 3);
+        Canvas canvas(k_size, k_size);
+        return canvas.draw({0, 0, 0, 1}, [&](Stream& stream) {
+            Pass pass("surface", canvas.target({0, 0, 0, 1}));
+            painter.draw(pass, {2, &faces, &vertices, &normals, &colors, &first, &second}, camera, look);
+            stream.render(pass);
+        });
+    }
+    std::uint32_t middle(const PaintLook& look) { return draw(look)[(k_size / 2 + 4) * k_size + k_size / 2]; }
+
+    vec4 normal_{0, 0, 1, 0};
+    float k1_ = 0, k2_ = 0;
+};
+
+int red(std::uint32_t texel) {
+    return static_cast<int>(texel & 0xff);
+}
+int blue(std::uint32_t texel) {
+    return static_cast<int>(texel >> 16 & 0xff);
+}
+
+TEST_F(SurfacePainting, UnlitColorsAreTakenAsTheyAre) {
+    const std::uint32_t texel = middle({.light = SurfaceLight::none, .plain = {10, 130, 250}});
+    EXPECT_NEAR(red(texel), 10, 1);
+    EXPECT_NEAR(blue(texel), 250, 1);
+    for (const std::uint32_t t : draw({.light = SurfaceLight::none})) EXPECT_NE(t, 0xff000000u);
+}
+
+TEST_F(SurfacePainting, FacesHaveTheirColors) {
+    const auto texels = draw({.paint = SurfacePaint::faces, .light = SurfaceLight::none});
+    EXPECT_EQ(texels[40 * k_size + 44] & 0xffffff, 0x0000ffu);
+    EXPECT_EQ(texels[4 * k_size + 3] & 0xffffff, 0x00ff00u);
+}
+
+TEST_F(SurfacePainting, LightIsThatOfTheReference) {
+    const RenderOptions light;
+    const float expected =
+        linear_to_srgb(srgb_to_linear(0.5f) * (light.ambient * (light.ground + 1) / 2 + light.headlight));
+    const Color gray{128, 128, 128};
+    const std::uint32_t smooth = middle({.plain = gray});
+    EXPECT_NEAR(red(smooth), 255 * expected, 2);
+    EXPECT_EQ(middle({.light = SurfaceLight::flat, .plain = gray}), smooth);
+    normal_ = {0, 0, -1, 0};  // surfaces have two sides
+    EXPECT_EQ(middle({.plain = gray}), smooth);
+    normal_ = {0, 0, 0, 0};
+    EXPECT_EQ(middle({.plain = gray}) >> 24, 0xffu);
+}
+
+TEST_F(SurfacePainting, ConvexIsRedAndHollowIsBlue) {
+    PaintLook look{.paint = SurfacePaint::mean_curvature, .light = SurfaceLight::none, .strongest_curvature = 4};
+    const std::uint32_t flat = middle(look);
+    EXPECT_EQ(red(flat), blue(flat));
+    k1_ = 3;
+    k2_ = 1;
+    const std::uint32_t convex = middle(look);
+    EXPECT_GT(red(convex), blue(convex) + 30);
+    std::swap(k1_, k2_);
+    EXPECT_EQ(middle(look), convex);  // of both
+    k1_ = -3;
+    k2_ = -1;
+    const std::uint32_t hollow = middle(look);
+    EXPECT_GT(blue(hollow), red(hollow) + 30);
+    k1_ = 5;
+    k2_ = -5;
+    EXPECT_EQ(middle(look), flat);
+    look.paint = SurfacePaint::gaussian_curvature;
+    EXPECT_GT(blue(middle(look)), red(middle(look)));
+    look.paint = SurfacePaint::first_curvature;
+    EXPECT_GT(red(middle(look)), blue(middle(look)));
+    look.paint = SurfacePaint::second_curvature;
+    EXPECT_GT(blue(middle(look)), red(middle(look)));
+}
+
+TEST(Blit, FillsThePartOfTheTargetAndScales) {
+    Canvas source(8, 8), target(20, 10);
+    Stream stream(shared_device());
+    source.begin(stream);
+    stream.render(Pass("clear", source.target({1, 0, 0, 1})));
+    source.end(stream);
+    target.begin(stream);
+    stream.render(Pass("clear", target.target({0, 1, 0, 1})));
+    stream.transition(target.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, Canvas::k_all);
+    stream.blit(source.image(), source.extent(), target.image(), {{4, 2}, {12, 5}});
+    stream.transition(target.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                      VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, Canvas::k_all);
+    const std::vector<std::uint32_t> texels = target.read(stream);
+    for (std::uint32_t y = 0; y < 10; ++y)
+        for (std::uint32_t x = 0; x < 20; ++x) {
+            const bool inside = x >= 4 && x < 16 && y >= 2 && y < 7;
+            ASSERT_EQ(texels[y * 20 + x], inside ? 0xff0000ffu : 0xff00ff00u) << x << ' ' << y;
+        }
+}
+
+}  // namespace
+}  // namespace exemplar

@@ -40,6 +40,7 @@ void add_curvature_command(CLI::App& app);
 void add_curvature_train_command(CLI::App& curvature);
 void add_curvature_evaluate_command(CLI::App& curvature);
 void add_curvature_study_command(CLI::App& curvature);
+void add_lines_command(CLI::App& app);
 void add_demo_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 

@@ -22,7 +22,7 @@ class Noise {
         : cell_x_(cell_x),
           cell_y_(cell_y),
           columns_(k_length / cell_x),
-          values_(static_cast<std::size_t>(columns_ * (k_breadth / cell_y + 2))) {
+          values_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(k_breadth / cell_y + 2)) {
         Random random(seed);
         for (float& value : values_) value = static_cast<float>(random.uniform());
     }
@@ -36,7 +36,10 @@ class Noise {
 
   private:
     static float smooth(float x) { return x * x * (3 - 2 * x); }
-    float value(int i, int j) const { return values_[static_cast<std::size_t>(j * columns_ + i % columns_)]; }
+    float value(int i, int j) const {
+        const auto row = static_cast<std::size_t>(j), column = static_cast<std::size_t>(i % columns_);
+        return values_[row * static_cast<std::size_t>(columns_) + column];
+    }
     int cell_x_, cell_y_, columns_;
     std::vector<float> values_;
 };

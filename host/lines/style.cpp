@@ -149,8 +149,8 @@ class StyleReader {
     Color color_of(const Json& json, const std::string& pointer, const char* or_what = "") const {
         const std::string& text = string_of(json, pointer);
         if (const auto color = color_named(text)) return *color;
-        std::vector<std::string> names;
-        for (const NamedColor& known : k_colors) names.emplace_back(known.name);
+        std::vector<std::string> names(k_colors.size());
+        std::transform(k_colors.begin(), k_colors.end(), names.begin(), [](const NamedColor& c) { return c.name; });
         fail(pointer, fmt::format("'{}' is no color{}; give '#rrggbb', '#rgb'{} or one of {}", shown(text),
                                   suggestion(text, names), or_what, fmt::join(names, ", ")));
     }

@@ -20,6 +20,7 @@ constexpr float k_near_edges = 3;             // how far faces nearby may be ove
 constexpr float k_touching_edges = 1e-3f;     // the same for faces that touch that of the point, of any line
 constexpr float k_precision = 0.05f;          // pixels to which changes of visibility are found
 constexpr std::size_t k_most_samples = 4096;  // of one segment
+constexpr float k_same_pixels = 0.01f;        // apart, two points along a chain are one
 constexpr int k_most_hits = 64;               // that are overlooked on one ray
 
 TriangleMesh mesh_of(const LineSurface& surface) {
@@ -99,7 +100,7 @@ class LineVisibility::Query {
         cross_ = (corner(1) - corner(0)).cross(corner(2) - corner(0));
         for (std::size_t i = 0; i < 3; ++i) longest_ = std::max(longest_, (corner((i + 1) % 3) - corner(i)).norm());
         edge_ = type == LineType::creases || type == LineType::boundaries;
-        contour_turned_ = type == LineType::contours && turned_to_eye();
+        contour_bends_away_ = type == LineType::contours && bends_away();
         contour_ = type == LineType::contours;
     }
 
@@ -123,10 +124,23 @@ class LineVisibility::Query {
         const float a = segment_.ends[0][corner], b = segment_.ends[1][corner];
         return a + t * (b - a);
     }
-    /// Whether, on the face of a contour, n.w grows towards the eye: the surface bends away from the ray, which passes
-    /// in front of it.
-    bool turned_to_eye() const {
-        // The gradient of what is linear in a face, times the squared length of the cross product, which is positive.
+    /// Whether the surface bends away from the ray at a contour, which then passes in front of it: radial curvature is
+    /// positive. Measured curvature says so more steadily than the normals of one face do.
+    bool bends_away() const {
+        const VertexCurvature& c = scene_.surface_.curvature;
+        if (c.k1.size() != scene_.surface_.vertices.size()) return grows_to_eye();
+        float bend = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t v = face_[i];
+            const Vec3 to_eye = camera_.to_eye(scene_.surface_.vertices[v]);
+            const float along_1 = c.e1[v].dot(to_eye), along_2 = c.e2[v].dot(to_eye);
+            bend += weight(i, 0.5f) * (c.k1[v] * along_1 * along_1 + c.k2[v] * along_2 * along_2);
+        }
+        return bend > 0;
+    }
+    /// The same without curvature: n.w, which is linear in the face, grows towards the eye.
+    bool grows_to_eye() const {
+        // Its gradient, times the squared length of the cross product, which is positive.
         Vec3 gradient = Vec3::Zero();
         const auto& surface = scene_.surface_;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -139,7 +153,7 @@ class LineVisibility::Query {
     /// Whether faces nearby may lie in front of the point without hiding it; see visible_parts.
     bool overlooks_near_faces(const Vec3& to_eye, float t) const {
         if (edge_) return false;
-        if (contour_) return contour_turned_ || !scene_.closed_[segment_.face];
+        if (contour_) return contour_bends_away_ || !scene_.closed_[segment_.face];
         float cosine = 0;
         for (std::size_t i = 0; i < 3; ++i) cosine += weight(i, t) * scene_.surface_.normals[face_[i]].dot(to_eye);
         return cosine > 0 && !(cross_.dot(to_eye) > 0);
@@ -179,10 +193,73 @@ class LineVisibility::Query {
     Vec2 room_;
     Vec3 cross_;
     float longest_ = 0;
-    bool edge_ = false, contour_ = false, contour_turned_ = false;
+    bool edge_ = false, contour_ = false, contour_bends_away_ = false;
 };
 
 namespace {
+
+VisiblePart turned(const VisiblePart& part, bool reversed) {
+    return reversed ? VisiblePart{1 - part.to, 1 - part.from} : part;
+}
+
+VisibleParts joined(const std::vector<std::vector<VisiblePart>>& parts) {
+    VisibleParts result;
+    for (const std::vector<VisiblePart>& of_segment : parts) {
+        result.parts.insert(result.parts.end(), of_segment.begin(), of_segment.end());
+        result.begin.push_back(static_cast<std::uint32_t>(result.parts.size()));
+    }
+    return result;
+}
+
+/// What is visible along a chain, in pixels from its start, with short gaps closed.
+std::vector<VisiblePart> spans_without_gaps(const Chain& chain, float most_pixels, const VisibleParts& visible) {
+    std::vector<VisiblePart> spans;
+    float start = 0;
+    for (const ChainLink& link : chain.links) {
+        const float length = visible.pixels[link.segment];
+        const std::span<const VisiblePart> own = visible.of(link.segment);
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            const VisiblePart part = turned(own[link.reversed ? own.size() - 1 - i : i], link.reversed);
+            const float from = start + part.from * length, to = start + part.to * length;
+            if (!spans.empty() && from - spans.back().to <= most_pixels)
+                spans.back().to = to;
+            else
+                spans.push_back({from, to});
+        }
+        start += length;
+    }
+    if (chain.closed && !spans.empty() && start - spans.back().to + spans.front().from <= most_pixels) {
+        spans.front().from = 0;
+        spans.back().to = start;
+    }
+    return spans;
+}
+
+/// The parts of a chain's segments that lie in the spans.
+void cut_to_segments(const Chain& chain, std::span<const float> pixels, const std::vector<VisiblePart>& spans,
+                     std::vector<std::vector<VisiblePart>>& parts) {
+    float start = 0;
+    std::size_t first = 0;
+    for (const ChainLink& link : chain.links) {
+        const float length = pixels[link.segment], end = start + length;
+        while (first < spans.size() && spans[first].to < start) ++first;
+        std::vector<VisiblePart> cut;
+        if (!(length > 0)) {  // a point, which should not break a span
+            if (first < spans.size() && spans[first].from <= start) parts[link.segment] = {{0, 1}};
+            continue;
+        }
+        for (std::size_t i = first; i < spans.size() && spans[i].from < end; ++i) {
+            // Ends of spans that are ends of segments must stay that, however pixels are rounded.
+            const float from = spans[i].from - k_same_pixels < start ? 0 : (spans[i].from - start) / length;
+            const float to = spans[i].to + k_same_pixels > end ? 1 : (spans[i].to - start) / length;
+            const VisiblePart part{std::min(from, 1.0f), std::max(to, 0.0f)};
+            if (part.from < part.to) cut.push_back(turned(part, link.reversed));
+        }
+        if (link.reversed) std::reverse(cut.begin(), cut.end());
+        parts[link.segment] = std::move(cut);
+        start = end;
+    }
+}
 
 /// Where between a and b, visible at exactly one of them, visibility changes.
 template <typename Visible>
@@ -230,6 +307,7 @@ VisibleParts LineVisibility::visible_parts(LineType type, std::span<const LineSe
     const Eigen::Matrix4f matrix = camera.view_projection();
     const Vec2 half_size(0.5f * static_cast<float>(width), 0.5f * static_cast<float>(height));
     std::vector<std::vector<VisiblePart>> parts(segments.size());
+    std::vector<float> lengths(segments.size(), 0);
     parallel_for(
         segments.size(),
         [&](std::size_t s) {
@@ -239,16 +317,32 @@ VisibleParts LineVisibility::visible_parts(LineType type, std::span<const LineSe
             if (a.w() > 0 && b.w() > 0)
                 pixels = (a.head<2>() / a.w() - b.head<2>() / b.w()).cwiseProduct(half_size).norm();
             if (!std::isfinite(pixels)) pixels = 0;
+            if (pixels < std::numeric_limits<float>::max()) lengths[s] = pixels;
             add_parts(
                 pixels, options.spacing, [&](float t) { return query.visible(t); }, parts[s]);
         },
         k_grain);
-    VisibleParts result;
-    for (const std::vector<VisiblePart>& of_segment : parts) {
-        result.parts.insert(result.parts.end(), of_segment.begin(), of_segment.end());
-        result.begin.push_back(static_cast<std::uint32_t>(result.parts.size()));
-    }
+    VisibleParts result = joined(parts);
+    result.pixels = std::move(lengths);
     return result;
+}
+
+void close_gaps(std::span<const Chain> chains, float most_pixels, VisibleParts& visible) {
+    const std::size_t count = visible.segment_count();
+    if (visible.pixels.size() != count)
+        throw UsageError(
+            fmt::format("lengths of {} segments for the visible parts of {}", visible.pixels.size(), count));
+    std::vector<std::vector<VisiblePart>> parts(count);
+    for (std::size_t s = 0; s < count; ++s) parts[s].assign(visible.of(s).begin(), visible.of(s).end());
+    for (const Chain& chain : chains) {
+        for (const ChainLink& link : chain.links)
+            if (link.segment >= count)
+                throw UsageError(fmt::format("a chain names segment {}, but there are {}", link.segment, count));
+        cut_to_segments(chain, visible.pixels, spans_without_gaps(chain, most_pixels, visible), parts);
+    }
+    std::vector<float> pixels = std::move(visible.pixels);
+    visible = joined(parts);
+    visible.pixels = std::move(pixels);
 }
 
 }  // namespace exemplar

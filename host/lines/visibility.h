@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/imaging/camera.h"
+#include "host/lines/chains.h"
 #include "host/lines/lines.h"
 #include "host/mesh/rays.h"
 
@@ -20,6 +21,7 @@ struct VisiblePart {
 struct VisibleParts {
     std::vector<std::uint32_t> begin{0};  ///< of segment s: parts [begin[s], begin[s + 1])
     std::vector<VisiblePart> parts;
+    std::vector<float> pixels;  ///< length of each segment in the picture; zero if it passes the eye
 
     std::size_t segment_count() const { return begin.size() - 1; }
     std::span<const VisiblePart> of(std::size_t segment) const {
@@ -32,6 +34,10 @@ struct VisibilityOptions {
     /// Pixels around the image that lines are followed into, so that what happens at their ends does not show.
     float margin = 32;
 };
+
+/// Makes visible what is hidden for at most `most_pixels` between two visible parts of a chain: on uneven meshes the
+/// own surface of a line may hide bits of it. Throws UsageError if chains and parts are not of the same segments.
+void close_gaps(std::span<const Chain> chains, float most_pixels, VisibleParts& visible);
 
 /// Tells which parts of lines on a surface an eye sees, by rays to it: the exact counterpart of tests against a picture
 /// of depths. Keeps an index of the surface. The surface must live as long; queries are thread-safe.
@@ -47,9 +53,10 @@ class LineVisibility {
     /// A contour is where smooth normals say that the surface turns away, which is up to about an edge behind the
     /// outline of the polygons, so a ray from it may first leave the surface through faces nearby. They do not hide it:
     /// faces that touch one that touches its face, and nearer than three times its longest edge, if the contour is of
-    /// the kind that is not hidden by its own surface (where the eye is on the side that faces it) or on an open
-    /// surface, which may be seen from behind. Nor do they hide other lines where the normals face the eye and the
-    /// face does not. Creases and boundaries lie on the polygons themselves, so nothing is overlooked for them.
+    /// the kind that is not hidden by its own surface (radial curvature is positive; without curvature, n.w grows
+    /// towards the eye) or on an open surface, which may be seen from behind. Nor do they hide other lines where the
+    /// normals face the eye and the face does not. Creases and boundaries lie on the polygons themselves, so nothing is
+    /// overlooked for them.
     VisibleParts visible_parts(LineType type, std::span<const LineSegment> segments, const Camera& camera, int width,
                                int height, const VisibilityOptions& options = {}) const;
 

@@ -268,6 +268,73 @@ TEST(Visibility, EndsBetweenThePointsOfASegmentWhereItChanges) {
     EXPECT_EQ(parts.of(0)[1].to, 1);
 }
 
+/// A chain of segments of 10 pixels each, every other one reversed, with visible parts given along the chain.
+struct Row {
+    std::vector<Chain> chains = {Chain{}};
+    VisibleParts visible;
+
+    explicit Row(const std::vector<std::vector<VisiblePart>>& along) {
+        for (std::uint32_t s = 0; s < along.size(); ++s) {
+            const bool reversed = s % 2 == 1;
+            chains[0].links.push_back({s, reversed});
+            std::vector<VisiblePart> parts = along[s];
+            if (reversed) {
+                std::reverse(parts.begin(), parts.end());
+                for (VisiblePart& part : parts) part = {1 - part.to, 1 - part.from};
+            }
+            visible.parts.insert(visible.parts.end(), parts.begin(), parts.end());
+            visible.begin.push_back(static_cast<std::uint32_t>(visible.parts.size()));
+            visible.pixels.push_back(10);
+        }
+    }
+    /// What is visible of each segment, in pixels from its first end.
+    std::vector<std::vector<int>> pixels() const {
+        std::vector<std::vector<int>> result(visible.segment_count());
+        for (std::size_t s = 0; s < result.size(); ++s)
+            for (const VisiblePart& part : visible.of(s))
+                for (const float end : {part.from, part.to}) result[s].push_back(int(std::lround(10 * end)));
+        return result;
+    }
+};
+
+TEST(Gaps, ThatAreShortAreClosed) {
+    // Visible: 0 to 3, 5 to 9, 12 to 14, 19 to 20, 22 to 30 of 40 pixels.
+    Row row({{{0, 0.3f}, {0.5f, 0.9f}}, {{0.2f, 0.4f}, {0.9f, 1}}, {{0.2f, 1}}, {}});
+    Row same = row;
+    close_gaps(row.chains, 3.5f, row.visible);
+    using Pixels = std::vector<std::vector<int>>;
+    EXPECT_EQ(row.pixels(), (Pixels{{0, 10}, {0, 1, 6, 10}, {0, 10}, {}}));  // the second one counts backward
+    close_gaps(same.chains, 1, same.visible);
+    EXPECT_EQ(same.pixels(), (Pixels{{0, 3, 5, 9}, {0, 1, 6, 8}, {2, 10}, {}}));
+    close_gaps(same.chains, 100, same.visible);
+    EXPECT_EQ(same.pixels(), (Pixels{{0, 10}, {0, 10}, {0, 10}, {}}));  // behind the last part there is no gap
+    same.chains[0].closed = true;
+    close_gaps(same.chains, 9, same.visible);
+    EXPECT_EQ(same.pixels(), (Pixels{{0, 10}, {0, 10}, {0, 10}, {}}));
+    close_gaps(same.chains, 11, same.visible);
+    EXPECT_EQ(same.pixels(), (Pixels{{0, 10}, {0, 10}, {0, 10}, {0, 10}}));
+}
+
+TEST(Gaps, LeaveWholeSegmentsWhole) {
+    Row row(std::vector<std::vector<VisiblePart>>(1000, {{0, 1}}));
+    for (std::size_t i = 0; i < row.visible.pixels.size(); ++i)
+        row.visible.pixels[i] = 3.7f + 0.001f * static_cast<float>(i);  // sums are rounded
+    close_gaps(row.chains, 3, row.visible);
+    ASSERT_EQ(row.visible.parts.size(), 1000);
+    for (const VisiblePart& part : row.visible.parts) {
+        EXPECT_EQ(part.from, 0);
+        EXPECT_EQ(part.to, 1);
+    }
+}
+
+TEST(Gaps, RefuseOtherChains) {
+    Row row({{{0, 1}}, {{0, 1}}});
+    row.chains[0].links.push_back({2, false});
+    EXPECT_THROW(close_gaps(row.chains, 3, row.visible), UsageError);
+    row.visible.pixels.pop_back();
+    EXPECT_THROW(close_gaps(row.chains, 3, row.visible), UsageError);
+}
+
 TEST(Visibility, IsNoneOutsideThePicture) {
     const Scene scene(shapes::icosphere(3, 1));
     Camera camera = camera_at({0, 0, 5}, {100, 0, 5});  // looks past it

@@ -1,0 +1,225 @@
+// exemplar lines: line drawings of meshes and animations.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+
+#include "apps/exemplar/arguments.h"
+#include "apps/exemplar/lines_job.h"
+#include "host/core/errors.h"
+#include "host/core/text.h"
+
+namespace exemplar {
+namespace {
+
+/// The words of the command line before they are looked at.
+struct LinesArguments {
+    LinesJob job;
+    std::vector<std::string> types = {"contours", "suggestive_contours", "boundaries"};
+    std::vector<std::string> thresholds;
+    std::string style = "ink", form = "lines", fading;
+    std::string print_style;
+    bool no_background = false;
+};
+
+std::vector<std::string> type_words() {
+    std::vector<std::string> words = {"all"};
+    for (const LineType type : k_line_types) words.emplace_back(name_of(type));
+    return words;
+}
+
+/// The type of its name or the beginning of it: "suggestive" is the contours of that kind.
+LineType type_of(const std::string& word) {
+    std::string name = word;
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return c == '-' ? '_' : static_cast<char>(std::tolower(c)); });
+    if (name.size() >= 3)
+        for (const LineType type : k_line_types)
+            if (name_of(type).starts_with(name)) return type;
+    if (name == "highlights") return LineType::suggestive_highlights;
+    const std::vector<std::string> words = type_words();
+    throw UsageError(fmt::format("'{}' is no type of lines{}; the types are {}", word, suggestion(word, words),
+                                 fmt::join(words, ", ")));
+}
+
+std::vector<LineType> types_of(const std::vector<std::string>& words) {
+    std::vector<LineType> wanted;
+    for (const std::string& word : words) {
+        if (word == "all")
+            wanted.assign(k_line_types.begin(), k_line_types.end());
+        else
+            wanted.push_back(type_of(word));
+    }
+    std::vector<LineType> types;
+    for (const LineType type : drawing_order())
+        if (std::find(wanted.begin(), wanted.end(), type) != wanted.end()) types.push_back(type);
+    return types;
+}
+
+/// "valleys=0.2"
+void set_threshold_of_word(const std::string& word, DrawingStyle& style) {
+    const std::size_t equals = word.find('=');
+    float value = 0;
+    const char* end = word.data() + word.size();
+    const char* begin = equals == std::string::npos ? end : word.data() + equals + 1;
+    const auto [stop, error] = std::from_chars(begin, end, value);
+    if (begin == end || error != std::errc() || stop != end)
+        throw UsageError(fmt::format("--threshold '{}' is none; write TYPE=NUMBER as valleys=0.2", word));
+    const LineType type = type_of(word.substr(0, equals));
+    LineThresholds checked;
+    set_threshold(checked, type, value);
+    style.of(type).threshold = value;
+}
+
+/// What the word is called in a list of words, in their order.
+template <typename Value>
+Value choice(const std::string& word, const char* option, const std::vector<std::string>& words) {
+    const auto at = std::find(words.begin(), words.end(), word);
+    if (at == words.end())
+        throw UsageError(fmt::format("{} '{}' is not known{}; give one of {}", option, word, suggestion(word, words),
+                                     fmt::join(words, ", ")));
+    return static_cast<Value>(at - words.begin());
+}
+
+bool is_svg(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension == ".svg";
+}
+
+LinesJob job_of(const LinesArguments& arguments) {
+    LinesJob job = arguments.job;
+    if (job.source.input.empty()) throw UsageError("no MESH or ANIM is given; see 'exemplar lines --help'");
+    if (job.out.empty()) throw UsageError("--out is missing; give the file to write, as drawing.svg");
+    require_output_file(job.out);
+    if (!is_svg(job.out))
+        throw UsageError(
+            fmt::format("{}: only SVG is written so far; give a name that ends in .svg", job.out.string()));
+    require_camera(job.camera);
+    job.types = types_of(arguments.types);
+    job.style = load_style(arguments.style);
+    for (const std::string& word : arguments.thresholds) set_threshold_of_word(word, job.style);
+    job.svg.form = choice<SvgForm>(arguments.form, "--form", {"lines", "outlines"});
+    const std::string fading = !arguments.fading.empty()        ? arguments.fading
+                               : job.svg.form == SvgForm::lines ? "opacity"
+                                                                : "width";
+    job.svg.fading = choice<SvgFading>(fading, "--fading", {"opacity", "width", "none"});
+    job.svg.background = !arguments.no_background;
+    job.source.derivatives = std::any_of(job.types.begin(), job.types.end(), needs_curvature);
+    if (std::find(job.types.begin(), job.types.end(), LineType::creases) != job.types.end())
+        job.source.split_angle = job.style.thresholds(LineType::creases).crease_angle;
+    job.source.first_frame_only = is_svg(job.out);
+    job.source.quiet = job.common.quiet;
+    return job;
+}
+
+void run_lines(const LinesArguments& arguments) {
+    const auto limits = apply_common_options(arguments.job.common);
+    if (!arguments.print_style.empty()) {
+        fmt::print("{}", builtin_style_text(arguments.print_style));
+        return;
+    }
+    write_lines_svg(job_of(arguments));
+}
+
+void add_look_options(CLI::App& command, LinesArguments& arguments) {
+    command
+        .add_option("--types", arguments.types,
+                    fmt::format("lines to draw, separated by commas; the first letters will do: {}",
+                                fmt::join(type_words(), ", ")))
+        ->type_name("TYPE")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->capture_default_str();
+    command
+        .add_option("--style", arguments.style,
+                    fmt::format("how they look: {}, or a style file (JSON)", fmt::join(builtin_style_names(), ", ")))
+        ->type_name("NAME|FILE")
+        ->capture_default_str();
+    command.add_option("--print-style", arguments.print_style, "prints a built-in style, to start a file from")
+        ->type_name("NAME");
+    command
+        .add_option("--threshold", arguments.thresholds,
+                    "how strong lines of a type must be, as valleys=0.2; of creases the angle in degrees")
+        ->type_name("TYPE=NUMBER")
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    command
+        .add_option("--smoothing", arguments.job.source.smoothing,
+                    "width, in edge lengths, that measured curvature is smoothed with")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 100.0));
+}
+
+void add_svg_options(CLI::App& command, LinesArguments& arguments) {
+    command
+        .add_option("--form", arguments.form,
+                    "lines: center lines with a stroke width, for plotters; outlines: filled shapes of varying width")
+        ->type_name("FORM")
+        ->capture_default_str();
+    command
+        .add_option("--fading", arguments.fading,
+                    "weak lines fade by opacity (default of lines), width (of outlines), or not (none)")
+        ->type_name("HOW");
+    command.add_flag("--curves", arguments.job.svg.curves, "center lines of Bezier curves, which stay smooth enlarged");
+    command
+        .add_option("--tolerance", arguments.job.svg.tolerance,
+                    "pixels that paths may be off where that saves points; more than the default calms uneven lines")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 100.0));
+    command.add_flag("--no-background", arguments.no_background, "leaves the background out");
+}
+
+}  // namespace
+
+nlohmann::json describe_job(const LinesJob& job, const LinesSource& source, const StrokeView& view) {
+    std::vector<float> matrix;
+    const Eigen::Matrix4f view_projection = view.camera.view_projection();
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column) matrix.push_back(view_projection(row, column));
+    return {{"input", job.source.input.string()},
+            {"output", job.out.string()},
+            {"model", job.source.model.string()},
+            {"style", job.style.name},
+            {"faces", source.faces().size()},
+            {"vertices", source.vertex_count()},
+            {"frames", source.frame_count()},
+            {"width", view.width},
+            {"height", view.height},
+            {"feature_size", view.feature_size},
+            {"view_projection", matrix}};
+}
+
+void add_lines_command(CLI::App& app) {
+    auto arguments = std::make_shared<LinesArguments>();
+    CLI::App* command = app.add_subcommand("lines", "Draws a mesh or an animation in lines");
+    command->footer(
+        "Hidden lines are not in the file. Each type of lines is a layer. Frames of an animation (--frames) make an\n"
+        "SVG file that plays.\n\nExamples:\n"
+        "  exemplar lines bunny.off --out bunny.svg\n"
+        "  exemplar lines part.obj --types contours,creases,boundaries --style technical --view top --out part.svg\n"
+        "  exemplar lines figure.glb --model figure.safetensors --frames 0:40 --style pencil --out walk.svg");
+    LinesJob& job = arguments->job;
+    command->add_option("INPUT", job.source.input, "mesh (OFF, OBJ, PLY, STL, glTF) or animation (glTF, folder)")
+        ->type_name("");
+    command->add_option("--out", job.out, "file to write, .svg")->type_name("FILE");
+    add_look_options(*command, *arguments);
+    add_camera_options(*command, job.camera);
+    add_svg_options(*command, *arguments);
+    command
+        ->add_option("--model", job.source.model,
+                     "takes curvature from this model of 'exemplar curvature train' instead of measuring it")
+        ->type_name("FILE");
+    add_frame_options(*command, job.source.frames, "", "draw");
+    command
+        ->add_option("--fps", job.source.frames_per_second, "frames a second that clips of glTF files are sampled at")
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 1000.0));
+    add_common_options(*command, job.common);
+    command->callback([arguments] { run_lines(*arguments); });
+}
+
+}  // namespace exemplar

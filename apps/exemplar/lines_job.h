@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "apps/exemplar/commands.h"
+#include "apps/exemplar/lines_camera.h"
+#include "apps/exemplar/lines_source.h"
+#include "host/lines/drawing_svg.h"
+#include "host/lines/style.h"
+
+namespace exemplar {
+
+/// What 'exemplar lines' is asked to draw, checked: one function per kind of output takes it.
+struct LinesJob {
+    CommonOptions common;
+    LinesSourceArguments source;
+    CameraArguments camera;
+    std::vector<LineType> types;  ///< in the order in which they are drawn
+    DrawingStyle style;           ///< with the thresholds of the command line
+    std::filesystem::path out;
+    SvgOptions svg;
+};
+
+/// The report of a job, to which what is special to an output is added.
+nlohmann::json describe_job(const LinesJob& job, const LinesSource& source, const StrokeView& view);
+
+/// Draws on the host and writes an SVG file, with frames as an animation.
+void write_lines_svg(const LinesJob& job);
+
+}  // namespace exemplar

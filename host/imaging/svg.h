@@ -1,0 +1,67 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "host/mesh/labels.h"
+#include "host/mesh/mesh.h"
+
+namespace exemplar {
+
+/// A number as SVG has it: a point for the decimals, at most so many of them (0 to 6), no more than needed, never an
+/// exponent. Throws UsageError if it is not finite.
+std::string svg_number(double value, int decimals = 2);
+/// Text as it stands in an attribute or between tags: markup escaped; what XML cannot hold replaced by U+FFFD.
+std::string svg_escaped(std::string_view text);
+/// "#rrggbb".
+std::string svg_color(const Color& color);
+
+/// Builds the data of a path, with coordinates to a hundredth.
+class SvgPath {
+  public:
+    void move_to(const Vec2& point) { add('M', point); }
+    void line_to(const Vec2& point) { add('L', point); }
+    /// A cubic Bezier curve with two control points.
+    void curve_to(const Vec2& first, const Vec2& second, const Vec2& point);
+    void close() { data_ += 'Z'; }
+    const std::string& data() const { return data_; }
+
+  private:
+    void add(char command, const Vec2& point);
+    void add(const Vec2& point);
+    std::string data_;
+};
+
+using SvgAttribute = std::pair<std::string_view, std::string>;
+
+/// Builds an SVG document of one coordinate unit per pixel. Groups are nested by opening and closing them.
+class SvgDocument {
+  public:
+    /// `title` is what viewers show as the document's name. Throws UsageError unless both sizes are positive.
+    SvgDocument(int width, int height, std::string_view title);
+    /// Opens a group that Inkscape shows as a layer of that name. Layers may be nested.
+    void open_layer(std::string_view label, std::span<const SvgAttribute> attributes = {});
+    void open_group(std::span<const SvgAttribute> attributes = {});
+    void close();
+    /// Adds an element without content.
+    void add(std::string_view element, std::span<const SvgAttribute> attributes);
+    /// The whole document; throws UsageError if a group is still open.
+    std::string text() const;
+
+  private:
+    void open(std::string_view element, std::span<const SvgAttribute> attributes, bool empty);
+    std::string body_;
+    std::size_t depth_ = 0;
+    std::size_t layers_ = 0;
+    int width_, height_;
+    std::string title_;
+};
+
+/// Writes a document; readers never see half a file. Throws DataError if it cannot be written.
+void write_svg(const std::filesystem::path& path, const SvgDocument& document);
+
+}  // namespace exemplar

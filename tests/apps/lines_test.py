@@ -1,0 +1,173 @@
+"""Line drawings of meshes and animations, as SVG."""
+
+import json
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+from program import ProgramTest, CUBE, CUBE_QUADS, write_off
+
+SVG = "{http://www.w3.org/2000/svg}"
+LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
+MODE = "{http://www.inkscape.org/namespaces/inkscape}groupmode"
+ANIMATION = ["--vertices", "800", "--frames", "24"]
+
+
+class Lines(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.call("synth", "human", "--faces", "4000", "--out", "shapes")
+        cls.call("synth", "figure", *ANIMATION, "--out", "moving")
+        cls.call("synth", "flag", *ANIMATION, "--out", "moving")
+        write_off(cls.folder / "cube.off", [(x - 0.5, y - 0.5, z - 0.5) for x, y, z in CUBE], CUBE_QUADS)
+
+    def draw(self, source, *options, out="drawing.svg"):
+        """The root of the SVG file."""
+        self.call("lines", source, "--out", out, *options)
+        self.assert_no_leftovers()
+        root = ElementTree.parse(self.folder / out).getroot()
+        self.assertEqual(root.tag, SVG + "svg")
+        return root
+
+    def layers(self, group):
+        """{label: layer} of the layers directly inside."""
+        return {g.get(LABEL): g for g in group.findall(SVG + "g") if g.get(MODE) == "layer"}
+
+    def paths(self, group):
+        return list(group.iter(SVG + "path"))
+
+    def test_a_mesh_with_the_defaults(self):
+        root = self.draw("shapes/human_001.off", "--json", "report.json")
+        self.assertEqual((root.get("width"), root.get("height"), root.get("viewBox")), ("1000px", "800px", "0 0 1000 800"))
+        layers = self.layers(root)
+        self.assertEqual(list(layers), ["background", "suggestive_contours", "boundaries", "contours"])
+        self.assertEqual(len(self.paths(layers["boundaries"])), 0)
+        self.assertGreater(len(self.paths(layers["contours"])), 2)
+        self.assertGreater(len(self.paths(layers["suggestive_contours"])), 2)
+        report = json.loads((self.folder / "report.json").read_text())
+        self.assertEqual(report["paths"], len(self.paths(root)))
+        self.assertEqual(report["bytes"], (self.folder / "drawing.svg").stat().st_size)
+        self.assertGreater(report["types"]["contours"]["visible_pixels"], 1000)
+        self.assertEqual(set(report["seconds"]), {"read", "curvature", "lines", "visibility", "strokes", "write"})
+
+    def test_only_the_edges_of_a_cube_that_are_seen(self):
+        root = self.draw("cube.off", "--types", "creases", "--style", "technical", "--json", "cube.json")
+        paths = self.paths(self.layers(root)["creases"])
+        self.assertEqual(len(paths), 9)
+        self.assertEqual({path.get("stroke-width") for path in paths}, {"0.9"})
+        self.call("lines", "--types", "crease,bound", "--threshold", "crease=30", "cube.off", "--out", "order.svg")
+        front = self.draw("cube.off", "--types", "crease", "--view", "front", "--fov", "0", "--style", "technical")
+        self.assertEqual(len(self.paths(front)), 4)
+
+    def test_every_type_every_style_and_both_forms(self):
+        for style in ["ink", "pencil", "charcoal", "brush", "technical", "blueprint", "colored"]:
+            for form in ["lines", "outlines"]:
+                with self.subTest(style=style, form=form):
+                    root = self.draw("shapes/human_001.off", "--types", "all", "--style", style, "--form", form)
+                    self.assertEqual(len(self.layers(root)), 10)
+                    attribute = "stroke" if form == "lines" else "fill"
+                    self.assertTrue(self.layers(root)["contours"].get(attribute).startswith("#"))
+
+    def test_equal_calls_give_equal_files_for_any_number_of_threads(self):
+        self.draw("shapes/human_001.off", "--types", "all", "--threads", "1", out="a.svg")
+        self.draw("shapes/human_001.off", "--types", "all", out="b.svg")
+        self.assertEqual((self.folder / "a.svg").read_bytes(), (self.folder / "b.svg").read_bytes())
+
+    def test_cameras(self):
+        def box(root):
+            """The corners of what is drawn."""
+            numbers = [float(n) for path in self.paths(root)
+                       for n in path.get("d").replace("M", " ").replace("L", " ").replace("Z", " ").split()]
+            return min(numbers[::2]), max(numbers[::2]), min(numbers[1::2]), max(numbers[1::2])
+
+        edges = ["--types", "creases", "--style", "technical", "--size", "400x400", "--fov", "0"]
+        left, right, top, bottom = box(self.draw("cube.off", *edges, "--view", "top"))
+        self.assertAlmostEqual(left, 400 - right, delta=1)
+        self.assertAlmostEqual(top, 10, delta=1)
+        placed = box(self.draw("cube.off", *edges[:-2], "--eye", "0,0,20", "--target", "0,0,0", "--fov", "10"))
+        self.assertAlmostEqual(placed[0] + placed[1], 400, delta=1)
+        self.assertGreater(placed[0], 50)
+        near = box(self.draw("cube.off", *edges[:-2], "--eye", "0,0,10", "--fov", "10"))
+        self.assertGreater(near[1] - near[0], 1.5 * (placed[1] - placed[0]))
+
+    def test_frames_of_an_animation_play(self):
+        root = self.draw("moving/figure_001.glb", "--frames", "2:5")
+        frames = [layer for label, layer in self.layers(root).items() if label.startswith("frame")]
+        self.assertEqual(len(frames), 3)
+        for frame in frames:
+            self.assertEqual(frame.find(SVG + "animate").get("dur"), "0.1s")
+            self.assertGreater(len(self.paths(frame)), 5)
+        first, second = ([p.get("d") for p in self.paths(frame)] for frame in frames[:2])
+        self.assertNotEqual(first, second)
+        one = self.draw("moving/flag_001")  # a folder; the first frame
+        self.assertEqual(list(self.layers(one)), ["background", "suggestive_contours", "boundaries", "contours"])
+
+    def test_curvature_of_a_model(self):
+        self.call("curvature", "train", "moving/figure_001.glb", "--out", "m.safetensors", "--augment", "60")
+        learned = self.draw("moving/figure_001.glb", "--model", "m.safetensors", "--frames", "12")
+        self.assertGreater(len(self.paths(self.layers(learned)["suggestive_contours"])), 0)
+        self.refused("lines", "moving/flag_001", "--model", "m.safetensors", "--out", "x.svg", code=1, says="skeleton")
+        self.refused("lines", "cube.off", "--model", "m.safetensors", "--out", "x.svg", code=2, says="--model")
+        self.refused("lines", "moving/figure_001.glb", "--model", "cube.off", "--out", "x.svg", code=1, says="cube.off")
+
+    def test_a_style_file_starts_from_a_printed_style(self):
+        printed = self.call("lines", "--print-style", "ink").stdout
+        style = json.loads(printed)
+        style["contours"]["color"] = "#123456"
+        (self.folder / "my.json").write_text(json.dumps(style))
+        root = self.draw("cube.off", "--types", "contours", "--style", "my.json")
+        self.assertEqual(self.layers(root)["contours"].get("stroke"), "#123456")
+        self.assertNotIn("background", self.layers(self.draw("cube.off", "--style", "my.json", "--no-background")))
+        self.refused("lines", "--print-style", "inc", code=2, says=["'inc'", "'ink'"])
+
+    def test_thresholds(self):
+        def length(*options):
+            self.draw("shapes/human_001.off", "--types", "valleys", "--json", "r.json", *options)
+            return json.loads((self.folder / "r.json").read_text())["types"]["valleys"]["visible_pixels"]
+
+        self.assertGreater(length(), 2 * length("--threshold", "valleys=0.5"))
+        self.assertEqual(length("--threshold", "valleys=1e6"), 0)
+
+    def test_wrong_input_is_one_line(self):
+        refused = self.refused
+        refused("lines", "cube.off", "--out", "x.pdf", code=2, says=["x.pdf", ".svg"])
+        refused("lines", "cube.off", code=2, says="--out")
+        refused("lines", "--out", "x.svg", code=2, says="MESH")
+        refused("lines", "cbue.off", "--out", "x.svg", code=1, says=["cbue.off", "'cube.off'"])
+        refused("lines", "cube.off", "--out", "x.svg", "--types", "contuors", code=2, says=["'contuors'", "'contours'"])
+        refused("lines", "cube.off", "--out", "x.svg", "--style", "inkk", code=1, says=["inkk", "'ink'"])
+        refused("lines", "cube.off", "--out", "x.svg", "--style", "cube.off", code=1, says=["cube.off:1:1", "JSON"])
+        refused("lines", "cube.off", "--out", "x.svg", "--view", "frnt", code=2, says=["'frnt'", "'front'"])
+        refused("lines", "cube.off", "--out", "x.svg", "--eye", "1,2", code=2, says=["--eye", "'1,2'"])
+        refused("lines", "cube.off", "--out", "x.svg", "--target", "1,2,3", code=2, says="--eye")
+        refused("lines", "cube.off", "--out", "x.svg", "--eye", "1,2,3", "--target", "1,2,3", code=2, says="same point")
+        refused("lines", "cube.off", "--out", "x.svg", "--up", "0,0,0", code=2, says="--up")
+        refused("lines", "cube.off", "--out", "x.svg", "--fov", "200", code=2, says="--fov")
+        refused("lines", "cube.off", "--out", "x.svg", "--size", "100", code=2, says=["--size", "'100'"])
+        refused("lines", "cube.off", "--out", "x.svg", "--size", "0x5", code=2, says="--size")
+        refused("lines", "cube.off", "--out", "x.svg", "--threshold", "ridges", code=2, says="'ridges'")
+        refused("lines", "cube.off", "--out", "x.svg", "--threshold", "contours=1", code=2, says="contours")
+        refused("lines", "cube.off", "--out", "x.svg", "--form", "line", code=2, says="'lines'")
+        refused("lines", "cube.off", "--out", "x.svg", "--fading", "blur", code=2, says="opacity")
+        refused("lines", "moving/figure_001.glb", "--frames", "9:3", "--out", "x.svg", code=2, says="9:3")
+        refused("lines", "moving/figure_001.glb", "--clips", "nod", "--out", "x.svg", code=2, says="nod")
+        refused("lines", "cube.off", "--out", "cube.off/x.svg", code=2, says="no folder")
+        write_off(self.folder / "empty.off", CUBE, [])
+        refused("lines", "empty.off", "--out", "x.svg", code=1, says="empty.off")
+        write_off(self.folder / "point.off", [(5, 5, 5)] * 3, [(0, 1, 2)])
+        refused("lines", "point.off", "--out", "x.svg", code=1, says=["point.off", "one place"])
+        self.assertFalse((self.folder / "x.svg").exists())
+
+    def test_poor_meshes_are_drawn(self):
+        write_off(self.folder / "triangle.off", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+        self.assertEqual(len(self.paths(self.draw("triangle.off", "--types", "all", "--style", "technical"))), 1)
+        write_off(self.folder / "flat.off", [(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2), (0, 0, 1)])
+        self.draw("flat.off", "--types", "all")
+        fan = [(0, 0, 0), (0, 0, 1), (1, 0, 0.5), (-0.5, 0.8, 0.5), (-0.5, -0.8, 0.5)]
+        write_off(self.folder / "fan.off", fan, [(0, 1, 2), (0, 1, 3), (1, 0, 4)])
+        layers = self.layers(self.draw("fan.off", "--types", "all"))
+        self.assertGreaterEqual(len(self.paths(layers["creases"])), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

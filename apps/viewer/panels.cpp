@@ -29,12 +29,14 @@ void draw_file(ViewerState& state, std::string& path, InterfaceRequests& request
         path.clear();
     }
     if (!state.has_document()) return;
-    const float width = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
-    if (ImGui::Button("Fit view", ImVec2(width, 0))) requests.actions.push_back(Action::fit);
+    const float width = (ImGui::GetContentRegionAvail().x - 3 * ImGui::GetStyle().ItemSpacing.x) / 4;
+    if (ImGui::Button("Fit", ImVec2(width, 0))) requests.actions.push_back(Action::fit);
     ImGui::SameLine();
     if (ImGui::Button("Save PNG", ImVec2(width, 0))) requests.actions.push_back(Action::save_png);
     ImGui::SameLine();
-    if (ImGui::Button("Keys (F1)", ImVec2(width, 0))) state.show_help = !state.show_help;
+    if (ImGui::Button("Save SVG", ImVec2(width, 0))) requests.actions.push_back(Action::save_svg);
+    ImGui::SameLine();
+    if (ImGui::Button("Keys", ImVec2(width, 0))) state.show_help = !state.show_help;
 }
 
 void draw_clips(ViewerState& state) {

@@ -8,6 +8,7 @@
 #include "apps/viewer/frame_renderer.h"
 #include "apps/viewer/interface.h"
 #include "apps/viewer/options.h"
+#include "apps/viewer/save_svg.h"
 #include "apps/viewer/window.h"
 #include "gpu/runtime/errors.h"
 #include "gpu/window/swapchain.h"
@@ -175,7 +176,7 @@ void Viewer::save(const std::string& extension, const std::function<void(const s
     try {
         write(path);
         state_.messages.remark(fmt::format("Saved {}", std::filesystem::absolute(path).string()));
-    } catch (const DataError& error) {
+    } catch (const Error& error) {
         state_.messages.error(error.what());
     }
 }
@@ -186,6 +187,8 @@ void Viewer::perform(Action action, Session& session) {
         window_.close();
     } else if (action == Action::save_png && state_.has_document()) {
         save(".png", [&](const std::filesystem::path& path) { write_png(path, session.picture()); });
+    } else if (action == Action::save_svg && state_.has_document()) {
+        save(".svg", [&](const std::filesystem::path& path) { save_svg(path, state_, interface_.view().size()); });
     } else if (action == Action::save_model && state_.model()) {
         save(".safetensors", [&](const std::filesystem::path& path) { save_curvature_model(path, *state_.model()); });
     } else {

@@ -232,6 +232,7 @@ bool ViewerState::perform(Action action, ViewSize view) {
             show_help = !show_help;
             return true;
         case Action::save_png:
+        case Action::save_svg:
         case Action::save_model:
         case Action::quit:
             break;

@@ -263,6 +263,9 @@ class InWindow(Viewer):
             time.sleep(0.05)
         self.xdotool("key", "ctrl+s")
         self.until(lambda: list(self.folder.glob("figure_001_*.png")), "Ctrl+S saves a picture")
+        self.xdotool("key", "ctrl+e")
+        self.until(lambda: list(self.folder.glob("figure_001_*.svg")), "Ctrl+E saves the lines")
+        self.assertIn("<path", next(self.folder.glob("figure_001_*.svg")).read_text())
         self.closes_well(process)
 
     def test_a_lost_device_is_opened_again(self):

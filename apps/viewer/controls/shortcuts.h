@@ -38,6 +38,7 @@ enum class Action {
     curvature_source,
     reset_pose,
     save_png,
+    save_svg,
     save_model,
     panels,
     frame_times,

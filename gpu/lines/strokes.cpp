@@ -19,8 +19,8 @@ using shared::uvec4;
 using shared::vec4;
 using shared::VisibilityParameters;
 
-// Points lie on the surface that is drawn; what they may seem to be behind it is rounding.
-constexpr float k_tolerance = 2e-3f;  // of unit_depth... per thousand of the distance
+// Points lie on the surface that is drawn; what they may seem to be behind it is rounding, and slope within a pixel.
+constexpr float k_tolerance = 2e-3f;  // of the unit of depth
 
 VisibilityParameters visibility_parameters(const StrokeView& view) {
     const Eigen::Matrix4f& m = view.camera.projection;
@@ -78,7 +78,7 @@ GpuStrokes::GpuStrokes(const GpuChains& chains) : chains_(chains) {
                 .elements = {layout_of<vec4>(), layout_of<std::uint32_t>(), layout_of<uvec4>(), layout_of<uvec4>(),
                              layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>()}});
     visible_ = Buffer(device, 2 * room * sizeof(std::uint32_t));
-    strokes_ = Buffer(device, room * sizeof(vec4));
+    strokes_ = Buffer(device, 2 * room * sizeof(vec4));
     looks_ = Buffer(device, sizeof(StrokeLooks));
 }
 

@@ -33,7 +33,8 @@ class GpuStrokes {
 
     /// Of each point the samples on the way to the next that are visible, a bit each, and their number.
     const Buffer& visible() const { return visible_; }
-    /// Of each point the normal across the stroke (two floats), its width in pixels and its opacity.
+    /// Of each point two vec4: its place in pixels (two floats), its width in pixels and its opacity; the normal across
+    /// the stroke, and two zeros.
     const Buffer& strokes() const { return strokes_; }
     /// StrokeLooks of the last call.
     const Buffer& looks() const { return looks_; }

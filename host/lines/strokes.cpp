@@ -49,6 +49,75 @@ void check(const StrokeView& view, const StrokeThickness& t) {
             t.width, t.least, t.most, t.epsilon, t.taper));
 }
 
+Vec2 across(const Vec2& tangent) {
+    return Vec2(-tangent.y(), tangent.x()).normalized();
+}
+
+/// Moves the points of a chain to the mean of what is around them (see make_strokes), and gives them normals.
+class Calming {
+  public:
+    Calming(const std::vector<StrokePoint>& points, bool closed) : points_(points), closed_(closed) {}
+
+    std::vector<StrokePoint> calmed() const {
+        std::vector<StrokePoint> result = points_;
+        const auto last = static_cast<std::ptrdiff_t>(points_.size()) - 1;
+        for (std::ptrdiff_t i = 0; i <= last; ++i) {
+            const Side before = side(i, -1), after = side(i, 1);
+            StrokePoint& point = result[static_cast<std::size_t>(i)];
+            const Vec2 tangent = after.end - before.end;
+            if (tangent.squaredNorm() > 0) point.normal = across(tangent);
+            const float length = before.length + after.length;
+            const bool stays = !closed_ && (i == 0 || i == last);
+            if (!stays && length > 0) point.position = (before.sum + after.sum) / length;
+        }
+        return result;
+    }
+
+  private:
+    /// What is to one side of a point: its integral over the length, the length, and where it ends.
+    struct Side {
+        Vec2 sum = Vec2::Zero();
+        float length = 0;
+        Vec2 end;
+    };
+    /// Around on a closed chain, whose last point is its first; else no further than the end.
+    std::ptrdiff_t step(std::ptrdiff_t i, std::ptrdiff_t way) const {
+        const auto last = static_cast<std::ptrdiff_t>(points_.size()) - 1;
+        const std::ptrdiff_t next = i + way;
+        if (next >= 0 && next <= last) return next;
+        return closed_ ? (way > 0 ? way : last + way) : i;
+    }
+    const Vec2& at(std::ptrdiff_t i) const { return points_[static_cast<std::size_t>(i)].position; }
+    Side side(std::ptrdiff_t i, std::ptrdiff_t way) const {
+        float reach = 0;
+        std::ptrdiff_t here = i;
+        for (int k = 0; k < k_calm_reach; ++k) {
+            const std::ptrdiff_t next = step(here, way);
+            reach += (at(next) - at(here)).norm();
+            here = next;
+        }
+        reach = std::clamp(reach, k_least_calm, k_most_calm);
+        Side result;
+        result.end = at(i);
+        here = i;
+        for (int k = 0; k < k_calm_points && result.length < reach; ++k) {
+            const std::ptrdiff_t next = step(here, way);
+            const Vec2 on = at(next) - at(here);
+            const float length = on.norm(), part = std::min(length, reach - result.length);
+            if (length > 0) {
+                const Vec2 end = at(here) + part / length * on;
+                result.sum += part * 0.5f * (at(here) + end);
+                result.length += part;
+                result.end = end;
+            }
+            here = next;
+        }
+        return result;
+    }
+    const std::vector<StrokePoint>& points_;
+    bool closed_;
+};
+
 /// Makes the stroke of one chain.
 class StrokeMaker {
   public:
@@ -72,7 +141,10 @@ class StrokeMaker {
         replace_lost_positions(own);
         if (chain.closed) own.back().position = own.front().position;
         set_parameters(own);
-        set_normals(chain.closed, own);
+        if (type_ == LineType::creases || type_ == LineType::boundaries)
+            set_normals(chain.closed, own);
+        else
+            own = Calming(own, chain.closed).calmed();
         Stroke stroke;
         stroke.closed = chain.closed;
         for (std::size_t i = 0; i < chain.links.size(); ++i)
@@ -135,7 +207,7 @@ class StrokeMaker {
             for (const std::ptrdiff_t reach : {2, 1}) {
                 const Vec2 tangent = at(i + reach) - at(i - reach);
                 if (!(tangent.squaredNorm() > 0)) continue;
-                points[static_cast<std::size_t>(i)].normal = Vec2(-tangent.y(), tangent.x()).normalized();
+                points[static_cast<std::size_t>(i)].normal = across(tangent);
                 break;
             }
     }
@@ -180,8 +252,8 @@ class StrokeMaker {
     }
     StrokePoint between(const ChainLink& link, const StrokePoint& first, const StrokePoint& last, float t) const {
         StrokePoint point = point_of(link, t);
-        if (!point.position.allFinite()) point.position = first.position;
-        point.parameter = std::min(first.parameter + (point.position - first.position).norm(), last.parameter);
+        point.position = first.position + t * (last.position - first.position);
+        point.parameter = first.parameter + t * (last.parameter - first.parameter);
         const Vec2 normal = first.normal + t * (last.normal - first.normal);
         point.normal = normal.squaredNorm() > 0 ? Vec2(normal.normalized()) : first.normal;
         return point;

@@ -36,6 +36,10 @@ inline float stroke_taper(float distance, float taper) {
     return std::sqrt(x * (2 - x));
 }
 
+/// See make_strokes: how far points are moved, in pixels, and within how many points to each side.
+constexpr float k_least_calm = 3, k_most_calm = 10;
+constexpr int k_calm_points = 8, k_calm_reach = 2;
+
 /// Where strokes are seen from.
 struct StrokeView {
     Camera camera;
@@ -63,15 +67,17 @@ struct Stroke {
     bool closed = false;
 };
 
-/// The strokes of chains, in their order. With i counting a chain's own points, before those of visibility are
-/// inserted: the normal at i is perpendicular to the way from point i - 2 to point i + 2 (clamped to an open chain,
-/// around a closed one), the parameter is the sum of the pixel distances up to it, the width stroke_width() of the
-/// depth and the radial curvature there (at a vertex (k1 u^2 + k2 v^2) / (u^2 + v^2), or the mean curvature where the
-/// eye is along the normal; zero if the surface has no curvature), times stroke_taper() of the distance along the chain
-/// to the nearest end of the visible run that the point is in. Where a closed chain's first point is visible, its runs
-/// go on over it, and if all is visible nothing is tapered. `visible` has the visible parts of each segment; null: all
-/// are. Throws UsageError if sizes do not fit, or a thickness is out of range (width, epsilon and most positive, least
-/// in [0, most], taper not negative).
+/// The strokes of chains, in their order. Zero sets and extrema wind a little from face to face; so a point of theirs
+/// is moved to the mean of the chain around it, in the picture: to each side as far as the second next point, but no
+/// less than 3 and no more than 10 pixels, and no further than 8 points or the chain's end (its end points stay). The
+/// normal is perpendicular to the way between the ends of that part; of creases and boundaries, to that from the second
+/// point before to the second after. The parameter is the sum of the pixel distances up to a point before it is moved,
+/// the width stroke_width() of the depth and the radial curvature there (at a vertex (k1 u^2 + k2 v^2) / (u^2 + v^2),
+/// or the mean curvature where the eye is along the normal; zero if the surface has no curvature), times stroke_taper()
+/// of the distance along the chain to the nearest end of the visible run that the point is in. Where a closed chain's
+/// first point is visible, its runs go on over it, and if all is visible nothing is tapered. `visible` has the visible
+/// parts of each segment; null: all are. Throws UsageError if sizes do not fit, or a thickness is out of range (width,
+/// epsilon and most positive, least in [0, most], taper not negative).
 std::vector<Stroke> make_strokes(const LineSurface& surface, LineType type, std::span<const LineSegment> segments,
                                  std::span<const Chain> chains, const VisibleParts* visible, const StrokeView& view,
                                  const LineThresholds& thresholds, const StrokeThickness& thickness);

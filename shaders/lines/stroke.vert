@@ -29,12 +29,12 @@ void main() {
         return;
     }
     const int at = next ? point + 1 : point;
-    const vec4 place = texelFetch(points, 2 * at), stroke = texelFetch(strokes, at);
+    const vec4 stroke = texelFetch(strokes, 2 * at);  // place, width, opacity
     const StrokeLook look = looks[floatBitsToUint(kind.x) & k_kind_family];
     const float reach = 0.5 * stroke.z + 1.0;
-    const vec2 pixel = place.xy + side * reach * stroke.xy;
+    const vec2 pixel = stroke.xy + side * reach * texelFetch(strokes, 2 * at + 1).xy;
     along = vec4(side * reach, 0.5 * stroke.z, stroke.w * look.color.a, next ? 1.0 : 0.0);
-    parameter = place.w;
+    parameter = texelFetch(points, 2 * at).w;
     color = look.color;
     texture_of = vec2(uintBitsToFloat(look.texture), look.period);
     gl_Position = vec4(2.0 * pixel / vec2(parameters.width, parameters.height) - 1.0, 0.0, 1.0);

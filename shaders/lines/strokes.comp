@@ -3,9 +3,9 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/lines.h"
 
-// How points are drawn (host/lines/strokes.cpp): the normal across the stroke, its width, tapered towards the ends of what is
-// visible, and its opacity. One point per invocation: reads its segment, its face's corners and the points around it, all
-// from caches, and writes 16.
+// How points are drawn (host/lines/strokes.cpp): where, the normal across the stroke, its width, tapered towards the ends of
+// what is visible, and its opacity. One point per invocation: reads its segment, its face's corners and the points around
+// it, all from caches, and writes 32.
 layout(local_size_x = k_count_group) in;
 layout(push_constant) uniform Push { StrokeParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer points;  // LinePoint, two texels each
@@ -17,10 +17,13 @@ layout(set = 0, binding = 5) uniform samplerBuffer first;
 layout(set = 0, binding = 6) uniform samplerBuffer second;
 layout(set = 0, binding = 7, std430) readonly buffer Counts { LineCounts counts; };
 layout(set = 0, binding = 8, std430) readonly buffer Looks { StrokeLook looks[]; };  // per family
-layout(set = 0, binding = 9, std430) writeonly buffer Strokes { vec4 strokes[]; };   // normal, width, opacity
+layout(set = 0, binding = 9, std430) writeonly buffer Strokes { vec4 strokes[]; };   // place, width, opacity; normal
 #include "shaders/lib/segments.glsl"
 
-const int k_tangent_reach = 2;  // points to each side
+const float k_least_calm = 3.0;  // pixels; see host/lines/strokes.h
+const float k_most_calm = 10.0;
+const int k_calm_points = 8;
+const int k_calm_reach = 2;
 const uint k_most_taper_points = 64;
 
 uint kind_of(int point) {
@@ -44,13 +47,63 @@ int neighbor(int point, int way) {
     return point + way;
 }
 
-vec2 tangent_at(int point) {
-    int before = point, after = point;
-    for (int i = 0; i < k_tangent_reach; ++i) {
-        before = neighbor(before, -1);
-        after = neighbor(after, 1);
+vec2 place_of_point(int point) {
+    return texelFetch(points, 2 * point).xy;
+}
+
+// What is to one side of a point: its integral over the length, the length, and where it ends.
+struct Side {
+    vec2 sum;
+    float pixels;
+    vec2 end;
+};
+Side side_of(int point, int way) {
+    float reach = 0.0;
+    int here = point;
+    for (int i = 0; i < k_calm_reach; ++i) {
+        const int next = neighbor(here, way);
+        reach += distance(place_of_point(next), place_of_point(here));
+        here = next;
     }
-    return texelFetch(points, 2 * after).xy - texelFetch(points, 2 * before).xy;
+    reach = clamp(reach, k_least_calm, k_most_calm);
+    Side result = Side(vec2(0.0), 0.0, place_of_point(point));
+    here = point;
+    for (int i = 0; i < k_calm_points && result.pixels < reach; ++i) {
+        const int next = neighbor(here, way);
+        const vec2 from = place_of_point(here), on = place_of_point(next) - from;
+        const float size = length(on), part = min(size, reach - result.pixels);
+        if (size > 0.0) {
+            const vec2 end = from + part / size * on;
+            result.sum += part * 0.5 * (from + end);
+            result.pixels += part;
+            result.end = end;
+        }
+        here = next;
+    }
+    return result;
+}
+
+// Where a point is drawn, and the normal there.
+vec4 calmed(int point, uint kind) {
+    const vec2 here = place_of_point(point);
+    vec2 tangent = vec2(0.0), there = here;
+    if ((1u << (kind & k_kind_family) & k_edge_families) != 0u) {
+        int before = point, after = point;
+        for (int i = 0; i < k_calm_reach; ++i) {
+            before = neighbor(before, -1);
+            after = neighbor(after, 1);
+        }
+        tangent = place_of_point(after) - place_of_point(before);
+        if (tangent == vec2(0.0)) tangent = place_of_point(neighbor(point, 1)) - place_of_point(neighbor(point, -1));
+    } else {
+        const Side before = side_of(point, -1), after = side_of(point, 1);
+        tangent = after.end - before.end;
+        const bool stays = (kind & k_point_closed) == 0u && (kind & (k_point_first | k_point_last)) != 0u;
+        const float size = before.pixels + after.pixels;
+        if (!stays && size > 0.0) there = (before.sum + after.sum) / size;
+    }
+    const float size = length(tangent);
+    return vec4(there, size > 0.0 ? vec2(-tangent.y, tangent.x) / size : vec2(0.0, 1.0));
 }
 
 // Radial curvature at a vertex, times the feature size.
@@ -110,14 +163,12 @@ void main() {
     const vec4 more = texelFetch(points, 2 * point + 1);
     const uint kind = floatBitsToUint(more.x), walked = floatBitsToUint(more.z);
     const StrokeLook look = looks[kind & k_kind_family];
-    const vec2 tangent = tangent_at(point);
-    const float size = length(tangent);
-    const vec2 normal = size > 0.0 ? vec2(-tangent.y, tangent.x) / size : vec2(0.0, 1.0);
+    const vec4 drawn = calmed(point, kind);
     const bool last = (kind & k_point_last) != 0u;
     const uint begin_end = walked & 1u;
     const float width = thickness(uvec2(walked >> 1, last ? 1u - begin_end : begin_end), look) * tapered(point, look);
     const float above = max(more.w - look.threshold, 0.0);
     const float opacity = look.fade > 0.0 ? above / (above + look.fade) : 1.0;
-    // The normal is a unit vector: half of an angle's worth of it would do, but a vec4 has the room.
-    strokes[point] = vec4(normal, width, opacity);
+    strokes[2 * point] = vec4(drawn.xy, width, opacity);
+    strokes[2 * point + 1] = vec4(drawn.zw, 0.0, 0.0);
 }

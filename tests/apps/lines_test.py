@@ -1,9 +1,12 @@
-"""Line drawings of meshes and animations, as SVG."""
+"""Line drawings of meshes and animations, as SVG, pictures and videos."""
 
 import json
+import shutil
+import subprocess
 import unittest
 import xml.etree.ElementTree as ElementTree
 
+from png import read_png
 from program import ProgramTest, CUBE, CUBE_QUADS, write_off
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -101,6 +104,42 @@ class Lines(ProgramTest):
         self.assertNotEqual(first, second)
         one = self.draw("moving/flag_001")  # a folder; the first frame
         self.assertEqual(list(self.layers(one)), ["background", "suggestive_contours", "boundaries", "contours"])
+
+    def test_a_picture_shows_what_the_svg_file_has(self):
+        edges = ["--types", "creases", "--style", "technical", "--view", "front", "--fov", "0", "--size", "200x100"]
+        self.call("lines", "cube.off", *edges, "--out", "cube.png")
+        self.assert_no_leftovers()
+        width, height, pixels = read_png(self.folder / "cube.png")
+        self.assertEqual((width, height), (200, 100))
+        dark = [(i % 200, i // 200) for i in range(20000) if pixels[3 * i] < 128]
+        # A square with a margin of a twentieth of half the height.
+        self.assertGreater(len(dark), 300)
+        for x, y in dark:
+            self.assertTrue(min(abs(x - 52), abs(x - 147), abs(y - 2), abs(y - 97)) <= 2, (x, y))
+        self.call("lines", "cube.off", *edges, "--no-background", "--out", "clear.png")
+        clear = read_png(self.folder / "clear.png")[2]
+        self.assertEqual({clear[4 * i + 3] for i in (0, 19999, 50 * 200 + 100)}, {0})
+        self.assertEqual(max(clear[3::4]), 255)
+
+    def test_a_folder_has_a_picture_of_each_frame(self):
+        self.call("lines", "moving/figure_001.glb", "--size", "100x80", "--frames", "2:5", "--out", "frames",
+                  "--json", "frames.json")
+        files = sorted((self.folder / "frames").iterdir())
+        self.assertEqual([f.name for f in files], ["frame_0000.png", "frame_0001.png", "frame_0002.png"])
+        self.assertNotEqual(files[0].read_bytes(), files[1].read_bytes())
+        self.assertEqual(json.loads((self.folder / "frames.json").read_text())["frames"], 3)
+        self.refused("lines", "moving/figure_001.glb", "--frames", "2:5", "--out", "x.png", code=2, says="3 frames")
+
+    def test_videos_are_made_where_there_is_ffmpeg(self):
+        video = ["lines", "moving/figure_001.glb", "--size", "101x80", "--frames", "2:5", "--out", "walk.mp4"]
+        if shutil.which("ffmpeg") is None:
+            self.refused(*video, code=2, says="ffmpeg")
+        else:
+            self.call(*video)
+            probe = subprocess.run(["ffmpeg", "-i", self.folder / "walk.mp4", "-f", "null", "-"], capture_output=True)
+            self.assertIn(b"frame=    3", probe.stderr)
+        self.assert_no_leftovers()
+        self.refused(*video, "--no-background", code=2, says="")
 
     def test_curvature_of_a_model(self):
         self.call("curvature", "train", "moving/figure_001.glb", "--out", "m.safetensors", "--augment", "60")

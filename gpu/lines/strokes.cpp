@@ -17,29 +17,20 @@ using shared::StrokeLook;
 using shared::StrokeParameters;
 using shared::uvec4;
 using shared::vec4;
-using shared::VisibilityParameters;
-
-// Points lie on the surface that is drawn; what they may seem to be behind it is rounding, and slope within a pixel.
-constexpr float k_tolerance = 2e-3f;  // of the unit of depth
-
-VisibilityParameters visibility_parameters(const StrokeView& view) {
-    const Eigen::Matrix4f& m = view.camera.projection;
-    const bool parallel = is_parallel(view.camera);
-    return {.width = static_cast<std::uint32_t>(view.width),
-            .height = static_cast<std::uint32_t>(view.height),
-            .near_term = parallel ? m(2, 3) / m(2, 2) : -m(2, 3),
-            .far_term = parallel ? -1 / m(2, 2) : -m(2, 2),
-            .parallel = parallel ? 1u : 0u,
-            .tolerance = k_tolerance * view.unit_depth};
-}
 
 StrokeParameters stroke_parameters(const StrokeView& view, bool curved) {
+    const Eigen::Matrix4f& m = view.camera.projection;
+    const bool parallel = is_parallel(view.camera);
     const auto toward = view.camera.view.row(2);
     return {.eye = homogeneous_eye(view.camera),
             .axis = {-toward[0], -toward[1], -toward[2], -toward[3]},
+            .width = static_cast<std::uint32_t>(view.width),
+            .height = static_cast<std::uint32_t>(view.height),
+            .near_term = parallel ? m(2, 3) / m(2, 2) : -m(2, 3),
+            .far_term = parallel ? -1 / m(2, 2) : -m(2, 2),
             .feature_size = view.feature_size,
             .unit_depth = view.unit_depth,
-            .parallel = is_parallel(view.camera) ? 1u : 0u,
+            .parallel = parallel ? 1u : 0u,
             .curved = curved ? 1u : 0u};
 }
 
@@ -69,9 +60,11 @@ StrokeLooks plain_looks(const LineThresholds& thresholds, const StrokeThickness&
 GpuStrokes::GpuStrokes(const GpuChains& chains) : chains_(chains) {
     Device& device = chains.lines().surface().surface().device();
     const std::size_t room = 2 * chains.lines().room();
-    visibility_kernel_ = Kernel(
-        device, shaders::lines_visibility_comp,
-        {.push_constants = layout_of<VisibilityParameters>(), .elements = {layout_of<float>(), layout_of<vec4>()}});
+    visibility_kernel_ =
+        Kernel(device, shaders::lines_visibility_comp,
+               {.push_constants = layout_of<StrokeParameters>(),
+                .elements = {layout_of<float>(), layout_of<vec4>(), layout_of<uvec4>(), layout_of<uvec4>(),
+                             layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>()}});
     stroke_kernel_ =
         Kernel(device, shaders::lines_strokes_comp,
                {.push_constants = layout_of<StrokeParameters>(),
@@ -92,15 +85,18 @@ void GpuStrokes::record(Stream& stream, const GpuCurvedSurface& moment, const Bu
     const Buffer& counts = lines.counts();
     constexpr std::size_t k_points = offsetof(LineCounts, point_groups);
     stream.upload(looks_, std::span<const StrokeLook>(looks));
-    stream.dispatch_indirect(visibility_kernel_, counts, k_points,
-                             {BufferRange(depths, 0, wanted), chains_.points(), counts, visible_},
-                             visibility_parameters(view));
     const bool curved = moment.first && moment.second;
+    const StrokeParameters parameters = stroke_parameters(view, curved);
+    const Buffer &faces = lines.surface().surface().faces(), &first = curved ? *moment.first : moment.vertices,
+                 &second = curved ? *moment.second : moment.vertices;
+    stream.dispatch_indirect(visibility_kernel_, counts, k_points,
+                             {BufferRange(depths, 0, wanted), chains_.points(), lines.segments(), faces,
+                              moment.vertices, first, second, counts, visible_},
+                             parameters);
     stream.dispatch_indirect(
         stroke_kernel_, counts, k_points,
-        {chains_.points(), visible_, lines.segments(), lines.surface().surface().faces(), moment.vertices,
-         curved ? *moment.first : moment.vertices, curved ? *moment.second : moment.vertices, counts, looks_, strokes_},
-        stroke_parameters(view, curved));
+        {chains_.points(), visible_, lines.segments(), faces, moment.vertices, first, second, counts, looks_, strokes_},
+        parameters);
 }
 
 }  // namespace exemplar

@@ -19,6 +19,7 @@ layout(set = 0, binding = 7, std430) readonly buffer Counts { LineCounts counts;
 layout(set = 0, binding = 8, std430) readonly buffer Looks { StrokeLook looks[]; };  // per family
 layout(set = 0, binding = 9, std430) writeonly buffer Strokes { vec4 strokes[]; };   // place, width, opacity; normal
 #include "shaders/lib/segments.glsl"
+#include "shaders/lib/stroke_points.glsl"
 
 const float k_least_calm = 3.0;  // pixels; see host/lines/strokes.h
 const float k_most_calm = 10.0;
@@ -104,15 +105,6 @@ vec4 calmed(int point, uint kind) {
     }
     const float size = length(tangent);
     return vec4(there, size > 0.0 ? vec2(-tangent.y, tangent.x) / size : vec2(0.0, 1.0));
-}
-
-// Radial curvature at a vertex, times the feature size.
-float radial_curvature(int vertex) {
-    const vec3 here = texelFetch(positions, vertex).xyz;
-    const vec3 w = parameters.eye.w != 0.0 ? normalize(parameters.eye.xyz - here) : parameters.eye.xyz;
-    const vec4 e1 = texelFetch(first, vertex), e2 = texelFetch(second, vertex);
-    const float u = dot(e1.xyz, w), v = dot(e2.xyz, w), squared = u * u + v * v;
-    return parameters.feature_size * (squared > 0.0 ? (e1.w * u * u + e2.w * v * v) / squared : 0.5 * (e1.w + e2.w));
 }
 
 float thickness(uvec2 walked_end, StrokeLook look) {

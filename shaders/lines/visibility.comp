@@ -7,18 +7,25 @@
 // all of the 3 x 3 pixels around it show something nearer. One point per invocation: reads 64 bytes and 36 a sample, from
 // caches, and writes 8.
 layout(local_size_x = k_count_group) in;
-layout(push_constant) uniform Push { VisibilityParameters parameters; };
+layout(push_constant) uniform Push { StrokeParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer depths;  // rows of pixels from the top
 layout(set = 0, binding = 1) uniform samplerBuffer points;  // LinePoint, two texels each
-layout(set = 0, binding = 2, std430) readonly buffer Counts { LineCounts counts; };
-layout(set = 0, binding = 3, std430) writeonly buffer Visible { uvec2 visible[]; };
+layout(set = 0, binding = 2) uniform usamplerBuffer segments;
+layout(set = 0, binding = 3) uniform usamplerBuffer faces;
+layout(set = 0, binding = 4) uniform samplerBuffer positions;
+layout(set = 0, binding = 5) uniform samplerBuffer first;
+layout(set = 0, binding = 6) uniform samplerBuffer second;
+layout(set = 0, binding = 7, std430) readonly buffer Counts { LineCounts counts; };
+layout(set = 0, binding = 8, std430) writeonly buffer Visible { uvec2 visible[]; };
+#include "shaders/lib/segments.glsl"
+#include "shaders/lib/stroke_points.glsl"
 
 float view_depth(float depth) {
     return parameters.parallel != 0u ? parameters.near_term + parameters.far_term * depth
                                      : parameters.near_term / (parameters.far_term - depth);
 }
 
-bool is_visible(vec2 at, float depth) {
+bool is_visible(vec2 at, float depth, float tolerance) {
     if (any(lessThan(at, vec2(0.0))) || at.x >= float(parameters.width) || at.y >= float(parameters.height)) return false;
     const ivec2 low = max(ivec2(at) - 1, ivec2(0));
     const ivec2 high = min(ivec2(at) + 1, ivec2(parameters.width, parameters.height) - 1);
@@ -26,7 +33,35 @@ bool is_visible(vec2 at, float depth) {
     for (int y = low.y; y <= high.y; ++y)
         for (int x = low.x; x <= high.x; ++x)
             farthest = max(farthest, texelFetch(depths, y * int(parameters.width) + x).x);
-    return farthest >= 1.0 || view_depth(depth) <= view_depth(farthest) + parameters.tolerance;
+    return farthest >= 1.0 || view_depth(depth) <= view_depth(farthest) + tolerance;
+}
+
+float facing(int vertex) {
+    const vec3 normal = cross(texelFetch(first, vertex).xyz, texelFetch(second, vertex).xyz);
+    return dot(normal, to_eye(texelFetch(positions, vertex).xyz));
+}
+
+// By how much a segment may be behind what is drawn there. A contour is where the smooth surface turns away, up to an edge
+// behind the outline of its faces, unless it is one that the surface itself hides, where it bends away from the eye;
+// and faces near an outline may turn away where the smooth surface does not yet.
+float tolerance_of(uint index) {
+    const uvec2 head = texelFetch(segments, int(2u * index)).xy;
+    const uvec3 corners = texelFetch(faces, int(head.x)).xyz;
+    const vec3 a = texelFetch(positions, int(corners.x)).xyz, b = texelFetch(positions, int(corners.y)).xyz,
+               c = texelFetch(positions, int(corners.z)).xyz;
+    const uint family = head.y & k_kind_family;
+    bool behind = parameters.curved == 0u;
+    if (parameters.curved != 0u && family == k_contours)
+        behind = radial_curvature(int(corners.x)) + radial_curvature(int(corners.y)) + radial_curvature(int(corners.z)) > 0.0;
+    if (parameters.curved != 0u && family != k_contours) {
+        behind = dot(cross(b - a, c - a), to_eye(a)) < 0.0;
+        // Others are cut off where the smooth surface turns away.
+        if (family == k_ridges || family == k_valleys)
+            behind = behind && facing(int(corners.x)) + facing(int(corners.y)) + facing(int(corners.z)) > 0.0;
+    }
+    if ((1u << family & k_edge_families) != 0u) behind = false;
+    const float longest = sqrt(max(dot(b - a, b - a), max(dot(c - b, c - b), dot(a - c, a - c))));
+    return k_depth_tolerance * parameters.unit_depth + (behind ? k_edge_tolerance * longest : 0.0);
 }
 
 void main() {
@@ -34,8 +69,9 @@ void main() {
     if (index >= counts.points) return;
 
     const vec4 here = texelFetch(points, int(2u * index)), kind = texelFetch(points, int(2u * index + 1u));
+    const float tolerance = tolerance_of(floatBitsToUint(kind.z) / 2u);
     if ((floatBitsToUint(kind.x) & k_point_last) != 0u) {
-        visible[index] = uvec2(is_visible(here.xy, here.z) ? 1u : 0u, 1u);
+        visible[index] = uvec2(is_visible(here.xy, here.z, tolerance) ? 1u : 0u, 1u);
         return;
     }
     const vec3 there = texelFetch(points, int(2u * index + 2u)).xyz;
@@ -45,7 +81,7 @@ void main() {
     uint mask = 0;
     for (uint i = 0; i < samples; ++i) {
         const vec3 at = mix(here.xyz, there, (float(i) + 0.5) / float(samples));
-        if (at.z >= 0.0 && at.z <= 1.0 && is_visible(at.xy, at.z)) mask |= 1u << i;
+        if (at.z >= 0.0 && at.z <= 1.0 && is_visible(at.xy, at.z, tolerance)) mask |= 1u << i;
     }
     visible[index] = uvec2(mask, samples);
 }

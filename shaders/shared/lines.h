@@ -17,18 +17,18 @@ const uint k_creases = 8;
 const uint k_boundaries = 9;
 const uint k_line_families = 10;
 
-const uint k_field_families = 0xffu;     // the bits of those that are found by fields
+const uint k_field_families = 0xffu;      // the bits of those that are found by fields
 const uint k_curvature_families = 0xfeu;  // by fields of curvature
-const uint k_axis_families = 0xf8u;      // by fields that have directions
-const uint k_extremum_families = 0x38u;  // and are the extrema along them
+const uint k_axis_families = 0xf8u;       // by fields that have directions
+const uint k_extremum_families = 0x38u;   // and are the extrema along them
 const uint k_highlight_families = 0xc0u;
-const uint k_edge_families = 0x300u;     // edges of the mesh
+const uint k_edge_families = 0x300u;  // edges of the mesh
 
-// Fields have a vec4 per vertex: value, strength, margin and front of exemplar::LineField; those of all families that are
-// wanted follow each other, as do the directions of those that have some.
-// The bits of the families that are wanted are a constant of the kernels (id 0).
+// Fields have a vec4 per vertex: value, strength, margin and front of exemplar::LineField; those of all families that
+// are wanted follow each other, as do the directions of those that have some. The bits of the families that are wanted
+// are a constant of the kernels (id 0).
 struct FieldParameters {
-    vec4 eye;  // its position and 1, or for a parallel projection the unit direction to it and 0
+    vec4 eye;              // its position and 1, or for a parallel projection the unit direction to it and 0
     vec4 low_thresholds;   // of families 0 to 3
     vec4 high_thresholds;  // of families 4 to 7
     uint vertices;
@@ -83,14 +83,14 @@ struct LineCounts {
 };
 
 struct ScanParameters {
-    uint groups;   // to scan; 0: as many as LineCounts has groups of segments
-    uint most;     // what there is room for
+    uint groups;  // to scan; 0: as many as LineCounts has groups of segments
+    uint most;    // what there is room for
 };
 
 const uint k_no_link = 0xffffffffu;
 
-// Segments continue each other at their ends; link 2 s + e leads to the end it is joined with. A node is a segment that is
-// left by one of its ends, 2 s + e; the way on leads from node to node.
+// Segments continue each other at their ends; link 2 s + e leads to the end it is joined with. A node is a segment that
+// is left by one of its ends, 2 s + e; the way on leads from node to node.
 struct LinkParameters {
     vec4 matrix[4];  // columns: world to clip space
     float width;     // of the picture, in pixels
@@ -107,7 +107,8 @@ struct LinePoint {
     float parameter;  // pixels along the chain
     uint kind;        // family and flags
     uint chain;       // its first segment
-    uint segment;     // on the way on to the next point, 2 s + 1 if it is walked from its second end; of the last point the last
+    uint segment;     // on the way on to the next point, 2 s + 1 if it is walked from its second end; of the last point
+                      // the last
     float strength;
 };
 const uint k_point_first = 0x10u;
@@ -115,16 +116,12 @@ const uint k_point_last = 0x20u;
 const uint k_point_closed = 0x40u;
 
 // Samples of visibility on the way from a point to the next are this many pixels apart, if 32 are enough.
-const float k_sample_spacing = 1.0;
+const float k_sample_spacing = 1.0f;
 
-struct VisibilityParameters {
-    uint width;  // of the picture, in pixels
-    uint height;
-    float near_term;  // depth to view depth: near_term / (far_term - depth), or for a parallel projection
-    float far_term;   // near_term + far_term * depth
-    uint parallel;
-    float tolerance;  // mesh units
-};
+// For what lies on the surface, depths are off by this part of the unit of depth at most; contours, and what lies on
+// faces that turn away although the surface does not, may be so many edges of their face behind it.
+const float k_depth_tolerance = 2e-3f;
+const float k_edge_tolerance = 1.5f;
 
 // How the strokes of a family look: exemplar::StrokeThickness and more.
 struct StrokeLook {
@@ -136,8 +133,8 @@ struct StrokeLook {
     float taper;
     float threshold;  // opacity is x / (x + fade) of the strength x above it; a fade of zero: all opaque
     float fade;
-    uint texture;     // 0: none; else it begins at texel texture - 1
-    float period;     // of the texture, in pixels along the stroke
+    uint texture;  // 0: none; else it begins at texel texture - 1
+    float period;  // of the texture, in pixels along the stroke
     float unused0;
     float unused1;
     float unused2;
@@ -147,7 +144,11 @@ const uint k_texture_height = 32;
 
 struct StrokeParameters {
     vec4 eye;
-    vec4 axis;  // of the camera, into the picture, in world space, and what to add for the depth of a point
+    vec4 axis;   // of the camera, into the picture, in world space, and what to add for the depth of a point
+    uint width;  // of the picture, in pixels
+    uint height;
+    float near_term;  // depth to view depth: near_term / (far_term - depth),
+    float far_term;   // or for a parallel projection near_term + far_term * depth
     float feature_size;
     float unit_depth;
     uint parallel;
@@ -163,10 +164,10 @@ struct StrokeDrawParameters {
 struct SurfaceDrawParameters {
     vec4 matrix[4];
     vec4 eye;
-    vec4 paper;    // color, and how it is shaded: 0 not at all, 1 smoothly, 2 in steps
+    vec4 paper;     // color, and how it is shaded: 0 not at all, 1 smoothly, 2 in steps
     uint coloring;  // 0: paper, 1: a color per face, 2: by curvature
-    float scale;   // of curvature, in mesh units
-    float alpha;   // of paper
+    float scale;    // of curvature, in mesh units
+    float alpha;    // of paper
     uint unused;
 };
 
@@ -177,10 +178,10 @@ EXEMPLAR_LAYOUT(LineSegmentRecord, face, kind, first_strength, second_strength, 
 EXEMPLAR_LAYOUT(ScanParameters, groups, most)
 EXEMPLAR_LAYOUT(LinkParameters, matrix, width, height, unused0, unused1)
 EXEMPLAR_LAYOUT(LinePoint, x, y, depth, parameter, kind, chain, segment, strength)
-EXEMPLAR_LAYOUT(VisibilityParameters, width, height, near_term, far_term, parallel, tolerance)
-EXEMPLAR_LAYOUT(StrokeLook, color, width, epsilon, least, most, taper, threshold, fade, texture, period, unused0, unused1,
-                unused2)
-EXEMPLAR_LAYOUT(StrokeParameters, eye, axis, feature_size, unit_depth, parallel, curved)
+EXEMPLAR_LAYOUT(StrokeLook, color, width, epsilon, least, most, taper, threshold, fade, texture, period, unused0,
+                unused1, unused2)
+EXEMPLAR_LAYOUT(StrokeParameters, eye, axis, width, height, near_term, far_term, feature_size, unit_depth, parallel,
+                curved)
 EXEMPLAR_LAYOUT(StrokeDrawParameters, width, height)
 EXEMPLAR_LAYOUT(SurfaceDrawParameters, matrix, eye, paper, coloring, scale, alpha, unused)
 #endif

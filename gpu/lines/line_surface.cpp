@@ -17,8 +17,10 @@ GpuLineSurface::GpuLineSurface(const GpuSurface& surface) : surface_(&surface) {
     check_texels(surface.device(), 3 * mesh.face_count(), "the faces around the vertices of a surface");
     std::vector<shared::uvec4> neighbors;
     neighbors.reserve(mesh.face_count());
-    for (const auto& [a, b, c] : build_face_neighbors(mesh.faces, mesh.vertex_count()))
+    for (const auto& [a, b, c] : build_face_neighbors(mesh.faces, mesh.vertex_count())) {
         neighbors.push_back({a, b, c, 0});
+        closed_ = closed_ && a != k_no_neighbor && b != k_no_neighbor && c != k_no_neighbor;
+    }
     const Topology topology = build_topology(mesh);
     neighbors_ = Buffer::of<shared::uvec4>(surface.device(), neighbors);
     face_begin_ = Buffer::of<std::uint32_t>(surface.device(), topology.vertex_face_begin);

@@ -22,9 +22,12 @@ class GpuLineSurface {
     /// The faces around the vertices: a uint per vertex and one more, and uints.
     const Buffer& face_begin() const { return face_begin_; }
     const Buffer& vertex_faces() const { return vertex_faces_; }
+    /// Whether no edge is that of a single face.
+    bool is_closed() const { return closed_; }
 
   private:
     const GpuSurface* surface_;
+    bool closed_ = true;
     Buffer neighbors_, face_begin_, vertex_faces_;
 };
 

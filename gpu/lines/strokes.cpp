@@ -18,7 +18,7 @@ using shared::StrokeParameters;
 using shared::uvec4;
 using shared::vec4;
 
-StrokeParameters stroke_parameters(const StrokeView& view, bool curved) {
+StrokeParameters stroke_parameters(const StrokeView& view, bool curved, bool closed) {
     const Eigen::Matrix4f& m = view.camera.projection;
     const bool parallel = is_parallel(view.camera);
     const auto toward = view.camera.view.row(2);
@@ -31,7 +31,11 @@ StrokeParameters stroke_parameters(const StrokeView& view, bool curved) {
             .feature_size = view.feature_size,
             .unit_depth = view.unit_depth,
             .parallel = parallel ? 1u : 0u,
-            .curved = curved ? 1u : 0u};
+            .curved = curved ? 1u : 0u,
+            .closed = closed ? 1u : 0u,
+            .unused0 = 0,
+            .unused1 = 0,
+            .unused2 = 0};
 }
 
 }  // namespace
@@ -86,7 +90,7 @@ void GpuStrokes::record(Stream& stream, const GpuCurvedSurface& moment, const Bu
     constexpr std::size_t k_points = offsetof(LineCounts, point_groups);
     stream.upload(looks_, std::span<const StrokeLook>(looks));
     const bool curved = moment.first && moment.second;
-    const StrokeParameters parameters = stroke_parameters(view, curved);
+    const StrokeParameters parameters = stroke_parameters(view, curved, lines.surface().is_closed());
     const Buffer &faces = lines.surface().surface().faces(), &first = curved ? *moment.first : moment.vertices,
                  &second = curved ? *moment.second : moment.vertices;
     stream.dispatch_indirect(visibility_kernel_, counts, k_points,

@@ -26,7 +26,7 @@ float view_depth(float depth) {
 }
 
 bool is_visible(vec2 at, float depth, float tolerance) {
-    if (any(lessThan(at, vec2(0.0))) || at.x >= float(parameters.width) || at.y >= float(parameters.height)) return false;
+    if (tolerance < 0.0 || any(lessThan(at, vec2(0.0))) || at.x >= float(parameters.width) || at.y >= float(parameters.height)) return false;
     const ivec2 low = max(ivec2(at) - 1, ivec2(0));
     const ivec2 high = min(ivec2(at) + 1, ivec2(parameters.width, parameters.height) - 1);
     float farthest = 0.0;
@@ -43,7 +43,7 @@ float facing(int vertex) {
 
 // By how much a segment may be behind what is drawn there. A contour is where the smooth surface turns away, up to an edge
 // behind the outline of its faces, unless it is one that the surface itself hides, where it bends away from the eye;
-// and faces near an outline may turn away where the smooth surface does not yet.
+// and faces near an outline may turn away where the smooth surface does not yet. Negative: it is hidden for certain.
 float tolerance_of(uint index) {
     const uvec2 head = texelFetch(segments, int(2u * index)).xy;
     const uvec3 corners = texelFetch(faces, int(head.x)).xyz;
@@ -51,8 +51,10 @@ float tolerance_of(uint index) {
                c = texelFetch(positions, int(corners.z)).xyz;
     const uint family = head.y & k_kind_family;
     bool behind = parameters.curved == 0u;
-    if (parameters.curved != 0u && family == k_contours)
+    if (parameters.curved != 0u && family == k_contours) {
         behind = radial_curvature(int(corners.x)) + radial_curvature(int(corners.y)) + radial_curvature(int(corners.z)) > 0.0;
+        if (!behind && parameters.closed != 0u) return -1.0;
+    }
     if (parameters.curved != 0u && family != k_contours) {
         behind = dot(cross(b - a, c - a), to_eye(a)) < 0.0;
         // Others are cut off where the smooth surface turns away.

@@ -153,6 +153,10 @@ struct StrokeParameters {
     float unit_depth;
     uint parallel;
     uint curved;  // whether there is curvature
+    uint closed;  // whether the surface has no boundary
+    uint unused0;
+    uint unused1;
+    uint unused2;
 };
 
 struct StrokeDrawParameters {
@@ -180,8 +184,8 @@ EXEMPLAR_LAYOUT(LinkParameters, matrix, width, height, unused0, unused1)
 EXEMPLAR_LAYOUT(LinePoint, x, y, depth, parameter, kind, chain, segment, strength)
 EXEMPLAR_LAYOUT(StrokeLook, color, width, epsilon, least, most, taper, threshold, fade, texture, period, unused0,
                 unused1, unused2)
-EXEMPLAR_LAYOUT(StrokeParameters, eye, axis, width, height, near_term, far_term, feature_size, unit_depth, parallel,
-                curved)
+EXEMPLAR_LAYOUT(StrokeParameters, eye, axis, width, height, near_term, far_term, feature_size, unit_depth, parallel, curved,
+                closed, unused0, unused1, unused2)
 EXEMPLAR_LAYOUT(StrokeDrawParameters, width, height)
 EXEMPLAR_LAYOUT(SurfaceDrawParameters, matrix, eye, paper, coloring, scale, alpha, unused)
 #endif

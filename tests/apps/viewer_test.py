@@ -127,7 +127,7 @@ class InWindow(Viewer):
         super().setUpClass()
         reader, writer = os.pipe()
         cls.display = subprocess.Popen(["Xvfb", "-displayfd", str(writer), "-screen", "0", f"{WIDTH}x{HEIGHT}x24",
-                                        "-fbdir", str(cls.folder), "-nolisten", "tcp", "-nocursor"], pass_fds=[writer],
+                                        "-fbdir", str(cls.folder), "-nolisten", "tcp", "-nocursor", "-noreset"], pass_fds=[writer],
                                        stderr=subprocess.DEVNULL)
         cls.addClassCleanup(cls.end_display)
         os.close(writer)

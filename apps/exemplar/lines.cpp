@@ -30,15 +30,8 @@ std::vector<std::string> type_words() {
     return words;
 }
 
-/// The type of its name or the beginning of it: "suggestive" is the contours of that kind.
 LineType type_of(const std::string& word) {
-    std::string name = word;
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return c == '-' ? '_' : static_cast<char>(std::tolower(c)); });
-    if (name.size() >= 3)
-        for (const LineType type : k_line_types)
-            if (name_of(type).starts_with(name)) return type;
-    if (name == "highlights") return LineType::suggestive_highlights;
+    if (const std::optional<LineType> type = line_type_meant(word)) return *type;
     const std::vector<std::string> words = type_words();
     throw UsageError(fmt::format("'{}' is no type of lines{}; the types are {}", word, suggestion(word, words),
                                  fmt::join(words, ", ")));

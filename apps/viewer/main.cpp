@@ -48,7 +48,7 @@ std::vector<LineType> parse_lines(const std::vector<std::string>& words) {
     std::vector<std::string> names{"none"};
     for (const LineType type : k_line_types) names.emplace_back(name_of(type));
     for (const std::string& word : words) {
-        const std::optional<LineType> type = line_type_named(word);
+        const std::optional<LineType> type = word == "none" ? std::nullopt : line_type_meant(word);
         if (!type && word != "none")
             throw UsageError(fmt::format("there are no lines '{}'{}", word, suggestion(word, names)));
         if (type) types.push_back(*type);

@@ -1,5 +1,6 @@
 #include "gpu/lines/device_style.h"
 
+#include <cmath>
 #include <map>
 #include <string>
 
@@ -38,7 +39,7 @@ class Textures {
                 const float across = (static_cast<float>(y) + 0.5f) / float(shared::k_texture_height);
                 const float opacity =
                     sample_stroke_texture(image, along * static_cast<float>(image.width), 2 * across - 1);
-                texels_.push_back(static_cast<std::uint8_t>(255 * opacity + 0.5f));
+                texels_.push_back(static_cast<std::uint8_t>(std::lround(255 * opacity)));
             }
     }
     std::map<std::string, Place> places_;

@@ -1,5 +1,9 @@
 #include "host/lines/lines.h"
 
+#include <algorithm>
+#include <cctype>
+#include <string>
+
 namespace exemplar {
 
 std::string_view name_of(LineType type) {
@@ -29,6 +33,18 @@ std::string_view name_of(LineType type) {
 std::optional<LineType> line_type_named(std::string_view name) {
     for (const LineType type : k_line_types)
         if (name_of(type) == name) return type;
+    return std::nullopt;
+}
+
+std::optional<LineType> line_type_meant(std::string_view word) {
+    constexpr std::size_t k_fewest_letters = 3;
+    std::string name(word);
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return c == '-' ? '_' : static_cast<char>(std::tolower(c)); });
+    if (name == "highlights") return LineType::suggestive_highlights;
+    if (name.size() >= k_fewest_letters)
+        for (const LineType type : k_line_types)
+            if (name_of(type).starts_with(name)) return type;
     return std::nullopt;
 }
 

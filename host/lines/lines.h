@@ -34,6 +34,9 @@ inline constexpr std::array k_line_types = {
 std::string_view name_of(LineType type);
 /// The type of that name; nothing for another word.
 std::optional<LineType> line_type_named(std::string_view name);
+/// The type that a user's word means: its name or at least three letters that begin it ("suggestive" is the contours of
+/// that kind), in any case, with - for _; nothing for another word.
+std::optional<LineType> line_type_meant(std::string_view word);
 /// Whether the lines move over the surface with the eye: all but ridges, valleys, creases and boundaries.
 bool depends_on_view(LineType type);
 /// Whether finding the lines takes curvature with derivatives: all but contours, creases and boundaries.

@@ -102,7 +102,7 @@ class Headless(Viewer):
                                       (["figure_001.glb", "--out", "x"], 2, "--headless"),
                                       (["figure_001.glb", "--headless", "--clip", "moton_1"], 2, "'motion_1'"),
                                       (["figure_001.glb", "--headless", "--model", "figure_001.glb"], 1, "figure"),
-                                      (["figure_001.glb", "--lines", "contour"], 2, "'contours'"),
+                                      (["figure_001.glb", "--lines", "contuors"], 2, "'contours'"),
                                       (["figure_001.glb", "--headless", "--style", "inc"], 1, "'ink'"),
                                       (["figure_001.glb", "--paint", "red"], 2, "red")]:
             lines = self.view(*arguments, code=code)[1].splitlines()

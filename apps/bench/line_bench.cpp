@@ -121,12 +121,33 @@ void run(const std::string& path, const std::string& model, const std::string& p
                                        {"and chains", chain},
                                        {"and the surface, visibility and strokes: the image", draw},
                                        {"and the image on the host", draw_and_download}};
+    const auto print_flicker = [&](bool coherent) {
+        LinePicture with = picture;
+        with.coherent = coherent;
+        double slip = 0, appeared = 0, stretch = 0;
+        for (const FrameRef& at : frames) {
+            pose(at);
+            renderer.record(stream, moment(), with);
+            stream.finish();
+            if (&at == &frames[0]) continue;
+            const LineFlicker flicker = renderer.coherence().flicker();
+            slip += flicker.slip;
+            appeared += flicker.appeared;
+            stretch += flicker.stretch;
+        }
+        const double count = static_cast<double>(frames.size() - 1);
+        fmt::print(
+            "textures {}: move {:.2f} pixels a frame along lines; stretched by {:.1f} %; {:.2f} % of lines are "
+            "new in a frame\n",
+            coherent ? "kept" : "not kept", slip / count, 100 * stretch / count, 100 * appeared / count);
+    };
     fmt::print("{} vertices, {} faces, {} x {}; medians over {} frames, milliseconds\n", animation.rest.vertex_count(),
                animation.rest.face_count(), k_width, k_height, frames.size());
     for (const Stage& stage : stages) {
         const double median = median_milliseconds(stream, frames, stage.record);
         fmt::print("{:>55} {:8.2f}  ({:.1f} a second)\n", stage.name, median, 1e3 / median);
     }
+    for (const bool coherent : {false, true}) print_flicker(coherent);
     if (!png.empty()) write_png(png, renderer.read_image());
 }
 

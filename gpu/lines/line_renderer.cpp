@@ -54,7 +54,7 @@ DrawPipeline stroke_pipeline(Device& device) {
             shaders::lines_stroke_frag,
             {.push_constants = layout_of<shared::StrokeDrawParameters>(),
              .elements = {layout_of<vec4>(), layout_of<vec4>(), layout_of<std::uint32_t>(),
-                          layout_of<shared::StrokeLook>(), layout_of<float>()}},
+                          layout_of<shared::StrokeLook>(), layout_of<float>(), layout_of<shared::vec2>()}},
             {.color = LineRenderer::k_format, .blends = true}};
 }
 
@@ -85,6 +85,7 @@ LineRenderer::LineRenderer(Device& device, const GpuLineSurface& surface)
       lines_(surface),
       chains_(lines_),
       strokes_(chains_),
+      coherence_(strokes_),
       depth_format_(VK_FORMAT_D32_SFLOAT),
       surface_pipeline_(surface_pipeline(device, depth_format_)),
       stroke_pipeline_(stroke_pipeline(device)),
@@ -161,10 +162,11 @@ void LineRenderer::draw_strokes(Stream& stream, const LinePicture& picture) {
     stream.transition(color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                       VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, k_color_goes_on);
     Pass pass("lines/strokes", {.color = color_.view(), .extent = extent_});
-    pass.draw(stroke_pipeline_, {.indirect = &lines_.counts(), .indirect_offset = offsetof(LineCounts, draw)},
-              {chains_.points(), strokes_.strokes(), strokes_.visible(), strokes_.looks(), textures_},
-              shared::StrokeDrawParameters{.width = static_cast<float>(picture.view.width),
-                                           .height = static_cast<float>(picture.view.height)});
+    pass.draw(
+        stroke_pipeline_, {.indirect = &lines_.counts(), .indirect_offset = offsetof(LineCounts, draw)},
+        {chains_.points(), strokes_.strokes(), strokes_.visible(), strokes_.looks(), textures_, coherence_.phases()},
+        shared::StrokeDrawParameters{.width = static_cast<float>(picture.view.width),
+                                     .height = static_cast<float>(picture.view.height)});
     stream.render(pass);
     stream.transition(color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                       VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, k_color_ends);
@@ -180,6 +182,7 @@ void LineRenderer::record(Stream& stream, const GpuCurvedSurface& moment, const 
     chains_.record(stream, moment.vertices, view.camera, view.width, view.height);
     draw_surface(stream, moment, picture);
     strokes_.record(stream, moment, depths_, view, picture.looks);
+    coherence_.record(stream, moment.vertices, view, picture.coherent);
     draw_strokes(stream, picture);
 }
 

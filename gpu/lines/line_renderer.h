@@ -8,6 +8,7 @@
 
 #include "gpu/imaging/attachment.h"
 #include "gpu/lines/chains.h"
+#include "gpu/lines/coherence.h"
 #include "gpu/lines/extraction.h"
 #include "gpu/lines/strokes.h"
 #include "gpu/runtime/draw_pipeline.h"
@@ -35,6 +36,7 @@ struct LinePicture {
     std::uint32_t families = 0;  ///< line_families() of the types to draw
     FamilyThresholds thresholds{};
     StrokeLooks looks{};
+    bool coherent = true;  ///< textures stay where they were in the picture before
     SurfaceLook surface;
 };
 
@@ -66,6 +68,7 @@ class LineRenderer {
     Image read_image() const;
 
     const GpuStrokes& strokes() const { return strokes_; }
+    const GpuCoherence& coherence() const { return coherence_; }
 
   private:
     void resize(int width, int height);
@@ -76,6 +79,7 @@ class LineRenderer {
     GpuLineExtraction lines_;
     GpuChains chains_;
     GpuStrokes strokes_;
+    GpuCoherence coherence_;
     VkFormat depth_format_;
     DrawPipeline surface_pipeline_, stroke_pipeline_;
     VkExtent2D extent_{};

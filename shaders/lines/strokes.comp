@@ -21,10 +21,6 @@ layout(set = 0, binding = 9, std430) writeonly buffer Strokes { vec4 strokes[]; 
 #include "shaders/lib/segments.glsl"
 #include "shaders/lib/stroke_points.glsl"
 
-const float k_least_calm = 3.0;  // pixels; see host/lines/strokes.h
-const float k_most_calm = 10.0;
-const int k_calm_points = 8;
-const int k_calm_reach = 2;
 const uint k_most_taper_points = 64;
 
 uint kind_of(int point) {

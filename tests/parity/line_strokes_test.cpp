@@ -8,7 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "gpu/lines/device_style.h"
 #include "gpu/lines/line_renderer.h"
+#include "host/lines/stroke_raster.h"
+#include "host/lines/stroke_textures.h"
 #include "host/lines/strokes.h"
 #include "host/lines/visibility.h"
 #include "tests/parity/line_scene.h"
@@ -18,7 +21,13 @@ namespace {
 
 using namespace testing;
 
-/// A drawing of one type on the device, without tapers, and the same on the host from the device's own segments.
+LineStyle even_style() {
+    LineStyle style;
+    style.thickness.taper = 0;
+    return style;
+}
+
+/// A drawing of one type on the device, and the same on the host from the device's own segments.
 struct DrawnLines {
     std::vector<LinePoint> points;
     std::vector<vec4> strokes;                          // two a point
@@ -27,9 +36,10 @@ struct DrawnLines {
     std::vector<Stroke> expected;                       // of all, none hidden
     VisibleParts parts;                                 // by rays
     StrokeView view;
+    Image image;
 };
 
-DrawnLines draw(const Scene& scene, LineType type, bool parallel) {
+DrawnLines draw(const Scene& scene, LineType type, bool parallel, const LineStyle& line = even_style()) {
     DrawnLines drawn;
     const FitOptions fit{.vertical_fov = parallel ? 0.0f : 0.4f};
     drawn.view = {.camera = fit_camera(scene.mesh, Vec3(3.07f, 2.11f, 4.23f), float(k_width) / k_height, fit),
@@ -38,17 +48,21 @@ DrawnLines draw(const Scene& scene, LineType type, bool parallel) {
                   .unit_depth = 20,
                   .feature_size = scene.size()};
     const LineType types[] = {type};
-    const StrokeThickness thickness{.taper = 0};
     LinePicture picture;
     picture.view = drawn.view;
     picture.families = line_families(types);
     LineThresholds thresholds;
     thresholds.principal_highlights = 0.001f;  // so that there are some
     picture.thresholds = family_thresholds(thresholds);
-    picture.looks = plain_looks(thresholds, thickness);
+    DrawingStyle style;
+    style.of(type) = line;
+    if (type == LineType::principal_highlights) style.of(type).threshold = thresholds.principal_highlights;
+    const DeviceStyle looks = device_style(style);
+    picture.looks = looks.looks;
     LineRenderer renderer(shared_device(), scene.line_surface);
+    renderer.set_textures(looks.textures);
     Stream stream(shared_device());
-    renderer.render(stream, scene.moment(), picture);
+    drawn.image = renderer.render(stream, scene.moment(), picture);
 
     LineCounts counts{};
     const GpuLineExtraction& lines = renderer.strokes().chains().lines();
@@ -67,7 +81,7 @@ DrawnLines draw(const Scene& scene, LineType type, bool parallel) {
     // The device orders chains by the segment they start with.
     std::map<std::uint32_t, Stroke> by_start;
     std::vector<Stroke> strokes =
-        make_strokes(scene.on_host(), type, drawn.segments, chains, nullptr, drawn.view, thresholds, thickness);
+        make_strokes(scene.on_host(), type, drawn.segments, chains, nullptr, drawn.view, thresholds, line.thickness);
     for (std::size_t i = 0; i < chains.size(); ++i) by_start[chains[i].links[0].segment] = std::move(strokes[i]);
     for (auto& [start, stroke] : by_start) drawn.expected.push_back(std::move(stroke));
     drawn.parts =
@@ -148,6 +162,64 @@ TEST_P(StrokeParity, WhatIsHiddenIsHiddenByRays) {
         }
         EXPECT_LE(wrongly_hidden, 0.002f * length);
         EXPECT_LE(wrongly_shown, 0.002f * length);
+    }
+}
+
+/// The strokes that the device has drawn, as the host would draw them: ways to the next point in pieces, a sample each.
+std::vector<Stroke> drawn_strokes(const DrawnLines& drawn) {
+    std::vector<Stroke> result;
+    const auto point = [&](std::size_t i) {
+        const vec4 &place = drawn.strokes[2 * i], &normal = drawn.strokes[2 * i + 1];
+        StrokePoint at;
+        at.position = {place.x, place.y};
+        at.normal = {normal.x, normal.y};
+        at.width = place.z;
+        at.opacity = place.w;
+        at.parameter = drawn.points[i].parameter;
+        return at;
+    };
+    for (std::size_t i = 0; i < drawn.points.size(); ++i) {
+        if (drawn.points[i].kind & shared::k_point_first) result.emplace_back();
+        if (drawn.points[i].kind & shared::k_point_last) {
+            result.back().points.push_back(point(i));
+            continue;
+        }
+        const StrokePoint from = point(i), to = point(i + 1);
+        const auto [mask, samples] = drawn.visible[i];
+        for (std::uint32_t k = 0; k < samples; ++k) {
+            const float t = static_cast<float>(k) / static_cast<float>(samples);
+            StrokePoint at = from;
+            at.position += t * (to.position - from.position);
+            at.width = std::lerp(from.width, to.width, t);
+            at.opacity = std::lerp(from.opacity, to.opacity, t);
+            at.parameter = std::lerp(from.parameter, to.parameter, t);
+            at.visible = (mask >> k & 1u) != 0;
+            result.back().points.push_back(at);
+        }
+    }
+    return result;
+}
+
+TEST(StrokeRaster, PixelsAreThoseOfTheReference) {
+    const Scene scene(lumpy());
+    for (const char* texture : {"none", "charcoal"}) {
+        LineStyle style;
+        style.texture = texture;
+        style.thickness = {.width = 6, .most = 9, .taper = 10};
+        const DrawnLines drawn = draw(scene, LineType::contours, false, style);
+        FloatImage expected(k_width, k_height, 3, 1.0f);
+        draw_strokes(drawn_strokes(drawn), style, load_stroke_texture(texture), expected);
+        double inked = 0, difference = 0, bias = 0;
+        for (std::size_t i = 0; i < expected.data.size(); i += 3) {
+            const double wanted = expected.data[i], actual = drawn.image.data[i] / 255.0;
+            if (wanted > 0.99 && actual > 0.99) continue;
+            inked += 1;
+            difference += std::abs(wanted - actual);
+            bias += wanted - actual;
+        }
+        EXPECT_GT(inked, 2000);
+        EXPECT_LT(difference / inked, 0.05) << texture;
+        EXPECT_LT(std::abs(bias) / inked, 0.02) << texture;
     }
 }
 

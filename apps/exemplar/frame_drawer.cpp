@@ -16,21 +16,13 @@ CurvatureOptions measured_curvature(const LinesJob& job, const LinesSource& sour
 FrameDrawer::FrameDrawer(const LinesJob& job, LinesSource& source, const StrokeView& view)
     : source_(source),
       device_({.name = job.common.device}),
-      surface_(device_, source.animation().rest),
-      line_surface_(surface_),
-      moving_(surface_, source.animation().rig, measured_curvature(job, source)),
-      renderer_(device_, line_surface_),
+      drawn_(device_, source.animation(), measured_curvature(job, source)),
       stream_(device_) {
-    if (source.model()) moving_.set_model(*source.model());
+    if (source.model()) drawn_.set_model(*source.model());
     const DeviceStyle style = device_style(job.style);
-    renderer_.set_textures(style.textures);
+    drawn_.renderer().set_textures(style.textures);
     picture_.view = view;
     apply_style(style, job.types, picture_);
-}
-
-GpuCurvedSurface FrameDrawer::moment() const {
-    const auto [first, second, derivative] = moving_.curvature();
-    return {moving_.vertices(), moving_.normals(), first, second, derivative};
 }
 
 Image FrameDrawer::draw(std::size_t frame) {
@@ -38,22 +30,17 @@ Image FrameDrawer::draw(std::size_t frame) {
 }
 
 Image FrameDrawer::draw(std::size_t frame, CurvatureSource from) {
-    const FrameRef at = source_.frames()[frame];
-    const Clip& clip = source_.animation().clips[at.clip];
-    if (clip.poses.empty())
-        moving_.record(stream_, clip.frames[at.frame], from);
-    else
-        moving_.record(stream_, clip.poses[at.frame], from);
-    return renderer_.render(stream_, moment(), picture_);
+    drawn_.record(stream_, source_.frames()[frame], from);
+    return drawn_.renderer().render(stream_, drawn_.moment(), picture_);
 }
 
 FaceTypes FrameDrawer::face_types() const {
-    return download_face_types(renderer_.strokes().chains().lines());
+    return download_face_types(drawn_.renderer().strokes().chains().lines());
 }
 
 FaceTypes FrameDrawer::face_types_from(const Vec3& eye) {
-    if (!elsewhere_) elsewhere_.emplace(line_surface_);
-    elsewhere_->record(stream_, moment(), picture_.families,
+    if (!elsewhere_) elsewhere_.emplace(drawn_.line_surface());
+    elsewhere_->record(stream_, drawn_.moment(), picture_.families,
                        {.eye = {eye.x(), eye.y(), eye.z(), 1},
                         .feature_size = picture_.view.feature_size,
                         .thresholds = picture_.thresholds});

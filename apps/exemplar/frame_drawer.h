@@ -3,10 +3,9 @@
 #include <optional>
 #include <string>
 
+#include "apps/exemplar/drawn_animation.h"
 #include "apps/exemplar/lines_job.h"
-#include "gpu/curvature/animated_surface.h"
 #include "gpu/lines/extraction.h"
-#include "gpu/lines/line_renderer.h"
 #include "gpu/runtime/device.h"
 #include "host/imaging/image.h"
 #include "host/lines/face_types.h"
@@ -31,13 +30,9 @@ class FrameDrawer {
     const std::string& device_name() const { return device_.info().name; }
 
   private:
-    GpuCurvedSurface moment() const;
     LinesSource& source_;
     Device device_;
-    GpuSurface surface_;
-    GpuLineSurface line_surface_;
-    GpuAnimatedSurface moving_;
-    LineRenderer renderer_;
+    DrawnAnimation drawn_;
     Stream stream_;
     LinePicture picture_;
     std::optional<GpuLineExtraction> elsewhere_;  // made when it is first asked for

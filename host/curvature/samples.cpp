@@ -166,6 +166,15 @@ TriangleMesh layout_shape(const Animation& animation, FrameRef frame) {
     return shape;
 }
 
+TriangleMesh layout_shape(const Animation& animation) {
+    TriangleMesh shape = animation.rest;
+    for (std::uint32_t clip = 0; clip < animation.clips.size(); ++clip)
+        if (!animation.clips[clip].poses.empty()) return layout_shape(animation, {clip, 0});
+    if (animation.kind != AnimationKind::sequence)
+        pose_vertices(animation.rig, animation.rest.vertices, rest_pose(animation.rig), shape.vertices);
+    return shape;
+}
+
 Segments segment_animation(const Animation& animation, std::span<const FrameRef> frames) {
     if (animation.kind != AnimationKind::sequence) return segment_rig(animation.rig, animation.rest.vertex_count());
     std::vector<std::vector<Vec3>> positions;

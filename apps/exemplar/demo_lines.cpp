@@ -70,10 +70,11 @@ DemoLines make_demo_lines(const fs::path& folder, std::uint64_t seed) {
     const Animation animation =
         make_animation("figure", {.vertices = k_vertices, .frames = k_frames, .motion_seed = seed});
     write_gltf_animation(folder / "figure.glb", animation);
+    const Stopwatch training_watch;
     CurvatureTrainingReport training;
     const CurvatureModel model =
         train_curvature(animation, select_frames(animation, {.clips = {}, .end = k_seen}), {.seed = seed}, training);
-    const double learned = watch.wall();
+    const double learned = training_watch.wall();
     save_curvature_model(folder / "figure.safetensors", model);
     const std::vector<FrameRef> unseen = select_frames(animation, {.clips = {}, .begin = k_seen, .most = k_shown});
     const DrawingStyle style = load_style("ink");

@@ -18,7 +18,7 @@ class DrawnAnimation {
     /// GpuAnimatedSurface and LineRenderer.
     DrawnAnimation(Device& device, const Animation& animation, const CurvatureOptions& measured)
         : animation_(animation),
-          surface_(device, layout_shape(animation)),
+          surface_(device, first_shape(animation)),
           line_surface_(surface_),
           moving_(surface_, animation, measured),
           renderer_(device, line_surface_) {}

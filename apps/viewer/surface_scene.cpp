@@ -48,7 +48,7 @@ std::vector<Vec3> vertices_at(const Document& document, const Moment& moment) {
 
 SurfaceScene::SurfaceScene(Device& device, const Document& document)
     : document_(document),
-      surface_(device, layout_shape(document.animation)),
+      surface_(device, first_shape(document.animation)),
       line_surface_(surface_),
       colors_(packed_colors(device, document.face_colors)) {
     animated_.emplace(surface_, document.animation, k_measured);

@@ -22,7 +22,7 @@ enum class CurvatureSource { none, estimated, learned };
 /// A surface that moves, on the device: from a pose, or a frame of a mesh sequence, to vertices, normals and curvature.
 class GpuAnimatedSurface {
   public:
-    /// `surface` is a shape that the animation takes (see layout_shape), as the space in which rigs bind their vertices
+    /// `surface` is a shape that the animation takes (see first_shape), as the space in which rigs bind their vertices
     /// may have another scale; it must live as long as this. `options`: of estimated curvature. Throws as its parts do:
     /// UsageError, DeviceLimitError.
     GpuAnimatedSurface(const GpuSurface& surface, const Animation& animation, const CurvatureOptions& options);

@@ -166,10 +166,13 @@ TriangleMesh layout_shape(const Animation& animation, FrameRef frame) {
     return shape;
 }
 
-TriangleMesh layout_shape(const Animation& animation) {
+TriangleMesh first_shape(const Animation& animation) {
     TriangleMesh shape = animation.rest;
-    for (std::uint32_t clip = 0; clip < animation.clips.size(); ++clip)
-        if (!animation.clips[clip].poses.empty()) return layout_shape(animation, {clip, 0});
+    for (const Clip& clip : animation.clips)
+        if (clip.size() > 0) {
+            shape.vertices = frame_vertices(animation, clip, 0);
+            return shape;
+        }
     if (animation.kind != AnimationKind::sequence)
         pose_vertices(animation.rig, animation.rest.vertices, rest_pose(animation.rig), shape.vertices);
     return shape;

@@ -317,7 +317,7 @@ TEST(SmoothedCurvatureParity, TheScaleOfTheBindSpaceDoesNotMatter) {
     tube.clips = {shapes::bending_clip(tube, 2, 60, 3)};
     for (Vec3& p : tube.rest.vertices) p *= 5000.0f;
     for (Bone& bone : tube.rig.bones) bone.inverse_bind.linear() /= 5000.0f;
-    const GpuSurface surface(shared_device(), layout_shape(tube));
+    const GpuSurface surface(shared_device(), first_shape(tube));
     const CurvatureOptions options{.smoothing = 1, .smoothing_unit = 0.25};
     GpuAnimatedSurface moving(surface, tube, options);
     Stream stream(shared_device());

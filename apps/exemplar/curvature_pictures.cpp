@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cctype>
 #include <string>
 
 #include "host/imaging/camera.h"
 #include "host/imaging/png.h"
 #include "host/imaging/raster.h"
+#include "host/imaging/side_by_side.h"
 
 namespace exemplar {
 namespace {
@@ -34,11 +33,6 @@ std::string file_name_of(std::string clip) {
     return clip.substr(0, k_longest);
 }
 
-void paste(const Image& part, int left, Image& image) {
-    for (int y = 0; y < part.height; ++y)
-        for (int x = 0; x < part.width; ++x) std::ranges::copy(part.pixel(x, y), image.pixel(left + x, y).begin());
-}
-
 }  // namespace
 
 void write_line_pictures(const std::filesystem::path& folder, const CurvatureModel& model, const Animation& animation,
@@ -53,15 +47,12 @@ void write_line_pictures(const std::filesystem::path& folder, const CurvatureMod
                                   {.eye = camera.position(), .feature_size = model.feature_size, .thresholds = {}});
         };
         const Marks truth = marks(at.moment.curvature);
-        Image image(3 * k_width, k_height, 3);
-        int left = 0;
-        for (const VertexCurvature* curvature : {&at.moment.curvature, &at.learned, &at.zero_order}) {
-            paste(render_mesh(mesh, colors_of(truth, marks(*curvature)), camera, k_width, k_height), left, image);
-            left += k_width;
-        }
+        std::vector<Image> images;
+        for (const VertexCurvature* curvature : {&at.moment.curvature, &at.learned, &at.zero_order})
+            images.push_back(render_mesh(mesh, colors_of(truth, marks(*curvature)), camera, k_width, k_height));
         write_png(folder / fmt::format("{}_{:04d}_{}.png", file_name_of(animation.clips[frame.clip].name), frame.frame,
                                        name_of(type)),
-                  image);
+                  side_by_side(images));
     }
 }
 

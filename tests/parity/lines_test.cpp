@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "gpu/lines/face_types.h"
+#include "gpu/runtime/errors.h"
 #include "host/core/errors.h"
 #include "tests/parity/line_scene.h"
 
@@ -123,6 +125,26 @@ TEST(LineParityOfAll, WhatThereIsNoRoomForIsCountedAndLeftOut) {
     EXPECT_EQ(some.counts.segments, 100u);
     EXPECT_EQ(some.counts.dropped_segments, all.counts.segments - 100);
     for (std::size_t i = 0; i < 100; ++i) ASSERT_EQ(some.segments[i].face, all.segments[i].face);
+}
+
+TEST(LineParityOfAll, FacesCarryTheLinesOfTheReference) {
+    const Scene scene(mixed());
+    LineOptions options{.eye = {6.13f, 4.29f, 8.41f}, .feature_size = scene.size(), .thresholds = {}};
+    options.thresholds.principal_highlights = 0.001f;  // so that there are some
+    FaceTypes expected(scene.mesh.face_count());
+    add_face_types(scene.on_host(), k_line_types, options, expected);
+    GpuLineExtraction lines(scene.line_surface);
+    extract_on_device(scene, lines, line_families(k_line_types), options);
+    LineDifference difference(k_line_types);
+    difference.add(expected, download_face_types(lines));
+    for (const LineType type : k_line_types) {
+        const auto [truth, misclassified] = difference.of(type);
+        EXPECT_GT(truth, 0) << name_of(type);
+        EXPECT_LE(misclassified, truth / 200) << name_of(type);
+    }
+    GpuLineExtraction small(scene.line_surface, 100);
+    extract_on_device(scene, small, 1, options);
+    EXPECT_THROW(download_face_types(small), DeviceLimitError);
 }
 
 TEST(LineParityOfAll, CurvatureIsAskedForWhereItIsNeeded) {

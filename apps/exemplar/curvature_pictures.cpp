@@ -8,6 +8,7 @@
 #include <string>
 
 #include "host/imaging/camera.h"
+#include "host/imaging/paste.h"
 #include "host/imaging/png.h"
 #include "host/imaging/raster.h"
 
@@ -34,11 +35,6 @@ std::string file_name_of(std::string clip) {
     return clip.substr(0, k_longest);
 }
 
-void paste(const Image& part, int left, Image& image) {
-    for (int y = 0; y < part.height; ++y)
-        for (int x = 0; x < part.width; ++x) std::ranges::copy(part.pixel(x, y), image.pixel(left + x, y).begin());
-}
-
 }  // namespace
 
 void write_line_pictures(const std::filesystem::path& folder, const CurvatureModel& model, const Animation& animation,
@@ -56,7 +52,7 @@ void write_line_pictures(const std::filesystem::path& folder, const CurvatureMod
         Image image(3 * k_width, k_height, 3);
         int left = 0;
         for (const VertexCurvature* curvature : {&at.moment.curvature, &at.learned, &at.zero_order}) {
-            paste(render_mesh(mesh, colors_of(truth, marks(*curvature)), camera, k_width, k_height), left, image);
+            paste(render_mesh(mesh, colors_of(truth, marks(*curvature)), camera, k_width, k_height), left, 0, image);
             left += k_width;
         }
         write_png(folder / fmt::format("{}_{:04d}_{}.png", file_name_of(animation.clips[frame.clip].name), frame.frame,

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 
+#include "gpu/imaging/picture.h"
+
 namespace exemplar {
 namespace {
-
-std::array<float, 4> clear_value(const Color& color) {
-    return {static_cast<float>(color[0]) / 255, static_cast<float>(color[1]) / 255, static_cast<float>(color[2]) / 255,
-            1};
-}
 
 SurfaceLook look_of(const ViewSettings& settings, bool has_colors) {
     SurfaceLook look;
@@ -64,7 +61,7 @@ void SceneView::record_lines(Stream& stream, const SceneMoment& moment, const Vi
 
 void SceneView::record_surface(Stream& stream, const SceneMoment& moment, const ViewCamera& camera, VkExtent2D extent,
                                const ViewSettings& settings) {
-    if (!painter_) painter_.emplace(surface_.device(), Picture::k_color, picture_.depth());
+    if (!painter_) painter_.emplace(surface_.device(), Canvas::k_rgba, picture_.depth_format());
     PaintLook look{.paint = settings.paint,
                    .light = settings.light,
                    .plain = settings.plain,
@@ -72,10 +69,7 @@ void SceneView::record_surface(Stream& stream, const SceneMoment& moment, const 
     if (look.paint == SurfacePaint::faces && colors_.empty()) look.paint = SurfacePaint::plain;
     picture_.resize(extent);
     picture_.begin(stream);
-    PassTarget target = picture_.target();
-    target.clear_color = clear_value(settings.background);
-    target.clear_depth = 1.0f;
-    Pass pass("surface", target);
+    Pass pass("surface", picture_.cleared(clear_value(settings.background)));
     painter_->draw(pass,
                    {.face_count = surface_.face_count(),
                     .faces = &surface_.faces(),

@@ -4,8 +4,8 @@
 #include <optional>
 #include <span>
 
-#include "apps/viewer/picture.h"
 #include "apps/viewer/view_settings.h"
+#include "gpu/imaging/canvas.h"
 #include "gpu/lines/device_style.h"
 #include "gpu/lines/line_renderer.h"
 #include "gpu/window/surface_painter.h"
@@ -33,9 +33,8 @@ class SceneView {
 
     void record(Stream& stream, const SceneMoment& moment, const ViewCamera& camera, VkExtent2D extent,
                 const ViewSettings& settings);
-    /// After recorded work is done, in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL.
-    VkImage image() const { return with_lines_ ? lines_->image() : picture_.image(); }
-    VkExtent2D extent() const { return with_lines_ ? lines_->extent() : picture_.extent(); }
+    /// Has the picture after end().
+    Canvas& canvas() { return with_lines_ ? lines_->canvas() : picture_; }
 
   private:
     void record_lines(Stream& stream, const SceneMoment& moment, const ViewCamera& camera, VkExtent2D extent,
@@ -46,7 +45,7 @@ class SceneView {
     const GpuSurface& surface_;
     const GpuLineSurface& line_surface_;
     std::vector<Color> colors_;
-    Picture picture_;
+    Canvas picture_;
     // Made when they are first asked for: both are many kernels.
     std::optional<SurfacePainter> painter_;
     std::optional<LineRenderer> lines_;

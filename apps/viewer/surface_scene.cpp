@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "gpu/imaging/picture.h"
 #include "host/mesh/curvature_estimator.h"
 
 namespace exemplar {
@@ -16,15 +17,6 @@ float measured_feature_size(const Document& document) {
     CurvatureOptions options = k_measured;
     options.derivatives = false;
     return feature_size(vertices, estimator.estimate(vertices, options));
-}
-
-Buffer packed_colors(Device& device, const std::vector<Color>& colors) {
-    if (colors.empty()) return {};
-    std::vector<std::uint32_t> packed;
-    packed.reserve(colors.size());
-    for (const Color& color : colors)
-        packed.push_back(color[0] | std::uint32_t{color[1]} << 8 | std::uint32_t{color[2]} << 16);
-    return Buffer::of<std::uint32_t>(device, packed);
 }
 
 }  // namespace
@@ -49,7 +41,7 @@ SurfaceScene::SurfaceScene(Device& device, const Document& document)
     : document_(document),
       surface_(device, document.animation.rest),
       line_surface_(surface_),
-      colors_(packed_colors(device, document.face_colors)) {
+      colors_(Buffer::of<std::uint32_t>(device, packed_colors(document.face_colors))) {
     animated_.emplace(surface_, document.animation.rig, k_measured);
     for (int i = 0; i < 2; ++i) views_.emplace_back(surface_, line_surface_, document.face_colors);
 }

@@ -42,7 +42,7 @@ class SurfaceScene {
     /// Records a moment in one view, or in two side by side of learned and estimated curvature.
     void record(Stream& stream, const Moment& moment, const OrbitCamera& camera, std::span<const VkExtent2D> extents,
                 const ViewSettings& settings);
-    const SceneView& view(std::size_t index) const { return views_[index]; }
+    SceneView& view(std::size_t index) { return views_[index]; }
 
   private:
     void record_moment(Stream& stream, const Moment& moment, CurvatureSource source);

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "gpu/imaging/attachment.h"
+#include "gpu/imaging/canvas.h"
 #include "gpu/lines/chains.h"
 #include "gpu/lines/extraction.h"
 #include "gpu/lines/strokes.h"
@@ -52,18 +52,15 @@ class LineRenderer {
     /// refers to them. Throws UsageError if they are not whole textures.
     void set_textures(std::span<const std::uint8_t> opacities);
 
-    /// Records a picture. Afterwards image() has it, in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL.
+    /// Records a picture. Afterwards canvas() has it, 8-bit RGBA, of the size of the picture.
     void record(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture);
-    /// 8-bit RGBA, sRGB-encoded; of the size of the last picture.
-    VkImage image() const { return color_.image(); }
-    VkExtent2D extent() const { return extent_; }
-    static constexpr VkFormat k_format = VK_FORMAT_R8G8B8A8_UNORM;
+    Canvas& canvas() { return canvas_; }
 
     /// Records, runs and downloads a picture: RGB, or RGBA if it is transparent.
     Image render(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture);
     /// Records the download of the image; after finish(), read_image() has it.
-    void record_download(Stream& stream);
-    Image read_image() const;
+    void record_download(Stream& stream) { canvas_.record_download(stream); }
+    Image read_image() const { return canvas_.read_image(transparent_); }
 
     const GpuStrokes& strokes() const { return strokes_; }
 
@@ -76,12 +73,10 @@ class LineRenderer {
     GpuLineExtraction lines_;
     GpuChains chains_;
     GpuStrokes strokes_;
-    VkFormat depth_format_;
+    Canvas canvas_;
     DrawPipeline surface_pipeline_, stroke_pipeline_;
-    VkExtent2D extent_{};
     bool transparent_ = false;
-    Attachment color_, depth_;
-    Buffer depths_, pixels_, face_colors_, textures_;
+    Buffer depths_, face_colors_, textures_;
 };
 
 }  // namespace exemplar

@@ -3,14 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "host/imaging/raster.h"
-#include "tests/window/canvas.h"
+#include "tests/gpu/support/texels.h"
 
 namespace exemplar {
 namespace {
 
 using shared::uvec4;
 using shared::vec4;
-using testing::Canvas;
 using testing::shared_device;
 
 constexpr std::uint32_t k_size = 48;
@@ -20,7 +19,7 @@ class SurfacePainting : public ::testing::Test {
   protected:
     std::vector<std::uint32_t> draw(const PaintLook& look) {
         Device& device = shared_device();
-        const SurfacePainter painter(device, Canvas::k_format, depth_format(device));
+        const SurfacePainter painter(device, Canvas::k_rgba, depth_format(device));
         const Buffer faces = Buffer::of<uvec4>(device, std::vector<uvec4>{{0, 1, 2, 0}, {0, 2, 3, 0}});
         const Buffer vertices =
             Buffer::of<vec4>(device, std::vector<vec4>{{-1, -1, 0, 1}, {1, -1, 0, 1}, {1, 1, 0, 1}, {-1, 1, 0, 1}});
@@ -31,9 +30,10 @@ class SurfacePainting : public ::testing::Test {
         Camera camera;
         camera.view = look_at(Vec3(0, 0, 2), Vec3::Zero());
         camera.projection = orthographic(1, 1, 1, 3);
-        Canvas canvas(k_size, k_size);
-        return canvas.draw({0, 0, 0, 1}, [&](Stream& stream) {
-            Pass pass("surface", canvas.target({0, 0, 0, 1}));
+        Canvas canvas(device);
+        canvas.resize({k_size, k_size});
+        return testing::drawn_texels(canvas, {0, 0, 0, 1}, [&](Stream& stream) {
+            Pass pass("surface", canvas.cleared({0, 0, 0, 1}));
             painter.draw(pass, {2, &faces, &vertices, &normals, &colors, &first, &second}, camera, look);
             stream.render(pass);
         });
@@ -101,27 +101,6 @@ TEST_F(SurfacePainting, ConvexIsRedAndHollowIsBlue) {
     EXPECT_GT(red(middle(look)), blue(middle(look)));
     look.paint = SurfacePaint::second_curvature;
     EXPECT_GT(blue(middle(look)), red(middle(look)));
-}
-
-TEST(Blit, FillsThePartOfTheTargetAndScales) {
-    Canvas source(8, 8), target(20, 10);
-    Stream stream(shared_device());
-    source.begin(stream);
-    stream.render(Pass("clear", source.target({1, 0, 0, 1})));
-    source.end(stream);
-    target.begin(stream);
-    stream.render(Pass("clear", target.target({0, 1, 0, 1})));
-    stream.transition(target.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, Canvas::k_all);
-    stream.blit(source.image(), source.extent(), target.image(), {{4, 2}, {12, 5}});
-    stream.transition(target.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                      VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, Canvas::k_all);
-    const std::vector<std::uint32_t> texels = target.read(stream);
-    for (std::uint32_t y = 0; y < 10; ++y)
-        for (std::uint32_t x = 0; x < 20; ++x) {
-            const bool inside = x >= 4 && x < 16 && y >= 2 && y < 7;
-            ASSERT_EQ(texels[y * 20 + x], inside ? 0xff0000ffu : 0xff00ff00u) << x << ' ' << y;
-        }
 }
 
 }  // namespace

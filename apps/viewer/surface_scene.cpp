@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "gpu/imaging/picture.h"
 #include "host/mesh/curvature_estimator.h"
 
 namespace exemplar {
@@ -38,12 +37,8 @@ std::vector<Vec3> vertices_at(const Document& document, const Moment& moment) {
 }
 
 SurfaceScene::SurfaceScene(Device& device, const Document& document)
-    : document_(document),
-      surface_(device, document.animation.rest),
-      line_surface_(surface_),
-      colors_(Buffer::of<std::uint32_t>(device, packed_colors(document.face_colors))) {
+    : document_(document), surface_(device, document.animation.rest), line_surface_(surface_) {
     animated_.emplace(surface_, document.animation.rig, k_measured);
-    for (int i = 0; i < 2; ++i) views_.emplace_back(surface_, line_surface_, document.face_colors);
 }
 
 // What is learned is compared with what is measured as it was in training.
@@ -78,13 +73,13 @@ void SurfaceScene::record(Stream& stream, const Moment& moment, const OrbitCamer
                   !curved   ? CurvatureSource::none
                   : learned ? CurvatureSource::learned
                             : CurvatureSource::estimated);
+    while (views_.size() < extents.size()) views_.emplace_back(line_surface_, document_.face_colors);
     for (std::size_t i = 0; i < extents.size(); ++i) {
         if (i > 0) animated_->record_again(stream, CurvatureSource::estimated);
         const auto [first, second, derivative] = animated_->curvature();
         const ViewSize size{static_cast<int>(extents[i].width), static_cast<int>(extents[i].height)};
         views_[i].record(stream,
                          {.surface = {animated_->vertices(), animated_->normals(), first, second, derivative},
-                          .face_colors = colors_ ? &colors_ : nullptr,
                           .feature_size = feature_size_},
                          {camera.camera(size), camera.distance()}, extents[i], settings);
     }

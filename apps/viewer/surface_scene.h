@@ -50,11 +50,10 @@ class SurfaceScene {
     const Document& document_;
     GpuSurface surface_;
     GpuLineSurface line_surface_;
-    Buffer colors_;
     std::shared_ptr<const CurvatureModel> model_;
     std::optional<GpuAnimatedSurface> animated_;
-    float feature_size_ = 0;  // 0: not yet found
-    std::deque<SceneView> views_;
+    float feature_size_ = 0;       // 0: not yet found
+    std::deque<SceneView> views_;  // as many as have been shown side by side
 };
 
 }  // namespace exemplar

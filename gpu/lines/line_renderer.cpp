@@ -6,8 +6,6 @@
 
 #include "embedded/lines_stroke_frag.h"
 #include "embedded/lines_stroke_vert.h"
-#include "embedded/lines_surface_frag.h"
-#include "embedded/lines_surface_vert.h"
 #include "gpu/curvature/texels.h"
 #include "gpu/imaging/picture.h"
 #include "host/core/errors.h"
@@ -16,19 +14,7 @@ namespace exemplar {
 namespace {
 
 using shared::LineCounts;
-using shared::SurfaceDrawParameters;
-using shared::uvec4;
 using shared::vec4;
-
-DrawPipeline surface_pipeline(Device& device, VkFormat depth) {
-    return {device,
-            shaders::lines_surface_vert,
-            shaders::lines_surface_frag,
-            {.push_constants = layout_of<SurfaceDrawParameters>(),
-             .elements = {layout_of<uvec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<std::uint32_t>(),
-                          layout_of<vec4>(), layout_of<vec4>()}},
-            {.color = Canvas::k_rgba, .depth = depth}};
-}
 
 DrawPipeline stroke_pipeline(Device& device) {
     return {device,
@@ -40,24 +26,8 @@ DrawPipeline stroke_pipeline(Device& device) {
             {.color = Canvas::k_rgba, .blends = true}};
 }
 
-vec4 color_and(const Color& color, float last) {
-    return {static_cast<float>(color[0]) / 255, static_cast<float>(color[1]) / 255, static_cast<float>(color[2]) / 255,
-            last};
-}
-
-SurfaceDrawParameters surface_parameters(const LinePicture& picture, bool curved) {
-    SurfaceLook look = picture.surface;
-    if (look.coloring == SurfaceLook::Coloring::curvature && !curved) look.coloring = SurfaceLook::Coloring::paper;
-    SurfaceDrawParameters parameters{.matrix = {},
-                                     .eye = homogeneous_eye(picture.view.camera),
-                                     .paper = color_and(look.paper, static_cast<float>(look.shading)),
-                                     .coloring = static_cast<std::uint32_t>(look.coloring),
-                                     .scale = picture.view.feature_size * 4,
-                                     .alpha = look.transparent && look.transparent_paper ? 0.0f : 1.0f,
-                                     .unused = 0};
-    put_matrix(picture.view.camera.view_projection(), parameters.matrix);
-    return parameters;
-}
+// What vertices are drawn by on every device.
+constexpr std::uint32_t k_most_indexed = (1u << 24) - 1;
 
 }  // namespace
 
@@ -68,9 +38,8 @@ LineRenderer::LineRenderer(Device& device, const GpuLineSurface& surface)
       chains_(lines_),
       strokes_(chains_),
       canvas_(device),
-      surface_pipeline_(surface_pipeline(device, canvas_.depth_format())),
+      painter_(device, Canvas::k_rgba, canvas_.depth_format()),
       stroke_pipeline_(stroke_pipeline(device)),
-      face_colors_(device, surface.surface().face_count() * sizeof(std::uint32_t)),
       textures_(device, sizeof(float)) {
     if (canvas_.depth_format() != VK_FORMAT_D32_SFLOAT)
         throw DeviceError(fmt::format("device '{}' has no depth of 32 bits; choose another", device.info().name));
@@ -80,7 +49,7 @@ void LineRenderer::set_face_colors(std::span<const Color> colors) {
     if (colors.size() != surface_.surface().face_count())
         throw UsageError(fmt::format("{} colors for {} faces; give one color per face", colors.size(),
                                      surface_.surface().face_count()));
-    face_colors_.upload<std::uint32_t>(packed_colors(colors));
+    face_colors_ = Buffer::of<std::uint32_t>(device_, packed_colors(colors));
 }
 
 void LineRenderer::set_textures(std::span<const std::uint8_t> opacities) {
@@ -105,16 +74,19 @@ void LineRenderer::resize(int width, int height) {
 
 void LineRenderer::draw_surface(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture) {
     canvas_.begin(stream);
-    const bool opaque = !picture.surface.transparent;
-    const vec4 background = opaque ? color_and(picture.surface.background, 1) : vec4{0, 0, 0, 0};
-    Pass pass("lines/surface", canvas_.cleared({background.x, background.y, background.z, background.w}));
-    const bool curved = moment.first && moment.second;
-    pass.draw(surface_pipeline_, {.vertices = 3 * surface_.surface().face_count()},
-              {surface_.surface().faces(), moment.vertices, moment.normals, face_colors_,
-               curved ? *moment.first : moment.vertices, curved ? *moment.second : moment.vertices},
-              surface_parameters(picture, curved));
+    Pass pass("surface", canvas_.cleared(background_of(picture.surface)));
+    const GpuSurface& surface = surface_.surface();
+    painter_.draw(pass,
+                  {.face_count = surface.face_count(),
+                   .faces = &surface.faces(),
+                   .indices = surface.vertex_count() <= k_most_indexed ? &surface.indices() : nullptr,
+                   .vertices = &moment.vertices,
+                   .normals = &moment.normals,
+                   .colors = face_colors_ ? &face_colors_ : nullptr,
+                   .first = moment.first,
+                   .second = moment.second},
+                  picture.view.camera, picture.surface);
     stream.render(pass);
-    canvas_.copy_depth(stream, depths_);
 }
 
 void LineRenderer::draw_strokes(Stream& stream, const LinePicture& picture) {
@@ -132,11 +104,18 @@ void LineRenderer::record(Stream& stream, const GpuCurvedSurface& moment, const 
     const StrokeView& view = picture.view;
     resize(view.width, view.height);
     transparent_ = picture.surface.transparent;
+    if (picture.families == 0) {
+        surface_.surface().check_vertices(moment.vertices);
+        draw_surface(stream, moment, picture);
+        canvas_.end(stream);
+        return;
+    }
     lines_.record(
         stream, moment, picture.families,
         {.eye = homogeneous_eye(view.camera), .feature_size = view.feature_size, .thresholds = picture.thresholds});
     chains_.record(stream, moment.vertices, view.camera, view.width, view.height);
     draw_surface(stream, moment, picture);
+    canvas_.copy_depth(stream, depths_);
     strokes_.record(stream, moment, depths_, view, picture.looks);
     draw_strokes(stream, picture);
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gpu/imaging/canvas.h"
+#include "gpu/imaging/surface_painter.h"
 #include "gpu/lines/chains.h"
 #include "gpu/lines/extraction.h"
 #include "gpu/lines/strokes.h"
@@ -17,25 +18,13 @@
 
 namespace exemplar {
 
-/// How the surface under the lines is drawn.
-struct SurfaceLook {
-    enum class Shading { none, smooth, steps };
-    enum class Coloring { paper, faces, curvature };
-    Color background{255, 255, 255};
-    bool transparent = false;       ///< no background
-    bool transparent_paper = true;  ///< nor paper, if there is no background
-    Color paper{255, 255, 255};
-    Shading shading = Shading::none;
-    Coloring coloring = Coloring::paper;  ///< `curvature`: mean curvature, blue where hollow, red where it bulges
-};
-
 /// What one picture of lines shows.
 struct LinePicture {
     StrokeView view;
-    std::uint32_t families = 0;  ///< line_families() of the types to draw
+    std::uint32_t families = 0;  ///< line_families() of the types to draw; without any the surface alone is drawn
     FamilyThresholds thresholds{};
     StrokeLooks looks{};
-    SurfaceLook surface;
+    PaintLook surface{.light = SurfaceLight::none, .plain = {255, 255, 255}};
 };
 
 /// Draws line drawings of a surface, from buffers of its vertices, normals and curvature to an image, without anything
@@ -46,7 +35,7 @@ class LineRenderer {
     /// surface is too large for it.
     LineRenderer(Device& device, const GpuLineSurface& surface);
 
-    /// One color per face, for SurfaceLook::Coloring::faces. Throws UsageError for another number.
+    /// One color per face, for SurfacePaint::faces. Throws UsageError for another number.
     void set_face_colors(std::span<const Color> colors);
     /// Opacities of shared::k_texture_width x k_texture_height, row by row, one texture after the other; StrokeLook
     /// refers to them. Throws UsageError if they are not whole textures.
@@ -74,7 +63,8 @@ class LineRenderer {
     GpuChains chains_;
     GpuStrokes strokes_;
     Canvas canvas_;
-    DrawPipeline surface_pipeline_, stroke_pipeline_;
+    SurfacePainter painter_;
+    DrawPipeline stroke_pipeline_;
     bool transparent_ = false;
     Buffer depths_, face_colors_, textures_;
 };

@@ -10,10 +10,9 @@ layout(constant_id = 0) const uint k_paint = 0;
 layout(constant_id = 1) const uint k_light = 0;
 layout(push_constant) uniform Push { PaintParameters parameters; };
 
-layout(location = 0) in vec3 position;
+layout(location = 0) in vec4 place;
 layout(location = 1) in vec3 normal;
 layout(location = 2) flat in vec3 color;
-layout(location = 3) in float curvature;
 layout(location = 0) out vec4 drawn;  // sRGB, multiplied by its alpha
 
 const float k_ambient = 0.42, k_ground = 0.35, k_headlight = 0.62;  // of exemplar::RenderOptions
@@ -28,13 +27,17 @@ vec3 curvature_color(float strength) {
 vec3 paint() {
     if (k_paint == k_paint_plain) return parameters.plain.rgb;
     if (k_paint == k_paint_faces) return color;
-    return linear_to_srgb(k_paint == k_paint_normals ? clamp(0.5 + 0.5 * normal, 0.0, 1.0) : curvature_color(curvature));
+    return linear_to_srgb(k_paint == k_paint_normals ? clamp(0.5 + 0.5 * normal, 0.0, 1.0) : curvature_color(place.w));
+}
+
+vec3 face_normal() {
+    return cross(normalize(dFdx(place.xyz)), normalize(dFdy(place.xyz)));
 }
 
 vec3 lit(vec3 encoded) {
     if (k_light == k_light_none) return encoded;
-    const vec3 toward = to_eye(parameters.eye, position);
-    const vec3 n = unit_normal(k_light == k_light_flat ? cross(normalize(dFdx(position)), normalize(dFdy(position))) : normal);
+    const vec3 toward = to_eye(parameters.eye, place.xyz);
+    const vec3 n = unit_normal(k_light == k_light_flat ? face_normal() : normal);
     const float facing = abs(dot(n, toward));
     if (k_light == k_light_headlight) return encoded * (0.45 + 0.55 * facing);
     if (k_light == k_light_steps) return encoded * (facing > 0.55 ? 1.0 : facing > 0.25 ? 0.86 : 0.72);

@@ -31,7 +31,21 @@ Image FrameDrawer::draw(std::size_t frame) {
 
 Image FrameDrawer::draw(std::size_t frame, CurvatureSource from) {
     drawn_.record(stream_, source_.frames()[frame], from);
-    return drawn_.renderer().render(stream_, drawn_.moment(), picture_);
+    Image image = drawn_.renderer().render(stream_, drawn_.moment(), picture_);
+    flicker_.push_back(drawn_.renderer().coherence().flicker());
+    return image;
+}
+
+LineFlicker FrameDrawer::flicker() const {
+    LineFlicker mean;
+    for (std::size_t i = 1; i < flicker_.size(); ++i) {
+        const float share = 1 / static_cast<float>(flicker_.size() - 1);
+        mean.drawn += share * flicker_[i].drawn;
+        mean.appeared += share * flicker_[i].appeared;
+        mean.slip += share * flicker_[i].slip;
+        mean.stretch += share * flicker_[i].stretch;
+    }
+    return mean;
 }
 
 FaceTypes FrameDrawer::face_types() const {

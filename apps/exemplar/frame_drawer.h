@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/exemplar/drawn_animation.h"
 #include "apps/exemplar/lines_job.h"
@@ -22,6 +23,9 @@ class FrameDrawer {
     /// Of a source with a model, measured curvature is what the model was trained to predict.
     Image draw(std::size_t frame, CurvatureSource from);
 
+    /// The mean over all pictures but the first, each against the one before.
+    LineFlicker flicker() const;
+
     /// The types of lines that faces carry in the last picture.
     FaceTypes face_types() const;
     /// And as seen from another place.
@@ -35,6 +39,7 @@ class FrameDrawer {
     DrawnAnimation drawn_;
     Stream stream_;
     LinePicture picture_;
+    std::vector<LineFlicker> flicker_;
     std::optional<GpuLineExtraction> elsewhere_;  // made when it is first asked for
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
@@ -40,6 +41,8 @@ class Video {
             throw UsageError(fmt::format(
                 "{}: videos are made by ffmpeg, which is not installed; install it, or give a folder", path.string()));
         if (path.has_parent_path()) fs::create_directories(path.parent_path());
+        // If it ends early, writing to it is to fail, not to end this program.
+        std::signal(SIGPIPE, SIG_IGN);
         // Most players want even sizes.
         const std::string command = fmt::format(
             "ffmpeg -loglevel error -nostdin -y -f rawvideo -pixel_format rgb24 -video_size {}x{} -framerate {} -i - "
@@ -132,6 +135,15 @@ void write_lines_pictures(const LinesJob& job) {
         fmt::print("{}: {} of {} x {}, drawn on {}\n", job.out.string(), counted(source.frame_count(), "frame"), width,
                    view.height, drawer.device_name());
     nlohmann::json report = describe_job(job, source, view);
+    if (source.frame_count() > 1 && !comparison) {
+        const LineFlicker flicker = drawer.flicker();
+        report["flicker"] = {{"appeared", flicker.appeared}, {"slip", flicker.slip}, {"stretch", flicker.stretch}};
+        if (!job.common.quiet)
+            fmt::print(
+                "from a frame to the next {:.1f} % of the length of lines is new, and textures slip by {:.1f} "
+                "pixels\n",
+                100 * flicker.appeared, flicker.slip);
+    }
     if (comparison) {
         comparison->print();
         report["comparison"] = comparison->describe();

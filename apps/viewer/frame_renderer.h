@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
-#include "apps/viewer/picture.h"
 #include "apps/viewer/surface_scene.h"
 #include "apps/viewer/viewer_state.h"
+#include "gpu/imaging/canvas.h"
 #include "gpu/runtime/device.h"
 #include "gpu/runtime/profiler.h"
 #include "gpu/runtime/stream.h"
@@ -36,17 +36,12 @@ class FrameRenderer {
     Device& device() { return device_; }
 
   private:
-    struct Shown {
-        VkImage image;
-        VkExtent2D extent;
-    };
     void record_empty(const ViewerState& state, VkExtent2D extent);
-    Image read_picture(const Shown& shown);
     Device& device_;
     Profiler profiler_;
     Stream stream_;
-    Picture empty_;             // without a document
-    std::vector<Shown> shown_;  // side by side
+    Canvas empty_;                // without a document
+    std::vector<Canvas*> shown_;  // side by side
     std::unique_ptr<SurfaceScene> scene_;
     std::uint64_t document_version_ = 0, model_version_ = 0;
 };

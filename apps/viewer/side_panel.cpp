@@ -43,7 +43,6 @@ void choose_paint(ViewerState& state) {
     if (!ImGui::BeginCombo("Colors", current->name)) return;
     for (const PaintName& entry : k_paint_names) {
         if (entry.paint == SurfacePaint::faces && state.document().face_colors.empty()) continue;
-        if (state.settings.shows_lines() && !goes_with_lines(entry.paint)) continue;
         if (ImGui::Selectable(entry.name, entry.paint == state.settings.paint)) state.settings.paint = entry.paint;
     }
     ImGui::EndCombo();
@@ -53,7 +52,6 @@ void choose_light(ViewerState& state) {
     const auto current = std::ranges::find(k_light_names, state.settings.light, &LightName::light);
     if (!ImGui::BeginCombo("Shading", current->name)) return;
     for (const LightName& entry : k_light_names) {
-        if (state.settings.shows_lines() && !goes_with_lines(entry.light)) continue;
         if (ImGui::Selectable(entry.name, entry.light == state.settings.light)) state.settings.light = entry.light;
     }
     ImGui::EndCombo();
@@ -165,7 +163,7 @@ void draw_look(ViewerState& state) {
     choose_light(state);
     choose_paint(state);
     if (state.settings.paint == SurfacePaint::faces) draw_legend(state.document());
-    if (paints_curvature(state.settings.paint) && !state.settings.shows_lines())
+    if (paints_curvature(state.settings.paint))
         ImGui::SliderFloat("Range", &state.settings.curvature_range, 0.005f, 5, "%.3f", ImGuiSliderFlags_Logarithmic);
     edit_color("Surface", state.settings.plain);
     ImGui::SameLine();

@@ -19,15 +19,6 @@ float measured_feature_size(const Document& document) {
     return feature_size(vertices, estimator.estimate(vertices, options));
 }
 
-Buffer packed_colors(Device& device, const std::vector<Color>& colors) {
-    if (colors.empty()) return {};
-    std::vector<std::uint32_t> packed;
-    packed.reserve(colors.size());
-    for (const Color& color : colors)
-        packed.push_back(color[0] | std::uint32_t{color[1]} << 8 | std::uint32_t{color[2]} << 16);
-    return Buffer::of<std::uint32_t>(device, packed);
-}
-
 }  // namespace
 
 Moment moment_of(const Document& document, std::size_t clip, std::size_t frame) {
@@ -47,12 +38,8 @@ std::vector<Vec3> vertices_at(const Document& document, const Moment& moment) {
 }
 
 SurfaceScene::SurfaceScene(Device& device, const Document& document)
-    : document_(document),
-      surface_(device, first_shape(document.animation)),
-      line_surface_(surface_),
-      colors_(packed_colors(device, document.face_colors)) {
+    : document_(document), surface_(device, first_shape(document.animation)), line_surface_(surface_) {
     animated_.emplace(surface_, document.animation, k_measured);
-    for (int i = 0; i < 2; ++i) views_.emplace_back(surface_, line_surface_, document.face_colors);
 }
 
 // What is learned is compared with what is measured as it was in training.
@@ -87,13 +74,13 @@ void SurfaceScene::record(Stream& stream, const Moment& moment, const OrbitCamer
                   !curved   ? CurvatureSource::none
                   : learned ? CurvatureSource::learned
                             : CurvatureSource::estimated);
+    while (views_.size() < extents.size()) views_.emplace_back(line_surface_, document_.face_colors);
     for (std::size_t i = 0; i < extents.size(); ++i) {
         if (i > 0) animated_->record_again(stream, CurvatureSource::estimated);
         const auto [first, second, derivative] = animated_->curvature();
         const ViewSize size{static_cast<int>(extents[i].width), static_cast<int>(extents[i].height)};
         views_[i].record(stream,
                          {.surface = {animated_->vertices(), animated_->normals(), first, second, derivative},
-                          .face_colors = colors_ ? &colors_ : nullptr,
                           .feature_size = feature_size_},
                          {camera.camera(size), camera.distance()}, extents[i], settings);
     }

@@ -42,7 +42,7 @@ class SurfaceScene {
     /// Records a moment in one view, or in two side by side of learned and estimated curvature.
     void record(Stream& stream, const Moment& moment, const OrbitCamera& camera, std::span<const VkExtent2D> extents,
                 const ViewSettings& settings);
-    const SceneView& view(std::size_t index) const { return views_[index]; }
+    SceneView& view(std::size_t index) { return views_[index]; }
 
   private:
     void record_moment(Stream& stream, const Moment& moment, CurvatureSource source);
@@ -50,11 +50,10 @@ class SurfaceScene {
     const Document& document_;
     GpuSurface surface_;
     GpuLineSurface line_surface_;
-    Buffer colors_;
     std::shared_ptr<const CurvatureModel> model_;
     std::optional<GpuAnimatedSurface> animated_;
-    float feature_size_ = 0;  // 0: not yet found
-    std::deque<SceneView> views_;
+    float feature_size_ = 0;       // 0: not yet found
+    std::deque<SceneView> views_;  // as many as have been shown side by side
 };
 
 }  // namespace exemplar

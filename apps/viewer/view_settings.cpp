@@ -21,12 +21,4 @@ void ViewSettings::set_style(const DrawingStyle& next) {
     }
 }
 
-bool goes_with_lines(SurfacePaint paint) {
-    return paint == SurfacePaint::plain || paint == SurfacePaint::faces || paint == SurfacePaint::mean_curvature;
-}
-
-bool goes_with_lines(SurfaceLight light) {
-    return light != SurfaceLight::flat;
-}
-
 }  // namespace exemplar

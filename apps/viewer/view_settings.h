@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "gpu/window/surface_painter.h"
+#include "gpu/imaging/surface_painter.h"
 #include "host/lines/lines.h"
 #include "host/lines/style.h"
 #include "host/mesh/labels.h"
@@ -40,9 +40,5 @@ struct ViewSettings {
     /// Takes a style with its surface and background.
     void set_style(const DrawingStyle& next);
 };
-
-/// Whether surfaces under lines can be painted or lit like that; else they are plain, or smooth.
-bool goes_with_lines(SurfacePaint paint);
-bool goes_with_lines(SurfaceLight light);
 
 }  // namespace exemplar

@@ -38,14 +38,14 @@ T next_of(const std::array<T, count>& values, T value) {
     return place == values.end() || place + 1 == values.end() ? values.front() : *(place + 1);
 }
 
-SurfacePaint next_paint(SurfacePaint paint, bool has_colors, bool with_lines) {
+SurfacePaint next_paint(SurfacePaint paint, bool has_colors) {
     constexpr std::array k_paints{SurfacePaint::plain,           SurfacePaint::faces,
                                   SurfacePaint::mean_curvature,  SurfacePaint::gaussian_curvature,
                                   SurfacePaint::first_curvature, SurfacePaint::second_curvature,
                                   SurfacePaint::normals};
     do {
         paint = next_of(k_paints, paint);
-    } while ((paint == SurfacePaint::faces && !has_colors) || (with_lines && !goes_with_lines(paint)));
+    } while (paint == SurfacePaint::faces && !has_colors);
     return paint;
 }
 
@@ -203,15 +203,12 @@ bool ViewerState::perform(Action action, ViewSize view) {
             camera.zoom(1 / k_zoom, center, view);
             return true;
         case Action::next_light:
-            do {
-                settings.light = next_of(
-                    std::array{SurfaceLight::smooth, SurfaceLight::flat, SurfaceLight::steps, SurfaceLight::none},
-                    settings.light);
-            } while (settings.shows_lines() && !goes_with_lines(settings.light));
+            settings.light =
+                next_of(std::array{SurfaceLight::smooth, SurfaceLight::flat, SurfaceLight::steps, SurfaceLight::none},
+                        settings.light);
             return true;
         case Action::next_paint:
-            settings.paint =
-                next_paint(settings.paint, document_ && !document_->face_colors.empty(), settings.shows_lines());
+            settings.paint = next_paint(settings.paint, document_ && !document_->face_colors.empty());
             return true;
         case Action::curvature_source:
             if (model_)

@@ -44,6 +44,7 @@ GpuSurface::GpuSurface(Device& device, TriangleMesh rest)
     check_texels(device, std::max<std::size_t>(rings.texels.size(), face_count_), "the faces of a surface");
     scale_ = edge_scale(rest_);
     faces_ = Buffer::of<shared::uvec4>(device, corners_of(rest_));
+    indices_ = Buffer::of<Face>(device, rest_.faces);
     ring_begin_ = Buffer::of<std::uint32_t>(device, rings.begin);
     rings_ = Buffer::of<shared::uvec4>(device, rings.texels);
 }

@@ -24,6 +24,8 @@ class GpuSurface {
     const TriangleMesh& rest() const { return rest_; }
     /// A uvec4 (a, b, c, 0) per face.
     const Buffer& faces() const { return faces_; }
+    /// The same as three uints per face.
+    const Buffer& indices() const { return indices_; }
     /// The rings of the vertices (build_vertex_rings): a uint per vertex, and uvec4s.
     const Buffer& ring_begin() const { return ring_begin_; }
     const Buffer& rings() const { return rings_; }
@@ -40,7 +42,7 @@ class GpuSurface {
     TriangleMesh rest_;
     std::uint32_t vertex_count_, face_count_;
     float scale_;
-    Buffer faces_, ring_begin_, rings_;
+    Buffer faces_, indices_, ring_begin_, rings_;
 };
 
 }  // namespace exemplar

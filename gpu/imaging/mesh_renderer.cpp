@@ -29,18 +29,6 @@ constexpr VkFormat k_color_format = VK_FORMAT_R16G16B16A16_SFLOAT;
 constexpr std::size_t k_sample_bytes = 8;
 constexpr int k_samples = static_cast<int>(shared::k_render_samples);
 
-constexpr Transition k_color_begins{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_NONE,
-                                    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                    VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT};
-constexpr VkPipelineStageFlags2 k_depth_tests =
-    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
-constexpr Transition k_depth_begins{
-    k_depth_tests, VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, k_depth_tests,
-    VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT};
-constexpr Transition k_color_drawn{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
-                                   VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
-                                   VK_ACCESS_2_TRANSFER_READ_BIT};
-
 VkExtent2D sample_extent(const PictureTile& tile) {
     return {static_cast<std::uint32_t>(tile.width * k_samples), static_cast<std::uint32_t>(tile.height * k_samples)};
 }
@@ -73,14 +61,6 @@ std::span<const float> coordinates(std::span<const Vec3> vectors) {
     return {vectors.front().data(), 3 * vectors.size()};
 }
 
-std::vector<std::uint32_t> packed_colors(std::span<const Color> colors) {
-    std::vector<std::uint32_t> packed;
-    packed.reserve(colors.size());
-    for (const Color& color : colors)
-        packed.push_back(color[0] | std::uint32_t{color[1]} << 8 | std::uint32_t{color[2]} << 16);
-    return packed;
-}
-
 // Corners, positions, normals and colors; see shaders/imaging/mesh.vert.
 DrawPipeline mesh_pipeline(Device& device, VkFormat depth) {
     return {device,
@@ -103,8 +83,8 @@ MeshRenderer::MeshRenderer(Device& device, int tile_size, std::size_t part_bytes
     : device_(device),
       tile_size_(tile_size),
       part_bytes_(buffer_limit(device.info(), part_bytes)),
-      depth_format_(depth_format(device)),
-      pipeline_(mesh_pipeline(device, depth_format_)),
+      canvas_(device, k_color_format),
+      pipeline_(mesh_pipeline(device, canvas_.depth_format())),
       resolve_(device, shaders::imaging_resolve_comp, {.push_constants = layout_of<shared::ResolveParameters>()}),
       stream_(device) {
     if (tile_size <= 0) throw UsageError(fmt::format("render: tiles of {} pixels; give at least 1", tile_size));
@@ -165,11 +145,7 @@ void MeshRenderer::reserve_tile(int width, int height) {
     height = std::max(height, tile_height_);
     tile_width_ = tile_height_ = 0;  // until all of it is there
     const VkExtent2D extent = sample_extent(PictureTile{0, 0, width, height});
-    color_ =
-        Attachment(device_, k_color_format, extent,
-                   VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
-    depth_ = Attachment(device_, depth_format_, extent, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
-                        VK_IMAGE_ASPECT_DEPTH_BIT);
+    canvas_.resize(extent);
     samples_ = Buffer(device_, k_sample_bytes * extent.width * extent.height);
     pixels_ =
         Buffer(device_, sizeof(std::uint32_t) * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
@@ -178,25 +154,16 @@ void MeshRenderer::reserve_tile(int width, int height) {
 }
 
 void MeshRenderer::draw_part(const PictureTile& tile, const MeshDraw& draw, Turn turn) {
-    if (turn.first) {
-        stream_.transition(color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
-                           VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, k_color_begins);
-        stream_.transition(depth_.image(), VK_IMAGE_ASPECT_DEPTH_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
-                           VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, k_depth_begins);
-    }
-    PassTarget target{.color = color_.view(), .depth = depth_.view(), .extent = sample_extent(tile)};
-    if (turn.first) {
-        target.clear_color = draw.background;
-        target.clear_depth = 1.0f;
-    }
+    if (turn.first) canvas_.begin(stream_);
+    PassTarget target = turn.first ? canvas_.cleared(draw.background) : canvas_.target();
+    target.extent = sample_extent(tile);
     Pass pass("mesh", target);
     pass.draw(pipeline_, {.vertices = corner_count_}, {corners_, positions_, normals_, colors_},
               tile_parameters(draw, tile));
     stream_.render(pass);
     if (turn.last) {
-        stream_.transition(color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                           VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, k_color_drawn);
-        stream_.copy_image(color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, sample_extent(tile), k_sample_bytes, samples_);
+        canvas_.end(stream_);
+        canvas_.copy_color(stream_, sample_extent(tile), samples_);
     }
     stream_.finish();
 }

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "gpu/imaging/attachment.h"
+#include "gpu/imaging/canvas.h"
 #include "gpu/imaging/mesh_part.h"
 #include "gpu/runtime/buffer.h"
 #include "gpu/runtime/device.h"
@@ -57,7 +57,7 @@ class MeshRenderer {
     Device& device_;
     int tile_size_;
     std::size_t part_bytes_;
-    VkFormat depth_format_;
+    Canvas canvas_;  // of samples; as large as the largest tile was
     DrawPipeline pipeline_;
     Kernel resolve_;
     Stream stream_;
@@ -65,7 +65,6 @@ class MeshRenderer {
     std::uint32_t corner_count_ = 0;
     // For tiles of up to this many pixels a side; kept between calls.
     int tile_width_ = 0, tile_height_ = 0;
-    Attachment color_, depth_;
     Buffer samples_, pixels_;
     std::vector<std::uint32_t> tile_pixels_;
 };

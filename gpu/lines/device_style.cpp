@@ -64,15 +64,27 @@ shared::StrokeLook look_of(const LineStyle& line, float threshold, float fade, T
             .unused2 = 0};
 }
 
-SurfaceLook surface_look(const DrawingStyle& style) {
-    SurfaceLook look;
-    look.background = style.background.value_or(Color{255, 255, 255});
-    look.transparent = !style.background;
-    look.paper = style.shading == SurfaceShading::none ? look.background : style.surface;
-    if (style.shading != SurfaceShading::none) look.transparent_paper = false;
-    if (style.shading == SurfaceShading::shaded) look.shading = SurfaceLook::Shading::smooth;
-    if (style.shading == SurfaceShading::toon) look.shading = SurfaceLook::Shading::steps;
-    return look;
+SurfaceLight light_of(SurfaceShading shading) {
+    switch (shading) {
+        case SurfaceShading::shaded:
+            return SurfaceLight::headlight;
+        case SurfaceShading::toon:
+            return SurfaceLight::steps;
+        case SurfaceShading::none:
+        case SurfaceShading::paper:
+            break;
+    }
+    return SurfaceLight::none;
+}
+
+PaintLook surface_look(const DrawingStyle& style) {
+    const Color background = style.background.value_or(Color{255, 255, 255});
+    const bool none = style.shading == SurfaceShading::none;
+    return {.light = light_of(style.shading),
+            .plain = none ? background : style.surface,
+            .background = background,
+            .transparent = !style.background,
+            .transparent_plain = none};
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace exemplar {
 struct DeviceStyle {
     FamilyThresholds thresholds{};
     StrokeLooks looks{};
-    SurfaceLook surface;
+    PaintLook surface;
     std::vector<std::uint8_t> textures;  ///< for LineRenderer::set_textures
 };
 

@@ -6,7 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "gpu/imaging/attachment.h"
+#include "gpu/imaging/canvas.h"
+#include "gpu/imaging/surface_painter.h"
 #include "gpu/lines/chains.h"
 #include "gpu/lines/coherence.h"
 #include "gpu/lines/extraction.h"
@@ -18,26 +19,14 @@
 
 namespace exemplar {
 
-/// How the surface under the lines is drawn.
-struct SurfaceLook {
-    enum class Shading { none, smooth, steps };
-    enum class Coloring { paper, faces, curvature };
-    Color background{255, 255, 255};
-    bool transparent = false;       ///< no background
-    bool transparent_paper = true;  ///< nor paper, if there is no background
-    Color paper{255, 255, 255};
-    Shading shading = Shading::none;
-    Coloring coloring = Coloring::paper;  ///< `curvature`: mean curvature, blue where hollow, red where it bulges
-};
-
 /// What one picture of lines shows.
 struct LinePicture {
     StrokeView view;
-    std::uint32_t families = 0;  ///< line_families() of the types to draw
+    std::uint32_t families = 0;  ///< line_families() of the types to draw; without any the surface alone is drawn
     FamilyThresholds thresholds{};
     StrokeLooks looks{};
     bool coherent = true;  ///< textures stay where they were in the picture before
-    SurfaceLook surface;
+    PaintLook surface{.light = SurfaceLight::none, .plain = {255, 255, 255}};
 };
 
 /// Draws line drawings of a surface, from buffers of its vertices, normals and curvature to an image, without anything
@@ -48,24 +37,21 @@ class LineRenderer {
     /// surface is too large for it.
     LineRenderer(Device& device, const GpuLineSurface& surface);
 
-    /// One color per face, for SurfaceLook::Coloring::faces. Throws UsageError for another number.
+    /// One color per face, for SurfacePaint::faces. Throws UsageError for another number.
     void set_face_colors(std::span<const Color> colors);
     /// Opacities of shared::k_texture_width x k_texture_height, row by row, one texture after the other; StrokeLook
     /// refers to them. Throws UsageError if they are not whole textures.
     void set_textures(std::span<const std::uint8_t> opacities);
 
-    /// Records a picture. Afterwards image() has it, in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL.
+    /// Records a picture. Afterwards canvas() has it, 8-bit RGBA, of the size of the picture.
     void record(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture);
-    /// 8-bit RGBA, sRGB-encoded; of the size of the last picture.
-    VkImage image() const { return color_.image(); }
-    VkExtent2D extent() const { return extent_; }
-    static constexpr VkFormat k_format = VK_FORMAT_R8G8B8A8_UNORM;
+    Canvas& canvas() { return canvas_; }
 
     /// Records, runs and downloads a picture: RGB, or RGBA if it is transparent.
     Image render(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture);
     /// Records the download of the image; after finish(), read_image() has it.
-    void record_download(Stream& stream);
-    Image read_image() const;
+    void record_download(Stream& stream) { canvas_.record_download(stream); }
+    Image read_image() const { return canvas_.read_image(transparent_); }
 
     const GpuStrokes& strokes() const { return strokes_; }
     const GpuCoherence& coherence() const { return coherence_; }
@@ -80,12 +66,11 @@ class LineRenderer {
     GpuChains chains_;
     GpuStrokes strokes_;
     GpuCoherence coherence_;
-    VkFormat depth_format_;
-    DrawPipeline surface_pipeline_, stroke_pipeline_;
-    VkExtent2D extent_{};
+    Canvas canvas_;
+    SurfacePainter painter_;
+    DrawPipeline stroke_pipeline_;
     bool transparent_ = false;
-    Attachment color_, depth_;
-    Buffer depths_, pixels_, face_colors_, textures_;
+    Buffer depths_, face_colors_, textures_;
 };
 
 }  // namespace exemplar

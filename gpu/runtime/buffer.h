@@ -22,7 +22,7 @@ enum class BufferMemory {
     readback,  ///< cached host memory for reading what the device wrote
 };
 
-/// A storage and texel buffer. Streams that use a buffer keep its memory alive until they are done.
+/// A storage, texel and index buffer. Streams that use a buffer keep its memory alive until they are done.
 /// Contents are undefined until written. Movable, not copyable; a default-constructed buffer has no memory.
 class Buffer {
   public:

@@ -30,6 +30,8 @@ struct PassTarget {
 struct Draw {
     std::uint32_t vertices = 0;
     std::uint32_t first_vertex = 0;
+    /// As many uints, from `first_vertex` on, that are the vertices to draw; not together with `indirect`.
+    const Buffer* indices = nullptr;
     /// Where the device finds a VkDrawIndirectCommand instead.
     const Buffer* indirect = nullptr;
     std::size_t indirect_offset = 0;  ///< bytes, a multiple of 4

@@ -42,6 +42,11 @@ Access indirect_read(const Buffer& buffer) {
             .reads = VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT};
 }
 
+Access index_read(const Buffer& buffer) {
+    return {
+        .buffer = buffer.handle(), .stage = VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT, .reads = VK_ACCESS_2_INDEX_READ_BIT};
+}
+
 void check_push(const Program& program, std::span<const std::byte> push) {
     if (push.size() != program.reflection.push_bytes)
         throw ShaderError(fmt::format("{} takes {} bytes of push constants, not {}", program.name,
@@ -78,7 +83,10 @@ void record_draw(VkCommandBuffer commands, const Draw& draw, VkExtent2D extent) 
     vkCmdSetScissor(commands, 0, 1, &scissor);
     if (draw.indirect)
         vkCmdDrawIndirect(commands, draw.indirect->handle(), draw.indirect_offset, 1, sizeof(VkDrawIndirectCommand));
-    else if (draw.vertices > 0)
+    else if (draw.vertices > 0 && draw.indices) {
+        vkCmdBindIndexBuffer(commands, draw.indices->handle(), 0, VK_INDEX_TYPE_UINT32);
+        vkCmdDrawIndexed(commands, draw.vertices, 1, draw.first_vertex, 0, 0);
+    } else if (draw.vertices > 0)
         vkCmdDraw(commands, draw.vertices, 1, draw.first_vertex, 0);
 }
 
@@ -192,10 +200,17 @@ void Stream::render(const Pass& pass) {
             use(*item.bindings[i].buffer);
         }
         programs_.insert(item.program);
-        if (!item.draw.indirect) continue;
-        check_bytes(*item.draw.indirect, item.draw.indirect_offset, sizeof(VkDrawIndirectCommand));
-        accesses.push_back(indirect_read(*item.draw.indirect));
-        use(*item.draw.indirect);
+        if (item.draw.indices) {
+            check_bytes(*item.draw.indices, std::size_t{4} * item.draw.first_vertex,
+                        std::size_t{4} * item.draw.vertices);
+            accesses.push_back(index_read(*item.draw.indices));
+            use(*item.draw.indices);
+        }
+        if (item.draw.indirect) {
+            check_bytes(*item.draw.indirect, item.draw.indirect_offset, sizeof(VkDrawIndirectCommand));
+            accesses.push_back(indirect_read(*item.draw.indirect));
+            use(*item.draw.indirect);
+        }
     }
     // Within a pass nothing can wait.
     order(accesses);

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/dispatch.glsl"
+#include "shaders/lib/eye.glsl"
 #include "shaders/shared/lines.h"
 
 // What decides at the vertices about lines in the faces around them (host/lines/line_fields.cpp), one vertex per invocation,
@@ -90,7 +91,7 @@ void main() {
     if (vertex >= parameters.vertices) return;
 
     const vec3 here = texelFetch(positions, int(vertex)).xyz, normal = texelFetch(normals, int(vertex)).xyz;
-    const vec3 w = parameters.eye.w != 0.0 ? normalize(parameters.eye.xyz - here) : parameters.eye.xyz;
+    const vec3 w = to_eye(parameters.eye, here);
     const float cosine = dot(normal, w);
     if (wants(k_contours)) put(k_contours, vec4(cosine, 1.0, 1.0, 1.0));
     if ((k_families & k_curvature_families) == 0u) return;

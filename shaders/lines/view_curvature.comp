@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/dispatch.glsl"
+#include "shaders/lib/eye.glsl"
 #include "shaders/lib/view_curvature.glsl"
 #include "shaders/shared/lines.h"
 
@@ -18,7 +19,7 @@ void main() {
     if (vertex >= parameters.vertices) return;
 
     const vec3 here = texelFetch(positions, int(vertex)).xyz, normal = texelFetch(normals, int(vertex)).xyz;
-    const vec3 w = parameters.eye.w != 0.0 ? normalize(parameters.eye.xyz - here) : parameters.eye.xyz;
+    const vec3 w = to_eye(parameters.eye, here);
     const vec4 e1 = texelFetch(first, int(vertex)), e2 = texelFetch(second, int(vertex));
     const float cosine = dot(normal, w);
     views[vertex] = vec4(view_curvature(vec2(e1.w, e2.w), vec2(dot(e1.xyz, w), dot(e2.xyz, w)), cosine), cosine);

@@ -38,7 +38,7 @@ bool is_visible(vec2 at, float depth, float tolerance) {
 
 float facing(int vertex) {
     const vec3 normal = cross(texelFetch(first, vertex).xyz, texelFetch(second, vertex).xyz);
-    return dot(normal, to_eye(texelFetch(positions, vertex).xyz));
+    return dot(normal, to_eye(parameters.eye, texelFetch(positions, vertex).xyz));
 }
 
 // By how much a segment may be behind what is drawn there. A contour is where the smooth surface turns away, up to an edge
@@ -56,7 +56,7 @@ float tolerance_of(uint index) {
         if (!behind && parameters.closed != 0u) return -1.0;
     }
     if (parameters.curved != 0u && family != k_contours) {
-        behind = dot(cross(b - a, c - a), to_eye(a)) < 0.0;
+        behind = dot(cross(b - a, c - a), to_eye(parameters.eye, a)) < 0.0;
         // Others are cut off where the smooth surface turns away.
         if (family == k_ridges || family == k_valleys)
             behind = behind && facing(int(corners.x)) + facing(int(corners.y)) + facing(int(corners.z)) > 0.0;

@@ -170,17 +170,6 @@ struct StrokeDrawParameters {
     float height;
 };
 
-// The surface under the lines.
-struct SurfaceDrawParameters {
-    vec4 matrix[4];
-    vec4 eye;
-    vec4 paper;     // color, and how it is shaded: 0 not at all, 1 smoothly, 2 in steps
-    uint coloring;  // 0: paper, 1: a color per face, 2: by curvature
-    float scale;    // of curvature, in mesh units
-    float alpha;    // of paper
-    uint unused;
-};
-
 #ifdef __cplusplus
 EXEMPLAR_LAYOUT(FieldParameters, eye, low_thresholds, high_thresholds, vertices, feature_size, unused0, unused1)
 EXEMPLAR_LAYOUT(FaceLineParameters, faces, vertices, crease_angle, most_segments)
@@ -193,7 +182,6 @@ EXEMPLAR_LAYOUT(StrokeLook, color, width, epsilon, least, most, taper, threshold
 EXEMPLAR_LAYOUT(StrokeParameters, eye, axis, width, height, near_term, far_term, feature_size, unit_depth, parallel, curved,
                 closed, unused0, unused1, unused2)
 EXEMPLAR_LAYOUT(StrokeDrawParameters, width, height)
-EXEMPLAR_LAYOUT(SurfaceDrawParameters, matrix, eye, paper, coloring, scale, alpha, unused)
 #endif
 
 SHARED_END

@@ -127,19 +127,49 @@ class Lines(ProgramTest):
         files = sorted((self.folder / "frames").iterdir())
         self.assertEqual([f.name for f in files], ["frame_0000.png", "frame_0001.png", "frame_0002.png"])
         self.assertNotEqual(files[0].read_bytes(), files[1].read_bytes())
-        self.assertEqual(json.loads((self.folder / "frames.json").read_text())["frames"], 3)
+        report = json.loads((self.folder / "frames.json").read_text())
+        self.assertEqual(report["frames"], 3)
+        self.assertLess(report["flicker"]["appeared"], 0.5)
+        self.assertLess(report["flicker"]["slip"], 20)
         self.refused("lines", "moving/figure_001.glb", "--frames", "2:5", "--out", "x.png", code=2, says="3 frames")
 
+    VIDEO = ["lines", "moving/figure_001.glb", "--size", "101x80", "--frames", "2:5", "--out", "walk.mp4"]
+
+    def with_ffmpeg(self, script):
+        """Puts a program of that name first, for this test."""
+        programs = self.folder / "programs"
+        programs.mkdir(exist_ok=True)
+        (programs / "ffmpeg").write_text("#!/bin/sh\n" + script)
+        (programs / "ffmpeg").chmod(0o755)
+        before = self.environment["PATH"]
+        self.environment["PATH"] = f"{programs}:{before}"
+        self.addCleanup(self.environment.update, PATH=before)
+
     def test_videos_are_made_where_there_is_ffmpeg(self):
-        video = ["lines", "moving/figure_001.glb", "--size", "101x80", "--frames", "2:5", "--out", "walk.mp4"]
         if shutil.which("ffmpeg") is None:
-            self.refused(*video, code=2, says="ffmpeg")
+            self.refused(*self.VIDEO, code=2, says="ffmpeg")
         else:
-            self.call(*video)
+            self.call(*self.VIDEO)
             probe = subprocess.run(["ffmpeg", "-i", self.folder / "walk.mp4", "-f", "null", "-"], capture_output=True)
             self.assertIn(b"frame=    3", probe.stderr)
         self.assert_no_leftovers()
-        self.refused(*video, "--no-background", code=2, says="")
+        self.refused(*self.VIDEO, "--no-background", code=2, says="")
+
+    def test_a_video_gets_all_pixels_of_all_frames(self):
+        self.with_ffmpeg('for out; do :; done; echo "$@" >words; cat >"$out"\n')
+        self.call(*self.VIDEO)
+        self.assertEqual((self.folder / "walk.mp4").stat().st_size, 3 * 3 * 101 * 80)
+        words = (self.folder / "words").read_text()
+        for option in ("-pixel_format rgb24", "-video_size 101x80", "-framerate 24"):
+            self.assertIn(option, words)
+        (self.folder / "walk.mp4").unlink()
+
+    def test_an_ffmpeg_that_fails_is_told_in_a_line(self):
+        for script in ("exit 1\n", "head -c 1000 >/dev/null; exit 1\n", "cat >/dev/null; exit 1\n"):
+            self.with_ffmpeg(script)
+            self.refused(*self.VIDEO, code=1, says=["walk.mp4", "ffmpeg"])
+            self.assertFalse((self.folder / "walk.mp4").exists())
+            self.assertEqual(list(self.folder.glob(".part*")), [])
 
     def test_curvature_of_a_model(self):
         self.call("curvature", "train", "moving/figure_001.glb", "--out", "m.safetensors", "--augment", "60")

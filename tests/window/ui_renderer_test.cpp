@@ -5,12 +5,11 @@
 
 #include <cstdlib>
 
-#include "tests/window/canvas.h"
+#include "tests/gpu/support/texels.h"
 
 namespace exemplar {
 namespace {
 
-using testing::Canvas;
 using testing::shared_device;
 
 constexpr std::uint32_t k_width = 60, k_height = 40;
@@ -28,13 +27,14 @@ class Interface : public ::testing::Test {
     template <typename Draw>
     std::vector<std::uint32_t> draw(Draw&& draw_shapes, std::uint32_t scale = 1) {
         ImGui::GetIO().DisplayFramebufferScale = ImVec2(static_cast<float>(scale), static_cast<float>(scale));
-        UiRenderer renderer(shared_device(), Canvas::k_format, *ImGui::GetIO().Fonts);
+        UiRenderer renderer(shared_device(), Canvas::k_rgba, *ImGui::GetIO().Fonts);
         ImGui::NewFrame();
         draw_shapes(*ImGui::GetBackgroundDrawList());
         ImGui::Render();
-        Canvas canvas(scale * k_width, scale * k_height);
-        return canvas.draw({0, 0, 1, 1}, [&](Stream& stream) {
-            renderer.record(stream, *ImGui::GetDrawData(), canvas.view(), canvas.extent());
+        Canvas canvas(shared_device());
+        canvas.resize({scale * k_width, scale * k_height});
+        return testing::drawn_texels(canvas, {0, 0, 1, 1}, [&](Stream& stream) {
+            renderer.record(stream, *ImGui::GetDrawData(), canvas.color_view(), canvas.extent());
         });
     }
 };

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <volk.h>
+
+#include <array>
+#include <cstdint>
+#include <map>
+
+#include "gpu/runtime/buffer.h"
+#include "gpu/runtime/draw_pipeline.h"
+#include "gpu/runtime/pass.h"
+#include "host/imaging/camera.h"
+#include "host/mesh/labels.h"
+#include "shaders/shared/paint.h"
+
+namespace exemplar {
+
+enum class SurfacePaint : std::uint32_t {
+    plain = shared::k_paint_plain,
+    faces = shared::k_paint_faces,  ///< a color per face
+    mean_curvature = shared::k_paint_mean,
+    gaussian_curvature = shared::k_paint_gauss,  ///< the root of |k1 k2|, with the sign of k1 k2
+    first_curvature = shared::k_paint_first,
+    second_curvature = shared::k_paint_second,
+    normals = shared::k_paint_normals
+};
+
+enum class SurfaceLight : std::uint32_t {
+    smooth = shared::k_light_smooth,  ///< that of RenderOptions, by vertex normals
+    flat = shared::k_light_flat,      ///< the same by the normals of faces
+    none = shared::k_light_none,
+    steps = shared::k_light_steps,         ///< from the eye, in three steps, by vertex normals
+    headlight = shared::k_light_headlight  ///< from the eye, by vertex normals: colors stay light
+};
+
+/// How a surface is painted and lit, and what is behind it. Curvature goes from blue (hollow) over gray to red
+/// (convex).
+struct PaintLook {
+    SurfacePaint paint = SurfacePaint::plain;
+    SurfaceLight light = SurfaceLight::smooth;
+    Color plain{214, 212, 206};
+    float strongest_curvature = 1;  ///< has the strongest color; in 1 / mesh units, positive
+    Color background{255, 255, 255};
+    bool transparent = false;        ///< no background
+    bool transparent_plain = false;  ///< nor plain paint, if there is no background: the surface only hides
+};
+
+/// The buffers of a posed surface, as the kernels of gpu/curvature lay them out. A look that needs what is left out is
+/// drawn plain instead.
+struct PaintedSurface {
+    std::uint32_t face_count = 0;
+    const Buffer* faces = nullptr;  ///< a uvec4 (a, b, c, 0) per face
+    /// Three uints per face, which vertices are drawn by where the look allows; without them vertex shaders run for
+    /// each corner.
+    const Buffer* indices = nullptr;
+    const Buffer* vertices = nullptr;
+    const Buffer* normals = nullptr;
+    const Buffer* colors = nullptr;  ///< a packed_color per face
+    const Buffer* first = nullptr;
+    const Buffer* second = nullptr;
+};
+
+/// Whether a look needs curvature.
+bool paints_curvature(SurfacePaint paint);
+
+/// What a pass is cleared to before a surface is drawn so: sRGB, multiplied by its alpha.
+std::array<float, 4> background_of(const PaintLook& look);
+
+/// Draws surfaces that are on the device already, as sRGB multiplied by alpha. Each paint in each light is a pipeline
+/// of its own, made when it is first asked for: CPU drivers run both sides of branches.
+class SurfacePainter {
+  public:
+    SurfacePainter(Device& device, VkFormat color, VkFormat depth) : device_(device), color_(color), depth_(depth) {}
+    /// Adds the surface to a pass with color and depth. Throws DeviceError if the device cannot draw.
+    void draw(Pass& pass, const PaintedSurface& surface, const Camera& camera, const PaintLook& look);
+
+  private:
+    /// Values of the specialization constants: paint, light, whether by corner.
+    using Variant = std::array<std::uint32_t, 3>;
+    const DrawPipeline& pipeline(const Variant& variant);
+    Device& device_;
+    VkFormat color_, depth_;
+    std::map<Variant, DrawPipeline> pipelines_;
+};
+
+}  // namespace exemplar

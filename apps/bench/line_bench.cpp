@@ -86,10 +86,6 @@ void run(const std::string& path, const std::string& model, const std::string& p
     const CurvatureSource source = model.empty() ? CurvatureSource::estimated : CurvatureSource::learned;
     GpuLineExtraction lines(line_surface);
     GpuChains chains(lines);
-    const auto moment = [&]() -> GpuCurvedSurface {
-        const auto [first, second, derivative] = moving.curvature();
-        return {moving.vertices(), moving.normals(), first, second, derivative};
-    };
     const auto pose = [&](const FrameRef& at) {
         const Clip& clip = animation.clips[at.clip];
         if (clip.poses.empty())
@@ -99,7 +95,7 @@ void run(const std::string& path, const std::string& model, const std::string& p
     };
     const auto extract = [&](const FrameRef& at) {
         pose(at);
-        lines.record(stream, moment(), picture.families,
+        lines.record(stream, moving.moment(), picture.families,
                      {.eye = homogeneous_eye(picture.view.camera),
                       .feature_size = picture.view.feature_size,
                       .thresholds = picture.thresholds});
@@ -110,7 +106,7 @@ void run(const std::string& path, const std::string& model, const std::string& p
     };
     const auto draw = [&](const FrameRef& at) {
         pose(at);
-        renderer.record(stream, moment(), picture);
+        renderer.record(stream, moving.moment(), picture);
     };
     const auto draw_and_download = [&](const FrameRef& at) {
         draw(at);

@@ -50,8 +50,7 @@ class FrameDrawer {
             moving_.record(stream_, clip.frames[at.frame], from);
         else
             moving_.record(stream_, clip.poses[at.frame], from);
-        const auto [first, second, derivative] = moving_.curvature();
-        return renderer_.render(stream_, {moving_.vertices(), moving_.normals(), first, second, derivative}, picture_);
+        return renderer_.render(stream_, moving_.moment(), picture_);
     }
     const std::string& device_name() const { return device_.info().name; }
 

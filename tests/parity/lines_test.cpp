@@ -228,6 +228,24 @@ TEST(LineParityOfAll, WhatThereIsNoRoomForIsCountedAndLeftOut) {
     for (std::size_t i = 0; i < 100; ++i) ASSERT_EQ(some.segments[i].face, all.segments[i].face);
 }
 
+TEST(LineParityOfAll, OtherTypesBetweenChangeNothing) {
+    const Scene scene(mixed());
+    GpuLineExtraction lines(scene.line_surface);
+    const LineOptions options{.eye = {6.13f, 4.29f, 8.41f}, .feature_size = scene.size(), .thresholds = {}};
+    const std::uint32_t some = 1u << shared::k_ridges | 1u << shared::k_creases,
+                        apparent = 1u << shared::k_apparent_ridges;
+    const Found before = extract_on_device(scene, lines, some, options);
+    ASSERT_GT(before.counts.segments, 100u);
+    for (const std::uint32_t other : {0x3ffu, 1u << shared::k_contours, apparent, 0u, apparent}) {
+        const Found between = extract_on_device(scene, lines, other, options);
+        EXPECT_EQ(between.counts.segments > 0, other != 0);
+        const Found after = extract_on_device(scene, lines, some, options);
+        ASSERT_EQ(after.counts.segments, before.counts.segments);
+        EXPECT_EQ(0, std::memcmp(after.segments.data(), before.segments.data(),
+                                 before.segments.size() * sizeof(LineSegmentRecord)));
+    }
+}
+
 TEST(LineParityOfAll, CurvatureIsAskedForWhereItIsNeeded) {
     const Scene scene(lumpy());
     GpuLineExtraction lines(scene.line_surface);

@@ -33,10 +33,7 @@ class DrawnAnimation {
             moving_.record(stream, clip.poses[frame.frame], from);
     }
     /// What was recorded last.
-    GpuCurvedSurface moment() const {
-        const auto [first, second, derivative] = moving_.curvature();
-        return {moving_.vertices(), moving_.normals(), first, second, derivative};
-    }
+    GpuCurvedSurface moment() const { return moving_.moment(); }
     const GpuLineSurface& line_surface() const { return line_surface_; }
     LineRenderer& renderer() { return renderer_; }
     const LineRenderer& renderer() const { return renderer_; }

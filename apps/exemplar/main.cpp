@@ -5,15 +5,14 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/commands.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
-#include "host/core/interrupt.h"
 #include "host/core/parallel.h"
 #include "host/core/progress.h"
+#include "host/core/run_program.h"
 #include "host/core/text.h"
 
 namespace exemplar {
@@ -130,20 +129,5 @@ void write_report(const CommonOptions& options, const nlohmann::json& report) {
 }  // namespace exemplar
 
 int main(int argc, char** argv) {
-    exemplar::install_interrupt_handler();
-    try {
-        return exemplar::run(argc, argv);
-    } catch (const exemplar::Interrupted&) {
-        fmt::print(stderr, "interrupted\n");
-        return 130;
-    } catch (const exemplar::UsageError& error) {
-        fmt::print(stderr, "error: {}\n", error.what());
-        return 2;
-    } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "error: out of memory; use fewer or smaller meshes\n");
-        return 1;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "error: {}\n", error.what());
-        return 1;
-    }
+    return exemplar::run_program(exemplar::run, argc, argv);
 }

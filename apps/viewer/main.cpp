@@ -6,13 +6,15 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cstdio>
-#include <exception>
 #include <map>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include "apps/viewer/options.h"
 #include "host/core/errors.h"
-#include "host/core/interrupt.h"
 #include "host/core/progress.h"
+#include "host/core/run_program.h"
 #include "host/core/text.h"
 
 namespace exemplar {
@@ -101,7 +103,17 @@ void add_options(CLI::App& app, ViewerOptions& options, std::string& size) {
     app.add_option("--lose-device-at", options.losing_frame, "")->group("");
 }
 
+// CPU drivers take memory for all vertices of a draw and give it back, megabytes a frame. Where the system gets it
+// back, it maps and clears it anew for the next, a page at a time.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);
+    mallopt(M_TRIM_THRESHOLD, 256 << 20);
+#endif
+}
+
 int run(int argc, char** argv) {
+    keep_freed_memory();
     CLI::App app("Shows meshes and animations, with their curvature estimated and learned.");
     app.name("exemplar-viewer");
     app.footer(
@@ -132,20 +144,5 @@ int run(int argc, char** argv) {
 }  // namespace exemplar
 
 int main(int argc, char** argv) {
-    exemplar::install_interrupt_handler();
-    try {
-        return exemplar::run(argc, argv);
-    } catch (const exemplar::Interrupted&) {
-        fmt::print(stderr, "interrupted\n");
-        return 130;
-    } catch (const exemplar::UsageError& error) {
-        fmt::print(stderr, "error: {}\n", error.what());
-        return 2;
-    } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "error: out of memory; use a smaller mesh\n");
-        return 1;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "error: {}\n", error.what());
-        return 1;
-    }
+    return exemplar::run_program(exemplar::run, argc, argv);
 }

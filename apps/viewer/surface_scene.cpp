@@ -77,11 +77,8 @@ void SurfaceScene::record(Stream& stream, const Moment& moment, const OrbitCamer
     while (views_.size() < extents.size()) views_.emplace_back(line_surface_, document_.face_colors);
     for (std::size_t i = 0; i < extents.size(); ++i) {
         if (i > 0) animated_->record_again(stream, CurvatureSource::estimated);
-        const auto [first, second, derivative] = animated_->curvature();
         const ViewSize size{static_cast<int>(extents[i].width), static_cast<int>(extents[i].height)};
-        views_[i].record(stream,
-                         {.surface = {animated_->vertices(), animated_->normals(), first, second, derivative},
-                          .feature_size = feature_size_},
+        views_[i].record(stream, {.surface = animated_->moment(), .feature_size = feature_size_},
                          {camera.camera(size), camera.distance()}, extents[i], settings);
     }
 }

@@ -53,17 +53,17 @@ const Buffer& GpuAnimatedSurface::normals() const {
     return source_ == CurvatureSource::estimated ? estimated_->normals() : normals_.normals();
 }
 
-GpuAnimatedSurface::Curvature GpuAnimatedSurface::curvature() const {
+GpuCurvedSurface GpuAnimatedSurface::moment() const {
     switch (source_) {
         case CurvatureSource::estimated:
-            return {&estimated_->first(), &estimated_->second(),
+            return {vertices(), normals(), &estimated_->first(), &estimated_->second(),
                     options_.derivatives ? &estimated_->derivative() : nullptr};
         case CurvatureSource::learned:
-            return {&learned_->first(), &learned_->second(), &learned_->derivative()};
+            return {vertices(), normals(), &learned_->first(), &learned_->second(), &learned_->derivative()};
         case CurvatureSource::none:
             break;
     }
-    return {nullptr, nullptr, nullptr};
+    return {vertices(), normals()};
 }
 
 }  // namespace exemplar

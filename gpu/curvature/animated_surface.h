@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gpu/curvature/curvature.h"
+#include "gpu/curvature/curved_surface.h"
 #include "gpu/curvature/learned_curvature.h"
 #include "gpu/curvature/normals.h"
 #include "gpu/curvature/poser.h"
@@ -44,11 +45,8 @@ class GpuAnimatedSurface {
     const Rig& rig() const { return rig_; }
     const Buffer& vertices() const { return poser_.vertices(); }
     const Buffer& normals() const;
-    /// Buffers of a vec4 per vertex each, of what was recorded last; null without curvature.
-    struct Curvature {
-        const Buffer *first, *second, *derivative;
-    };
-    Curvature curvature() const;
+    /// The buffers of what was recorded last.
+    GpuCurvedSurface moment() const;
 
   private:
     void record_curvature(Stream& stream, CurvatureSource source);

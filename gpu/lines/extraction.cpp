@@ -79,27 +79,26 @@ GpuLineExtraction::GpuLineExtraction(const GpuLineSurface& surface, std::size_t 
 }
 
 // Kernels know the families, so that what is not wanted takes no time: CPU drivers run both sides of branches.
-void GpuLineExtraction::make_kernels() {
+GpuLineExtraction::Kernels GpuLineExtraction::make_kernels(std::uint32_t families) const {
     Device& device = surface_.surface().device();
     const StructLayout word = layout_of<std::uint32_t>(), four = layout_of<vec4>(), words = layout_of<uvec4>();
     const auto kernel = [&](const Shader& shader, const StructLayout& push, std::vector<StructLayout> elements) {
         return Kernel(device, shader,
-                      {.push_constants = push, .elements = std::move(elements), .constants = {{0, families_}}});
+                      {.push_constants = push, .elements = std::move(elements), .constants = {{0, families}}});
     };
     const StructLayout field = layout_of<FieldParameters>(), face = layout_of<FaceLineParameters>();
-    field_kernel_ = kernel(shaders::lines_fields_comp, field, std::vector<StructLayout>(7, four));
-    count_kernel_ = kernel(shaders::lines_count_comp, face, {four, words, words, four, four, word, word});
-    segment_kernel_ = kernel(shaders::lines_segments_comp, face,
-                             {four, words, words, four, four, word, word, layout_of<shared::LineSegmentRecord>()});
-    if (!(families_ & 1u << shared::k_apparent_ridges)) return;
-    view_kernel_ = Kernel(device, shaders::lines_view_curvature_comp,
-                          {.push_constants = field, .elements = std::vector<StructLayout>(5, four)});
-    ridge_kernel_ =
-        kernel(shaders::lines_apparent_ridges_comp, field, {four, four, four, four, word, words, four, four});
+    Kernels kernels;
+    kernels.fields = kernel(shaders::lines_fields_comp, field, std::vector<StructLayout>(7, four));
+    kernels.count = kernel(shaders::lines_count_comp, face, {four, words, words, four, four, word, word});
+    kernels.segments = kernel(shaders::lines_segments_comp, face,
+                              {four, words, words, four, four, word, word, layout_of<shared::LineSegmentRecord>()});
+    if (families & 1u << shared::k_apparent_ridges)
+        kernels.ridges =
+            kernel(shaders::lines_apparent_ridges_comp, field, {four, four, four, four, word, words, four, four});
+    return kernels;
 }
 
-void GpuLineExtraction::prepare(std::uint32_t families) {
-    if (segment_kernel_ && families == families_) return;
+const GpuLineExtraction::Kernels& GpuLineExtraction::prepare(std::uint32_t families) {
     Device& device = surface_.surface().device();
     const std::size_t vertices = surface_.surface().vertex_count();
     const auto room_for = [&](std::uint32_t of) {
@@ -111,11 +110,17 @@ void GpuLineExtraction::prepare(std::uint32_t families) {
     reserve(device, directions_, room_for(shared::k_axis_families));
     const bool apparent = families & 1u << shared::k_apparent_ridges;
     reserve(device, views_, apparent ? vertices * sizeof(vec4) : 0);
-    families_ = families;
-    make_kernels();
+    if (apparent && !view_kernel_)
+        view_kernel_ =
+            Kernel(device, shaders::lines_view_curvature_comp,
+                   {.push_constants = layout_of<FieldParameters>(), .elements = std::vector(5, layout_of<vec4>())});
+    auto known = kernels_.find(families);
+    if (known == kernels_.end()) known = kernels_.emplace(families, make_kernels(families)).first;
+    return known->second;
 }
 
-void GpuLineExtraction::record_fields(Stream& stream, const GpuCurvedSurface& moment, const GpuLineOptions& options) {
+void GpuLineExtraction::record_fields(Stream& stream, const Kernels& kernels, const GpuCurvedSurface& moment,
+                                      std::uint32_t families, const GpuLineOptions& options) {
     const GpuSurface& surface = surface_.surface();
     const std::uint32_t vertices = surface.vertex_count();
     const FieldParameters parameters = field_parameters(options, vertices);
@@ -124,13 +129,13 @@ void GpuLineExtraction::record_fields(Stream& stream, const GpuCurvedSurface& mo
                  &second = moment.second ? *moment.second : moment.vertices,
                  &derivative = moment.derivative ? *moment.derivative : moment.vertices;
     const std::uint32_t apparent = 1u << shared::k_apparent_ridges;
-    if (families_ & shared::k_field_families & ~apparent)
-        stream.dispatch(field_kernel_, vertices,
+    if (families & shared::k_field_families & ~apparent)
+        stream.dispatch(kernels.fields, vertices,
                         {moment.vertices, moment.normals, first, second, derivative, fields_, directions_}, parameters);
-    if (!(families_ & apparent)) return;
+    if (!(families & apparent)) return;
     stream.dispatch(view_kernel_, vertices, {moment.vertices, moment.normals, first, second, views_}, parameters);
     stream.dispatch(
-        ridge_kernel_, vertices,
+        kernels.ridges, vertices,
         {moment.vertices, first, second, views_, surface.ring_begin(), surface.rings(), fields_, directions_},
         parameters);
 }
@@ -140,25 +145,25 @@ void GpuLineExtraction::record(Stream& stream, const GpuCurvedSurface& moment, s
     check(moment, families, options);
     const GpuSurface& surface = surface_.surface();
     surface.check_vertices(moment.vertices);
-    prepare(families);
+    const Kernels& kernels = prepare(families);
     std::swap(segments_, old_segments_);
     std::swap(face_counts_, old_face_counts_);
     std::swap(face_groups_, old_face_groups_);
-    record_fields(stream, moment, options);
+    record_fields(stream, kernels, moment, families, options);
     const std::uint32_t faces = surface.face_count();
     const FaceLineParameters parameters{.faces = faces,
                                         .vertices = surface.vertex_count(),
                                         .crease_angle = options.thresholds[shared::k_creases],
                                         .most_segments = static_cast<std::uint32_t>(room_)};
     stream.dispatch(
-        count_kernel_, faces,
+        kernels.count, faces,
         {moment.vertices, surface.faces(), surface_.neighbors(), fields_, directions_, face_counts_, face_groups_},
         parameters);
     stream.dispatch(
         scan_kernel_, 1, {face_groups_, counts_},
         shared::ScanParameters{.groups = static_cast<std::uint32_t>(divide_up(faces, shared::k_count_group)),
                                .most = static_cast<std::uint32_t>(room_)});
-    stream.dispatch(segment_kernel_, faces,
+    stream.dispatch(kernels.segments, faces,
                     {moment.vertices, surface.faces(), surface_.neighbors(), fields_, directions_, face_counts_,
                      face_groups_, segments_},
                     parameters);

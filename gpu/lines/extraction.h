@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 
 #include "gpu/lines/line_surface.h"
 #include "gpu/runtime/buffer.h"
@@ -33,7 +34,8 @@ class GpuLineExtraction {
                                std::size_t most_segments = std::numeric_limits<std::size_t>::max());
 
     /// Lines of all families at once: four dispatches, one more for each of view-dependent curvature and its growth if
-    /// there are apparent ridges. Other families than the last time take other kernels. Throws UsageError if the
+    /// there are apparent ridges. Each set of families has kernels of its own, made when it
+    /// is first asked for. Throws UsageError if the
     /// surface lacks what they need, or the feature size is not positive.
     /// Ridges and valleys are not cut off where they face away: visibility does that.
     void record(Stream& stream, const GpuCurvedSurface& moment, std::uint32_t families, const GpuLineOptions& options);
@@ -59,13 +61,17 @@ class GpuLineExtraction {
     static constexpr std::size_t k_least_room = 4096;
 
   private:
-    void prepare(std::uint32_t families);
-    void make_kernels();
-    void record_fields(Stream& stream, const GpuCurvedSurface& moment, const GpuLineOptions& options);
+    struct Kernels {
+        Kernel fields, ridges, count, segments;
+    };
+    const Kernels& prepare(std::uint32_t families);
+    Kernels make_kernels(std::uint32_t families) const;
+    void record_fields(Stream& stream, const Kernels& kernels, const GpuCurvedSurface& moment, std::uint32_t families,
+                       const GpuLineOptions& options);
     const GpuLineSurface& surface_;
     std::size_t room_;
-    std::uint32_t families_ = 0;  // that the kernels find
-    Kernel field_kernel_, view_kernel_, ridge_kernel_, count_kernel_, scan_kernel_, segment_kernel_;
+    std::map<std::uint32_t, Kernels> kernels_;  // by the families that they find
+    Kernel view_kernel_, scan_kernel_;
     Buffer fields_, directions_, views_;
     Buffer face_counts_, face_groups_, segments_, counts_;
     Buffer old_face_counts_, old_face_groups_, old_segments_;

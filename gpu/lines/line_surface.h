@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "gpu/curvature/curved_surface.h"
 #include "gpu/curvature/surface.h"
 #include "gpu/runtime/buffer.h"
 #include "host/lines/lines.h"
@@ -29,16 +30,6 @@ class GpuLineSurface {
     const GpuSurface* surface_;
     bool closed_ = true;
     Buffer neighbors_, face_begin_, vertex_faces_;
-};
-
-/// A surface of one moment on the device. Curvature as GpuCurvature and GpuLearnedCurvature have it; null for types of
-/// lines that do without (needs_curvature).
-struct GpuCurvedSurface {
-    const Buffer& vertices;  ///< a vec4 (x, y, z, 1) per vertex
-    const Buffer& normals;   ///< a vec4 (unit normal, any) per vertex
-    const Buffer* first = nullptr;
-    const Buffer* second = nullptr;
-    const Buffer* derivative = nullptr;
 };
 
 /// The families of kernels (shared::k_contours and so on) that make up these types, a bit each.

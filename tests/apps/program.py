@@ -24,24 +24,24 @@ class ProgramTest(unittest.TestCase):
         cls.environment = dict(os.environ, XDG_CACHE_HOME=str(cls.folder / "cache"))
 
     @classmethod
-    def start(cls, *arguments):
-        return subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=cls.folder, env=cls.environment, text=True,
+    def start(cls, *arguments, program=PROGRAM):
+        return subprocess.Popen([program, *map(str, arguments)], cwd=cls.folder, env=cls.environment, text=True,
                                 stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
 
     @classmethod
-    def call(cls, *arguments, code=0):
+    def call(cls, *arguments, code=0, program=PROGRAM):
         """Runs the program to its end; an exit code other than `code` is a failure that shows what was said."""
-        process = cls.start(*arguments)
+        process = cls.start(*arguments, program=program)
         output, errors = process.communicate(timeout=240)
         result = subprocess.CompletedProcess(arguments, process.returncode, output, errors)
         if process.returncode != code:
-            raise AssertionError(f"exemplar {' '.join(map(str, arguments))} gave exit code {process.returncode} "
+            raise AssertionError(f"{program.name} {' '.join(map(str, arguments))} gave exit code {process.returncode} "
                                  f"instead of {code}:\n{output}{errors}")
         return result
 
-    def refused(self, *arguments, code, says):
+    def refused(self, *arguments, code, says, program=PROGRAM):
         """The one line on stderr of a call that fails; it must hold each of `says`."""
-        lines = self.call(*arguments, code=code).stderr.splitlines()
+        lines = self.call(*arguments, code=code, program=program).stderr.splitlines()
         errors = [line for line in lines if line.startswith("error: ")]
         self.assertEqual(len(errors), 1, lines)
         self.assertEqual(lines[-1], errors[0])

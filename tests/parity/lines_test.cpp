@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <string>
 #include <vector>
@@ -145,6 +146,24 @@ TEST(LineParityOfAll, FacesCarryTheLinesOfTheReference) {
     GpuLineExtraction small(scene.line_surface, 100);
     extract_on_device(scene, small, 1, options);
     EXPECT_THROW(download_face_types(small), DeviceLimitError);
+}
+
+TEST(LineParityOfAll, OtherTypesBetweenChangeNothing) {
+    const Scene scene(mixed());
+    GpuLineExtraction lines(scene.line_surface);
+    const LineOptions options{.eye = {6.13f, 4.29f, 8.41f}, .feature_size = scene.size(), .thresholds = {}};
+    const std::uint32_t some = 1u << shared::k_ridges | 1u << shared::k_creases,
+                        apparent = 1u << shared::k_apparent_ridges;
+    const Found before = extract_on_device(scene, lines, some, options);
+    ASSERT_GT(before.counts.segments, 100u);
+    for (const std::uint32_t other : {0x3ffu, 1u << shared::k_contours, apparent, 0u, apparent}) {
+        const Found between = extract_on_device(scene, lines, other, options);
+        EXPECT_EQ(between.counts.segments > 0, other != 0);
+        const Found after = extract_on_device(scene, lines, some, options);
+        ASSERT_EQ(after.counts.segments, before.counts.segments);
+        EXPECT_EQ(0, std::memcmp(after.segments.data(), before.segments.data(),
+                                 before.segments.size() * sizeof(LineSegmentRecord)));
+    }
 }
 
 TEST(LineParityOfAll, CurvatureIsAskedForWhereItIsNeeded) {

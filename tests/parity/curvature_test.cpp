@@ -323,11 +323,11 @@ TEST(SmoothedCurvatureParity, TheScaleOfTheBindSpaceDoesNotMatter) {
     Stream stream(shared_device());
     moving.record(stream, tube.clips[0].poses[1], CurvatureSource::estimated);
     stream.finish();
-    const auto [first, second, derivative] = moving.curvature();
+    const GpuCurvedSurface moment = moving.moment();
     TriangleMesh frame = tube.rest;
     frame.vertices = frame_vertices(tube, tube.clips[0], 1);
     CurvatureEstimator reference(frame.faces, frame.vertex_count());
-    expect_near(frame, testing::download_curvature(*first, *second, *derivative),
+    expect_near(frame, testing::download_curvature(*moment.first, *moment.second, *moment.derivative),
                 reference.estimate(frame.vertices, options), 10 * k_tolerance);  // posed in another order of sums
 }
 

@@ -41,9 +41,9 @@ Image LinesComparison::draw(std::size_t frame) {
     std::array<Image, 2> images;
     std::array<FaceTypes, 2> in_view;
     std::array<std::array<FaceTypes, eyes.size()>, 2> from_around;
-    constexpr std::array sources{CurvatureSource::learned, CurvatureSource::estimated};
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-        images[i] = drawer_.draw(frame, sources[i]);
+    constexpr std::array k_sources{CurvatureSource::learned, CurvatureSource::estimated};
+    for (std::size_t i = 0; i < k_sources.size(); ++i) {
+        images[i] = drawer_.draw(frame, k_sources[i]);
         in_view[i] = drawer_.face_types();
         std::transform(eyes.begin(), eyes.end(), from_around[i].begin(),
                        [&](const Vec3& eye) { return drawer_.face_types_from(eye); });

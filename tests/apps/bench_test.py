@@ -34,6 +34,13 @@ class Bench(ProgramTest):
             self.assertIn("table_00", row["what"])
         self.assertGreater(sum(rows[0]["numbers"]["seconds_per_family"].values()), 0)
 
+    def test_line_drawings(self):
+        _, rows = self.bench("--only", "lines")
+        self.assertEqual([row["name"] for row in rows], ["lines", "lines"])
+        self.assertIn("learned", rows[0]["what"])
+        for row in rows:
+            self.assertAlmostEqual(row["numbers"]["frames_per_second"] * row["measured"]["wall_seconds"], 1, places=6)
+
     def test_wrong_arguments_are_refused_before_the_work(self):
         self.refused("bench", "--only", "ctu", code=2, says=["'ctu'", "'cut'"])
         self.refused("bench", "--meshes", "nowhere", code=1, says="nowhere")

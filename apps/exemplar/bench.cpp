@@ -22,13 +22,14 @@ struct BenchOptions {
     bool full = false, quick = false;
 };
 
-constexpr std::array<BenchPart, 8> k_parts{{{"features", false, bench_features},
+constexpr std::array<BenchPart, 9> k_parts{{{"features", false, bench_features},
                                             {"train", false, bench_training},
                                             {"label", false, bench_labeling},
                                             {"boosting", false, bench_boosting},
                                             {"scoring", false, bench_scoring},
                                             {"cut", false, bench_cut},
                                             {"curvature", false, bench_curvature},
+                                            {"lines", false, bench_lines},
                                             {"scaling", true, bench_scaling}}};
 
 std::vector<std::string> part_names() {

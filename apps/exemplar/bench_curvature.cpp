@@ -10,16 +10,6 @@
 namespace exemplar {
 namespace {
 
-/// A generated character of 20,000 vertices that moves, and moves otherwise.
-struct Character {
-    Animation seen = motion(1), unseen = motion(2);
-    std::vector<FrameRef> seen_frames = select_frames(seen, {}), unseen_frames = select_frames(unseen, {.most = 20});
-
-    static Animation motion(std::uint64_t seed) {
-        return make_animation("figure", {.vertices = 20'000, .frames = 100, .motion_seed = seed});
-    }
-};
-
 /// The median of single frames, each measured by itself: one alone is over before clocks and caches settle.
 Cost per_frame(std::size_t runs, std::size_t frames, const std::function<void(std::size_t)>& frame) {
     Cost cost = measure_single_thread(runs, [&] {
@@ -35,7 +25,7 @@ struct Moments {
 };
 
 /// The unseen frames, and what measuring their curvature costs.
-Moments measure_estimation(const BenchContext& context, const Character& character, const CurvatureModel& model) {
+Moments measure_estimation(const BenchContext& context, const BenchCharacter& character, const CurvatureModel& model) {
     MomentReader reader(character.unseen, model.segments, model.truth);
     Moments result;
     for (const FrameRef& frame : character.unseen_frames) result.moments.push_back(reader.read(frame));
@@ -51,7 +41,7 @@ Moments measure_estimation(const BenchContext& context, const Character& charact
     return result;
 }
 
-void bench_learner(BenchContext& context, const Character& character, Learner learner,
+void bench_learner(BenchContext& context, const BenchCharacter& character, Learner learner,
                    const std::function<void(const BenchRow&)>& row) {
     CurvatureModel model;
     CurvatureTrainingReport report;
@@ -82,13 +72,37 @@ void bench_learner(BenchContext& context, const Character& character, Learner le
          .cost = learned,
          .remarks = {fmt::format("{:.1f} times as fast as estimated, {:.1f} times as diffused", speedup, diffused)},
          .numbers = {{"speedup", speedup}, {"speedup_diffused", diffused}}});
+    if (learner == Learner::local) context.set_curvature_model(std::move(model));
+}
+
+/// Motions 1 and 2 of the figure.
+Animation motion(std::uint64_t seed) {
+    return make_animation("figure", {.vertices = 20'000, .frames = 100, .motion_seed = seed});
 }
 
 }  // namespace
 
+const BenchCharacter& BenchContext::character() {
+    if (!character_) {
+        character_ = BenchCharacter{motion(1), motion(2), {}, {}};
+        character_->seen_frames = select_frames(character_->seen, {});
+        character_->unseen_frames = select_frames(character_->unseen, {.clips = {}, .most = 20});
+    }
+    return *character_;
+}
+
+const CurvatureModel& BenchContext::curvature_model() {
+    if (!curvature_model_) {
+        CurvatureTrainingReport report;
+        const std::vector<FrameRef> some = select_frames(character().seen, {.clips = {}, .most = 40});
+        curvature_model_ = train_curvature(character().seen, some, {.augmented_poses = 40}, report);
+    }
+    return *curvature_model_;
+}
+
 void bench_curvature(BenchContext& context, const std::function<void(const BenchRow&)>& row) {
-    const Character character;
-    for (const Learner learner : {Learner::local, Learner::additive}) bench_learner(context, character, learner, row);
+    for (const Learner learner : {Learner::local, Learner::additive})
+        bench_learner(context, context.character(), learner, row);
 }
 
 }  // namespace exemplar

@@ -8,11 +8,20 @@
 
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/bench_table.h"
+#include "host/animation/animation.h"
+#include "host/curvature/model.h"
+#include "host/curvature/samples.h"
 #include "host/data/corpus.h"
 #include "host/labeling/features.h"
 #include "host/labeling/model.h"
 
 namespace exemplar {
+
+/// A generated character of 20,000 vertices that moves, and moves otherwise.
+struct BenchCharacter {
+    Animation seen, unseen;
+    std::vector<FrameRef> seen_frames, unseen_frames;
+};
 
 /// What the rows of `exemplar bench` share; made when a row first asks for it.
 class BenchContext {
@@ -34,12 +43,18 @@ class BenchContext {
     /// A model that the training row left, or one trained on fewer faces.
     const LabelingModel& model();
     void set_model(LabelingModel model) { model_ = std::move(model); }
+    const BenchCharacter& character();
+    /// Of the character: one that a training row left, or one trained on fewer poses.
+    const CurvatureModel& curvature_model();
+    void set_curvature_model(CurvatureModel model) { curvature_model_ = std::move(model); }
 
   private:
     Options options_;
     std::unique_ptr<DeviceBackend> backend_;
     std::optional<LabeledCorpus> corpus_;
     std::optional<LabelingModel> model_;
+    std::optional<BenchCharacter> character_;
+    std::optional<CurvatureModel> curvature_model_;
 };
 
 /// A part of the table: the rows that --only NAME asks for.
@@ -60,6 +75,8 @@ void bench_scoring(BenchContext& context, const std::function<void(const BenchRo
 void bench_cut(BenchContext& context, const std::function<void(const BenchRow&)>& row);
 // bench_curvature.cpp
 void bench_curvature(BenchContext& context, const std::function<void(const BenchRow&)>& row);
+// bench_lines.cpp
+void bench_lines(BenchContext& context, const std::function<void(const BenchRow&)>& row);
 // bench_scaling.cpp
 void bench_scaling(BenchContext& context, const std::function<void(const BenchRow&)>& row);
 

@@ -2,15 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cctype>
 #include <string>
 
 #include "host/imaging/camera.h"
-#include "host/imaging/paste.h"
 #include "host/imaging/png.h"
 #include "host/imaging/raster.h"
+#include "host/imaging/side_by_side.h"
 
 namespace exemplar {
 namespace {
@@ -49,15 +47,12 @@ void write_line_pictures(const std::filesystem::path& folder, const CurvatureMod
                                   {.eye = camera.position(), .feature_size = model.feature_size, .thresholds = {}});
         };
         const Marks truth = marks(at.moment.curvature);
-        Image image(3 * k_width, k_height, 3);
-        int left = 0;
-        for (const VertexCurvature* curvature : {&at.moment.curvature, &at.learned, &at.zero_order}) {
-            paste(render_mesh(mesh, colors_of(truth, marks(*curvature)), camera, k_width, k_height), left, 0, image);
-            left += k_width;
-        }
+        std::vector<Image> images;
+        for (const VertexCurvature* curvature : {&at.moment.curvature, &at.learned, &at.zero_order})
+            images.push_back(render_mesh(mesh, colors_of(truth, marks(*curvature)), camera, k_width, k_height));
         write_png(folder / fmt::format("{}_{:04d}_{}.png", file_name_of(animation.clips[frame.clip].name), frame.frame,
                                        name_of(type)),
-                  image);
+                  side_by_side(images));
     }
 }
 

@@ -1,10 +1,12 @@
-// exemplar demo: the main job on built-in data, from generated shapes to a page that shows how unseen ones are labeled.
+// exemplar demo: the main job on built-in data, from generated shapes to a page that shows how unseen ones are labeled,
+// and a figure in lines.
 
 #include <fmt/format.h>
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/commands.h"
+#include "apps/exemplar/demo_lines.h"
 #include "apps/exemplar/evaluation_run.h"
 #include "host/core/interrupt.h"
 #include "host/core/stopwatch.h"
@@ -69,13 +71,17 @@ void run_demo(const DemoOptions& options) {
     TrainOptions train;
     train.seed = options.seed;
     train.rounds = 120, train.patience = 20, train.rows_per_mesh = 1500;  // a demonstration, in minutes
-    EvaluationRun run(backend, train, options.out / "features", options.out, {.quiet = true});
-    const nlohmann::json report =
-        run.evaluate(tasks, "demo", "Exemplar: parts of unseen shapes, learned from examples");
+    DemoLines lines = make_demo_lines(options.out / "lines", options.seed);
+    EvaluationRun run(backend, train, options.out / "features", options.out,
+                      {.quiet = true, .drawings = {std::move(lines.drawing)}});
+    nlohmann::json report = run.evaluate(tasks, "demo", "Exemplar: parts of unseen shapes, learned from examples");
     for (const auto& category : report["categories"])
         fmt::print("{:>12}: {:.1f} % of the surface of {} unseen shapes labeled right\n",
                    category["category"].get<std::string>(), 100 * rate_of(category, "recognition_rate"),
                    category["meshes"].get<std::size_t>());
+    fmt::print("{:>12}: {:.2f} % of the faces of an unseen motion have lines that differ from measured ones\n", "lines",
+               100 * lines.report["misclassified"].get<double>());
+    report["lines"] = std::move(lines.report);
     fmt::print("done in {} on {}\nopen {}\n", format_seconds(watch.wall()), backend.device_name(),
                fs::absolute(options.out / "index.html").string());
     write_report(options.common, report);
@@ -85,8 +91,8 @@ void run_demo(const DemoOptions& options) {
 
 void add_demo_command(CLI::App& app) {
     auto options = std::make_shared<DemoOptions>();
-    CLI::App* command =
-        app.add_subcommand("demo", "Generates shapes, trains, labels unseen ones, and shows it all in a page");
+    CLI::App* command = app.add_subcommand(
+        "demo", "Generates shapes, trains, labels unseen ones, draws a figure in lines, and shows it all in a page");
     command->footer("Example:\n  exemplar demo --out out/demo");
     command->add_option("--out", options->out, "folder to write to")->capture_default_str()->type_name("FOLDER");
     command->add_option("--kinds", options->kinds, "kinds of shapes (see 'exemplar synth --help'); all by default")

@@ -331,7 +331,8 @@ void EvaluationRun::write_page(const std::vector<EvaluationTask>& tasks, const J
         }
         groups.push_back(std::move(group));
     }
-    write_report_page((behavior_.report.empty() ? out_ : behavior_.report) / "index.html", title, groups);
+    write_report_page((behavior_.report.empty() ? out_ : behavior_.report) / "index.html", title, groups,
+                      behavior_.drawings);
 }
 
 /// `names`: the page's, which begin with those of the first model.

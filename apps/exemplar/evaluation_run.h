@@ -30,9 +30,10 @@ struct EvaluationTask {
 class EvaluationRun {
   public:
     struct Behavior {
-        bool quiet = false;                 ///< no tables, no warnings
-        bool fresh = false;                 ///< take nothing over from an earlier run
-        std::filesystem::path report = {};  ///< the page's folder; empty: the output folder
+        bool quiet = false;                        ///< no tables, no warnings
+        bool fresh = false;                        ///< take nothing over from an earlier run
+        std::filesystem::path report = {};         ///< the page's folder; empty: the output folder
+        std::vector<ReportDrawing> drawings = {};  ///< below the categories of the page
     };
     EvaluationRun(DeviceBackend& backend, const TrainOptions& train, std::filesystem::path cache,
                   std::filesystem::path out, Behavior behavior)

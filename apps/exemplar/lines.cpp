@@ -7,6 +7,7 @@
 #include <charconv>
 
 #include "apps/exemplar/arguments.h"
+#include "apps/exemplar/lines_comparison.h"
 #include "apps/exemplar/lines_job.h"
 #include "host/core/errors.h"
 #include "host/core/text.h"
@@ -90,6 +91,17 @@ LinesOutput output_of(const std::filesystem::path& path) {
                                  path.string(), extension));
 }
 
+void require_comparable(const LinesJob& job) {
+    if (job.output == LinesOutput::svg)
+        throw UsageError(fmt::format("{}: --compare makes pictures; give a name that ends in .png or .mp4, or a folder",
+                                     job.out.string()));
+    if (job.source.model.empty())
+        throw UsageError("--compare sets lines of learned curvature beside those of measured; give --model");
+    if (types_to_compare(job.types).empty())
+        throw UsageError(
+            "--compare: these --types are the same by any curvature; add suggestive_contours, for example");
+}
+
 LinesJob job_of(const LinesArguments& arguments) {
     LinesJob job = arguments.job;
     if (job.source.input.empty()) throw UsageError("no MESH or ANIM is given; see 'exemplar lines --help'");
@@ -101,6 +113,7 @@ LinesJob job_of(const LinesArguments& arguments) {
         require_output_file(job.out);
     require_camera(job.camera);
     job.types = types_of(arguments.types);
+    if (job.compare) require_comparable(job);
     job.style = load_style(arguments.style);
     for (const std::string& word : arguments.thresholds) set_threshold_of_word(word, job.style);
     job.svg.form = choice<SvgForm>(arguments.form, "--form", {"lines", "outlines"});
@@ -210,7 +223,8 @@ void add_lines_command(CLI::App& app) {
         "the Vulkan device.\n\nExamples:\n"
         "  exemplar lines bunny.off --out bunny.svg\n"
         "  exemplar lines part.obj --types contours,creases,boundaries --style technical --view top --out part.svg\n"
-        "  exemplar lines figure.glb --model figure.safetensors --frames 0:40 --style pencil --out walk.mp4");
+        "  exemplar lines figure.glb --model figure.safetensors --frames 0:40 --style pencil --out walk.mp4\n"
+        "  exemplar lines figure.glb --model figure.safetensors --frames 40: --compare --out unseen");
     LinesJob& job = arguments->job;
     command->add_option("INPUT", job.source.input, "mesh (OFF, OBJ, PLY, STL, glTF) or animation (glTF, folder)")
         ->type_name("");
@@ -223,6 +237,9 @@ void add_lines_command(CLI::App& app) {
         ->add_option("--model", job.source.model,
                      "takes curvature from this model of 'exemplar curvature train' instead of measuring it")
         ->type_name("FILE");
+    command->add_flag("--compare", job.compare,
+                      "draws each frame twice, by the curvature of --model on the left and by measured on the right, "
+                      "and prints the share of faces that carry a line by one but not by the other");
     add_frame_options(*command, job.source.frames, "", "draw");
     command
         ->add_option("--fps", job.source.frames_per_second, "frames a second that clips of glTF files are sampled at")

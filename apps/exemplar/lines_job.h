@@ -23,6 +23,7 @@ struct LinesJob {
     DrawingStyle style;           ///< with the thresholds of the command line
     std::filesystem::path out;
     LinesOutput output = LinesOutput::svg;
+    bool compare = false;  ///< pictures show lines of learned curvature beside those of measured
     SvgOptions svg;
 };
 

@@ -6,12 +6,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <optional>
 
+#include "apps/exemplar/frame_drawer.h"
+#include "apps/exemplar/lines_comparison.h"
 #include "apps/exemplar/lines_job.h"
-#include "gpu/curvature/animated_surface.h"
-#include "gpu/lines/device_style.h"
-#include "gpu/lines/line_renderer.h"
-#include "gpu/runtime/device.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
@@ -24,46 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Draws frames of a source, one after the other.
-class FrameDrawer {
-  public:
-    FrameDrawer(const LinesJob& job, LinesSource& source, const StrokeView& view)
-        : source_(source),
-          device_({.name = job.common.device}),
-          surface_(device_, source.animation().rest),
-          line_surface_(surface_),
-          moving_(surface_, source.animation().rig, {.derivatives = true, .smoothing = job.source.smoothing}),
-          renderer_(device_, line_surface_),
-          stream_(device_) {
-        if (source.model()) moving_.set_model(*source.model());
-        const DeviceStyle style = device_style(job.style);
-        renderer_.set_textures(style.textures);
-        picture_.view = view;
-        apply_style(style, job.types, picture_);
-    }
-
-    Image draw(std::size_t frame) {
-        const FrameRef at = source_.frames()[frame];
-        const Clip& clip = source_.animation().clips[at.clip];
-        const CurvatureSource from = source_.model() ? CurvatureSource::learned : CurvatureSource::estimated;
-        if (clip.poses.empty())
-            moving_.record(stream_, clip.frames[at.frame], from);
-        else
-            moving_.record(stream_, clip.poses[at.frame], from);
-        return renderer_.render(stream_, moving_.moment(), picture_);
-    }
-    const std::string& device_name() const { return device_.info().name; }
-
-  private:
-    LinesSource& source_;
-    Device device_;
-    GpuSurface surface_;
-    GpuLineSurface line_surface_;
-    GpuAnimatedSurface moving_;
-    LineRenderer renderer_;
-    Stream stream_;
-    LinePicture picture_;
-};
+using DrawFrame = std::function<Image(std::size_t)>;
 
 std::string quoted(const std::string& word) {
     std::string result = "'";
@@ -117,27 +77,27 @@ class Video {
 };
 
 /// Calls use(image, number of the frame) for all frames.
-void draw_frames(FrameDrawer& drawer, std::size_t count, const std::function<void(const Image&, std::size_t)>& use) {
+void draw_frames(const DrawFrame& draw, std::size_t count, const std::function<void(const Image&, std::size_t)>& use) {
     Progress progress = count > 1 ? Progress("drawing", count) : Progress();
     for (std::size_t frame = 0; frame < count; ++frame) {
         check_interrupt();
-        use(drawer.draw(frame), frame);
+        use(draw(frame), frame);
         progress.advance();
     }
 }
 
-void write_video(const LinesJob& job, LinesSource& source, FrameDrawer& drawer, const StrokeView& view) {
+void write_video(const LinesJob& job, LinesSource& source, const DrawFrame& draw, int width, int height) {
     if (!job.style.background)
         throw UsageError(
             fmt::format("{}: videos have no transparency; give a style with a background", job.out.string()));
-    Video video(job.out, view.width, view.height, source.frames_per_second());
-    draw_frames(drawer, source.frame_count(), [&](const Image& image, std::size_t) { video.add(image); });
+    Video video(job.out, width, height, source.frames_per_second());
+    draw_frames(draw, source.frame_count(), [&](const Image& image, std::size_t) { video.add(image); });
     video.finish();
 }
 
-void write_pictures(const LinesJob& job, LinesSource& source, FrameDrawer& drawer) {
+void write_pictures(const LinesJob& job, LinesSource& source, const DrawFrame& draw) {
     fs::create_directories(job.out);
-    draw_frames(drawer, source.frame_count(), [&](const Image& image, std::size_t frame) {
+    draw_frames(draw, source.frame_count(), [&](const Image& image, std::size_t frame) {
         write_png(job.out / fmt::format("frame_{:04}.png", frame), image);
     });
 }
@@ -152,22 +112,30 @@ void write_lines_pictures(const LinesJob& job) {
         throw UsageError(fmt::format("{}: {} frames are no single picture; give a folder or one frame (--frames 0)",
                                      job.out.string(), source.frame_count()));
     FrameDrawer drawer(job, source, view);
+    std::optional<LinesComparison> comparison;
+    if (job.compare) comparison.emplace(job, source, drawer);
+    const DrawFrame draw = [&](std::size_t frame) { return comparison ? comparison->draw(frame) : drawer.draw(frame); };
+    const int width = job.compare ? 2 * view.width : view.width;
     const double prepared = watch.wall();
     watch = {};
     switch (job.output) {
         case LinesOutput::picture:
-            write_png(job.out, drawer.draw(0));
+            write_png(job.out, draw(0));
             break;
         case LinesOutput::video:
-            write_video(job, source, drawer, view);
+            write_video(job, source, draw, width, view.height);
             break;
         default:
-            write_pictures(job, source, drawer);
+            write_pictures(job, source, draw);
     }
     if (!job.common.quiet)
-        fmt::print("{}: {} of {} x {}, drawn on {}\n", job.out.string(), counted(source.frame_count(), "frame"),
-                   view.width, view.height, drawer.device_name());
+        fmt::print("{}: {} of {} x {}, drawn on {}\n", job.out.string(), counted(source.frame_count(), "frame"), width,
+                   view.height, drawer.device_name());
     nlohmann::json report = describe_job(job, source, view);
+    if (comparison) {
+        comparison->print();
+        report["comparison"] = comparison->describe();
+    }
     report["device"] = drawer.device_name();
     report["seconds"] = {{"prepare", prepared}, {"draw", watch.wall()}};
     write_report(job.common, report);

@@ -4,7 +4,7 @@
 
 #include "gpu/imaging/picture.h"
 #include "gpu/runtime/errors.h"
-#include "host/imaging/paste.h"
+#include "host/imaging/side_by_side.h"
 
 namespace exemplar {
 namespace {
@@ -75,11 +75,7 @@ Image FrameRenderer::read() {
     std::vector<Image> parts;
     for (const Canvas* canvas : shown_) parts.push_back(canvas->read_image());
     if (parts.empty()) throw UsageError("there is no frame to read; record one first");
-    if (parts.size() == 1) return std::move(parts.front());
-    Image image(parts[0].width + parts[1].width, parts[0].height, 3);
-    paste(parts[0], 0, 0, image);
-    paste(parts[1], parts[0].width, 0, image);
-    return image;
+    return side_by_side(parts);
 }
 
 }  // namespace exemplar

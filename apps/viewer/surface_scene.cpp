@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "host/curvature/samples.h"
 #include "host/mesh/curvature_estimator.h"
 
 namespace exemplar {
@@ -37,8 +38,8 @@ std::vector<Vec3> vertices_at(const Document& document, const Moment& moment) {
 }
 
 SurfaceScene::SurfaceScene(Device& device, const Document& document)
-    : document_(document), surface_(device, document.animation.rest), line_surface_(surface_) {
-    animated_.emplace(surface_, document.animation.rig, k_measured);
+    : document_(document), surface_(device, first_shape(document.animation)), line_surface_(surface_) {
+    animated_.emplace(surface_, document.animation, k_measured);
 }
 
 // What is learned is compared with what is measured as it was in training.
@@ -47,7 +48,7 @@ void SurfaceScene::set_model(std::shared_ptr<const CurvatureModel> model) {
     options.derivatives = true;
     options.robust = RobustEstimator::none;  // which the device does not have
     if (model) require_fit(*model, document_.animation);
-    animated_.emplace(surface_, document_.animation.rig, options);
+    animated_.emplace(surface_, document_.animation, options);
     if (model) animated_->set_model(*model);
     feature_size_ = model ? model->feature_size : 0;
     model_ = std::move(model);

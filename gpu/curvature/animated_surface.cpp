@@ -4,11 +4,12 @@
 
 namespace exemplar {
 
-GpuAnimatedSurface::GpuAnimatedSurface(const GpuSurface& surface, const Rig& rig, const CurvatureOptions& options)
+GpuAnimatedSurface::GpuAnimatedSurface(const GpuSurface& surface, const Animation& animation,
+                                       const CurvatureOptions& options)
     : surface_(surface),
-      rig_(rig),
+      rig_(animation.rig),
       options_(options),
-      poser_(surface.device(), rig, surface.rest().vertices),
+      poser_(surface.device(), animation.rig, animation.rest.vertices),
       normals_(surface) {}
 
 void GpuAnimatedSurface::set_model(const CurvatureModel& model) {

@@ -23,9 +23,10 @@ enum class CurvatureSource { none, estimated, learned };
 /// A surface that moves, on the device: from a pose, or a frame of a mesh sequence, to vertices, normals and curvature.
 class GpuAnimatedSurface {
   public:
-    /// `options`: of estimated curvature. `surface` must live as long as this. Throws as its parts do: UsageError,
-    /// DeviceLimitError.
-    GpuAnimatedSurface(const GpuSurface& surface, const Rig& rig, const CurvatureOptions& options);
+    /// `surface` is a shape that the animation takes (see first_shape), as the space in which rigs bind their vertices
+    /// may have another scale; it must live as long as this. `options`: of estimated curvature. Throws as its parts do:
+    /// UsageError, DeviceLimitError.
+    GpuAnimatedSurface(const GpuSurface& surface, const Animation& animation, const CurvatureOptions& options);
 
     /// Takes learned curvature from this model from now on; it must fit the animation (require_fit). No work that uses
     /// an earlier one may be recorded and not submitted. Throws ModelError and DeviceLimitError as GpuLearnedCurvature.

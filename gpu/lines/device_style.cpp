@@ -20,7 +20,7 @@ class Textures {
         const auto known = places_.find(name);
         if (known != places_.end()) return known->second;
         const Image image = load_stroke_texture(name);
-        Place place{0, 1};
+        Place place{0, float(shared::k_texture_width)};
         if (image.width > 0) {
             place = {static_cast<std::uint32_t>(texels_.size()) + 1, static_cast<float>(image.width)};
             append(image);

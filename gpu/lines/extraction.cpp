@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "embedded/lines_apparent_ridges_comp.h"
 #include "embedded/lines_count_comp.h"
@@ -68,10 +69,13 @@ GpuLineExtraction::GpuLineExtraction(const GpuLineSurface& surface, std::size_t 
     Device& device = surface.surface().device();
     check_texels(device, 2 * room_, "the lines of a surface");
     const std::size_t faces = surface.surface().face_count();
-    face_counts_ = Buffer(device, faces * sizeof(std::uint32_t));
-    face_groups_ = Buffer(device, divide_up(faces, shared::k_count_group) * sizeof(std::uint32_t));
-    segments_ = Buffer(device, room_ * sizeof(shared::LineSegmentRecord));
-    counts_ = Buffer(device, sizeof(shared::LineCounts));
+    for (Buffer* buffer : {&face_counts_, &old_face_counts_}) *buffer = Buffer(device, faces * sizeof(std::uint32_t));
+    for (Buffer* buffer : {&face_groups_, &old_face_groups_})
+        *buffer = Buffer(device, divide_up(faces, shared::k_count_group) * sizeof(std::uint32_t));
+    for (Buffer* buffer : {&segments_, &old_segments_})
+        *buffer = Buffer(device, room_ * sizeof(shared::LineSegmentRecord));
+    const shared::LineCounts none{};
+    counts_ = Buffer::of(device, std::span(&none, 1));
 }
 
 // Kernels know the families, so that what is not wanted takes no time: CPU drivers run both sides of branches.
@@ -142,6 +146,9 @@ void GpuLineExtraction::record(Stream& stream, const GpuCurvedSurface& moment, s
     const GpuSurface& surface = surface_.surface();
     surface.check_vertices(moment.vertices);
     const Kernels& kernels = prepare(families);
+    std::swap(segments_, old_segments_);
+    std::swap(face_counts_, old_face_counts_);
+    std::swap(face_groups_, old_face_groups_);
     record_fields(stream, kernels, moment, families, options);
     const std::uint32_t faces = surface.face_count();
     const FaceLineParameters parameters{.faces = faces,

@@ -46,6 +46,12 @@ class GpuLineExtraction {
     /// 256, and its own; and those before each group.
     const Buffer& face_counts() const { return face_counts_; }
     const Buffer& face_groups() const { return face_groups_; }
+    /// What segments(), face_counts() and face_groups() were of the record before; counts() has their number. Faces are
+    /// the same, vertices may have moved.
+    struct Previous {
+        const Buffer &segments, &face_counts, &face_groups;
+    };
+    Previous previous() const { return {old_segments_, old_face_counts_, old_face_groups_}; }
     /// shared::LineCounts: how many there are, and what later commands need.
     const Buffer& counts() const { return counts_; }
     Buffer& counts() { return counts_; }
@@ -68,6 +74,7 @@ class GpuLineExtraction {
     Kernel view_kernel_, scan_kernel_;
     Buffer fields_, directions_, views_;
     Buffer face_counts_, face_groups_, segments_, counts_;
+    Buffer old_face_counts_, old_face_groups_, old_segments_;
 };
 
 }  // namespace exemplar

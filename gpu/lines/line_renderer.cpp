@@ -22,7 +22,7 @@ DrawPipeline stroke_pipeline(Device& device) {
             shaders::lines_stroke_frag,
             {.push_constants = layout_of<shared::StrokeDrawParameters>(),
              .elements = {layout_of<vec4>(), layout_of<vec4>(), layout_of<std::uint32_t>(),
-                          layout_of<shared::StrokeLook>(), layout_of<float>()}},
+                          layout_of<shared::StrokeLook>(), layout_of<float>(), layout_of<shared::vec2>()}},
             {.color = Canvas::k_rgba, .blends = true}};
 }
 
@@ -37,6 +37,7 @@ LineRenderer::LineRenderer(Device& device, const GpuLineSurface& surface)
       lines_(surface),
       chains_(lines_),
       strokes_(chains_),
+      coherence_(strokes_),
       canvas_(device),
       painter_(device, Canvas::k_rgba, canvas_.depth_format()),
       stroke_pipeline_(stroke_pipeline(device)),
@@ -92,10 +93,11 @@ void LineRenderer::draw_surface(Stream& stream, const GpuCurvedSurface& moment, 
 void LineRenderer::draw_strokes(Stream& stream, const LinePicture& picture) {
     canvas_.go_on(stream);
     Pass pass("lines/strokes", {.color = canvas_.color_view(), .extent = canvas_.extent()});
-    pass.draw(stroke_pipeline_, {.indirect = &lines_.counts(), .indirect_offset = offsetof(LineCounts, draw)},
-              {chains_.points(), strokes_.strokes(), strokes_.visible(), strokes_.looks(), textures_},
-              shared::StrokeDrawParameters{.width = static_cast<float>(picture.view.width),
-                                           .height = static_cast<float>(picture.view.height)});
+    pass.draw(
+        stroke_pipeline_, {.indirect = &lines_.counts(), .indirect_offset = offsetof(LineCounts, draw)},
+        {chains_.points(), strokes_.strokes(), strokes_.visible(), strokes_.looks(), textures_, coherence_.phases()},
+        shared::StrokeDrawParameters{.width = static_cast<float>(picture.view.width),
+                                     .height = static_cast<float>(picture.view.height)});
     stream.render(pass);
     canvas_.end(stream);
 }
@@ -117,6 +119,7 @@ void LineRenderer::record(Stream& stream, const GpuCurvedSurface& moment, const 
     draw_surface(stream, moment, picture);
     canvas_.copy_depth(stream, depths_);
     strokes_.record(stream, moment, depths_, view, picture.looks);
+    coherence_.record(stream, moment.vertices, view, picture.coherent);
     draw_strokes(stream, picture);
 }
 

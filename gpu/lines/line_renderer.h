@@ -9,6 +9,7 @@
 #include "gpu/imaging/canvas.h"
 #include "gpu/imaging/surface_painter.h"
 #include "gpu/lines/chains.h"
+#include "gpu/lines/coherence.h"
 #include "gpu/lines/extraction.h"
 #include "gpu/lines/strokes.h"
 #include "gpu/runtime/draw_pipeline.h"
@@ -25,6 +26,7 @@ struct LinePicture {
     FamilyThresholds thresholds{};
     StrokeLooks looks{};
     PaintLook surface{.light = SurfaceLight::none, .plain = {255, 255, 255}};
+    bool coherent = true;  ///< textures stay where they were in the picture before
 };
 
 /// Draws line drawings of a surface, from buffers of its vertices, normals and curvature to an image, without anything
@@ -52,6 +54,7 @@ class LineRenderer {
     Image read_image() const { return canvas_.read_image(transparent_); }
 
     const GpuStrokes& strokes() const { return strokes_; }
+    const GpuCoherence& coherence() const { return coherence_; }
 
   private:
     void resize(int width, int height);
@@ -62,6 +65,7 @@ class LineRenderer {
     GpuLineExtraction lines_;
     GpuChains chains_;
     GpuStrokes strokes_;
+    GpuCoherence coherence_;
     Canvas canvas_;
     SurfacePainter painter_;
     DrawPipeline stroke_pipeline_;

@@ -18,6 +18,9 @@ using shared::StrokeParameters;
 using shared::uvec4;
 using shared::vec4;
 
+static_assert(shared::k_least_calm == k_least_calm && shared::k_most_calm == k_most_calm &&
+              shared::k_calm_points == k_calm_points && shared::k_calm_reach == k_calm_reach);
+
 StrokeParameters stroke_parameters(const StrokeView& view, bool curved, bool closed) {
     const Eigen::Matrix4f& m = view.camera.projection;
     const bool parallel = is_parallel(view.camera);
@@ -53,7 +56,7 @@ StrokeLooks plain_looks(const LineThresholds& thresholds, const StrokeThickness&
                          .threshold = fading ? fading->threshold : 0,
                          .fade = fading ? fading->half : 0,
                          .texture = 0,
-                         .period = 1,
+                         .period = float(shared::k_texture_width),
                          .unused0 = 0,
                          .unused1 = 0,
                          .unused2 = 0};

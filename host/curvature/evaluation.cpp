@@ -6,6 +6,7 @@
 
 #include "host/core/parallel.h"
 #include "host/core/progress.h"
+#include "host/lines/face_types.h"
 
 namespace exemplar {
 
@@ -14,24 +15,6 @@ namespace {
 constexpr std::array<LineType, 6> k_compared{
     LineType::suggestive_contours, LineType::suggestive_highlights, LineType::ridges, LineType::valleys,
     LineType::apparent_ridges,     LineType::principal_highlights};
-
-/// Views from all sides, off the axes, along which models tend to be symmetric.
-std::array<Vec3, 6> eyes_around(std::span<const Vec3> vertices) {
-    Vec3 low = vertices.front(), high = vertices.front();
-    for (const Vec3& p : vertices) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-    }
-    const Vec3 center = 0.5f * (low + high);
-    const float distance = 1.5f * (high - low).norm();
-    std::array<Vec3, 6> eyes;
-    for (std::size_t i = 0; i < eyes.size(); ++i) {
-        Vec3 direction(0.31f, 0.22f, -0.27f);
-        direction[static_cast<Eigen::Index>(i / 2)] = i % 2 ? -1.0f : 1.0f;
-        eyes[i] = center + distance * direction.normalized();
-    }
-    return eyes;
-}
 
 /// Errors of one attribute, collected. Percentiles are taken of some of them, so that memory does not grow with the
 /// length of a motion.
@@ -77,42 +60,36 @@ void add_errors(const VertexCurvature& truth, const VertexCurvature& guess, std:
     }
 }
 
-struct LineCounts {
-    std::array<std::size_t, k_compared.size()> truth{}, learned{}, zero_order{};
-    std::size_t faces = 0;
+struct LineDifferences {
+    LineDifference learned{k_compared}, zero_order{k_compared};
 };
 
-std::size_t differences(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) count += a[i] != b[i];
-    return count;
-}
-
 void compare_lines(const std::vector<Face>& faces, const SurfaceMoment& moment, const VertexCurvature& learned,
-                   const VertexCurvature& zero_order, float feature_size, LineCounts& counts) {
-    const std::array<Vec3, 6> eyes = eyes_around(moment.vertices);
-    for (std::size_t i = 0; i < k_compared.size(); ++i) {
-        const bool by_view = depends_on_view(k_compared[i]);
-        const std::size_t times = by_view ? 1 : eyes.size();
-        for (const Vec3& eye : eyes) {
-            const auto lines_of = [&](const VertexCurvature& curvature) {
-                return classify_faces({faces, moment.vertices, moment.normals, curvature}, k_compared[i],
-                                      {.eye = eye, .feature_size = feature_size, .thresholds = {}});
-            };
-            const std::vector<std::uint8_t> truth = lines_of(moment.curvature);
-            counts.truth[i] += times * static_cast<std::size_t>(std::count(truth.begin(), truth.end(), 1));
-            counts.learned[i] += times * differences(truth, lines_of(learned));
-            counts.zero_order[i] += times * differences(truth, lines_of(zero_order));
-            if (!by_view) break;
-        }
+                   const VertexCurvature& zero_order, float feature_size, LineDifferences& differences) {
+    std::vector<LineType> seen, fixed;
+    for (const LineType type : k_compared) (depends_on_view(type) ? seen : fixed).push_back(type);
+    const std::array<const VertexCurvature*, 3> curvatures{&moment.curvature, &learned, &zero_order};
+    const auto add = [&](std::size_t i, std::span<const LineType> types, const Vec3& eye, FaceTypes& of) {
+        add_face_types({faces, moment.vertices, moment.normals, *curvatures[i]}, types,
+                       {.eye = eye, .feature_size = feature_size, .thresholds = {}}, of);
+    };
+    std::array<FaceTypes, 3> from_anywhere, from_eye;
+    for (std::size_t i = 0; i < curvatures.size(); ++i) {
+        from_anywhere[i].resize(faces.size());
+        add(i, fixed, Vec3::Zero(), from_anywhere[i]);
     }
-    counts.faces += eyes.size() * faces.size();
+    for (const Vec3& eye : eyes_around(moment.vertices)) {
+        from_eye = from_anywhere;
+        for (std::size_t i = 0; i < curvatures.size(); ++i) add(i, seen, eye, from_eye[i]);
+        differences.learned.add(from_eye[0], from_eye[1]);
+        differences.zero_order.add(from_eye[0], from_eye[2]);
+    }
 }
 
 /// What is known after some frames.
 struct Tally {
     Errors learned, zero_order, truth;
-    LineCounts lines;
+    LineDifferences lines;
     PoseRange::Farthest farthest;
     std::size_t far_frames = 0;
 
@@ -122,12 +99,8 @@ struct Tally {
             zero_order[i].add(other.zero_order[i]);
             truth[i].add(other.truth[i]);
         }
-        for (std::size_t i = 0; i < k_compared.size(); ++i) {
-            lines.truth[i] += other.lines.truth[i];
-            lines.learned[i] += other.lines.learned[i];
-            lines.zero_order[i] += other.lines.zero_order[i];
-        }
-        lines.faces += other.lines.faces;
+        lines.learned.add(other.lines.learned);
+        lines.zero_order.add(other.lines.zero_order);
         if (other.farthest.distance > farthest.distance) farthest = other.farthest;
         far_frames += other.far_frames;
     }
@@ -191,6 +164,24 @@ std::span<const LineType> compared_lines() {
     return k_compared;
 }
 
+std::array<Vec3, 6> eyes_around(std::span<const Vec3> vertices) {
+    Vec3 low = vertices.front(), high = vertices.front();
+    for (const Vec3& p : vertices) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    const Vec3 center = 0.5f * (low + high);
+    const float distance = 1.5f * (high - low).norm();
+    std::array<Vec3, 6> eyes;
+    for (std::size_t i = 0; i < eyes.size(); ++i) {
+        // Off the axes, along which models tend to be symmetric.
+        Vec3 direction(0.31f, 0.22f, -0.27f);
+        direction[static_cast<Eigen::Index>(i / 2)] = i % 2 ? -1.0f : 1.0f;
+        eyes[i] = center + distance * direction.normalized();
+    }
+    return eyes;
+}
+
 FrameCurvature curvature_at(const CurvatureModel& model, const Animation& animation, FrameRef frame) {
     require_fit(model, animation);
     FrameCurvature result{MomentReader(animation, model.segments, model.truth).read(frame), {}, {}};
@@ -225,10 +216,11 @@ CurvatureEvaluation evaluate_curvature(const CurvatureModel& model, const Animat
         result.attributes.push_back({k_names[i], sum.learned[i].rms(), sum.learned[i].percentile_95(),
                                      sum.zero_order[i].rms(), sum.zero_order[i].percentile_95(),
                                      std::sqrt(sum.truth[i].squares / values)});
-    const double faces = std::max<double>(1, double(sum.lines.faces));
-    for (std::size_t i = 0; i < k_compared.size(); ++i)
-        result.lines.push_back({k_compared[i], double(sum.lines.truth[i]) / faces, double(sum.lines.learned[i]) / faces,
-                                double(sum.lines.zero_order[i]) / faces});
+    for (const LineType type : k_compared) {
+        const LineDifference::Shares learned = sum.lines.learned.of(type);
+        result.lines.push_back(
+            {type, learned.truth, learned.misclassified, sum.lines.zero_order.of(type).misclassified});
+    }
     result.farthest_pose = sum.farthest.distance;
     if (sum.farthest.control < model.state.controls.size())
         result.farthest_control = model.state.controls[sum.farthest.control].name;

@@ -43,9 +43,10 @@ constexpr float k_far_pose = 1.5f;
 
 /// Line types whose faces depend on curvature, which evaluations compare.
 std::span<const LineType> compared_lines();
+/// Where evaluations see a surface from: six sides, off the axes, at three times the radius of its bounding box.
+std::array<Vec3, 6> eyes_around(std::span<const Vec3> vertices);
 
-/// Compares a model with measured curvature on frames of an animation, ideally unseen ones. Seen from six sides, at
-/// three times the radius.
+/// Compares a model with measured curvature on frames of an animation, ideally unseen ones. Seen from eyes_around().
 CurvatureEvaluation evaluate_curvature(const CurvatureModel& model, const Animation& animation,
                                        std::span<const FrameRef> frames);
 

@@ -166,6 +166,18 @@ TriangleMesh layout_shape(const Animation& animation, FrameRef frame) {
     return shape;
 }
 
+TriangleMesh first_shape(const Animation& animation) {
+    TriangleMesh shape = animation.rest;
+    for (const Clip& clip : animation.clips)
+        if (clip.size() > 0) {
+            shape.vertices = frame_vertices(animation, clip, 0);
+            return shape;
+        }
+    if (animation.kind != AnimationKind::sequence)
+        pose_vertices(animation.rig, animation.rest.vertices, rest_pose(animation.rig), shape.vertices);
+    return shape;
+}
+
 Segments segment_animation(const Animation& animation, std::span<const FrameRef> frames) {
     if (animation.kind != AnimationKind::sequence) return segment_rig(animation.rig, animation.rest.vertex_count());
     std::vector<std::vector<Vec3>> positions;

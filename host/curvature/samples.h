@@ -56,6 +56,9 @@ class MomentReader {
 /// The shape that patches and tiles are laid out on: of a rig the pose at a frame, as its bind space may be no shape at
 /// all.
 TriangleMesh layout_shape(const Animation& animation, FrameRef frame);
+/// The shape at the first frame, or of the pose at rest if there is none: what the scale of a surface and nearness on
+/// it are taken from, as frames may be far from the shape at rest.
+TriangleMesh first_shape(const Animation& animation);
 /// The segments of an animation: by weights, or by motion in the given frames of a sequence.
 Segments segment_animation(const Animation& animation, std::span<const FrameRef> frames);
 /// The reader of its state, made from the given frames.

@@ -325,16 +325,27 @@ void write_data(std::ostream& out, const std::string& title, std::span<const Rep
     out << "<script type=\"application/json\" id=\"report\">" << script_json(page) << "</script>\n";
 }
 
+/// As an image it plays, but can run nothing and is a document of its own.
+void write_drawing(std::ostream& out, const ReportDrawing& drawing) {
+    out << "<section class=\"wide drawing\">\n<h2>" << escaped_html(drawing.title) << "</h2>\n<p class=\"soft\">"
+        << escaped_html(drawing.text) << "</p>\n<figure>\n<img alt=\"" << escaped_html(drawing.title)
+        << "\" src=\"data:image/svg+xml;base64," << base64(drawing.svg) << "\">\n<figcaption>";
+    for (const std::string& caption : drawing.captions) out << "<span>" << escaped_html(caption) << "</span>";
+    out << "</figcaption>\n</figure>\n</section>\n";
+}
+
 }  // namespace
 
-void write_report_page(const std::filesystem::path& path, const std::string& title,
-                       std::span<const ReportData> groups) {
+void write_report_page(const std::filesystem::path& path, const std::string& title, std::span<const ReportData> groups,
+                       std::span<const ReportDrawing> drawings) {
     if (groups.empty()) throw UsageError("report page: there is no group to show; give at least one");
     for (const ReportData& group : groups) check_group(group);
     std::string_view rest = embedded_text(embedded::k_report_page);
     write_file_atomically(path, [&](std::ostream& out) {
         out << cut_at(rest, "{{title}}") << escaped_html(title);
         out << cut_at(rest, "{{style}}") << embedded_text(embedded::k_report_style);
+        out << cut_at(rest, "{{drawings}}");
+        for (const ReportDrawing& drawing : drawings) write_drawing(out, drawing);
         out << cut_at(rest, "{{data}}");
         write_data(out, title, groups);
         out << cut_at(rest, "{{script}}") << embedded_text(embedded::k_report_script);

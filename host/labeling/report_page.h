@@ -81,6 +81,13 @@ struct ReportData {
     std::vector<ReportCurve> curves;                  ///< in the order of the cascade
 };
 
+/// A drawing below the groups.
+struct ReportDrawing {
+    std::string title, text;            ///< plain text
+    std::string svg;                    ///< a whole file; it may play, but has no scripts and refers to nothing else
+    std::vector<std::string> captions;  ///< of equally wide parts of it, from the left
+};
+
 /// Writes one HTML file that shows the groups: a table that compares them, turnable views of every labeled mesh
 /// (predicted labels, ground truth, errors, confidence; the first three also side by side), confusion table, scores of
 /// all tested meshes, validation curves, chosen features and timings. The file needs nothing else: no network, no
@@ -93,6 +100,7 @@ struct ReportData {
 /// Throws UsageError naming the mesh or table if a label index or confidence is out of range, a size does not match,
 /// a coordinate is not finite, the rounds of a curve do not ascend, or there is no group; DataError if the file cannot
 /// be written.
-void write_report_page(const std::filesystem::path& path, const std::string& title, std::span<const ReportData> groups);
+void write_report_page(const std::filesystem::path& path, const std::string& title, std::span<const ReportData> groups,
+                       std::span<const ReportDrawing> drawings = {});
 
 }  // namespace exemplar

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <optional>
 
+#include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/stopwatch.h"
 
@@ -140,6 +141,26 @@ Drawing draw_lines(const LineSurface& surface, std::span<const LineType> types, 
         if (type == LineType::contours && !outlines.empty()) drawer.add(sharp, LineType::creases, outlines, layer);
     }
     return drawing;
+}
+
+Drawing side_by_side(Drawing left, const Drawing& right) {
+    const auto same_type = [](const DrawingLayer& a, const DrawingLayer& b) { return a.type == b.type; };
+    if (left.height != right.height ||
+        !std::equal(left.layers.begin(), left.layers.end(), right.layers.begin(), right.layers.end(), same_type))
+        throw UsageError("drawings of different heights or types of lines cannot be put side by side; make them alike");
+    const Vec2 offset(static_cast<float>(left.width), 0);
+    for (std::size_t i = 0; i < left.layers.size(); ++i) {
+        left.layers[i].segments += right.layers[i].segments;
+        for (Stroke stroke : right.layers[i].strokes) {
+            for (StrokePoint& point : stroke.points) point.position += offset;
+            left.layers[i].strokes.push_back(std::move(stroke));
+        }
+    }
+    left.width += right.width;
+    left.seconds.lines += right.seconds.lines;
+    left.seconds.visibility += right.seconds.visibility;
+    left.seconds.strokes += right.seconds.strokes;
+    return left;
 }
 
 std::vector<StrokeRun> visible_runs(const Stroke& stroke) {

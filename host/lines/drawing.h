@@ -40,6 +40,9 @@ Drawing draw_lines(const LineSurface& surface, std::span<const LineType> types, 
                    const StrokeView& view, const LineSurface* edges = nullptr,
                    const VisibilityOptions& visibility = {});
 
+/// Both as one drawing, `right` beside `left`. Throws UsageError unless they have the same layers and are equally high.
+Drawing side_by_side(Drawing left, const Drawing& right);
+
 /// What is visible of a stroke without a gap.
 struct StrokeRun {
     std::vector<StrokePoint> points;  ///< two or more; of a closed run the last is the first

@@ -12,30 +12,36 @@ namespace exemplar {
 
 namespace {
 
+/// What a piece of a stroke does to a pixel.
+struct Covered {
+    float inside = -1;  ///< pixels from the stroke's border; negative: outside
+    float opacity = 0;
+};
+
 /// What one stroke covers of each pixel, and which pixels.
 struct Coverage {
-    FloatImage alpha;
+    BasicImage<Covered> pixels;
     std::vector<std::pair<int, int>> touched;
 
-    void add(int x, int y, float value) {
-        float& alpha_here = alpha.pixel(x, y)[0];
-        if (!(value > alpha_here)) return;
-        if (alpha_here == 0) touched.emplace_back(x, y);
-        alpha_here = value;
+    void add(int x, int y, const Covered& covered) {
+        Covered& here = pixels.pixel(x, y)[0];
+        if (!(covered.inside > here.inside)) return;
+        if (here.inside == Covered{}.inside) touched.emplace_back(x, y);
+        here = covered;
     }
 };
 
-float opacity_at(const StrokePoint& a, const StrokePoint& b, const Vec2& pixel, const Image& texture) {
+Covered covered_by(const StrokePoint& a, const StrokePoint& b, const Vec2& pixel, const Image& texture) {
     const Vec2 way = b.position - a.position, to_pixel = pixel - a.position;
     const float squared = way.squaredNorm();
     const float t = squared > 0 ? std::clamp(to_pixel.dot(way) / squared, 0.0f, 1.0f) : 0;
-    const float distance = (to_pixel - t * way).norm(), width = std::lerp(a.width, b.width, t);
-    const float covered = std::clamp(0.5f * width + 0.5f - distance, 0.0f, 1.0f);
-    if (covered == 0) return 0;
+    const float distance = (to_pixel - t * way).norm(), half = 0.5f * std::lerp(a.width, b.width, t);
+    const float share = std::clamp(half + 0.5f - distance, 0.0f, 1.0f);
+    if (share == 0) return {};
     const float right = std::lerp(a.normal.dot(to_pixel - t * way), b.normal.dot(to_pixel - t * way), t);
-    const float across = width > 0 ? std::clamp(std::copysign(distance, right) / (0.5f * width), -1.0f, 1.0f) : 0;
-    return covered * std::lerp(a.opacity, b.opacity, t) *
-           sample_stroke_texture(texture, std::lerp(a.parameter, b.parameter, t), across);
+    const float across = half > 0 ? std::clamp(std::copysign(distance, right) / half, -1.0f, 1.0f) : 0;
+    return {half - distance, share * std::lerp(a.opacity, b.opacity, t) *
+                                 sample_stroke_texture(texture, std::lerp(a.parameter, b.parameter, t), across)};
 }
 
 void cover(const StrokePoint& a, const StrokePoint& b, const Image& texture, Coverage& coverage) {
@@ -45,10 +51,10 @@ void cover(const StrokePoint& a, const StrokePoint& b, const Image& texture, Cov
     const auto inside = [](float value, int size) {
         return static_cast<int>(std::clamp(value, 0.0f, static_cast<float>(size)));
     };
-    for (int y = inside(low.y(), coverage.alpha.height); y < inside(high.y() + 1, coverage.alpha.height); ++y)
-        for (int x = inside(low.x(), coverage.alpha.width); x < inside(high.x() + 1, coverage.alpha.width); ++x) {
+    for (int y = inside(low.y(), coverage.pixels.height); y < inside(high.y() + 1, coverage.pixels.height); ++y)
+        for (int x = inside(low.x(), coverage.pixels.width); x < inside(high.x() + 1, coverage.pixels.width); ++x) {
             const Vec2 center(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-            coverage.add(x, y, opacity_at(a, b, center, texture));
+            coverage.add(x, y, covered_by(a, b, center, texture));
         }
 }
 
@@ -68,14 +74,14 @@ void draw_strokes(std::span<const Stroke> strokes, const LineStyle& style, const
             fmt::format("strokes cannot be drawn into an image of {} channels; give 3 or 4", image.channels));
     std::array<float, 3> color{};
     for (std::size_t c = 0; c < 3; ++c) color[c] = static_cast<float>(style.color[c]) / 255;
-    Coverage coverage{FloatImage(image.width, image.height, 1), {}};
+    Coverage coverage{BasicImage<Covered>(image.width, image.height, 1), {}};
     for (const Stroke& stroke : strokes) {
         for (std::size_t i = 0; i + 1 < stroke.points.size(); ++i)
             if (stroke.points[i].visible) cover(stroke.points[i], stroke.points[i + 1], texture, coverage);
         for (const auto& [x, y] : coverage.touched) {
-            float& alpha = coverage.alpha.pixel(x, y)[0];
-            blend(color, alpha * style.opacity, image.pixel(x, y));
-            alpha = 0;
+            Covered& covered = coverage.pixels.pixel(x, y)[0];
+            blend(color, covered.opacity * style.opacity, image.pixel(x, y));
+            covered = {};
         }
         coverage.touched.clear();
     }

@@ -56,7 +56,8 @@ Vec2 across(const Vec2& tangent) {
 /// Moves the points of a chain to the mean of what is around them (see make_strokes), and gives them normals.
 class Calming {
   public:
-    Calming(const std::vector<StrokePoint>& points, bool closed) : points_(points), closed_(closed) {}
+    Calming(const std::vector<StrokePoint>& points, bool closed, bool tapers)
+        : points_(points), closed_(closed), tapers_(tapers) {}
 
     std::vector<StrokePoint> calmed() const {
         std::vector<StrokePoint> result = points_;
@@ -67,6 +68,7 @@ class Calming {
             const Vec2 tangent = after.end - before.end;
             if (tangent.squaredNorm() > 0) point.normal = across(tangent);
             const float length = before.length + after.length;
+            if (tapers_) point.width *= straightness(tangent.norm(), length);
             const bool stays = !closed_ && (i == 0 || i == last);
             if (!stays && length > 0) point.position = (before.sum + after.sum) / length;
         }
@@ -115,7 +117,7 @@ class Calming {
         return result;
     }
     const std::vector<StrokePoint>& points_;
-    bool closed_;
+    bool closed_, tapers_;
 };
 
 /// Makes the stroke of one chain.
@@ -144,7 +146,7 @@ class StrokeMaker {
         if (type_ == LineType::creases || type_ == LineType::boundaries)
             set_normals(chain.closed, own);
         else
-            own = Calming(own, chain.closed).calmed();
+            own = Calming(own, chain.closed, thickness_.taper > 0).calmed();
         Stroke stroke;
         stroke.closed = chain.closed;
         for (std::size_t i = 0; i < chain.links.size(); ++i)

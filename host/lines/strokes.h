@@ -36,6 +36,12 @@ inline float stroke_taper(float distance, float taper) {
     return std::sqrt(x * (2 - x));
 }
 
+/// The share of its width that a stroke has where a piece of it `length` pixels long leads only `across` pixels on: 1
+/// up to a turn by 120 degrees or so, less towards a cusp, where the way back covers the way there.
+inline float straightness(float across, float length) {
+    return length > 0 ? std::min(1.0f, 2 * across / length) : 1;
+}
+
 /// See make_strokes: how far points are moved, in pixels, and within how many points to each side.
 constexpr float k_least_calm = 3, k_most_calm = 10;
 constexpr int k_calm_points = 8, k_calm_reach = 2;
@@ -73,8 +79,9 @@ struct Stroke {
 /// normal is perpendicular to the way between the ends of that part; of creases and boundaries, to that from the second
 /// point before to the second after. The parameter is the sum of the pixel distances up to a point before it is moved,
 /// the width stroke_width() of the depth and the radial curvature there (at a vertex (k1 u^2 + k2 v^2) / (u^2 + v^2),
-/// or the mean curvature where the eye is along the normal; zero if the surface has no curvature), times stroke_taper()
-/// of the distance along the chain to the nearest end of the visible run that the point is in. Where a closed chain's
+/// or the mean curvature where the eye is along the normal; zero if the surface has no curvature). With tapers it is
+/// multiplied by the straightness() of the part that the point is the mean of, and by stroke_taper() of the distance
+/// along the chain to the nearest end of the visible run that the point is in. Where a closed chain's
 /// first point is visible, its runs go on over it, and if all is visible nothing is tapered. `visible` has the visible
 /// parts of each segment; null: all are. Throws UsageError if sizes do not fit, or a thickness is out of range (width,
 /// epsilon and most positive, least in [0, most], taper not negative).

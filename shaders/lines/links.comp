@@ -19,19 +19,14 @@ layout(set = 0, binding = 7) uniform usamplerBuffer segments;
 layout(set = 0, binding = 8, std430) readonly buffer Counts { LineCounts counts; };
 layout(set = 0, binding = 9, std430) writeonly buffer Ends { vec4 picture_ends[]; };  // pixels, depth, view depth; two a segment
 layout(set = 0, binding = 10, std430) writeonly buffer Links { uvec2 links[]; };
+#include "shaders/lib/face_segments.glsl"
+#include "shaders/lib/in_picture.glsl"
 #include "shaders/lib/segments.glsl"
-
-// The segments of a face: the first and the one after the last.
-uvec2 segments_of(uint face) {
-    const uint count = texelFetch(face_counts, int(face)).x;
-    const uint first = texelFetch(groups, int(face / k_count_group)).x + (count >> 8);
-    return min(uvec2(first, first + (count & 0xffu)), uvec2(counts.segments));
-}
 
 uint link_across(LineSegmentRecord segment, uint side) {
     const uint across = texelFetch(neighbors, int(segment.face))[side];
     if (across > k_last_side) return k_no_link;
-    const uvec2 others = segments_of(across / 4u);
+    const uvec2 others = segments_of(across / 4u, counts.segments);
     for (uint i = others.x; i < others.y; ++i) {
         const uint kind = texelFetch(segments, int(2u * i)).y;
         if ((kind & k_kind_family) != family_of(segment)) continue;
@@ -47,7 +42,7 @@ uint link_at(LineSegmentRecord segment, uint self, uint vertex) {
     const uint last = texelFetch(face_begin, int(vertex + 1u)).x;
     for (uint at = texelFetch(face_begin, int(vertex)).x; at < last; ++at) {
         const uint face = texelFetch(vertex_faces, int(at)).x;
-        const uvec2 others = segments_of(face);
+        const uvec2 others = segments_of(face, counts.segments);
         for (uint i = others.x; i < others.y; ++i) {
             const uint kind = texelFetch(segments, int(2u * i)).y;
             if ((kind & k_kind_family) != family_of(segment)) continue;
@@ -78,11 +73,7 @@ void main() {
                              texelFetch(positions, int(corners.z)).xyz);
     for (uint end = 0; end < 2; ++end) {
         const vec3 at = points * end_of(segment, end);
-        const vec4 clip = parameters.matrix[0] * at.x + parameters.matrix[1] * at.y + parameters.matrix[2] * at.z +
-                          parameters.matrix[3];
-        const vec3 on_screen = clip.xyz / clip.w;
-        picture_ends[2u * index + end] = vec4((on_screen.xy * 0.5 + 0.5) * vec2(parameters.width, parameters.height),
-                                              on_screen.z, clip.w);
+        picture_ends[2u * index + end] = in_picture(at);
     }
     links[index] = uvec2(link_of(segment, index, 0u), link_of(segment, index, 1u));
 }

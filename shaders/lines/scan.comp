@@ -17,10 +17,12 @@ uint groups_of(uint items) {
 }
 
 void put_segments(uint total) {
-    const uint segments = min(total, parameters.most);
+    const uint segments = min(total, parameters.most), previous = counts.segments;
+    counts.previous_segments = previous;
     counts.segments = segments;
     counts.dropped_segments = total - segments;
     counts.segment_groups[0] = groups_of(segments);
+    counts.trace_groups[0] = groups_of(max(segments, previous));
     counts.node_groups[0] = groups_of(2u * segments);
     // As many jumps as the longest chain may take, an even number: the result is where the first began.
     uint rounds = segments > 1u ? uint(findMSB(segments - 1u)) + 1u : 0u;
@@ -30,6 +32,7 @@ void put_segments(uint total) {
         counts.round_groups[3u * i + 1u] = counts.round_groups[3u * i + 2u] = 1u;
     }
     counts.segment_groups[1] = counts.segment_groups[2] = counts.node_groups[1] = counts.node_groups[2] = 1u;
+    counts.trace_groups[1] = counts.trace_groups[2] = 1u;
 }
 
 void put_points(uint total) {

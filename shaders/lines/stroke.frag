@@ -6,10 +6,10 @@
 layout(set = 0, binding = 4) uniform samplerBuffer textures;  // rows of opacities, one texture after the other
 
 layout(location = 0) in vec4 along;
-layout(location = 1) in float parameter;
+layout(location = 1) in float texture_at;
 layout(location = 2) flat in uvec2 seen;
 layout(location = 3) flat in vec4 color;
-layout(location = 4) flat in vec2 texture_of;
+layout(location = 4) flat in vec3 texture_of;
 layout(location = 0) out vec4 drawn;
 
 float texel(uint begin, int column, int row) {
@@ -17,7 +17,7 @@ float texel(uint begin, int column, int row) {
 }
 
 // Bilinear; around along the stroke, and clamped across it.
-float texture_at(uint begin, float turn, float across) {
+float opacity_at(uint begin, float turn, float across) {
     const vec2 at = vec2(fract(turn) * float(k_texture_width), clamp(across, 0.0, 1.0) * float(k_texture_height)) - 0.5;
     const vec2 low = floor(at), part = at - low;
     const int left = int(low.x) < 0 ? int(k_texture_width) - 1 : int(low.x);
@@ -36,6 +36,7 @@ void main() {
     float alpha = along.z * max(covered, 0.0);
     const uint begin = floatBitsToUint(texture_of.x);
     if (begin != 0u)
-        alpha *= texture_at(begin - 1u, parameter / texture_of.y, 0.5 + 0.5 * along.x / max(half_width, 0.5));
+        alpha *= opacity_at(begin - 1u, texture_at / texture_of.y,
+                            0.5 + 0.5 * texture_of.z * along.x / max(half_width, 0.5));
     drawn = vec4(color.rgb * alpha, alpha);
 }

@@ -1,5 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/texture_phase.glsl"
 #include "shaders/shared/lines.h"
 
 // A quad from each point of a chain to the next, as wide as the stroke and a pixel more to each side for soft edges. Those
@@ -9,12 +10,14 @@ layout(set = 0, binding = 0) uniform samplerBuffer points;
 layout(set = 0, binding = 1) uniform samplerBuffer strokes;
 layout(set = 0, binding = 2) uniform usamplerBuffer visible;
 layout(set = 0, binding = 3, std430) readonly buffer Looks { StrokeLook looks[]; };
+// Binding 4 is the fragment shader's.
+layout(set = 0, binding = 5, std430) readonly buffer Phases { vec2 phases[]; };
 
 layout(location = 0) out vec4 along;       // place across in pixels, half width, opacity, way to the next point (0 to 1)
-layout(location = 1) out float parameter;  // pixels along the chain
+layout(location = 1) out float texture_at;  // its coordinate along the chain, in pixels
 layout(location = 2) flat out uvec2 seen;  // samples that are visible, and their number
 layout(location = 3) flat out vec4 color;
-layout(location = 4) flat out vec2 texture_of;  // where it begins, its period
+layout(location = 4) flat out vec3 texture_of;  // where it begins, its period, its way along the chain
 
 void main() {
     const int corner = gl_VertexIndex % 6, point = gl_VertexIndex / 6;
@@ -34,8 +37,11 @@ void main() {
     const float reach = 0.5 * stroke.z + 1.0;
     const vec2 pixel = stroke.xy + side * reach * texelFetch(strokes, 2 * at + 1).xy;
     along = vec4(side * reach, 0.5 * stroke.z, stroke.w * look.color.a, next ? 1.0 : 0.0);
-    parameter = texelFetch(points, 2 * at).w;
+    const vec2 phase = phases[point];
+    const vec2 coordinates = texture_ends(phase, phases[point + 1], texelFetch(points, 2 * point).w,
+                                          texelFetch(points, 2 * point + 2).w, look.period);
+    texture_at = next ? coordinates.y : coordinates.x;
     color = look.color;
-    texture_of = vec2(uintBitsToFloat(look.texture), look.period);
+    texture_of = vec3(uintBitsToFloat(look.texture), look.period, phase.x);
     gl_Position = vec4(2.0 * pixel / vec2(parameters.width, parameters.height) - 1.0, 0.0, 1.0);
 }

@@ -21,10 +21,6 @@ layout(set = 0, binding = 9, std430) writeonly buffer Strokes { vec4 strokes[]; 
 #include "shaders/lib/segments.glsl"
 #include "shaders/lib/stroke_points.glsl"
 
-const float k_least_calm = 3.0;  // pixels; see host/lines/strokes.h
-const float k_most_calm = 10.0;
-const int k_calm_points = 8;
-const int k_calm_reach = 2;
 const uint k_most_taper_points = 64;
 
 uint kind_of(int point) {
@@ -84,10 +80,16 @@ Side side_of(int point, int way) {
     return result;
 }
 
-// Where a point is drawn, and the normal there.
-vec4 calmed(int point, uint kind) {
+// Where a point is drawn, the normal there, and exemplar::straightness.
+struct Calmed {
+    vec2 at;
+    vec2 normal;
+    float straightness;
+};
+Calmed calmed(int point, uint kind) {
     const vec2 here = place_of_point(point);
     vec2 tangent = vec2(0.0), there = here;
+    float straightness = 1.0;
     if ((1u << (kind & k_kind_family) & k_edge_families) != 0u) {
         int before = point, after = point;
         for (int i = 0; i < k_calm_reach; ++i) {
@@ -102,9 +104,10 @@ vec4 calmed(int point, uint kind) {
         const bool stays = (kind & k_point_closed) == 0u && (kind & (k_point_first | k_point_last)) != 0u;
         const float size = before.pixels + after.pixels;
         if (!stays && size > 0.0) there = (before.sum + after.sum) / size;
+        if (size > 0.0) straightness = min(1.0, 2.0 * length(tangent) / size);
     }
     const float size = length(tangent);
-    return vec4(there, size > 0.0 ? vec2(-tangent.y, tangent.x) / size : vec2(0.0, 1.0));
+    return Calmed(there, size > 0.0 ? vec2(-tangent.y, tangent.x) / size : vec2(0.0, 1.0), straightness);
 }
 
 float thickness(uvec2 walked_end, StrokeLook look) {
@@ -141,11 +144,11 @@ float visible_length(int point, int way, float most) {
     return most;
 }
 
-float tapered(int point, StrokeLook look) {
+float tapered(int point, float straightness, StrokeLook look) {
     if (!(look.taper > 0.0)) return 1.0;
     const float d = min(visible_length(point, 1, look.taper), visible_length(point, -1, look.taper));
     const float x = clamp(d / look.taper, 0.0, 1.0);
-    return sqrt(x * (2.0 - x));
+    return straightness * sqrt(x * (2.0 - x));
 }
 
 void main() {
@@ -155,12 +158,13 @@ void main() {
     const vec4 more = texelFetch(points, 2 * point + 1);
     const uint kind = floatBitsToUint(more.x), walked = floatBitsToUint(more.z);
     const StrokeLook look = looks[kind & k_kind_family];
-    const vec4 drawn = calmed(point, kind);
+    const Calmed drawn = calmed(point, kind);
     const bool last = (kind & k_point_last) != 0u;
     const uint begin_end = walked & 1u;
-    const float width = thickness(uvec2(walked >> 1, last ? 1u - begin_end : begin_end), look) * tapered(point, look);
+    const float width = thickness(uvec2(walked >> 1, last ? 1u - begin_end : begin_end), look) *
+                        tapered(point, drawn.straightness, look);
     const float above = max(more.w - look.threshold, 0.0);
     const float opacity = look.fade > 0.0 ? above / (above + look.fade) : 1.0;
-    strokes[2 * point] = vec4(drawn.xy, width, opacity);
-    strokes[2 * point + 1] = vec4(drawn.zw, 0.0, 0.0);
+    strokes[2 * point] = vec4(drawn.at, width, opacity);
+    strokes[2 * point + 1] = vec4(drawn.normal, 0.0, 0.0);
 }

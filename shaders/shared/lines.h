@@ -73,9 +73,10 @@ const uint k_line_rounds = 22;  // of jumps: chains of up to 2^22 segments
 struct LineCounts {
     uint segments;
     uint points;
-    uint dropped_segments;  // for which there was no room
-    uint unused;
+    uint dropped_segments;   // for which there was no room
+    uint previous_segments;  // of the extraction before
     uint segment_groups[3];
+    uint trace_groups[3];  // for the segments of both
     uint node_groups[3];
     uint point_groups[3];
     uint draw[4];
@@ -139,6 +140,11 @@ struct StrokeLook {
     float unused1;
     float unused2;
 };
+// How far points are moved to the mean of the chain around them: exemplar::make_strokes.
+const int k_least_calm = 3;  // pixels
+const int k_most_calm = 10;
+const int k_calm_points = 8;
+const int k_calm_reach = 2;
 const uint k_texture_width = 256;
 const uint k_texture_height = 32;
 

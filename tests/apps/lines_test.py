@@ -149,6 +149,47 @@ class Lines(ProgramTest):
         self.refused("lines", "cube.off", "--model", "m.safetensors", "--out", "x.svg", code=2, says="--model")
         self.refused("lines", "moving/figure_001.glb", "--model", "cube.off", "--out", "x.svg", code=1, says="cube.off")
 
+    def test_learned_lines_beside_measured_ones(self):
+        self.call("curvature", "train", "moving/figure_001.glb", "--frames", ":20", "--out", "c.safetensors", "--augment", "60")
+        compare = ["lines", "moving/figure_001.glb", "--model", "c.safetensors", "--compare", "--types", "contour,sugg,ridge",
+                   "--size", "120x90"]
+        printed = self.call(*compare, "--frames", "21:23", "--out", "both", "--json", "c.json").stdout
+        self.assertEqual(len(list((self.folder / "both").iterdir())), 2)
+        width, height, pixels = read_png(self.folder / "both" / "frame_0000.png")
+        self.assertEqual((width, height), (240, 90))
+        comparison = json.loads((self.folder / "c.json").read_text())["comparison"]
+        # Contours are the same by any curvature.
+        self.assertEqual(set(comparison["types"]), {"suggestive_contours", "ridges"})
+        for name in ["suggestive_contours", "ridges", "any of these"]:
+            self.assertIn(name, printed)
+        for share in [*comparison["types"].values(), comparison["any"]]:
+            self.assertLess(share["misclassified"], share["faces_with_line"])
+        self.assertGreater(comparison["any"]["misclassified"], 0)
+
+        # The halves are the pictures that either curvature makes.
+        def half(side):
+            return b"".join(bytes(pixels[3 * (240 * y + 120 * side):][:360]) for y in range(90))
+
+        alone = [word for word in compare if word != "--compare"]
+        self.call(*alone, "--frames", "21:23", "--out", "learned")
+        self.assertEqual(half(0), bytes(read_png(self.folder / "learned" / "frame_0000.png")[2]))
+        self.assertNotEqual(half(0), half(1))
+
+        # Seen from six sides, it is what the model's evaluation says, but for faces at the thresholds.
+        self.call("curvature", "evaluate", "c.safetensors", "moving/figure_001.glb", "--frames", "21:23", "--json", "e.json")
+        for name, told in json.loads((self.folder / "e.json").read_text())["lines"].items():
+            if name in comparison["types"]:
+                for key in ["faces_with_line", "misclassified"]:
+                    self.assertAlmostEqual(told[key], comparison["types"][name]["six_sides"][key], delta=1e-3)
+
+        self.call(*compare, "--frames", "22", "--out", "one.png")
+        self.assertEqual(read_png(self.folder / "one.png")[:2], (240, 90))
+        self.refused(*compare, "--out", "x.svg", code=2, says=["x.svg", "--compare"])
+        self.refused("lines", "moving/figure_001.glb", "--compare", "--out", "x.png", code=2, says="--model")
+        self.refused("lines", "moving/flag_001", *compare[2:], "--out", "x.png", code=1, says="skeleton")
+        self.refused("lines", "cube.off", *compare[2:], "--out", "x.png", code=2, says="--model")
+        self.refused(*compare[:5], "--types", "contour", "--out", "x.png", code=2, says="--types")
+
     def test_a_style_file_starts_from_a_printed_style(self):
         printed = self.call("lines", "--print-style", "ink").stdout
         style = json.loads(printed)

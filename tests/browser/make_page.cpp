@@ -88,6 +88,12 @@ ReportData make_group(const std::string& kind, std::list<SynthShape>& shapes) {
     return group;
 }
 
+/// Red and blue in turns, a second each.
+constexpr const char* k_playing_svg =
+    R"(<svg xmlns="http://www.w3.org/2000/svg" width="200px" height="50px" viewBox="0 0 200 50">)"
+    R"(<rect width="200" height="50" fill="#ff0000"><animate attributeName="fill" calcMode="discrete" )"
+    R"(values="#ff0000;#0000ff" keyTimes="0;0.5" dur="2s" repeatCount="indefinite"/></rect></svg>)";
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -98,7 +104,9 @@ int main(int argc, char** argv) {
     try {
         std::list<SynthShape> shapes;
         const std::vector<ReportData> groups{make_group("human", shapes), make_group("cup", shapes)};
-        write_report_page(argv[1], "Report for the browser's test", groups);
+        const std::vector<ReportDrawing> drawings{
+            {.title = "A drawing", .text = "It plays.", .svg = k_playing_svg, .captions = {"left", "right"}}};
+        write_report_page(argv[1], "Report for the browser's test", groups, drawings);
     } catch (const std::exception& error) {
         fmt::print(stderr, "error: {}\n", error.what());
         return 1;

@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 from chromium import SOFTWARE_GL, Browser, changed_share, missing_programs
@@ -213,6 +214,23 @@ class Drawn(PageTest):
 
     def test_nothing_is_wider_than_the_window(self):
         self.assertLessEqual(self.browser.script("return document.documentElement.scrollWidth"), self.width)
+
+
+    def test_a_drawing_plays(self):
+        image = self.browser.find(".drawing img")
+        self.browser.script("arguments[0].scrollIntoView()", image)
+        self.browser.settle()
+
+        def color():
+            _, _, channels, rows = self.browser.screenshot(image)
+            row, middle = rows[len(rows) // 2], len(rows[0]) // channels // 2 * channels
+            return tuple(row[middle:middle + 3])
+
+        seen = set()
+        end = time.monotonic() + 20
+        while len(seen) < 2 and time.monotonic() < end:
+            seen.add(color())
+        self.assertEqual(seen, {(255, 0, 0), (0, 0, 255)})
 
 
 class Narrow(PageTest):

@@ -1,5 +1,6 @@
 #include "tests/fuzz/readers.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,6 +21,7 @@
 #include "host/data/corpus.h"
 #include "host/data/safetensors.h"
 #include "host/labeling/model.h"
+#include "host/lines/style.h"
 #include "host/mesh/io_formats.h"
 #include "host/mesh/io_text.h"
 #include "tests/fuzz/promises.h"
@@ -302,7 +304,36 @@ bool reads_list(std::string_view content) {
     return true;
 }
 
-constexpr std::array<Reader, 12> k_readers{{{"off", reads_off},
+/// The text of a style that draws lines just as another does.
+std::string text_of(const LineStyle& line) {
+    const StrokeThickness& t = line.thickness;
+    return fmt::format(R"({{"color": "#{:02x}{:02x}{:02x}", "opacity": {}, "width": {}, "epsilon": {}, "least": {}, )"
+                       R"("most": {}, "taper": {}, "texture": "{}"}})",
+                       line.color[0], line.color[1], line.color[2], line.opacity, t.width, t.epsilon, t.least, t.most,
+                       t.taper, line.texture);
+}
+
+bool reads_style(std::string_view content) {
+    DrawingStyle style;
+    if (!accepts<DataError>("x.json", content.size(), {256 * 1024, 512},
+                            [&] { style = parse_style(content, "x.json", scratch()); }))
+        return false;
+    require(style.fade >= 0 && std::isfinite(style.fade), "a fade that can be drawn");
+    for (const LineType type : k_line_types) {
+        const LineStyle& line = style.of(type);
+        const StrokeThickness& t = line.thickness;
+        require(line.opacity >= 0 && line.opacity <= 1, "an opacity");
+        require(t.width > 0 && t.epsilon > 0 && t.most > 0 && t.least >= 0 && t.least <= t.most && t.taper >= 0 &&
+                    std::isfinite(t.width + t.epsilon + t.most + t.taper),
+                "strokes that can be drawn");
+        style.thresholds(type);
+        const DrawingStyle again = parse_style("{\"default\": " + text_of(line) + "}", "again.json", scratch());
+        require(text_of(again.of(type)) == text_of(line), "a written style is read again");
+    }
+    return true;
+}
+
+constexpr std::array<Reader, 13> k_readers{{{"off", reads_off},
                                             {"obj", reads_obj},
                                             {"ply", reads_ply},
                                             {"stl", reads_stl},
@@ -313,7 +344,8 @@ constexpr std::array<Reader, 12> k_readers{{{"off", reads_off},
                                             {"safetensors", reads_safetensors},
                                             {"model", reads_model},
                                             {"curvature", reads_curvature},
-                                            {"list", reads_list}}};
+                                            {"list", reads_list},
+                                            {"style", reads_style}}};
 
 }  // namespace
 

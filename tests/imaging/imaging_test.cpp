@@ -4,10 +4,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,7 @@
 #include "host/imaging/camera.h"
 #include "host/imaging/png.h"
 #include "host/imaging/raster.h"
+#include "host/imaging/side_by_side.h"
 #include "tests/support/temporary_folder.h"
 
 namespace exemplar {
@@ -294,6 +297,27 @@ TEST(Raster, TransferFunctionsAreInverse) {
         const float v = static_cast<float>(i) / 255;
         EXPECT_NEAR(linear_to_srgb(srgb_to_linear(v)), v, 1e-5);
     }
+}
+
+TEST(SideBySide, ImagesKeepTheirPixels) {
+    Image left(2, 2, 3, 10), right(1, 2, 3, 20);
+    left.pixel(1, 0)[2] = 11;
+    right.pixel(0, 1)[0] = 21;
+    const Image both = side_by_side(std::array{left, right, left});
+    ASSERT_EQ(both.width, 5);
+    ASSERT_EQ(both.height, 2);
+    for (int y = 0; y < 2; ++y)
+        for (int x = 0; x < 5; ++x) {
+            const Image& from = x == 2 ? right : left;
+            const std::span<const std::uint8_t> expected = from.pixel(x < 2 ? x : x == 2 ? 0 : x - 3, y);
+            EXPECT_TRUE(std::ranges::equal(both.pixel(x, y), expected)) << x << ", " << y;
+        }
+}
+
+TEST(SideBySide, OnlyAlikeImagesFit) {
+    EXPECT_THROW(side_by_side(std::array{Image(2, 2, 3), Image(2, 3, 3)}), UsageError);
+    EXPECT_THROW(side_by_side(std::array{Image(2, 2, 3), Image(2, 2, 4)}), UsageError);
+    EXPECT_THROW(side_by_side({}), UsageError);
 }
 
 }  // namespace

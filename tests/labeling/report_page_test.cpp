@@ -351,5 +351,21 @@ TEST(ReportPage, RefusesWhatDoesNotFit) {
     expect_refused("not finite", [](Groups&, TriangleMesh& m) { m.vertices[5][0] = INFINITY; });
 }
 
+TEST(ReportPage, DrawingsAreImagesInTheFile) {
+    const TriangleMesh mesh = shapes::box(1, 1, 1, 1);
+    const std::vector<ReportData> groups{group_of(mesh)};
+    const fs::path path = page_path("drawings");
+    const std::vector<ReportDrawing> drawings{
+        {.title = "Lines & more", .text = "a < b", .svg = "<svg/>", .captions = {"left", "<right>"}}};
+    write_report_page(path, "Report", groups, drawings);
+    const std::string text = read_file(path);
+    EXPECT_THAT(text, HasSubstr("data:image/svg+xml;base64,PHN2Zy8+\""));
+    EXPECT_THAT(text, HasSubstr("<h2>Lines &amp; more</h2>"));
+    EXPECT_THAT(text, HasSubstr("a &lt; b"));
+    EXPECT_THAT(text, HasSubstr("<span>left</span><span>&lt;right&gt;</span>"));
+    write_report_page(path, "Report", groups);
+    EXPECT_THAT(read_file(path), Not(HasSubstr("svg+xml")));
+}
+
 }  // namespace
 }  // namespace exemplar

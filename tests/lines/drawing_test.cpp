@@ -582,5 +582,32 @@ TEST(StrokePictures, LayTexturesAlongAndAcross) {
     }
 }
 
+TEST(DrawingsSideBySide, KeepWhatBothShow) {
+    Stroke stroke;
+    stroke.points = {{.position = {1, 2}}, {.position = {3, 4}, .visible = false}};
+    const Drawing one{.width = 10,
+                      .height = 8,
+                      .layers = {{LineType::ridges, 1, {stroke}}, {LineType::contours, 2, {stroke}}},
+                      .seconds = {}};
+    const Drawing both = side_by_side(one, one);
+    EXPECT_EQ(both.width, 20);
+    EXPECT_EQ(both.height, 8);
+    ASSERT_EQ(both.layers.size(), 2u);
+    EXPECT_EQ(both.layers[1].segments, 4u);
+    ASSERT_EQ(both.layers[1].strokes.size(), 2u);
+    EXPECT_EQ(both.layers[1].strokes[0].points[1].position, Vec2(3, 4));
+    EXPECT_EQ(both.layers[1].strokes[1].points[1].position, Vec2(13, 4));
+    EXPECT_FALSE(both.layers[1].strokes[1].points[1].visible);
+}
+
+TEST(DrawingsSideBySide, MustBeAlike) {
+    const Drawing ridges{.width = 10, .height = 8, .layers = {{LineType::ridges, 0, {}}}, .seconds = {}};
+    const Drawing contours{.width = 10, .height = 8, .layers = {{LineType::contours, 0, {}}}, .seconds = {}};
+    const Drawing higher{.width = 10, .height = 9, .layers = {{LineType::ridges, 0, {}}}, .seconds = {}};
+    EXPECT_THROW(side_by_side(ridges, contours), UsageError);
+    EXPECT_THROW(side_by_side(ridges, higher), UsageError);
+    EXPECT_THROW(side_by_side(ridges, {.width = 10, .height = 8, .layers = {}, .seconds = {}}), UsageError);
+}
+
 }  // namespace
 }  // namespace exemplar

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -97,6 +98,21 @@ TEST(Strokes, TaperTowardsTheirEnds) {
         const float x = std::min(1.0f, distance / 100);
         EXPECT_NEAR(point.width, 4 * std::sqrt(1 - (1 - x) * (1 - x)), 1e-2);
     }
+}
+
+TEST(Strokes, AreThinWhereTheyTurnBack) {
+    Ribbon ribbon;
+    for (Vec3& v : ribbon.mesh.vertices)
+        if (v.x() > 2) v = Vec3(4 - v.x(), v.y(), -0.1f);
+    const auto width_at_fold = [&](float taper) {
+        const auto points = ribbon.strokes({.width = 4, .epsilon = 1, .least = 0, .most = 9, .taper = taper})[0].points;
+        const auto fold = std::max_element(
+            points.begin(), points.end(), [](const auto& a, const auto& b) { return a.position.x() < b.position.x(); });
+        EXPECT_NEAR(std::prev(fold, 3)->width, 4, 1e-4);
+        return fold->width;
+    };
+    EXPECT_NEAR(width_at_fold(1), 0, 1e-3);
+    EXPECT_NEAR(width_at_fold(0), 4, 1e-3);  // strokes that do not taper are even
 }
 
 TEST(Strokes, HavePointsWhereVisibilityChanges) {

@@ -6,15 +6,18 @@
 #include <limits>
 #include <vector>
 
+#include "gpu/curvature/animated_surface.h"
 #include "gpu/curvature/curvature.h"
 #include "gpu/curvature/near_vertices.h"
 #include "gpu/curvature/poser.h"
 #include "host/core/errors.h"
+#include "host/curvature/samples.h"
 #include "host/mesh/curvature.h"
 #include "tests/gpu/support/environment.h"
 #include "tests/parity/many_frames.h"
 #include "tests/parity/surfaces.h"
 #include "tests/parity/tensors.h"
+#include "tests/support/bending_tube.h"
 
 // Both round normals to single precision, and the device computes them in it: they differ by a few 1e-7, and the fits
 // divide their differences by the height of a face, for derivatives twice. So forms agree to a few 1e-7 over the least
@@ -306,6 +309,26 @@ TEST(CurvatureParity, RefusesVerticesOfAnotherSurface) {
     Stream stream(shared_device());
     EXPECT_THROW(curvature.record(stream, testing::upload_vertices(shared_device(), std::vector<Vec3>(41))),
                  UsageError);
+}
+
+// Files may bind vertices in another unit than that of poses; what is near is so in poses.
+TEST(SmoothedCurvatureParity, TheScaleOfTheBindSpaceDoesNotMatter) {
+    Animation tube = shapes::tube_rig();
+    tube.clips = {shapes::bending_clip(tube, 2, 60, 3)};
+    for (Vec3& p : tube.rest.vertices) p *= 5000.0f;
+    for (Bone& bone : tube.rig.bones) bone.inverse_bind.linear() /= 5000.0f;
+    const GpuSurface surface(shared_device(), first_shape(tube));
+    const CurvatureOptions options{.smoothing = 1, .smoothing_unit = 0.25};
+    GpuAnimatedSurface moving(surface, tube, options);
+    Stream stream(shared_device());
+    moving.record(stream, tube.clips[0].poses[1], CurvatureSource::estimated);
+    stream.finish();
+    const GpuCurvedSurface moment = moving.moment();
+    TriangleMesh frame = tube.rest;
+    frame.vertices = frame_vertices(tube, tube.clips[0], 1);
+    CurvatureEstimator reference(frame.faces, frame.vertex_count());
+    expect_near(frame, testing::download_curvature(*moment.first, *moment.second, *moment.derivative),
+                reference.estimate(frame.vertices, options), 10 * k_tolerance);  // posed in another order of sums
 }
 
 // A character of many frames: each is what it would be alone, reruns are equal bit for bit, and nothing grows.

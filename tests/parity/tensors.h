@@ -15,20 +15,25 @@ namespace exemplar::testing {
 using Tensor2 = Eigen::Matrix3d;
 using Tensor3 = std::array<Eigen::Matrix3d, 3>;
 
-/// Of GpuCurvature or what has its outputs; work must be done.
-template <typename DeviceCurvature>
-VertexCurvature download_curvature(const DeviceCurvature& curvature) {
+/// As buffers of the device have it; work must be done.
+inline VertexCurvature download_curvature(const Buffer& first, const Buffer& second, const Buffer& derivative) {
     VertexCurvature result;
-    for (const shared::vec4& v : download(curvature.first())) {
+    for (const shared::vec4& v : download(first)) {
         result.e1.push_back(xyz(v));
         result.k1.push_back(v.w);
     }
-    for (const shared::vec4& v : download(curvature.second())) {
+    for (const shared::vec4& v : download(second)) {
         result.e2.push_back(xyz(v));
         result.k2.push_back(v.w);
     }
-    for (const shared::vec4& v : download(curvature.derivative())) result.derivative.push_back({v.x, v.y, v.z, v.w});
+    for (const shared::vec4& v : download(derivative)) result.derivative.push_back({v.x, v.y, v.z, v.w});
     return result;
+}
+
+/// Of GpuCurvature or what has its outputs.
+template <typename DeviceCurvature>
+VertexCurvature download_curvature(const DeviceCurvature& curvature) {
+    return download_curvature(curvature.first(), curvature.second(), curvature.derivative());
 }
 
 /// In space, so that it does not matter how the principal directions are signed, nor where they are at umbilics.

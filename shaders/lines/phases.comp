@@ -1,0 +1,59 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/dispatch.glsl"
+#include "shaders/shared/coherence.h"
+
+// Where the texture lies at each point of a chain: mostly where the pieces around it have it, a little where the whole chain
+// has it, so that what length a chain gains or loses evens out in time (host/lines/coherence.cpp). One point per invocation:
+// reads its chain's votes and, from caches, 16 bytes of each point around it; writes 8.
+layout(local_size_x = k_count_group) in;
+layout(push_constant) uniform Push { FollowParameters parameters; };
+layout(set = 0, binding = 0) uniform samplerBuffer points;  // LinePoint, two texels each
+layout(set = 0, binding = 1) uniform samplerBuffer piece_votes;  // votes.comp
+layout(set = 0, binding = 2, std430) readonly buffer Counts { LineCounts counts; };
+layout(set = 0, binding = 3, std430) readonly buffer Looks { StrokeLook looks[]; };
+layout(set = 0, binding = 4, std430) readonly buffer Votes { ChainVotes votes[]; };
+layout(set = 0, binding = 5, std430) writeonly buffer Phases { vec2 phases[]; };  // 1 or -1, and pixels: see stroke.vert
+
+const float k_pi = 3.14159265358979;
+
+// The votes of a chain's pieces to one side of a point, those nearer counting more.
+vec2 votes_beside(int point, int step, float here, uint chain_and_way) {
+    vec2 sum = vec2(0.0);
+    for (int i = 0; i < k_follow_points; ++i) {
+        const int at = point + step * i;
+        if (at < 0 || at >= int(counts.points)) break;
+        const vec4 vote = texelFetch(piece_votes, at);
+        const float near = 1.0 - abs(vote.z - here) / float(k_follow_reach);
+        const uint of = floatBitsToUint(vote.w);
+        if ((of ^ chain_and_way) > 1u || !(near > 0.0)) break;
+        if (of == chain_and_way) sum += near * vote.xy;
+    }
+    return sum;
+}
+
+vec2 unit(vec2 v) {
+    const float size = length(v);
+    return size > 0.0 ? v / size : vec2(0.0);
+}
+
+void main() {
+    const uint index = linear_thread();
+    if (index >= counts.points) return;
+
+    const float here = texelFetch(points, int(2u * index)).w;
+    const vec4 more = texelFetch(points, int(2u * index + 1u));
+    const float period = looks[floatBitsToUint(more.x) & k_kind_family].period;
+    const uint chain = floatBitsToUint(more.y);
+    const ChainVotes v = votes[chain];
+    const bool along = v.balance >= 0;
+    const vec2 of_all = unit(along ? vec2(v.along_cos, v.along_sin) : vec2(v.against_cos, v.against_sin));
+    vec2 phase = vec2(1.0, 0.0);
+    if (parameters.keeps != 0u && of_all != vec2(0.0)) {
+        const uint ours = 2u * chain + (along ? 0u : 1u);
+        const vec2 around = unit(votes_beside(int(index), 1, here, ours) + votes_beside(int(index) - 1, -1, here, ours));
+        const vec2 turn = around == vec2(0.0) ? of_all : mix(around, of_all, 1.0 / float(k_calling));
+        phase = vec2(along ? 1.0 : -1.0, period * fract(atan(turn.y, turn.x) / (2.0 * k_pi)));
+    }
+    phases[index] = phase;
+}

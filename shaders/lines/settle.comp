@@ -1,0 +1,63 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/dispatch.glsl"
+#include "shaders/lib/texture_phase.glsl"
+#include "shaders/shared/coherence.h"
+
+// Leaves behind what the next frame needs to know of the lines of this one, and adds up how much they flicker. One point per
+// invocation: reads 124 bytes, writes 16, and adds 16 a group.
+layout(local_size_x = k_count_group) in;
+layout(set = 0, binding = 0) uniform samplerBuffer points;    // LinePoint, two texels each
+layout(set = 0, binding = 1) uniform usamplerBuffer visible;  // two words a point
+layout(set = 0, binding = 2) uniform samplerBuffer strokes;   // two texels a point
+layout(set = 0, binding = 3, std430) readonly buffer Matches { vec2 matches[]; };
+layout(set = 0, binding = 4, std430) readonly buffer Counts { LineCounts counts; };
+layout(set = 0, binding = 5, std430) readonly buffer Looks { StrokeLook looks[]; };
+layout(set = 0, binding = 6, std430) readonly buffer Phases { vec2 phases[]; };
+layout(set = 0, binding = 7, std430) writeonly buffer Traces { vec4 traces[]; };  // by segment
+layout(set = 0, binding = 8, std430) buffer Flicker { FlickerSums flicker; };
+
+struct Flickering {
+    vec4 lengths;  // drawn, kept, appeared, slip
+    float stretch;
+};
+shared Flickering group_sums[gl_WorkGroupSize.x];
+const Flickering k_none = Flickering(vec4(0.0), 0.0);
+
+// What a point adds to the sums.
+Flickering settled(uint index) {
+    const vec4 more = texelFetch(points, int(2u * index + 1u));
+    const uint kind = floatBitsToUint(more.x), walked = floatBitsToUint(more.z);
+    if ((kind & k_point_last) != 0u) return k_none;
+    const vec2 match = matches[index];
+    const float period = looks[kind & k_kind_family].period, along = texelFetch(points, int(2u * index)).w,
+                along_next = texelFetch(points, int(2u * index + 2u)).w, size = along_next - along;
+    const vec2 ends = texture_ends(phases[index], phases[index + 1u], along, along_next, period);
+    const uint mask = texelFetch(visible, int(2u * index)).x, samples = texelFetch(visible, int(2u * index + 1u)).x;
+    const float share = float(bitCount(mask)) / float(samples) * texelFetch(strokes, int(2u * index)).w;
+    traces[walked / 2u] = vec4((walked & 1u) == 0u ? ends : ends.yx, share, 0.0);
+    if (share == 0.0 || !(size < 1e6)) return k_none;
+    const float before = max(match.y, 0.0), turns = fract((0.5 * (ends.x + ends.y) - match.x) / period);
+    const float kept = size * min(share, before);
+    return Flickering(vec4(size * share, kept, size * max(share - before, 0.0), kept * period * min(turns, 1.0 - turns)),
+                      share * abs(abs(ends.y - ends.x) - size));
+}
+
+void main() {
+    const uint index = linear_thread(), self = gl_LocalInvocationID.x;
+    group_sums[self] = k_none;
+    if (index < counts.points) group_sums[self] = settled(index);
+    barrier();
+    if (self != 0u) return;
+    Flickering sum = k_none;
+    for (uint i = 0; i < gl_WorkGroupSize.x; ++i) {
+        sum.lengths += group_sums[i].lengths;
+        sum.stretch += group_sums[i].stretch;
+    }
+    const uvec4 units = uvec4(round(k_flicker_unit * sum.lengths));
+    atomicAdd(flicker.drawn, units.x);
+    atomicAdd(flicker.kept, units.y);
+    atomicAdd(flicker.appeared, units.z);
+    atomicAdd(flicker.slip, units.w);
+    atomicAdd(flicker.stretch, uint(round(k_flicker_unit * sum.stretch)));
+}

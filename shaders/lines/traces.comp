@@ -1,0 +1,36 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/dispatch.glsl"
+#include "shaders/shared/coherence.h"
+
+// Where the lines of the frame before would be in this picture: on the surface as it is now. Clears the votes. One segment of
+// either frame per invocation: reads 32 + 16 bytes and its face's corners, writes 32 + 20.
+layout(local_size_x = k_count_group) in;
+layout(push_constant) uniform Push { FollowParameters parameters; };
+layout(set = 0, binding = 0) uniform samplerBuffer positions;
+layout(set = 0, binding = 1) uniform usamplerBuffer faces;
+layout(set = 0, binding = 2) uniform usamplerBuffer segments;  // of the frame before
+layout(set = 0, binding = 3) uniform samplerBuffer traces;
+layout(set = 0, binding = 4, std430) readonly buffer Counts { LineCounts counts; };
+layout(set = 0, binding = 5, std430) writeonly buffer Ends { vec4 ends[]; };  // pixels, texture, share drawn or -1; two each
+layout(set = 0, binding = 6, std430) writeonly buffer Votes { ChainVotes votes[]; };
+layout(set = 0, binding = 7, std430) writeonly buffer Flicker { FlickerSums flicker; };
+#include "shaders/lib/in_picture.glsl"
+#include "shaders/lib/segments.glsl"
+
+void main() {
+    const uint index = linear_thread();
+    if (index == 0u) flicker = FlickerSums(0u, 0u, 0u, 0u, 0u);
+    if (index < counts.segments) votes[index] = ChainVotes(0, 0, 0, 0, 0);
+    if (index >= counts.previous_segments) return;
+
+    const LineSegmentRecord segment = segment_at(index);
+    const uvec3 corners = texelFetch(faces, int(segment.face)).xyz;
+    const mat3 points = mat3(texelFetch(positions, int(corners.x)).xyz, texelFetch(positions, int(corners.y)).xyz,
+                             texelFetch(positions, int(corners.z)).xyz);
+    const vec4 trace = texelFetch(traces, int(index));
+    for (uint end = 0; end < 2; ++end) {
+        const vec4 at = in_picture(points * end_of(segment, end));
+        ends[2u * index + end] = vec4(at.xy, end == 0u ? trace.x : trace.y, at.w > 0.0 ? trace.z : -1.0);
+    }
+}

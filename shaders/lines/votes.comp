@@ -1,0 +1,135 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/dispatch.glsl"
+#include "shaders/lib/when.glsl"
+#include "shaders/shared/coherence.h"
+
+// What was near each piece of a chain in the frame before: the nearest line of its family in its face, or else in the first
+// face that has one on the way straight off the line, to either side. The piece votes for the texture to lie as it did there
+// (host/lines/coherence.cpp). One point per invocation: reads 64 bytes and, from caches, some faces and their lines; writes 24
+// and adds 12 to its chain's votes. The sums are of integers, the same in any order.
+layout(local_size_x = k_count_group) in;
+layout(set = 0, binding = 0) uniform samplerBuffer points;  // LinePoint, two texels each
+layout(set = 0, binding = 1) uniform usamplerBuffer segments;
+layout(set = 0, binding = 2) uniform usamplerBuffer faces;
+layout(set = 0, binding = 3) uniform usamplerBuffer neighbors;
+layout(set = 0, binding = 4) uniform samplerBuffer positions;
+// Of the frame before; ends as traces.comp leaves them.
+layout(set = 0, binding = 5) uniform usamplerBuffer face_counts;
+layout(set = 0, binding = 6) uniform usamplerBuffer groups;
+layout(set = 0, binding = 7) uniform usamplerBuffer old_segments;
+layout(set = 0, binding = 8) uniform samplerBuffer old_ends;
+layout(set = 0, binding = 9, std430) readonly buffer Counts { LineCounts counts; };
+layout(set = 0, binding = 10, std430) readonly buffer Looks { StrokeLook looks[]; };
+layout(set = 0, binding = 11, std430) buffer Votes { ChainVotes votes[]; };
+// Of each point, for the way on: the texture where it was, and the share of it drawn or -1 if there was nothing.
+layout(set = 0, binding = 12, std430) writeonly buffer Matches { vec2 matches[]; };
+// And its vote: weight times cosine and sine, pixels along the chain, 2 * chain + whether it is for a texture against the chain.
+layout(set = 0, binding = 13, std430) writeonly buffer PieceVotes { vec4 piece_votes[]; };
+#include "shaders/lib/face_segments.glsl"
+#include "shaders/lib/segments.glsl"
+
+const float k_nowhere = 3e38;
+const float k_pi = 3.14159265358979;
+
+struct Match {
+    float away;  // pixels
+    float texture_at;
+    bool along;
+    float drawn;
+};
+
+void look_in(uint face, uint family, vec2 here, vec2 way, inout Match best) {
+    const uvec2 others = segments_of(face, counts.previous_segments);
+    for (uint i = others.x; i < others.y; ++i) {
+        if ((texelFetch(old_segments, int(2u * i)).y & k_kind_family) != family) continue;
+        const vec4 a = texelFetch(old_ends, int(2u * i)), b = texelFetch(old_ends, int(2u * i + 1u));
+        if (a.w < 0.0 || b.w < 0.0) continue;
+        const vec2 on = b.xy - a.xy;
+        const float squared = dot(on, on);
+        // A little beyond its ends it is taken to go on.
+        const float t = squared > 0.0 ? clamp(dot(here - a.xy, on) / squared, -1.0, 2.0) : 0.5;
+        const float away = distance(here, a.xy + clamp(t, 0.0, 1.0) * on);
+        if (away < best.away) best = Match(away, mix(a.z, b.z, t), dot(on, way) * (b.z - a.z) >= 0.0, a.w);
+    }
+}
+
+vec3 corner_at(uvec3 corners, uint i) {
+    return texelFetch(positions, int(corners[i])).xyz;
+}
+
+// The face across the side that lies farthest that way: the one opposite to the corner that lies farthest back.
+uint face_towards(uint face, vec3 way) {
+    const uvec3 corners = texelFetch(faces, int(face)).xyz;
+    const vec3 at = vec3(dot(corner_at(corners, 0u), way), dot(corner_at(corners, 1u), way), dot(corner_at(corners, 2u), way));
+    const uint side = at.x <= at.y && at.x <= at.z ? 1u : at.y <= at.z ? 2u : 0u;
+    const uint across = texelFetch(neighbors, int(face))[side];
+    return across > k_last_side ? k_no_link : across / 4u;
+}
+
+// Off the line, within the surface.
+vec3 way_off(LineSegmentRecord segment) {
+    const uvec3 corners = texelFetch(faces, int(segment.face)).xyz;
+    const vec3 a = corner_at(corners, 0u), b = corner_at(corners, 1u), c = corner_at(corners, 2u);
+    return cross(cross(b - a, c - a), mat3(a, b, c) * (end_of(segment, 1u) - end_of(segment, 0u)));
+}
+
+void look_beside(uint index, uint family, vec2 here, vec2 way, inout Match best) {
+    const LineSegmentRecord segment = segment_at(index);
+    const vec3 off = way_off(segment);
+    for (float side = -1.0; side <= 1.0; side += 2.0) {
+        uint face = segment.face;
+        Match found = Match(k_nowhere, 0.0, true, -1.0);
+        for (uint i = 0; i < k_follow_faces && found.away == k_nowhere; ++i) {
+            face = face_towards(face, side * off);
+            if (face == k_no_link) break;
+            look_in(face, family, here, way, found);
+        }
+        if (found.away < best.away) best = found;
+    }
+}
+
+// The vote of a piece: a direction for the turn of the texture at which the chain begins, as long as its weight.
+vec2 vote(Match match, float along, float size, float period) {
+    // What is behind the eye has no say.
+    const float weight = size < 1e6 ? min(size, float(k_most_vote)) : 0.0;
+    const float begin = match.texture_at + (match.along ? -along : along);
+    const float angle = 2.0 * k_pi * fract(begin / period);
+    return weight * vec2(cos(angle), sin(angle));
+}
+
+void add_vote(uint chain, vec2 vote, bool along) {
+    const ivec2 units = ivec2(round(k_vote_unit * vote));
+    const int weight = int(round(k_vote_unit * length(vote)));
+    atomicAdd(votes[chain].balance, along ? weight : -weight);
+    if (along) {
+        atomicAdd(votes[chain].along_cos, units.x);
+        atomicAdd(votes[chain].along_sin, units.y);
+    } else {
+        atomicAdd(votes[chain].against_cos, units.x);
+        atomicAdd(votes[chain].against_sin, units.y);
+    }
+}
+
+void main() {
+    const uint index = linear_thread();
+    if (index >= counts.points) return;
+
+    const vec4 here = texelFetch(points, int(2u * index)), more = texelFetch(points, int(2u * index + 1u));
+    const uint kind = floatBitsToUint(more.x), chain = floatBitsToUint(more.y), segment = floatBitsToUint(more.z) / 2u;
+    if ((kind & k_point_last) != 0u) {
+        piece_votes[index] = vec4(0.0, 0.0, here.w, uintBitsToFloat(2u * chain));
+        return;
+    }
+    const uint family = kind & k_kind_family;
+    const vec2 there = texelFetch(points, int(2u * index + 2u)).xy, middle = 0.5 * (here.xy + there), way = there - here.xy;
+    const float size = length(way), along = here.w + 0.5 * size;
+    Match match = Match(k_nowhere, 0.0, true, -1.0);
+    look_in(texelFetch(segments, int(2u * segment)).x, family, middle, way, match);
+    when (match.away == k_nowhere) look_beside(segment, family, middle, way, match);
+    const bool found = match.away < k_nowhere;
+    const vec2 own = found ? vote(match, along, size, looks[family].period) : vec2(0.0);
+    matches[index] = vec2(match.texture_at, match.drawn);
+    piece_votes[index] = vec4(own, along, uintBitsToFloat(2u * chain + (match.along ? 0u : 1u)));
+    when (own != vec2(0.0)) add_vote(chain, own, match.along);
+}

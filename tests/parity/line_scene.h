@@ -1,0 +1,143 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "gpu/lines/chains.h"
+#include "gpu/lines/extraction.h"
+#include "host/lines/chains.h"
+#include "host/mesh/curvature_estimator.h"
+#include "shaders/shared/lines.h"
+#include "tests/gpu/support/environment.h"
+#include "tests/parity/surfaces.h"
+
+/// Surfaces, and the lines that the device finds on them, for the parity tests of lines.
+namespace exemplar::testing {
+
+using shared::LineCounts;
+using shared::LinePoint;
+using shared::LineSegmentRecord;
+using shared::vec4;
+
+constexpr int k_width = 800, k_height = 600;
+
+/// A surface with estimated curvature, on both sides.
+struct Scene {
+    TriangleMesh mesh;
+    std::vector<Vec3> normals;
+    VertexCurvature curvature;
+    std::vector<FaceNeighbors> neighbors;
+    GpuSurface surface;
+    GpuLineSurface line_surface;
+    Buffer vertices, device_normals, first, second, derivative;
+
+    explicit Scene(TriangleMesh given)
+        : mesh(std::move(given)),
+          neighbors(build_face_neighbors(mesh.faces, mesh.vertex_count())),
+          surface(shared_device(), mesh),
+          line_surface(surface) {
+        measure();
+    }
+    /// The same faces, elsewhere.
+    void move(std::vector<Vec3> to) {
+        mesh.vertices = std::move(to);
+        measure();
+    }
+    void measure() {
+        vertices = upload_vertices(shared_device(), mesh.vertices);
+        CurvatureEstimator estimator(mesh.faces, mesh.vertex_count());
+        curvature = estimator.estimate(mesh.vertices, {.derivatives = true, .smoothing = 1});
+        normals = estimator.normals();
+        device_normals = upload(normals, std::vector<float>(mesh.vertex_count(), 0));
+        first = upload(curvature.e1, curvature.k1);
+        second = upload(curvature.e2, curvature.k2);
+        std::vector<vec4> derivatives;
+        for (const auto& [a, b, c, d] : curvature.derivative) derivatives.push_back({a, b, c, d});
+        derivative = Buffer::of<vec4>(shared_device(), derivatives);
+    }
+    static Buffer upload(const std::vector<Vec3>& vectors, const std::vector<float>& last) {
+        std::vector<vec4> out;
+        for (std::size_t i = 0; i < vectors.size(); ++i)
+            out.push_back({vectors[i].x(), vectors[i].y(), vectors[i].z(), last[i]});
+        return Buffer::of<vec4>(shared_device(), out);
+    }
+    GpuCurvedSurface moment() const { return {vertices, device_normals, &first, &second, &derivative}; }
+    LineSurface on_host() const { return {mesh.faces, mesh.vertices, normals, curvature, neighbors}; }
+    float size() const { return feature_size(mesh.vertices, curvature); }
+};
+
+inline TriangleMesh lumpy() {
+    return shapes::transformed(shapes::icosphere(5, 1), [](const Vec3& p) -> Vec3 {
+        return p * (1 + 0.2f * std::sin(3 * p.x() + 1) + 0.15f * p.y() * std::cos(4 * p.z()));
+    });
+}
+
+/// Hollows, boundaries and creases.
+inline TriangleMesh mixed() {
+    const TriangleMesh round =
+        shapes::joined(waved(shapes::torus(3, 1, 61, 23), 0.2f), shapes::translated(lumpy(), Vec3(0, 0, 3)));
+    return shapes::joined(round,
+                          shapes::joined(shapes::translated(shapes::box(2, 2, 2, 3), Vec3(4, 1, 3)),
+                                         shapes::translated(shapes::cylinder(1, 2, 20, 5, false), Vec3(4, 5, 1))));
+}
+
+inline GpuLineOptions on_device(const LineOptions& options) {
+    return {.eye = {options.eye.x(), options.eye.y(), options.eye.z(), options.parallel_eye ? 0.0f : 1.0f},
+            .feature_size = options.feature_size,
+            .thresholds = family_thresholds(options.thresholds)};
+}
+
+struct Found {
+    LineCounts counts;
+    std::vector<LineSegmentRecord> segments;
+};
+
+inline Found extract_on_device(const Scene& scene, GpuLineExtraction& lines, std::uint32_t families,
+                               const LineOptions& options) {
+    Stream stream(shared_device());
+    lines.record(stream, scene.moment(), families, on_device(options));
+    stream.finish();
+    Found found{};
+    lines.counts().download(std::span(&found.counts, 1));
+    found.segments.resize(found.counts.segments);
+    lines.segments().download(std::span(found.segments));
+    return found;
+}
+
+inline std::uint32_t family_of(const LineSegmentRecord& segment) {
+    return segment.kind & shared::k_kind_family;
+}
+inline std::uint32_t family_of(LineType type, const LineSegment& segment) {
+    const LineType types[] = {type};
+    const std::uint32_t families = line_families(types);
+    return static_cast<std::uint32_t>(std::countr_zero(families)) + segment.family;
+}
+
+/// The device's own segments of one type, for the reference to chain, and their numbers on the device.
+struct Own {
+    std::vector<LineSegment> segments;
+    std::vector<std::uint32_t> numbers;
+};
+inline Own own_segments(const Found& found, LineType type) {
+    Own own;
+    for (std::uint32_t i = 0; i < found.segments.size(); ++i) {
+        const LineSegmentRecord& s = found.segments[i];
+        if (type_of_family(family_of(s)) != type) continue;
+        LineSegment segment;
+        segment.face = s.face;
+        segment.family = family_of(s) == shared::k_second_highlights ? 1 : 0;
+        segment.places = {static_cast<SegmentEnd>(s.kind >> shared::k_kind_first_place & shared::k_kind_place),
+                          static_cast<SegmentEnd>(s.kind >> shared::k_kind_second_place & shared::k_kind_place)};
+        segment.ends = {{{1 - s.ends.x - s.ends.y, s.ends.x, s.ends.y}, {1 - s.ends.z - s.ends.w, s.ends.z, s.ends.w}}};
+        segment.strength = {s.first_strength, s.second_strength};
+        own.segments.push_back(segment);
+        own.numbers.push_back(i);
+    }
+    return own;
+}
+
+}  // namespace exemplar::testing

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "host/core/errors.h"
 #include "tests/gpu/support/environment.h"
 #include "tests/parity/surfaces.h"
 

@@ -15,6 +15,7 @@
 #include "gpu/runtime/device.h"
 #include "host/animation/read_animation.h"
 #include "host/core/errors.h"
+#include "host/core/freed_memory.h"
 #include "host/core/stopwatch.h"
 #include "host/curvature/samples.h"
 #include "host/imaging/png.h"
@@ -67,6 +68,7 @@ FrameTime median_time(Stream& stream, const std::vector<FrameRef>& frames,
 }
 
 void run(const std::string& path, const std::string& model, const std::string& png) {
+    keep_freed_memory();
     const Animation animation = read_animation(path);
     const std::vector<FrameRef> frames = select_frames(animation, {.clips = {}, .most = k_frames});
     Device device;

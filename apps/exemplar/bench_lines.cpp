@@ -6,6 +6,7 @@
 #include "apps/exemplar/drawn_animation.h"
 #include "apps/exemplar/frames_view.h"
 #include "gpu/lines/extraction.h"
+#include "host/core/freed_memory.h"
 
 namespace exemplar {
 namespace {
@@ -25,6 +26,7 @@ LinePicture picture_of(const BenchCharacter& character) {
 }  // namespace
 
 void bench_lines(BenchContext& context, const std::function<void(const BenchRow&)>& row) {
+    keep_freed_memory();
     const BenchCharacter& character = context.character();
     const CurvatureModel& model = context.curvature_model();
     Device device({.name = context.device_name()});

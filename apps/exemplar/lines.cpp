@@ -10,6 +10,7 @@
 #include "apps/exemplar/lines_comparison.h"
 #include "apps/exemplar/lines_job.h"
 #include "host/core/errors.h"
+#include "host/core/freed_memory.h"
 #include "host/core/text.h"
 
 namespace exemplar {
@@ -133,6 +134,7 @@ LinesJob job_of(const LinesArguments& arguments) {
 }
 
 void run_lines(const LinesArguments& arguments) {
+    keep_freed_memory();
     const auto limits = apply_common_options(arguments.job.common);
     if (!arguments.print_style.empty()) {
         fmt::print("{}", builtin_style_text(arguments.print_style));

@@ -7,12 +7,10 @@
 #include <charconv>
 #include <cstdio>
 #include <map>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 
 #include "apps/viewer/options.h"
 #include "host/core/errors.h"
+#include "host/core/freed_memory.h"
 #include "host/core/progress.h"
 #include "host/core/run_program.h"
 #include "host/core/text.h"
@@ -101,15 +99,6 @@ void add_options(CLI::App& app, ViewerOptions& options, std::string& size) {
     app.add_flag("--plain", options.plain_window, "shows no panels to begin with");
     app.add_flag("--quiet", options.quiet, "no progress and no remarks");
     app.add_option("--lose-device-at", options.losing_frame, "")->group("");
-}
-
-// CPU drivers take memory for all vertices of a draw and give it back, megabytes a frame. Where the system gets it
-// back, it maps and clears it anew for the next, a page at a time.
-void keep_freed_memory() {
-#ifdef __GLIBC__
-    mallopt(M_MMAP_THRESHOLD, 32 << 20);
-    mallopt(M_TRIM_THRESHOLD, 256 << 20);
-#endif
 }
 
 int run(int argc, char** argv) {

@@ -8,31 +8,21 @@
 #include <set>
 
 #include "host/core/errors.h"
-#include "host/mesh/curvature_estimator.h"
+#include "tests/lines/measured_surface.h"
 #include "tests/support/shapes.h"
 
 namespace exemplar {
 namespace {
 
 /// A lumpy sphere, or another mesh, with estimated curvature and neighbors.
-struct Surface {
-    TriangleMesh mesh;
-    std::vector<Vec3> normals;
-    VertexCurvature curvature;
-    std::vector<FaceNeighbors> neighbors;
+struct Surface : testing::MeasuredSurface {
+    using MeasuredSurface::MeasuredSurface;
 
-    explicit Surface(TriangleMesh shape) : mesh(std::move(shape)) {
-        CurvatureEstimator estimator(mesh.faces, mesh.vertex_count());
-        curvature = estimator.estimate(mesh.vertices, {true, 1});
-        normals = estimator.normals();
-        neighbors = build_face_neighbors(mesh.faces, mesh.vertex_count());
-    }
-    LineSurface view() const { return {mesh.faces, mesh.vertices, normals, curvature, neighbors}; }
     std::vector<LineSegment> lines(LineType type, const Vec3& eye = {3, 2, 4}) const {
         LineOptions options;
         options.eye = eye;
         options.feature_size = 0.18f;
-        return extract_lines(view(), type, options);
+        return extract_lines(surface(), type, options);
     }
     Vec3 at(const LineSegment& segment, std::size_t end) const {
         Vec3 point = Vec3::Zero();
@@ -127,7 +117,7 @@ std::vector<Chain> chains_of(const Surface& surface, const std::vector<LineSegme
     return chain_segments(surface.mesh.faces, surface.neighbors, segments);
 }
 
-class ChainsOfEveryLine : public testing::TestWithParam<LineType> {};
+class ChainsOfEveryLine : public ::testing::TestWithParam<LineType> {};
 
 TEST_P(ChainsOfEveryLine, JoinWhatContinues) {
     const Surface surface(lumpy(4));
@@ -165,7 +155,7 @@ TEST_P(ChainsOfEveryLine, AreOfTheSameSegmentsInAnyOrder) {
     expect_chains_of(surface, segments, chains_of(surface, segments));
 }
 
-INSTANTIATE_TEST_SUITE_P(AllTypes, ChainsOfEveryLine, testing::ValuesIn(k_line_types),
+INSTANTIATE_TEST_SUITE_P(AllTypes, ChainsOfEveryLine, ::testing::ValuesIn(k_line_types),
                          [](const auto& type) { return std::string(name_of(type.param)); });
 
 TEST(Chains, OfAClosedSurfacesContourAreLoops) {
@@ -319,7 +309,7 @@ TEST(Creases, AreWhereFacesMeetAtTheAngle) {
     LineOptions options;
     const auto count = [&](float angle) {
         options.thresholds.crease_angle = angle;
-        return extract_lines(surface.view(), LineType::creases, options).size();
+        return extract_lines(surface.surface(), LineType::creases, options).size();
     };
     EXPECT_EQ(count(0.7f), 24);
     EXPECT_EQ(count(0.5f), 24 + 12);

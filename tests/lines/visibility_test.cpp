@@ -8,25 +8,15 @@
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
-#include "host/mesh/curvature_estimator.h"
+#include "tests/lines/measured_surface.h"
 #include "tests/support/shapes.h"
 
 namespace exemplar {
 namespace {
 
-struct Scene {
-    TriangleMesh mesh;
-    std::vector<Vec3> normals;
-    VertexCurvature curvature;
-    std::vector<FaceNeighbors> neighbors;
+struct Scene : testing::MeasuredSurface {
+    using MeasuredSurface::MeasuredSurface;
 
-    explicit Scene(TriangleMesh shape) : mesh(std::move(shape)) {
-        CurvatureEstimator estimator(mesh.faces, mesh.vertex_count());
-        curvature = estimator.estimate(mesh.vertices, {true, 1});
-        normals = estimator.normals();
-        neighbors = build_face_neighbors(mesh.faces, mesh.vertex_count());
-    }
-    LineSurface view() const { return {mesh.faces, mesh.vertices, normals, curvature, neighbors}; }
     Vec3 at(const LineSegment& segment, float t) const {
         Vec3 point = Vec3::Zero();
         for (std::size_t i = 0; i < 3; ++i)
@@ -49,7 +39,7 @@ std::vector<LineSegment> lines(const Scene& scene, LineType type, const Camera& 
     LineOptions options;
     options.eye = camera.position();
     options.feature_size = 0.1f;
-    return extract_lines(scene.view(), type, options);
+    return extract_lines(scene.surface(), type, options);
 }
 
 /// Lengths of lines in the picture, in pixels: whose visibility is known, is told wrongly, and is visible.
@@ -61,7 +51,7 @@ struct Comparison {
 Comparison compare(const Scene& scene, LineType type, const Camera& camera,
                    const std::function<std::optional<bool>(const Vec3d&)>& truth) {
     const auto segments = lines(scene, type, camera);
-    const VisibleParts parts = LineVisibility(scene.view()).visible_parts(type, segments, camera, k_size, k_size);
+    const VisibleParts parts = LineVisibility(scene.surface()).visible_parts(type, segments, camera, k_size, k_size);
     EXPECT_EQ(parts.segment_count(), segments.size());
     Comparison result;
     constexpr int k_points = 4;
@@ -228,7 +218,8 @@ TEST(Visibility, ThroughAThinSheetIsNone) {
         segments.back().face = f;
         segments.back().ends = {{{0.4f, 0.3f, 0.3f}, {0.3f, 0.4f, 0.3f}}};
     }
-    const auto parts = LineVisibility(scene.view()).visible_parts(LineType::ridges, segments, camera, k_size, k_size);
+    const auto parts =
+        LineVisibility(scene.surface()).visible_parts(LineType::ridges, segments, camera, k_size, k_size);
     for (std::size_t s = 0; s < segments.size(); ++s) {
         const Vec3 p = scene.at(segments[s], 0.5f);
         if (std::max(std::abs(p.x()), std::abs(p.y())) < 1.99f) {
@@ -259,7 +250,7 @@ TEST(Visibility, EndsBetweenThePointsOfASegmentWhereItChanges) {
     Camera camera;
     camera.view = look_at({0, 0, 10}, {0, 0, 0});
     camera.projection = orthographic(4, 1, 1, 20);
-    const auto parts = LineVisibility(scene.view()).visible_parts(LineType::ridges, segments, camera, 800, 800);
+    const auto parts = LineVisibility(scene.surface()).visible_parts(LineType::ridges, segments, camera, 800, 800);
     ASSERT_EQ(parts.of(0).size(), 2);
     const auto pixel = [&](float t) { return camera.project(scene.at(segments[0], t), 800, 800).x(); };
     EXPECT_NEAR(pixel(parts.of(0)[0].to), 350, 0.1);
@@ -340,19 +331,19 @@ TEST(Visibility, IsNoneOutsideThePicture) {
     Camera camera = camera_at({0, 0, 5}, {100, 0, 5});  // looks past it
     const auto segments = lines(scene, LineType::contours, camera);
     ASSERT_FALSE(segments.empty());
-    const auto beside = LineVisibility(scene.view()).visible_parts(LineType::contours, segments, camera, 100, 100);
+    const auto beside = LineVisibility(scene.surface()).visible_parts(LineType::contours, segments, camera, 100, 100);
     EXPECT_TRUE(beside.parts.empty());
     camera = camera_at({0, 0, 5});
     camera.projection = perspective(0.5f, 1, 6, 10);  // nearer than the near plane
     EXPECT_TRUE(
-        LineVisibility(scene.view()).visible_parts(LineType::contours, segments, camera, 100, 100).parts.empty());
+        LineVisibility(scene.surface()).visible_parts(LineType::contours, segments, camera, 100, 100).parts.empty());
 }
 
 TEST(Visibility, DoesNotDependOnThreads) {
     const Scene scene(bumpy(4));
     const Camera camera = camera_at({6, 2, 4});
     const auto segments = lines(scene, LineType::contours, camera);
-    const LineVisibility visibility(scene.view());
+    const LineVisibility visibility(scene.surface());
     const auto many = visibility.visible_parts(LineType::contours, segments, camera, k_size, k_size);
     const ThreadLimit limit(1);
     const auto one = visibility.visible_parts(LineType::contours, segments, camera, k_size, k_size);
@@ -362,7 +353,7 @@ TEST(Visibility, DoesNotDependOnThreads) {
 
 TEST(Visibility, RefusesWhatDoesNotFit) {
     Scene scene(shapes::icosphere(1, 1));
-    const LineVisibility visibility(scene.view());
+    const LineVisibility visibility(scene.surface());
     std::vector<LineSegment> segments(1);
     const Camera camera = camera_at({6, 2, 4});
     EXPECT_THROW(visibility.visible_parts(LineType::ridges, segments, camera, 0, 10), UsageError);
@@ -370,7 +361,7 @@ TEST(Visibility, RefusesWhatDoesNotFit) {
     segments[0].face = 1000;
     EXPECT_THROW(visibility.visible_parts(LineType::ridges, segments, camera, 10, 10), UsageError);
     scene.normals.pop_back();
-    EXPECT_THROW(LineVisibility{scene.view()}, UsageError);
+    EXPECT_THROW(LineVisibility{scene.surface()}, UsageError);
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ TEST_P(CoherenceParity, TexturesLieWhereTheReferenceLaysThem) {
         const Found found = motion.found();
         const std::vector<LineSegment> segments = own_segments(found, GetParam()).segments;
         const std::vector<vec4> actual = motion.traces(segments.size());
-        const LineSurface surface = motion.scene.on_host();
+        const LineSurface surface = motion.scene.surface();
         const std::vector<Chain> chains = chain_segments(surface.faces, surface.neighbors, segments);
         const auto textures = follow_traces(surface, segments, chains, before, motion.picture.view, k_period);
         const auto expected = trace_lines(surface, segments, chains, textures, motion.picture.view, k_period);

@@ -10,9 +10,9 @@
 #include "gpu/lines/chains.h"
 #include "gpu/lines/extraction.h"
 #include "host/lines/chains.h"
-#include "host/mesh/curvature_estimator.h"
 #include "shaders/shared/lines.h"
 #include "tests/gpu/support/environment.h"
+#include "tests/lines/measured_surface.h"
 #include "tests/parity/surfaces.h"
 
 /// Surfaces, and the lines that the device finds on them, for the parity tests of lines.
@@ -26,32 +26,24 @@ using shared::vec4;
 constexpr int k_width = 800, k_height = 600;
 
 /// A surface with estimated curvature, on both sides.
-struct Scene {
-    TriangleMesh mesh;
-    std::vector<Vec3> normals;
-    VertexCurvature curvature;
-    std::vector<FaceNeighbors> neighbors;
-    GpuSurface surface;
+struct Scene : MeasuredSurface {
+    GpuSurface device_surface;
     GpuLineSurface line_surface;
     Buffer vertices, device_normals, first, second, derivative;
 
     explicit Scene(TriangleMesh given)
-        : mesh(std::move(given)),
-          neighbors(build_face_neighbors(mesh.faces, mesh.vertex_count())),
-          surface(shared_device(), mesh),
-          line_surface(surface) {
-        measure();
+        : MeasuredSurface(std::move(given)), device_surface(shared_device(), mesh), line_surface(device_surface) {
+        bring();
     }
     /// The same faces, elsewhere.
     void move(std::vector<Vec3> to) {
         mesh.vertices = std::move(to);
         measure();
+        bring();
     }
-    void measure() {
+    /// To the device.
+    void bring() {
         vertices = upload_vertices(shared_device(), mesh.vertices);
-        CurvatureEstimator estimator(mesh.faces, mesh.vertex_count());
-        curvature = estimator.estimate(mesh.vertices, {.derivatives = true, .smoothing = 1});
-        normals = estimator.normals();
         device_normals = upload(normals, std::vector<float>(mesh.vertex_count(), 0));
         first = upload(curvature.e1, curvature.k1);
         second = upload(curvature.e2, curvature.k2);
@@ -66,7 +58,6 @@ struct Scene {
         return Buffer::of<vec4>(shared_device(), out);
     }
     GpuCurvedSurface moment() const { return {vertices, device_normals, &first, &second, &derivative}; }
-    LineSurface on_host() const { return {mesh.faces, mesh.vertices, normals, curvature, neighbors}; }
     float size() const { return feature_size(mesh.vertices, curvature); }
 };
 

@@ -81,11 +81,11 @@ DrawnLines draw(const Scene& scene, LineType type, bool parallel, const LineStyl
     // The device orders chains by the segment they start with.
     std::map<std::uint32_t, Stroke> by_start;
     std::vector<Stroke> strokes =
-        make_strokes(scene.on_host(), type, drawn.segments, chains, nullptr, drawn.view, thresholds, line.thickness);
+        make_strokes(scene.surface(), type, drawn.segments, chains, nullptr, drawn.view, thresholds, line.thickness);
     for (std::size_t i = 0; i < chains.size(); ++i) by_start[chains[i].links[0].segment] = std::move(strokes[i]);
     for (auto& [start, stroke] : by_start) drawn.expected.push_back(std::move(stroke));
     drawn.parts =
-        LineVisibility(scene.on_host()).visible_parts(type, drawn.segments, drawn.view.camera, k_width, k_height);
+        LineVisibility(scene.surface()).visible_parts(type, drawn.segments, drawn.view.camera, k_width, k_height);
     return drawn;
 }
 

@@ -49,7 +49,7 @@ float end_difference(const LineSegmentRecord& a, const LineSegmentRecord& b) {
 void expect_same_lines(const Scene& scene, const std::vector<LineType>& types, const LineOptions& options) {
     std::vector<LineSegmentRecord> expected;
     for (const LineType type : types)
-        for (const LineSegment& segment : extract_lines(scene.on_host(), type, options))
+        for (const LineSegment& segment : extract_lines(scene.surface(), type, options))
             expected.push_back(record_of(type, segment));
     GpuLineExtraction lines(scene.line_surface);
     const Found found = extract_on_device(scene, lines, line_families(types), options);
@@ -133,7 +133,7 @@ TEST(LineParityOfAll, FacesCarryTheLinesOfTheReference) {
     LineOptions options{.eye = {6.13f, 4.29f, 8.41f}, .feature_size = scene.size(), .thresholds = {}};
     options.thresholds.principal_highlights = 0.001f;  // so that there are some
     FaceTypes expected(scene.mesh.face_count());
-    add_face_types(scene.on_host(), k_line_types, options, expected);
+    add_face_types(scene.surface(), k_line_types, options, expected);
     GpuLineExtraction lines(scene.line_surface);
     extract_on_device(scene, lines, line_families(k_line_types), options);
     LineDifference difference(k_line_types);

@@ -31,16 +31,14 @@ constexpr std::uint32_t k_most_indexed = (1u << 24) - 1;
 
 }  // namespace
 
+LineRenderer::Lines::Lines(Device& device, const GpuLineSurface& surface)
+    : extraction(surface), chains(extraction), strokes(chains), coherence(strokes), pipeline(stroke_pipeline(device)) {}
+
 LineRenderer::LineRenderer(Device& device, const GpuLineSurface& surface)
     : device_(device),
       surface_(surface),
-      lines_(surface),
-      chains_(lines_),
-      strokes_(chains_),
-      coherence_(strokes_),
       canvas_(device),
       painter_(device, Canvas::k_rgba, canvas_.depth_format()),
-      stroke_pipeline_(stroke_pipeline(device)),
       textures_(device, sizeof(float)) {
     if (canvas_.depth_format() != VK_FORMAT_D32_SFLOAT)
         throw DeviceError(fmt::format("device '{}' has no depth of 32 bits; choose another", device.info().name));
@@ -93,11 +91,12 @@ void LineRenderer::draw_surface(Stream& stream, const GpuCurvedSurface& moment, 
 void LineRenderer::draw_strokes(Stream& stream, const LinePicture& picture) {
     canvas_.go_on(stream);
     Pass pass("lines/strokes", {.color = canvas_.color_view(), .extent = canvas_.extent()});
-    pass.draw(
-        stroke_pipeline_, {.indirect = &lines_.counts(), .indirect_offset = offsetof(LineCounts, draw)},
-        {chains_.points(), strokes_.strokes(), strokes_.visible(), strokes_.looks(), textures_, coherence_.phases()},
-        shared::StrokeDrawParameters{.width = static_cast<float>(picture.view.width),
-                                     .height = static_cast<float>(picture.view.height)});
+    pass.draw(lines_->pipeline,
+              {.indirect = &lines_->extraction.counts(), .indirect_offset = offsetof(LineCounts, draw)},
+              {lines_->chains.points(), lines_->strokes.strokes(), lines_->strokes.visible(), lines_->strokes.looks(),
+               textures_, lines_->coherence.phases()},
+              shared::StrokeDrawParameters{.width = static_cast<float>(picture.view.width),
+                                           .height = static_cast<float>(picture.view.height)});
     stream.render(pass);
     canvas_.end(stream);
 }
@@ -112,14 +111,15 @@ void LineRenderer::record(Stream& stream, const GpuCurvedSurface& moment, const 
         canvas_.end(stream);
         return;
     }
-    lines_.record(
+    if (!lines_) lines_.emplace(device_, surface_);
+    lines_->extraction.record(
         stream, moment, picture.families,
         {.eye = homogeneous_eye(view.camera), .feature_size = view.feature_size, .thresholds = picture.thresholds});
-    chains_.record(stream, moment.vertices, view.camera, view.width, view.height);
+    lines_->chains.record(stream, moment.vertices, view.camera, view.width, view.height);
     draw_surface(stream, moment, picture);
     canvas_.copy_depth(stream, depths_);
-    strokes_.record(stream, moment, depths_, view, picture.looks);
-    coherence_.record(stream, moment.vertices, view, picture.coherent);
+    lines_->strokes.record(stream, moment, depths_, view, picture.looks);
+    lines_->coherence.record(stream, moment.vertices, view, picture.coherent);
     draw_strokes(stream, picture);
 }
 

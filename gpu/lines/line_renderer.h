@@ -3,6 +3,7 @@
 #include <volk.h>
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,8 +34,7 @@ struct LinePicture {
 /// going back to the host: extraction, chains, the surface with its depths, visibility, strokes.
 class LineRenderer {
   public:
-    /// `surface` must live as long as this. Throws DeviceError if the device cannot draw, DeviceLimitError if the
-    /// surface is too large for it.
+    /// `surface` must live as long as this. Throws DeviceError if the device cannot draw.
     LineRenderer(Device& device, const GpuLineSurface& surface);
 
     /// One color per face, for SurfacePaint::faces. Throws UsageError for another number.
@@ -43,7 +43,8 @@ class LineRenderer {
     /// refers to them. Throws UsageError if they are not whole textures.
     void set_textures(std::span<const std::uint8_t> opacities);
 
-    /// Records a picture. Afterwards canvas() has it, 8-bit RGBA, of the size of the picture.
+    /// Records a picture. Afterwards canvas() has it, 8-bit RGBA, of the size of the picture. Throws DeviceLimitError if
+    /// it has lines and the surface is too large for the device to find some, UsageError as GpuLineExtraction.
     void record(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture);
     Canvas& canvas() { return canvas_; }
 
@@ -53,8 +54,9 @@ class LineRenderer {
     void record_download(Stream& stream) { canvas_.record_download(stream); }
     Image read_image() const { return canvas_.read_image(transparent_); }
 
-    const GpuStrokes& strokes() const { return strokes_; }
-    const GpuCoherence& coherence() const { return coherence_; }
+    /// What there is of lines; only after a picture with some.
+    const GpuStrokes& strokes() const { return lines_->strokes; }
+    const GpuCoherence& coherence() const { return lines_->coherence; }
 
   private:
     void resize(int width, int height);
@@ -62,13 +64,19 @@ class LineRenderer {
     void draw_strokes(Stream& stream, const LinePicture& picture);
     Device& device_;
     const GpuLineSurface& surface_;
-    GpuLineExtraction lines_;
-    GpuChains chains_;
-    GpuStrokes strokes_;
-    GpuCoherence coherence_;
+    /// From the surface to strokes; refers to itself.
+    struct Lines {
+        GpuLineExtraction extraction;
+        GpuChains chains;
+        GpuStrokes strokes;
+        GpuCoherence coherence;
+        DrawPipeline pipeline;
+
+        Lines(Device& device, const GpuLineSurface& surface);
+    };
+    std::optional<Lines> lines_;  // made for the first picture that has some
     Canvas canvas_;
     SurfacePainter painter_;
-    DrawPipeline stroke_pipeline_;
     bool transparent_ = false;
     Buffer depths_, face_colors_, textures_;
 };

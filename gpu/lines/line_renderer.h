@@ -43,8 +43,8 @@ class LineRenderer {
     /// refers to them. Throws UsageError if they are not whole textures.
     void set_textures(std::span<const std::uint8_t> opacities);
 
-    /// Records a picture. Afterwards canvas() has it, 8-bit RGBA, of the size of the picture. Throws DeviceLimitError if
-    /// it has lines and the surface is too large for the device to find some, UsageError as GpuLineExtraction.
+    /// Records a picture. Afterwards canvas() has it, 8-bit RGBA, of the size of the picture. Throws DeviceLimitError
+    /// if it has lines and the surface is too large for the device to find some, UsageError as GpuLineExtraction.
     void record(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture);
     Canvas& canvas() { return canvas_; }
 

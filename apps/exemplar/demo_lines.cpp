@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <fstream>
-#include <iterator>
 
 #include "apps/exemplar/frames_view.h"
 #include "host/animation/write_animation.h"
+#include "host/core/files.h"
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
 #include "host/core/stopwatch.h"
@@ -50,11 +49,6 @@ std::vector<Drawing> draw_frames(const CurvatureModel& model, const Animation& a
     return drawings;
 }
 
-std::string read_text(const fs::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 /// Of suggestive contours: contours take no curvature.
 LineError error_of_lines(const CurvatureModel& model, const Animation& animation, const std::vector<FrameRef>& frames) {
     for (const LineError& error : evaluate_curvature(model, animation, frames).lines)
@@ -95,7 +89,7 @@ DemoLines make_demo_lines(const fs::path& folder, std::uint64_t seed) {
                           "the mean of training in its place {:.2f} %.",
                           k_seen, format_seconds(learned), k_frames - k_seen, 100 * error.truth,
                           100 * error.misclassified, 100 * error.zero_order),
-                      .svg = read_text(folder / "figure.svg"),
+                      .svg = read_file(folder / "figure.svg"),
                       .captions = {"by learned curvature", "by curvature measured in each frame"}};
     result.report = {{"frames", unseen.size()},
                      {"faces_with_line", error.truth},

@@ -11,6 +11,7 @@
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
 #include "host/core/stopwatch.h"
+#include "host/core/text.h"
 #include "host/imaging/png.h"
 
 namespace exemplar {
@@ -48,7 +49,7 @@ void draw_frames(ViewerState& state, FrameRenderer& renderer, const ViewerOption
     }
     progress.finish();
     if (options.quiet) return;
-    fmt::print("{} frames of {} x {} on {}: {:.2f} ms each, the first after {:.0f} ms\n", frames, options.size.width,
+    fmt::print("{} of {} x {} on {}: {:.2f} ms each, the first after {:.0f} ms\n", counted(frames, "frame"), options.size.width,
                options.size.height, renderer.device().info().name,
                frames > 1 ? 1e3 * (watch.wall() - first_frame) / static_cast<double>(frames - 1) : 1e3 * first_frame,
                1e3 * first_frame);

@@ -49,8 +49,8 @@ void draw_frames(ViewerState& state, FrameRenderer& renderer, const ViewerOption
     }
     progress.finish();
     if (options.quiet) return;
-    fmt::print("{} of {} x {} on {}: {:.2f} ms each, the first after {:.0f} ms\n", counted(frames, "frame"), options.size.width,
-               options.size.height, renderer.device().info().name,
+    fmt::print("{} of {} x {} on {}: {:.2f} ms each, the first after {:.0f} ms\n", counted(frames, "frame"),
+               options.size.width, options.size.height, renderer.device().info().name,
                frames > 1 ? 1e3 * (watch.wall() - first_frame) / static_cast<double>(frames - 1) : 1e3 * first_frame,
                1e3 * first_frame);
     for (const std::string& name : state.times.names())

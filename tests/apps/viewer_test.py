@@ -222,6 +222,19 @@ class InWindow(Viewer):
         self.assertIn("<path", next(self.folder.glob("figure_001_*.svg")).read_text())
         self.closes_well(process)
 
+    def test_what_is_side_by_side_is_saved_so(self):
+        self.call("curvature", "train", "figure_001.glb", "--out", "m.safetensors", "--augment", "40")
+        before = set(self.folder.glob("figure_001_*.svg"))
+        saved = lambda: set(self.folder.glob("figure_001_*.svg")) - before
+        process, _ = self.open("figure_001.glb", "--model", "m.safetensors", "--curvature", "both", "--plain",
+                               "--lines", "contours,suggestive", "--size", "640x480")
+        time.sleep(0.5)
+        self.xdotool("key", "ctrl+e")
+        self.until(saved, "Ctrl+E saves the lines")
+        places = [float(x) for x in re.findall(r"[ML]([0-9.]+)", saved().pop().read_text())]
+        self.assertTrue(any(x < 300 for x in places) and any(x > 340 for x in places), places[:20])
+        self.closes_well(process)
+
     def test_a_lost_device_is_opened_again(self):
         process, _ = self.open("figure_001.glb", "--first-frame", "7", "--plain", "--size", "640x480",
                                "--lose-device-at", "2")

@@ -10,10 +10,10 @@
 #include "apps/viewer/controls/playback.h"
 #include "apps/viewer/controls/pose_controls.h"
 #include "apps/viewer/controls/shortcuts.h"
+#include "apps/viewer/controls/training_job.h"
 #include "apps/viewer/document.h"
 #include "apps/viewer/messages.h"
 #include "apps/viewer/surface_scene.h"
-#include "apps/viewer/training_job.h"
 #include "apps/viewer/view_settings.h"
 #include "host/curvature/model.h"
 

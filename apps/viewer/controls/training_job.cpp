@@ -1,4 +1,4 @@
-#include "apps/viewer/training_job.h"
+#include "apps/viewer/controls/training_job.h"
 
 #include <algorithm>
 #include <utility>

@@ -5,5 +5,5 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source apps/setup.sh
 exemplar_install
-exemplar_build exemplar
+exemplar_build exemplar exemplar-viewer
 exec "$exemplar_build/exemplar" demo --out out/demo "$@"

@@ -117,7 +117,9 @@ void ViewerState::set_model(std::shared_ptr<const CurvatureModel> model, std::st
 }
 
 void ViewerState::fit(ViewSize view) {
-    if (document_) camera.fit(ball_of(*document_, clip_), view);
+    if (!document_) return;
+    if (shows_both()) view.width = std::max(view.width / 2, 1);
+    camera.fit(ball_of(*document_, clip_), view);
 }
 
 Moment ViewerState::moment() const {

@@ -48,13 +48,13 @@ GpuCoherence::GpuCoherence(const GpuStrokes& strokes) : strokes_(strokes) {
                           {.elements = {four, words, words, words, four, word, word, words, four}});
     phase_kernel_ = Kernel(device, shaders::lines_phases_comp,
                            {.push_constants = layout_of<FollowParameters>(), .elements = {four, four}});
-    settle_kernel_ = Kernel(device, shaders::lines_settle_comp, {.elements = {four, word, four}});
+    settle_kernel_ =
+        Kernel(device, shaders::lines_settle_comp, {.elements = {four, word, four, four, layout_of<float>()}});
     traces_ = Buffer(device, room * sizeof(vec4));
     previous_traces_ = Buffer(device, room * sizeof(vec4));
     ends_ = Buffer(device, 2 * room * sizeof(vec4));
     votes_ = Buffer(device, room * sizeof(ChainVotes));
-    matches_ = Buffer(device, 2 * room * sizeof(vec2));
-    piece_votes_ = Buffer(device, 2 * room * sizeof(vec4));
+    matches_ = Buffer(device, 4 * room * sizeof(vec4));
     phases_ = Buffer(device, 2 * room * sizeof(vec2));
     flicker_ = Buffer(device, sizeof(FlickerSums));
 }
@@ -74,12 +74,12 @@ void GpuCoherence::record(Stream& stream, const Buffer& vertices, const StrokeVi
     stream.dispatch_indirect(
         vote_kernel_, counts, k_points,
         {chains.points(), lines.segments(), faces, surface.neighbors(), vertices, before.face_counts,
-         before.face_groups, before.segments, ends_, counts, strokes_.looks(), votes_, matches_, piece_votes_});
-    stream.dispatch_indirect(phase_kernel_, counts, k_points,
-                             {chains.points(), piece_votes_, counts, strokes_.looks(), votes_, phases_}, parameters);
-    stream.dispatch_indirect(settle_kernel_, counts, k_points,
-                             {chains.points(), strokes_.visible(), strokes_.strokes(), matches_, counts,
-                              strokes_.looks(), phases_, traces_, flicker_});
+         before.face_groups, before.segments, ends_, counts, strokes_.looks(), votes_, matches_});
+    stream.dispatch_indirect(phase_kernel_, counts, k_points, {chains.points(), matches_, counts, votes_, phases_},
+                             parameters);
+    stream.dispatch_indirect(
+        settle_kernel_, counts, k_points,
+        {chains.points(), strokes_.visible(), strokes_.strokes(), matches_, phases_, counts, traces_, flicker_});
 }
 
 LineFlicker GpuCoherence::flicker() const {

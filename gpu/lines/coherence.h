@@ -32,7 +32,7 @@ class GpuCoherence {
   private:
     const GpuStrokes& strokes_;
     Kernel trace_kernel_, vote_kernel_, phase_kernel_, settle_kernel_;
-    Buffer traces_, previous_traces_, ends_, votes_, matches_, piece_votes_, phases_, flicker_;
+    Buffer traces_, previous_traces_, ends_, votes_, matches_, phases_, flicker_;
 };
 
 }  // namespace exemplar

@@ -9,11 +9,10 @@
 layout(local_size_x = k_count_group) in;
 layout(push_constant) uniform Push { FollowParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer points;  // LinePoint, two texels each
-layout(set = 0, binding = 1) uniform samplerBuffer piece_votes;  // votes.comp
+layout(set = 0, binding = 1) uniform samplerBuffer matches;  // votes.comp, two texels each
 layout(set = 0, binding = 2, std430) readonly buffer Counts { LineCounts counts; };
-layout(set = 0, binding = 3, std430) readonly buffer Looks { StrokeLook looks[]; };
-layout(set = 0, binding = 4, std430) readonly buffer Votes { ChainVotes votes[]; };
-layout(set = 0, binding = 5, std430) writeonly buffer Phases { vec2 phases[]; };  // 1 or -1, and pixels: see stroke.vert
+layout(set = 0, binding = 3, std430) readonly buffer Votes { ChainVotes votes[]; };
+layout(set = 0, binding = 4, std430) writeonly buffer Phases { vec2 phases[]; };  // 1 or -1, and pixels: texture_phase.glsl
 
 const float k_pi = 3.14159265358979;
 
@@ -23,7 +22,7 @@ vec2 votes_beside(int point, int step, float here, uint chain_and_way) {
     for (int i = 0; i < k_follow_points; ++i) {
         const int at = point + step * i;
         if (at < 0 || at >= int(counts.points)) break;
-        const vec4 vote = texelFetch(piece_votes, at);
+        const vec4 vote = texelFetch(matches, 2 * at + 1);
         const float near = 1.0 - abs(vote.z - here) / float(k_follow_reach);
         const uint of = floatBitsToUint(vote.w);
         if ((of ^ chain_and_way) > 1u || !(near > 0.0)) break;
@@ -43,7 +42,7 @@ void main() {
 
     const float here = texelFetch(points, int(2u * index)).w;
     const vec4 more = texelFetch(points, int(2u * index + 1u));
-    const float period = looks[floatBitsToUint(more.x) & k_kind_family].period;
+    const float period = texelFetch(matches, int(2u * index)).z;
     const uint chain = floatBitsToUint(more.y);
     const ChainVotes v = votes[chain];
     const bool along = v.balance >= 0;

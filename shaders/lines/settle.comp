@@ -5,17 +5,16 @@
 #include "shaders/shared/coherence.h"
 
 // Leaves behind what the next frame needs to know of the lines of this one, and adds up how much they flicker. One point per
-// invocation: reads 124 bytes, writes 16, and adds 16 a group.
+// invocation: reads 128 bytes, writes 16, and adds 16 a group.
 layout(local_size_x = k_count_group) in;
 layout(set = 0, binding = 0) uniform samplerBuffer points;    // LinePoint, two texels each
 layout(set = 0, binding = 1) uniform usamplerBuffer visible;  // two words a point
 layout(set = 0, binding = 2) uniform samplerBuffer strokes;   // two texels a point
-layout(set = 0, binding = 3, std430) readonly buffer Matches { vec2 matches[]; };
-layout(set = 0, binding = 4, std430) readonly buffer Counts { LineCounts counts; };
-layout(set = 0, binding = 5, std430) readonly buffer Looks { StrokeLook looks[]; };
-layout(set = 0, binding = 6, std430) readonly buffer Phases { vec2 phases[]; };
-layout(set = 0, binding = 7, std430) writeonly buffer Traces { vec4 traces[]; };  // by segment
-layout(set = 0, binding = 8, std430) buffer Flicker { FlickerSums flicker; };
+layout(set = 0, binding = 3) uniform samplerBuffer matches;   // votes.comp, two texels each
+layout(set = 0, binding = 4) uniform samplerBuffer phases;    // two texels a point
+layout(set = 0, binding = 5, std430) readonly buffer Counts { LineCounts counts; };
+layout(set = 0, binding = 6, std430) writeonly buffer Traces { vec4 traces[]; };  // by segment
+layout(set = 0, binding = 7, std430) buffer Flicker { FlickerSums flicker; };
 
 struct Flickering {
     vec4 lengths;  // drawn, kept, appeared, slip
@@ -24,15 +23,19 @@ struct Flickering {
 shared Flickering group_sums[gl_WorkGroupSize.x];
 const Flickering k_none = Flickering(vec4(0.0), 0.0);
 
+vec2 phase_of(uint point) {
+    return vec2(texelFetch(phases, int(2u * point)).x, texelFetch(phases, int(2u * point + 1u)).x);
+}
+
 // What a point adds to the sums.
 Flickering settled(uint index) {
     const vec4 more = texelFetch(points, int(2u * index + 1u));
     const uint kind = floatBitsToUint(more.x), walked = floatBitsToUint(more.z);
     if ((kind & k_point_last) != 0u) return k_none;
-    const vec2 match = matches[index];
-    const float period = looks[kind & k_kind_family].period, along = texelFetch(points, int(2u * index)).w,
+    const vec4 match = texelFetch(matches, int(2u * index));
+    const float period = match.z, along = texelFetch(points, int(2u * index)).w,
                 along_next = texelFetch(points, int(2u * index + 2u)).w, size = along_next - along;
-    const vec2 ends = texture_ends(phases[index], phases[index + 1u], along, along_next, period);
+    const vec2 ends = texture_ends(phase_of(index), phase_of(index + 1u), along, along_next, period);
     const uint mask = texelFetch(visible, int(2u * index)).x, samples = texelFetch(visible, int(2u * index + 1u)).x;
     const float share = float(bitCount(mask)) / float(samples) * texelFetch(strokes, int(2u * index)).w;
     traces[walked / 2u] = vec4((walked & 1u) == 0u ? ends : ends.yx, share, 0.0);

@@ -6,7 +6,7 @@
 
 // What was near each piece of a chain in the frame before: the nearest line of its family in its face, or else in the first
 // face that has one on the way straight off the line, to either side. The piece votes for the texture to lie as it did there
-// (host/lines/coherence.cpp). One point per invocation: reads 64 bytes and, from caches, some faces and their lines; writes 24
+// (host/lines/coherence.cpp). One point per invocation: reads 64 bytes and, from caches, some faces and their lines; writes 32
 // and adds 12 to its chain's votes. The sums are of integers, the same in any order.
 layout(local_size_x = k_count_group) in;
 layout(set = 0, binding = 0) uniform samplerBuffer points;  // LinePoint, two texels each
@@ -22,10 +22,10 @@ layout(set = 0, binding = 8) uniform samplerBuffer old_ends;
 layout(set = 0, binding = 9, std430) readonly buffer Counts { LineCounts counts; };
 layout(set = 0, binding = 10, std430) readonly buffer Looks { StrokeLook looks[]; };
 layout(set = 0, binding = 11, std430) buffer Votes { ChainVotes votes[]; };
-// Of each point, for the way on: the texture where it was, and the share of it drawn or -1 if there was nothing.
-layout(set = 0, binding = 12, std430) writeonly buffer Matches { vec2 matches[]; };
-// And its vote: weight times cosine and sine, pixels along the chain, 2 * chain + whether it is for a texture against the chain.
-layout(set = 0, binding = 13, std430) writeonly buffer PieceVotes { vec4 piece_votes[]; };
+// Of each point, for the way on: the texture where it was, the share of it drawn or -1 if there was nothing, the texture's
+// period; and its vote: weight times cosine and sine, pixels along the chain, 2 * chain + whether it is for a texture against
+// the chain.
+layout(set = 0, binding = 12, std430) writeonly buffer Matches { vec4 matches[]; };
 #include "shaders/lib/face_segments.glsl"
 #include "shaders/lib/segments.glsl"
 
@@ -117,19 +117,21 @@ void main() {
 
     const vec4 here = texelFetch(points, int(2u * index)), more = texelFetch(points, int(2u * index + 1u));
     const uint kind = floatBitsToUint(more.x), chain = floatBitsToUint(more.y), segment = floatBitsToUint(more.z) / 2u;
+    const uint family = kind & k_kind_family;
+    const float period = looks[family].period;
     if ((kind & k_point_last) != 0u) {
-        piece_votes[index] = vec4(0.0, 0.0, here.w, uintBitsToFloat(2u * chain));
+        matches[2u * index] = vec4(0.0, -1.0, period, 0.0);
+        matches[2u * index + 1u] = vec4(0.0, 0.0, here.w, uintBitsToFloat(2u * chain));
         return;
     }
-    const uint family = kind & k_kind_family;
     const vec2 there = texelFetch(points, int(2u * index + 2u)).xy, middle = 0.5 * (here.xy + there), way = there - here.xy;
     const float size = length(way), along = here.w + 0.5 * size;
     Match match = Match(k_nowhere, 0.0, true, -1.0);
     look_in(texelFetch(segments, int(2u * segment)).x, family, middle, way, match);
     when (match.away == k_nowhere) look_beside(segment, family, middle, way, match);
     const bool found = match.away < k_nowhere;
-    const vec2 own = found ? vote(match, along, size, looks[family].period) : vec2(0.0);
-    matches[index] = vec2(match.texture_at, match.drawn);
-    piece_votes[index] = vec4(own, along, uintBitsToFloat(2u * chain + (match.along ? 0u : 1u)));
+    const vec2 own = found ? vote(match, along, size, period) : vec2(0.0);
+    matches[2u * index] = vec4(match.texture_at, match.drawn, period, 0.0);
+    matches[2u * index + 1u] = vec4(own, along, uintBitsToFloat(2u * chain + (match.along ? 0u : 1u)));
     when (own != vec2(0.0)) add_vote(chain, own, match.along);
 }

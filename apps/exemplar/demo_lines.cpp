@@ -26,9 +26,8 @@ constexpr int k_width = 560, k_height = 620;
 constexpr std::array k_types{LineType::suggestive_contours, LineType::contours};
 
 /// One frame twice: by learned curvature, and by that which is measured in it.
-Drawing draw_twice(const std::vector<Face>& faces, const FrameCurvature& at, const DrawingStyle& style,
-                   const StrokeView& view) {
-    const std::vector<FaceNeighbors> neighbors = build_face_neighbors(faces, at.moment.vertices.size());
+Drawing draw_twice(const std::vector<Face>& faces, const std::vector<FaceNeighbors>& neighbors,
+                   const FrameCurvature& at, const DrawingStyle& style, const StrokeView& view) {
     const auto draw = [&](const VertexCurvature& curvature) {
         return draw_lines({faces, at.moment.vertices, at.moment.normals, curvature, neighbors}, k_types, style, view);
     };
@@ -39,11 +38,13 @@ std::vector<Drawing> draw_frames(const CurvatureModel& model, const Animation& a
                                  const std::vector<FrameRef>& frames, const DrawingStyle& style) {
     StrokeView view = view_of_frames(animation, frames, k_width, k_height);
     view.feature_size = model.feature_size;
+    const std::vector<Face>& faces = animation.rest.faces;
+    const std::vector<FaceNeighbors> neighbors = build_face_neighbors(faces, animation.rest.vertex_count());
     std::vector<Drawing> drawings;
     Progress progress("drawing a figure in lines", frames.size());
     for (const FrameRef& frame : frames) {
         check_interrupt();
-        drawings.push_back(draw_twice(animation.rest.faces, curvature_at(model, animation, frame), style, view));
+        drawings.push_back(draw_twice(faces, neighbors, curvature_at(model, animation, frame), style, view));
         progress.advance();
     }
     return drawings;

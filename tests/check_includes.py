@@ -18,7 +18,9 @@ HOST = {
     'synth': {'core', 'mesh', 'animation'},
     'lines': {'core', 'mesh', 'imaging'},
     'curvature': {'core', 'mesh', 'learn', 'data', 'animation', 'lines', 'imaging'},
-    'labeling': {'core', 'mesh', 'learn', 'graphcut', 'data', 'imaging'},
+    'shape': {'core', 'mesh', 'learn'},
+    'labeling': {'core', 'mesh', 'learn', 'graphcut', 'data', 'imaging', 'shape'},
+    'hatching': {'core', 'mesh', 'learn', 'graphcut', 'data', 'imaging', 'lines', 'shape'},
 }
 GPU = {
     'runtime': set(),
@@ -27,6 +29,7 @@ GPU = {
     'imaging': {'runtime'},
     'curvature': {'runtime'},
     'lines': {'runtime', 'imaging', 'curvature'},
+    'hatching': {'runtime', 'imaging', 'learn'},
     'window': {'runtime', 'imaging'},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]')

@@ -7,21 +7,17 @@
 #include <vector>
 
 #include "host/labeling/features.h"
-#include "host/labeling/inward_rays.h"
-#include "host/labeling/neighborhoods.h"
-#include "host/labeling/prepared_mesh.h"
 #include "host/learn/feature_matrix.h"
-#include "host/mesh/rays.h"
+#include "host/shape/neighborhoods.h"
+#include "host/shape/prepared_mesh.h"
+#include "host/shape/shape_families.h"
 
-/// The feature families of thesis App. A, one source file each (features_NAME.cpp). All read a PreparedMesh, give a
-/// value for every face (or edge) and do not depend on the number of threads.
+/// The feature families of thesis App. A that only labeling uses, one source file each (features_NAME.cpp); see also
+/// shape_families.h. All read a PreparedMesh, give a value for every face (or edge) and do not depend on the number of
+/// threads.
 namespace exemplar {
 
-constexpr std::size_t k_least_patch = 8;    ///< faces a curvature patch has at least: 7 unknowns, 3 equations per face
-constexpr std::size_t k_least_region = 10;  ///< faces a PCA region has at least
-
-/// "name@radius" with the radius as a share of the median distance, e.g. "curvature.k1@0.05".
-std::string at_radius(const std::string& name, double share);
+constexpr std::size_t k_least_patch = 8;  ///< faces a curvature patch has at least: 7 unknowns, 3 equations per face
 
 /// Surface curvature (A.1a), 36 columns: nine functions of the principal curvatures of cubic patches at geodesic radii
 /// of 1, 2, 5 and 10% of the median distance. Curvatures are clipped at 2 / (the smallest radius). The same patches at
@@ -44,52 +40,8 @@ class CurvatureFamily {
     FaceValues pairwise_;
 };
 
-/// Local shape by principal component analysis (A.1b), 75 columns: for geodesic radii of 5, 10, 20, 30 and 50% of the
-/// median distance the singular values s1 >= s2 >= s3 (standard deviations of the face centers, weighted by area, in
-/// units of the radius) and the twelve ratios of the text. s2 and s3 are at least a hundredth of s1, so that ratios are
-/// finite. Radii that hold many samples are measured from the samples' cells, the others from all faces.
-class PcaFamily {
-  public:
-    static constexpr std::array<double, 5> k_radii{0.05, 0.1, 0.2, 0.3, 0.5};
-    explicit PcaFamily(const PreparedMesh& prepared);
-    float radius() const;  ///< how far its neighborhoods reach
-    void measure(std::uint32_t face, Neighborhood neighborhood);
-    void measure_large_radii();  ///< the radii that `measure` leaves out
-    FeatureMatrix take() { return std::move(unary_); }
-
-  private:
-    const PreparedMesh* prepared_;
-    std::size_t exact_radii_;
-    FeatureMatrix unary_;
-};
-
-/// Shape contexts (A.1f), 270 columns: area shares of the surface by geodesic distance (5 or 10 logarithmic ranges up
-/// to the 95th percentile) and by the angle between the face's normal and the direction to the surface (4, 6 or 8
-/// ranges). Near ranges are summed over all faces, the others over the samples.
-class ShapeContextFamily {
-  public:
-    static constexpr std::size_t k_rings = 10, k_sectors = 24;  ///< fine bins that all six histograms sum up
-    explicit ShapeContextFamily(const PreparedMesh& prepared);
-    float radius() const { return near_; }  ///< how far its neighborhoods reach
-    void measure(std::uint32_t face, Neighborhood neighborhood);
-    void measure_far();  ///< adds what lies beyond the neighborhoods
-    FeatureMatrix take();
-
-  private:
-    const PreparedMesh* prepared_;
-    std::array<float, k_rings + 1> edges_{};  ///< distance of each ring's inner edge, and of the last one's outer edge
-    float near_ = 0.0F;                       ///< the ring edge where samples take over
-    std::vector<float> fine_;                 ///< faces x rings x sectors
-};
-
-/// Average geodesic distance (A.1e), 11 columns.
-FeatureMatrix geodesic_features(const PreparedMesh& prepared);
 /// Spin images (A.1g), 100 columns.
 FeatureMatrix spin_features(const PreparedMesh& prepared);
-/// Shape diameter (A.1c), 60 columns in [0, 1].
-FeatureMatrix diameter_features(const PreparedMesh& prepared, const InwardRays& rays);
-/// Distance from the medial surface (A.1d), 60 columns in [0, 1].
-FeatureMatrix medial_features(const PreparedMesh& prepared, const RayScene& scene, const InwardRays& rays);
 /// Face centers (A.1h), 3 columns.
 FeatureMatrix orientation_features(const PreparedMesh& prepared);
 

@@ -3,7 +3,7 @@
 
 #include "host/core/parallel.h"
 #include "host/labeling/feature_families.h"
-#include "host/labeling/log_bins.h"
+#include "host/shape/log_bins.h"
 #include "host/mesh/axes.h"
 
 namespace exemplar {

@@ -1,5 +1,3 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -18,10 +16,6 @@ std::array<float, 9> curvature_functions(float k1, float k2) {
 }
 
 }  // namespace
-
-std::string at_radius(const std::string& name, double share) {
-    return fmt::format("{}@{}", name, share);
-}
 
 CurvatureFamily::CurvatureFamily(const PreparedMesh& prepared) : prepared_(&prepared) {
     unary_.rows = prepared.face_count();

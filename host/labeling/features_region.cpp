@@ -2,7 +2,7 @@
 
 #include "host/core/parallel.h"
 #include "host/labeling/feature_families.h"
-#include "host/labeling/sample_cells.h"
+#include "host/shape/sample_cells.h"
 
 namespace exemplar {
 namespace {

@@ -1,8 +1,8 @@
 #include <numbers>
 
 #include "host/labeling/feature_families.h"
-#include "host/labeling/log_bins.h"
-#include "host/labeling/percentile.h"
+#include "host/shape/log_bins.h"
+#include "host/shape/percentile.h"
 #include "tests/labeling/features_support.h"
 
 namespace exemplar {

@@ -2,7 +2,7 @@
 #include <set>
 
 #include "host/core/parallel.h"
-#include "host/labeling/prepared_mesh.h"
+#include "host/shape/prepared_mesh.h"
 #include "tests/labeling/features_support.h"
 
 namespace exemplar {

@@ -1,7 +1,7 @@
 
 #include "host/labeling/cubic_patch.h"
 #include "host/labeling/feature_families.h"
-#include "host/labeling/sample_cells.h"
+#include "host/shape/sample_cells.h"
 #include "tests/labeling/features_support.h"
 
 namespace exemplar {

@@ -1,6 +1,6 @@
 
 #include "host/labeling/feature_families.h"
-#include "host/labeling/log_bins.h"
+#include "host/shape/log_bins.h"
 #include "tests/labeling/features_support.h"
 
 namespace exemplar {

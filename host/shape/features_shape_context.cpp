@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "host/core/parallel.h"
-#include "host/labeling/feature_families.h"
-#include "host/labeling/log_bins.h"
-#include "host/labeling/sample_cells.h"
+#include "host/shape/log_bins.h"
+#include "host/shape/sample_cells.h"
+#include "host/shape/shape_families.h"
 
 namespace exemplar {
 namespace {
@@ -145,6 +145,14 @@ FeatureMatrix ShapeContextFamily::take() {
     for (const std::size_t rings : {5U, 10U}) {
         for (const std::size_t sectors : {4U, 6U, 8U}) add_histogram(matrix, fine_, rings, sectors);
     }
+    fine_ = {};
+    return matrix;
+}
+
+FeatureMatrix ShapeContextFamily::take(std::size_t rings, std::size_t sectors) {
+    FeatureMatrix matrix;
+    matrix.rows = prepared_->face_count();
+    add_histogram(matrix, fine_, rings, sectors);
     fine_ = {};
     return matrix;
 }

@@ -1,4 +1,4 @@
-#include "host/labeling/sample_cells.h"
+#include "host/shape/sample_cells.h"
 
 #include <cmath>
 #include <limits>

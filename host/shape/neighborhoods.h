@@ -5,7 +5,7 @@
 #include <span>
 
 #include "host/core/parallel.h"
-#include "host/labeling/prepared_mesh.h"
+#include "host/shape/prepared_mesh.h"
 
 namespace exemplar {
 

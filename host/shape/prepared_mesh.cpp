@@ -1,4 +1,4 @@
-#include "host/labeling/prepared_mesh.h"
+#include "host/shape/prepared_mesh.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "host/core/parallel.h"
-#include "host/labeling/percentile.h"
 #include "host/mesh/validate.h"
+#include "host/shape/percentile.h"
 
 namespace exemplar {
 namespace {

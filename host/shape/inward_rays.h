@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "host/labeling/prepared_mesh.h"
 #include "host/learn/feature_matrix.h"
 #include "host/mesh/rays.h"
+#include "host/shape/prepared_mesh.h"
 
 namespace exemplar {
 

@@ -1,13 +1,20 @@
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "host/core/parallel.h"
-#include "host/labeling/feature_families.h"
-#include "host/labeling/sample_cells.h"
+#include "host/shape/sample_cells.h"
+#include "host/shape/shape_families.h"
 
 namespace exemplar {
+
+std::string at_radius(const std::string& name, double share) {
+    return fmt::format("{}@{}", name, share);
+}
+
 namespace {
 
 /// The three singular values and the twelve ratios of the text.
@@ -43,12 +50,12 @@ std::array<float, k_columns.size()> pca_values(const SurfaceMoments& moments, fl
 
 /// How many of the radii are measured from all faces: those that hold too few samples for the samples to stand for
 /// them.
-std::size_t count_exact_radii(const PreparedMesh& prepared) {
+std::size_t count_exact_radii(const PreparedMesh& prepared, std::size_t radii) {
     constexpr double k_enough_samples = 100.0;
-    if (prepared.samples_are_all_faces() || !(prepared.total_area > 0.0F)) return PcaFamily::k_radii.size();
+    if (prepared.samples_are_all_faces() || !(prepared.total_area > 0.0F)) return radii;
     std::size_t count = 0;
-    for (const double share : PcaFamily::k_radii) {
-        const double radius = share * static_cast<double>(prepared.median_distance);
+    for (std::size_t scale = 0; scale < radii; ++scale) {
+        const double radius = PcaFamily::k_radii[scale] * static_cast<double>(prepared.median_distance);
         const double area_share = std::numbers::pi * radius * radius / static_cast<double>(prepared.total_area);
         if (area_share * static_cast<double>(prepared.sample_count()) < k_enough_samples) ++count;
     }
@@ -57,10 +64,11 @@ std::size_t count_exact_radii(const PreparedMesh& prepared) {
 
 }  // namespace
 
-PcaFamily::PcaFamily(const PreparedMesh& prepared) : prepared_(&prepared), exact_radii_(count_exact_radii(prepared)) {
+PcaFamily::PcaFamily(const PreparedMesh& prepared, std::size_t radii)
+    : prepared_(&prepared), radii_(radii), exact_radii_(count_exact_radii(prepared, radii)) {
     unary_.rows = prepared.face_count();
-    for (const double radius : k_radii) {
-        for (const char* column : k_columns) unary_.add(at_radius(std::string("pca.") + column, radius));
+    for (std::size_t scale = 0; scale < radii_; ++scale) {
+        for (const char* column : k_columns) unary_.add(at_radius(std::string("pca.") + column, k_radii[scale]));
     }
 }
 
@@ -85,14 +93,14 @@ void PcaFamily::measure(std::uint32_t face, Neighborhood neighborhood) {
 }
 
 void PcaFamily::measure_large_radii() {
-    if (exact_radii_ == k_radii.size()) return;
+    if (exact_radii_ == radii_) return;
     const std::vector<SampleCell> cells = sample_cells(*prepared_);
     const std::size_t samples = cells.size();
     parallel_ranges(unary_.rows, 64, [&](std::size_t begin, std::size_t end) {
         std::vector<float> distance;
         gather_distances(*prepared_, begin, end, distance);
         for (std::size_t f = begin; f < end; ++f) {
-            for (std::size_t scale = exact_radii_; scale < k_radii.size(); ++scale) {
+            for (std::size_t scale = exact_radii_; scale < radii_; ++scale) {
                 const float radius = static_cast<float>(k_radii[scale]) * prepared_->median_distance;
                 SurfaceMoments moments;
                 for (std::size_t s = 0; s < samples; ++s) {

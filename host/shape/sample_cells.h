@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "host/labeling/prepared_mesh.h"
+#include "host/shape/prepared_mesh.h"
 
 namespace exemplar {
 

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "host/core/parallel.h"
-#include "host/labeling/feature_families.h"
-#include "host/labeling/percentile.h"
+#include "host/shape/percentile.h"
+#include "host/shape/shape_families.h"
 
 namespace exemplar {
 namespace {

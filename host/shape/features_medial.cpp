@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "host/core/parallel.h"
-#include "host/labeling/feature_families.h"
+#include "host/shape/shape_families.h"
 
 namespace exemplar {
 namespace {

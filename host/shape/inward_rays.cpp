@@ -1,4 +1,4 @@
-#include "host/labeling/inward_rays.h"
+#include "host/shape/inward_rays.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "host/core/parallel.h"
-#include "host/labeling/percentile.h"
+#include "host/shape/percentile.h"
 
 namespace exemplar {
 namespace {

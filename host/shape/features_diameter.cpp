@@ -1,5 +1,5 @@
 #include "host/core/parallel.h"
-#include "host/labeling/feature_families.h"
+#include "host/shape/shape_families.h"
 
 namespace exemplar {
 

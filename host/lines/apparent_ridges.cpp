@@ -4,40 +4,13 @@
 
 #include "host/core/parallel.h"
 #include "host/lines/line_fields.h"
+#include "host/lines/view_curvature.h"
 
 namespace exemplar {
 
 namespace {
 
 constexpr std::size_t k_grain = 4096;  // vertices that one thread takes at a time
-constexpr float k_grazing = 1e-3f;     // least |n.w| that the foreshortening is computed with
-
-/// View-dependent curvature (Judd et al. 2007): how much the normal turns over a step on the screen.
-struct ViewCurvature {
-    float q = 0;                     ///< the largest: squared, in 1 / squared mesh units
-    Vec2 direction = Vec2::UnitX();  ///< of it, on the surface, in (e1, e2); a step of length 1 on the screen
-    float cosine = 1;                ///< n.w
-};
-
-/// With S = diag(k1, k2) and a the unit projection of w into the surface, a step x on the screen is one of
-/// x + (1 / |n.w| - 1) a a^T x on the surface, so Q = S + (1 / |n.w| - 1) S a a^T turns it into the change of the
-/// normal. The largest eigenvalue of Q^T Q, and its eigenvector.
-ViewCurvature view_curvature(float k1, float k2, float u, float v, float cosine) {
-    ViewCurvature result;
-    result.cosine = cosine;
-    const float sine = std::hypot(u, v), stretch = 1 / std::max(std::abs(cosine), k_grazing) - 1;
-    const Vec2 a = sine > 0 ? Vec2(u / sine, v / sine) : Vec2::Zero();
-    const Eigen::Matrix2f to_surface = Eigen::Matrix2f::Identity() + stretch * a * a.transpose();
-    const Eigen::Matrix2f to_normal = Eigen::Vector2f(k1, k2).asDiagonal() * to_surface;
-    const Eigen::Matrix2f squared = to_normal.transpose() * to_normal;
-    const float half_difference = 0.5f * (squared(0, 0) - squared(1, 1)), off = squared(0, 1);
-    const float radius = std::hypot(half_difference, off);
-    result.q = 0.5f * squared.trace() + radius;
-    // Half the angle of (half_difference, off).
-    const float angle = 0.5f * std::atan2(off, half_difference);
-    result.direction = to_surface * Vec2(std::cos(angle), std::sin(angle));
-    return result;
-}
 
 /// Sum and number of the differences quotients of q along the direction of a vertex.
 struct Slope {
@@ -76,7 +49,7 @@ std::vector<LineField> apparent_ridge_field(const LineSurface& surface, const Li
         count,
         [&](std::size_t i) {
             const Vec3 w = options.to_eye(surface.vertices[i]);
-            view[i] = view_curvature(c.k1[i], c.k2[i], c.e1[i].dot(w), c.e2[i].dot(w), surface.normals[i].dot(w));
+            view[i] = view_curvature(c.k1[i], c.k2[i], {c.e1[i].dot(w), c.e2[i].dot(w), surface.normals[i].dot(w)});
         },
         k_grain);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "host/core/parallel.h"
+#include "host/lines/view_curvature.h"
 
 namespace exemplar {
 
@@ -11,11 +12,6 @@ namespace {
 
 constexpr std::size_t k_grain = 4096;  // vertices that one thread takes at a time
 
-/// The unit vector to the eye in the frame of a vertex.
-struct ViewVector {
-    float u, v;    ///< along e1 and e2
-    float cosine;  ///< along the normal
-};
 ViewVector view_at(const LineSurface& surface, std::size_t vertex, const LineOptions& options) {
     const Vec3 w = options.to_eye(surface.vertices[vertex]);
     return {surface.curvature.e1[vertex].dot(w), surface.curvature.e2[vertex].dot(w), surface.normals[vertex].dot(w)};
@@ -27,17 +23,6 @@ std::vector<LineField> field_of(const LineSurface& surface, FieldAt&& at) {
     parallel_for(
         field.size(), [&](std::size_t i) { field[i] = at(i); }, k_grain);
     return field;
-}
-
-/// Derivative of radial curvature along w's projection, times the sine between w and the normal: DeCarlo et al. 2004
-/// have C(w, w, w) + 2 K cot, where the radial curvature is zero, and there K is the negative square of the torsion.
-float radial_derivative(const VertexCurvature& curvature, std::size_t i, const ViewVector& view) {
-    const float u = view.u, v = view.v, squared_sine = u * u + v * v;
-    if (!(squared_sine > 0)) return 0;  // towards the eye there is no direction of its projection
-    const auto& [c111, c112, c122, c222] = curvature.derivative[i];
-    const float third = u * u * (u * c111 + 3 * v * c112) + v * v * (3 * u * c122 + v * c222);
-    const float torsion = (curvature.k2[i] - curvature.k1[i]) * u * v / squared_sine;
-    return third / squared_sine - 2 * view.cosine * torsion * torsion;
 }
 
 }  // namespace
@@ -58,7 +43,10 @@ std::vector<LineField> radial_curvature_field(const LineSurface& surface, LineTy
         contours ? options.thresholds.suggestive_contours : options.thresholds.suggestive_highlights;
     return field_of(surface, [&](std::size_t i) {
         const ViewVector view = view_at(surface, i, options);
-        const float derivative = sign * radial_derivative(surface.curvature, i, view) * squared_unit;
+        const float derivative =
+            sign *
+            radial_derivative(surface.curvature.k1[i], surface.curvature.k2[i], surface.curvature.derivative[i], view) *
+            squared_unit;
         LineField field;
         // Radial curvature times the squared sine has the same zeros and no pole.
         field.value = surface.curvature.k1[i] * view.u * view.u + surface.curvature.k2[i] * view.v * view.v;

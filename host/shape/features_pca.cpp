@@ -22,9 +22,9 @@ constexpr std::array<const char*, 15> k_columns{"s1",     "s2",          "s3",  
                                                 "s3/sum", "(s1+s2)/sum", "(s1+s3)/sum", "(s2+s3)/sum", "s1/s2",
                                                 "s1/s3",  "s2/s3",       "s1/s2+s1/s3", "s1/s2+s2/s3", "s1/s3+s2/s3"};
 
-std::array<float, k_columns.size()> pca_values(const SurfaceMoments& moments, float radius) {
+std::array<float, k_columns.size()> pca_values(const Eigen::Matrix3d& covariance, float radius) {
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-    solver.computeDirect(moments.covariance(), Eigen::EigenvaluesOnly);
+    solver.computeDirect(covariance, Eigen::EigenvaluesOnly);
     const auto deviation = [&](Eigen::Index k) {
         return static_cast<float>(std::sqrt(std::max(solver.eigenvalues()[k], 0.0))) / radius;
     };
@@ -76,6 +76,15 @@ float PcaFamily::radius() const {
     return exact_radii_ == 0 ? 0.0F : static_cast<float>(k_radii[exact_radii_ - 1]) * prepared_->median_distance;
 }
 
+void PcaFamily::keep(std::size_t scale, std::size_t face, const SurfaceMoments& moments) {
+    const Eigen::Matrix3d covariance = moments.covariance();
+    const auto values = pca_values(covariance, static_cast<float>(k_radii[scale]) * prepared_->median_distance);
+    for (std::size_t k = 0; k < values.size(); ++k) unary_.column(scale * values.size() + k)[face] = values[k];
+    if (covariances_.empty()) return;
+    const Eigen::Matrix3f c = covariance.cast<float>();
+    covariances_[scale][face] = {c(0, 0), c(0, 1), c(0, 2), c(1, 1), c(1, 2), c(2, 2)};
+}
+
 void PcaFamily::measure(std::uint32_t face, Neighborhood neighborhood) {
     SurfaceMoments moments;
     std::size_t added = 0;
@@ -87,8 +96,7 @@ void PcaFamily::measure(std::uint32_t face, Neighborhood neighborhood) {
             const Vec3 offset = prepared_->center[near] - prepared_->center[face];
             moments.add(offset.cast<double>(), static_cast<double>(prepared_->area_share[near]));
         }
-        const auto values = pca_values(moments, radius);
-        for (std::size_t k = 0; k < values.size(); ++k) unary_.column(scale * values.size() + k)[face] = values[k];
+        keep(scale, face, moments);
     }
 }
 
@@ -107,8 +115,7 @@ void PcaFamily::measure_large_radii() {
                     const float share = cells[s].share_within(distance[(f - begin) * samples + s], radius);
                     if (share > 0.0F) moments.add(cells[s].moments, static_cast<double>(share));
                 }
-                const auto values = pca_values(moments, radius);
-                for (std::size_t k = 0; k < values.size(); ++k) unary_.column(scale * values.size() + k)[f] = values[k];
+                keep(scale, f, moments);
             }
         }
     });

@@ -35,11 +35,17 @@ class PcaFamily {
     void measure(std::uint32_t face, Neighborhood neighborhood);
     void measure_large_radii();  ///< the radii that `measure` leaves out
     FeatureMatrix take() { return std::move(unary_); }
+    /// Keeps the covariances, too: call it before measuring.
+    void keep_covariances() { covariances_.assign(radii_, std::vector<std::array<float, 6>>(unary_.rows)); }
+    /// Radii x faces: xx, xy, xz, yy, yz, zz, in squared normalized units; empty unless kept.
+    std::vector<std::vector<std::array<float, 6>>> take_covariances() { return std::move(covariances_); }
 
   private:
+    void keep(std::size_t scale, std::size_t face, const struct SurfaceMoments& moments);
     const PreparedMesh* prepared_;
     std::size_t radii_, exact_radii_;
     FeatureMatrix unary_;
+    std::vector<std::vector<std::array<float, 6>>> covariances_;
 };
 
 /// Shape contexts (A.1f), 270 columns: area shares of the surface by geodesic distance (5 or 10 logarithmic ranges up

@@ -1,0 +1,246 @@
+#include "host/hatching/hatching_surface.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "host/core/interrupt.h"
+#include "host/core/parallel.h"
+#include "host/core/stopwatch.h"
+#include "host/hatching/line_directions.h"
+#include "host/lines/lines.h"
+#include "host/mesh/curvature_estimator.h"
+#include "host/mesh/validate.h"
+#include "host/shape/log_bins.h"
+#include "host/shape/shape_families.h"
+
+namespace exemplar {
+namespace {
+
+constexpr std::size_t k_samples = 1000;
+constexpr std::size_t k_pca_scales = 3;
+
+/// Means over the faces around each vertex, weighted by area: of columns of values per face.
+class FacesToVertices {
+  public:
+    FacesToVertices(const PreparedMesh& prepared) : prepared_(prepared) {}
+    template <typename ValueOf>
+    float mean(std::size_t vertex, ValueOf&& value_of) const {
+        float sum = 0, weight = 0;
+        for (const std::uint32_t face : prepared_.topology.faces_of_vertex(static_cast<std::uint32_t>(vertex))) {
+            const float share = std::max(prepared_.area_share[face], 1e-12f);
+            sum += share * value_of(face);
+            weight += share;
+        }
+        return weight > 0 ? sum / weight : 0.0f;
+    }
+
+  private:
+    const PreparedMesh& prepared_;
+};
+
+/// Appends columns of `faces`, those whose name `keep` takes, as means per vertex.
+template <typename Keep>
+void append_at_vertices(const PreparedMesh& prepared, const FeatureMatrix& faces, Keep&& keep, FeatureMatrix& out) {
+    const FacesToVertices to_vertices(prepared);
+    for (std::size_t c = 0; c < faces.cols(); ++c) {
+        if (!keep(faces.names[c])) continue;
+        const std::span<float> column = out.add(faces.names[c]);
+        const std::span<const float> values = faces.column(c);
+        parallel_for(
+            out.rows,
+            [&](std::size_t v) { column[v] = to_vertices.mean(v, [&](std::uint32_t f) { return values[f]; }); }, 1024);
+    }
+}
+
+/// Of shape diameter and medial distance the thesis takes the means in cones of 60, 90 and 120 degrees, and their
+/// logarithms to 1, 2 and 4.
+bool is_cone_column(const std::string& name) {
+    const std::size_t at = name.find(".mean@");
+    if (at == std::string::npos) return false;
+    const std::string rest = name.substr(at + 6);
+    const bool angle = rest.starts_with("60") || rest.starts_with("90") || rest.starts_with("120");
+    return angle && !rest.ends_with("/log8");
+}
+
+struct TensorAxes {
+    Vec3 first, second;
+    float first_confidence, second_confidence;
+};
+
+/// Axes of largest and second largest extent, laid into the tangent plane; how far they are from arbitrary decides how
+/// far they are to be trusted.
+TensorAxes tensor_axes(const std::array<float, 6>& c, const Vec3& normal) {
+    Eigen::Matrix3f covariance;
+    covariance << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver(covariance);
+    const Vec3 values = solver.eigenvalues().cwiseMax(0.0f).cwiseSqrt();
+    const auto laid = [&](Eigen::Index k) {
+        const Vec3 axis = solver.eigenvectors().col(k);
+        return Vec3(axis - normal * normal.dot(axis));
+    };
+    const float first_gap = values[2] > 0 ? (values[2] - values[1]) / values[2] : 0;
+    const float second_gap = values[2] > 0 ? std::min(values[2] - values[1], values[1] - values[0]) / values[2] : 0;
+    const Vec3 first = laid(2), second = laid(1);
+    return {first, second, direction_confidence(first_gap) * first.squaredNorm(),
+            direction_confidence(second_gap) * second.squaredNorm()};
+}
+
+class Measurement {
+  public:
+    explicit Measurement(const TriangleMesh& mesh) : prepared_(prepare_mesh(mesh, k_samples)) {
+        surface_.mesh = mesh;
+        // Turned outward, if need be, as the prepared mesh is.
+        surface_.mesh.faces = prepared_.mesh.faces;
+        surface_.normals = vertex_normals(surface_.mesh);
+        const double prepared_size = bounding_box(prepared_.mesh).diagonal();
+        const double scale = prepared_size > 0 ? bounding_box(surface_.mesh).diagonal() / prepared_size : 1.0;
+        surface_.unit = prepared_.median_distance * static_cast<float>(scale);
+        done("distances");
+    }
+
+    HatchingSurface run() {
+        measure_curvature();
+        done("curvature");
+        measure_descriptors();
+        done("descriptors");
+        surface_.occlusion = measure_self_occlusion(surface_.mesh, surface_.normals);
+        done("self-occlusion");
+        complete_directions();
+        done("directions");
+        keep_context();
+        done("context");
+        return std::move(surface_);
+    }
+
+  private:
+    void done(const char* step) {
+        surface_.seconds.emplace_back(step, watch_.wall());
+        watch_ = Stopwatch();
+        check_interrupt();
+    }
+
+    void measure_curvature() {
+        CurvatureEstimator estimator(surface_.mesh.faces, surface_.mesh.vertex_count());
+        CurvatureOptions options;
+        options.smoothing = 1;
+        surface_.line_curvature = estimator.estimate(surface_.mesh.vertices, options);
+        surface_.feature_size = feature_size(surface_.mesh.vertices, surface_.line_curvature);
+        options.smoothing_unit = static_cast<double>(surface_.unit);
+        for (std::size_t s = 0; s < k_hatching_scales.size(); ++s) {
+            // The Gaussian with the variance of a disk of that radius.
+            options.smoothing = k_hatching_scales[s] / 2;
+            surface_.curvature[s] = estimator.estimate(surface_.mesh.vertices, options);
+        }
+        surface_.neighbors = build_face_neighbors(surface_.mesh.faces, surface_.mesh.vertex_count());
+    }
+
+    void measure_descriptors() {
+        surface_.descriptors.rows = surface_.mesh.vertex_count();
+        const auto all = [](const std::string&) { return true; };
+        PcaFamily pca(prepared_, k_pca_scales);
+        pca.keep_covariances();
+        ShapeContextFamily contexts(prepared_);
+        for_each_neighborhood(prepared_, std::max(pca.radius(), contexts.radius()), k_least_region,
+                              [&](std::uint32_t face, Neighborhood neighborhood) {
+                                  pca.measure(face, neighborhood);
+                                  contexts.measure(face, neighborhood);
+                              });
+        pca.measure_large_radii();
+        contexts.measure_far();
+        append_at_vertices(prepared_, pca.take(), all, surface_.descriptors);
+        covariances_ = pca.take_covariances();
+        const RayScene scene(prepared_.mesh);
+        const InwardRays rays = cast_inward_rays(prepared_, scene);
+        append_at_vertices(prepared_, diameter_features(prepared_, rays), is_cone_column, surface_.descriptors);
+        append_at_vertices(prepared_, medial_features(prepared_, scene, rays), is_cone_column, surface_.descriptors);
+        append_at_vertices(prepared_, geodesic_features(prepared_), all, surface_.descriptors);
+        append_at_vertices(prepared_, contexts.take(5, 6), all, surface_.descriptors);
+    }
+
+    void complete_directions() {
+        const DirectionSmoother smoother(surface_.mesh, surface_.normals);
+        SurfaceDirections& out = surface_.directions;
+        // Fourteen systems in all; each field is one, and k_min is k_max turned in the tangent plane.
+        parallel_for(3 * k_hatching_scales.size() + 2, [&](std::size_t field) {
+            const std::size_t scale = field % 3;
+            if (field == 9) out.ridges = complete_lines(smoother, surface_, LineType::ridges);
+            if (field == 10) out.valleys = complete_lines(smoother, surface_, LineType::valleys);
+            if (field < 3) complete_principal(smoother, scale);
+            if (field >= 3 && field < 6) out.e_a[scale] = complete_axis(smoother, scale, true);
+            if (field >= 6 && field < 9) out.e_b[scale] = complete_axis(smoother, scale, false);
+        });
+    }
+
+    void complete_principal(const DirectionSmoother& smoother, std::size_t scale) {
+        const VertexCurvature& c = surface_.curvature[scale];
+        std::vector<float> confidence(c.k1.size());
+        for (std::size_t v = 0; v < confidence.size(); ++v) {
+            // What is flatter than a radius of twice the median distance is flat.
+            const float largest = std::max({std::abs(c.k1[v]), std::abs(c.k2[v]), 0.5f / surface_.unit});
+            confidence[v] = direction_confidence((c.k1[v] - c.k2[v]) / (2 * largest));
+        }
+        std::vector<Vec3>& k_max = surface_.directions.k_max[scale];
+        k_max = smoother.complete(c.e1, confidence);
+        for (std::size_t v = 0; v < k_max.size(); ++v)
+            surface_.directions.k_min[scale].push_back(surface_.normals[v].cross(k_max[v]));
+    }
+
+    std::vector<Vec3> complete_axis(const DirectionSmoother& smoother, std::size_t scale, bool first) const {
+        std::vector<Vec3> axis(surface_.mesh.vertex_count());
+        std::vector<float> confidence(axis.size());
+        const FacesToVertices to_vertices(prepared_);
+        for (std::size_t v = 0; v < axis.size(); ++v) {
+            std::array<float, 6> covariance{};
+            for (std::size_t k = 0; k < 6; ++k)
+                covariance[k] = to_vertices.mean(v, [&](std::uint32_t f) { return covariances_[scale][f][k]; });
+            const TensorAxes axes = tensor_axes(covariance, surface_.normals[v]);
+            axis[v] = first ? axes.first : axes.second;
+            confidence[v] = first ? axes.first_confidence : axes.second_confidence;
+        }
+        return smoother.complete(axis, confidence);
+    }
+
+    void keep_context() {
+        const std::size_t faces = prepared_.face_count(), samples = prepared_.sample_count();
+        float largest = 0;
+        for (const float d : prepared_.distance) largest = std::isfinite(d) ? std::max(largest, d) : largest;
+        const auto edges = log_bin_edges<k_context_ranges>(largest > 0 ? largest : 1);
+        surface_.sample_face = prepared_.samples.face;
+        surface_.sample_bin.assign(samples * faces, k_context_ranges);
+        parallel_for(samples, [&](std::size_t s) {
+            for (std::size_t f = 0; f < faces; ++f) {
+                const float d = prepared_.distance[s * faces + f];
+                if (!std::isfinite(d)) continue;
+                std::uint8_t range = 0;
+                while (range + 1 < k_context_ranges && edges[range + 1] <= d) ++range;
+                surface_.sample_bin[s * faces + f] = range;
+            }
+        });
+        surface_.face_sample.resize(faces);
+        parallel_for(
+            faces,
+            [&](std::size_t f) {
+                std::size_t nearest = 0;
+                for (std::size_t s = 1; s < samples; ++s) {
+                    if (prepared_.distance[s * faces + f] < prepared_.distance[nearest * faces + f]) nearest = s;
+                }
+                surface_.face_sample[f] = static_cast<std::uint32_t>(nearest);
+            },
+            256);
+    }
+
+    Stopwatch watch_;
+    PreparedMesh prepared_;
+    HatchingSurface surface_;
+    std::vector<std::vector<std::array<float, 6>>> covariances_;
+};
+
+}  // namespace
+
+HatchingSurface measure_surface(const TriangleMesh& mesh) {
+    require_usable(mesh, "mesh");
+    return Measurement(mesh).run();
+}
+
+}  // namespace exemplar

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "host/hatching/orientation_samples.h"
+
+namespace exemplar {
+
+/// A first guess at the regions of a drawing that follow one rule.
+struct OrientationClusters {
+    std::size_t count = 0;
+    std::vector<std::uint32_t> cluster;  ///< of each sample, by falling size
+    std::vector<std::uint8_t> second;    ///< of each sample: 1 if it follows the cluster's second direction
+    std::vector<std::uint8_t> cross;     ///< of each cluster: 1 if it is cross-hatched
+};
+
+/// Constrained mean-shift clustering with a flat kernel (thesis Sec. 4.4.1, "Initialization"): clusters grow from
+/// random seeds over neighbors whose direction differs from the mean direction of the cluster (of cross-hatching the
+/// nearer of two) by less than a threshold, the median difference between neighbors, but no less than 15 degrees, lest
+/// noise-free curved hatching fall into slivers. More than 10% of cross-hatched pixels make a cluster cross-hatching;
+/// the first of its directions is the one with more pixels. At most `most` clusters are kept; what belongs to none
+/// joins the one whose direction fits best nearby.
+OrientationClusters grow_clusters(const OrientationSamples& samples, std::size_t most, std::uint64_t seed);
+
+}  // namespace exemplar

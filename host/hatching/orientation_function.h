@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace exemplar {
+
+/// Orientation features of thesis App. B.3: this many fields, and the same turned by 90 degrees.
+constexpr std::size_t k_orientation_fields = 35;
+constexpr std::size_t k_orientation_features = 2 * k_orientation_fields;
+
+/// A direction without sign as a vector of doubled angle, (cos 2 theta, sin 2 theta) (thesis Eq. 4.6): unit, or zero
+/// where there is no direction. Turning the direction by 90 degrees negates it.
+using DoubledAngle = std::array<float, 2>;
+
+inline DoubledAngle operator*(float factor, const DoubledAngle& v) {
+    return {factor * v[0], factor * v[1]};
+}
+inline float squared_distance(const DoubledAngle& a, const DoubledAngle& b) {
+    const float x = a[0] - b[0], y = a[1] - b[1];
+    return x * x + y * y;
+}
+/// Unit, or zero if it is shorter than 1e-6.
+DoubledAngle normalized(const DoubledAngle& v);
+/// Of an angle in radians.
+DoubledAngle doubled_angle(float angle);
+/// The angle in [0, pi).
+float angle_of(const DoubledAngle& v);
+
+/// Orientation features of some items (pixels).
+struct OrientationFields {
+    std::size_t rows = 0;
+    std::vector<DoubledAngle> values;  ///< k_orientation_fields x rows
+
+    explicit OrientationFields(std::size_t count = 0) : rows(count), values(k_orientation_fields * count) {}
+    std::span<DoubledAngle> field(std::size_t k) { return {values.data() + k * rows, rows}; }
+    std::span<const DoubledAngle> field(std::size_t k) const { return {values.data() + k * rows, rows}; }
+    /// Feature k < k_orientation_features of item i.
+    DoubledAngle feature(std::size_t k, std::size_t i) const {
+        if (k < k_orientation_fields) return values[k * rows + i];
+        return -1.0f * values[(k - k_orientation_fields) * rows + i];
+    }
+};
+
+/// A rule for the direction of strokes: f = sum of w_k v_k over a few features (thesis Eq. 4.7).
+struct OrientationFunction {
+    struct Term {
+        std::uint32_t feature;
+        float weight;
+        bool operator==(const Term&) const = default;
+    };
+    std::vector<Term> terms;
+
+    /// f of item i, normalized.
+    DoubledAngle evaluate(const OrientationFields& fields, std::size_t i) const;
+    bool operator==(const OrientationFunction&) const = default;
+};
+
+/// What learning an orientation function is told.
+struct OrientationTraining {
+    const OrientationFields& fields;
+    std::span<const DoubledAngle> target;    ///< u_i
+    std::span<const float> weight;           ///< of each item, not negative
+    std::span<const std::uint8_t> held_out;  ///< 1: not trained on, but decides when to stop
+    std::size_t most_terms = 6;
+};
+
+struct LearnedOrientation {
+    OrientationFunction function;
+    double error = 0;  ///< weighted mean of |u - f|^2 over the items held out (over all, if none is)
+};
+
+/// Gradient-based boosting for regression (Zemel and Pitassi 2001; thesis Sec. 2.4.3, 4.4.1): each round adds the
+/// feature that minimizes sum of w_i r^-1/2 exp(r |u_i - v_i|^2), with r by line search (the first: r = 1), multiplies
+/// the weights by that term, and ends where the items held out are fitted best; weights are the r over their sum. Then,
+/// beyond the thesis, the weights of the chosen features are fitted by least squares, which is kept if it fits the
+/// items held out better: averages alone cannot tell which of two good features is followed where they differ. A term
+/// that does not help by 2% is left out. No weight or no feature that is defined anywhere: no terms.
+LearnedOrientation learn_orientation(const OrientationTraining& training);
+
+}  // namespace exemplar

@@ -1,0 +1,274 @@
+#include "host/hatching/orientation_mixture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "host/core/interrupt.h"
+#include "host/core/parallel.h"
+#include "host/hatching/orientation_clusters.h"
+
+namespace exemplar {
+namespace {
+
+constexpr double k_least_share = 0.01;
+constexpr double k_least_variance = 1e-3;  // of |u - f|^2: about a degree
+
+/// An expert and what is thought of it: the columns of gamma and beta.
+struct Expert {
+    OrientationRule rule;
+    bool cross = false;
+    double share = 0;                          // pi_c
+    std::array<double, 2> part{1, 0};          // pi_cj
+    double variance = 0.1;                     // s_c
+    std::vector<float> gamma;                  // per sample
+    std::vector<float> beta;                   // per sample: of the first direction
+    std::vector<std::array<float, 2>> errors;  // r_icj
+    std::vector<float> error;                  // r_ic, median filtered
+    double held_out_error = 0;
+};
+
+class Mixture {
+  public:
+    Mixture(const OrientationSamples& samples, const MixtureOptions& options, const std::function<void()>& progress)
+        : samples_(samples), options_(options), progress_(progress), neighbors_(sample_neighbors(samples, 1)) {
+        const OrientationClusters clusters = grow_clusters(samples, options.most_clusters, options.seed);
+        held_out_ = held_out_rectangles(samples.x, samples.y, clusters.cluster, options.held_out, options.seed + 1);
+        experts_.resize(clusters.count);
+        for (std::size_t c = 0; c < clusters.count; ++c) {
+            experts_[c].cross = clusters.cross[c] != 0;
+            experts_[c].gamma.resize(samples.size());
+            experts_[c].beta.assign(samples.size(), 1);
+        }
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            experts_[clusters.cluster[i]].gamma[i] = 1;
+            if (clusters.second[i]) experts_[clusters.cluster[i]].beta[i] = 0;
+        }
+    }
+
+    OrientationMixture run() {
+        converge();
+        while (merge_best_pair()) converge();
+        return result();
+    }
+
+  private:
+    void converge() {
+        double last = -1;
+        for (std::size_t iteration = 0; iteration < options_.iterations; ++iteration) {
+            check_interrupt();
+            for (Expert& expert : experts_) update_model(expert);
+            update_variance();
+            const double error = update_labels();
+            dissolve_small();
+            progress_();
+            if (last >= 0 && std::abs(error - last) < 1e-3 * last + 1e-6) break;
+            last = error;
+        }
+    }
+
+    LearnedOrientation learn(const std::vector<float>& weight) const {
+        return learn_orientation({samples_.fields, samples_.direction, weight, held_out_});
+    }
+
+    void update_model(Expert& expert) const {
+        double held_out_error = 0;
+        for (std::size_t j = 0; j < (expert.cross ? 2U : 1U); ++j) {
+            std::vector<float> weight(samples_.size());
+            for (std::size_t i = 0; i < weight.size(); ++i)
+                weight[i] = expert.gamma[i] * (j == 0 ? expert.beta[i] : 1 - expert.beta[i]);
+            const LearnedOrientation learned = learn(weight);
+            expert.rule.function[j] = learned.function;
+            held_out_error += (expert.cross ? expert.part[j] : 1) * learned.error;
+        }
+        expert.held_out_error = held_out_error;
+        measure_errors(expert);
+    }
+
+    void measure_errors(Expert& expert) const {
+        expert.errors.resize(samples_.size());
+        std::vector<float> nearest(samples_.size());
+        parallel_for(
+            samples_.size(),
+            [&](std::size_t i) {
+                for (std::size_t j = 0; j < 2; ++j) {
+                    const bool exists = j == 0 || expert.cross;
+                    expert.errors[i][j] = exists
+                                              ? squared_distance(samples_.direction[i],
+                                                                 expert.rule.function[j].evaluate(samples_.fields, i))
+                                              : 4.0f;
+                }
+                nearest[i] = std::min(expert.errors[i][0], expert.errors[i][1]);
+            },
+            1024);
+        expert.error.resize(samples_.size());
+        parallel_ranges(samples_.size(), 256, [&](std::size_t begin, std::size_t end) {
+            std::vector<float> around;
+            for (std::size_t i = begin; i < end; ++i) {
+                around.clear();
+                for (const std::uint32_t near : neighbors_.of(i)) around.push_back(nearest[near]);
+                const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
+                std::ranges::nth_element(around, middle);
+                expert.error[i] = *middle;
+            }
+        });
+    }
+
+    /// Eqs. 4.13, 4.14.
+    void update_variance() {
+        const auto count = static_cast<double>(samples_.size());
+        variance_ = 0;
+        for (Expert& expert : experts_) {
+            double gamma = 0, first = 0, second = 0, variance = 0;
+            for (std::size_t i = 0; i < samples_.size(); ++i) {
+                const auto g = static_cast<double>(expert.gamma[i]), b = static_cast<double>(expert.beta[i]);
+                gamma += g;
+                variance_ += g * static_cast<double>(expert.error[i]) / count;
+                first += g * b;
+                second += g * (1 - b);
+                variance += g * (b * static_cast<double>(expert.errors[i][0]) +
+                                 (expert.cross ? (1 - b) * static_cast<double>(expert.errors[i][1]) : 0));
+            }
+            expert.share = gamma / count;
+            if (!(gamma > 0)) continue;
+            expert.part = {first / gamma, second / gamma};
+            expert.variance = std::max(variance / gamma, k_least_variance);
+        }
+        variance_ = std::max(variance_, k_least_variance);
+    }
+
+    /// Eqs. 4.10, 4.11; returns the mean error under the new labels.
+    double update_labels() {
+        std::vector<double> mean(samples_.size());
+        parallel_for(
+            samples_.size(),
+            [&](std::size_t i) {
+                double sum = 0, least = 4;
+                for (const Expert& e : experts_) least = std::min(least, static_cast<double>(e.error[i]));
+                for (Expert& e : experts_) {
+                    // Relative to the least error, so that the sum cannot vanish.
+                    const double above = static_cast<double>(e.error[i]) - least;
+                    e.gamma[i] = static_cast<float>(e.share * std::exp(-above / (2 * variance_)));
+                    sum += static_cast<double>(e.gamma[i]);
+                    if (e.cross) e.beta[i] = first_part(e, i);
+                }
+                for (Expert& e : experts_) {
+                    e.gamma[i] = static_cast<float>(static_cast<double>(e.gamma[i]) / sum);
+                    mean[i] += static_cast<double>(e.gamma[i]) * static_cast<double>(e.error[i]);
+                }
+            },
+            1024);
+        return std::accumulate(mean.begin(), mean.end(), 0.0) / static_cast<double>(mean.size());
+    }
+
+    static float first_part(const Expert& e, std::size_t i) {
+        const double difference = static_cast<double>(e.errors[i][1] - e.errors[i][0]);
+        const double odds = e.part[1] / std::max(e.part[0], 1e-6) * std::exp(-difference / (2 * e.variance));
+        return static_cast<float>(1 / (1 + odds));
+    }
+
+    void dissolve_small() {
+        const auto share = [&](const Expert& expert) {
+            return static_cast<double>(std::accumulate(expert.gamma.begin(), expert.gamma.end(), 0.0)) /
+                   static_cast<double>(samples_.size());
+        };
+        while (experts_.size() > 1) {
+            const auto smallest = std::ranges::min_element(experts_, {}, share);
+            if (share(*smallest) >= k_least_share) return;
+            experts_.erase(smallest);
+            for (std::size_t i = 0; i < samples_.size(); ++i) {
+                float sum = 0;
+                for (const Expert& e : experts_) sum += e.gamma[i];
+                for (Expert& e : experts_)
+                    e.gamma[i] = sum > 0 ? e.gamma[i] / sum : 1 / static_cast<float>(experts_.size());
+            }
+        }
+    }
+
+    /// One expert in place of two.
+    Expert merged(const Expert& a, const Expert& b) const {
+        Expert expert;
+        expert.cross = a.cross || b.cross;
+        expert.gamma.resize(samples_.size());
+        expert.beta.resize(samples_.size());
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
+            const float sum = a.gamma[i] + b.gamma[i];
+            expert.gamma[i] = sum;
+            expert.beta[i] = sum > 0 ? (a.gamma[i] * a.beta[i] + b.gamma[i] * b.beta[i]) / sum : 1.0f;
+        }
+        double first = 0, all = 0;
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
+            first += static_cast<double>(expert.gamma[i] * expert.beta[i]);
+            all += static_cast<double>(expert.gamma[i]);
+        }
+        expert.share = a.share + b.share;
+        expert.part = {all > 0 ? first / all : 1, all > 0 ? 1 - first / all : 0};
+        update_model(expert);
+        return expert;
+    }
+
+    /// Merges the pair whose common rule loses least, if it loses next to nothing; false if there is none.
+    bool merge_best_pair() {
+        struct Pair {
+            std::size_t a, b;
+            double loss;
+            Expert expert;
+        };
+        std::optional<Pair> best;
+        for (std::size_t a = 0; a < experts_.size(); ++a) {
+            for (std::size_t b = a + 1; b < experts_.size(); ++b) {
+                check_interrupt();
+                const Expert &x = experts_[a], &y = experts_[b];
+                Expert expert = merged(x, y);
+                const double apart = (x.share * x.held_out_error + y.share * y.held_out_error) / (x.share + y.share);
+                // A tenth more, and what a degree and a half of noise makes.
+                constexpr double k_noise = 0.003;
+                const double loss = expert.held_out_error - (1.1 * apart + k_noise);
+                if (!best || loss < best->loss) best = Pair{a, b, loss, std::move(expert)};
+                progress_();
+            }
+        }
+        if (!best || best->loss > 0) return false;
+        experts_[best->a] = std::move(best->expert);
+        experts_.erase(experts_.begin() + static_cast<std::ptrdiff_t>(best->b));
+        return true;
+    }
+
+    OrientationMixture result() {
+        std::ranges::stable_sort(experts_, std::ranges::greater{}, &Expert::share);
+        OrientationMixture out;
+        out.segment.resize(samples_.size());
+        for (const Expert& expert : experts_) {
+            out.rules.push_back(expert.rule);
+            if (!expert.cross) out.rules.back().function[1] = {};
+            out.share.push_back(expert.share);
+        }
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
+            for (std::uint32_t c = 1; c < experts_.size(); ++c) {
+                if (experts_[c].gamma[i] > experts_[out.segment[i]].gamma[i]) out.segment[i] = c;
+            }
+            const auto& e = experts_[out.segment[i]].errors[i];
+            out.error += static_cast<double>(std::min(e[0], e[1])) / static_cast<double>(samples_.size());
+        }
+        return out;
+    }
+
+    const OrientationSamples& samples_;
+    const MixtureOptions& options_;
+    const std::function<void()>& progress_;
+    SampleNeighbors neighbors_;
+    std::vector<std::uint8_t> held_out_;
+    std::vector<Expert> experts_;
+    double variance_ = 0.1;  // s
+};
+
+}  // namespace
+
+OrientationMixture learn_mixture(const OrientationSamples& samples, const MixtureOptions& options,
+                                 const std::function<void()>& progress) {
+    if (samples.size() == 0) return {};
+    return Mixture(samples, options, progress).run();
+}
+
+}  // namespace exemplar

@@ -78,17 +78,17 @@ GBuffer render_gbuffer(const TriangleMesh& mesh, const Camera& camera, int width
     out.face.assign(out.size(), k_no_face);
     out.barycentric.assign(out.size(), {});
     out.depth.assign(out.size(), std::numeric_limits<float>::infinity());
-    parallel_for(static_cast<std::size_t>(height), [&](std::size_t y) {
+    parallel_for(static_cast<std::size_t>(height), [&](std::size_t row) {
+        const auto y = static_cast<int>(row);
         for (int x = 0; x < width; ++x) {
-            const std::size_t pixel = y * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+            const std::size_t pixel = out.index(x, y);
             const std::uint32_t face = out.face[pixel] = samples[pixel].face;
             if (face == k_no_face) continue;
             std::array<Vector3d, 3> corner;
             for (std::size_t i = 0; i < 3; ++i) corner[i] = mesh.vertices[mesh.faces[face][i]].cast<double>();
-            const Vector3d b = rays.meet(x, static_cast<int>(y), corner);
+            const Vector3d b = rays.meet(x, y, corner);
             out.barycentric[pixel] = {static_cast<float>(b[1]), static_cast<float>(b[2])};
-            out.depth[pixel] =
-                static_cast<float>(rays.depth(b[0] * corner[0] + b[1] * corner[1] + b[2] * corner[2]));
+            out.depth[pixel] = static_cast<float>(rays.depth(b[0] * corner[0] + b[1] * corner[1] + b[2] * corner[2]));
         }
     });
     return out;

@@ -19,6 +19,9 @@ struct GBuffer {
     std::vector<float> depth;                       ///< along the camera's axis, mesh units; infinity: nothing
 
     std::size_t size() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    }
 };
 
 /// Renders G-buffers. Faces are seen from both sides; the nearest counts, of equally near ones the first. Barycentrics

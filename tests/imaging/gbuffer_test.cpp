@@ -46,9 +46,9 @@ void expect_consistent(const TriangleMesh& mesh, const Camera& camera, const GBu
         ++seen;
         const Vec3 point = seen_point(mesh, gbuffer, p);
         const Vec3 place = camera.project(point, gbuffer.width, gbuffer.height);
-        const auto x = static_cast<float>(p % static_cast<std::size_t>(gbuffer.width));
-        const auto y = static_cast<float>(p / static_cast<std::size_t>(gbuffer.width));
-        const float off = (place.head<2>() - Vec2(x + 0.5f, y + 0.5f)).norm();
+        const std::size_t x = p % static_cast<std::size_t>(gbuffer.width);
+        const std::size_t y = p / static_cast<std::size_t>(gbuffer.width);
+        const float off = (place.head<2>() - Vec2(x, y) - Vec2::Constant(0.5f)).norm();
         EXPECT_LT(off, 4.0f / 256) << p;
         moved += off > 1e-3f;
         const float depth = -(camera.view * point.homogeneous()).z();
@@ -64,9 +64,9 @@ TEST(GBuffer, KnowsFacePlaceAndDepthOfEveryPixelOfARectangle) {
     mesh.faces = {{0, 1, 2}, {0, 2, 3}};
     const GBuffer gbuffer = render_gbuffer(mesh, parallel_camera(), 16, 16);
     ASSERT_EQ(gbuffer.size(), 256u);
-    for (std::size_t y = 0; y < 16; ++y)
-        for (std::size_t x = 0; x < 16; ++x) {
-            const std::size_t p = 16 * y + x;
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x) {
+            const std::size_t p = gbuffer.index(x, y);
             const bool inside = x >= 4 && x < 12 && y >= 2 && y < 8;
             ASSERT_EQ(gbuffer.face[p] != k_no_face, inside) << x << ' ' << y;
             if (!inside) continue;
@@ -96,7 +96,7 @@ TEST(GBuffer, FacesThatCrossTheNearPlaneOrGoBehindTheEyeAreCut) {
         const float slope = std::tan(0.75f) * (static_cast<float>(2 * y + 1) / 41 - 1);
         const float depth = slope > 0.011f ? 0.5f / slope : k_infinite;
         for (int x = 0; x < 41; ++x) {
-            const float seen = gbuffer.depth[static_cast<std::size_t>(41 * y + x)];
+            const float seen = gbuffer.depth[gbuffer.index(x, y)];
             if (depth == k_infinite)
                 EXPECT_EQ(seen, depth);
             else

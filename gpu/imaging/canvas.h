@@ -19,7 +19,8 @@ class Canvas {
   public:
     static constexpr VkFormat k_rgba = VK_FORMAT_R8G8B8A8_UNORM;  ///< sRGB-encoded
 
-    /// `color` has 8 bits a channel, or is VK_FORMAT_R16G16B16A16_SFLOAT. There are no pixels yet.
+    /// `color` has 4 bytes a pixel (8 bits a channel, or one number), or is VK_FORMAT_R16G16B16A16_SFLOAT. There are no
+    /// pixels yet.
     explicit Canvas(Device& device, VkFormat color = k_rgba);
 
     /// Its contents are lost unless the size stays. No work that uses it may be under way. Throws UsageError if it is

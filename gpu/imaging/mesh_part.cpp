@@ -10,9 +10,11 @@ MeshPart cut_part(const MeshSurface& surface, std::size_t first, std::size_t cou
     constexpr std::uint32_t k_unused = std::numeric_limits<std::uint32_t>::max();
     std::vector<std::uint32_t> place(surface.vertices.size(), k_unused);
     MeshPart part;
-    const auto colors = surface.colors.subspan(first, count);
-    part.colors.assign(colors.begin(), colors.end());
-    if (!surface.vertex_normals) {
+    if (!surface.colors.empty()) {
+        const auto colors = surface.colors.subspan(first, count);
+        part.colors.assign(colors.begin(), colors.end());
+    }
+    if (!surface.vertex_normals && !surface.normals.empty()) {
         const auto normals = surface.normals.subspan(first, count);
         part.normals.assign(normals.begin(), normals.end());
     }

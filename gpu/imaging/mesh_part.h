@@ -8,13 +8,13 @@
 
 namespace exemplar {
 
-/// A mesh as it is drawn: with a color per face, and a normal per vertex or per face.
+/// A mesh as it is drawn: with a color per face, and a normal per vertex or per face; or without them.
 struct MeshSurface {
     std::span<const Face> faces;
     std::span<const Vec3> vertices;
     std::span<const Vec3> normals;
     std::span<const Color> colors;
-    bool vertex_normals = false;
+    bool vertex_normals = false;  ///< there is a normal per vertex
 };
 
 /// Some faces of a surface with only the vertices they use.

@@ -33,24 +33,14 @@ VkExtent2D sample_extent(const PictureTile& tile) {
     return {static_cast<std::uint32_t>(tile.width * k_samples), static_cast<std::uint32_t>(tile.height * k_samples)};
 }
 
-// Stretches the part [begin, begin + size) of `whole` pixels to the full clip space along one axis.
-void zoom(Eigen::Matrix4f& matrix, int axis, int begin, int size, int whole) {
-    const float center = static_cast<float>(2 * begin + size) / static_cast<float>(whole) - 1;
-    matrix.row(axis) =
-        (matrix.row(axis) - center * matrix.row(3)) * (static_cast<float>(whole) / static_cast<float>(size));
-}
-
 shared::RenderParameters tile_parameters(const MeshDraw& draw, const PictureTile& tile) {
-    Eigen::Matrix4f matrix = draw.view_projection;
-    zoom(matrix, 0, tile.x, tile.width, draw.width);
-    zoom(matrix, 1, tile.y, tile.height, draw.height);
     shared::RenderParameters parameters{.matrix = {},
                                         .eye = draw.eye,
                                         .ambient = draw.options.ambient,
                                         .ground = draw.options.ground,
                                         .headlight = draw.options.headlight,
                                         .vertex_normals = draw.options.smooth ? 1u : 0u};
-    put_matrix(matrix, parameters.matrix);
+    put_matrix(tile_matrix(draw.view_projection, tile, draw.width, draw.height), parameters.matrix);
     return parameters;
 }
 
@@ -107,15 +97,13 @@ Image MeshRenderer::render(const TriangleMesh& mesh, std::span<const Color> face
     for (std::size_t c = 0; c < 3; ++c)
         draw.background[c] = srgb_to_linear(static_cast<float>(options.background[c]) / 255);
     Image image(width, height, 3);
-    for (int y = 0; y < height; y += tile_size_)
-        for (int x = 0; x < width; x += tile_size_) {
-            const PictureTile tile{x, y, std::min(tile_size_, width - x), std::min(tile_size_, height - y)};
-            if (whole)
-                draw_part(tile, draw, {.first = true, .last = true});
-            else
-                draw_parts(tile, draw, surface);
-            resolve_tile(tile, image);
-        }
+    for_each_tile(width, height, tile_size_, [&](const PictureTile& tile) {
+        if (whole)
+            draw_part(tile, draw, {.first = true, .last = true});
+        else
+            draw_parts(tile, draw, surface);
+        resolve_tile(tile, image);
+    });
     return image;
 }
 

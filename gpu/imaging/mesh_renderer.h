@@ -8,6 +8,7 @@
 
 #include "gpu/imaging/canvas.h"
 #include "gpu/imaging/mesh_part.h"
+#include "gpu/imaging/picture_tile.h"
 #include "gpu/runtime/buffer.h"
 #include "gpu/runtime/device.h"
 #include "gpu/runtime/draw_pipeline.h"
@@ -20,12 +21,6 @@
 #include "host/mesh/mesh.h"
 
 namespace exemplar {
-
-/// A part of a picture that is drawn at once, in pixels.
-struct PictureTile {
-    int x, y;  ///< of its upper left pixel
-    int width, height;
-};
 
 /// Draws meshes with a color per face, without a window. The picture is render_mesh's of host/imaging: the same 2 x 2
 /// samples per pixel, light and averaging in linear color. Inside surfaces they agree within 2 of 255; samples near

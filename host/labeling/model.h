@@ -10,14 +10,6 @@
 #include "host/mesh/labels.h"
 
 namespace exemplar {
-
-/// A trained classifier and how its scores become probabilities.
-struct CalibratedStumps {
-    BoostedStumps stumps;
-    Link link = Link::softmax;
-    float scale = 1;  ///< s of the link, > 0
-};
-
 /// Parameters of the CRF's pairwise term (thesis Eqs. 3.3, 3.4).
 struct CrfParameters {
     double kappa = 1;   ///< weight of -log P(boundary)

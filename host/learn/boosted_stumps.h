@@ -41,6 +41,13 @@ enum class Link : std::uint32_t {
     sigmoid = 1,  ///< sigma(s H_c) / sum sigma(s H)
 };
 
+/// A trained classifier and how its scores become probabilities.
+struct CalibratedStumps {
+    BoostedStumps stumps;
+    Link link = Link::softmax;
+    float scale = 1;  ///< s of the link, > 0
+};
+
 /// Evaluates a classifier for many items. The CPU implementation is the reference; gpu/learn implements it in a shader.
 class StumpScorer {
   public:

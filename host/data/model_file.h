@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "host/data/safetensors.h"
+#include "host/learn/boosted_stumps.h"
+
+/// What the model files of all systems have in common.
+namespace exemplar {
+
+/// Throws ModelError: the file is damaged, in this way.
+[[noreturn]] void inconsistent(const TensorFile& file, const std::string& what);
+/// Throws ModelError if one of the values is not finite.
+void require_finite(const TensorFile& file, const std::string& name, const std::vector<float>& values);
+/// Throws ModelError unless the metadata of that key is the version this program knows; `mend` says what to do with an
+/// older file.
+void require_version(const TensorFile& file, const std::string& key, int known, const std::string& mend);
+
+/// Adds a classifier as arrays called NAME.feature, NAME.threshold_above_below, ... (docs/formats.md).
+void add_classifier(TensorFile& file, const std::string& name, const CalibratedStumps& classifier);
+/// Reads it back; throws ModelError if arrays are missing, contradict each other, or name a feature or class that there
+/// is not.
+CalibratedStumps get_classifier(const TensorFile& file, const std::string& name, std::size_t class_count,
+                                std::size_t feature_count);
+
+}  // namespace exemplar

@@ -1,0 +1,239 @@
+#include "host/hatching/hatching_style.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "host/core/errors.h"
+#include "host/data/model_file.h"
+#include "host/hatching/pixel_classifier.h"
+#include "host/hatching/pixel_features.h"
+#include "host/hatching/powers.h"
+
+namespace exemplar {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* k_kind = "exemplar hatching style";
+constexpr int k_format_version = 1;
+constexpr std::size_t k_most_segments = 64, k_most_stages = 16, k_largest_drawing = 1 << 15;
+
+void add_function(TensorFile& file, const std::string& name, const OrientationFunction& function) {
+    std::vector<std::uint32_t> features;
+    std::vector<float> weights;
+    for (const auto& term : function.terms) {
+        features.push_back(term.feature);
+        weights.push_back(term.weight);
+    }
+    file.add(name + ".feature", {features.size()}, features);
+    file.add(name + ".weight", {weights.size()}, weights);
+}
+
+OrientationFunction get_function(const TensorFile& file, const std::string& name) {
+    const auto features = file.get<std::uint32_t>(name + ".feature", {TensorFile::k_any});
+    const auto weights = file.get<float>(name + ".weight", {features.size()});
+    require_finite(file, name + ".weight", weights);
+    OrientationFunction function;
+    for (std::size_t k = 0; k < features.size(); ++k) {
+        if (features[k] >= k_orientation_features)
+            inconsistent(
+                file, fmt::format("{} uses orientation feature {} of {}", name, features[k], k_orientation_features));
+        function.terms.push_back({features[k], weights[k]});
+    }
+    return function;
+}
+
+void add_property(TensorFile& file, const std::string& name, const PropertyModel& model) {
+    std::vector<std::uint32_t> features;
+    std::vector<float> values;
+    for (const PropertyModel::Term& term : model.terms) {
+        features.push_back(term.feature);
+        values.insert(values.end(), {term.a, term.b, term.exponent, term.low, term.high, term.least});
+    }
+    file.add(name + ".feature", {features.size()}, features);
+    file.add(name + ".a_b_exponent_low_high_least", {features.size(), 6}, values);
+    file.add(name + ".factor", {1}, std::vector<float>{model.factor});
+}
+
+PropertyModel get_property(const TensorFile& file, const std::string& name, std::size_t feature_count) {
+    const auto features = file.get<std::uint32_t>(name + ".feature", {TensorFile::k_any});
+    const auto values = file.get<float>(name + ".a_b_exponent_low_high_least", {features.size(), 6});
+    require_finite(file, name, values);
+    PropertyModel model;
+    model.factor = file.get<float>(name + ".factor", {1})[0];
+    if (!(model.factor > 0) || !std::isfinite(model.factor)) inconsistent(file, name + ".factor is not positive");
+    for (std::size_t k = 0; k < features.size(); ++k) {
+        const float* v = values.data() + 6 * k;
+        if (features[k] >= k_powers * feature_count)
+            inconsistent(file, fmt::format("{} uses feature {} of {}", name, features[k], k_powers * feature_count));
+        if (!(v[5] > 0)) inconsistent(file, name + " has a term without a least value");
+        model.terms.push_back({features[k], v[0], v[1], v[2], v[3], v[4], v[5]});
+    }
+    return model;
+}
+
+void read_description(const TensorFile& file, HatchingStyle& style, std::size_t& stages) {
+    const Json json = Json::parse(file.meta("style"));
+    style.name = json.at("name");
+    style.width = json.at("width");
+    style.height = json.at("height");
+    style.share = json.at("share").get<std::vector<double>>();
+    style.crf.strength = json.at("strength");
+    style.crf.offset = json.at("offset");
+    stages = json.at("stages");
+    const auto size_fits = [](int size) { return size > 0 && static_cast<std::size_t>(size) <= k_largest_drawing; };
+    if (!size_fits(style.width) || !size_fits(style.height)) inconsistent(file, "the size of its drawing is odd");
+    if (style.share.empty() || style.share.size() > k_most_segments)
+        inconsistent(file, fmt::format("it has {} segments", style.share.size()));
+    if (stages == 0 || stages > k_most_stages)
+        inconsistent(file, fmt::format("it has {} classifiers of segments", stages));
+    if (!(style.crf.strength >= 0) || !std::isfinite(style.crf.strength) || !std::isfinite(style.crf.offset))
+        inconsistent(file, "a weight of its label cut is out of range");
+}
+
+/// "0.62 k_max,1 + 0.38 perp grad(L.N),2".
+std::string describe(const OrientationFunction& function) {
+    if (function.terms.empty()) return "no direction";
+    std::string text;
+    for (const auto& term : function.terms) {
+        // A negative weight is that of the field turned by 90 degrees.
+        const bool turned = term.weight < 0;
+        const std::size_t feature =
+            turned ? (term.feature + k_orientation_fields) % k_orientation_features : term.feature;
+        text += fmt::format("{}{:.2f} {}", text.empty() ? "" : " + ", std::abs(term.weight),
+                            orientation_feature_names()[feature]);
+    }
+    return text;
+}
+
+/// The features that stumps use most, with their share of the stumps.
+std::string describe(const HatchingStyle& style, const CalibratedStumps& classifier) {
+    std::map<std::uint32_t, std::size_t> counts;
+    for (const Stump& stump : classifier.stumps.stumps) ++counts[stump.feature];
+    std::vector<std::pair<std::size_t, std::uint32_t>> order;
+    for (const auto& [feature, count] : counts) order.emplace_back(count, feature);
+    std::ranges::sort(order, std::ranges::greater{});
+    std::string text;
+    for (std::size_t k = 0; k < std::min<std::size_t>(order.size(), 5); ++k) {
+        const double share = static_cast<double>(order[k].first) / static_cast<double>(classifier.stumps.stumps.size());
+        text += fmt::format("{}{} ({:.0f}%)", k ? ", " : "", feature_name(style, order[k].second), 100 * share);
+    }
+    return text.empty() ? "nothing: it is the same everywhere" : text;
+}
+
+std::string describe(const HatchingStyle& style, const PropertyModel& model) {
+    std::string text = fmt::format("{:.3g}", model.factor);
+    for (const auto& term : model.terms)
+        text += fmt::format(" * ({:.3g} {} {} {:.3g})^{:.2f}", term.a, feature_name(style, term.feature),
+                            term.b < 0 ? "-" : "+", std::abs(term.b), term.exponent);
+    return text;
+}
+
+}  // namespace
+
+const char* name_of(StrokeProperty property) {
+    constexpr std::array<const char*, k_stroke_properties> k_names{"thickness", "intensity", "spacing", "length"};
+    return k_names[static_cast<std::size_t>(property)];
+}
+
+std::vector<float>& property_of(HatchingFields& fields, StrokeProperty property) {
+    const std::array<std::vector<float>*, k_stroke_properties> images{&fields.thickness, &fields.intensity,
+                                                                      &fields.spacing, &fields.length};
+    return *images[static_cast<std::size_t>(property)];
+}
+
+const std::vector<float>& property_of(const HatchingFields& fields, StrokeProperty property) {
+    return property_of(const_cast<HatchingFields&>(fields), property);
+}
+
+std::size_t HatchingStyle::feature_count() const {
+    return k_pixel_features + k_context_ranges * rules.size();
+}
+
+void save_hatching_style(const std::filesystem::path& path, const HatchingStyle& style) {
+    TensorFile file;
+    file.metadata["kind"] = k_kind;
+    file.metadata["format_version"] = std::to_string(k_format_version);
+    file.metadata["feature_version"] = std::to_string(k_hatching_feature_version);
+    file.metadata["style"] = Json{
+        {"name", style.name},
+        {"width", style.width},
+        {"height", style.height},
+        {"share", style.share},
+        {"strength", style.crf.strength},
+        {"offset", style.crf.offset},
+        {"stages",
+         style.segments.size()}}.dump();
+    for (std::size_t c = 0; c < style.rules.size(); ++c) {
+        for (std::size_t j = 0; j < k_hatch_layers; ++j)
+            add_function(file, fmt::format("rule.{}.{}", c, j), style.rules[c].function[j]);
+    }
+    for (std::size_t s = 0; s < style.segments.size(); ++s)
+        add_classifier(file, fmt::format("segments.{}", s), style.segments[s]);
+    add_classifier(file, "boundary", style.boundary);
+    add_classifier(file, "levels", style.levels);
+    for (std::size_t p = 0; p < k_stroke_properties; ++p)
+        add_property(file, name_of(static_cast<StrokeProperty>(p)), style.properties[p]);
+    write_safetensors(path, file);
+}
+
+HatchingStyle load_hatching_style(const std::filesystem::path& path) {
+    const TensorFile file = read_safetensors(path);
+    if (const auto kind = file.metadata.find("kind"); kind == file.metadata.end() || kind->second != k_kind)
+        throw ModelError(fmt::format("{}: is no hatching style; make one with 'exemplar hatch train'", file.path));
+    require_version(file, "format_version", k_format_version, "train it again");
+    require_version(file, "feature_version", k_hatching_feature_version, "its features have changed: train it again");
+    HatchingStyle style;
+    std::size_t stages = 0;
+    try {
+        read_description(file, style, stages);
+    } catch (const Json::exception&) {
+        inconsistent(file, "its description cannot be read");
+    }
+    const std::size_t labels = style.share.size();
+    style.rules.resize(labels);
+    for (std::size_t c = 0; c < labels; ++c) {
+        for (std::size_t j = 0; j < k_hatch_layers; ++j)
+            style.rules[c].function[j] = get_function(file, fmt::format("rule.{}.{}", c, j));
+    }
+    const std::size_t features = k_powers * style.feature_count();
+    for (std::size_t s = 0; s < stages; ++s)
+        style.segments.push_back(get_classifier(file, fmt::format("segments.{}", s), labels,
+                                                s == 0 ? k_powers * k_pixel_features : features));
+    style.boundary = get_classifier(file, "boundary", 2, k_powers * k_pixel_features);
+    style.levels = get_classifier(file, "levels", 3, features);
+    for (std::size_t p = 0; p < k_stroke_properties; ++p)
+        style.properties[p] = get_property(file, name_of(static_cast<StrokeProperty>(p)), style.feature_count());
+    return style;
+}
+
+std::string feature_name(const HatchingStyle& style, std::uint32_t expanded) {
+    const std::size_t base = expanded / k_powers;
+    const std::string name = base < k_pixel_features
+                                 ? pixel_feature_names()[base]
+                                 : contextual_feature_names(style.rules.size()).at(base - k_pixel_features);
+    return name_of_power(name, expanded % k_powers);
+}
+
+std::string describe_hatching_style(const HatchingStyle& style) {
+    std::string text =
+        fmt::format("Hatching style of {}, a drawing of {} x {} pixels.\n", style.name, style.width, style.height);
+    for (std::size_t c = 0; c < style.rules.size(); ++c) {
+        text += fmt::format("Segment {} ({:.0f}% of the strokes): hatches along {}", c + 1, 100 * style.share[c],
+                            describe(style.rules[c].function[0]));
+        if (style.rules[c].crosses()) text += fmt::format("; crossed along {}", describe(style.rules[c].function[1]));
+        text += ".\n";
+    }
+    if (style.rules.size() > 1)
+        text += fmt::format("Segments are told by {}.\n", describe(style, style.segments.back()));
+    text += fmt::format("Hatching levels are told by {}.\n", describe(style, style.levels));
+    for (std::size_t p = 0; p < k_stroke_properties; ++p)
+        text += fmt::format("{} = {}\n", name_of(static_cast<StrokeProperty>(p)), describe(style, style.properties[p]));
+    return text;
+}
+
+}  // namespace exemplar

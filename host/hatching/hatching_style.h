@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "host/hatching/hatching_fields.h"
+#include "host/hatching/orientation_mixture.h"
+#include "host/hatching/pixel_crf.h"
+#include "host/hatching/property_model.h"
+#include "host/learn/boosted_stumps.h"
+
+namespace exemplar {
+
+/// The real-valued properties of strokes (thesis Sec. 4.3.3).
+enum class StrokeProperty { thickness, intensity, spacing, length };
+constexpr std::size_t k_stroke_properties = 4;
+/// "thickness" and so on.
+const char* name_of(StrokeProperty property);
+/// The image of that property.
+std::vector<float>& property_of(HatchingFields& fields, StrokeProperty property);
+const std::vector<float>& property_of(const HatchingFields& fields, StrokeProperty property);
+
+/// A hatching style, learned from one drawing. Features are numbered as in powers.h; from 4 k_pixel_features on they
+/// are the contextual features of as many labels as there are rules.
+struct HatchingStyle {
+    std::string name;                        ///< of the drawing
+    int width = 0, height = 0;               ///< of the drawing: lengths are in its pixels
+    std::vector<OrientationRule> rules;      ///< of the segments
+    std::vector<double> share;               ///< of the drawing's strokes in each segment
+    std::vector<CalibratedStumps> segments;  ///< cascade: from the second on with contextual features
+    CalibratedStumps boundary;               ///< two classes: on a boundary of hatching regions or not
+    CalibratedStumps levels;                 ///< three classes
+    PixelCrfParameters crf;
+    std::array<PropertyModel, k_stroke_properties> properties;
+
+    std::size_t feature_count() const;  ///< base features, contextual ones included
+};
+
+/// Identifies the meaning of feature numbers; changes whenever it changes.
+constexpr int k_hatching_feature_version = 1;
+
+/// Writes and reads style files (safetensors; docs/formats.md). Reading checks everything and throws ModelError, naming
+/// the file, what is wrong, and the mend.
+void save_hatching_style(const std::filesystem::path& path, const HatchingStyle& style);
+HatchingStyle load_hatching_style(const std::filesystem::path& path);
+
+/// The style in words: which rule hatches which segment (as the legend of thesis Fig. 4.3) and which features drive
+/// each property (as Figs. 4.15, 4.16).
+std::string describe_hatching_style(const HatchingStyle& style);
+
+/// The name of an expanded feature of a style, e.g. "1/image.L.N@2^2".
+std::string feature_name(const HatchingStyle& style, std::uint32_t expanded);
+
+}  // namespace exemplar

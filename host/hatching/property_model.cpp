@@ -1,0 +1,337 @@
+#include "host/hatching/property_model.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "host/core/errors.h"
+#include "host/core/interrupt.h"
+#include "host/core/parallel.h"
+#include "host/hatching/powers.h"
+
+namespace exemplar {
+namespace {
+
+/// Sums of one bin of a feature.
+struct BinSums {
+    double weight = 0, target = 0;
+};
+
+/// A weak regressor while it is sought: log(a x + b).
+struct Candidate {
+    double error = std::numeric_limits<double>::infinity();  // weighted mean of squares
+    PropertyModel::Term term;
+};
+
+class Boosting {
+  public:
+    Boosting(const PropertyTraining& training, const std::function<void()>& progress)
+        : training_(training), progress_(progress), log_target_(training.target.size()), weight_(log_target_.size()) {
+        for (std::size_t i = 0; i < log_target_.size(); ++i) {
+            log_target_[i] = std::log(training.target[i]);
+            weight_[i] = training.held_out[i] ? 0 : 1;
+        }
+        least_ = 0.25f * *std::ranges::min_element(training.target);
+        measure_bins();
+    }
+
+    LearnedProperty run() {
+        LearnedProperty best = constant();
+        std::size_t idle = 0;
+        for (std::size_t round = 0; round < training_.most_terms && idle < k_patience; ++round) {
+            check_interrupt();
+            normalize_weights();
+            if (!add_term(round == 0)) break;
+            idle = keep_better(best) ? 0 : idle + 1;
+            progress_();
+        }
+        return best;
+    }
+
+  private:
+    static constexpr std::size_t k_patience = 4;
+
+    LearnedProperty constant() const {
+        double sum = 0, count = 0;
+        for (std::size_t i = 0; i < weight_.size(); ++i) {
+            sum += weight_[i] * log_target_[i];
+            count += weight_[i];
+        }
+        LearnedProperty learned;
+        learned.model.factor = static_cast<float>(std::exp(count > 0 ? sum / count : 0));
+        learned.error = error(learned.model, {});
+        return learned;
+    }
+
+    /// What stands for all values in a bin: their median; and the range of all.
+    void measure_bins() {
+        const std::size_t features = training_.features.cols();
+        middle_.resize(features);
+        parallel_for(features, [&](std::size_t f) {
+            const std::span<const float> column = training_.features.column(f);
+            const std::span<const std::uint8_t> bins = training_.quantized.column(f);
+            std::vector<std::vector<float>> members(training_.quantized.thresholds[f].size() + 1);
+            for (std::size_t i = 0; i < column.size(); ++i) {
+                if (std::isfinite(column[i])) members[bins[i]].push_back(column[i]);
+            }
+            for (auto& values : members) {
+                if (values.empty()) values.push_back(middle_[f].empty() ? 0.0f : middle_[f].back());
+                const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+                std::ranges::nth_element(values, middle);
+                middle_[f].push_back(*middle);
+            }
+        });
+    }
+
+    void normalize_weights() {
+        const double total = std::accumulate(weight_.begin(), weight_.end(), 0.0);
+        for (double& w : weight_) w /= total;
+    }
+
+    /// The best a and b for one power of a feature, from sums per bin: by regression of y, then by Gauss-Newton steps
+    /// on log y.
+    Candidate fit(std::uint32_t feature, std::span<const BinSums> sums) const {
+        const std::vector<float>& middle = middle_[feature / k_powers];
+        const std::size_t power = feature % k_powers;
+        Candidate candidate;
+        candidate.term.feature = feature;
+        candidate.term.least = least_;
+        std::vector<double> x(sums.size());
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        for (std::size_t b = 0; b < sums.size(); ++b) {
+            x[b] = static_cast<double>(power_of(middle[b], power));
+            if (!(sums[b].weight > 0)) continue;
+            low = std::min(low, x[b]);
+            high = std::max(high, x[b]);
+        }
+        if (!(high > low)) return candidate;
+        candidate.term.low = static_cast<float>(low);
+        candidate.term.high = static_cast<float>(high);
+        const auto [a, b, error] = fit_line(x, sums, low, high);
+        candidate.term.a = static_cast<float>(a);
+        candidate.term.b = static_cast<float>(b);
+        candidate.error = error;
+        return candidate;
+    }
+
+    struct Line {
+        double a, b, error;
+    };
+
+    /// Minimizes the weighted squares of t - log(a x + b). Works on z = (x - low) / (high - low), which keeps the two
+    /// unknowns apart whatever the unit of x.
+    Line fit_line(std::span<const double> x, std::span<const BinSums> sums, double low, double high) const {
+        const double scale = 1 / (high - low), least = static_cast<double>(least_);
+        double a = 0, b = 0, best_a = 0, best_b = 1, best = std::numeric_limits<double>::infinity();
+        for (int step = 0; step < 7; ++step) {
+            // Weighted normal equations of the linearization around the current line (at first of y itself).
+            double s = 0, sz = 0, szz = 0, r = 0, rz = 0, error = 0;
+            for (std::size_t k = 0; k < sums.size(); ++k) {
+                const double w = sums[k].weight;
+                if (!(w > 0)) continue;
+                const double z = (x[k] - low) * scale, t = sums[k].target / w;
+                const double value = step == 0 ? std::exp(t) : std::max(a * z + b, least);
+                const double difference = step == 0 ? std::exp(t) / value : t - std::log(value);
+                const double g = w / (value * value);
+                s += g;
+                sz += g * z;
+                szz += g * z * z;
+                r += w / value * difference;
+                rz += w / value * difference * z;
+                if (step > 0) error += w * difference * difference;
+            }
+            if (step > 0 && error < best) {
+                best = error;
+                best_a = a;
+                best_b = b;
+            } else if (step > 0) {
+                break;
+            }
+            const double determinant = s * szz - sz * sz;
+            if (!(determinant > 1e-12 * s * szz)) break;
+            const double da = (s * rz - sz * r) / determinant, db = (szz * r - sz * rz) / determinant;
+            a = step == 0 ? da : a + da;
+            b = step == 0 ? db : b + db;
+        }
+        return {best_a * scale, best_b - best_a * scale * low, best};
+    }
+
+    std::vector<Candidate> candidates() const {
+        std::vector<Candidate> all(training_.features.cols() * k_powers);
+        parallel_for(training_.features.cols(), [&](std::size_t f) {
+            std::vector<BinSums> sums(middle_[f].size());
+            const std::span<const std::uint8_t> bins = training_.quantized.column(f);
+            for (std::size_t i = 0; i < weight_.size(); ++i) {
+                sums[bins[i]].weight += weight_[i];
+                sums[bins[i]].target += weight_[i] * log_target_[i];
+            }
+            for (std::size_t p = 0; p < k_powers; ++p)
+                all[f * k_powers + p] = fit(static_cast<std::uint32_t>(f * k_powers + p), sums);
+        });
+        return all;
+    }
+
+    float log_value(const PropertyModel::Term& term, std::size_t row) const {
+        const float x = training_.features.column(term.feature / k_powers)[row];
+        return PropertyModel::log_value(term, power_of(x, term.feature % k_powers));
+    }
+
+    /// Adds the best weak regressor; false if there is none.
+    bool add_term(bool first) {
+        std::vector<Candidate> all = candidates();
+        constexpr std::size_t k_finalists = 8;
+        const std::size_t finalists = std::min(k_finalists, all.size());
+        std::ranges::partial_sort(all, all.begin() + static_cast<std::ptrdiff_t>(finalists), {}, &Candidate::error);
+        double best = std::numeric_limits<double>::infinity(), best_r = 1;
+        std::vector<float> best_values;
+        PropertyModel::Term term;
+        for (std::size_t c = 0; c < finalists; ++c) {
+            if (!std::isfinite(all[c].error)) continue;
+            std::vector<float> values(weight_.size());
+            for (std::size_t i = 0; i < values.size(); ++i) values[i] = log_value(all[c].term, i);
+            const auto [objective, r] = line_search(values, first);
+            if (!(objective < best)) continue;
+            best = objective;
+            best_r = r;
+            term = all[c].term;
+            best_values = std::move(values);
+        }
+        if (best_values.empty()) return false;
+        for (std::size_t i = 0; i < weight_.size(); ++i) {
+            const double e = log_target_[i] - static_cast<double>(best_values[i]);
+            weight_[i] *= std::exp(std::min(best_r * e * e, 30.0));
+        }
+        term.exponent = static_cast<float>(best_r);
+        model_.terms.push_back(term);
+        values_.push_back(std::move(best_values));
+        return true;
+    }
+
+    struct Search {
+        double objective, r;
+    };
+    Search line_search(std::span<const float> values, bool first) const {
+        // Squared errors up to the largest, as a histogram.
+        constexpr std::size_t k_bins = 256;
+        std::vector<double> squares(values.size());
+        double largest = 1e-12;
+        for (std::size_t i = 0; i < squares.size(); ++i) {
+            const double e = log_target_[i] - static_cast<double>(values[i]);
+            squares[i] = e * e;
+            if (weight_[i] > 0) largest = std::max(largest, squares[i]);
+        }
+        std::array<double, k_bins> sums{};
+        const double bin = static_cast<double>(k_bins) / largest;
+        for (std::size_t i = 0; i < squares.size(); ++i)
+            sums[std::min(static_cast<std::size_t>(squares[i] * bin), k_bins - 1)] += weight_[i];
+        const auto objective = [&](double r) {
+            double sum = 0;
+            for (std::size_t b = 0; b < k_bins; ++b) {
+                if (sums[b] > 0) sum += sums[b] * std::exp(r * (static_cast<double>(b) + 0.5) / bin);
+            }
+            return sum / std::sqrt(r);
+        };
+        if (first) return {objective(1), 1};
+        double low = std::log(0.05), high = std::log(std::min(5000.0, 30 / largest + 0.1));
+        constexpr double k_golden = 0.6180339887498949;
+        for (int step = 0; step < 24; ++step) {
+            const double a = high - k_golden * (high - low), b = low + k_golden * (high - low);
+            const bool left = objective(std::exp(a)) < objective(std::exp(b));
+            (left ? high : low) = left ? b : a;
+        }
+        const double r = std::exp(0.5 * (low + high));
+        return {objective(r), r};
+    }
+
+    /// Mean squared error over the rows that decide; `values`: the terms' logarithms with exponent 1.
+    double error(const PropertyModel& model, std::span<const std::vector<float>> values) const {
+        double sums[2][2] = {};
+        for (std::size_t i = 0; i < log_target_.size(); ++i) {
+            double log_y = std::log(static_cast<double>(model.factor));
+            for (std::size_t k = 0; k < model.terms.size(); ++k)
+                log_y += static_cast<double>(model.terms[k].exponent) * static_cast<double>(values[k][i]);
+            const double e = log_target_[i] - log_y;
+            sums[training_.held_out[i] ? 1 : 0][0] += e * e;
+            sums[training_.held_out[i] ? 1 : 0][1] += 1;
+        }
+        const auto& s = sums[1][1] > 0 ? sums[1] : sums[0];
+        return s[0] / std::max(s[1], 1.0);
+    }
+
+    bool keep_better(LearnedProperty& best) const {
+        // Fewer features carry over better to other shapes: a new one has to pay.
+        constexpr double k_worth = 0.995;
+        bool better = false;
+        PropertyModel averaged = model_;
+        float sum = 0;
+        for (const auto& term : averaged.terms) sum += term.exponent;
+        for (auto& term : averaged.terms) term.exponent /= sum;
+        for (const PropertyModel& model : {averaged, refitted()}) {
+            const double e = error(model, values_);
+            if (!(e < k_worth * best.error)) continue;
+            best = {model, e};
+            better = true;
+        }
+        return better;
+    }
+
+    PropertyModel refitted() const {
+        const auto count = static_cast<Eigen::Index>(model_.terms.size());
+        Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count + 1, count + 1);
+        Eigen::VectorXd right = Eigen::VectorXd::Zero(count + 1), row(count + 1);
+        for (std::size_t i = 0; i < log_target_.size(); ++i) {
+            if (training_.held_out[i]) continue;
+            for (Eigen::Index k = 0; k < count; ++k)
+                row[k] = static_cast<double>(values_[static_cast<std::size_t>(k)][i]);
+            row[count] = 1;
+            normal += row * row.transpose();
+            right += log_target_[i] * row;
+        }
+        // The ridge draws exponents to zero where terms say the same; the constant is free.
+        const double n = normal(count, count);
+        for (Eigen::Index k = 0; k < count; ++k) {
+            const double mean = normal(k, count) / n;
+            normal(k, k) += 0.003 * (normal(k, k) - n * mean * mean) + 1e-9;
+        }
+        const Eigen::VectorXd solution = normal.ldlt().solve(right);
+        PropertyModel model = model_;
+        for (Eigen::Index k = 0; k < count; ++k)
+            model.terms[static_cast<std::size_t>(k)].exponent = static_cast<float>(solution[k]);
+        model.factor = static_cast<float>(std::exp(solution[count]));
+        return model;
+    }
+
+    const PropertyTraining& training_;
+    const std::function<void()>& progress_;
+    std::vector<double> log_target_, weight_;
+    float least_ = 0;
+    std::vector<std::vector<float>> middle_;  // per base feature and bin
+    PropertyModel model_;                     // exponents are r
+    std::vector<std::vector<float>> values_;  // per term and row: log(a x + b)
+};
+
+}  // namespace
+
+float PropertyModel::log_value(const Term& term, float x) {
+    const float inside = term.low <= term.high ? std::clamp(x, term.low, term.high) : x;
+    return term.exponent * std::log(std::max(term.a * inside + term.b, term.least));
+}
+
+LearnedProperty learn_property(const PropertyTraining& training, const std::function<void()>& progress) {
+    const std::size_t rows = training.features.rows;
+    if (rows == 0 || training.target.size() != rows || training.held_out.size() != rows ||
+        training.quantized.rows != rows)
+        throw UsageError(
+            "a property is learned from rows of features, one value each; their numbers differ or are zero");
+    for (const float y : training.target) {
+        if (!(y > 0) || !std::isfinite(y))
+            throw DataError("a property is learned from values that are positive and finite");
+    }
+    return Boosting(training, progress).run();
+}
+
+}  // namespace exemplar

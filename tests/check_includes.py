@@ -15,7 +15,7 @@ HOST = {
     'data': {'core', 'mesh', 'learn'},
     'imaging': {'core', 'mesh'},
     'animation': {'core', 'mesh'},
-    'synth': {'core', 'mesh', 'animation'},
+    'synth': {'core', 'mesh', 'animation', 'learn', 'imaging', 'hatching'},
     'lines': {'core', 'mesh', 'imaging'},
     'curvature': {'core', 'mesh', 'learn', 'data', 'animation', 'lines', 'imaging'},
     'shape': {'core', 'mesh', 'learn'},

@@ -151,7 +151,7 @@ const std::vector<float>& property_of(const HatchingFields& fields, StrokeProper
 }
 
 std::size_t HatchingStyle::feature_count() const {
-    return k_pixel_features + k_context_ranges * rules.size();
+    return k_pixel_features + contextual_feature_count(rules.size());
 }
 
 void save_hatching_style(const std::filesystem::path& path, const HatchingStyle& style) {

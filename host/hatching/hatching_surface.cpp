@@ -238,6 +238,15 @@ class Measurement {
 
 }  // namespace
 
+std::vector<std::string> descriptor_names() {
+    // Those of any mesh.
+    TriangleMesh mesh;
+    mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    mesh.faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    mesh.source_face_count = 4;
+    return Measurement(mesh).run().descriptors.names;
+}
+
 HatchingSurface measure_surface(const TriangleMesh& mesh) {
     require_usable(mesh, "mesh");
     return Measurement(mesh).run();

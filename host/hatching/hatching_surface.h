@@ -48,6 +48,9 @@ struct HatchingSurface {
 /// Ranges of geodesic distance of contextual features, logarithmic up to the largest distance (thesis Eq. 4.15).
 constexpr std::uint8_t k_context_ranges = 4;
 
+/// The names of the columns of HatchingSurface::descriptors.
+std::vector<std::string> descriptor_names();
+
 /// Measures a mesh, on all cores; the result does not depend on their number. Throws MeshError for unusable meshes,
 /// Interrupted at Ctrl-C.
 HatchingSurface measure_surface(const TriangleMesh& mesh);

@@ -142,19 +142,24 @@ class Growth {
 
     /// Tells cross-hatched clusters from others, and their dominant direction from the other.
     void name_directions(OrientationClusters& out) const {
-        std::vector<std::array<std::size_t, 3>> counts(out.count);  // all, cross-hatched, second direction
+        // All, cross-hatched, second direction; and, where strokes are single, those of the second direction.
+        std::vector<std::array<std::size_t, 4>> counts(out.count);
         for (std::size_t i = 0; i < samples_.size(); ++i) {
-            auto& [all, crossed, seconds] = counts[out.cluster[i]];
+            auto& [all, crossed, seconds, single_seconds] = counts[out.cluster[i]];
             ++all;
             crossed += samples_.level[i] == 2 ? 1 : 0;
             seconds += out.second[i];
+            single_seconds += samples_.level[i] == 1 ? out.second[i] : 0;
         }
         for (std::size_t c = 0; c < out.count; ++c)
             out.cross[c] = 10 * counts[c][1] > counts[c][0] && counts[c][2] > 0 ? 1 : 0;
         for (std::size_t i = 0; i < samples_.size(); ++i) {
             const std::uint32_t c = out.cluster[i];
             if (!out.cross[c]) out.second[i] = 0;
-            if (out.cross[c] && 2 * counts[c][2] > counts[c][0]) out.second[i] ^= 1;
+            const auto& [all, crossed, seconds, single_seconds] = counts[c];
+            // Single strokes decide, if there are any, else all.
+            const bool swap = crossed < all ? 2 * single_seconds > all - crossed : 2 * seconds > all;
+            if (out.cross[c] && swap) out.second[i] ^= 1;
         }
     }
 

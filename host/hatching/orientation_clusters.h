@@ -20,8 +20,8 @@ struct OrientationClusters {
 /// random seeds over neighbors whose direction differs from the mean direction of the cluster (of cross-hatching the
 /// nearer of two) by less than a threshold, the median difference between neighbors, but no less than 15 degrees, lest
 /// noise-free curved hatching fall into slivers. More than 10% of cross-hatched pixels make a cluster cross-hatching;
-/// the first of its directions is the one with more pixels. At most `most` clusters are kept; what belongs to none
-/// joins the one whose direction fits best nearby.
+/// the first of its directions is the one that single strokes follow, or, if all cross, the one with more pixels. At
+/// most `most` clusters are kept; what belongs to none joins the one whose direction fits best nearby.
 OrientationClusters grow_clusters(const OrientationSamples& samples, std::size_t most, std::uint64_t seed);
 
 }  // namespace exemplar

@@ -44,6 +44,15 @@ class ErrorHistogram {
     std::array<double, k_bins> weight_{};
 };
 
+Eigen::Vector2d in_double(const DoubledAngle& v) {
+    return {static_cast<double>(v[0]), static_cast<double>(v[1])};
+}
+
+Eigen::VectorXd ridge_solution(Eigen::MatrixXd normal, const Eigen::VectorXd& right) {
+    normal.diagonal() *= 1 + 1e-4;
+    return normal.ldlt().solve(right);
+}
+
 class Boosting {
   public:
     explicit Boosting(const OrientationTraining& training) : training_(training), weight_(training.target.size()) {
@@ -53,17 +62,9 @@ class Boosting {
     }
 
     LearnedOrientation run() {
-        LearnedOrientation best;
-        best.error = std::numeric_limits<double>::infinity();
-        std::vector<OrientationFunction::Term> terms;
         if (!(total_ > 0)) return {{}, 4};
-        for (std::size_t round = 0; round < training_.most_terms; ++round) {
-            const Choice choice = choose(round == 0);
-            if (!std::isfinite(choice.objective)) break;
-            add_term(terms, choice);
-            update_weights(choice);
-            if (!keep_better(terms, best)) break;
-        }
+        LearnedOrientation best = boost();
+        match(best);
         return std::isfinite(best.error) ? best : LearnedOrientation{{}, 4};
     }
 
@@ -73,6 +74,74 @@ class Boosting {
         double r = 1;
         std::uint32_t feature = 0;
     };
+
+    LearnedOrientation boost() {
+        LearnedOrientation best;
+        best.error = std::numeric_limits<double>::infinity();
+        std::vector<OrientationFunction::Term> terms;
+        for (std::size_t round = 0; round < training_.most_terms; ++round) {
+            const Choice choice = choose(round == 0);
+            if (!std::isfinite(choice.objective)) break;
+            add_term(terms, choice);
+            update_weights(choice);
+            OrientationFunction averaged{terms};
+            float sum = 0;
+            for (const auto& term : averaged.terms) sum += term.weight;
+            for (auto& term : averaged.terms) term.weight /= sum;
+            // Rounds that add weight to what is there may lead to a new feature.
+            if (!keep_better(averaged, best) && terms.size() > best.function.terms.size()) break;
+        }
+        return best;
+    }
+
+    /// Forward selection by least squares.
+    void match(LearnedOrientation& best) const {
+        std::vector<float> weight(training_.weight.begin(), training_.weight.end());
+        for (std::size_t i = 0; i < weight.size(); ++i) weight[i] = training_.held_out[i] ? 0 : weight[i];
+        const FieldProducts products = field_products(training_.fields, training_.target, weight);
+        const std::vector<Eigen::Index> order = select_fields(products, training_.most_terms);
+        for (std::size_t count = 1; count <= order.size(); ++count) {
+            const std::vector<Eigen::Index> chosen(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
+            if (!keep_better(matched(products, chosen), best) && count > best.function.terms.size() + 1) return;
+        }
+    }
+
+    /// The function of these fields with the best weights. A sum that is not of length one counts as if it were: its
+    /// items are divided by the length, and fitted again.
+    OrientationFunction matched(const FieldProducts& products, const std::vector<Eigen::Index>& chosen) const {
+        Eigen::MatrixXd normal = products.normal(chosen, chosen);
+        Eigen::VectorXd right = products.right(chosen);
+        OrientationFunction function;
+        for (const Eigen::Index k : chosen) function.terms.push_back({static_cast<std::uint32_t>(k), 0});
+        for (int pass = 0; pass < 4; ++pass) {
+            const Eigen::VectorXd weights = ridge_solution(normal, right);
+            for (std::size_t k = 0; k < chosen.size(); ++k)
+                function.terms[k].weight = static_cast<float>(weights[static_cast<Eigen::Index>(k)]);
+            if (chosen.size() == 1) break;
+            normal.setZero();
+            right.setZero();
+            add_normalized(function, normal, right);
+        }
+        return function;
+    }
+
+    /// Sums of products of the terms' fields, divided by the length of the function's sum.
+    void add_normalized(const OrientationFunction& function, Eigen::MatrixXd& normal, Eigen::VectorXd& right) const {
+        Eigen::Matrix2Xd v(2, right.size());
+        for (std::size_t i = 0; i < weight_.size(); ++i) {
+            const auto w = static_cast<double>(training_.weight[i]);
+            if (training_.held_out[i] || !(w > 0)) continue;
+            Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+            for (Eigen::Index k = 0; k < right.size(); ++k) {
+                const auto& term = function.terms[static_cast<std::size_t>(k)];
+                v.col(k) = in_double(training_.fields.feature(term.feature, i));
+                sum += static_cast<double>(term.weight) * v.col(k);
+            }
+            const double length = std::max(sum.norm(), 0.1);
+            right += w / length * v.transpose() * in_double(training_.target[i]);
+            normal += w / (length * length) * v.transpose() * v;
+        }
+    }
 
     void normalize_weights() {
         total_ = std::accumulate(weight_.begin(), weight_.end(), 0.0);
@@ -117,24 +186,14 @@ class Boosting {
         normalize_weights();
     }
 
-    /// The function of these terms, boosted or refitted, if it is better by enough; false: it is time to stop.
-    bool keep_better(const std::vector<OrientationFunction::Term>& terms, LearnedOrientation& best) const {
-        constexpr double k_worth = 0.98;
-        OrientationFunction boosted{terms};
-        float sum = 0;
-        for (const auto& term : boosted.terms) sum += term.weight;
-        for (auto& term : boosted.terms) term.weight /= sum;
-        bool better = false;
-        for (const OrientationFunction& function : {boosted, refitted(boosted)}) {
-            const double e = error(function);
-            // Of functions of the same features the better one, of more features only if they pay.
-            const bool same_count = function.terms.size() == best.function.terms.size();
-            if (!(e < (same_count ? 1 : k_worth) * best.error)) continue;
-            best = {function, e};
-            better = true;
-        }
-        // Rounds that add weight to what is there may lead to a new feature.
-        return better || terms.size() <= best.function.terms.size();
+    /// Keeps a function that is better: of more features only if they pay.
+    bool keep_better(const OrientationFunction& function, LearnedOrientation& best) const {
+        constexpr double k_worth = 0.97;
+        const double e = error(function);
+        const bool more = function.terms.size() > best.function.terms.size();
+        if (!(e < (more ? k_worth : 1) * best.error)) return false;
+        best = {function, e};
+        return true;
     }
 
     /// Weighted mean of |u - f|^2 over the items that decide.
@@ -150,33 +209,6 @@ class Boosting {
         }
         const auto& s = sums[1][1] > 0 ? sums[1] : sums[0];
         return s[1] > 0 ? s[0] / s[1] : 4;
-    }
-
-    OrientationFunction refitted(const OrientationFunction& function) const {
-        const auto count = static_cast<Eigen::Index>(function.terms.size());
-        Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(count, count);
-        Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
-        std::vector<DoubledAngle> v(function.terms.size());
-        for (std::size_t i = 0; i < weight_.size(); ++i) {
-            const auto w = static_cast<double>(training_.weight[i]);
-            if (training_.held_out[i] || !(w > 0)) continue;
-            for (std::size_t k = 0; k < v.size(); ++k) v[k] = training_.fields.feature(function.terms[k].feature, i);
-            const auto product = [](const DoubledAngle& a, const DoubledAngle& b) {
-                return static_cast<double>(a[0] * b[0] + a[1] * b[1]);
-            };
-            for (Eigen::Index a = 0; a < count; ++a) {
-                right[a] += w * product(v[static_cast<std::size_t>(a)], training_.target[i]);
-                for (Eigen::Index b = 0; b < count; ++b)
-                    normal(a, b) += w * product(v[static_cast<std::size_t>(a)], v[static_cast<std::size_t>(b)]);
-            }
-        }
-        normal.diagonal() *= 1 + 1e-4;
-        normal.diagonal().array() += 1e-12;
-        const Eigen::VectorXd solution = normal.ldlt().solve(right);
-        OrientationFunction result = function;
-        for (std::size_t k = 0; k < v.size(); ++k)
-            result.terms[k].weight = static_cast<float>(solution[static_cast<Eigen::Index>(k)]);
-        return result;
     }
 
     const OrientationTraining& training_;
@@ -207,6 +239,70 @@ DoubledAngle OrientationFunction::evaluate(const OrientationFields& fields, std:
         sum = {sum[0] + term.weight * v[0], sum[1] + term.weight * v[1]};
     }
     return normalized(sum);
+}
+
+FieldProducts& FieldProducts::operator+=(const FieldProducts& other) {
+    normal += other.normal;
+    right += other.right;
+    total += other.total;
+    return *this;
+}
+
+FieldProducts field_products(const OrientationFields& fields, std::span<const DoubledAngle> target,
+                             std::span<const float> weight) {
+    constexpr std::size_t k_block = 64;
+    FieldProducts products;
+    std::vector<std::uint32_t> rows;
+    for (std::uint32_t i = 0; i < weight.size(); ++i) {
+        if (weight[i] > 0) rows.push_back(i);
+    }
+    // Items in blocks, as columns: a matrix product is many times as fast as single sums.
+    Eigen::MatrixXd v(k_orientation_fields, 2 * k_block);
+    Eigen::VectorXd u(2 * k_block);
+    for (std::size_t first = 0; first < rows.size(); first += k_block) {
+        v.setZero();
+        u.setZero();
+        for (std::size_t n = 0; n < std::min(k_block, rows.size() - first); ++n) {
+            const std::uint32_t i = rows[first + n];
+            const auto w = static_cast<double>(weight[i]);
+            const auto column = static_cast<Eigen::Index>(2 * n);
+            for (std::size_t k = 0; k < k_orientation_fields; ++k)
+                v.block<1, 2>(static_cast<Eigen::Index>(k), column) =
+                    std::sqrt(w) * in_double(fields.feature(k, i)).transpose();
+            u.segment<2>(column) = std::sqrt(w) * in_double(target[i]);
+            products.total += w;
+        }
+        products.normal.noalias() += v * v.transpose();
+        products.right.noalias() += v * u;
+    }
+    return products;
+}
+
+std::vector<Eigen::Index> select_fields(const FieldProducts& products, std::size_t most) {
+    std::vector<Eigen::Index> chosen;
+    while (chosen.size() < most) {
+        double least = std::numeric_limits<double>::infinity();
+        Eigen::Index next = -1;
+        for (Eigen::Index k = 0; k < products.right.size(); ++k) {
+            if (!(products.normal(k, k) > 0) || std::ranges::find(chosen, k) != chosen.end()) continue;
+            chosen.push_back(k);
+            const double error = least_squares_error(products, chosen);
+            chosen.pop_back();
+            if (!(error < least)) continue;
+            least = error;
+            next = k;
+        }
+        if (next < 0) break;
+        chosen.push_back(next);
+    }
+    return chosen;
+}
+
+double least_squares_error(const FieldProducts& products, const std::vector<Eigen::Index>& fields) {
+    if (!(products.total > 0)) return 0;
+    const Eigen::VectorXd right = products.right(fields);
+    const double explained = ridge_solution(products.normal(fields, fields), right).dot(right);
+    return 1 - explained / products.total;  // the targets have length 1
 }
 
 LearnedOrientation learn_orientation(const OrientationTraining& training) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
@@ -27,6 +26,7 @@ struct Expert {
     std::vector<std::array<float, 2>> errors;  // r_icj
     std::vector<float> error;                  // r_ic, median filtered
     double held_out_error = 0;
+    std::array<FieldProducts, 2> products;  // of each direction, for the search for pairs to merge
 };
 
 class Mixture {
@@ -99,7 +99,10 @@ class Mixture {
                                                                  expert.rule.function[j].evaluate(samples_.fields, i))
                                               : 4.0f;
                 }
-                nearest[i] = std::min(expert.errors[i][0], expert.errors[i][1]);
+                // Single strokes follow the first direction; without that, a region with another rule may pass for the
+                // second direction of a cross-hatched one beside it.
+                nearest[i] =
+                    samples_.level[i] == 1 ? expert.errors[i][0] : std::min(expert.errors[i][0], expert.errors[i][1]);
             },
             1024);
         expert.error.resize(samples_.size());
@@ -151,7 +154,7 @@ class Mixture {
                     const double above = static_cast<double>(e.error[i]) - least;
                     e.gamma[i] = static_cast<float>(e.share * std::exp(-above / (2 * variance_)));
                     sum += static_cast<double>(e.gamma[i]);
-                    if (e.cross) e.beta[i] = first_part(e, i);
+                    if (e.cross) e.beta[i] = samples_.level[i] == 1 ? 1.0f : first_part(e, i);
                 }
                 for (Expert& e : experts_) {
                     e.gamma[i] = static_cast<float>(static_cast<double>(e.gamma[i]) / sum);
@@ -186,8 +189,8 @@ class Mixture {
         }
     }
 
-    /// One expert in place of two.
-    Expert merged(const Expert& a, const Expert& b) const {
+    /// One expert in place of two; `swapped`: the first direction of one is the second of the other.
+    Expert merged(const Expert& a, const Expert& b, bool swapped) const {
         Expert expert;
         expert.cross = a.cross || b.cross;
         expert.gamma.resize(samples_.size());
@@ -195,7 +198,8 @@ class Mixture {
         for (std::size_t i = 0; i < samples_.size(); ++i) {
             const float sum = a.gamma[i] + b.gamma[i];
             expert.gamma[i] = sum;
-            expert.beta[i] = sum > 0 ? (a.gamma[i] * a.beta[i] + b.gamma[i] * b.beta[i]) / sum : 1.0f;
+            const float other = swapped ? 1 - b.beta[i] : b.beta[i];
+            expert.beta[i] = sum > 0 ? (a.gamma[i] * a.beta[i] + b.gamma[i] * other) / sum : 1.0f;
         }
         double first = 0, all = 0;
         for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -208,31 +212,72 @@ class Mixture {
         return expert;
     }
 
-    /// Merges the pair whose common rule loses least, if it loses next to nothing; false if there is none.
-    bool merge_best_pair() {
-        struct Pair {
-            std::size_t a, b;
-            double loss;
-            Expert expert;
+    struct Pair {
+        std::size_t a, b;
+        bool swapped;
+        double loss;
+    };
+
+    /// All pairs by how much a common rule loses, as least squares with three fields a direction have it.
+    std::vector<Pair> promising_pairs() {
+        parallel_for(experts_.size(), [&](std::size_t c) {
+            Expert& e = experts_[c];
+            for (std::size_t j = 0; j < 2; ++j) {
+                std::vector<float> weight(samples_.size());
+                for (std::size_t i = 0; i < weight.size(); ++i)
+                    weight[i] = e.gamma[i] * (j == 0 ? e.beta[i] : 1 - e.beta[i]);
+                e.products[j] = field_products(samples_.fields, samples_.direction, weight);
+            }
+        });
+        constexpr std::size_t k_fields = 3;
+        const auto squares = [&](const FieldProducts& products) {
+            return products.total * least_squares_error(products, select_fields(products, k_fields));
         };
-        std::optional<Pair> best;
+        const auto both = [&](const FieldProducts& x, const FieldProducts& y) {
+            FieldProducts sum = x;
+            return squares(sum += y);
+        };
+        std::vector<double> alone(experts_.size());
+        for (std::size_t c = 0; c < alone.size(); ++c)
+            alone[c] = squares(experts_[c].products[0]) + squares(experts_[c].products[1]);
+        std::vector<Pair> pairs;
         for (std::size_t a = 0; a < experts_.size(); ++a) {
             for (std::size_t b = a + 1; b < experts_.size(); ++b) {
-                check_interrupt();
-                const Expert &x = experts_[a], &y = experts_[b];
-                Expert expert = merged(x, y);
-                const double apart = (x.share * x.held_out_error + y.share * y.held_out_error) / (x.share + y.share);
-                // A tenth more, and what a degree and a half of noise makes.
-                constexpr double k_noise = 0.003;
-                const double loss = expert.held_out_error - (1.1 * apart + k_noise);
-                if (!best || loss < best->loss) best = Pair{a, b, loss, std::move(expert)};
-                progress_();
+                for (const bool swapped : {false, true}) {
+                    if (swapped && !(experts_[a].cross && experts_[b].cross)) continue;
+                    pairs.push_back({a, b, swapped, 0});
+                }
             }
         }
-        if (!best || best->loss > 0) return false;
-        experts_[best->a] = std::move(best->expert);
-        experts_.erase(experts_.begin() + static_cast<std::ptrdiff_t>(best->b));
-        return true;
+        parallel_for(pairs.size(), [&](std::size_t k) {
+            const Expert &x = experts_[pairs[k].a], &y = experts_[pairs[k].b];
+            const double together = both(x.products[0], y.products[pairs[k].swapped ? 1 : 0]) +
+                                    both(x.products[1], y.products[pairs[k].swapped ? 0 : 1]);
+            const double weight = static_cast<double>(samples_.size()) * (x.share + y.share);
+            pairs[k].loss = (together - alone[pairs[k].a] - alone[pairs[k].b]) / std::max(weight, 1e-9);
+        });
+        std::ranges::stable_sort(pairs, {}, &Pair::loss);
+        return pairs;
+    }
+
+    /// Merges a pair whose common rule loses next to nothing on what is held out; false if there is none.
+    bool merge_best_pair() {
+        constexpr std::size_t k_tried = 6;
+        std::vector<Pair> pairs = promising_pairs();
+        for (std::size_t k = 0; k < std::min(k_tried, pairs.size()); ++k) {
+            check_interrupt();
+            const Expert &x = experts_[pairs[k].a], &y = experts_[pairs[k].b];
+            const double apart = (x.share * x.held_out_error + y.share * y.held_out_error) / (x.share + y.share);
+            Expert expert = merged(x, y, pairs[k].swapped);
+            progress_();
+            // A tenth more, and what a degree and a half of noise makes.
+            constexpr double k_noise = 0.003;
+            if (expert.held_out_error > 1.1 * apart + k_noise) continue;
+            experts_[pairs[k].a] = std::move(expert);
+            experts_.erase(experts_.begin() + static_cast<std::ptrdiff_t>(pairs[k].b));
+            return true;
+        }
+        return false;
     }
 
     OrientationMixture result() {

@@ -115,8 +115,8 @@ std::vector<float> classify(const CalibratedStumps& classifier, std::span<const 
 
 std::vector<std::string> contextual_feature_names(std::size_t labels) {
     std::vector<std::string> names;
-    for (std::size_t range = 0; range < k_context_ranges; ++range) {
-        for (std::size_t c = 0; c < labels; ++c) names.push_back(fmt::format("context.{}.{}", c + 1, range + 1));
+    for (std::size_t range = 0; range <= k_context_ranges; ++range) {
+        for (std::size_t c = 0; c < labels; ++c) names.push_back(fmt::format("context.{}.{}", c + 1, range));
     }
     return names;
 }
@@ -159,8 +159,9 @@ FeatureMatrix contextual_features(const HatchingSurface& surface, const GBuffer&
         const std::size_t k = matrix.cols();
         const std::span<float> column = matrix.add(std::move(name));
         for (std::size_t i = 0; i < column.size(); ++i) {
-            const std::uint32_t pixel = pixels.pixel[rows.empty() ? i : rows[i]];
-            column[i] = at_face[gbuffer.face[pixel] * columns + k];
+            const std::size_t row = rows.empty() ? i : rows[i];
+            column[i] = k < labels ? probabilities[row * labels + k]
+                                   : at_face[gbuffer.face[pixels.pixel[row]] * columns + k - labels];
         }
     }
     return matrix;

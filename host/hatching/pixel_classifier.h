@@ -38,12 +38,17 @@ std::vector<float> classify(const CalibratedStumps& classifier, std::span<const 
                             const FeatureMatrix& base, StumpScorer& scorer);
 
 /// Contextual features (thesis Eq. 4.15): for each label and range of geodesic distance the mean probability of that
-/// label over the visible pixels in that range, normalized to a sum of 1 over all: 4 x labels columns, the range the
-/// slower. `probabilities`: of each covered pixel x labels. Distances are those between faces on the surface.
+/// label over the visible pixels in that range, normalized to a sum of 1 over all. Before them, beyond the thesis, as
+/// range 0 the probabilities of the pixel itself: properties may change with the segment at once. (1 + 4) x labels
+/// columns, the range the slower. `probabilities`: of each covered pixel x labels. Distances are those between faces on
+/// the surface.
 FeatureMatrix contextual_features(const HatchingSurface& surface, const GBuffer& gbuffer, const CoveredPixels& pixels,
                                   std::span<const float> probabilities, std::size_t labels,
                                   std::span<const std::uint32_t> rows);
-/// Their names: "context.LABEL.RANGE".
+/// Their names: "context.LABEL.RANGE", labels from 1, and their number.
 std::vector<std::string> contextual_feature_names(std::size_t labels);
+constexpr std::size_t contextual_feature_count(std::size_t labels) {
+    return (1 + k_context_ranges) * labels;
+}
 
 }  // namespace exemplar

@@ -45,6 +45,9 @@ class PixelFeatures {
 
   private:
     struct Parts;
+    const ImageDerivatives& derivatives(std::size_t sigma);
+    const ImageStack& line_image(std::size_t line, std::size_t sigma);
+    void image_column(std::size_t feature, std::span<const std::uint32_t> rows, std::span<float> out);
     const HatchingSurface& surface_;
     const HatchingView& view_;
     ImageTools& tools_;

@@ -67,13 +67,25 @@ class Boosting {
         return learned;
     }
 
+    /// Inverses of what is often next to nothing are but a sign of where it is, whatever its values: they fit one
+    /// drawing and say nothing of others.
+    static bool has_inverses(std::span<const float> column) {
+        double sum = 0;
+        for (const float x : column) sum += static_cast<double>(std::abs(x));
+        const auto tiny = static_cast<float>(1e-3 * sum / static_cast<double>(column.size()));
+        const auto count = std::ranges::count_if(column, [&](float x) { return !(std::abs(x) > tiny); });
+        return 100 * count < static_cast<std::ptrdiff_t>(column.size());
+    }
+
     /// What stands for all values in a bin: their median; and the range of all.
     void measure_bins() {
         const std::size_t features = training_.features.cols();
         middle_.resize(features);
+        inverses_.resize(features);
         parallel_for(features, [&](std::size_t f) {
             const std::span<const float> column = training_.features.column(f);
             const std::span<const std::uint8_t> bins = training_.quantized.column(f);
+            inverses_[f] = has_inverses(column) ? 1 : 0;
             std::vector<std::vector<float>> members(training_.quantized.thresholds[f].size() + 1);
             for (std::size_t i = 0; i < column.size(); ++i) {
                 if (std::isfinite(column[i])) members[bins[i]].push_back(column[i]);
@@ -169,7 +181,7 @@ class Boosting {
                 sums[bins[i]].weight += weight_[i];
                 sums[bins[i]].target += weight_[i] * log_target_[i];
             }
-            for (std::size_t p = 0; p < k_powers; ++p)
+            for (std::size_t p = 0; p < (inverses_[f] ? k_powers : 2); ++p)
                 all[f * k_powers + p] = fit(static_cast<std::uint32_t>(f * k_powers + p), sums);
         });
         return all;
@@ -310,6 +322,7 @@ class Boosting {
     std::vector<double> log_target_, weight_;
     float least_ = 0;
     std::vector<std::vector<float>> middle_;  // per base feature and bin
+    std::vector<std::uint8_t> inverses_;      // per base feature: 1 if 1/x and 1/x^2 are used
     PropertyModel model_;                     // exponents are r
     std::vector<std::vector<float>> values_;  // per term and row: log(a x + b)
 };

@@ -166,7 +166,7 @@ class Learning {
             features.append(contextual_features(pixels_.surface(), pixels_.gbuffer(), pixels_.pixels(), probabilities_,
                                                 style_.rules.size(), {}));
             for (const std::uint32_t k :
-                 numbers(k_pixel_features, k_pixel_features + k_context_ranges * style_.rules.size()))
+                 numbers(k_pixel_features, k_pixel_features + contextual_feature_count(style_.rules.size())))
                 which.push_back(k);
         }
         probabilities_ = classify(classifier, which, features, scorer_);

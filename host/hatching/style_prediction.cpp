@@ -84,7 +84,7 @@ class Prediction {
         features_.values.resize(own * features_.rows);
         features_.append(
             contextual_features(pixels_.surface(), pixels_.gbuffer(), pixels_.pixels(), probabilities, labels, {}));
-        for (std::uint32_t k = 0; k < k_context_ranges * labels; ++k)
+        for (std::uint32_t k = 0; k < contextual_feature_count(labels); ++k)
             which_.push_back(static_cast<std::uint32_t>(k_pixel_features) + k);
     }
 

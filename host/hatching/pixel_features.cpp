@@ -1,0 +1,344 @@
+#include "host/hatching/pixel_features.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "host/core/errors.h"
+#include "host/core/parallel.h"
+#include "host/hatching/direction_smoothing.h"
+#include "host/hatching/line_directions.h"
+#include "host/hatching/line_images.h"
+
+namespace exemplar {
+namespace {
+
+/// The images that gradients and curvatures are taken of.
+enum ShadingImage : std::size_t { k_intensity, k_view_normal, k_light_normal, k_ambient, k_shading_images };
+constexpr std::array<const char*, k_shading_images> k_shading_names{"I", "V.N", "L.N", "a"};
+constexpr std::array<float, 4> k_sigmas{1, 2, 3, 5};
+constexpr std::array<float, 3> k_line_sigmas{5, 10, 20};
+
+constexpr std::size_t k_first_descriptor = k_curvature_features,
+                      k_first_image = k_first_descriptor + k_descriptor_features,
+                      k_first_line = k_first_image + k_image_features;
+
+/// What an image feature is: a quantity of a shading image at a scale, or depth.
+struct ImageFeature {
+    enum Quantity { value, gradient, curvature_max, curvature_min, depth } quantity;
+    std::size_t image, sigma;
+};
+
+/// The 53 of App. B.2, in their order.
+std::vector<ImageFeature> image_features() {
+    using F = ImageFeature;
+    std::vector<F> all;
+    const auto add = [&](F::Quantity quantity, std::size_t image) {
+        for (std::size_t s = 0; s < k_sigmas.size(); ++s) all.push_back({quantity, image, s});
+    };
+    for (const auto quantity : {F::curvature_max, F::curvature_min, F::value, F::gradient}) add(quantity, k_intensity);
+    for (const auto image : {k_view_normal, k_light_normal, k_ambient}) add(F::value, image);
+    for (const auto image : {k_view_normal, k_light_normal}) {
+        for (const auto quantity : {F::gradient, F::curvature_max, F::curvature_min}) add(quantity, image);
+    }
+    all.push_back({F::depth, 0, 0});
+    return all;
+}
+
+std::string name_of(const ImageFeature& feature) {
+    if (feature.quantity == ImageFeature::depth) return "image.depth";
+    constexpr std::array<const char*, 4> k_patterns{"image.{}", "image.|grad {}|", "image.curvature_max {}",
+                                                    "image.curvature_min {}"};
+    const std::string name = fmt::format(fmt::runtime(k_patterns[feature.quantity]), k_shading_names[feature.image]);
+    return fmt::format("{}@{}", name, k_sigmas[feature.sigma]);
+}
+
+std::vector<std::string> all_names() {
+    std::vector<std::string> names = view_curvature_names();
+    for (std::string& name : descriptor_names()) names.push_back(std::move(name));
+    for (const ImageFeature& feature : image_features()) names.push_back(name_of(feature));
+    for (std::size_t kind = 0; kind < k_line_kinds; ++kind) {
+        for (std::size_t step = 0; step < k_line_thresholds; ++step) {
+            for (const float sigma : k_line_sigmas)
+                names.push_back(
+                    fmt::format("lines.{}>{:.2g}@{}", line_kind_name(kind), line_threshold(kind, step), sigma));
+        }
+    }
+    return names;
+}
+
+/// The fields per vertex, before the gradients of images.
+constexpr std::size_t k_vertex_fields = 19;
+
+std::vector<std::string> all_orientation_names() {
+    std::vector<std::string> names;
+    for (const char* field : {"k_max", "k_min", "e_a", "e_b"}) {
+        for (int scale = 1; scale <= 3; ++scale) names.push_back(fmt::format("{},{}", field, scale));
+    }
+    for (const char* field : {"LxN", "VxN", "L", "E", "s", "r", "v"}) names.emplace_back(field);
+    for (const char* image : {"V.N", "L.N", "a", "I"}) {
+        for (int scale = 1; scale <= 4; ++scale) names.push_back(fmt::format("grad {},{}", image, scale));
+    }
+    for (std::size_t k = 0; k < k_orientation_fields; ++k) names.push_back("perp " + names[k]);
+    return names;
+}
+
+}  // namespace
+
+const std::vector<std::string>& pixel_feature_names() {
+    static const std::vector<std::string> k_names = all_names();
+    return k_names;
+}
+
+const std::vector<std::string>& orientation_feature_names() {
+    static const std::vector<std::string> k_names = all_orientation_names();
+    return k_names;
+}
+
+/// What is computed when it is first asked for.
+struct PixelFeatures::Parts {
+    std::optional<FeatureMatrix> curvature;  // per vertex
+    ImageStack shading;                      // of the picture
+    std::array<std::optional<ImageDerivatives>, k_sigmas.size()> derivatives;
+    std::optional<LineImages> lines;
+    std::array<std::optional<std::array<ImageStack, k_line_sigmas.size()>>, k_line_kinds * k_line_thresholds>
+        line_images;
+    std::optional<std::array<std::vector<Vec3>, k_vertex_fields>> fields;  // per vertex
+
+    void shade_pixels(const HatchingSurface& surface, const HatchingView& view, const GBuffer& gbuffer);
+};
+
+namespace {
+
+/// A value or vector at the corners of a face, at a point of it.
+template <typename Values>
+auto interpolate(const GBuffer& gbuffer, const TriangleMesh& mesh, std::uint32_t pixel, const Values& values) {
+    const Face& face = mesh.faces[gbuffer.face[pixel]];
+    const auto& [b, c] = gbuffer.barycentric[pixel];
+    using Value = std::decay_t<decltype(values[0])>;
+    return Value((1 - b - c) * values[face[0]] + b * values[face[1]] + c * values[face[2]]);
+}
+
+/// The same of a direction without sign: corners are turned to the first.
+Vec3 interpolate_direction(const GBuffer& gbuffer, const TriangleMesh& mesh, std::uint32_t pixel,
+                           std::span<const Vec3> values) {
+    const Face& face = mesh.faces[gbuffer.face[pixel]];
+    const auto& [b, c] = gbuffer.barycentric[pixel];
+    const Vec3 first = values[face[0]], second = values[face[1]], third = values[face[2]];
+    Vec3 sum = (1 - b - c) * first;
+    sum += std::copysign(b, first.dot(second)) * second;
+    return sum + std::copysign(c, (first.squaredNorm() > 0 ? first : second).dot(third)) * third;
+}
+
+}  // namespace
+
+void PixelFeatures::Parts::shade_pixels(const HatchingSurface& surface, const HatchingView& view,
+                                        const GBuffer& gbuffer) {
+    if (shading.count > 0) return;
+    const std::vector<float> bright = shade(surface.occlusion, view.light);
+    shading = ImageStack(gbuffer.width, gbuffer.height, k_shading_images);
+    parallel_for(
+        gbuffer.size(),
+        [&](std::size_t i) {
+            const auto pixel = static_cast<std::uint32_t>(i);
+            if (gbuffer.face[pixel] == k_no_face) return;
+            const Vec3 normal = interpolate(gbuffer, surface.mesh, pixel, surface.normals).normalized();
+            const Vec3 point = interpolate(gbuffer, surface.mesh, pixel, surface.mesh.vertices);
+            shading.image(k_intensity)[i] = interpolate(gbuffer, surface.mesh, pixel, bright);
+            shading.image(k_view_normal)[i] = std::max(normal.dot(view.camera.to_eye(point)), 0.0f);
+            shading.image(k_light_normal)[i] = std::max(normal.dot(view.light), 0.0f);
+            shading.image(k_ambient)[i] = interpolate(gbuffer, surface.mesh, pixel, surface.occlusion.ambient);
+        },
+        4096);
+}
+
+namespace {
+
+/// Fills columns of a matrix, one feature after the other.
+class Gatherer {
+  public:
+    Gatherer(const PixelFeatures& pixels, std::span<const std::uint32_t> rows)
+        : pixels_(pixels), rows_(rows), count_(rows.empty() ? pixels.size() : rows.size()) {}
+    std::size_t count() const { return count_; }
+    std::uint32_t pixel(std::size_t i) const { return pixels_.pixels().pixel[rows_.empty() ? i : rows_[i]]; }
+
+    void from_vertices(std::span<const float> values, std::span<float> out) const {
+        parallel_for(
+            count_,
+            [&](std::size_t i) { out[i] = interpolate(pixels_.gbuffer(), pixels_.surface().mesh, pixel(i), values); },
+            8192);
+    }
+    template <typename ValueAt>
+    void from_pixels(ValueAt&& value_at, std::span<float> out) const {
+        parallel_for(
+            count_, [&](std::size_t i) { out[i] = value_at(pixel(i)); }, 16384);
+    }
+
+  private:
+    const PixelFeatures& pixels_;
+    std::span<const std::uint32_t> rows_;
+    std::size_t count_;
+};
+
+/// The fields of App. B.3 that live on the surface, in their order.
+std::array<std::vector<Vec3>, k_vertex_fields> vertex_fields(const HatchingSurface& surface, const HatchingView& view,
+                                                             const LineImages& lines) {
+    std::array<std::vector<Vec3>, k_vertex_fields> fields;
+    for (std::size_t s = 0; s < 3; ++s) {
+        fields[s] = surface.directions.k_max[s];
+        fields[3 + s] = surface.directions.k_min[s];
+        fields[6 + s] = surface.directions.e_a[s];
+        fields[9 + s] = surface.directions.e_b[s];
+    }
+    const DirectionSmoother smoother(surface.mesh, surface.normals);
+    const std::size_t count = surface.mesh.vertex_count();
+    const auto across = [&](auto&& direction_at) {
+        std::vector<Vec3> directions(count);
+        std::vector<float> confidence(count);
+        for (std::size_t v = 0; v < count; ++v) {
+            directions[v] = direction_at(v).cross(surface.normals[v]);
+            confidence[v] = direction_confidence(directions[v].norm());
+        }
+        return smoother.complete(directions, confidence);
+    };
+    parallel_for(3, [&](std::size_t k) {
+        if (k == 0) fields[12] = across([&](std::size_t) { return view.light; });
+        if (k == 1) fields[13] = across([&](std::size_t v) { return view.camera.to_eye(surface.mesh.vertices[v]); });
+        if (k == 2) {
+            std::vector<LineSegment> segments = lines.segments(LineType::contours, 0);
+            const std::vector<LineSegment> suggestive =
+                lines.segments(LineType::suggestive_contours, LineThresholds{}.suggestive_contours);
+            segments.insert(segments.end(), suggestive.begin(), suggestive.end());
+            fields[16] = complete_lines(smoother, surface, segments);
+        }
+    });
+    fields[14].assign(count, view.light);
+    fields[15] = vector_irradiance(surface.occlusion, view.light);
+    fields[17] = surface.directions.ridges;
+    fields[18] = surface.directions.valleys;
+    return fields;
+}
+
+DoubledAngle doubled(const Vec2& direction) {
+    return normalized(
+        {direction.x() * direction.x() - direction.y() * direction.y(), 2 * direction.x() * direction.y()});
+}
+
+}  // namespace
+
+PixelFeatures::PixelFeatures(const HatchingSurface& surface, const HatchingView& view, ImageTools& tools)
+    : surface_(surface),
+      view_(view),
+      tools_(tools),
+      gbuffer_(tools.gbuffers.render(surface.mesh, view.camera, view.width, view.height)),
+      pixels_(covered_pixels(gbuffer_)),
+      parts_(std::make_unique<Parts>()) {
+    if (pixels_.pixel.empty())
+        throw DataError("the view shows nothing of the mesh; turn the camera to it or move it away");
+}
+
+PixelFeatures::~PixelFeatures() = default;
+
+const ImageDerivatives& PixelFeatures::derivatives(std::size_t sigma) {
+    parts_->shade_pixels(surface_, view_, gbuffer_);
+    auto& kept = parts_->derivatives[sigma];
+    if (!kept) kept = tools_.filters.derivatives(parts_->shading, gbuffer_.face, k_sigmas[sigma]);
+    return *kept;
+}
+
+const ImageStack& PixelFeatures::line_image(std::size_t line, std::size_t sigma) {
+    auto& kept = parts_->line_images[line];
+    if (!kept) {
+        if (!parts_->lines) parts_->lines.emplace(surface_, view_);
+        ImageStack drawn(view_.width, view_.height, 1);
+        drawn.values = parts_->lines->draw(line / k_line_thresholds, line % k_line_thresholds).data;
+        kept.emplace();
+        for (std::size_t s = 0; s < k_line_sigmas.size(); ++s)
+            (*kept)[s] = tools_.filters.blurred(drawn, k_line_sigmas[s]);
+    }
+    return (*kept)[sigma];
+}
+
+void PixelFeatures::image_column(std::size_t feature, std::span<const std::uint32_t> rows, std::span<float> out) {
+    static const std::vector<ImageFeature> k_features = image_features();
+    const auto [quantity, image, sigma] = k_features[feature];
+    const Gatherer gatherer(*this, rows);
+    if (quantity == ImageFeature::depth) {
+        // In units of the object's size, from its middle: the same for a mesh of any size, seen from anywhere.
+        const BoundingBox box = bounding_box(surface_.mesh);
+        const Vec3 middle = (0.5 * (box.low + box.high)).cast<float>();
+        const float away = -(view_.camera.view * middle.homogeneous()).z();
+        const float radius = std::max(0.5f * static_cast<float>(box.diagonal()), 1e-20f);
+        gatherer.from_pixels([&](std::uint32_t pixel) { return (gbuffer_.depth[pixel] - away) / radius; }, out);
+        return;
+    }
+    const ImageDerivatives& all = derivatives(sigma);
+    const std::array<const ImageStack*, 4> quantities{&all.value, &all.gradient_magnitude, &all.maximum_curvature,
+                                                      &all.minimum_curvature};
+    const std::span<const float> values = quantities[quantity]->image(image);
+    gatherer.from_pixels([&](std::uint32_t pixel) { return values[pixel]; }, out);
+}
+
+OrientationFields PixelFeatures::orientations(std::span<const std::uint32_t> rows) {
+    if (!parts_->lines) parts_->lines.emplace(surface_, view_);
+    if (!parts_->fields) parts_->fields = vertex_fields(surface_, view_, *parts_->lines);
+    const Gatherer gatherer(*this, rows);
+    OrientationFields out(gatherer.count());
+    const Eigen::Matrix4f view_projection = view_.camera.view_projection();
+    parallel_for(
+        out.rows,
+        [&](std::size_t i) {
+            const std::uint32_t pixel = gatherer.pixel(i);
+            const Vec3 point = interpolate(gbuffer_, surface_.mesh, pixel, surface_.mesh.vertices);
+            for (std::size_t k = 0; k < k_vertex_fields; ++k) {
+                const Vec3 direction = interpolate_direction(gbuffer_, surface_.mesh, pixel, (*parts_->fields)[k]);
+                out.field(k)[i] = doubled(projected_direction(view_, view_projection, point, direction).normalized());
+            }
+        },
+        512);
+    constexpr std::array<std::size_t, k_shading_images> k_order{k_view_normal, k_light_normal, k_ambient, k_intensity};
+    for (std::size_t k = k_vertex_fields; k < k_orientation_fields; ++k) {
+        const std::size_t place = k - k_vertex_fields;
+        const ImageDerivatives& all = derivatives(place % k_sigmas.size());
+        const std::size_t image = k_order[place / k_sigmas.size()];
+        const std::span<const float> x = all.gradient_x.image(image), y = all.gradient_y.image(image);
+        parallel_for(
+            out.rows,
+            [&](std::size_t i) {
+                const Vec2 gradient(x[gatherer.pixel(i)], y[gatherer.pixel(i)]);
+                // A picture that is flat to a millionth has no gradient.
+                out.field(k)[i] = gradient.norm() > 1e-6f ? doubled(gradient.normalized()) : DoubledAngle{};
+            },
+            4096);
+    }
+    return out;
+}
+
+FeatureMatrix PixelFeatures::scalars(std::span<const std::uint32_t> which, std::span<const std::uint32_t> rows) {
+    const Gatherer gatherer(*this, rows);
+    FeatureMatrix out;
+    out.rows = gatherer.count();
+    out.values.reserve(out.rows * which.size());
+    for (const std::uint32_t k : which) {
+        const std::span<float> column = out.add(pixel_feature_names().at(k));
+        if (k < k_first_descriptor) {
+            if (!parts_->curvature) parts_->curvature = view_curvature_features(surface_, view_);
+            gatherer.from_vertices(parts_->curvature->column(k), column);
+        } else if (k < k_first_image) {
+            gatherer.from_vertices(surface_.descriptors.column(k - k_first_descriptor), column);
+        } else if (k < k_first_line) {
+            image_column(k - k_first_image, rows, column);
+        } else {
+            const std::size_t line = (k - k_first_line) / k_line_sigmas.size();
+            const ImageStack& image = line_image(line, (k - k_first_line) % k_line_sigmas.size());
+            gatherer.from_pixels([&](std::uint32_t pixel) { return image.values[pixel]; }, column);
+        }
+    }
+    return out;
+}
+
+}  // namespace exemplar

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -115,18 +114,29 @@ Surroundings surroundings_at(const MomentPlanes& mask, std::size_t x, std::size_
             .of_y = {mean(0, 1), mean(1, 1), mean(0, 2), mean(2, 1), mean(1, 2), mean(0, 3)}};
 }
 
-Vector2d covariance(const Means& m, const Surroundings& s) {
-    return {m.fx - m.f * s.x, m.fy - m.f * s.y};
+/// The larger and the smaller eigenvalue of a symmetric matrix.
+std::array<double, 2> eigenvalues(double xx, double xy, double yy) {
+    const double middle = (xx + yy) / 2, reach = std::hypot((xx - yy) / 2, xy);
+    return {middle + reach, middle - reach};
 }
 
-/// The slope of the least-squares line, per sigma. Directions of too little spread have none: the inverse of an
-/// eigenvalue l of the spread is taken to be l / (l^2 + k_least_spread^2).
+/// The inverse of an eigenvalue of the spread; nothing where there is too little spread for a slope.
+double inverse(double spread) {
+    return std::pow(spread, 3) / (std::pow(spread, 4) + std::pow(static_cast<double>(k_least_spread), 4));
+}
+
+/// The slope of the least-squares line, per sigma: the inverse of the spread of offsets, times their covariance with f.
 Vector2d slope(const Means& m, const Surroundings& s) {
-    Matrix2d spread;
-    spread << s.xx - s.x * s.x, s.xy - s.x * s.y, s.xy - s.x * s.y, s.yy - s.y * s.y;
-    const double least = static_cast<double>(k_least_spread);
-    const Matrix2d squared = spread * spread + least * least * Matrix2d::Identity();
-    return squared.inverse() * (spread * covariance(m, s));
+    const Vector2d covariance{m.fx - m.f * s.x, m.fy - m.f * s.y};
+    const double xx = s.xx - s.x * s.x, xy = s.xy - s.x * s.y, yy = s.yy - s.y * s.y;
+    const auto [largest, least] = eigenvalues(xx, xy, yy);
+    const double first = inverse(largest), second = inverse(std::max(least, 0.0));
+    // With eigenvectors (cos t, sin t) and (-sin t, cos t); turn is the matrix of cos 2t and sin 2t.
+    Matrix2d turn;
+    turn << (xx - yy) / 2, xy, xy, (yy - xx) / 2;
+    const double reach = (largest - least) / 2;
+    if (reach > 0) turn /= reach;
+    return (first + second) / 2 * covariance + (first - second) / 2 * (turn * covariance);
 }
 
 /// The joint third cumulants (f, x, x), (f, x, y), (f, y, y). Those of Gaussian weights are what weighted means change
@@ -137,30 +147,14 @@ std::array<double, 3> third_cumulants(const Means& m, const Surroundings& s) {
             m.fyy - 2 * m.fy * s.y - m.f * s.yy + 2 * m.f * s.y * s.y};
 }
 
-/// What the cumulants of x^2 / 2 and of x y are for a whole Gaussian that is cut off: both would be 1.
-struct Units {
-    double xx, xy;
-};
-
-Units units_of(const GaussianKernel& kernel) {
-    const double second = kernel.moment(2);
-    return {(kernel.moment(4) - second * second) / 2, second * second};
-}
-
 /// xx, xy and yy of the Hessian, per sigma^2.
-std::array<double, 3> hessian(const Means& m, const Surroundings& s, const Vector2d& line, const Units& units) {
+std::array<double, 3> hessian(const Means& m, const Surroundings& s, const Vector2d& line, const CumulantUnits& units) {
     const std::array<double, 3> of_f = third_cumulants(m, s), of_x = third_cumulants(s.of_x, s),
                                 of_y = third_cumulants(s.of_y, s);
     std::array<double, 3> h;
     for (std::size_t i = 0; i < 3; ++i)
         h[i] = (of_f[i] - line.x() * of_x[i] - line.y() * of_y[i]) / (i == 1 ? units.xy : units.xx);
     return h;
-}
-
-/// The larger and the smaller eigenvalue of a symmetric matrix.
-std::array<double, 2> eigenvalues(double xx, double xy, double yy) {
-    const double middle = (xx + yy) / 2, reach = std::hypot((xx - yy) / 2, xy);
-    return {middle + reach, middle - reach};
 }
 
 void set(ImageStack& stack, std::size_t image, std::size_t pixel, double value) {
@@ -171,7 +165,7 @@ void set(ImageStack& stack, std::size_t image, std::size_t pixel, double value) 
 std::array<Plane, 2> derive(const ImageStack& images, std::size_t image, const Mask& mask,
                             const MomentPlanes& mask_moments, const GaussianKernel& kernel, ImageDerivatives& out) {
     const MomentPlanes moments(masked(mask, images, image), kernel, 2);
-    const Units units = units_of(kernel);
+    const CumulantUnits units = cumulant_units(kernel);
     const auto sigma = static_cast<double>(kernel.sigma);
     std::array<Plane, 2> gradient{Plane(mask.inside.width, mask.inside.height),
                                   Plane(mask.inside.width, mask.inside.height)};
@@ -212,6 +206,11 @@ void orient(const std::array<Plane, 2>& gradient, std::size_t image, const Mask&
 }
 
 }  // namespace
+
+CumulantUnits cumulant_units(const GaussianKernel& kernel) {
+    const double second = kernel.moment(2);
+    return {(kernel.moment(4) - second * second) / 2, second * second};
+}
 
 void check_derivatives(const ImageStack& images, std::span<const std::uint32_t> face) {
     if (images.count < 1 || images.count > k_most_derived_images)

@@ -27,8 +27,8 @@ struct PixelBox {
 /// - The value is the weighted mean (normalized convolution).
 /// - The gradient is the slope of the weighted least-squares line (Knutsson and Westin 1993, "Normalized and
 ///   differential convolution"). Away from the mask's border that is the convolution with a Gaussian's derivative; next
-///   to it the slopes of linear images stay exact. Across parts of the mask narrower than a pixel or so the slope is
-///   zero.
+///   to it the slopes of linear images stay exact. Across parts of the mask that are too narrow to tell, of one
+///   pixel, or two for sigma 5 and more, slopes fade to zero.
 /// - The curvatures are the eigenvalues of the Hessian, in units of 1 / pixel^2: of the height field z = value(x, y)
 ///   they are the principal curvatures, up to terms of the squared gradient. The Hessian is that of the weighted mean,
 ///   less what the slope alone would contribute next to the mask's border: it is zero for linear images. Away from the
@@ -47,8 +47,16 @@ struct ImageDerivatives {
 
 /// Gradients below this, per pixel, are taken for noise by the coherence of orientations.
 constexpr float k_least_gradient = 1e-4f;
-/// The variance of the mask's pixels around a pixel, over sigma^2, below which a slope is not known.
-constexpr float k_least_spread = 1e-3f;
+/// The weighted variance of the mask's pixels around a pixel, over sigma^2, below which slopes fade: an eigenvalue l of
+/// the covariance of offsets, whose inverse gives the slope, counts as l + k_least_spread^4 / l^3.
+constexpr float k_least_spread = 1e-2f;
+
+/// The third cumulants (f, x, x) of f = x^2 / 2 and (f, x, y) of f = x y under a Gaussian, offsets per sigma: what
+/// turns cumulants into second derivatives. Both would be 1, were it not sampled and cut off.
+struct CumulantUnits {
+    double xx, xy;
+};
+CumulantUnits cumulant_units(const GaussianKernel& kernel);
 
 /// Filters of images. The CPU implementation is the reference; gpu/imaging implements it in shaders.
 class ImageFilters {

@@ -41,4 +41,24 @@ using Image = BasicImage<std::uint8_t>;
 /// Linear or unitless values, by context.
 using FloatImage = BasicImage<float>;
 
+/// Images of one size and one channel, one after the other, each row by row from the top left.
+struct ImageStack {
+    int width = 0, height = 0;
+    std::size_t count = 0;
+    std::vector<float> values;  ///< count x height x width
+
+    ImageStack() = default;
+    ImageStack(int image_width, int image_height, std::size_t image_count, float value = 0)
+        : width(image_width), height(image_height), count(image_count), values(image_count * pixels(), value) {}
+
+    std::size_t pixels() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    }
+    std::span<float> image(std::size_t i) { return std::span(values).subspan(i * pixels(), pixels()); }
+    std::span<const float> image(std::size_t i) const { return std::span(values).subspan(i * pixels(), pixels()); }
+    float at(std::size_t i, int x, int y) const { return values[i * pixels() + index(x, y)]; }
+    bool operator==(const ImageStack&) const = default;
+};
+
 }  // namespace exemplar

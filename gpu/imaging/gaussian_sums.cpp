@@ -1,0 +1,83 @@
+#include "gpu/imaging/gaussian_sums.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "embedded/imaging_mask_sums_comp.h"
+#include "embedded/imaging_weighted_sums_comp.h"
+#include "gpu/runtime/threads.h"
+#include "shaders/shared/image_filters.h"
+
+namespace exemplar {
+namespace {
+
+using shared::SumParameters;
+using shared::vec4;
+
+constexpr std::size_t k_quad = 4;
+// A pixel that an invocation loads serves all pixels it computes: on a CPU loads are what takes the time, while a GPU
+// wants many invocations.
+constexpr std::uint32_t k_outputs_on_cpu = 8, k_outputs_on_gpu = 4;
+
+std::size_t quads_of(const GaussianKernel& kernel) {
+    return (kernel.weights.size() + k_quad - 1) / k_quad;
+}
+
+// Four at a time, the last filled up with zeros.
+std::vector<float> padded_weights(const GaussianKernel& kernel) {
+    std::vector<float> weights(k_quad * quads_of(kernel), 0.0f);
+    std::ranges::transform(kernel.weights, weights.begin(), [](double w) { return static_cast<float>(w); });
+    return weights;
+}
+
+SumParameters parameters_of(const GaussianKernel& kernel, GaussianSums::Axis axis, GaussianSums::Size size) {
+    const bool along_x = axis == GaussianSums::Axis::x;
+    return {.pixels = along_x ? size.width : size.height,
+            .lines = along_x ? size.height : size.width,
+            .step = along_x ? 1 : size.width,
+            .line_step = along_x ? size.width : 1,
+            .radius = static_cast<std::uint32_t>(kernel.radius),
+            .quads = static_cast<std::uint32_t>(quads_of(kernel)),
+            .inverse_sigma = 1 / kernel.sigma,
+            .unused = 0};
+}
+
+Threads threads_of(const SumParameters& parameters, std::uint32_t outputs) {
+    return {parameters.lines, (parameters.pixels + outputs - 1) / outputs};
+}
+
+}  // namespace
+
+GpuGaussian::GpuGaussian(Device& device, float sigma)
+    : kernel(gaussian_kernel(sigma)), weights(Buffer::of<float>(device, padded_weights(kernel))) {}
+
+GaussianSums::GaussianSums(Device& device)
+    : outputs_(device.info().type == DeviceType::cpu ? k_outputs_on_cpu : k_outputs_on_gpu),
+      mask_(device, shaders::imaging_mask_sums_comp,
+            {.push_constants = layout_of<SumParameters>(),
+             .elements = {layout_of<float>(), layout_of<vec4>(), layout_of<vec4>()},
+             .constants = {{1, outputs_}}}) {
+    const StructLayout four = layout_of<vec4>();
+    for (std::uint32_t i = 0; i < by_count_.size(); ++i)
+        by_count_[i] = Kernel(device, shaders::imaging_weighted_sums_comp,
+                              {.push_constants = layout_of<SumParameters>(),
+                               .elements = {four, four, four, four, four, four},
+                               .constants = {{0, i + 1}, {1, outputs_}}});
+}
+
+void GaussianSums::record(Stream& stream, const GpuGaussian& gaussian, Axis axis, Size size, const Buffer& in,
+                          std::span<const Buffer* const> out) {
+    const SumParameters parameters = parameters_of(gaussian.kernel, axis, size);
+    // What a kernel of fewer planes does not write must be bound nevertheless.
+    const auto plane = [&](std::size_t k) -> const Buffer& { return *out[std::min(k, out.size() - 1)]; };
+    stream.dispatch(by_count_.at(out.size() - 1), threads_of(parameters, outputs_),
+                    {in, gaussian.weights, plane(0), plane(1), plane(2), plane(3)}, parameters);
+}
+
+void GaussianSums::record_mask(Stream& stream, const GpuGaussian& gaussian, Size size, const Buffer& in,
+                               const Buffer& out) {
+    const SumParameters parameters = parameters_of(gaussian.kernel, Axis::x, size);
+    stream.dispatch(mask_, threads_of(parameters, outputs_), {in, gaussian.weights, out}, parameters);
+}
+
+}  // namespace exemplar

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+
+#include "host/hatching/hatch_stroke.h"
+#include "host/hatching/hatching_fields.h"
+
+namespace exemplar {
+
+/// How much thicker or thinner than their target match_tone() may make strokes.
+constexpr float k_least_width_factor = 0.6f, k_most_width_factor = 1.6f;
+
+/// Makes strokes thicker where a drawing is lighter than target_tone(), and thinner where it is darker, so that gaps
+/// between strokes, and how strokes overlap, change its tones less. In each iteration the width of every point is
+/// multiplied by the ratio of target to tone around it (see measure_tone), a mean over one and a half spacings to both
+/// sides along the stroke, and kept within these factors of the thickness there. Throws UsageError for strokes that
+/// drawn_ink() does not take, or a negative number of iterations.
+void match_tone(std::span<HatchStroke> strokes, const HatchingFields& fields, int iterations = 8);
+
+}  // namespace exemplar

@@ -62,3 +62,6 @@ exemplar_shaders(exemplar_gpu_window window)
 
 exemplar_library(gpu_lines gpu/lines exemplar_gpu_imaging exemplar_gpu_curvature exemplar_lines)
 exemplar_shaders(exemplar_gpu_lines lines)
+
+exemplar_library(gpu_hatching gpu/hatching exemplar_gpu_imaging exemplar_gpu_learn exemplar_runtime exemplar_hatching)
+exemplar_shaders(exemplar_gpu_hatching hatching)

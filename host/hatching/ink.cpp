@@ -158,8 +158,8 @@ std::vector<float> target_tone(const HatchingFields& fields) {
 WindowMeans::WindowMeans(std::span<const float> values, int width, int height)
     : width_(width),
       height_(height),
-      sums_(static_cast<std::size_t>(width + 1) * static_cast<std::size_t>(height + 1)) {
-    const auto stride = static_cast<std::size_t>(width + 1);
+      sums_((static_cast<std::size_t>(width) + 1) * (static_cast<std::size_t>(height) + 1)) {
+    const auto stride = static_cast<std::size_t>(width) + 1;
     for (std::size_t y = 0; y < static_cast<std::size_t>(height); ++y) {
         double row = 0;
         for (std::size_t x = 0; x + 1 < stride; ++x) {
@@ -174,7 +174,7 @@ double WindowMeans::mean(int x, int y, int reach) const {
     const auto right = static_cast<std::size_t>(std::min(x + reach + 1, width_));
     const auto top = static_cast<std::size_t>(std::max(y - reach, 0));
     const auto bottom = static_cast<std::size_t>(std::min(y + reach + 1, height_));
-    const auto stride = static_cast<std::size_t>(width_ + 1);
+    const auto stride = static_cast<std::size_t>(width_) + 1;
     const double sum = sums_[bottom * stride + right] - sums_[bottom * stride + left] - sums_[top * stride + right] +
                        sums_[top * stride + left];
     return sum / static_cast<double>((right - left) * (bottom - top));

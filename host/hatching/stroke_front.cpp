@@ -29,15 +29,22 @@ int bits_of(std::uint32_t count) {
     return std::bit_width(count - 1);
 }
 
-/// Where a point that lies from a stroke's point in a direction may begin a stroke that goes the same way.
-std::optional<StrokeSeed> seed_beside(const PlacementGrid& grid, const Clearance& clearance, std::uint32_t layer,
-                                      FinePoint at, Direction heading) {
+/// The seed of a stroke at a place that has strokes and is so far from all, in shares of the spacing there.
+std::optional<StrokeSeed> clear_seed(const PlacementGrid& grid, const Clearance& clearance, std::uint32_t layer,
+                                     FinePoint at, std::int32_t share, Direction heading) {
     const PlacementTexel* texel = grid.at(at);
-    if (!texel || !texel->hatched(layer) || !clearance.is_clear(layer, at, texel->spacing(), grid.rules.test_share))
-        return {};
+    if (!texel || !texel->hatched(layer) || !clearance.is_clear(layer, at, texel->spacing(), share)) return {};
     const Direction way = direction_at(grid, layer, at, heading);
-    if (dot(way, heading) < k_side_cosine * k_unit) return {};
-    return StrokeSeed{layer, at, heading};
+    if (!way) return {};
+    return StrokeSeed{layer, at, way};
+}
+
+/// The same beside or behind a stroke that goes in some direction; strokes go about the same way there.
+std::optional<StrokeSeed> parallel_seed(const PlacementGrid& grid, const Clearance& clearance, std::uint32_t layer,
+                                        FinePoint at, Direction heading) {
+    auto seed = clear_seed(grid, clearance, layer, at, grid.rules.test_share, heading);
+    if (seed && dot(seed->heading, heading) < k_side_cosine * k_unit) seed.reset();
+    return seed;
 }
 
 /// A direction times a spacing, as a way.
@@ -63,7 +70,7 @@ std::optional<StrokeSeed> side_seed(const PlacementGrid& grid, const Clearance& 
     const std::int32_t here = grid.at(point)->spacing();
     const PlacementTexel* there = grid.at(point + times(off, here));
     if (!there || !there->hatched(list.layer)) return {};
-    return seed_beside(grid, clearance, list.layer, point + times(off, (here + there->spacing()) / 2), heading);
+    return parallel_seed(grid, clearance, list.layer, point + times(off, (here + there->spacing()) / 2), heading);
 }
 
 /// In line with a stroke, a little over the test distance from its end.
@@ -75,7 +82,7 @@ std::optional<StrokeSeed> end_seed(const PlacementGrid& grid, const Clearance& c
     const FinePoint way = points[tip] - points[is_first ? tip + 1 : tip - 1];
     const Direction heading = direction_of(way.x, way.y);
     const std::int32_t gap = (grid.at(points[tip])->spacing() * grid.rules.test_share >> k_share_bits) + k_margin;
-    return seed_beside(grid, clearance, list.layer, points[tip] + times(heading, gap), heading);
+    return parallel_seed(grid, clearance, list.layer, points[tip] + times(heading, gap), heading);
 }
 
 /// The middle of a pixel of a block that is farther from all strokes than gaps between them are wide.
@@ -86,10 +93,8 @@ std::optional<StrokeSeed> hole_seed(const PlacementGrid& grid, const Clearance& 
     const std::uint32_t place = scattered(i, bits, chance);
     const int x = static_cast<int>(list.first + every_second_bit(place));
     const int y = static_cast<int>(list.second + every_second_bit(place >> 1));
-    if (!grid.inside(x, y) || !grid.at(x, y).hatched(list.layer)) return {};
     const FinePoint at{x * k_pixel + k_pixel / 2, y * k_pixel + k_pixel / 2};
-    if (!clearance.is_clear(list.layer, at, grid.at(x, y).spacing(), grid.rules.hole_share)) return {};
-    return StrokeSeed{list.layer, at, {k_unit, 0}};
+    return clear_seed(grid, clearance, list.layer, at, grid.rules.hole_share, {k_unit, 0});
 }
 
 /// The middle of a part of the picture; then, as that may be where directions cancel out, places that chance chooses in
@@ -104,11 +109,7 @@ std::optional<StrokeSeed> part_seed(const PlacementGrid& grid, const Clearance& 
         return size / 512 * (static_cast<std::int32_t>(word & 511U) - 256);
     };
     const FinePoint at = middle + FinePoint{off(chance), off(chance >> 9)};
-    const PlacementTexel* texel = grid.at(at);
-    if (!texel || !texel->hatched(list.layer) ||
-        !clearance.is_clear(list.layer, at, texel->spacing(), grid.rules.test_share))
-        return {};
-    return StrokeSeed{list.layer, at, {k_unit, 0}};
+    return clear_seed(grid, clearance, list.layer, at, grid.rules.test_share, {k_unit, 0});
 }
 
 }  // namespace

@@ -77,14 +77,12 @@ class Tracer {
         length_share_ = (1 << k_share_bits) +
                         ((static_cast<std::int32_t>(chance & 2047U) - 1024) * grid.rules.jitter >> k_share_bits);
         first_share_ = 256 + static_cast<std::int32_t>(chance >> 11 & 511U);
-        const Direction way = direction_at(grid, seed.layer, seed.point, seed.heading);
-        branches_[0].heading = way;
-        branches_[1].heading = -way;
+        branches_[0].heading = seed.heading;
+        branches_[1].heading = -seed.heading;
         branches_[0].tip = branches_[1].tip = seed.point;
     }
 
     bool trace(StrokeCandidate& candidate) {
-        if (!branches_[0].heading) return false;
         walk(branches_[0], first_share_);
         walk(branches_[1], 1 << k_share_bits);
         if (branches_[0].end == StrokeEnd::length) walk(branches_[0], 1 << k_share_bits);
@@ -153,12 +151,14 @@ class Tracer {
     /// A part, or it moved by up to two gaps either way, or shortened by as much at its free end (both given as how its
     /// ends move): the first of which the fewest free ends have their gap beside that of another stroke.
     Span out_of_line(const Span& span, const Span& move) const {
-        const std::int32_t gap = gap_steps(*grid_.at(seed_.point));
+        const std::int32_t gap = gap_steps(*grid_.at(seed_.point)), all = branches_[0].reach() + branches_[1].reach();
         Span best = span;
         std::int32_t least = 3;
         for (const std::int32_t shift : {0, gap, -gap, 2 * gap, -2 * gap}) {
             const Span moved{span.begin + shift * move.begin, span.end + shift * move.end};
-            if (moved.steps() > span.steps() || 4 * moved.steps() < 3 * span.steps()) continue;
+            if (moved.begin < 0 || moved.end > all || moved.steps() > span.steps() ||
+                4 * moved.steps() < 3 * span.steps())
+                continue;
             const std::int32_t in_line = (move.begin == 0 ? 0 : is_in_line(moved.begin - gap / 2)) +
                                          (move.end == 0 ? 0 : is_in_line(moved.end + gap / 2));
             if (in_line >= least) continue;

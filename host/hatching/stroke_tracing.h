@@ -12,7 +12,7 @@ namespace exemplar {
 /// pixel reaches without a barrier. None if its pixel has none, or if they cancel out.
 Direction direction_at(const PlacementGrid& grid, std::uint32_t layer, FinePoint point, Direction heading);
 
-/// Where a stroke is tried, and which way it sets out.
+/// Where a stroke is tried, and the direction of strokes there.
 struct StrokeSeed {
     std::uint32_t layer = 0;
     FinePoint point;

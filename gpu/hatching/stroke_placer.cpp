@@ -1,0 +1,242 @@
+#include "gpu/hatching/stroke_placer.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+
+#include "embedded/hatching_claim_comp.h"
+#include "embedded/hatching_place_comp.h"
+#include "embedded/hatching_settle_comp.h"
+#include "embedded/hatching_trace_comp.h"
+#include "host/hatching/kept_strokes.h"
+#include "host/hatching/occlusion_barriers.h"
+#include "host/hatching/stroke_front.h"
+
+namespace exemplar {
+namespace {
+
+using shared::PlacementCounts;
+using shared::PlacementParameters;
+using shared::SeedListRecord;
+using shared::StrokeRecord;
+using shared::TrialRecord;
+using shared::uvec4;
+
+static_assert(shared::k_pixel_bits == k_pixel_bits && shared::k_pixel == k_pixel && shared::k_unit == k_unit &&
+              shared::k_unit_bits == k_unit_bits && shared::k_share_bits == k_share_bits &&
+              shared::k_spacing_bits == k_spacing_bits && shared::k_length_bits == k_length_bits &&
+              shared::k_step == k_step && shared::k_least_steps == k_least_steps &&
+              shared::k_right_barrier == k_barrier_right && shared::k_lower_barrier == k_barrier_below);
+static_assert(shared::k_part_source == static_cast<std::uint32_t>(SeedSource::part) &&
+              shared::k_left_side_source == static_cast<std::uint32_t>(SeedSource::left_side) &&
+              shared::k_right_side_source == static_cast<std::uint32_t>(SeedSource::right_side) &&
+              shared::k_first_end_source == static_cast<std::uint32_t>(SeedSource::first_end) &&
+              shared::k_last_end_source == static_cast<std::uint32_t>(SeedSource::last_end) &&
+              shared::k_block_source == static_cast<std::uint32_t>(SeedSource::block));
+static_assert(sizeof(PlacementTexel) == sizeof(uvec4) && sizeof(FinePoint) == 2 * sizeof(std::uint32_t));
+
+/// Rounds between two looks at what they left; a divisor of the rounds that claims count down.
+constexpr std::uint32_t k_batch = 16, k_claim_rounds = 4096;
+static_assert(k_claim_rounds % k_batch == 0);
+
+SeedListRecord record_of(const SeedList& list) {
+    return {static_cast<std::uint32_t>(list.source) | list.layer << shared::k_layer_shift, list.first, list.second,
+            list.next};
+}
+
+std::uint32_t groups_of(std::size_t items) {
+    return static_cast<std::uint32_t>((items + shared::k_hatch_group - 1) / shared::k_hatch_group);
+}
+
+PlacementParameters parameters_of(const PlacementGrid& grid) {
+    const PlacementRules& rules = grid.rules;
+    return {.width = static_cast<std::uint32_t>(grid.width),
+            .height = static_cast<std::uint32_t>(grid.height),
+            .seed = rules.seed,
+            .test_share = rules.test_share,
+            .hole_share = rules.hole_share,
+            .least_share = rules.least_share,
+            .jitter = rules.jitter,
+            .least_turn_cosine = rules.least_turn_cosine,
+            .near_shift = rules.near_shift,
+            .room = rules.room,
+            .candidates = rules.candidates,
+            .block_bits = rules.block_bits,
+            .blocks = 0,
+            .rounds_left = 0,
+            .stroke_room = 0,
+            .point_room = 0,
+            .list_room = 0,
+            .unused0 = 0,
+            .unused1 = 0,
+            .unused2 = 0};
+}
+
+/// How many points strokes will about have, and how many strokes there will be; rooms grow where that is too few.
+struct Estimate {
+    double points = 4096, strokes = 1024;
+    explicit Estimate(const PlacementGrid& grid) {
+        for (const PlacementTexel& texel : grid.texels)
+            for (std::uint32_t layer = 0; layer < k_hatch_layers; ++layer) {
+                if (!texel.hatched(layer)) continue;
+                const double points_here = static_cast<double>(1 << k_spacing_bits) / texel.spacing();
+                points += points_here;
+                strokes += 2 * points_here / std::max(texel.length() >> k_length_bits, k_least_steps);
+            }
+    }
+};
+
+/// A buffer of another size with the contents of this one.
+Buffer resized(Device& device, Stream& stream, const Buffer& buffer, std::size_t bytes) {
+    Buffer result(device, bytes);
+    stream.copy(buffer, 0, result, 0, std::min(buffer.bytes(), bytes));
+    return result;
+}
+
+}  // namespace
+
+GpuStrokePlacer::GpuStrokePlacer(Device& device, Profiler* profiler) : device_(device), stream_(device, profiler) {
+    const StructLayout word = layout_of<std::uint32_t>(), four = layout_of<uvec4>(), point = layout_of<FinePoint>(),
+                       parameters = layout_of<PlacementParameters>(), trial = layout_of<TrialRecord>();
+    trace_ = Kernel(
+        device, shaders::hatching_trace_comp,
+        {.push_constants = parameters, .elements = {four, word, word, layout_of<SeedListRecord>(), trial, point}});
+    claim_ = Kernel(device, shaders::hatching_claim_comp,
+                    {.push_constants = parameters, .elements = {four, word, trial, word}, .constants = {{0, 0}}});
+    contest_ = Kernel(device, shaders::hatching_claim_comp,
+                      {.push_constants = parameters, .elements = {four, word, trial, word}, .constants = {{0, 1}}});
+    settle_ = Kernel(device, shaders::hatching_settle_comp,
+                     {.push_constants = parameters, .elements = {layout_of<SeedListRecord>(), trial}});
+    place_ = Kernel(device, shaders::hatching_place_comp,
+                    {.push_constants = parameters, .elements = {four, word, trial, point, word}});
+    count_buffer_ = Buffer(device, sizeof(PlacementCounts));
+}
+
+std::vector<HatchStroke> GpuStrokePlacer::place(const HatchingFields& fields, std::span<const std::uint8_t> barriers,
+                                                const StrokeOptions& options, std::span<const HatchStroke> kept) {
+    const PlacementGrid grid = make_placement_grid(fields, barriers, options);
+    if (grid.size() == 0) return {};
+    Clearance clearance(grid);
+    const std::vector<FineStroke> first = keep_strokes(grid, kept, options, clearance);
+    upload(grid, first, clearance.words());
+    place_all();
+    return finished_strokes(download(), fields);
+}
+
+void GpuStrokePlacer::upload(const PlacementGrid& grid, std::span<const FineStroke> kept,
+                             std::span<const std::uint32_t> near) {
+    parameters_ = parameters_of(grid);
+    reserve(device_, grid_, grid.size() * sizeof(PlacementTexel));
+    reserve(device_, near_, near.size_bytes());
+    reserve(device_, claims_, near.size_bytes());
+    const std::size_t candidates = grid.rules.candidates;
+    reserve(device_, trials_, candidates * sizeof(TrialRecord));
+    reserve(device_, ways_, candidates * grid.rules.room * sizeof(FinePoint));
+    stream_.upload<PlacementTexel>(grid_, grid.texels);
+    if (kept.empty())
+        stream_.fill(near_, Clearance::k_far);
+    else
+        stream_.upload(near_, near);
+    upload_lists(grid, kept);
+    upload_kept(kept);
+    stream_.upload<PlacementCounts>(count_buffer_, std::span(&counts_, 1));
+}
+
+/// The lists of holes, then the front: as the reference begins. Sets what is counted.
+void GpuStrokePlacer::upload_lists(const PlacementGrid& grid, std::span<const FineStroke> kept) {
+    std::vector<SeedListRecord> lists;
+    for (const SeedList& list : block_seeds(grid)) lists.push_back(record_of(list));
+    parameters_.blocks = static_cast<std::uint32_t>(lists.size());
+    for (const SeedList& list : first_seeds(grid, kept)) lists.push_back(record_of(list));
+    std::uint32_t points = 0;
+    for (const FineStroke& stroke : kept) {
+        const auto count = static_cast<std::uint32_t>(stroke.points.size());
+        for (const SeedList& list : stroke_seeds(stroke.layer, points, count)) lists.push_back(record_of(list));
+        points += count;
+    }
+    const auto front = static_cast<std::uint32_t>(lists.size()) - parameters_.blocks;
+    const std::uint32_t trials = front ? std::min(front, parameters_.candidates) : parameters_.blocks;
+    counts_ = {.trials = trials,
+               .in_blocks = front ? 0U : 1U,
+               .front = front,
+               .strokes = static_cast<std::uint32_t>(kept.size()),
+               .points = points,
+               .full = 0,
+               .trial_groups = {groups_of(trials), 1, 1},
+               .candidate_groups = {0, 1, 1},
+               .place_groups = {0, 1, 1}};
+    const Estimate estimate(grid);
+    const auto rooms = [&](Buffer& buffer, double wanted, std::size_t needed, std::size_t item) {
+        const std::size_t room = std::max(static_cast<std::size_t>(wanted), needed);
+        reserve(device_, buffer, room * item);
+        return static_cast<std::uint32_t>(room);
+    };
+    parameters_.stroke_room = rooms(strokes_, estimate.strokes, kept.size(), sizeof(StrokeRecord));
+    parameters_.point_room = rooms(points_, estimate.points, points, sizeof(FinePoint));
+    parameters_.list_room =
+        rooms(lists_, parameters_.blocks + 4 * estimate.strokes, lists.size(), sizeof(SeedListRecord));
+    stream_.upload<SeedListRecord>(lists_, lists);
+}
+
+void GpuStrokePlacer::upload_kept(std::span<const FineStroke> kept) {
+    std::vector<FinePoint> points;
+    std::vector<StrokeRecord> strokes;
+    for (const FineStroke& stroke : kept) {
+        strokes.push_back({static_cast<std::uint32_t>(points.size()), static_cast<std::uint32_t>(stroke.points.size()),
+                           stroke.layer, 0});
+        points.insert(points.end(), stroke.points.begin(), stroke.points.end());
+    }
+    if (kept.empty()) return;
+    stream_.upload<FinePoint>(points_, points);
+    stream_.upload<StrokeRecord>(strokes_, strokes);
+}
+
+void GpuStrokePlacer::record_round(std::uint32_t rounds_left) {
+    parameters_.rounds_left = rounds_left;
+    constexpr std::size_t k_trials = offsetof(PlacementCounts, trial_groups),
+                          k_candidates = offsetof(PlacementCounts, candidate_groups),
+                          k_placed = offsetof(PlacementCounts, place_groups);
+    stream_.dispatch_indirect(trace_, count_buffer_, k_trials,
+                              {grid_, near_, points_, lists_, trials_, ways_, count_buffer_}, parameters_);
+    stream_.dispatch_indirect(claim_, count_buffer_, k_candidates, {grid_, ways_, trials_, claims_}, parameters_);
+    stream_.dispatch_indirect(contest_, count_buffer_, k_candidates, {grid_, ways_, trials_, claims_}, parameters_);
+    stream_.dispatch(settle_, Threads(shared::k_settle_group), {lists_, trials_, count_buffer_, strokes_}, parameters_);
+    stream_.dispatch_indirect(place_, count_buffer_, k_placed, {grid_, ways_, trials_, points_, near_}, parameters_);
+}
+
+void GpuStrokePlacer::place_all() {
+    for (std::uint32_t round = 0; counts_.trials > 0; round = (round + k_batch) % k_claim_rounds) {
+        if (round == 0) stream_.fill(claims_, ~0U);
+        for (std::uint32_t i = 0; i < k_batch; ++i) record_round(k_claim_rounds - 1 - round - i);
+        stream_.fetch(count_buffer_, std::span(&counts_, 1));
+        if (counts_.full) double_rooms();
+    }
+}
+
+/// Gives strokes twice the room, and lets the round that had too little be done again.
+void GpuStrokePlacer::double_rooms() {
+    for (std::uint32_t* room : {&parameters_.stroke_room, &parameters_.point_room, &parameters_.list_room}) *room *= 2;
+    strokes_ = resized(device_, stream_, strokes_, parameters_.stroke_room * sizeof(StrokeRecord));
+    points_ = resized(device_, stream_, points_, parameters_.point_room * sizeof(FinePoint));
+    lists_ = resized(device_, stream_, lists_, parameters_.list_room * sizeof(SeedListRecord));
+    counts_.full = 0;
+    counts_.trial_groups[0] = groups_of(counts_.trials);
+    stream_.upload<PlacementCounts>(count_buffer_, std::span(&counts_, 1));
+}
+
+std::vector<FineStroke> GpuStrokePlacer::download() {
+    std::vector<StrokeRecord> records(counts_.strokes);
+    std::vector<FinePoint> points(counts_.points);
+    stream_.download(strokes_, std::span(records));
+    stream_.download(points_, std::span(points));
+    stream_.finish();
+    std::vector<FineStroke> strokes;
+    strokes.reserve(records.size());
+    for (const StrokeRecord& record : records) {
+        const auto first = points.begin() + record.first;
+        strokes.push_back({record.layer, {first, first + record.count}});
+    }
+    return strokes;
+}
+
+}  // namespace exemplar

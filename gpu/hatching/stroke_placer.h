@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gpu/runtime/buffer.h"
+#include "gpu/runtime/device.h"
+#include "gpu/runtime/kernel.h"
+#include "gpu/runtime/profiler.h"
+#include "gpu/runtime/stream.h"
+#include "host/hatching/placement_grid.h"
+#include "host/hatching/streamlines.h"
+#include "shaders/shared/hatching.h"
+
+namespace exemplar {
+
+/// Places strokes on the device, round by round as the reference does: the very same ones. Rounds are recorded in
+/// batches, between which the host reads a few numbers; strokes are downloaded at the end.
+class GpuStrokePlacer final : public StrokePlacer {
+  public:
+    explicit GpuStrokePlacer(Device& device, Profiler* profiler = nullptr);
+    using StrokePlacer::place;
+    /// Throws DeviceLimitError, too, for pictures over the device's limits: each layer takes 4 bytes per pixel of one
+    /// binding, and both 16 bytes of texels.
+    std::vector<HatchStroke> place(const HatchingFields& fields, std::span<const std::uint8_t> barriers,
+                                   const StrokeOptions& options, std::span<const HatchStroke> kept) override;
+
+  private:
+    void upload(const PlacementGrid& grid, std::span<const FineStroke> kept, std::span<const std::uint32_t> near);
+    void upload_lists(const PlacementGrid& grid, std::span<const FineStroke> kept);
+    void upload_kept(std::span<const FineStroke> kept);
+    void record_round(std::uint32_t rounds_left);
+    void place_all();
+    void double_rooms();
+    std::vector<FineStroke> download();
+
+    Device& device_;
+    Stream stream_;
+    Kernel trace_, claim_, contest_, settle_, place_;
+    shared::PlacementParameters parameters_{};
+    shared::PlacementCounts counts_{};
+    Buffer grid_, near_, claims_, lists_, trials_, ways_, points_, strokes_, count_buffer_;  // kept between calls
+};
+
+}  // namespace exemplar

@@ -1,0 +1,52 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/dispatch.glsl"
+#include "shaders/shared/hatching.h"
+
+// Claims pixels for the strokes that are tried in a round; when that is done for all, another dispatch looks whose claims
+// were not the least (host/hatching/stroke_claims.cpp). One stroke per workgroup and every 64th point of its way per
+// invocation: some 40 pixels per point, 4 bytes each. The result is the same whatever the order in which pixels are claimed.
+layout(local_size_x = k_hatch_group) in;
+layout(constant_id = 0) const bool k_looks = false;
+layout(push_constant) uniform Push { PlacementParameters parameters; };
+layout(set = 0, binding = 0) uniform usamplerBuffer grid;
+layout(set = 0, binding = 1) uniform usamplerBuffer way_points;
+layout(set = 0, binding = 2, std430) buffer Trials { TrialRecord trials[]; };
+layout(set = 0, binding = 3, std430) buffer Claims { uint claims[]; };
+#include "shaders/lib/candidate.glsl"
+
+const int k_half_diagonal = 2897;  // of a pixel, rounded up
+
+// Claims the pixels around a point, or returns whether another has one of them.
+bool take(ivec2 point, int reach, uint first, uint claim) {
+    const int most = (reach >> parameters.near_shift) * (reach >> parameters.near_shift);
+    ivec2 low, high;
+    pixels_within(point, reach, low, high);
+    bool lost = false;
+    for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x) {
+            const ivec2 way = way_from_center(ivec2(x, y), point);
+            if (dot_of(way, way) > most) continue;
+            const uint pixel = first + uint(index_of(ivec2(x, y)));
+            if (k_looks)
+                lost = lost || claims[pixel] != claim;
+            else
+                atomicMin(claims[pixel], claim);
+        }
+    return lost;
+}
+
+void main() {
+    const uint place = trials[linear_group()].listed;
+    const TrialRecord trial = trials[place];
+    const uint first = (trial.state >> k_layer_shift) * parameters.width * parameters.height;
+    bool lost = false;
+    for (uint i = gl_LocalInvocationID.x; i < trial.way_count; i += k_hatch_group) {
+        const ivec2 point = way_point(place, trial.way_begin, i);
+        const int spacing = spacing_of(texel_of(point));
+        if (!is_noted(i, trial.way_count, spacing)) continue;
+        const int reach = share_of_spacing(spacing, parameters.test_share) / 2 + k_half_diagonal;
+        if (take(point, reach, first, trial.claim)) lost = true;
+    }
+    if (lost) atomicOr(trials[place].state, k_lost_trial);
+}

@@ -1,0 +1,44 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/dispatch.glsl"
+#include "shaders/shared/hatching.h"
+
+// Puts the strokes that have won their round beside the others, and notes how near they are around them (host/hatching/
+// clearance.cpp). One stroke per workgroup and every 64th of its points per invocation: writes 8 bytes per point and up to 4
+// for each of the pixels within one and a quarter spacings. The least word stays, whatever the order in which they come.
+layout(local_size_x = k_hatch_group) in;
+layout(push_constant) uniform Push { PlacementParameters parameters; };
+layout(set = 0, binding = 0) uniform usamplerBuffer grid;
+layout(set = 0, binding = 1) uniform usamplerBuffer way_points;
+layout(set = 0, binding = 2, std430) readonly buffer Trials { TrialRecord trials[]; };
+layout(set = 0, binding = 3, std430) writeonly buffer StrokePoints { ivec2 stroke_points[]; };
+layout(set = 0, binding = 4, std430) buffer Near { uint near[]; };
+#include "shaders/lib/candidate.glsl"
+
+void note(ivec2 point, int reach, uint first) {
+    const int most = (reach >> parameters.near_shift) * (reach >> parameters.near_shift);
+    ivec2 low, high;
+    pixels_within(point, reach, low, high);
+    for (int y = low.y; y <= high.y; ++y)
+        for (int x = low.x; x <= high.x; ++x) {
+            const ivec2 way = way_from_center(ivec2(x, y), point);
+            const int squared = dot_of(way, way);
+            if (squared > most) continue;
+            const uint word = uint(squared >> 10) << 22 | uint(way.x + 1024) << 11 | uint(way.y + 1024);
+            atomicMin(near[first + uint(index_of(ivec2(x, y)))], word);
+        }
+}
+
+void main() {
+    const uint place = trials[linear_group()].listed;
+    const TrialRecord trial = trials[place];
+    if ((trial.state & k_lost_trial) != 0u) return;
+
+    const uint first = (trial.state >> k_layer_shift) * parameters.width * parameters.height;
+    for (uint i = gl_LocalInvocationID.x; i < trial.count; i += k_hatch_group) {
+        const ivec2 point = way_point(place, trial.way_begin, trial.begin + i);
+        stroke_points[trial.target + i] = point;
+        const int spacing = spacing_of(texel_of(point));
+        if (is_noted(i, trial.count, spacing)) note(point, near_reach(spacing), first);
+    }
+}

@@ -1,0 +1,137 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/hatching.h"
+
+// Ends a round: gives the strokes that have won their places, takes the lists that are used up out of the front, adds those of
+// the new strokes, and says what is tried next (host/hatching/streamlines.cpp). A single workgroup: reads and writes some 50
+// bytes for each trial and each list of the front.
+layout(local_size_x = k_settle_group) in;
+layout(push_constant) uniform Push { PlacementParameters parameters; };
+layout(set = 0, binding = 0, std430) coherent buffer Lists { SeedListRecord lists[]; };
+layout(set = 0, binding = 1, std430) coherent buffer Trials { TrialRecord trials[]; };
+layout(set = 0, binding = 2, std430) coherent buffer Counts { PlacementCounts counts; };
+layout(set = 0, binding = 3, std430) writeonly buffer Strokes { StrokeRecord strokes[]; };
+#include "shaders/lib/group_sum.glsl"
+
+// How the round leaves the front.
+struct Round {
+    uint won;     // strokes
+    uint points;  // of them
+    uint kept;    // lists of the front
+};
+
+bool has_won(uint i) {
+    return i < counts.trials && (trials[i].state & (k_open_trial | k_lost_trial)) == k_open_trial;
+}
+// Lists beyond those that were tried stay as they are; parts are done with when they have a stroke.
+bool is_kept(uint i) {
+    if (counts.in_blocks != 0u || i >= counts.front) return false;
+    if (i >= counts.trials) return true;
+    const bool is_part = (lists[parameters.blocks + i].kind & k_source_mask) == k_part_source;
+    return (trials[i].state & k_open_trial) != 0u && !(is_part && has_won(i));
+}
+
+Round measured(uint items) {
+    Round own = Round(0u, 0u, 0u);
+    for (uint i = gl_LocalInvocationID.x; i < items; i += k_settle_group) {
+        if (has_won(i)) {
+            own.won += 1u;
+            own.points += trials[i].count;
+        }
+        if (is_kept(i)) own.kept += 1u;
+    }
+    Round all;
+    sum_before(own.won);
+    all.won = group_total;
+    barrier();
+    sum_before(own.points);
+    all.points = group_total;
+    barrier();
+    sum_before(own.kept);
+    all.kept = group_total;
+    barrier();
+    return all;
+}
+
+// Moves the lists that are kept together, in their order, and gives strokes their places, in that of the trials.
+void compact(uint items) {
+    Round before = Round(counts.strokes, counts.points, parameters.blocks);
+    for (uint begin = 0; begin < items; begin += k_settle_group) {
+        const uint i = begin + gl_LocalInvocationID.x;
+        const bool won = has_won(i), kept = is_kept(i);
+        SeedListRecord list = SeedListRecord(0u, 0u, 0u, 0u);
+        if (kept) list = lists[parameters.blocks + i];
+        const uint count = won ? trials[i].count : 0u;
+        // Both counts are below 2^16.
+        const uint counted = sum_before((won ? 1u : 0u) | (kept ? 1u << 16 : 0u)), total = group_total;
+        barrier();
+        const uint first = before.points + sum_before(count), points = group_total;
+        memoryBarrierBuffer();
+        barrier();
+        if (kept) lists[before.kept + (counted >> 16)] = list;
+        if (won) {
+            const uint stroke = before.won + (counted & 0xffffu);
+            trials[i].target = first;
+            trials[i].claim = stroke;
+            strokes[stroke] = StrokeRecord(first, count, trials[i].state >> k_layer_shift, 0u);
+        }
+        before.won += total & 0xffffu;
+        before.kept += total >> 16;
+        before.points += points;
+        memoryBarrierBuffer();
+        barrier();
+    }
+}
+
+// Adds the sides and ends of new strokes behind the lists that are kept.
+void extend(uint kept) {
+    for (uint i = gl_LocalInvocationID.x; i < counts.trials; i += k_settle_group) {
+        if (!has_won(i)) continue;
+        const uint target = parameters.blocks + kept + 4u * (trials[i].claim - counts.strokes);
+        const uint layer = trials[i].state & ~((1u << k_layer_shift) - 1u);
+        for (uint source = k_left_side_source; source <= k_last_end_source; ++source)
+            lists[target + source - k_left_side_source] = SeedListRecord(layer | source, trials[i].target, trials[i].count, 0u);
+    }
+}
+
+void set_groups(uint candidates) {
+    counts.trial_groups[0] = (counts.trials + k_hatch_group - 1u) / k_hatch_group;
+    counts.candidate_groups[0] = 0u;
+    counts.place_groups[0] = candidates;
+}
+
+// What the next round tries: the front, or where that is used up holes, as long as there are some.
+void go_on(Round round, uint candidates) {
+    counts.strokes += round.won;
+    counts.points += round.points;
+    counts.front = round.kept + 4u * round.won;
+    const bool done = counts.in_blocks != 0u && candidates == 0u;
+    counts.in_blocks = counts.front == 0u ? 1u : 0u;
+    counts.trials = counts.front != 0u ? min(counts.front, parameters.candidates) : done ? 0u : parameters.blocks;
+    set_groups(candidates);
+}
+
+void main() {
+    const uint candidates = counts.candidate_groups[0];
+    if (counts.trials == 0u || counts.full != 0u) return;
+
+    const uint items = counts.in_blocks != 0u ? counts.trials : counts.front;
+    const Round round = measured(items);
+    const bool fits = counts.strokes + round.won <= parameters.stroke_room &&
+                      counts.points + round.points <= parameters.point_room &&
+                      parameters.blocks + round.kept + 4u * round.won <= parameters.list_room;
+    if (fits) {
+        compact(items);
+        extend(round.kept);
+    }
+    memoryBarrierBuffer();
+    barrier();
+    if (gl_LocalInvocationID.x != 0u) return;
+    if (fits) {
+        go_on(round, candidates);
+    } else {
+        counts.full = 1u;
+        set_groups(0u);
+        counts.trial_groups[0] = 0u;
+    }
+}

@@ -1,0 +1,26 @@
+// How near placed strokes are (host/hatching/clearance.h). The including shader declares `near`, the words of both layers.
+#ifndef EXEMPLAR_CLEARANCE_GLSL
+#define EXEMPLAR_CLEARANCE_GLSL
+#include "shaders/lib/placement_grid.glsl"
+
+const uint k_far = 0xffffffffu;
+
+uint squared_distance(ivec2 pixel, int first, ivec2 point) {
+    const uint word = is_inside(pixel) ? texelFetch(near, first + index_of(pixel)).x : k_far;
+    const ivec2 way = ivec2(word >> 11 & 2047u, word & 2047u) - 1024 - way_from_center(pixel, point);
+    return word == k_far ? k_far : uint(dot_of(way, way));
+}
+
+// Whether a point is so far from all strokes of its layer, in shares of a spacing.
+bool is_clear(uint layer, ivec2 point, int spacing, int share) {
+    const int first = int(layer * parameters.width * parameters.height);
+    const ivec2 corner = (point - k_pixel / 2) >> k_pixel_bits;
+    const uint squared = min(min(squared_distance(corner, first, point),
+                                 squared_distance(corner + ivec2(1, 0), first, point)),
+                             min(squared_distance(corner + ivec2(0, 1), first, point),
+                                 squared_distance(corner + ivec2(1, 1), first, point)));
+    const uint least = uint(share_of_spacing(spacing, share) >> parameters.near_shift);
+    return squared >= least * least;
+}
+
+#endif

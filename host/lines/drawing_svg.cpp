@@ -127,9 +127,9 @@ void apply_fading(SvgFading fading, StrokeRun& run) {
 }
 
 /// The pieces of a layer, stroke by stroke.
-std::vector<Piece> pieces_of(const DrawingLayer& layer, const SvgOptions& options, SvgSummary& summary) {
+std::vector<Piece> pieces_of(std::span<const Stroke> strokes, const SvgOptions& options, SvgSummary& summary) {
     std::vector<Piece> pieces;
-    for (const Stroke& stroke : layer.strokes)
+    for (const Stroke& stroke : strokes)
         for (StrokeRun& run : visible_runs(stroke)) {
             if (length_of(run) < options.shortest) continue;
             summary.length += static_cast<double>(length_of(run));
@@ -241,38 +241,39 @@ std::string outline(const Piece& piece) {
 /// Writes the layers of drawings into a document.
 class SvgWriter {
   public:
-    SvgWriter(SvgDocument& document, const DrawingStyle& style, const SvgOptions& options)
-        : document_(document), style_(style), options_(options) {}
+    /// Without a background what is pale is transparent.
+    SvgWriter(SvgDocument& document, const std::optional<Color>& background, const SvgOptions& options)
+        : document_(document), background_(background), options_(options) {}
 
-    void add_background(const Drawing& drawing) {
-        if (!options_.background || !style_.background) return;
+    void add_background(int width, int height) {
+        if (!options_.background || !background_) return;
         document_.open_layer("background");
-        document_.add("rect", std::vector<SvgAttribute>{{"width", svg_number(drawing.width)},
-                                                        {"height", svg_number(drawing.height)},
-                                                        {"fill", svg_color(*style_.background)}});
+        document_.add("rect", std::vector<SvgAttribute>{{"width", svg_number(width)},
+                                                        {"height", svg_number(height)},
+                                                        {"fill", svg_color(*background_)}});
         document_.close();
     }
-    void add_layer(const DrawingLayer& layer) {
-        const LineStyle& line = style_.of(layer.type);
-        const std::string color = svg_color(line.color);
+    void add_layer(const SvgLayer& layer) {
+        const std::string color = svg_color(layer.color);
         std::vector<SvgAttribute> attributes = {{"fill", color}, {"stroke", "none"}};
         if (options_.form == SvgForm::lines)
             attributes = {
                 {"fill", "none"}, {"stroke", color}, {"stroke-linecap", "round"}, {"stroke-linejoin", "round"}};
-        document_.open_layer(name_of(layer.type), attributes);
-        for (const Piece& piece : ordered(pieces_of(layer, options_, summary_), options_.form)) add_piece(piece, line);
+        document_.open_layer(layer.name, attributes);
+        for (const Piece& piece : ordered(pieces_of(layer.strokes, options_, summary_), options_.form))
+            add_piece(piece, layer);
         document_.close();
     }
     const SvgSummary& summary() const { return summary_; }
 
   private:
-    void add_piece(const Piece& piece, const LineStyle& line) {
+    void add_piece(const Piece& piece, const SvgLayer& layer) {
         const bool lines = options_.form == SvgForm::lines;
         std::vector<SvgAttribute> attributes = {{"d", lines ? center_line(piece, options_.curves) : outline(piece)}};
         if (lines) attributes.emplace_back("stroke-width", svg_number(static_cast<double>(piece.width)));
-        const float opacity = piece.opacity * line.opacity;
-        if (opacity < 0.995f && style_.background)
-            attributes.emplace_back(lines ? "stroke" : "fill", svg_color(mixed(line.color, opacity)));
+        const float opacity = piece.opacity * layer.opacity;
+        if (opacity < 0.995f && background_)
+            attributes.emplace_back(lines ? "stroke" : "fill", svg_color(mixed(layer.color, opacity)));
         else if (opacity < 0.995f)
             attributes.emplace_back("opacity", svg_number(static_cast<double>(opacity)));
         document_.add("path", attributes);
@@ -283,13 +284,13 @@ class SvgWriter {
     Color mixed(const Color& color, float opacity) const {
         Color result{};
         for (std::size_t c = 0; c < 3; ++c)
-            result[c] = static_cast<std::uint8_t>(std::lround(
-                std::lerp(static_cast<float>((*style_.background)[c]), static_cast<float>(color[c]), opacity)));
+            result[c] = static_cast<std::uint8_t>(
+                std::lround(std::lerp(static_cast<float>((*background_)[c]), static_cast<float>(color[c]), opacity)));
         return result;
     }
 
     SvgDocument& document_;
-    const DrawingStyle& style_;
+    const std::optional<Color>& background_;
     const SvgOptions& options_;
     SvgSummary summary_;
 };
@@ -325,12 +326,26 @@ void check(std::span<const Drawing> frames, const SvgOptions& options) {
 
 }  // namespace
 
+SvgSummary write_layers_svg(const std::filesystem::path& path, int width, int height,
+                            const std::optional<Color>& background, std::span<const SvgLayer> layers,
+                            const SvgOptions& options) {
+    SvgDocument document(width, height, options.title);
+    SvgWriter writer(document, background, options);
+    writer.add_background(width, height);
+    for (const SvgLayer& layer : layers) {
+        check_interrupt();
+        writer.add_layer(layer);
+    }
+    write_svg(path, document);
+    return writer.summary();
+}
+
 SvgSummary write_drawing_svg(const std::filesystem::path& path, std::span<const Drawing> frames,
                              const DrawingStyle& style, const SvgOptions& options) {
     check(frames, options);
     SvgDocument document(frames[0].width, frames[0].height, options.title);
-    SvgWriter writer(document, style, options);
-    writer.add_background(frames[0]);
+    SvgWriter writer(document, style.background, options);
+    writer.add_background(frames[0].width, frames[0].height);
     for (std::size_t f = 0; f < frames.size(); ++f) {
         check_interrupt();
         if (frames.size() > 1) {
@@ -339,7 +354,10 @@ SvgSummary write_drawing_svg(const std::filesystem::path& path, std::span<const 
             document.open_layer(fmt::format("frame {}", f), attributes);
             add_animation(document, f, frames.size(), options.frames_per_second);
         }
-        for (const DrawingLayer& layer : frames[f].layers) writer.add_layer(layer);
+        for (const DrawingLayer& layer : frames[f].layers) {
+            const LineStyle& line = style.of(layer.type);
+            writer.add_layer({std::string(name_of(layer.type)), line.color, line.opacity, layer.strokes});
+        }
         if (frames.size() > 1) document.close();
     }
     write_svg(path, document);

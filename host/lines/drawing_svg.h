@@ -41,6 +41,19 @@ struct SvgSummary {
     double length = 0;  ///< of all visible runs, in pixels
 };
 
+/// Strokes of one color under a name.
+struct SvgLayer {
+    std::string name;
+    Color color{0, 0, 0};
+    float opacity = 1;
+    std::span<const Stroke> strokes;
+};
+/// Writes layers of strokes as an SVG file, the first at the bottom, over a background if there is one. Paths of a
+/// layer stand in an order that keeps a pen's ways between them short. Throws as write_drawing_svg.
+SvgSummary write_layers_svg(const std::filesystem::path& path, int width, int height,
+                            const std::optional<Color>& background, std::span<const SvgLayer> layers,
+                            const SvgOptions& options = {});
+
 /// Writes drawings of one size as an SVG file with a layer per line type, named after it. Hidden lines are not in it.
 /// Paths of a layer stand in an order that keeps a pen's ways between them short. More than one drawing are the frames
 /// of an animation that repeats, a layer each; programs that do not play it show the first. Throws UsageError if there

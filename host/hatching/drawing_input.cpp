@@ -151,7 +151,7 @@ FloatImage drawing_darkness(const Image& drawing) {
         darkness.data.size(),
         [&](std::size_t i) {
             const float level = std::max(k_darkest_paper, static_cast<float>(paper.level.dot(terms_at(i, darkness))));
-            darkness.data[i] = std::clamp(1 - darkness.data[i] / level, 0.0f, 1.0f);
+            darkness.data[i] = 1 - darkness.data[i] / level;
         },
         4096);
     check_ink(darkness, paper.noise);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int k_bend_reach = 5;                              ///< pixels before and behind a bend that show its angle
 constexpr float k_bend = std::numbers::pi_v<float> * 0.37f;  ///< how much a circle of radius 4 turns over the reach
-constexpr float k_spur = 0.75f;                              ///< longest spur, in widths, and a pixel more
+constexpr float k_spur = 1;                                  ///< longest spur, in widths, and a pixel more
 constexpr int k_prunings = 3;
 constexpr int k_line = -1, k_outside = -2;  ///< what is no junction
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int k_meeting_reach = 2;       ///< pixels between the center lines of strokes that meet
 constexpr std::int32_t k_least_gap = 4;  ///< points between two crossings of the same strokes
-constexpr float k_soft_edge = 0.7f;      ///< pixels by which ink reaches beyond its width
+constexpr float k_soft_edge = 1;         ///< pixels by which ink reaches beyond its width
 constexpr float k_widest_overlap = 4;    ///< of crossings at small angles, in widths
 
 Pixel pixel_within(const Vec2& at, int width, int height) {

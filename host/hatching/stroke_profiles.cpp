@@ -12,7 +12,7 @@
 namespace exemplar {
 namespace {
 
-constexpr float k_reach_along = 3;   ///< pixels before and behind a point whose profile it has
+constexpr float k_reach_along = 4;   ///< pixels before and behind a point whose profile it has
 constexpr float k_paper_beside = 2;  ///< pixels of paper on either side that a profile takes in
 constexpr std::size_t k_least_inside = 4, k_least_outside = 3;  ///< samples in the stroke, and on either side
 constexpr float k_narrowest = 1;         ///< pixels: what is narrower looks like a lighter stroke of this width
@@ -182,23 +182,42 @@ bool accept(const Profile& profile, float paper, const TracedStroke& stroke, Tra
     return true;
 }
 
-/// Thickness and intensity where they were not measured: from the nearest points of the stroke where they were, or,
-/// where there are none, from its mask.
-void fill_profiles(const FloatImage& darkness, const StrokeMap& map, const std::vector<bool>& measured,
-                   TracedStroke& stroke) {
-    if (std::find(measured.begin(), measured.end(), true) == measured.end()) {
-        for (TracedPoint& point : stroke.points) {
-            const auto [x, y] = map.pixel_of(point);
-            point.thickness = std::max(stroke.width, k_narrowest);
-            point.intensity = std::max(darkness.pixel(x, y)[0], 1.0f / 255);
-        }
-        return;
-    }
+/// Thickness and intensity where they were not measured, from the nearest points of the stroke where they were. Returns
+/// whether there are any.
+bool fill_along(TracedStroke& stroke) {
+    std::vector<bool> measured;
+    for (const TracedPoint& point : stroke.points) measured.push_back(point.profiled);
     between_measured(measured, [&](std::size_t i, const BetweenMeasured& b) {
         const TracedPoint &before = stroke.points[b.before], &behind = stroke.points[b.behind];
         stroke.points[i].thickness = std::lerp(before.thickness, behind.thickness, b.share);
         stroke.points[i].intensity = std::lerp(before.intensity, behind.intensity, b.share);
     });
+    return std::find(measured.begin(), measured.end(), true) != measured.end();
+}
+
+float median_of(std::vector<float>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Strokes so crowded that no profile could be measured are as strokes of the drawing are; if all are, as their masks.
+void fill_others(const FloatImage& darkness, const StrokeMap& map, const std::vector<std::uint8_t>& filled,
+                 std::span<TracedStroke> strokes) {
+    std::vector<float> thickness, intensity;
+    for (const TracedStroke& stroke : strokes)
+        for (const TracedPoint& point : stroke.points)
+            if (point.profiled) thickness.push_back(point.thickness), intensity.push_back(point.intensity);
+    const bool any = !thickness.empty();
+    const float usual_thickness = any ? median_of(thickness) : 0, usual_intensity = any ? median_of(intensity) : 0;
+    for (std::size_t s = 0; s < strokes.size(); ++s) {
+        if (filled[s]) continue;
+        for (TracedPoint& point : strokes[s].points) {
+            const auto [x, y] = map.pixel_of(point);
+            point.thickness = any ? usual_thickness : std::max(strokes[s].width, k_narrowest);
+            point.intensity = any ? usual_intensity : std::clamp(darkness.pixel(x, y)[0], 1.0f / 255, 1.0f);
+        }
+    }
 }
 
 /// Every so many points, such that there are about as many as are needed.
@@ -259,11 +278,11 @@ void measure_profiles(const FloatImage& darkness, float paper, float softness, c
                       const PixelMask& crossing_pixels, std::span<TracedStroke> strokes) {
     const SoftEdge edge(softness);
     const Surroundings around{darkness, paper, map, crossing_pixels};
+    std::vector<std::uint8_t> filled(strokes.size(), 0);
     parallel_for(
         strokes.size(),
         [&](std::size_t s) {
             TracedStroke& stroke = strokes[s];
-            std::vector<bool> measured(stroke.points.size(), false);
             std::vector<Sample> samples;
             for (std::size_t i = 0; i < stroke.points.size(); ++i) {
                 TracedPoint& point = stroke.points[i];
@@ -271,12 +290,13 @@ void measure_profiles(const FloatImage& darkness, float paper, float softness, c
                 collect(around, point, {static_cast<std::int32_t>(s), static_cast<std::int32_t>(i)}, stroke.width,
                         samples);
                 if (enough(samples, stroke.width))
-                    measured[i] = accept(fit(samples, edge, stroke.width), paper, stroke, point);
+                    point.profiled = accept(fit(samples, edge, stroke.width), paper, stroke, point);
             }
-            fill_profiles(darkness, map, measured, stroke);
+            filled[s] = fill_along(stroke);
             orient_along(stroke);
         },
         8);
+    fill_others(darkness, map, filled, strokes);
 }
 
 }  // namespace exemplar

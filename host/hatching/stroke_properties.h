@@ -24,8 +24,8 @@ float estimate_softness(const FloatImage& darkness, float paper, const StrokeMap
 
 /// Thickness and intensity of each point, and its place on the center line to a fraction of a pixel: the box of that
 /// width and darkness that, blurred by pixels and softness, fits the darkness of the stroke's own pixels nearby best in
-/// the least-squares sense. At crossings they are interpolated along the stroke.
-/// Orientations that the drawing could not tell follow the center line.
+/// the least-squares sense. At crossings, and where other strokes are too near, they are interpolated along
+/// the stroke. Orientations that the drawing could not tell follow the center line.
 void measure_profiles(const FloatImage& darkness, float paper, float softness, const StrokeMap& map,
                       const PixelMask& crossing_pixels, std::span<TracedStroke> strokes);
 
@@ -35,13 +35,15 @@ void measure_lengths(const FloatImage& darkness, std::span<TracedStroke> strokes
 
 /// Spacing at each point: the distance, across the stroke, of the center lines of the nearest strokes of similar
 /// orientation (within `similar` radians) that do not cross it: the mean of those on its two sides, or the nearer if
-/// the other is much farther. Zero where there is none within `largest`.
+/// the other is much farther. A stroke whose neighbors' own spacing is less than half as large, as an outline along
+/// hatches, does not count as theirs. Zero where there is none within `largest`.
 void measure_spacings(std::span<const StrokeCrossing> crossings, float similar, float largest,
                       std::span<TracedStroke> strokes);
 
 /// Averages the properties of the points with a Gaussian of `sigma` pixels: thickness, intensity, spacing and length
 /// over all, orientation over those within `similar` radians of the own. Points count by their thickness, as a stroke
-/// covers more pixels the thicker it is, and not at all at crossings. Spacings of zero neither count nor change.
+/// covers more pixels the thicker it is, but not at crossings, nor with properties that were not measured there.
+/// Spacings of zero neither count nor change.
 void smooth_properties(float sigma, float similar, std::span<TracedStroke> strokes);
 
 }  // namespace exemplar

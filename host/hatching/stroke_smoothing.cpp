@@ -15,7 +15,8 @@ constexpr float k_reach = 2.5f;  ///< standard deviations
 
 /// Weighted sums of properties around a point.
 struct Sums {
-    double weight = 0, thickness = 0, intensity = 0, length = 0;
+    double profiled = 0, thickness = 0, intensity = 0;
+    double weight = 0, length = 0;
     double spaced = 0, spacing = 0;
     double cosine = 0, sine = 0;  ///< of twice the angle to the own orientation
 };
@@ -42,9 +43,12 @@ class Smoothing {
         const float squared = (near.center - point.center).squaredNorm() / (sigma_ * sigma_);
         if (near.at_crossing || squared > k_reach * k_reach) return;
         const double weight = static_cast<double>(near.thickness * std::exp(-0.5f * squared));
+        if (near.profiled) {
+            sums.profiled += weight;
+            sums.thickness += weight * near.thickness;
+            sums.intensity += weight * near.intensity;
+        }
         sums.weight += weight;
-        sums.thickness += weight * near.thickness;
-        sums.intensity += weight * near.intensity;
         sums.length += weight * near.length;
         if (near.spacing > 0) sums.spaced += weight, sums.spacing += weight * near.spacing;
         const float turn = std::remainder(near.orientation - point.orientation, k_pi);
@@ -54,11 +58,11 @@ class Smoothing {
     }
 
     static TracedPoint result(TracedPoint point, const Sums& sums) {
-        if (sums.weight > 0) {
-            point.thickness = static_cast<float>(sums.thickness / sums.weight);
-            point.intensity = static_cast<float>(sums.intensity / sums.weight);
-            point.length = static_cast<float>(sums.length / sums.weight);
+        if (sums.profiled > 0) {
+            point.thickness = static_cast<float>(sums.thickness / sums.profiled);
+            point.intensity = static_cast<float>(sums.intensity / sums.profiled);
         }
+        if (sums.weight > 0) point.length = static_cast<float>(sums.length / sums.weight);
         if (point.spacing > 0 && sums.spaced > 0) point.spacing = static_cast<float>(sums.spacing / sums.spaced);
         const float angle = point.orientation + 0.5f * static_cast<float>(std::atan2(sums.sine, sums.cosine));
         const float wrapped = angle - k_pi * std::floor(angle / k_pi);

@@ -16,6 +16,7 @@ namespace {
 
 constexpr float k_cell = 8;               ///< pixels
 constexpr float k_farthest_side = 1.75f;  ///< of the nearer side's distance, for both sides to be neighbors
+constexpr float k_farthest_mutual = 2;    ///< of the neighbor's own spacing
 constexpr float k_around = 4;             ///< how much longer the way along a stroke is to a neighbor that is itself
 
 /// Which strokes cross which.
@@ -34,18 +35,25 @@ class CrossingPairs {
     std::vector<std::vector<std::int32_t>> crossed_;
 };
 
-/// The nearest neighbor on each side of a point: how far its nearest point is, and how far its line.
+/// The nearest point of a neighboring stroke on one side.
+struct Neighbor {
+    PointId id;
+    float distance;    ///< to the point
+    float across = 0;  ///< to its line; 0: there is none
+};
+
+/// The neighbors on both sides of a point.
 struct Neighbors {
-    std::array<float, 2> nearest, across{};
-    explicit Neighbors(float largest) : nearest{largest, largest} {}
+    std::array<Neighbor, 2> side;
+    explicit Neighbors(float largest) : side{Neighbor{{}, largest}, Neighbor{{}, largest}} {}
 
     /// Beyond this distance nothing would change the spacing.
     float reach() const {
-        const auto [least, most] = std::minmax(nearest[0], nearest[1]);
+        const auto [least, most] = std::minmax(side[0].distance, side[1].distance);
         return std::min(most, 2 * least);
     }
     float spacing() const {
-        const auto [least, most] = std::minmax(across[0], across[1]);
+        const auto [least, most] = std::minmax(side[0].across, side[1].across);
         if (least == 0) return most;
         return most <= k_farthest_side * least ? 0.5f * (least + most) : least;
     }
@@ -61,7 +69,7 @@ class SpacingSearch {
           similar_(similar),
           largest_(largest) {}
 
-    float spacing_at(PointId id) const {
+    Neighbors neighbors_of(PointId id) const {
         const TracedPoint& point = strokes_[id.stroke].points[id.point];
         const int column = cells_.column(point.center.x()), row = cells_.row(point.center.y());
         Neighbors neighbors(largest_);
@@ -71,7 +79,7 @@ class SpacingSearch {
                 for (int c = column - ring; c <= column + ring; c += edge ? 1 : std::max(1, 2 * ring))
                     for (const PointId other : cells_.cell(c, r)) consider(id, other, neighbors);
             }
-        return neighbors.spacing();
+        return neighbors;
     }
 
   private:
@@ -89,16 +97,15 @@ class SpacingSearch {
         const TracedPoint& candidate = strokes_[other.stroke].points[other.point];
         const Vec2 way = candidate.center - point.center;
         const float distance = way.norm();
-        if (distance >= std::max(neighbors.nearest[0], neighbors.nearest[1])) return;
+        if (distance >= std::max(neighbors.side[0].distance, neighbors.side[1].distance)) return;
         const float turn = std::remainder(candidate.orientation - point.orientation, std::numbers::pi_v<float>);
         if (std::abs(turn) > similar_ || !apart(own, other, distance)) return;
         const float middle = point.orientation + 0.5f * turn;
         const float across = way.y() * std::cos(middle) - way.x() * std::sin(middle);
-        const std::size_t side = across > 0 ? 1 : 0;
-        if (distance >= neighbors.nearest[side] || 2 * across * across < distance * distance) return;
+        Neighbor& neighbor = neighbors.side[across > 0 ? 1 : 0];
+        if (distance >= neighbor.distance || 2 * across * across < distance * distance) return;
         if (own.stroke != other.stroke && crossing_.cross(own.stroke, other.stroke)) return;
-        neighbors.nearest[side] = distance;
-        neighbors.across[side] = std::abs(across);
+        neighbor = {other, distance, std::abs(across)};
     }
 
     std::span<const TracedStroke> strokes_;
@@ -106,6 +113,13 @@ class SpacingSearch {
     PointCells cells_;
     float similar_, largest_;
 };
+
+/// Without those that have much nearer neighbors themselves: to them, the stroke is not one of their family.
+Neighbors mutual(Neighbors of, const std::vector<std::vector<Neighbors>>& all) {
+    for (Neighbor& n : of.side)
+        if (n.across > k_farthest_mutual * (n.across > 0 ? all[n.id.stroke][n.id.point].spacing() : 0)) n.across = 0;
+    return of;
+}
 
 /// Where a neighbor ends for less than the spacing, as at a crossing, it goes on as it was.
 void bridge_short_gaps(TracedStroke& stroke) {
@@ -124,16 +138,18 @@ void bridge_short_gaps(TracedStroke& stroke) {
 void measure_spacings(std::span<const StrokeCrossing> crossings, float similar, float largest,
                       std::span<TracedStroke> strokes) {
     const SpacingSearch search(crossings, similar, largest, strokes);
-    std::vector<std::vector<float>> spacing(strokes.size());
+    std::vector<std::vector<Neighbors>> neighbors(strokes.size());
     parallel_for(
         strokes.size(),
         [&](std::size_t s) {
             for (std::size_t p = 0; p < strokes[s].points.size(); ++p)
-                spacing[s].push_back(search.spacing_at({static_cast<std::int32_t>(s), static_cast<std::int32_t>(p)}));
+                neighbors[s].push_back(
+                    search.neighbors_of({static_cast<std::int32_t>(s), static_cast<std::int32_t>(p)}));
         },
         8);
     for (std::size_t s = 0; s < strokes.size(); ++s) {
-        for (std::size_t p = 0; p < spacing[s].size(); ++p) strokes[s].points[p].spacing = spacing[s][p];
+        for (std::size_t p = 0; p < neighbors[s].size(); ++p)
+            strokes[s].points[p].spacing = mutual(neighbors[s][p], neighbors).spacing();
         bridge_short_gaps(strokes[s]);
     }
 }

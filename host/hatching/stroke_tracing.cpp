@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "host/hatching/stroke_links.h"
 
@@ -11,6 +12,7 @@ namespace {
 
 constexpr float k_pi = std::numbers::pi_v<float>;
 constexpr std::size_t k_least_points = 3;
+constexpr float k_least_aspect = 2;  ///< points per width: what is shorter is a dot, or what thinning left of an end
 constexpr float k_least_reach = 6, k_most_reach = 20;  ///< points of the center line that show its direction
 
 /// Builds strokes by walking from segment to segment.
@@ -24,7 +26,8 @@ class Assembly {
         const auto start_at = [&](std::size_t end) {
             if (used_[end / 2] || links_.shared[end / 2]) return;
             TracedStroke stroke = follow(end);
-            if (stroke.points.size() >= k_least_points && static_cast<float>(stroke.points.size()) >= stroke.width)
+            if (stroke.points.size() >= k_least_points &&
+                static_cast<float>(stroke.points.size()) >= k_least_aspect * stroke.width)
                 strokes.push_back(std::move(stroke));
         };
         for (std::size_t end = 0; end < links_.ends.size(); ++end)
@@ -84,6 +87,33 @@ class Assembly {
     std::vector<bool> used_;
 };
 
+/// Replaces the last points before one end, which thinning bends, by the straight line through those before them.
+void straighten_end(std::span<TracedPoint> inward, float width) {
+    const auto bent = static_cast<std::size_t>(std::lround(0.5f * width)) + 1;
+    const auto shown = static_cast<std::size_t>(std::lround(std::max(k_least_reach, 2 * width)));
+    if (inward.size() < bent + shown) return;
+    const std::span<const TracedPoint> straight = inward.subspan(bent, shown);
+    Vec2 middle = Vec2::Zero(), slope = Vec2::Zero();
+    const float center = 0.5f * static_cast<float>(shown - 1);
+    float squares = 0;
+    for (std::size_t i = 0; i < shown; ++i) {
+        const float k = static_cast<float>(i) - center;
+        middle += straight[i].center / static_cast<float>(shown);
+        slope += k * straight[i].center;
+        squares += k * k;
+    }
+    for (std::size_t i = 0; i < bent; ++i)
+        inward[i].center = middle + slope * ((static_cast<float>(i) - static_cast<float>(bent) - center) / squares);
+}
+
+void straighten_ends(TracedStroke& stroke) {
+    if (stroke.closed) return;
+    straighten_end(stroke.points, stroke.width);
+    std::reverse(stroke.points.begin(), stroke.points.end());
+    straighten_end(stroke.points, stroke.width);
+    std::reverse(stroke.points.begin(), stroke.points.end());
+}
+
 }  // namespace
 
 std::vector<TracedStroke> trace_strokes(const PixelMask& skeleton, const FloatImage& width, const FloatImage& darkness,
@@ -91,7 +121,10 @@ std::vector<TracedStroke> trace_strokes(const PixelMask& skeleton, const FloatIm
     const SkeletonGraph graph = skeleton_graph(skeleton);
     const SegmentLinks links = link_segments(graph, width, darkness, faintest);
     std::vector<TracedStroke> strokes = Assembly(graph, links).run();
-    for (TracedStroke& stroke : strokes) orient_along(stroke);
+    for (TracedStroke& stroke : strokes) {
+        straighten_ends(stroke);
+        orient_along(stroke);
+    }
     return strokes;
 }
 

@@ -18,6 +18,7 @@ struct TracedPoint {
     float spacing = 0;         ///< 0: no neighbor
     float length = 0;          ///< of the whole stroke
     bool oriented = false;     ///< the orientation was measured in the drawing rather than along the center line
+    bool profiled = false;     ///< thickness and intensity were measured here rather than elsewhere on the stroke
     bool at_crossing = false;  ///< in the ink of another stroke, or between the pieces of its own
 };
 
@@ -31,8 +32,8 @@ struct TracedStroke {
 /// Puts the lines of a skeleton together to strokes. Where lines meet, and where a fainter stroke is lost in a darker
 /// one, those continue each other that do so most nearly straight, if they turn by less than about 35 degrees; two
 /// strokes that share a line, as they cross at a small angle, both pass along it. `width` is that of strokes, per pixel
-/// of the skeleton; gaps are bridged where all of `darkness` between is at least `faintest`. Strokes shorter than they
-/// are wide or than three pixels are left out. Center lines are pixels' centers, straight through crossings;
+/// of the skeleton; gaps are bridged where all of `darkness` between is at least `faintest`. Strokes shorter than
+/// twice their width or than three pixels are left out. Center lines are pixels' centers, straight through crossings;
 /// orientations are those of center lines.
 std::vector<TracedStroke> trace_strokes(const PixelMask& skeleton, const FloatImage& width, const FloatImage& darkness,
                                         float faintest);

@@ -19,6 +19,8 @@ constexpr std::size_t k_sectors = 12;
 constexpr std::size_t k_apart = 2;
 constexpr float k_sector_step = std::numbers::pi_v<float> / static_cast<float>(k_sectors);
 constexpr float k_along = 0.5f;  ///< minor radius of a point's mask, in spacings, and how far the masks' union shrinks
+constexpr float k_least_region = 4;  ///< area of the smallest region, in squared spacings
+constexpr int k_absorptions = 4;     ///< for small regions inside of small regions
 
 /// Sets the pixels of the ellipse around a point that reaches a spacing across the stroke.
 void add_ellipse(const TracedPoint& point, PixelMask& mask) {
@@ -89,43 +91,96 @@ std::vector<std::uint8_t> crossed_level(const std::array<std::vector<std::uint8_
     return level;
 }
 
-/// The connected pixels of cross-hatching around one, which are no longer of that level afterwards.
-std::vector<std::size_t> take_region(std::vector<std::uint8_t>& level, int width, int height, std::size_t start) {
-    std::vector<std::size_t> region{start};
-    level[start] = k_single_hatching;
-    for (std::size_t k = 0; k < region.size(); ++k)
-        for (const auto& [dx, dy] : k_ring) {
-            const int x = static_cast<int>(region[k] % width) + dx, y = static_cast<int>(region[k] / width) + dy;
-            if (x < 0 || y < 0 || x >= width || y >= height) continue;
-            const std::size_t i = static_cast<std::size_t>(y) * width + x;
-            if (level[i] != k_cross_hatching) continue;
-            level[i] = k_single_hatching;
-            region.push_back(i);
+/// Connected pixels of one level, and how often others are beside them.
+struct Region {
+    std::vector<std::size_t> pixels;
+    std::array<std::size_t, 3> beside{};
+};
+
+/// Finds the regions of a level image one by one.
+class RegionFinder {
+  public:
+    RegionFinder(const std::vector<std::uint8_t>& level, const PixelMask& mask)
+        : level_(level), mask_(mask), seen_(level.size(), 0) {}
+
+    /// The region around a pixel of the mask; empty if it was found before.
+    Region take(std::size_t start) {
+        Region region;
+        if (!mask_.data[start] || seen_[start]) return region;
+        region.pixels.push_back(start);
+        seen_[start] = 1;
+        for (std::size_t k = 0; k < region.pixels.size(); ++k)
+            for (const auto& step : k_ring) look(region.pixels[k], step, region);
+        return region;
+    }
+
+  private:
+    void look(std::size_t from, const std::array<int, 2>& step, Region& region) {
+        const auto width = static_cast<std::size_t>(mask_.width);
+        const int x = static_cast<int>(from % width) + step[0], y = static_cast<int>(from / width) + step[1];
+        if (x < 0 || y < 0 || x >= mask_.width || y >= mask_.height) return;
+        const std::size_t i = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
+        if (!mask_.data[i]) return;
+        if (level_[i] != level_[from]) {
+            ++region.beside[level_[i]];
+        } else if (!seen_[i]) {
+            seen_[i] = 1;
+            region.pixels.push_back(i);
         }
-    return region;
+    }
+
+    const std::vector<std::uint8_t>& level_;
+    const PixelMask& mask_;
+    std::vector<std::uint8_t> seen_;
+};
+
+/// Cross-hatching with no more than so many intersections is single hatching.
+void demote_regions(std::span<const Vec2> intersections, std::size_t most_of_single, const PixelMask& mask,
+                    std::vector<std::uint8_t>& level) {
+    std::vector<std::uint32_t> at(level.size(), 0);
+    for (const Vec2& place : intersections) {
+        const int x = std::clamp(static_cast<int>(place.x()), 0, mask.width - 1);
+        const int y = std::clamp(static_cast<int>(place.y()), 0, mask.height - 1);
+        ++at[static_cast<std::size_t>(y) * mask.width + x];
+    }
+    const std::vector<std::uint8_t> before = level;
+    RegionFinder finder(before, mask);
+    for (std::size_t start = 0; start < level.size(); ++start) {
+        if (before[start] != k_cross_hatching) continue;
+        const Region region = finder.take(start);
+        std::size_t count = 0;
+        for (const std::size_t i : region.pixels) count += at[i];
+        if (count > most_of_single) continue;
+        for (const std::size_t i : region.pixels) level[i] = k_single_hatching;
+    }
+}
+
+/// Regions of fewer pixels take the level that most of those beside them have: one stroke too short is no region.
+/// Returns whether there was one; what it went to may be small, too.
+bool absorb_small_regions(std::size_t least, const PixelMask& mask, std::vector<std::uint8_t>& level) {
+    const std::vector<std::uint8_t> before = level;
+    RegionFinder finder(before, mask);
+    bool any = false;
+    for (std::size_t start = 0; start < level.size(); ++start) {
+        const Region region = finder.take(start);
+        const auto most = std::max_element(region.beside.begin(), region.beside.end());
+        if (region.pixels.size() >= least || *most == 0) continue;
+        for (const std::size_t i : region.pixels) level[i] = static_cast<std::uint8_t>(most - region.beside.begin());
+        any = true;
+    }
+    return any;
 }
 
 }  // namespace
 
 std::vector<std::uint8_t> hatching_levels(std::span<const TracedStroke> strokes, std::span<const Vec2> intersections,
-                                          const PixelMask& mask, std::size_t most_of_single) {
+                                          const PixelMask& mask, std::size_t most_of_single, float usual_spacing) {
     std::array<std::vector<std::uint8_t>, k_sectors> sectors;
     parallel_for(k_sectors, [&](std::size_t c) { sectors[c] = hatched_by_sector(strokes, c, mask); });
-    std::vector<std::uint8_t> level = crossed_level(sectors, mask), left = level;
-    std::vector<std::uint32_t> intersections_at(level.size(), 0);
-    for (const Vec2& at : intersections) {
-        const int x = std::clamp(static_cast<int>(at.x()), 0, mask.width - 1);
-        const int y = std::clamp(static_cast<int>(at.y()), 0, mask.height - 1);
-        ++intersections_at[static_cast<std::size_t>(y) * mask.width + x];
-    }
-    for (std::size_t start = 0; start < left.size(); ++start) {
-        if (left[start] != k_cross_hatching) continue;
-        const std::vector<std::size_t> region = take_region(left, mask.width, mask.height, start);
-        std::size_t count = 0;
-        for (const std::size_t i : region) count += intersections_at[i];
-        if (count > most_of_single) continue;
-        for (const std::size_t i : region) level[i] = k_single_hatching;
-    }
+    std::vector<std::uint8_t> level = crossed_level(sectors, mask);
+    demote_regions(intersections, most_of_single, mask, level);
+    const auto least = static_cast<std::size_t>(k_least_region * usual_spacing * usual_spacing);
+    for (int round = 0; round < k_absorptions && absorb_small_regions(least, mask, level);) ++round;
     return level;
 }
 

@@ -16,10 +16,10 @@ namespace exemplar {
 std::vector<Vec2> confirmed_intersections(std::span<const StrokeCrossing> crossings, const FloatImage& darkness,
                                           const PixelMask& skeleton, std::span<const TracedStroke> strokes);
 
-/// Hatching level per pixel of `mask`, zero outside of it (see StrokeMeasurements). A region of cross-hatching has more
-/// than `most_of_single` intersections.
+/// Hatching level per pixel of `mask`, zero outside of it (see measure_strokes). A region of cross-hatching has more
+/// than `most_of_single` intersections; regions of less than four squares of `usual_spacing` go to what is around them.
 std::vector<std::uint8_t> hatching_levels(std::span<const TracedStroke> strokes, std::span<const Vec2> intersections,
-                                          const PixelMask& mask, std::size_t most_of_single);
+                                          const PixelMask& mask, std::size_t most_of_single, float usual_spacing);
 
 /// 1 for pixels of `mask` beside one of another level in the mask.
 std::vector<std::uint8_t> level_boundaries(std::span<const std::uint8_t> level, const PixelMask& mask);

@@ -166,7 +166,7 @@ StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask
     if (strokes.empty()) return m;
     const std::vector<StrokeCrossing> crossings = measure_points(darkness, ink.pixels, options, strokes, m);
     m.intersections = confirmed_intersections(crossings, smooth, skeleton, strokes);
-    m.level = hatching_levels(strokes, m.intersections, mask, options.most_intersections_of_single);
+    m.level = hatching_levels(strokes, m.intersections, mask, options.most_intersections_of_single, m.median_spacing);
     m.boundary = level_boundaries(m.level, mask);
     if (options.smoothing > 0 && m.median_spacing > 0)
         smooth_properties(options.smoothing * m.median_spacing, options.similar, strokes);

@@ -238,9 +238,7 @@ double misfit_of(const std::vector<std::vector<Sample>>& profiles, std::span<con
     std::vector<float> misfits(profiles.size(), 0);
     parallel_for(
         profiles.size(), [&](std::size_t i) { misfits[i] = fit(profiles[i], edge, widths[i]).misfit; }, 8);
-    double sum = 0;
-    for (const float misfit : misfits) sum += misfit;
-    return sum;
+    return median_of(misfits);
 }
 
 /// The lowest point of the parabola through three.

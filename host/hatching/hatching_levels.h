@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "host/hatching/ink.h"
+#include "host/hatching/ink_mask.h"
 #include "host/hatching/stroke_map.h"
-#include "host/hatching/stroke_tracing.h"
+#include "host/hatching/traced_strokes.h"
 
 namespace exemplar {
 

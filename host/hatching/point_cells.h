@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/hatching/stroke_map.h"
-#include "host/hatching/stroke_tracing.h"
+#include "host/hatching/traced_strokes.h"
 
 namespace exemplar {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "host/hatching/ink.h"
+#include "host/hatching/ink_mask.h"
 #include "host/imaging/image.h"
 #include "host/mesh/mesh.h"
 

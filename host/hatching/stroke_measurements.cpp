@@ -10,10 +10,10 @@
 #include "host/core/parallel.h"
 #include "host/hatching/drawing_filters.h"
 #include "host/hatching/hatching_levels.h"
-#include "host/hatching/ink.h"
+#include "host/hatching/ink_mask.h"
 #include "host/hatching/stroke_map.h"
 #include "host/hatching/stroke_properties.h"
-#include "host/hatching/stroke_tracing.h"
+#include "host/hatching/traced_strokes.h"
 #include "host/hatching/thinning.h"
 
 namespace exemplar {
@@ -130,7 +130,7 @@ StrokeMeasurements empty_measurements(int width, int height) {
 
 /// Everything about single points of strokes, before smoothing. Returns the crossings.
 std::vector<StrokeCrossing> measure_points(const FloatImage& darkness, const PixelMask& ink,
-                                           const StrokeOptions& options, std::vector<TracedStroke>& strokes,
+                                           const MeasuringOptions& options, std::vector<TracedStroke>& strokes,
                                            StrokeMeasurements& m) {
     std::vector<StrokeCrossing> crossings = find_crossings(strokes, m.width, m.height, k_least_crossing_angle);
     const PixelMask crossing = crossing_pixels(crossings, m.width, m.height);
@@ -152,7 +152,7 @@ std::vector<StrokeCrossing> measure_points(const FloatImage& darkness, const Pix
 
 }  // namespace
 
-StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask, const StrokeOptions& options) {
+StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask, const MeasuringOptions& options) {
     check(darkness, mask);
     StrokeMeasurements m = empty_measurements(darkness.width, darkness.height);
     if (m.size() == 0) return m;

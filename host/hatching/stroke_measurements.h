@@ -10,7 +10,7 @@
 
 namespace exemplar {
 
-struct StrokeOptions {
+struct MeasuringOptions {
     float faintest = 0.1f;                          ///< darkness below which nothing is a stroke
     float similar = std::numbers::pi_v<float> / 6;  ///< radians between the strokes of one family
     float largest_spacing = 0;                      ///< pixels; 0: 20 median thicknesses, 24 at least
@@ -63,6 +63,6 @@ struct StrokeMeasurements {
 /// - The final smoothing averages directions among strokes of similar direction only.
 /// The result does not depend on the number of threads. Throws UsageError if an image has not one channel, or the sizes
 /// differ.
-StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask, const StrokeOptions& options = {});
+StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask, const MeasuringOptions& options = {});
 
 }  // namespace exemplar

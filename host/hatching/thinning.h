@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "host/hatching/ink.h"
+#include "host/hatching/ink_mask.h"
 
 namespace exemplar {
 

@@ -1,4 +1,4 @@
-#include "host/hatching/ink.h"
+#include "host/hatching/ink_mask.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "host/hatching/stroke_tracing.h"
+#include "host/hatching/traced_strokes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -13,8 +13,8 @@
 #include "host/hatching/ink_mask.h"
 #include "host/hatching/stroke_map.h"
 #include "host/hatching/stroke_properties.h"
-#include "host/hatching/traced_strokes.h"
 #include "host/hatching/thinning.h"
+#include "host/hatching/traced_strokes.h"
 
 namespace exemplar {
 namespace {

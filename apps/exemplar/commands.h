@@ -41,6 +41,13 @@ void add_curvature_train_command(CLI::App& curvature);
 void add_curvature_evaluate_command(CLI::App& curvature);
 void add_curvature_study_command(CLI::App& curvature);
 void add_lines_command(CLI::App& app);
+void add_hatch_command(CLI::App& app);
+void add_hatch_template_command(CLI::App& hatch);
+void add_hatch_example_command(CLI::App& hatch);
+void add_hatch_extract_command(CLI::App& hatch);
+void add_hatch_train_command(CLI::App& hatch);
+void add_hatch_draw_command(CLI::App& hatch);
+void add_hatch_evaluate_command(CLI::App& hatch);
 void add_demo_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 

@@ -45,19 +45,6 @@ Vec3 direction_named(const std::string& name) {
                                  suggestion(name, names), fmt::join(names, ", ")));
 }
 
-Vec3 point_of(const std::string& text, const char* option) {
-    Vec3 point;
-    const char *at = text.data(), *end = text.data() + text.size();
-    for (int i = 0; i < 3; ++i) {
-        const auto [stop, error] = std::from_chars(at, end, point[i]);
-        const bool last = i == 2;
-        if (error != std::errc() || !std::isfinite(point[i]) || (last ? stop != end : stop == end || *stop != ','))
-            throw UsageError(fmt::format("{} '{}' is no point; write three numbers as 1.5,0,-2", option, text));
-        at = stop + 1;
-    }
-    return point;
-}
-
 std::array<int, 2> size_of(const std::string& text) {
     constexpr int k_most = 16384;
     std::array<int, 2> size{};
@@ -149,6 +136,19 @@ Camera fitted_camera(const CameraArguments& arguments, const TriangleMesh& exten
 
 }  // namespace
 
+Vec3 point_of(const std::string& text, const char* option) {
+    Vec3 point;
+    const char *at = text.data(), *end = text.data() + text.size();
+    for (int i = 0; i < 3; ++i) {
+        const auto [stop, error] = std::from_chars(at, end, point[i]);
+        const bool last = i == 2;
+        if (error != std::errc() || !std::isfinite(point[i]) || (last ? stop != end : stop == end || *stop != ','))
+            throw UsageError(fmt::format("{} '{}' is no point; write three numbers as 1.5,0,-2", option, text));
+        at = stop + 1;
+    }
+    return point;
+}
+
 void add_camera_options(CLI::App& command, CameraArguments& arguments) {
     command
         .add_option("--view", arguments.view,
@@ -178,15 +178,21 @@ void require_camera(const CameraArguments& arguments) {
     point_of(arguments.target, "--target");
 }
 
-StrokeView view_of(const CameraArguments& arguments, LinesSource& source) {
+SizedCamera camera_of(const CameraArguments& arguments, const TriangleMesh& extent) {
     const auto [width, height] = size_of(arguments.size);
     const float aspect = static_cast<float>(width) / static_cast<float>(height);
+    return {arguments.eye.empty() ? fitted_camera(arguments, extent, aspect)
+                                  : placed_camera(arguments, extent.vertices, aspect),
+            width, height};
+}
+
+StrokeView view_of(const CameraArguments& arguments, LinesSource& source) {
     const TriangleMesh extent = extent_of(source);
+    const SizedCamera camera = camera_of(arguments, extent);
     StrokeView view;
-    view.width = width;
-    view.height = height;
-    view.camera = arguments.eye.empty() ? fitted_camera(arguments, extent, aspect)
-                                        : placed_camera(arguments, extent.vertices, aspect);
+    view.width = camera.width;
+    view.height = camera.height;
+    view.camera = camera.camera;
     const Range center = depths(view.camera, {center_of(extent.vertices)});
     const Range all = depths(view.camera, extent.vertices);
     view.unit_depth = std::max({center.low, 1e-3f * (all.high - all.low), 1e-30f});

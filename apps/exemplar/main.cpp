@@ -82,6 +82,7 @@ int run(int argc, char** argv) {
     add_label_command(app);
     add_curvature_command(app);
     add_lines_command(app);
+    add_hatch_command(app);
     add_features_command(app);
     add_synth_command(app);
     add_devices_command(app);

@@ -135,21 +135,6 @@ std::string describe(const HatchingStyle& style, const PropertyModel& model) {
 
 }  // namespace
 
-const char* name_of(StrokeProperty property) {
-    constexpr std::array<const char*, k_stroke_properties> k_names{"thickness", "intensity", "spacing", "length"};
-    return k_names[static_cast<std::size_t>(property)];
-}
-
-std::vector<float>& property_of(HatchingFields& fields, StrokeProperty property) {
-    const std::array<std::vector<float>*, k_stroke_properties> images{&fields.thickness, &fields.intensity,
-                                                                      &fields.spacing, &fields.length};
-    return *images[static_cast<std::size_t>(property)];
-}
-
-const std::vector<float>& property_of(const HatchingFields& fields, StrokeProperty property) {
-    return property_of(const_cast<HatchingFields&>(fields), property);
-}
-
 std::size_t HatchingStyle::feature_count() const {
     return k_pixel_features + contextual_feature_count(rules.size());
 }

@@ -6,22 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "host/hatching/hatching_fields.h"
+#include "host/hatching/drawing_properties.h"
 #include "host/hatching/orientation_mixture.h"
 #include "host/hatching/pixel_crf.h"
 #include "host/hatching/property_model.h"
 #include "host/learn/boosted_stumps.h"
 
 namespace exemplar {
-
-/// The real-valued properties of strokes (thesis Sec. 4.3.3).
-enum class StrokeProperty { thickness, intensity, spacing, length };
-constexpr std::size_t k_stroke_properties = 4;
-/// "thickness" and so on.
-const char* name_of(StrokeProperty property);
-/// The image of that property.
-std::vector<float>& property_of(HatchingFields& fields, StrokeProperty property);
-const std::vector<float>& property_of(const HatchingFields& fields, StrokeProperty property);
 
 /// A hatching style, learned from one drawing. Features are numbered as in powers.h; from 4 k_pixel_features on they
 /// are the contextual features of as many labels as there are rules.

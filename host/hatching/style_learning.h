@@ -6,22 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "host/hatching/drawing_properties.h"
 #include "host/hatching/hatching_style.h"
 #include "host/hatching/pixel_features.h"
 #include "host/learn/boosted_stumps.h"
 
 namespace exemplar {
-
-/// What a drawing says of each pixel of the view that it shows; images of the size of the view.
-struct DrawingProperties {
-    int width = 0, height = 0;
-    std::vector<std::uint8_t> center;    ///< 1: on the center line of a stroke: where properties are known
-    std::vector<std::uint8_t> crossing;  ///< 1: where strokes cross: the direction is not known
-    std::vector<float> orientation;      ///< radians in [0, pi)
-    std::array<std::vector<float>, k_stroke_properties> property;  ///< positive where known
-    std::vector<std::uint8_t> level;                               ///< of every pixel of the object
-    std::vector<std::uint8_t> boundary;                            ///< 1: on a boundary of hatching regions
-};
 
 struct StyleLearningOptions {
     std::size_t orientation_samples = 20'000;  ///< at most so many pixels learn directions and segments

@@ -1,0 +1,162 @@
+#include "host/hatching/traced_strokes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "host/hatching/stroke_links.h"
+
+namespace exemplar {
+namespace {
+
+constexpr float k_pi = std::numbers::pi_v<float>;
+constexpr std::size_t k_least_points = 3;
+constexpr float k_least_aspect = 2;  ///< points per width: what is shorter is a dot, or what thinning left of an end
+constexpr float k_least_reach = 6, k_most_reach = 20;  ///< points of the center line that show its direction
+
+/// Builds strokes by walking from segment to segment.
+class Assembly {
+  public:
+    Assembly(const SkeletonGraph& graph, const SegmentLinks& links)
+        : graph_(graph), links_(links), used_(graph.segments.size(), false) {}
+
+    std::vector<TracedStroke> run() {
+        std::vector<TracedStroke> strokes;
+        const auto start_at = [&](std::size_t end) {
+            if (used_[end / 2] || links_.shared[end / 2]) return;
+            TracedStroke stroke = follow(end);
+            if (stroke.points.size() >= k_least_points &&
+                static_cast<float>(stroke.points.size()) >= k_least_aspect * stroke.width)
+                strokes.push_back(std::move(stroke));
+        };
+        for (std::size_t end = 0; end < links_.ends.size(); ++end)
+            if (links_.partner[end] == k_unlinked && !graph_.segments[end / 2].closed) start_at(end);
+        for (std::size_t end = 0; end < links_.ends.size(); end += 2) start_at(end);
+        return strokes;
+    }
+
+  private:
+    /// The stroke that enters a segment at `entry`.
+    TracedStroke follow(std::size_t entry) {
+        const std::size_t start = entry;
+        std::size_t longest = 0;
+        TracedStroke stroke;
+        while (true) {
+            used_[entry / 2] = true;
+            append(entry, stroke);
+            if (const std::size_t size = graph_.segments[entry / 2].pixels.size(); size > longest)
+                longest = size, stroke.width = links_.ends[entry].width;
+            const std::size_t exit = entry ^ 1u, next = links_.partner[exit];
+            if (next == k_unlinked || used_[next / 2]) {
+                stroke.closed = next == start || graph_.segments[entry / 2].closed;
+                if (next == start) bridge(stroke.points.back().center, stroke.points.front().center, stroke);
+                return stroke;
+            }
+            bridge(links_.ends[exit].position, links_.ends[next].position, stroke);
+            entry = next;
+        }
+    }
+
+    void append(std::size_t entry, TracedStroke& stroke) const {
+        const SkeletonSegment& segment = graph_.segments[entry / 2];
+        const std::size_t exit = entry ^ 1u, last = segment.pixels.size() - 1;
+        const std::size_t from = trim(entry), to = last - trim(exit);
+        for (std::size_t i = from; i <= to; ++i) {
+            TracedPoint point;
+            point.center = center_of(segment.pixels[entry % 2 == 0 ? i : last - i]);
+            stroke.points.push_back(point);
+        }
+    }
+
+    std::size_t trim(std::size_t end) const { return links_.partner[end] == k_unlinked ? 0 : links_.ends[end].trim; }
+
+    /// Points a pixel apart between two ends.
+    static void bridge(const Vec2& from, const Vec2& to, TracedStroke& stroke) {
+        const auto steps = static_cast<int>(std::lround((to - from).norm()));
+        for (int k = 1; k < steps; ++k) {
+            TracedPoint point;
+            point.center = from + (to - from) * (static_cast<float>(k) / static_cast<float>(steps));
+            point.at_crossing = true;
+            stroke.points.push_back(point);
+        }
+    }
+
+    const SkeletonGraph& graph_;
+    const SegmentLinks& links_;
+    std::vector<bool> used_;
+};
+
+/// Replaces the last points before one end, which thinning bends, by the straight line through those before them.
+void straighten_end(std::span<TracedPoint> inward, float width) {
+    const auto bent = static_cast<std::size_t>(std::lround(0.5f * width)) + 1;
+    const auto shown = static_cast<std::size_t>(std::lround(std::max(k_least_reach, 2 * width)));
+    if (inward.size() < bent + shown) return;
+    const std::span<const TracedPoint> straight = inward.subspan(bent, shown);
+    Vec2 middle = Vec2::Zero(), slope = Vec2::Zero();
+    const float center = 0.5f * static_cast<float>(shown - 1);
+    float squares = 0;
+    for (std::size_t i = 0; i < shown; ++i) {
+        const float k = static_cast<float>(i) - center;
+        middle += straight[i].center / static_cast<float>(shown);
+        slope += k * straight[i].center;
+        squares += k * k;
+    }
+    for (std::size_t i = 0; i < bent; ++i)
+        inward[i].center = middle + slope * ((static_cast<float>(i) - static_cast<float>(bent) - center) / squares);
+}
+
+void straighten_ends(TracedStroke& stroke) {
+    if (stroke.closed) return;
+    straighten_end(stroke.points, stroke.width);
+    std::reverse(stroke.points.begin(), stroke.points.end());
+    straighten_end(stroke.points, stroke.width);
+    std::reverse(stroke.points.begin(), stroke.points.end());
+}
+
+}  // namespace
+
+std::vector<TracedStroke> trace_strokes(const PixelMask& skeleton, const FloatImage& width, const FloatImage& darkness,
+                                        float faintest) {
+    const SkeletonGraph graph = skeleton_graph(skeleton);
+    const SegmentLinks links = link_segments(graph, width, darkness, faintest);
+    std::vector<TracedStroke> strokes = Assembly(graph, links).run();
+    for (TracedStroke& stroke : strokes) {
+        straighten_ends(stroke);
+        orient_along(stroke);
+    }
+    return strokes;
+}
+
+void orient_along(TracedStroke& stroke) {
+    const auto count = static_cast<std::ptrdiff_t>(stroke.points.size());
+    const auto reach = static_cast<std::ptrdiff_t>(std::clamp(2 * stroke.width, k_least_reach, k_most_reach));
+    for (std::ptrdiff_t i = 0; i < count; ++i) {
+        if (stroke.points[i].oriented) continue;
+        // The slope of the least-squares line through the points around, as many on either side.
+        std::ptrdiff_t side = std::min(reach, (count - 1) / 2);
+        if (!stroke.closed) side = std::min(side, std::max(side / 2, std::min(i, count - 1 - i)));
+        Vec2 slope = Vec2::Zero();
+        for (std::ptrdiff_t k = -side; k <= side; ++k) {
+            const std::ptrdiff_t at =
+                stroke.closed ? (i + k + count) % count : std::clamp<std::ptrdiff_t>(i + k, 0, count - 1);
+            slope += static_cast<float>(k) * stroke.points[at].center;
+        }
+        const float angle = std::atan2(slope.y(), slope.x());
+        stroke.points[i].orientation = angle < 0 ? angle + k_pi : (angle < k_pi ? angle : 0);
+    }
+}
+
+float length_along(const TracedStroke& stroke) {
+    const std::vector<TracedPoint>& points = stroke.points;
+    const auto step = [](const TracedPoint& a, const TracedPoint& b) {
+        const Vec2 way = b.center - a.center;
+        const auto along = [&](float angle) { return std::abs(way.x() * std::cos(angle) + way.y() * std::sin(angle)); };
+        return 0.5f * (along(a.orientation) + along(b.orientation));
+    };
+    float length = stroke.closed ? step(points.back(), points.front()) : 0;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) length += step(points[i], points[i + 1]);
+    return length;
+}
+
+}  // namespace exemplar

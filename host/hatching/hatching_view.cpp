@@ -11,9 +11,9 @@
 namespace exemplar {
 namespace {
 
-constexpr std::array<const char*, 15> k_functions{"mean",    "gaussian", "k_max",    "k_min",    "k_large",
-                                                  "k_small", "c111",     "c112",     "c122",     "c222",
-                                                  "radial",  "d_radial", "view_max", "view_min", "torsion"};
+constexpr std::array<const char*, k_curvature_functions> k_functions{
+    "mean", "gaussian", "k_max",  "k_min",    "k_large",  "k_small",  "c111",   "c112",
+    "c122", "c222",     "radial", "d_radial", "view_max", "view_min", "torsion"};
 
 struct VertexState {
     float k1, k2;
@@ -22,7 +22,7 @@ struct VertexState {
 };
 
 /// In units of the median distance, bounded by `limit` (its square for second-order values).
-std::array<float, k_functions.size()> curvature_functions(const VertexState& at, float limit) {
+std::array<float, k_curvature_functions> curvature_functions(const VertexState& at, float limit) {
     const auto first = [&](float value) { return std::clamp(value, -limit, limit); };
     const auto second = [&](float value) { return std::clamp(value, -limit * limit, limit * limit); };
     const float u = at.view.u, v = at.view.v, squared_sine = std::max(u * u + v * v, 1e-6f);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -39,6 +40,8 @@ CoveredPixels covered_pixels(const GBuffer& gbuffer);
 /// magnitudes at each of the three scales. Curvatures are in units of 1 / (median geodesic distance), derivatives and
 /// products of two in units of its square; bounded by what a patch of their scale can tell.
 FeatureMatrix view_curvature_features(const HatchingSurface& surface, const HatchingView& view);
+constexpr std::size_t k_curvature_functions = 15;
+constexpr std::size_t k_view_curvature_columns = 2 * k_curvature_functions * k_hatching_scales.size();
 
 /// The names of the columns of view_curvature_features.
 std::vector<std::string> view_curvature_names();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "host/hatching/pixel_projection.h"
 #include "host/imaging/gbuffer.h"
 #include "host/imaging/image_derivatives.h"
 
@@ -9,6 +10,7 @@ namespace exemplar {
 struct ImageTools {
     GBufferRenderer& gbuffers;
     ImageFilters& filters;
+    PixelProjection& projection;
 };
 
 }  // namespace exemplar

@@ -13,6 +13,7 @@
 #include "host/hatching/direction_smoothing.h"
 #include "host/hatching/line_directions.h"
 #include "host/hatching/line_images.h"
+#include "host/hatching/pixel_projection.h"
 
 namespace exemplar {
 namespace {
@@ -101,64 +102,37 @@ const std::vector<std::string>& orientation_feature_names() {
 
 /// What is computed when it is first asked for.
 struct PixelFeatures::Parts {
-    std::optional<FeatureMatrix> curvature;  // per vertex
-    ImageStack shading;                      // of the picture
+    ImageStack shading;
     std::array<std::optional<ImageDerivatives>, k_sigmas.size()> derivatives;
     std::optional<LineImages> lines;
     std::array<std::optional<std::array<ImageStack, k_line_sigmas.size()>>, k_line_kinds * k_line_thresholds>
         line_images;
     std::optional<std::array<std::vector<Vec3>, k_vertex_fields>> fields;  // per vertex
-
-    void shade_pixels(const HatchingSurface& surface, const HatchingView& view, const GBuffer& gbuffer);
 };
 
 namespace {
 
-/// A value or vector at the corners of a face, at a point of it.
-template <typename Values>
-auto interpolate(const GBuffer& gbuffer, const TriangleMesh& mesh, std::uint32_t pixel, const Values& values) {
-    const Face& face = mesh.faces[gbuffer.face[pixel]];
-    const auto& [b, c] = gbuffer.barycentric[pixel];
-    using Value = std::decay_t<decltype(values[0])>;
-    return Value((1 - b - c) * values[face[0]] + b * values[face[1]] + c * values[face[2]]);
+/// Where a feature comes from.
+enum class Source { curvature, descriptors, picture };
+Source source_of(std::size_t feature) {
+    if (feature < k_first_descriptor) return Source::curvature;
+    return feature < k_first_image ? Source::descriptors : Source::picture;
 }
 
-/// The same of a direction without sign: corners are turned to the first.
-Vec3 interpolate_direction(const GBuffer& gbuffer, const TriangleMesh& mesh, std::uint32_t pixel,
-                           std::span<const Vec3> values) {
-    const Face& face = mesh.faces[gbuffer.face[pixel]];
-    const auto& [b, c] = gbuffer.barycentric[pixel];
-    const Vec3 first = values[face[0]], second = values[face[1]], third = values[face[2]];
-    Vec3 sum = (1 - b - c) * first;
-    sum += std::copysign(b, first.dot(second)) * second;
-    return sum + std::copysign(c, (first.squaredNorm() > 0 ? first : second).dot(third)) * third;
+/// The first features of some, as many as come from where the first does.
+std::span<const std::uint32_t> same_source(std::span<const std::uint32_t> features) {
+    const auto other =
+        std::ranges::find_if(features, [&](std::uint32_t k) { return source_of(k) != source_of(features.front()); });
+    return features.first(static_cast<std::size_t>(other - features.begin()));
 }
 
-}  // namespace
-
-void PixelFeatures::Parts::shade_pixels(const HatchingSurface& surface, const HatchingView& view,
-                                        const GBuffer& gbuffer) {
-    if (shading.count > 0) return;
-    const std::vector<float> bright = shade(surface.occlusion, view.light);
-    shading = ImageStack(gbuffer.width, gbuffer.height, k_shading_images);
-    parallel_for(
-        gbuffer.size(),
-        [&](std::size_t i) {
-            const auto pixel = static_cast<std::uint32_t>(i);
-            if (gbuffer.face[pixel] == k_no_face) return;
-            const Vec3 normal = interpolate(gbuffer, surface.mesh, pixel, surface.normals).normalized();
-            const Vec3 point = interpolate(gbuffer, surface.mesh, pixel, surface.mesh.vertices);
-            shading.image(k_intensity)[i] = interpolate(gbuffer, surface.mesh, pixel, bright);
-            shading.image(k_view_normal)[i] = std::max(normal.dot(view.camera.to_eye(point)), 0.0f);
-            shading.image(k_light_normal)[i] = std::max(normal.dot(view.light), 0.0f);
-            shading.image(k_ambient)[i] = interpolate(gbuffer, surface.mesh, pixel, surface.occlusion.ambient);
-        },
-        4096);
+std::vector<std::uint32_t> descriptors_of(std::span<const std::uint32_t> features) {
+    std::vector<std::uint32_t> columns;
+    for (const std::uint32_t k : features) columns.push_back(k - static_cast<std::uint32_t>(k_first_descriptor));
+    return columns;
 }
 
-namespace {
-
-/// Fills columns of a matrix, one feature after the other.
+/// Fills columns of a matrix with what pictures show at some of the pixels.
 class Gatherer {
   public:
     Gatherer(const PixelFeatures& pixels, std::span<const std::uint32_t> rows)
@@ -166,12 +140,6 @@ class Gatherer {
     std::size_t count() const { return count_; }
     std::uint32_t pixel(std::size_t i) const { return pixels_.pixels().pixel[rows_.empty() ? i : rows_[i]]; }
 
-    void from_vertices(std::span<const float> values, std::span<float> out) const {
-        parallel_for(
-            count_,
-            [&](std::size_t i) { out[i] = interpolate(pixels_.gbuffer(), pixels_.surface().mesh, pixel(i), values); },
-            8192);
-    }
     template <typename ValueAt>
     void from_pixels(ValueAt&& value_at, std::span<float> out) const {
         parallel_for(
@@ -243,10 +211,41 @@ PixelFeatures::PixelFeatures(const HatchingSurface& surface, const HatchingView&
 
 PixelFeatures::~PixelFeatures() = default;
 
+FacePoints PixelFeatures::points(std::span<const std::uint32_t> rows) const {
+    const Gatherer gatherer(*this, rows);
+    FacePoints points{std::vector<std::uint32_t>(gatherer.count()),
+                      std::vector<std::array<float, 2>>(gatherer.count())};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        points.face[i] = gbuffer_.face[gatherer.pixel(i)];
+        points.barycentric[i] = gbuffer_.barycentric[gatherer.pixel(i)];
+    }
+    return points;
+}
+
+const ImageStack& PixelFeatures::shading() {
+    ImageStack& shading = parts_->shading;
+    if (shading.count > 0) return shading;
+    const std::vector<float> bright = shade(surface_.occlusion, view_.light);
+    shading = ImageStack(view_.width, view_.height, k_shading_images);
+    const FacePoints all = points({});
+    parallel_for(
+        all.size(),
+        [&](std::size_t i) {
+            const std::uint32_t pixel = pixels_.pixel[i];
+            const Vec3 normal = interpolate(surface_.mesh, all, i, surface_.normals).normalized();
+            const Vec3 point = interpolate(surface_.mesh, all, i, surface_.mesh.vertices);
+            shading.image(k_intensity)[pixel] = interpolate(surface_.mesh, all, i, bright);
+            shading.image(k_view_normal)[pixel] = std::max(normal.dot(view_.camera.to_eye(point)), 0.0f);
+            shading.image(k_light_normal)[pixel] = std::max(normal.dot(view_.light), 0.0f);
+            shading.image(k_ambient)[pixel] = interpolate(surface_.mesh, all, i, surface_.occlusion.ambient);
+        },
+        4096);
+    return shading;
+}
+
 const ImageDerivatives& PixelFeatures::derivatives(std::size_t sigma) {
-    parts_->shade_pixels(surface_, view_, gbuffer_);
     auto& kept = parts_->derivatives[sigma];
-    if (!kept) kept = tools_.filters.derivatives(parts_->shading, gbuffer_.face, k_sigmas[sigma]);
+    if (!kept) kept = tools_.filters.derivatives(shading(), gbuffer_.face, k_sigmas[sigma]);
     return *kept;
 }
 
@@ -263,18 +262,22 @@ const ImageStack& PixelFeatures::line_image(std::size_t line, std::size_t sigma)
     return (*kept)[sigma];
 }
 
-void PixelFeatures::image_column(std::size_t feature, std::span<const std::uint32_t> rows, std::span<float> out) {
-    static const std::vector<ImageFeature> k_features = image_features();
-    const auto [quantity, image, sigma] = k_features[feature];
+void PixelFeatures::picture_column(std::size_t feature, std::span<const std::uint32_t> rows, std::span<float> out) {
     const Gatherer gatherer(*this, rows);
+    if (feature >= k_first_line) {
+        const std::size_t line = (feature - k_first_line) / k_line_sigmas.size();
+        const ImageStack& image = line_image(line, (feature - k_first_line) % k_line_sigmas.size());
+        return gatherer.from_pixels([&](std::uint32_t pixel) { return image.values[pixel]; }, out);
+    }
+    static const std::vector<ImageFeature> k_features = image_features();
+    const auto [quantity, image, sigma] = k_features[feature - k_first_image];
     if (quantity == ImageFeature::depth) {
         // In units of the object's size, from its middle: the same for a mesh of any size, seen from anywhere.
         const BoundingBox box = bounding_box(surface_.mesh);
         const Vec3 middle = (0.5 * (box.low + box.high)).cast<float>();
         const float away = -(view_.camera.view * middle.homogeneous()).z();
         const float radius = std::max(0.5f * static_cast<float>(box.diagonal()), 1e-20f);
-        gatherer.from_pixels([&](std::uint32_t pixel) { return (gbuffer_.depth[pixel] - away) / radius; }, out);
-        return;
+        return gatherer.from_pixels([&](std::uint32_t pixel) { return (gbuffer_.depth[pixel] - away) / radius; }, out);
     }
     const ImageDerivatives& all = derivatives(sigma);
     const std::array<const ImageStack*, 4> quantities{&all.value, &all.gradient_magnitude, &all.maximum_curvature,
@@ -288,18 +291,9 @@ OrientationFields PixelFeatures::orientations(std::span<const std::uint32_t> row
     if (!parts_->fields) parts_->fields = vertex_fields(surface_, view_, *parts_->lines);
     const Gatherer gatherer(*this, rows);
     OrientationFields out(gatherer.count());
-    const Eigen::Matrix4f view_projection = view_.camera.view_projection();
-    parallel_for(
-        out.rows,
-        [&](std::size_t i) {
-            const std::uint32_t pixel = gatherer.pixel(i);
-            const Vec3 point = interpolate(gbuffer_, surface_.mesh, pixel, surface_.mesh.vertices);
-            for (std::size_t k = 0; k < k_vertex_fields; ++k) {
-                const Vec3 direction = interpolate_direction(gbuffer_, surface_.mesh, pixel, (*parts_->fields)[k]);
-                out.field(k)[i] = doubled(projected_direction(view_, view_projection, point, direction).normalized());
-            }
-        },
-        512);
+    const std::vector<std::span<const Vec3>> fields(parts_->fields->begin(), parts_->fields->end());
+    tools_.projection.directions(surface_.mesh, view_, points(rows), fields,
+                                 std::span(out.values).first(k_vertex_fields * out.rows));
     constexpr std::array<std::size_t, k_shading_images> k_order{k_view_normal, k_light_normal, k_ambient, k_intensity};
     for (std::size_t k = k_vertex_fields; k < k_orientation_fields; ++k) {
         const std::size_t place = k - k_vertex_fields;
@@ -319,24 +313,27 @@ OrientationFields PixelFeatures::orientations(std::span<const std::uint32_t> row
 }
 
 FeatureMatrix PixelFeatures::scalars(std::span<const std::uint32_t> which, std::span<const std::uint32_t> rows) {
-    const Gatherer gatherer(*this, rows);
+    const FacePoints at = points(rows);
     FeatureMatrix out;
-    out.rows = gatherer.count();
-    out.values.reserve(out.rows * which.size());
-    for (const std::uint32_t k : which) {
-        const std::span<float> column = out.add(pixel_feature_names().at(k));
-        if (k < k_first_descriptor) {
-            if (!parts_->curvature) parts_->curvature = view_curvature_features(surface_, view_);
-            gatherer.from_vertices(parts_->curvature->column(k), column);
-        } else if (k < k_first_image) {
-            gatherer.from_vertices(surface_.descriptors.column(k - k_first_descriptor), column);
-        } else if (k < k_first_line) {
-            image_column(k - k_first_image, rows, column);
-        } else {
-            const std::size_t line = (k - k_first_line) / k_line_sigmas.size();
-            const ImageStack& image = line_image(line, (k - k_first_line) % k_line_sigmas.size());
-            gatherer.from_pixels([&](std::uint32_t pixel) { return image.values[pixel]; }, column);
+    out.rows = at.size();
+    for (const std::uint32_t k : which) out.names.push_back(pixel_feature_names().at(k));
+    out.values.resize(out.rows * which.size());
+    for (std::size_t first = 0; first < which.size();) {
+        const std::span<const std::uint32_t> some = same_source(which.subspan(first));
+        const std::span<float> columns(out.values.data() + first * out.rows, some.size() * out.rows);
+        switch (source_of(some.front())) {
+            case Source::curvature:
+                tools_.projection.curvature(surface_, view_, at, some, columns);
+                break;
+            case Source::descriptors:
+                tools_.projection.scalars(surface_.mesh, at, surface_.descriptors, descriptors_of(some), columns);
+                break;
+            case Source::picture:
+                for (std::size_t k = 0; k < some.size(); ++k)
+                    picture_column(some[k], rows, columns.subspan(k * out.rows, out.rows));
+                break;
         }
+        first += some.size();
     }
     return out;
 }

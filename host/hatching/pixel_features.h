@@ -15,8 +15,8 @@
 namespace exemplar {
 
 /// Scalar features of a pixel (thesis App. B.2), without their powers (see powers.h).
-constexpr std::size_t k_curvature_features = 90, k_descriptor_features = 110, k_image_features = 53,
-                      k_line_features = 48;
+constexpr std::size_t k_curvature_features = k_view_curvature_columns, k_descriptor_features = 110,
+                      k_image_features = 53, k_line_features = 48;
 constexpr std::size_t k_pixel_features =
     k_curvature_features + k_descriptor_features + k_image_features + k_line_features;  // 301
 
@@ -45,9 +45,11 @@ class PixelFeatures {
 
   private:
     struct Parts;
+    FacePoints points(std::span<const std::uint32_t> rows) const;
+    const ImageStack& shading();
     const ImageDerivatives& derivatives(std::size_t sigma);
     const ImageStack& line_image(std::size_t line, std::size_t sigma);
-    void image_column(std::size_t feature, std::span<const std::uint32_t> rows, std::span<float> out);
+    void picture_column(std::size_t feature, std::span<const std::uint32_t> rows, std::span<float> out);
     const HatchingSurface& surface_;
     const HatchingView& view_;
     ImageTools& tools_;

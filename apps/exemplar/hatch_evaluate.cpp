@@ -155,6 +155,8 @@ class StyleEvaluation {
         for (std::size_t i = 0; i < drawn.ink.size(); ++i) darkness.data[i] = std::round(255 * drawn.ink[i]) / 255;
         const DrawingProperties drawing = drawing_properties(measure_strokes(darkness, mask));
         result_["measured"] = measured_errors(drawing, truth);
+        result_["measured"]["level_accuracy"] =
+            compare_hatching(measured_fields(drawing), truth, scene.pixels().pixels().pixel).level_accuracy;
         StyleLearningOptions options;
         options.seed = options.mixture.seed = arguments_.seed;
         StyleReport report;

@@ -44,7 +44,8 @@ struct HatchScene::Impl {
     GpuStumpScorer scorer;
     GpuStrokePlacer placer;
     CpuHatchingEvaluator evaluator;
-    ImageTools tools{gbuffers, filters};
+    CpuPixelProjection projection;
+    ImageTools tools{gbuffers, filters, projection};
     HatchingSurface surface;
     HatchingView view;
     std::unique_ptr<PixelFeatures> pixels;

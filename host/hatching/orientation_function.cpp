@@ -188,7 +188,7 @@ class Boosting {
 
     /// Keeps a function that is better: of more features only if they pay.
     bool keep_better(const OrientationFunction& function, LearnedOrientation& best) const {
-        constexpr double k_worth = 0.97;
+        constexpr double k_worth = 0.95;
         const double e = error(function);
         const bool more = function.terms.size() > best.function.terms.size();
         if (!(e < (more ? k_worth : 1) * best.error)) return false;

@@ -95,7 +95,7 @@ struct LearnedOrientation {
 /// the weights by that term, and ends where the items held out are fitted best; weights are the r over their sum.
 /// Beyond the thesis, functions found by forward selection, whose weights are fitted by least squares, compete on the
 /// items held out: averages alone cannot tell which of two good features is followed where they differ. One more
-/// feature has to take 3% off the error. No weight or no feature that is defined anywhere: no terms.
+/// feature has to take 5% off the error. No weight or no feature that is defined anywhere: no terms.
 LearnedOrientation learn_orientation(const OrientationTraining& training);
 
 }  // namespace exemplar

@@ -11,7 +11,7 @@
 namespace exemplar {
 namespace {
 
-constexpr double k_least_share = 0.01;
+constexpr double k_least_share = 0.04;
 constexpr double k_least_variance = 1e-3;  // of |u - f|^2: about a degree
 
 /// An expert and what is thought of it: the columns of gamma and beta.

@@ -15,7 +15,9 @@ namespace exemplar {
 namespace {
 
 constexpr std::size_t k_rounds_between = 5;  // looks at the rows held out
-constexpr std::size_t k_patience = 40;       // rounds without gain
+constexpr std::size_t k_patience = 60;       // rounds without gain
+// A drawing's pixels are alike: full steps fit them in a few rounds, and generalize worse.
+constexpr double k_shrinkage = 0.3;
 
 /// Sums of the stumps for the rows held out, brought up to date as stumps are added.
 class HeldOutScores {
@@ -75,7 +77,7 @@ LearnedClassifier learn_classifier(const ClassifierTraining& training, const std
     weights.resize(training.features.rows, 1.0f);
     const QuantizedFeatures quantized = quantize(features.matrix, weights, {});
     const TrainingSet set{quantized, training.labels, weights, rows};
-    const BoostOptions options{.seed = training.seed};
+    const BoostOptions options{.shrinkage = k_shrinkage, .seed = training.seed};
     Booster booster = training.gentle ? Booster::gentle(set, options) : Booster(set, training.classes, options);
 
     const std::vector<std::int32_t> labels = chosen(training.labels, judges);

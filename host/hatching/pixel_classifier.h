@@ -18,7 +18,7 @@ struct ClassifierTraining {
     std::span<const std::uint8_t> held_out;  ///< of each row
     std::size_t classes = 2;
     bool gentle = false;  ///< GentleBoost for two classes in place of JointBoost
-    std::size_t most_rounds = 300;
+    std::size_t most_rounds = 500;
     std::uint64_t seed = 1;
 };
 

@@ -141,7 +141,7 @@ class Learning {
         for (std::size_t stage = 0; stage < options_.most_stages; ++stage) {
             const FeatureMatrix features = features_of(rows, stage > 0);
             const LearnedClassifier learned =
-                learn_classifier({features, labels, {}, held, style_.rules.size(), false, 300, options_.seed + stage},
+                learn_classifier({features, labels, {}, held, style_.rules.size(), false, 500, options_.seed + stage},
                                  [&] { progress_("segments"); });
             report_.segment_errors.push_back(learned.error);
             // A stage that is no better ends the cascade, and is not kept.
@@ -189,7 +189,7 @@ class Learning {
         const std::size_t first = k_pixel_features - k_line_features;
         const FeatureMatrix features = pixels_.scalars(numbers(first, k_pixel_features), rows);
         LearnedClassifier learned = learn_classifier(
-            {features, labels, weights, held_out(rows, labels, options_.seed + 6), 2, true, 200, options_.seed + 7},
+            {features, labels, weights, held_out(rows, labels, options_.seed + 6), 2, true, 300, options_.seed + 7},
             [&] { progress_("boundaries"); });
         for (Stump& stump : learned.classifier.stumps.stumps)
             stump.feature += static_cast<std::uint32_t>(k_powers * first);
@@ -237,7 +237,7 @@ class Learning {
         for (const std::uint32_t row : rows) labels.push_back(drawing_.level[pixel(row)]);
         const FeatureMatrix features = features_of(rows, true);
         const LearnedClassifier learned = learn_classifier(
-            {features, labels, {}, held_out(rows, labels, options_.seed + 9), 3, false, 300, options_.seed + 10},
+            {features, labels, {}, held_out(rows, labels, options_.seed + 9), 3, false, 500, options_.seed + 10},
             [&] { progress_("hatching levels"); });
         style_.levels = learned.classifier;
         report_.level_error = learned.error;

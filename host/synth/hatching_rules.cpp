@@ -67,7 +67,7 @@ Rule contour_rule() {
                 t.spacing = 6 + 5 * light;
                 t.thickness = 1.6f + 1.4f * (1 - light);
                 t.intensity = 0.95f;
-                t.length = 60;
+                t.length = 45;
                 return t;
             }};
 }
@@ -80,7 +80,7 @@ Rule light_rule() {
                 t.spacing = 5.5f + 6 * of(0, row);
                 t.thickness = 2;
                 t.intensity = 0.5f + 0.45f * (1 - std::clamp(of(2, row), 0.0f, 1.0f));
-                t.length = 30 + 50 * of(3, row);
+                t.length = 20 + 20 * of(3, row);
                 return t;
             }};
 }
@@ -93,11 +93,11 @@ Rule parts_rule() {
                 t.segment = of(0, row) > 0.3f ? 0 : 1;
                 const bool thick = t.segment == 0;
                 t.level = thick && tone < 0.45f ? 2 : tone < 0.8f ? 1 : 0;
-                t.direction = {of.direction(thick ? "e_a,3" : "k_max,2", row), of.direction("LxN", row)};
+                t.direction = {of.direction(thick ? "e_a,3" : "k_max,2", row), of.direction("perp e_a,3", row)};
                 t.spacing = thick ? 9.0f : 7.0f;
                 t.thickness = std::min(1.5f + 0.25f * of(3, row), 3.5f);
                 t.intensity = 0.85f;
-                t.length = thick ? 80.0f : 35.0f;
+                t.length = thick ? 50.0f : 25.0f;
                 return t;
             }};
 }
@@ -110,7 +110,7 @@ Rule flow_rule() {
                 t.spacing = 5 + 4 * of(0, row);
                 t.thickness = 1.5f + 1.2f * (1 - of(0, row));
                 t.intensity = std::clamp(0.7f - 0.35f * of(1, row), 0.3f, 1.0f);
-                t.length = 70;
+                t.length = 50;
                 return t;
             }};
 }

@@ -133,7 +133,9 @@ RuledHatching hatching_by_rule(std::string_view style, PixelFeatures& pixels) {
     const Rule rule = rule_of(style);
     const NamedFeatures features(pixels, rule.scalars);
     const HatchingView& view = pixels.view();
-    const float scale = static_cast<float>(std::min(view.width, view.height)) / 1000;
+    // Finer strokes than that a picture could not show.
+    constexpr float k_least_scale = 0.7f;
+    const float scale = std::max(static_cast<float>(std::min(view.width, view.height)) / 1000, k_least_scale);
     RuledHatching out{HatchingFields(view.width, view.height), {}};
     out.segment.assign(out.fields.size(), k_outside);
     for (std::size_t row = 0; row < pixels.size(); ++row) {

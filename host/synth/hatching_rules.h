@@ -25,7 +25,8 @@ struct RuledHatching {
 /// - "flow": strokes between two directions, pale in the distance, without cross-hatching.
 std::span<const std::string_view> hatching_rule_names();
 
-/// The targets of a style for a view. Lengths are given for pictures of 1000 pixels and go with the smaller side.
+/// The targets of a style for a view. Lengths are given for pictures of 1000 pixels and go with the smaller side,
+/// down to 70%.
 /// Throws UsageError for an unknown style.
 RuledHatching hatching_by_rule(std::string_view style, PixelFeatures& pixels);
 

@@ -1,0 +1,100 @@
+"""Hatching: a view to trace, a drawing by a known rule, what is measured of it, the style learned from it, and drawings in it."""
+
+import json
+import unittest
+import xml.etree.ElementTree as ElementTree
+
+from png import read_png
+from program import ProgramTest, CUBE, CUBE_QUADS, write_off
+
+SVG = "{http://www.w3.org/2000/svg}"
+LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
+VIEW = ["--size", "500x460"]
+MESH = "shapes/fourleg_001.off"
+PROPERTIES = {"orientation", "thickness", "intensity", "spacing", "length", "levels"}
+
+
+class Hatch(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.call("synth", "fourleg", "--faces", "2500", "--out", "shapes")
+        cls.call("hatch", "example", "contour", MESH, *VIEW, "--out", "drawing.png")
+        cls.call("hatch", "train", MESH, "drawing.png", *VIEW, "--out", "style.safetensors", "--json", "train.json")
+
+    def test_a_view_to_trace(self):
+        self.call("hatch", "template", MESH, *VIEW, "--out", "template.png", "--json", "template.json")
+        report = json.loads((self.folder / "template.json").read_text())
+        self.assertEqual((report["width"], report["height"]), (500, 460))
+        self.assertGreater(report["pixels"], 5000)
+
+    def test_what_is_measured_of_a_drawing(self):
+        self.call("hatch", "extract", MESH, "drawing.png", *VIEW, "--out", "measured", "--json", "extract.json")
+        report = json.loads((self.folder / "extract.json").read_text())
+        self.assertGreater(report["median_spacing"], 3.5)
+        self.assertLess(report["median_spacing"], 8)
+        written = {path.stem for path in (self.folder / "measured").glob("*.png")}
+        self.assertLessEqual(PROPERTIES | {"skeleton", "intersections", "boundaries"}, written)
+
+    def test_the_style_is_told_in_words(self):
+        said = self.call("hatch", "train", MESH, "drawing.png", *VIEW, "--out", "again.safetensors").stdout
+        for word in ("Segment 1", "hatches along", "Hatching levels are told by", "thickness =", "spacing ="):
+            self.assertIn(word, said)
+        self.assertEqual((self.folder / "again.safetensors").read_bytes(), (self.folder / "style.safetensors").read_bytes())
+        report = json.loads((self.folder / "train.json").read_text())
+        self.assertGreaterEqual(report["segments"], 1)
+        self.assertLess(report["level_error"], 0.3)
+
+    def test_another_view_as_svg(self):
+        self.call("hatch", "draw", "style.safetensors", MESH, *VIEW, "--view", "side", "--out", "side.svg", "--json", "draw.json",
+                  "--properties", "targets")
+        root = ElementTree.parse(self.folder / "side.svg").getroot()
+        layers = {g.get(LABEL): g for g in root.findall(SVG + "g")}
+        self.assertEqual(list(layers), ["background", "hatching", "cross_hatching", "contours"])
+        self.assertGreater(len(list(layers["hatching"].iter(SVG + "path"))), 50)
+        self.assertGreater(len(list(layers["contours"].iter(SVG + "path"))), 0)
+        report = json.loads((self.folder / "draw.json").read_text())
+        self.assertLess(report["tone_error"], 0.2)
+        self.assertLess(report["spacing_error"], 0.3)
+        written = {path.stem for path in (self.folder / "targets").glob("*.png")}
+        self.assertEqual(written, PROPERTIES | {"segments", "cross_orientation"})
+        self.assert_no_leftovers()
+
+    def test_a_picture_and_the_same_bytes_again(self):
+        for name in ("one.png", "two.png"):
+            self.call("hatch", "draw", "style.safetensors", MESH, *VIEW, "--out", name, "--scale", "1.5")
+        width, height, pixels = read_png(self.folder / "one.png")
+        self.assertEqual((width, height), (750, 690))
+        dark = sum(1 for value in pixels[::3] if value < 128) / (width * height)
+        self.assertGreater(dark, 0.01)
+        self.assertLess(dark, 0.4)
+        self.assertEqual((self.folder / "one.png").read_bytes(), (self.folder / "two.png").read_bytes())
+
+    def test_evaluation_beside_the_known_rule(self):
+        self.call("hatch", "evaluate", MESH, "--styles", "flow", "--size", "500x500", "--json", "evaluation.json", "--export", "rows")
+        (result,) = json.loads((self.folder / "evaluation.json").read_text())
+        self.assertEqual(len(result["rows"]), 4)
+        for row in result["rows"]:
+            self.assertLess(row["orientation_degrees"], 15)
+            self.assertGreater(row["level_accuracy"], 0.7)
+        self.assertEqual(len(list((self.folder / "rows").glob("*_x.npy"))), 4)
+
+    def test_what_cannot_be_hatched(self):
+        write_off(self.folder / "cube.off", CUBE, CUBE_QUADS)
+        train = ["hatch", "train", MESH]
+        self.refused("hatch", "example", "contours", MESH, "--out", "x.png", code=2, says=["contours", "contour, light"])
+        self.refused(*train, "no.png", *VIEW, "--out", "x.safetensors", code=1, says="no.png")
+        self.refused(*train, MESH, *VIEW, "--out", "x.safetensors", code=1, says="fourleg_001.off")
+        damaged = self.folder / "damaged.png"
+        damaged.write_bytes((self.folder / "drawing.png").read_bytes()[:2000])
+        self.refused(*train, "damaged.png", *VIEW, "--out", "x.safetensors", code=1, says="damaged.png")
+        self.call("hatch", "template", "cube.off", *VIEW, "--out", "cube.png")
+        self.refused("hatch", "draw", "drawing.png", MESH, "--out", "x.svg", code=1, says="drawing.png")
+        self.refused("hatch", "draw", "style.safetensors", MESH, "--out", "x.jpg", code=2, says=[".svg", ".png"])
+        self.refused("hatch", "draw", "style.safetensors", MESH, "--light", "0,0,0", "--out", "x.svg", code=2, says="--light")
+        self.refused("hatch", "draw", "style.safetensors", MESH, "--eye", "0,0,9", "--target", "0,0,99", "--out", "x.svg", code=1,
+                     says="shows nothing of the mesh")
+
+
+if __name__ == "__main__":
+    unittest.main()

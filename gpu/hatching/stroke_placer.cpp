@@ -26,7 +26,8 @@ static_assert(shared::k_pixel_bits == k_pixel_bits && shared::k_pixel == k_pixel
               shared::k_unit_bits == k_unit_bits && shared::k_share_bits == k_share_bits &&
               shared::k_spacing_bits == k_spacing_bits && shared::k_length_bits == k_length_bits &&
               shared::k_step == k_step && shared::k_least_steps == k_least_steps &&
-              shared::k_right_barrier == k_barrier_right && shared::k_lower_barrier == k_barrier_below);
+              shared::k_most_round_work == k_most_round_work && shared::k_right_barrier == k_barrier_right &&
+              shared::k_lower_barrier == k_barrier_below);
 static_assert(shared::k_part_source == static_cast<std::uint32_t>(SeedSource::part) &&
               shared::k_left_side_source == static_cast<std::uint32_t>(SeedSource::left_side) &&
               shared::k_right_side_source == static_cast<std::uint32_t>(SeedSource::right_side) &&
@@ -38,6 +39,9 @@ static_assert(sizeof(PlacementTexel) == sizeof(uvec4) && sizeof(FinePoint) == 2 
 /// Rounds between two looks at what they left; a divisor of the rounds that claims count down.
 constexpr std::uint32_t k_batch = 16, k_claim_rounds = 4096;
 static_assert(k_claim_rounds % k_batch == 0);
+
+/// Of a stroke's length times its spacing, what a workgroup does alone.
+constexpr double k_part_pixels = 1 << 15;
 
 SeedListRecord record_of(const SeedList& list) {
     return {static_cast<std::uint32_t>(list.source) | list.layer << shared::k_layer_shift, list.first, list.second,
@@ -67,30 +71,34 @@ PlacementParameters parameters_of(const PlacementGrid& grid) {
             .stroke_room = 0,
             .point_room = 0,
             .list_room = 0,
+            .parts = 1,
             .unused0 = 0,
-            .unused1 = 0,
-            .unused2 = 0};
+            .unused1 = 0};
 }
 
-/// How many points strokes will about have, and how many strokes there will be; rooms grow where that is too few.
+/// How many points strokes will about have, and how many strokes there will be (rooms grow where that is too few); and
+/// the largest spacing in pixels.
 struct Estimate {
-    double points = 4096, strokes = 1024;
+    double points = 4096, strokes = 1024, spacing = 1;
     explicit Estimate(const PlacementGrid& grid) {
         for (const PlacementTexel& texel : grid.texels)
             for (std::uint32_t layer = 0; layer < k_hatch_layers; ++layer) {
                 if (!texel.hatched(layer)) continue;
                 const double points_here = static_cast<double>(1 << k_spacing_bits) / texel.spacing();
+                spacing = std::max(spacing, 1 / points_here);
                 points += points_here;
                 strokes += 2 * points_here / std::max(texel.length() >> k_length_bits, k_least_steps);
             }
     }
 };
 
-/// A buffer of another size with the contents of this one.
-Buffer resized(Device& device, Stream& stream, const Buffer& buffer, std::size_t bytes) {
-    Buffer result(device, bytes);
-    stream.copy(buffer, 0, result, 0, std::min(buffer.bytes(), bytes));
-    return result;
+/// Doubles the room for items of a buffer; they stay.
+void double_room(Device& device, Stream& stream, Buffer& buffer, std::uint32_t& room, std::size_t item) {
+    room *= 2;
+    Buffer larger(device, room * item);
+    stream.copy(buffer, 0, larger, 0, std::min(buffer.bytes(), larger.bytes()));
+    stream.finish();
+    buffer = std::move(larger);
 }
 
 }  // namespace
@@ -171,6 +179,8 @@ void GpuStrokePlacer::upload_lists(const PlacementGrid& grid, std::span<const Fi
         reserve(device_, buffer, room * item);
         return static_cast<std::uint32_t>(room);
     };
+    // Drivers may end a loop after 65536 rounds. The pixels around a stroke are about its length times its spacing.
+    parameters_.parts = 1 + static_cast<std::uint32_t>(grid.rules.room * estimate.spacing / k_part_pixels);
     parameters_.stroke_room = rooms(strokes_, estimate.strokes, kept.size(), sizeof(StrokeRecord));
     parameters_.point_room = rooms(points_, estimate.points, points, sizeof(FinePoint));
     parameters_.list_room =
@@ -213,12 +223,14 @@ void GpuStrokePlacer::place_all() {
     }
 }
 
-/// Gives strokes twice the room, and lets the round that had too little be done again.
+/// Gives strokes twice the room that they had too little of, and lets the round be done again.
 void GpuStrokePlacer::double_rooms() {
-    for (std::uint32_t* room : {&parameters_.stroke_room, &parameters_.point_room, &parameters_.list_room}) *room *= 2;
-    strokes_ = resized(device_, stream_, strokes_, parameters_.stroke_room * sizeof(StrokeRecord));
-    points_ = resized(device_, stream_, points_, parameters_.point_room * sizeof(FinePoint));
-    lists_ = resized(device_, stream_, lists_, parameters_.list_room * sizeof(SeedListRecord));
+    const auto enlarge = [&](std::uint32_t what, Buffer& buffer, std::uint32_t& room, std::size_t item) {
+        if (counts_.full & what) double_room(device_, stream_, buffer, room, item);
+    };
+    enlarge(shared::k_full_strokes, strokes_, parameters_.stroke_room, sizeof(StrokeRecord));
+    enlarge(shared::k_full_points, points_, parameters_.point_room, sizeof(FinePoint));
+    enlarge(shared::k_full_lists, lists_, parameters_.list_room, sizeof(SeedListRecord));
     counts_.full = 0;
     counts_.trial_groups[0] = groups_of(counts_.trials);
     stream_.upload<PlacementCounts>(count_buffer_, std::span(&counts_, 1));

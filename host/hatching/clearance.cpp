@@ -13,7 +13,7 @@ std::int32_t near_reach(std::int32_t spacing) {
 }
 
 std::uint32_t noted_stride(std::int32_t spacing) {
-    return static_cast<std::uint32_t>(std::max(1, spacing >> (k_spacing_bits + 3)));
+    return static_cast<std::uint32_t>(std::max(1, spacing >> (k_spacing_bits + 2)));
 }
 
 void lower(std::uint32_t& there, std::uint32_t word) {

@@ -58,7 +58,7 @@ class Clearance {
 
 /// How far points of strokes are noted: a quarter over the spacing, and a pixel; in the units of positions.
 std::int32_t near_reach(std::int32_t spacing);
-/// Of a stroke, only every so manieth point is noted and claimed: eight to a spacing are enough.
+/// Of a stroke, only every so manieth point is noted and claimed: four to a spacing are enough.
 std::uint32_t noted_stride(std::int32_t spacing);
 
 /// Whether the i-th of `count` points is: the last is always.

@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "host/core/errors.h"
-#include "host/hatching/stroke_tracing.h"
+#include "host/hatching/stroke_directions.h"
+#include "host/hatching/stroke_way.h"
 
 namespace exemplar {
 namespace {

@@ -17,6 +17,7 @@ namespace exemplar {
 namespace {
 
 constexpr int k_largest_picture = 32768;
+constexpr float k_most_spacing = 256, k_most_length = 1024;  // pixels
 constexpr std::size_t k_most_candidate_points = std::size_t{1} << 22;
 constexpr std::size_t k_least_candidates = 256, k_most_candidates = 16384;
 constexpr std::uint32_t k_least_block_bits = 5;
@@ -76,8 +77,9 @@ void check_pixel(const HatchingFields& fields, std::size_t i) {
                                          fields.orientation[layer][i]));
 }
 
-std::uint32_t rounded(float value, float low, float high) {
-    return static_cast<std::uint32_t>(std::lround(std::clamp(value, low, high)));
+/// A value in units of 1 / 2^bits.
+std::uint32_t rounded(float value, float low, float high, int bits) {
+    return static_cast<std::uint32_t>(std::lround(std::clamp(value, low, high) * static_cast<float>(1 << bits)));
 }
 
 std::uint32_t double_angle(float orientation) {
@@ -94,10 +96,8 @@ PlacementTexel texel_of(const HatchingFields& fields, std::size_t i, std::uint8_
     check_pixel(fields, i);
     for (std::size_t layer = 0; layer < fields.level[i]; ++layer)
         texel.directions[layer] = double_angle(fields.orientation[layer][i]);
-    // No stroke that is longer than the picture's border could be told from one that is not.
-    const float longest = 2 * static_cast<float>(fields.width + fields.height);
-    const std::uint32_t length = rounded(std::min(fields.length[i], longest) * (1 << k_length_bits), 0, 0xffff);
-    texel.sizes = rounded(fields.spacing[i] * (1 << k_spacing_bits), 1 << k_spacing_bits, 0xffff) | length << 16;
+    const std::uint32_t length = rounded(fields.length[i], 0, k_most_length, k_length_bits);
+    texel.sizes = rounded(fields.spacing[i], 1, k_most_spacing, k_spacing_bits) | length << 16;
     return texel;
 }
 

@@ -8,14 +8,16 @@
 #include "host/hatching/kept_strokes.h"
 #include "host/hatching/stroke_claims.h"
 #include "host/hatching/stroke_front.h"
+#include "host/hatching/stroke_tracing.h"
 
 namespace exemplar {
 namespace {
 
-/// A place of the round's list, and what is tried there.
+/// What a list of places gives in a round: nothing more ever, nothing yet, or a stroke that wins or loses.
+enum class TrialState { closed, pending, lost, won };
+
 struct Trial {
-    bool is_open = false;  ///< it has something to try
-    bool wins = false;
+    TrialState state = TrialState::closed;
     std::uint32_t claim = 0;
     StrokeCandidate candidate;
 };
@@ -42,11 +44,11 @@ class Placement {
             trials_.size(), [&](std::size_t i) { try_next(lists[i], i); }, 8);
         parallel_for(
             trials_.size(), [&](std::size_t i) { settle(trials_[i]); }, 8);
-        const bool any = std::ranges::any_of(trials_, &Trial::is_open);
+        const bool any = std::ranges::any_of(trials_, [](const Trial& t) { return t.state != TrialState::closed; });
         if (is_front) drop_closed();
         const std::size_t first = strokes_.size();
         for (Trial& trial : trials_)
-            if (trial.wins) add(std::move(trial.candidate.stroke));
+            if (trial.state == TrialState::won) add(std::move(trial.candidate.stroke));
         parallel_for(
             strokes_.size() - first, [&](std::size_t i) { clearance_.add(strokes_[first + i]); }, 4);
         return any || is_front;
@@ -55,15 +57,21 @@ class Placement {
     const std::vector<FineStroke>& strokes() const { return strokes_; }
 
   private:
-    /// Tries the places of a list from where it was left, up to the first that gives a stroke.
+    /// Tries the places of a list from where it was left, up to the first that gives a stroke, or until that has taken
+    /// long enough for a round.
     void try_next(SeedList& list, std::size_t place) {
         Trial& trial = trials_[place];
-        trial.is_open = trial.wins = false;
-        const std::uint32_t count = seed_count(grid_, list);
-        for (; list.next < count; ++list.next) {
+        trial.state = TrialState::closed;
+        std::int32_t work = 0;
+        for (const std::uint32_t count = seed_count(grid_, list); list.next < count; ++list.next) {
+            if (work >= k_most_round_work) {
+                trial.state = TrialState::pending;
+                return;
+            }
+            ++work;
             const auto seed = seed_at(grid_, clearance_, points_, list, list.next);
-            if (!seed || !trace_stroke(grid_, clearance_, *seed, trial.candidate)) continue;
-            trial.is_open = true;
+            if (!seed || !trace_stroke(grid_, clearance_, *seed, trial.candidate, work)) continue;
+            trial.state = TrialState::lost;
             trial.claim = claims_.claim_of(static_cast<std::uint32_t>(place), trial.candidate.shortness);
             claims_.claim(list.layer, trial.candidate.way, trial.claim);
             return;
@@ -71,15 +79,18 @@ class Placement {
     }
 
     void settle(Trial& trial) const {
-        trial.wins = trial.is_open && claims_.wins(trial.candidate.stroke.layer, trial.candidate.way, trial.claim);
+        if (trial.state == TrialState::lost &&
+            claims_.wins(trial.candidate.stroke.layer, trial.candidate.way, trial.claim))
+            trial.state = TrialState::won;
     }
 
     /// Takes the lists that are used up out of the front, and those of parts that have their stroke.
     void drop_closed() {
         std::size_t kept = 0;
         for (std::size_t i = 0; i < front_.size(); ++i) {
-            const bool is_done = i < trials_.size() &&
-                                 (!trials_[i].is_open || (trials_[i].wins && front_[i].source == SeedSource::part));
+            const TrialState state = i < trials_.size() ? trials_[i].state : TrialState::pending;
+            const bool is_done =
+                state == TrialState::closed || (state == TrialState::won && front_[i].source == SeedSource::part);
             if (!is_done) front_[kept++] = front_[i];
         }
         front_.resize(kept);

@@ -1,6 +1,9 @@
 #include "host/hatching/stroke_front.h"
 
+#include <algorithm>
 #include <bit>
+
+#include "host/hatching/stroke_directions.h"
 
 namespace exemplar {
 namespace {

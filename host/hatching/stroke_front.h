@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "host/hatching/stroke_tracing.h"
+#include "host/hatching/stroke_way.h"
 
 namespace exemplar {
 

@@ -4,8 +4,8 @@
 #include "shaders/shared/hatching.h"
 
 // Claims pixels for the strokes that are tried in a round; when that is done for all, another dispatch looks whose claims
-// were not the least (host/hatching/stroke_claims.cpp). One stroke per workgroup and every 64th point of its way per
-// invocation: some 40 pixels per point, 4 bytes each. The result is the same whatever the order in which pixels are claimed.
+// were not the least (host/hatching/stroke_claims.cpp). One or more workgroups per stroke: some 40 pixels per point of its way,
+// 4 bytes each. The result is the same whatever the order in which pixels are claimed.
 layout(local_size_x = k_hatch_group) in;
 layout(constant_id = 0) const bool k_looks = false;
 layout(push_constant) uniform Push { PlacementParameters parameters; };
@@ -22,9 +22,10 @@ bool take(ivec2 point, int reach, uint first, uint claim) {
     const int most = (reach >> parameters.near_shift) * (reach >> parameters.near_shift);
     ivec2 low, high;
     pixels_within(point, reach, low, high);
+    low += in_tile();
     bool lost = false;
-    for (int y = low.y; y <= high.y; ++y)
-        for (int x = low.x; x <= high.x; ++x) {
+    for (int y = low.y; y <= high.y; y += k_tile)
+        for (int x = low.x; x <= high.x; x += k_tile) {
             const ivec2 way = way_from_center(ivec2(x, y), point);
             if (dot_of(way, way) > most) continue;
             const uint pixel = first + uint(index_of(ivec2(x, y)));
@@ -37,14 +38,15 @@ bool take(ivec2 point, int reach, uint first, uint claim) {
 }
 
 void main() {
-    const uint place = trials[linear_group()].listed;
+    const uint place = candidate_place();
     const TrialRecord trial = trials[place];
     const uint first = (trial.state >> k_layer_shift) * parameters.width * parameters.height;
     bool lost = false;
-    for (uint i = gl_LocalInvocationID.x; i < trial.way_count; i += k_hatch_group) {
+    uint noted = 0u;
+    for (uint i = 0u; i < trial.way_count; ++i) {
         const ivec2 point = way_point(place, trial.way_begin, i);
         const int spacing = spacing_of(texel_of(point));
-        if (!is_noted(i, trial.way_count, spacing)) continue;
+        if (!is_noted(i, trial.way_count, spacing) || noted++ % parameters.parts != candidate_part()) continue;
         const int reach = share_of_spacing(spacing, parameters.test_share) / 2 + k_half_diagonal;
         if (take(point, reach, first, trial.claim)) lost = true;
     }

@@ -4,8 +4,8 @@
 #include "shaders/shared/hatching.h"
 
 // Puts the strokes that have won their round beside the others, and notes how near they are around them (host/hatching/
-// clearance.cpp). One stroke per workgroup and every 64th of its points per invocation: writes 8 bytes per point and up to 4
-// for each of the pixels within one and a quarter spacings. The least word stays, whatever the order in which they come.
+// clearance.cpp). One or more workgroups per stroke: writes 8 bytes per point and up to 4 for each of the pixels within one and
+// a quarter spacings. The least word stays, whatever the order in which they come.
 layout(local_size_x = k_hatch_group) in;
 layout(push_constant) uniform Push { PlacementParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer grid;
@@ -19,8 +19,9 @@ void note(ivec2 point, int reach, uint first) {
     const int most = (reach >> parameters.near_shift) * (reach >> parameters.near_shift);
     ivec2 low, high;
     pixels_within(point, reach, low, high);
-    for (int y = low.y; y <= high.y; ++y)
-        for (int x = low.x; x <= high.x; ++x) {
+    low += in_tile();
+    for (int y = low.y; y <= high.y; y += k_tile)
+        for (int x = low.x; x <= high.x; x += k_tile) {
             const ivec2 way = way_from_center(ivec2(x, y), point);
             const int squared = dot_of(way, way);
             if (squared > most) continue;
@@ -30,15 +31,17 @@ void note(ivec2 point, int reach, uint first) {
 }
 
 void main() {
-    const uint place = trials[linear_group()].listed;
+    const uint place = candidate_place();
     const TrialRecord trial = trials[place];
     if ((trial.state & k_lost_trial) != 0u) return;
 
     const uint first = (trial.state >> k_layer_shift) * parameters.width * parameters.height;
-    for (uint i = gl_LocalInvocationID.x; i < trial.count; i += k_hatch_group) {
+    uint noted = 0u;
+    for (uint i = 0u; i < trial.count; ++i) {
         const ivec2 point = way_point(place, trial.way_begin, trial.begin + i);
-        stroke_points[trial.target + i] = point;
+        if (i % k_hatch_group == gl_LocalInvocationID.x && candidate_part() == 0u) stroke_points[trial.target + i] = point;
         const int spacing = spacing_of(texel_of(point));
-        if (is_noted(i, trial.count, spacing)) note(point, near_reach(spacing), first);
+        if (is_noted(i, trial.count, spacing) && noted++ % parameters.parts == candidate_part())
+            note(point, near_reach(spacing), first);
     }
 }

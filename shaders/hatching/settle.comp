@@ -11,13 +11,14 @@ layout(set = 0, binding = 0, std430) coherent buffer Lists { SeedListRecord list
 layout(set = 0, binding = 1, std430) coherent buffer Trials { TrialRecord trials[]; };
 layout(set = 0, binding = 2, std430) coherent buffer Counts { PlacementCounts counts; };
 layout(set = 0, binding = 3, std430) writeonly buffer Strokes { StrokeRecord strokes[]; };
-#include "shaders/lib/group_sum.glsl"
+#include "shaders/lib/group_scan.glsl"
 
 // How the round leaves the front.
 struct Round {
-    uint won;     // strokes
-    uint points;  // of them
-    uint kept;    // lists of the front
+    uint won;      // strokes
+    uint points;   // of them
+    uint kept;     // lists of the front
+    uint waiting;  // lists that are not used up
 };
 
 bool has_won(uint i) {
@@ -28,34 +29,34 @@ bool is_kept(uint i) {
     if (counts.in_blocks != 0u || i >= counts.front) return false;
     if (i >= counts.trials) return true;
     const bool is_part = (lists[parameters.blocks + i].kind & k_source_mask) == k_part_source;
-    return (trials[i].state & k_open_trial) != 0u && !(is_part && has_won(i));
+    return (trials[i].state & (k_open_trial | k_pending_trial)) != 0u && !(is_part && has_won(i));
 }
 
 Round measured(uint items) {
-    Round own = Round(0u, 0u, 0u);
+    Round own = Round(0u, 0u, 0u, 0u);
     for (uint i = gl_LocalInvocationID.x; i < items; i += k_settle_group) {
         if (has_won(i)) {
             own.won += 1u;
             own.points += trials[i].count;
         }
         if (is_kept(i)) own.kept += 1u;
+        if (i < counts.trials && (trials[i].state & (k_open_trial | k_pending_trial)) != 0u) own.waiting += 1u;
     }
     Round all;
     sum_before(own.won);
     all.won = group_total;
-    barrier();
     sum_before(own.points);
     all.points = group_total;
-    barrier();
     sum_before(own.kept);
     all.kept = group_total;
-    barrier();
+    sum_before(own.waiting);
+    all.waiting = group_total;
     return all;
 }
 
 // Moves the lists that are kept together, in their order, and gives strokes their places, in that of the trials.
 void compact(uint items) {
-    Round before = Round(counts.strokes, counts.points, parameters.blocks);
+    Round before = Round(counts.strokes, counts.points, parameters.blocks, 0u);
     for (uint begin = 0; begin < items; begin += k_settle_group) {
         const uint i = begin + gl_LocalInvocationID.x;
         const bool won = has_won(i), kept = is_kept(i);
@@ -64,7 +65,6 @@ void compact(uint items) {
         const uint count = won ? trials[i].count : 0u;
         // Both counts are below 2^16.
         const uint counted = sum_before((won ? 1u : 0u) | (kept ? 1u << 16 : 0u)), total = group_total;
-        barrier();
         const uint first = before.points + sum_before(count), points = group_total;
         memoryBarrierBuffer();
         barrier();
@@ -94,43 +94,49 @@ void extend(uint kept) {
     }
 }
 
-void set_groups(uint candidates) {
+uint missing_room(Round round) {
+    uint full = 0u;
+    if (counts.strokes + round.won > parameters.stroke_room) full |= k_full_strokes;
+    if (counts.points + round.points > parameters.point_room) full |= k_full_points;
+    if (parameters.blocks + round.kept + 4u * round.won > parameters.list_room) full |= k_full_lists;
+    return full;
+}
+
+void set_groups(uint placing) {
     counts.trial_groups[0] = (counts.trials + k_hatch_group - 1u) / k_hatch_group;
     counts.candidate_groups[0] = 0u;
-    counts.place_groups[0] = candidates;
+    counts.place_groups[0] = placing;
 }
 
 // What the next round tries: the front, or where that is used up holes, as long as there are some.
-void go_on(Round round, uint candidates) {
+void go_on(Round round, uint placing) {
     counts.strokes += round.won;
     counts.points += round.points;
     counts.front = round.kept + 4u * round.won;
-    const bool done = counts.in_blocks != 0u && candidates == 0u;
+    const bool done = counts.in_blocks != 0u && round.waiting == 0u;
     counts.in_blocks = counts.front == 0u ? 1u : 0u;
     counts.trials = counts.front != 0u ? min(counts.front, parameters.candidates) : done ? 0u : parameters.blocks;
-    set_groups(candidates);
+    set_groups(placing);
 }
 
 void main() {
-    const uint candidates = counts.candidate_groups[0];
+    const uint placing = counts.candidate_groups[0];
     if (counts.trials == 0u || counts.full != 0u) return;
 
     const uint items = counts.in_blocks != 0u ? counts.trials : counts.front;
     const Round round = measured(items);
-    const bool fits = counts.strokes + round.won <= parameters.stroke_room &&
-                      counts.points + round.points <= parameters.point_room &&
-                      parameters.blocks + round.kept + 4u * round.won <= parameters.list_room;
-    if (fits) {
+    const uint full = missing_room(round);
+    if (full == 0u) {
         compact(items);
         extend(round.kept);
     }
     memoryBarrierBuffer();
     barrier();
     if (gl_LocalInvocationID.x != 0u) return;
-    if (fits) {
-        go_on(round, candidates);
+    if (full == 0u) {
+        go_on(round, placing);
     } else {
-        counts.full = 1u;
+        counts.full = full;
         set_groups(0u);
         counts.trial_groups[0] = 0u;
     }

@@ -26,11 +26,11 @@ uint claim_of(uint i, uint shortness) {
 
 void put_trial(uint i, Way way, ivec2 part) {
     trials[i].claim = claim_of(i, shortness(way, part.y - part.x));
-    trials[i].way_begin = ring_index(-way.back.reach);
-    trials[i].way_count = uint(way.on.reach + way.back.reach + 1);
+    trials[i].way_begin = way.back.reach == 0 ? 0u : parameters.room - uint(way.back.reach);
+    trials[i].way_count = uint(last_of(way) + 1);
     trials[i].begin = uint(part.x);
     trials[i].count = uint(part.y - part.x + 1);
-    trials[atomicAdd(counts.candidate_groups[0], 1u)].listed = i;
+    trials[atomicAdd(counts.candidate_groups[0], parameters.parts) / parameters.parts].listed = i;
 }
 
 void main() {
@@ -43,22 +43,26 @@ void main() {
     bool open = false;
     ivec2 part = ivec2(0);
     Way way;
-    while (!open && list.next < count) {
+    int work = 0;
+    while (!open && list.next < count && work < k_most_round_work) {
         ivec2 point = ivec2(0), heading = ivec2(0);
         bool found = false;
-        while (!found && list.next < count) {
+        while (!found && list.next < count && work < k_most_round_work) {
+            ++work;
             found = seed_at(list, list.next, point, heading);
             if (!found) ++list.next;
         }
         when (found) {
-            const Branch on = Branch(point, heading, 1, 0, 0, 0, k_no_end);
-            const Branch back = Branch(point, -heading, -1, 0, 0, 0, k_no_end);
-            way = Way(i * parameters.room, layer, point, texel_of(point), 0, on, back);
+            const Branch on = Branch(point, heading, 1, 0, 0, 0, 0, k_no_end);
+            const Branch back = Branch(point, -heading, -1, 0, 0, 0, 0, k_no_end);
+            way = Way(i * parameters.room, layer, point, texel_of(point), 0, ivec2(0), work, on, back);
             open = trace(way, part);
+            work = way.work;
             if (!open) ++list.next;
         }
     }
+    const uint state = open ? k_open_trial : list.next < count ? k_pending_trial : 0u;
     lists[index].next = list.next;
-    trials[i].state = (open ? k_open_trial : 0u) | layer << k_layer_shift;
+    trials[i].state = state | layer << k_layer_shift;
     if (open) put_trial(i, way, part);
 }

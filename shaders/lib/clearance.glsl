@@ -11,16 +11,19 @@ uint squared_distance(ivec2 pixel, int first, ivec2 point) {
     return word == k_far ? k_far : uint(dot_of(way, way));
 }
 
-// Whether a point is so far from all strokes of its layer, in shares of a spacing.
-bool is_clear(uint layer, ivec2 point, int spacing, int share) {
+// From a point to the nearest that the four pixels around it know, in units of 2^near_shift; k_far if they know none.
+uint squared_distance(uint layer, ivec2 point) {
     const int first = int(layer * parameters.width * parameters.height);
     const ivec2 corner = (point - k_pixel / 2) >> k_pixel_bits;
-    const uint squared = min(min(squared_distance(corner, first, point),
-                                 squared_distance(corner + ivec2(1, 0), first, point)),
-                             min(squared_distance(corner + ivec2(0, 1), first, point),
-                                 squared_distance(corner + ivec2(1, 1), first, point)));
+    return min(min(squared_distance(corner, first, point), squared_distance(corner + ivec2(1, 0), first, point)),
+               min(squared_distance(corner + ivec2(0, 1), first, point),
+                   squared_distance(corner + ivec2(1, 1), first, point)));
+}
+
+// Whether a point is so far from all strokes of its layer, in shares of a spacing.
+bool is_clear(uint layer, ivec2 point, int spacing, int share) {
     const uint least = uint(share_of_spacing(spacing, share) >> parameters.near_shift);
-    return squared >= least * least;
+    return squared_distance(layer, point) >= least * least;
 }
 
 #endif

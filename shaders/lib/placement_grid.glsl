@@ -36,7 +36,7 @@ int near_reach(int spacing) {
     return share_of_spacing(spacing, 1280) + k_pixel;
 }
 bool is_noted(uint i, uint count, int spacing) {
-    return i % uint(max(1, spacing >> (k_spacing_bits + 3))) == 0u || i + 1u == count;
+    return i % uint(max(1, spacing >> (k_spacing_bits + 2))) == 0u || i + 1u == count;
 }
 
 // The pixels from `low` to `high` have their centers within a distance of a point.

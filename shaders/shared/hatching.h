@@ -14,6 +14,7 @@ const int k_spacing_bits = 6;
 const int k_length_bits = 2;
 const int k_step = 4094;
 const int k_least_steps = 2;
+const int k_most_round_work = 16384;
 const uint k_right_barrier = 1u;
 const uint k_lower_barrier = 2u;
 
@@ -39,9 +40,9 @@ struct PlacementParameters {
     uint stroke_room;
     uint point_room;
     uint list_room;
+    uint parts;  // workgroups that share a candidate's pixels
     uint unused0;
     uint unused1;
-    uint unused2;
 };
 
 // Places to try, exemplar::SeedList.
@@ -73,6 +74,7 @@ struct TrialRecord {
 };
 const uint k_open_trial = 1u;  // flags of a state, which has the layer from bit k_layer_shift on
 const uint k_lost_trial = 2u;
+const uint k_pending_trial = 4u;  // its list is not used up, but the round was too short for more
 
 // Numbers that the device finds by itself: how much there is, and the arguments of indirect commands.
 struct PlacementCounts {
@@ -81,11 +83,15 @@ struct PlacementCounts {
     uint front;      // lists of the front
     uint strokes;
     uint points;
-    uint full;  // there is no room for what this round would place: it is to be done again
+    uint full;  // what there is no room for, of all that this round would place: it is to be done again
     uint trial_groups[3];
-    uint candidate_groups[3];  // one per trial that has something to try
+    uint candidate_groups[3];  // PlacementParameters::parts per trial that has something to try
     uint place_groups[3];
 };
+
+const uint k_full_strokes = 1u;
+const uint k_full_points = 2u;
+const uint k_full_lists = 4u;
 
 // A placed stroke.
 struct StrokeRecord {
@@ -97,8 +103,8 @@ struct StrokeRecord {
 
 #ifdef __cplusplus
 EXEMPLAR_LAYOUT(PlacementParameters, width, height, seed, test_share, hole_share, least_share, jitter, least_turn_cosine,
-                near_shift, room, candidates, block_bits, blocks, rounds_left, stroke_room, point_room, list_room, unused0,
-                unused1, unused2)
+                near_shift, room, candidates, block_bits, blocks, rounds_left, stroke_room, point_room, list_room, parts,
+                unused0, unused1)
 EXEMPLAR_LAYOUT(SeedListRecord, kind, first, second, next)
 EXEMPLAR_LAYOUT(TrialRecord, state, claim, way_begin, way_count, begin, count, listed, target)
 EXEMPLAR_LAYOUT(PlacementCounts, trials, in_blocks, front, strokes, points, full, trial_groups, candidate_groups,

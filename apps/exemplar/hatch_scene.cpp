@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "apps/exemplar/arguments.h"
+#include "gpu/hatching/hatching_evaluator.h"
+#include "gpu/hatching/pixel_projection.h"
 #include "gpu/hatching/stroke_placer.h"
 #include "gpu/imaging/gbuffer_renderer.h"
 #include "gpu/imaging/image_derivatives.h"
@@ -37,14 +39,26 @@ HatchingView hatching_view(const HatchSceneArguments& arguments, const TriangleM
 
 struct HatchScene::Impl {
     explicit Impl(const std::string& name)
-        : device({.name = name}), gbuffers(device), filters(device), scorer(device), placer(device) {}
+        : device({.name = name}),
+          gbuffers(device),
+          filters(device),
+          projection(device),
+          scorer(device),
+          placer(device),
+          evaluator(device) {}
     Device device;
     GpuGBufferRenderer gbuffers;
     GpuImageFilters filters;
+    GpuPixelProjection projection;
     GpuStumpScorer scorer;
     GpuStrokePlacer placer;
-    CpuHatchingEvaluator evaluator;
+<<<<<<< HEAD
+    GpuHatchingEvaluator evaluator;
+    GpuPixelProjection projection;
     CpuPixelProjection projection;
+=======
+    GpuHatchingEvaluator evaluator;
+>>>>>>> h4
     ImageTools tools{gbuffers, filters, projection};
     HatchingSurface surface;
     HatchingView view;

@@ -353,11 +353,15 @@ void Stream::finish() {
     wait();
 }
 
-void Stream::fetch_bytes(const Buffer& source, std::span<std::byte> data) {
+void Stream::fetch(const Buffer& source, std::span<const HostPart> parts) {
     const bool mapped = source && source.resource()->mapped;
-    if (!mapped) download_bytes(source, data, 0);
+    for (const HostPart& part : parts) {
+        if (!mapped) download_bytes(source, part.target, part.offset);
+    }
     finish();
-    if (mapped) source.read(data, 0);
+    for (const HostPart& part : parts) {
+        if (mapped) source.read(part.target, part.offset);
+    }
 }
 
 // Lets go of everything that finished work used.

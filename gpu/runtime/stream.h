@@ -24,6 +24,12 @@
 
 namespace exemplar {
 
+/// Bytes of a buffer from `offset` on, and where they go on the host.
+struct HostPart {
+    std::size_t offset;
+    std::span<std::byte> target;
+};
+
 /// A sequence of device work: record, submit, wait; then record again. Commands run as if one after the other: barriers
 /// follow from what each command reads and writes, and a stream sees what earlier submitted streams wrote. One thread
 /// at a time may use a stream. Waits for its work when it ends.
@@ -118,8 +124,11 @@ class Stream {
     template <typename T>
     void fetch(const Buffer& source, std::span<T> values) {
         static_assert(std::is_trivially_copyable_v<T>);
-        fetch_bytes(source, std::as_writable_bytes(values));
+        const HostPart whole{0, std::as_writable_bytes(values)};
+        fetch(source, std::span(&whole, 1));
     }
+    /// The same of parts of a buffer.
+    void fetch(const Buffer& source, std::span<const HostPart> parts);
 
     /// All barriers of the current recording, or of the last one while there is none.
     const std::vector<Barrier>& barriers() const { return barriers_; }
@@ -148,7 +157,6 @@ class Stream {
     void order(std::span<const Access> accesses);
     void upload_bytes(Buffer& target, std::span<const std::byte> data, std::size_t offset);
     void download_bytes(const Buffer& source, std::span<std::byte> data, std::size_t offset);
-    void fetch_bytes(const Buffer& source, std::span<std::byte> data);
     std::pair<Staging*, std::size_t> stage(std::vector<Staging>& blocks, std::size_t bytes, BufferMemory memory);
     UploadPlace begin_upload(const Buffer& target, std::size_t offset, std::size_t bytes);
     void end_upload(const UploadPlace& place, Buffer& target, std::size_t offset);

@@ -71,6 +71,7 @@ PropertyModel get_property(const TensorFile& file, const std::string& name, std:
         if (features[k] >= k_powers * feature_count)
             inconsistent(file, fmt::format("{} uses feature {} of {}", name, features[k], k_powers * feature_count));
         if (!(v[5] > 0)) inconsistent(file, name + " has a term without a least value");
+        if (!(v[3] <= v[4])) inconsistent(file, name + " has a term without a range");
         model.terms.push_back({features[k], v[0], v[1], v[2], v[3], v[4], v[5]});
     }
     return model;

@@ -116,7 +116,7 @@ void CpuPixelProjection::directions(const TriangleMesh& mesh, const HatchingView
             for (std::size_t k = 0; k < fields.size(); ++k) {
                 const Vec3 direction = interpolate_direction(mesh, points, i, fields[k]);
                 out[k * points.size() + i] =
-                    doubled(projected_direction(view, view_projection, point, direction).normalized());
+                    doubled(projected_direction(view, view_projection, point, direction).stableNormalized());
             }
         },
         512);

@@ -330,7 +330,7 @@ class Boosting {
 }  // namespace
 
 float PropertyModel::log_value(const Term& term, float x) {
-    const float inside = term.low <= term.high ? std::clamp(x, term.low, term.high) : x;
+    const float inside = x > term.low ? std::min(x, term.high) : term.low;
     return term.exponent * std::log(std::max(term.a * inside + term.b, term.least));
 }
 

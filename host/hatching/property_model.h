@@ -20,7 +20,7 @@ struct PropertyModel {
         std::uint32_t feature = 0;  ///< of the expanded set, see powers.h
         float a = 0, b = 1;
         float exponent = 1;       ///< alpha
-        float low = 0, high = 0;  ///< range of x seen in training: beyond it, x counts as at its end
+        float low = 0, high = 0;  ///< range of x seen in training: beyond it, x counts as at its end; no number as low
         float least = 0;          ///< positive: a x + b counts as no less
         bool operator==(const Term&) const = default;
     };

@@ -1,5 +1,7 @@
 #include "host/hatching/style_prediction.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -141,9 +143,37 @@ class Prediction {
 
 }  // namespace
 
+void check_orientations(std::span<const OrientationFunction> functions, std::span<const std::int32_t> segment,
+                        const OrientationFields& fields) {
+    if (segment.size() != fields.rows)
+        throw UsageError(fmt::format("{} segments are not of {} rows", segment.size(), fields.rows));
+    for (const std::int32_t s : segment) {
+        if (s < 0 || static_cast<std::size_t>(s) >= functions.size())
+            throw UsageError(fmt::format("there is no rule of segment {}; there are {}", s, functions.size()));
+    }
+    for (const OrientationFunction& function : functions) {
+        for (const auto& term : function.terms) {
+            if (term.feature >= k_orientation_features)
+                throw UsageError(fmt::format("there is no orientation feature {}", term.feature));
+        }
+    }
+}
+
+std::vector<std::span<const float>> property_columns(const PropertyModel& model, std::span<const std::uint32_t> which,
+                                                     const FeatureMatrix& base) {
+    std::vector<std::span<const float>> columns;
+    for (const auto& term : model.terms) {
+        const auto column = std::ranges::find(which, term.feature / k_powers);
+        if (column == which.end()) throw UsageError("a property depends on a feature that was not measured");
+        columns.push_back(base.column(static_cast<std::size_t>(column - which.begin())));
+    }
+    return columns;
+}
+
 std::vector<DoubledAngle> CpuHatchingEvaluator::orientations(std::span<const OrientationFunction> functions,
                                                              std::span<const std::int32_t> segment,
                                                              const OrientationFields& fields) {
+    check_orientations(functions, segment, fields);
     std::vector<DoubledAngle> directions(fields.rows);
     parallel_for(
         fields.rows,
@@ -154,12 +184,7 @@ std::vector<DoubledAngle> CpuHatchingEvaluator::orientations(std::span<const Ori
 
 std::vector<float> CpuHatchingEvaluator::property(const PropertyModel& model, std::span<const std::uint32_t> which,
                                                   const FeatureMatrix& base) {
-    std::vector<std::span<const float>> columns;
-    for (const auto& term : model.terms) {
-        const auto column = std::ranges::find(which, term.feature / k_powers);
-        if (column == which.end()) throw UsageError("a property depends on a feature that was not measured");
-        columns.push_back(base.column(static_cast<std::size_t>(column - which.begin())));
-    }
+    const std::vector<std::span<const float>> columns = property_columns(model, which, base);
     std::vector<float> values(base.rows);
     parallel_for(
         base.rows,

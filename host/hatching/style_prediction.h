@@ -16,11 +16,13 @@ namespace exemplar {
 class HatchingEvaluator {
   public:
     virtual ~HatchingEvaluator() = default;
-    /// The direction of each row: f of the rule of its segment, normalized.
+    /// The direction of each row: f of the rule of its segment, normalized. Throws UsageError if there is not one
+    /// segment a row, or a function or field that is named does not exist.
     virtual std::vector<DoubledAngle> orientations(std::span<const OrientationFunction> functions,
                                                    std::span<const std::int32_t> segment,
                                                    const OrientationFields& fields) = 0;
-    /// A property of each row, whose base features `which` are `base`.
+    /// A property of each row, whose base features `which` are `base`. Throws UsageError if one that it depends on is
+    /// not among them.
     virtual std::vector<float> property(const PropertyModel& model, std::span<const std::uint32_t> which,
                                         const FeatureMatrix& base) = 0;
 };
@@ -33,6 +35,13 @@ class CpuHatchingEvaluator final : public HatchingEvaluator {
     std::vector<float> property(const PropertyModel& model, std::span<const std::uint32_t> which,
                                 const FeatureMatrix& base) override;
 };
+
+/// What every HatchingEvaluator throws before it does anything.
+void check_orientations(std::span<const OrientationFunction> functions, std::span<const std::int32_t> segment,
+                        const OrientationFields& fields);
+/// The base features of the terms of a property; throws UsageError if one is not there.
+std::vector<std::span<const float>> property_columns(const PropertyModel& model, std::span<const std::uint32_t> which,
+                                                     const FeatureMatrix& base);
 
 constexpr std::uint8_t k_no_segment = 255;
 

@@ -24,7 +24,7 @@ ViewCurvature view_curvature(float k1, float k2, const ViewVector& view) {
     const auto& [u, v, cosine] = view;
     ViewCurvature result;
     result.cosine = cosine;
-    const float sine = std::hypot(u, v), stretch = 1 / std::max(std::abs(cosine), k_grazing) - 1;
+    const float sine = std::hypot(u, v), step = 1 / std::max(std::abs(cosine), k_grazing), stretch = step - 1;
     const Vec2 a = sine > 0 ? Vec2(u / sine, v / sine) : Vec2::Zero();
     const Eigen::Matrix2f to_surface = Eigen::Matrix2f::Identity() + stretch * a * a.transpose();
     const Eigen::Matrix2f to_normal = Eigen::Vector2f(k1, k2).asDiagonal() * to_surface;
@@ -32,7 +32,9 @@ ViewCurvature view_curvature(float k1, float k2, const ViewVector& view) {
     const float half_difference = 0.5f * (squared(0, 0) - squared(1, 1)), off = squared(0, 1);
     const float radius = std::hypot(half_difference, off);
     result.q = 0.5f * squared.trace() + radius;
-    result.least = std::max(0.5f * squared.trace() - radius, 0.0f);
+    // By the determinant, k1 k2 step, as the difference of trace and radius cancels.
+    const float determinant = k1 * k2 * step;
+    result.least = result.q > 0 ? std::min(determinant / result.q * determinant, result.q) : 0.0f;
     // Half the angle of (half_difference, off).
     const float angle = 0.5f * std::atan2(off, half_difference);
     result.direction = to_surface * Vec2(std::cos(angle), std::sin(angle));

@@ -5,10 +5,15 @@
 
 const float k_grazing = 1e-3;  // least |n.w| that the foreshortening is computed with
 
+// How long a step on the surface towards the eye is that has length 1 on the screen.
+float screen_step(float cosine) {
+    return 1.0 / max(abs(cosine), k_grazing);
+}
+
 // The largest view-dependent curvature, squared, and its direction on the surface in (e1, e2), a step of length 1 on the
 // screen, from k1, k2, the unit vector to the eye along e1 and e2, and n.w.
 vec3 view_curvature(vec2 k, vec2 uv, float cosine) {
-    const float sine = length(uv), stretch = 1.0 / max(abs(cosine), k_grazing) - 1.0;
+    const float sine = length(uv), stretch = screen_step(cosine) - 1.0;
     const vec2 a = sine > 0.0 ? uv / sine : vec2(0.0);
     const mat2 to_surface = mat2(1.0 + stretch * a.x * a.x, stretch * a.x * a.y, stretch * a.x * a.y,
                                  1.0 + stretch * a.y * a.y);
@@ -18,6 +23,12 @@ vec3 view_curvature(vec2 k, vec2 uv, float cosine) {
     const float half_difference = 0.5 * (xx - yy), radius = sqrt(half_difference * half_difference + xy * xy);
     const float angle = 0.5 * (radius > 0.0 ? atan(xy, half_difference) : 0.0);
     return vec3(0.5 * (xx + yy) + radius, to_surface * vec2(cos(angle), sin(angle)));
+}
+
+// The smallest, squared, from k1, k2, the largest, squared, and n.w.
+float least_view_curvature(vec2 k, float largest, float cosine) {
+    const float determinant = k.x * k.y * screen_step(cosine);
+    return largest > 0.0 ? min(determinant / largest * determinant, largest) : 0.0;
 }
 
 #endif

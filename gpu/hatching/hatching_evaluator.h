@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gpu/runtime/buffer.h"
+#include "gpu/runtime/device.h"
+#include "gpu/runtime/kernel.h"
+#include "gpu/runtime/profiler.h"
+#include "gpu/runtime/stream.h"
+#include "host/hatching/style_prediction.h"
+
+namespace exemplar {
+
+/// Evaluates a style's rules and properties on the device, in tiles of rows that fit its limits; only the fields and
+/// features that they use are uploaded. Agrees with CpuHatchingEvaluator up to what floats round and exp and log
+/// differ between devices: directions within 1e-5 where a rule's fields do not cancel out, properties within 1e-4 of
+/// their value. Reruns on one device give the same bytes. One thread at a time may use it.
+class GpuHatchingEvaluator final : public HatchingEvaluator {
+  public:
+    /// `tile_bytes` bounds the memory of a tile's fields or features below the device's own limits.
+    explicit GpuHatchingEvaluator(Device& device, Profiler* profiler = nullptr,
+                                  std::size_t tile_bytes = std::size_t{256} << 20);
+    std::vector<DoubledAngle> orientations(std::span<const OrientationFunction> functions,
+                                           std::span<const std::int32_t> segment,
+                                           const OrientationFields& fields) override;
+    std::vector<float> property(const PropertyModel& model, std::span<const std::uint32_t> which,
+                                const FeatureMatrix& base) override;
+
+  private:
+    std::size_t tile_rows(std::size_t rows, std::size_t row_bytes) const;
+
+    Device& device_;
+    std::size_t tile_bytes_;
+    Stream stream_;
+    Kernel orientations_, property_;
+    Buffer segments_, columns_, values_;  // of a tile
+};
+
+}  // namespace exemplar

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gpu/hatching/kept_buffers.h"
+#include "gpu/runtime/buffer.h"
+#include "gpu/runtime/device.h"
+#include "gpu/runtime/kernel.h"
+#include "gpu/runtime/profiler.h"
+#include "gpu/runtime/stream.h"
+#include "host/hatching/pixel_projection.h"
+
+namespace exemplar {
+
+/// Takes what is known of vertices to points of faces on the device. What belongs to a mesh stays there from view to
+/// view. Agrees with CpuPixelProjection up to what floats round: scalars within 1e-6 of the largest value at the
+/// corners; directions within 1e-5 where those at the corners do not cancel out. Reruns on one device give the same
+/// bytes. One thread at a time may use it.
+class GpuPixelProjection final : public PixelProjection {
+  public:
+    /// `tile_points` is the largest number of points that are projected at once, `kept_bytes` the memory for what
+    /// stays; both are bounded by the device's limits.
+    explicit GpuPixelProjection(Device& device, Profiler* profiler = nullptr,
+                                std::size_t tile_points = std::size_t{1} << 20,
+                                std::size_t kept_bytes = std::size_t{256} << 20);
+
+    /// All throw DeviceLimitError, too, if the mesh has more faces or more than an eighth as many vertices as a kernel
+    /// of the device can see texels.
+    void scalars(const TriangleMesh& mesh, const FacePoints& points, const FeatureMatrix& values,
+                 std::span<const std::uint32_t> which, std::span<float> out) override;
+    void curvature(const HatchingSurface& surface, const HatchingView& view, const FacePoints& points,
+                   std::span<const std::uint32_t> which, std::span<float> out) override;
+    void directions(const TriangleMesh& mesh, const HatchingView& view, const FacePoints& points,
+                    std::span<const std::span<const Vec3>> fields, std::span<DoubledAngle> out) override;
+
+    /// A lane of a slab of columns, and the column of the output that it becomes.
+    struct Wanted {
+        std::uint32_t lane;
+        std::size_t column;
+    };
+
+  private:
+    using Shared = std::shared_ptr<Buffer>;
+    struct Tile {
+        std::size_t first, count, stride;
+    };
+    struct Slab {
+        Shared buffer;
+        std::vector<Wanted> wanted;
+    };
+    template <typename Use>
+    void for_each_tile(const FacePoints& points, Use&& use);
+    void upload_points(const FacePoints& points, const Tile& tile);
+    void project(const TriangleMesh& mesh, const FacePoints& points, std::span<const Slab> slabs, std::span<float> out);
+    std::vector<Wanted> project_once(const Buffer& corners, const Buffer& slab, const Tile& tile,
+                                     std::span<const Wanted> wanted, std::size_t points, std::span<float> out);
+    Shared corners(const TriangleMesh& mesh);
+    Shared positions(const TriangleMesh& mesh);
+    Shared scalar_slab(const FeatureMatrix& values, std::size_t first);
+    Shared directions_slab(std::span<const std::span<const Vec3>> fields);
+    Shared curvature_states(const HatchingSurface& surface);
+    Shared curvature_slab(const HatchingSurface& surface, const HatchingView& view, std::size_t scale);
+
+    Device& device_;
+    std::size_t tile_points_;
+    Stream stream_;
+    Kernel project_, directions_, view_curvature_;
+    KeptBuffers kept_;
+    Buffer faces_, barycentrics_, columns_, doubled_;  // of a tile
+};
+
+}  // namespace exemplar

@@ -1,0 +1,52 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#include "shaders/lib/dispatch.glsl"
+#include "shaders/lib/eye.glsl"
+#include "shaders/lib/view_curvature.glsl"
+#include "shaders/shared/hatching_features.h"
+
+// What depends on surface and view at one scale (host/hatching/hatching_view.cpp), and its magnitudes, as a slab: one vertex
+// per invocation. Reads 80 bytes and writes 128.
+layout(local_size_x = 64) in;
+layout(push_constant) uniform Push { ViewCurvatureParameters parameters; };
+layout(set = 0, binding = 0) uniform samplerBuffer states;                      // vertices x k_curvature_texels
+layout(set = 0, binding = 1, std430) writeonly buffer Slab { vec4 slab[]; };    // vertices x k_slab_quads
+
+// Derivative of radial curvature along w's projection, times the sine between w and the normal
+// (host/lines/view_curvature.cpp); uv is not shorter than its square root tells.
+float radial_derivative(vec2 k, vec4 d, vec2 uv, float squared_sine, float cosine) {
+    const float third = uv.x * uv.x * (uv.x * d.x + 3.0 * uv.y * d.y) + uv.y * uv.y * (3.0 * uv.x * d.z + uv.y * d.w);
+    const float torsion = (k.y - k.x) * uv.x * uv.y / squared_sine;
+    return third / squared_sine - 2.0 * cosine * torsion * torsion;
+}
+
+void main() {
+    const uint vertex = linear_thread();
+    if (vertex >= parameters.vertices) return;
+
+    const int state = int(vertex * k_curvature_texels), scaled = state + 2 + 3 * int(parameters.scale);
+    const vec3 normal = texelFetch(states, state + 1).xyz;
+    const vec3 w = to_eye(parameters.eye, texelFetch(states, state).xyz);
+    const vec4 e1 = texelFetch(states, scaled), e2 = texelFetch(states, scaled + 1), d = texelFetch(states, scaled + 2);
+    const vec2 k = vec2(e1.w, e2.w), uv = vec2(dot(e1.xyz, w), dot(e2.xyz, w));
+    const float cosine = dot(normal, w), own = dot(uv, uv), squared_sine = max(own, 1e-6);
+    const float largest = view_curvature(k, uv, cosine).x;
+    const bool first_is_large = abs(k.x) >= abs(k.y);
+    const float along = own > 0.0 ? radial_derivative(k, d, uv, own, cosine) * inversesqrt(squared_sine) : 0.0;
+
+    const float limit = parameters.limit, square = limit * limit;
+    const vec4 first = clamp(vec4(k, first_is_large ? k : k.yx), -limit, limit);
+    const vec4 derivative = clamp(d, -square, square);
+    const vec4 seen = clamp(vec4(dot(k, uv * uv) / squared_sine, sqrt(largest),
+                                 sqrt(least_view_curvature(k, largest, cosine)),
+                                 (k.y - k.x) * uv.x * uv.y / squared_sine), -limit, limit);
+    const float values[16] = float[](clamp(0.5 * (k.x + k.y), -limit, limit), clamp(k.x * k.y, -square, square),
+                                     first.x, first.y, first.z, first.w,
+                                     derivative.x, derivative.y, derivative.z, derivative.w,
+                                     seen.x, clamp(along, -square, square), seen.y, seen.z, seen.w, 0.0);
+    [[unroll]] for (uint q = 0; q < k_slab_quads; ++q) {
+        const vec2 two = vec2(values[2 * q], values[2 * q + 1]);
+        slab[vertex * k_slab_quads + q] = vec4(two.x, abs(two.x), two.y, abs(two.y));
+    }
+}

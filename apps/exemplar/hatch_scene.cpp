@@ -52,13 +52,7 @@ struct HatchScene::Impl {
     GpuPixelProjection projection;
     GpuStumpScorer scorer;
     GpuStrokePlacer placer;
-<<<<<<< HEAD
     GpuHatchingEvaluator evaluator;
-    GpuPixelProjection projection;
-    CpuPixelProjection projection;
-=======
-    GpuHatchingEvaluator evaluator;
->>>>>>> h4
     ImageTools tools{gbuffers, filters, projection};
     HatchingSurface surface;
     HatchingView view;

@@ -36,9 +36,9 @@ struct OrientationMixture {
 
 /// Finds which regions of a drawing follow which rule, and the rules, at once (thesis Sec. 4.4.1, Eqs. 4.10-4.14): a
 /// mixture of experts by expectation maximization, from grow_clusters(). Beyond the thesis, segments of less than
-/// four hundredths are dissolved, and two segments become one where one rule explains both nearly as well as two: clusters
-/// begin as regions of about one direction, while a rule may turn with the surface. Also, where the drawing has single
-/// strokes (level 1), only the first direction of a segment counts in Eq. 4.12. No samples give no rules.
+/// four hundredths are dissolved, and two segments become one where one rule explains both nearly as well as two:
+/// clusters begin as regions of about one direction, while a rule may turn with the surface. Also, where the drawing
+/// has single strokes (level 1), only the first direction of a segment counts in Eq. 4.12. No samples give no rules.
 /// Deterministic. Throws Interrupted at Ctrl-C.
 OrientationMixture learn_mixture(
     const OrientationSamples& samples, const MixtureOptions& options = {},

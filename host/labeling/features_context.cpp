@@ -3,8 +3,8 @@
 
 #include "host/core/parallel.h"
 #include "host/labeling/feature_families.h"
-#include "host/shape/log_bins.h"
 #include "host/mesh/axes.h"
+#include "host/shape/log_bins.h"
 
 namespace exemplar {
 namespace {

@@ -54,7 +54,7 @@ void run_extract(const ExtractArguments& arguments) {
     require_input(arguments.drawing);
     require_output_folder(arguments.out);
     HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
-    const StrokeMeasurements measured = read_drawing(arguments.drawing, scene.pixels());
+    const StrokeMeasurements measured = read_drawing(arguments.drawing, scene.pixels(), arguments.common.quiet);
     const nlohmann::json ranges = write_pictures(arguments.out, measured);
     if (!arguments.common.quiet) {
         fmt::print("{}: strokes {:.1f} pixels thick, {:.1f} apart in the median; {}\n", arguments.out.string(),

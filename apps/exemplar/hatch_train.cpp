@@ -44,7 +44,7 @@ void run_train(const TrainArguments& arguments) {
     Progress progress("learning", 7);
     HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
     progress.advance(1, "reading the drawing");
-    const StrokeMeasurements measured = read_drawing(arguments.drawing, scene.pixels());
+    const StrokeMeasurements measured = read_drawing(arguments.drawing, scene.pixels(), arguments.common.quiet);
     const double reading = watch.wall();
     progress.advance(1, "orientation rules");
     StyleLearningOptions options;

@@ -4,16 +4,9 @@
 #include <vector>
 
 #include "host/hatching/ink_mask.h"
-#include "host/imaging/image.h"
 #include "host/mesh/mesh.h"
 
 namespace exemplar {
-
-using Pixel = std::array<int, 2>;
-/// Where the middle of a pixel lies in the image.
-inline Vec2 center_of(const Pixel& pixel) {
-    return {static_cast<float>(pixel[0]) + 0.5f, static_cast<float>(pixel[1]) + 0.5f};
-}
 
 constexpr int k_no_junction = -1;
 

@@ -10,7 +10,7 @@
 namespace exemplar {
 namespace {
 
-constexpr float k_corner = 0.05f;       ///< least det / trace^2 of the structure tensor of a corner; at most 1/4
+constexpr float k_corner = 0.03f;       ///< least det / trace^2 of the structure tensor of a corner; at most 1/4
 constexpr float k_flat = 1e-4f;         ///< trace below which there is nothing
 constexpr float k_gradient_scale = 1;   ///< pixels
 constexpr float k_least_window = 1.5f;  ///< pixels

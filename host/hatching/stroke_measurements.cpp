@@ -13,13 +13,12 @@
 #include "host/hatching/ink_mask.h"
 #include "host/hatching/stroke_map.h"
 #include "host/hatching/stroke_properties.h"
-#include "host/hatching/thinning.h"
+#include "host/hatching/traced_drawing.h"
 #include "host/hatching/traced_strokes.h"
 
 namespace exemplar {
 namespace {
 
-constexpr float k_smoothing = 0.5f;  ///< pixels, before what is ink is decided
 constexpr float k_least_crossing_angle = std::numbers::pi_v<float> / 12;
 constexpr float k_paper_distance = 3;  ///< pixels from ink from which there is nothing but paper
 constexpr std::size_t k_least_paper = 100;
@@ -34,26 +33,6 @@ void check(const FloatImage& darkness, const Image& mask) {
         throw UsageError(
             fmt::format("a drawing of {} x {} pixels and a mask of {} x {}: warp the drawing into the view",
                         darkness.width, darkness.height, mask.width, mask.height));
-}
-
-/// What is ink, and how wide strokes are to within a pixel: twice the way to the nearest pixel without ink.
-struct Ink {
-    PixelMask pixels;
-    FloatImage width;
-};
-
-Ink find_ink(const FloatImage& smooth, float faintest) {
-    Ink ink{ink_pixels(smooth, faintest), FloatImage(smooth.width, smooth.height, 1)};
-    std::vector<std::uint8_t> blank(ink.pixels.data.size());
-    for (std::size_t i = 0; i < blank.size(); ++i) blank[i] = !ink.pixels.data[i];
-    const std::vector<std::int32_t> nearest = nearest_sites(smooth.width, smooth.height, blank);
-    for (std::size_t i = 0; i < blank.size(); ++i) {
-        const float distance = nearest[i] == k_no_site
-                                   ? static_cast<float>(std::max(smooth.width, smooth.height))
-                                   : pixel_distance(static_cast<std::int32_t>(i), nearest[i], smooth.width);
-        ink.width.data[i] = std::max(1.0f, 2 * distance - 1);
-    }
-    return ink;
 }
 
 /// Mean darkness of what is far from ink: above zero in a noisy scan, as nothing is lighter than paper.
@@ -84,7 +63,7 @@ float median_of(std::span<const TracedStroke> strokes, Value value) {
 }
 
 /// Gives each pixel of ink in the mask what was measured at the nearest point.
-void spread(const Ink& ink, const Image& mask, const PixelMask& crossing, std::span<const TracedStroke> strokes,
+void spread(const PixelMask& ink, const Image& mask, const PixelMask& crossing, std::span<const TracedStroke> strokes,
             const StrokeMap& map, StrokeMeasurements& m) {
     parallel_for(
         static_cast<std::size_t>(m.height),
@@ -92,7 +71,7 @@ void spread(const Ink& ink, const Image& mask, const PixelMask& crossing, std::s
             for (int x = 0; x < m.width; ++x) {
                 const int y = static_cast<int>(row);
                 const std::size_t i = row * static_cast<std::size_t>(m.width) + static_cast<std::size_t>(x);
-                if (!ink.pixels.data[i] || !mask.data[i]) continue;
+                if (!ink.data[i] || !mask.data[i]) continue;
                 const PointId id = map.nearest(x, y);
                 const TracedPoint& point = strokes[id.stroke].points[id.point];
                 if (map.distance(x, y) > 0.5f * point.thickness + k_soft_edge) continue;
@@ -156,24 +135,19 @@ StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask
     check(darkness, mask);
     StrokeMeasurements m = empty_measurements(darkness.width, darkness.height);
     if (m.size() == 0) return m;
-    const FloatImage smooth = gaussian_blur(darkness, k_smoothing);
-    const Ink ink = find_ink(smooth, options.faintest);
-    PixelMask skeleton = ink.pixels;
-    for (std::size_t i = 0; i < m.size(); ++i) skeleton.data[i] = skeleton.data[i] && mask.data[i];
-    skeleton = thinned(std::move(skeleton));
-    prune_spurs(skeleton, ink.width);
-    std::vector<TracedStroke> strokes = trace_strokes(skeleton, ink.width, smooth, options.faintest);
+    TracedDrawing drawing = trace_drawing(darkness, mask, options.faintest);
+    std::vector<TracedStroke>& strokes = drawing.strokes;
     if (strokes.empty()) return m;
-    const std::vector<StrokeCrossing> crossings = measure_points(darkness, ink.pixels, options, strokes, m);
-    m.intersections = confirmed_intersections(crossings, smooth, skeleton, strokes);
+    const std::vector<StrokeCrossing> crossings = measure_points(darkness, drawing.ink, options, strokes, m);
+    m.intersections = confirmed_intersections(crossings, darkness, drawing.skeleton, strokes);
     m.level = hatching_levels(strokes, m.intersections, mask, options.most_intersections_of_single, m.median_spacing);
     m.boundary = level_boundaries(m.level, mask);
     if (options.smoothing > 0 && m.median_spacing > 0)
-        smooth_properties(options.smoothing * m.median_spacing, options.similar, strokes);
+        smooth_properties(options.smoothing * m.median_spacing, 0.5f * options.similar, strokes);
     const StrokeMap map(strokes, m.width, m.height);
-    spread(ink, mask, crossing_pixels(crossings, m.width, m.height), strokes, map, m);
+    spread(drawing.ink, mask, crossing_pixels(crossings, m.width, m.height), strokes, map, m);
     mark_ends(strokes, map, m);
-    m.skeleton = std::move(skeleton.data);
+    for (std::size_t i = 0; i < m.size(); ++i) m.skeleton[i] = drawing.skeleton.data[i] && m.stroke[i];
     return m;
 }
 

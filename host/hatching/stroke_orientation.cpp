@@ -13,7 +13,7 @@ constexpr float k_pi = std::numbers::pi_v<float>;
 constexpr float k_gradient_scale = 1;      ///< pixels
 constexpr float k_least_window = 1.5f;     ///< standard deviation of the tensor's window, pixels
 constexpr float k_edge = 1;                ///< pixels beside a stroke in which its edge has a gradient
-constexpr float k_least_own = 0.85f;       ///< of the window
+constexpr float k_least_own = 0.98f;       ///< of the window
 constexpr float k_least_coherence = 0.5f;  ///< of the tensor: 1 for parallel edges, 0 for all directions alike
 
 struct Tensor {

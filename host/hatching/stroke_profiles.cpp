@@ -21,6 +21,7 @@ constexpr int k_steps = 8;
 constexpr float k_noise = 0.03f;        ///< of darkness: weighs samples against what is likely
 constexpr float k_likely_turn = 0.1f;   ///< radians by which a point's orientation may be wrong
 constexpr float k_likely_bend = 0.02f;  ///< 1 / pixels: half the curvature of an arc of radius 25
+constexpr float k_longest_bridge = 8;   ///< widths over which a center line is taken for straight
 constexpr std::size_t k_softness_points = 400;
 constexpr float k_better = 0.98f;  ///< of the misfit of sharp edges, for softness to be believed
 constexpr std::array<float, 10> k_softnesses{0, 0.25f, 0.4f, 0.55f, 0.7f, 0.85f, 1, 1.25f, 1.5f, 2};
@@ -182,15 +183,18 @@ bool accept(const Profile& profile, float paper, const TracedStroke& stroke, Tra
     return true;
 }
 
-/// Thickness and intensity where they were not measured, from the nearest points of the stroke where they were. Returns
-/// whether there are any.
+/// Thickness, intensity and, at crossings, center where they were not measured, from the nearest points of the stroke
+/// where they were. Returns whether there are any.
 bool fill_along(TracedStroke& stroke) {
+    const auto longest = static_cast<std::size_t>(k_longest_bridge * std::max(stroke.width, 1.0f));
     std::vector<bool> measured;
     for (const TracedPoint& point : stroke.points) measured.push_back(point.profiled);
     between_measured(measured, [&](std::size_t i, const BetweenMeasured& b) {
         const TracedPoint &before = stroke.points[b.before], &behind = stroke.points[b.behind];
         stroke.points[i].thickness = std::lerp(before.thickness, behind.thickness, b.share);
         stroke.points[i].intensity = std::lerp(before.intensity, behind.intensity, b.share);
+        if (stroke.points[i].at_crossing && b.before != b.behind && b.behind - b.before <= longest)
+            stroke.points[i].center = before.center + b.share * (behind.center - before.center);
     });
     return std::find(measured.begin(), measured.end(), true) != measured.end();
 }

@@ -17,6 +17,7 @@ namespace {
 constexpr float k_cell = 8;               ///< pixels
 constexpr float k_farthest_side = 1.75f;  ///< of the nearer side's distance, for both sides to be neighbors
 constexpr float k_farthest_mutual = 2;    ///< of the neighbor's own spacing
+constexpr std::int32_t k_line_side = 3;   ///< points before and behind another that its line is measured at
 constexpr float k_around = 4;             ///< how much longer the way along a stroke is to a neighbor that is itself
 
 /// Which strokes cross which.
@@ -92,6 +93,18 @@ class SpacingSearch {
         return static_cast<float>(steps) > k_around * distance;
     }
 
+    /// Distance across a direction, to the right, of the line through the points around another: the nearest of them is
+    /// nearest by chance, too.
+    float across_to(const TracedPoint& point, PointId other, float direction) const {
+        const std::vector<TracedPoint>& line = strokes_[other.stroke].points;
+        const auto last = static_cast<std::int32_t>(line.size()) - 1;
+        const std::int32_t side = std::min({k_line_side, other.point, last - other.point});
+        Vec2 mean = Vec2::Zero();
+        for (std::int32_t i = other.point - side; i <= other.point + side; ++i) mean += line[i].center;
+        const Vec2 way = mean / static_cast<float>(2 * side + 1) - point.center;
+        return way.y() * std::cos(direction) - way.x() * std::sin(direction);
+    }
+
     void consider(PointId own, PointId other, Neighbors& neighbors) const {
         const TracedPoint& point = strokes_[own.stroke].points[own.point];
         const TracedPoint& candidate = strokes_[other.stroke].points[other.point];
@@ -100,8 +113,7 @@ class SpacingSearch {
         if (distance >= std::max(neighbors.side[0].distance, neighbors.side[1].distance)) return;
         const float turn = std::remainder(candidate.orientation - point.orientation, std::numbers::pi_v<float>);
         if (std::abs(turn) > similar_ || !apart(own, other, distance)) return;
-        const float middle = point.orientation + 0.5f * turn;
-        const float across = way.y() * std::cos(middle) - way.x() * std::sin(middle);
+        const float across = across_to(point, other, point.orientation + 0.5f * turn);
         Neighbor& neighbor = neighbors.side[across > 0 ? 1 : 0];
         if (distance >= neighbor.distance || 2 * across * across < distance * distance) return;
         if (own.stroke != other.stroke && crossing_.cross(own.stroke, other.stroke)) return;

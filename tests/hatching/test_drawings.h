@@ -1,11 +1,14 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "host/core/parallel.h"
@@ -31,35 +34,34 @@ inline float distance_to(const Vec2& p, const Vec2& a, const Vec2& b) {
     return (p - a - t * way).norm();
 }
 
-/// The share of each pixel near a stroke that it covers, to within 1/64: body(x, y, share).
+/// Which of the 64 samples of a pixel are within `half` of a line, as bits.
+inline std::uint64_t covered_samples(int x, int y, const Vec2& a, const Vec2& b, float half) {
+    const float distance = distance_to(Vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f), a, b);
+    if (distance > half + 0.75f) return 0;
+    if (distance < half - 0.75f) return ~std::uint64_t{0};
+    std::uint64_t bits = 0;
+    for (int k = 0; k < 64; ++k) {
+        const Vec2 at(static_cast<float>(x) + (static_cast<float>(k % 8) + 0.5f) / 8,
+                      static_cast<float>(y) + (static_cast<float>(k / 8) + 0.5f) / 8);
+        if (distance_to(at, a, b) <= half) bits |= std::uint64_t{1} << k;
+    }
+    return bits;
+}
+
+/// Calls body(x, y, share) for the pixels that a stroke covers a share of, to within 1/64.
 template <typename Body>
 void cover(const InkStroke& stroke, int width, int height, Body body) {
-    constexpr int k_samples = 8;
     const float half = 0.5f * stroke.width;
-    BasicImage<std::uint64_t> covered(width, height, 1);
-    std::vector<std::array<int, 2>> touched;
+    std::map<std::pair<int, int>, std::uint64_t> covered;
     for (std::size_t i = 0; i + 1 < stroke.points.size(); ++i) {
         const Vec2 &a = stroke.points[i], &b = stroke.points[i + 1];
-        const auto low = [&](int c) { return std::max(0, static_cast<int>(std::min(a[c], b[c]) - half - 1)); };
-        for (int y = low(1); y <= std::min<int>(height - 1, static_cast<int>(std::max(a[1], b[1]) + half + 1)); ++y)
-            for (int x = low(0); x <= std::min<int>(width - 1, static_cast<int>(std::max(a[0], b[0]) + half + 1));
-                 ++x) {
-                const Vec2 center(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
-                const float distance = distance_to(center, a, b);
-                if (distance > half + 0.75f) continue;
-                std::uint64_t bits = ~std::uint64_t{0};
-                if (distance > half - 0.75f)
-                    for (int k = 0; k < k_samples * k_samples; ++k) {
-                        const Vec2 at(static_cast<float>(x) + (static_cast<float>(k % k_samples) + 0.5f) / k_samples,
-                                      static_cast<float>(y) + (static_cast<float>(k / k_samples) + 0.5f) / k_samples);
-                        if (distance_to(at, a, b) > half) bits &= ~(std::uint64_t{1} << k);
-                    }
-                if (!covered.pixel(x, y)[0] && bits) touched.push_back({x, y});
-                covered.pixel(x, y)[0] |= bits;
-            }
+        const Vec2 low = a.cwiseMin(b).array() - (half + 1), high = a.cwiseMax(b).array() + (half + 1);
+        for (int y = std::max(0, static_cast<int>(low.y())); y <= std::min(height - 1, static_cast<int>(high.y())); ++y)
+            for (int x = std::max(0, static_cast<int>(low.x())); x <= std::min(width - 1, static_cast<int>(high.x()));
+                 ++x)
+                if (const std::uint64_t bits = covered_samples(x, y, a, b, half)) covered[{x, y}] |= bits;
     }
-    for (const auto& [x, y] : touched)
-        body(x, y, static_cast<float>(__builtin_popcountll(covered.pixel(x, y)[0])) / 64);
+    for (const auto& [at, bits] : covered) body(at.first, at.second, static_cast<float>(std::popcount(bits)) / 64);
 }
 
 /// Darkness of a drawing: strokes over strokes, each as a filter of its tone.

@@ -117,6 +117,7 @@ std::vector<float> classify(const CalibratedStumps& classifier, std::span<const 
 
 std::vector<std::string> contextual_feature_names(std::size_t labels) {
     std::vector<std::string> names;
+    if (contextual_feature_count(labels) == 0) return names;
     for (std::size_t range = 0; range <= k_context_ranges; ++range) {
         for (std::size_t c = 0; c < labels; ++c) names.push_back(fmt::format("context.{}.{}", c + 1, range));
     }

@@ -48,7 +48,7 @@ FeatureMatrix contextual_features(const HatchingSurface& surface, const GBuffer&
 /// Their names: "context.LABEL.RANGE", labels from 1, and their number.
 std::vector<std::string> contextual_feature_names(std::size_t labels);
 constexpr std::size_t contextual_feature_count(std::size_t labels) {
-    return (1 + k_context_ranges) * labels;
+    return labels < 2 ? 0 : (1 + k_context_ranges) * labels;
 }
 
 }  // namespace exemplar

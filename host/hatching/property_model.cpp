@@ -18,7 +18,7 @@ namespace {
 
 /// Sums of one bin of a feature.
 struct BinSums {
-    double weight = 0, target = 0;
+    double weight = 0, target = 0, squares = 0;
 };
 
 /// A weak regressor while it is sought: log(a x + b).
@@ -106,7 +106,7 @@ class Boosting {
 
     /// The best a and b for one power of a feature, from sums per bin: by regression of y, then by Gauss-Newton steps
     /// on log y.
-    Candidate fit(std::uint32_t feature, std::span<const BinSums> sums) const {
+    Candidate fit(std::uint32_t feature, std::span<const BinSums> sums, std::span<const BinSums> by_block) const {
         const std::vector<float>& middle = middle_[feature / k_powers];
         const std::size_t power = feature % k_powers;
         Candidate candidate;
@@ -126,8 +126,27 @@ class Boosting {
         const auto [a, b, error] = fit_line(x, sums, low, high);
         candidate.term.a = static_cast<float>(a);
         candidate.term.b = static_cast<float>(b);
-        candidate.error = error;
+        candidate.error = error_of_blocks(x, sums, by_block, low, high);
         return candidate;
+    }
+
+    /// Squares of each block about the line that is fitted to the others.
+    double error_of_blocks(std::span<const double> x, std::span<const BinSums> sums, std::span<const BinSums> by_block,
+                           double low, double high) const {
+        double total = 0;
+        std::vector<BinSums> others(sums.size());
+        for (std::size_t block = 0; block < k_property_blocks; ++block) {
+            const std::span<const BinSums> own = by_block.subspan(block * sums.size(), sums.size());
+            for (std::size_t k = 0; k < sums.size(); ++k)
+                others[k] = {sums[k].weight - own[k].weight, sums[k].target - own[k].target, 0};
+            for (BinSums& bin : others) bin = bin.weight > 1e-12 ? bin : BinSums{};
+            const auto [a, b, error] = fit_line(x, others, low, high);
+            for (std::size_t k = 0; k < sums.size(); ++k) {
+                const double value = std::log(std::max(a * x[k] + b, static_cast<double>(least_)));
+                total += own[k].squares - 2 * value * own[k].target + value * value * own[k].weight;
+            }
+        }
+        return total;
     }
 
     struct Line {
@@ -175,14 +194,21 @@ class Boosting {
     std::vector<Candidate> candidates() const {
         std::vector<Candidate> all(training_.features.cols() * k_powers);
         parallel_for(training_.features.cols(), [&](std::size_t f) {
-            std::vector<BinSums> sums(middle_[f].size());
+            const std::size_t count = middle_[f].size();
+            std::vector<BinSums> sums(count), by_block(k_property_blocks * count);
             const std::span<const std::uint8_t> bins = training_.quantized.column(f);
             for (std::size_t i = 0; i < weight_.size(); ++i) {
-                sums[bins[i]].weight += weight_[i];
-                sums[bins[i]].target += weight_[i] * log_target_[i];
+                BinSums& bin = by_block[training_.block[i] * count + bins[i]];
+                bin.weight += weight_[i];
+                bin.target += weight_[i] * log_target_[i];
+                bin.squares += weight_[i] * log_target_[i] * log_target_[i];
+            }
+            for (std::size_t k = 0; k < by_block.size(); ++k) {
+                sums[k % count].weight += by_block[k].weight;
+                sums[k % count].target += by_block[k].target;
             }
             for (std::size_t p = 0; p < (inverses_[f] ? k_powers : 2); ++p)
-                all[f * k_powers + p] = fit(static_cast<std::uint32_t>(f * k_powers + p), sums);
+                all[f * k_powers + p] = fit(static_cast<std::uint32_t>(f * k_powers + p), sums, by_block);
         });
         return all;
     }
@@ -276,7 +302,7 @@ class Boosting {
 
     bool keep_better(LearnedProperty& best) const {
         // Fewer features carry over better to other shapes: a new one has to pay.
-        constexpr double k_worth = 0.995;
+        constexpr double k_worth = 0.98;
         bool better = false;
         PropertyModel averaged = model_;
         float sum = 0;
@@ -337,9 +363,12 @@ float PropertyModel::log_value(const Term& term, float x) {
 LearnedProperty learn_property(const PropertyTraining& training, const std::function<void()>& progress) {
     const std::size_t rows = training.features.rows;
     if (rows == 0 || training.target.size() != rows || training.held_out.size() != rows ||
-        training.quantized.rows != rows)
+        training.block.size() != rows || training.quantized.rows != rows)
         throw UsageError(
             "a property is learned from rows of features, one value each; their numbers differ or are zero");
+    for (const std::uint8_t block : training.block) {
+        if (block >= k_property_blocks) throw UsageError("a property is learned from rows of four blocks at most");
+    }
     for (const float y : training.target) {
         if (!(y > 0) || !std::isfinite(y))
             throw DataError("a property is learned from values that are positive and finite");

@@ -265,7 +265,9 @@ Candidate best_likely(const FloatImage& darkness, const std::vector<Similarity>&
     consider(straightened(best.to_view, object.center), 1);
     for (const std::size_t stage : {1u, 2u, 3u})
         best.to_view = refined_in_view(darkness, best.to_view, object, loss_scale(stage, object), true);
-    return judged(darkness, best.to_view, object);
+    best = judged(darkness, best.to_view, object);
+    const Candidate straight = judged(darkness, straightened(best.to_view, object.center), object);
+    return straight.loss <= best.loss ? straight : best;
 }
 
 /// The drawing scaled to the view's size, if it has its aspect ratio.

@@ -26,9 +26,7 @@ class Assembly {
         const auto start_at = [&](std::size_t end) {
             if (used_[end / 2] || links_.shared[end / 2]) return;
             TracedStroke stroke = follow(end);
-            if (stroke.points.size() >= k_least_points &&
-                static_cast<float>(stroke.points.size()) >= k_least_aspect * stroke.width)
-                strokes.push_back(std::move(stroke));
+            if (stroke.points.size() >= k_least_points) strokes.push_back(std::move(stroke));
         };
         for (std::size_t end = 0; end < links_.ends.size(); ++end)
             if (links_.partner[end] == k_unlinked && !graph_.segments[end / 2].closed) start_at(end);
@@ -114,6 +112,16 @@ void straighten_ends(TracedStroke& stroke) {
     std::reverse(stroke.points.begin(), stroke.points.end());
 }
 
+/// Whether a stroke is no longer than twice its greatest width between crossings.
+bool is_dot(const TracedStroke& stroke, const FloatImage& width) {
+    float widest = stroke.width;
+    for (const TracedPoint& point : stroke.points) {
+        const int x = static_cast<int>(point.center.x()), y = static_cast<int>(point.center.y());
+        if (!point.at_crossing) widest = std::max(widest, width.pixel(x, y)[0]);
+    }
+    return static_cast<float>(stroke.points.size()) < k_least_aspect * widest;
+}
+
 }  // namespace
 
 std::vector<TracedStroke> trace_strokes(const PixelMask& skeleton, const FloatImage& width, const FloatImage& darkness,
@@ -121,6 +129,7 @@ std::vector<TracedStroke> trace_strokes(const PixelMask& skeleton, const FloatIm
     const SkeletonGraph graph = skeleton_graph(skeleton);
     const SegmentLinks links = link_segments(graph, width, darkness, faintest);
     std::vector<TracedStroke> strokes = Assembly(graph, links).run();
+    std::erase_if(strokes, [&](const TracedStroke& stroke) { return is_dot(stroke, width); });
     for (TracedStroke& stroke : strokes) {
         straighten_ends(stroke);
         orient_along(stroke);

@@ -55,10 +55,10 @@ void expect_small(const Errors& errors, const std::string& what) {
     ASSERT_GT(errors.orientation.size(), 500u);
     EXPECT_LE(quantile(errors.orientation, 0.5), 2);
     EXPECT_LE(quantile(errors.orientation, 0.95), 5);
-    EXPECT_LE(quantile(errors.thickness, 0.5), 0.08f);
+    EXPECT_LE(quantile(errors.thickness, 0.5), 0.04f);
     EXPECT_LE(quantile(errors.intensity, 0.5), 0.08f);
-    EXPECT_LE(quantile(errors.spacing, 0.5), 0.06f);
-    EXPECT_LE(quantile(errors.length, 0.5), 0.12f);
+    EXPECT_LE(quantile(errors.spacing, 0.5), 0.02f);
+    EXPECT_LE(quantile(errors.length, 0.5), 0.03f);
 }
 
 /// Each stroke pixel by the family whose direction is nearest to the one measured.
@@ -146,7 +146,7 @@ std::vector<DrawingCase> crossed_drawings() {
     return cases;
 }
 
-const auto k_name_of = [](const auto& info) { return info.param.name; };
+const auto k_name_of = [](const auto& drawing) { return drawing.param.name; };
 INSTANTIATE_TEST_SUITE_P(Straight, Extraction, testing::ValuesIn(straight_drawings()), k_name_of);
 INSTANTIATE_TEST_SUITE_P(Crossed, Extraction, testing::ValuesIn(crossed_drawings()), k_name_of);
 

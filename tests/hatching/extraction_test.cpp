@@ -29,7 +29,7 @@ Image whole(int width, int height) {
 }
 
 StrokeMeasurements measure(const std::vector<InkStroke>& strokes, const ScanOptions& scan = {},
-                           const StrokeOptions& options = {}, int size = k_size) {
+                           const MeasuringOptions& options = {}, int size = k_size) {
     const Image drawing = scanned(ink_drawing(strokes, size, size), scan);
     return measure_strokes(drawing_darkness(drawing), whole(size, size), options);
 }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "host/core/errors.h"
 #include "host/hatching/alignment_search.h"
@@ -131,14 +133,29 @@ struct ViewDrawing {
     FloatImage distance;  ///< to the border of the inked region, signed
 };
 
-/// Where the center lines of strokes end.
-std::vector<Vec2> ends_of(const std::vector<TracedStroke>& strokes) {
-    std::vector<Vec2> ends;
-    for (const TracedStroke& stroke : strokes) {
-        if (stroke.closed) continue;
-        ends.push_back(stroke.points.front().center);
-        ends.push_back(stroke.points.back().center);
+/// Mean width of strokes: their ink over their length and the darkness of their center lines.
+float mean_width(const FloatImage& darkness, const TracedDrawing& drawing) {
+    float length = 0;
+    double ink = 0, center = 0, count = 0;
+    for (const TracedStroke& stroke : drawing.strokes) length += length_along(stroke);
+    for (std::size_t i = 0; i < darkness.data.size(); ++i) {
+        if (drawing.ink.data[i]) ink += static_cast<double>(darkness.data[i]);
+        if (drawing.skeleton.data[i]) center += static_cast<double>(darkness.data[i]), ++count;
     }
+    return length > 0 && center > 0 ? std::max(1.0f, static_cast<float>(ink * count / center) / length) : 1;
+}
+
+/// Where the center lines of strokes end: half a width before their tips. Ends at other strokes are left out.
+std::vector<Vec2> ends_of(const FloatImage& darkness, const TracedDrawing& drawing) {
+    const float width = mean_width(darkness, drawing);
+    std::vector<Vec2> ends;
+    for (const TracedStroke& stroke : drawing.strokes)
+        for (const bool back : {false, true}) {
+            if (stroke.closed) continue;
+            const std::optional<float> tip = way_to_tip(darkness, stroke, back, width);
+            const Vec2& end = back ? stroke.points.back().center : stroke.points.front().center;
+            if (tip) ends.emplace_back(end + (*tip - 0.5f * width) * way_out(stroke, back));
+        }
     return ends;
 }
 
@@ -149,7 +166,7 @@ ViewDrawing drawing_in_view(const FloatImage& darkness, const Similarity& to_vie
     PixelMask all;
     if (with_ends) {
         TracedDrawing traced = trace_drawing(view, PixelMask(view.width, view.height, 1, 1), k_faintest);
-        drawing.ends = ends_of(traced.strokes);
+        drawing.ends = ends_of(view, traced);
         all = std::move(traced.ink);
     } else {
         all = ink_pixels(gaussian_blur(view, 0.5f), k_faintest);
@@ -265,7 +282,9 @@ Candidate best_likely(const FloatImage& darkness, const std::vector<Similarity>&
     consider(straightened(best.to_view, object.center), 1);
     for (const std::size_t stage : {1u, 2u, 3u})
         best.to_view = refined_in_view(darkness, best.to_view, object, loss_scale(stage, object), true);
-    return judged(darkness, best.to_view, object);
+    best = judged(darkness, best.to_view, object);
+    const Candidate straight = judged(darkness, straightened(best.to_view, object.center), object);
+    return straight.loss <= best.loss ? straight : best;
 }
 
 /// The drawing scaled to the view's size, if it has its aspect ratio.

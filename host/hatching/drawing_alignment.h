@@ -31,10 +31,10 @@ class Similarity {
 };
 
 struct AlignmentOptions {
-    float largest_tilt = 0.21f;    ///< radians: how crooked the sheet may lie, either way
-    bool quarter_turns = true;     ///< whether it may lie on another side, too
-    float least_explained = 0.4f;  ///< share of the object's border that the drawing's must lie on
-    float most_outside = 0.15f;    ///< share of the ink that may lie outside of the object
+    float largest_tilt = 0.21f;     ///< radians: how crooked the sheet may lie, either way
+    bool quarter_turns = true;      ///< whether it may lie on another side, too
+    float least_explained = 0.38f;  ///< share of the object's border that the drawing's must lie on
+    float most_outside = 0.15f;     ///< share of the ink that may lie outside of the object
 };
 
 /// How a drawing lies over the view it was made for.

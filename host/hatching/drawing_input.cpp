@@ -20,6 +20,7 @@ constexpr float k_least_noise = 0.006f;   ///< of paper: one and a half steps of
 constexpr float k_darkest_paper = 0.25f;  ///< gray below which nothing counts as paper
 constexpr float k_least_contrast = 0.1f;  ///< darkness from which a pixel is ink
 constexpr float k_most_ink = 0.85f;       ///< share of the image
+constexpr double k_least_ink = 4;         ///< pixels
 
 using Terms = Eigen::Matrix<double, 6, 1>;
 
@@ -123,7 +124,7 @@ void check_ink(const FloatImage& darkness, float noise) {
     const float least = std::max(k_least_contrast, 6 * noise);
     const auto inked = static_cast<double>(
         std::count_if(darkness.data.begin(), darkness.data.end(), [&](float d) { return d > least; }));
-    if (inked == 0)
+    if (inked < k_least_ink)
         throw DataError(
             fmt::format("the drawing is blank: nothing on its {} x {} pixels is darker than the paper; give "
                         "an image with dark strokes",

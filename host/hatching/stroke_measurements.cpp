@@ -88,12 +88,12 @@ void spread(const PixelMask& ink, const Image& mask, const PixelMask& crossing, 
         16);
 }
 
-void mark_ends(std::span<const TracedStroke> strokes, const StrokeMap& map, StrokeMeasurements& m) {
+void mark_ends(std::span<const TracedStroke> strokes, const StrokeMap& map, const Image& mask, StrokeMeasurements& m) {
     for (const TracedStroke& stroke : strokes) {
         if (stroke.closed) continue;
         for (const TracedPoint& end : {stroke.points.front(), stroke.points.back()}) {
             const auto [x, y] = map.pixel_of(end);
-            m.boundary[static_cast<std::size_t>(y) * m.width + x] = 1;
+            if (mask.pixel(x, y)[0]) m.boundary[static_cast<std::size_t>(y) * m.width + x] = 1;
         }
     }
 }
@@ -146,7 +146,7 @@ StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask
         smooth_properties(options.smoothing * m.median_spacing, 0.5f * options.similar, strokes);
     const StrokeMap map(strokes, m.width, m.height);
     spread(drawing.ink, mask, crossing_pixels(crossings, m.width, m.height), strokes, map, m);
-    mark_ends(strokes, map, m);
+    mark_ends(strokes, map, mask, m);
     for (std::size_t i = 0; i < m.size(); ++i) m.skeleton[i] = drawing.skeleton.data[i] && m.stroke[i];
     return m;
 }

@@ -12,6 +12,8 @@ namespace {
 
 constexpr float k_pi = std::numbers::pi_v<float>;
 constexpr std::size_t k_least_points = 3;
+constexpr std::size_t k_end_points = 4;  ///< points that show a stroke's darkness and direction at its end
+constexpr float k_tip_step = 0.25f;      ///< pixels
 constexpr float k_least_aspect = 2;  ///< points per width: what is shorter is a dot, or what thinning left of an end
 constexpr float k_least_reach = 6, k_most_reach = 20;  ///< points of the center line that show its direction
 
@@ -26,9 +28,7 @@ class Assembly {
         const auto start_at = [&](std::size_t end) {
             if (used_[end / 2] || links_.shared[end / 2]) return;
             TracedStroke stroke = follow(end);
-            if (stroke.points.size() >= k_least_points &&
-                static_cast<float>(stroke.points.size()) >= k_least_aspect * stroke.width)
-                strokes.push_back(std::move(stroke));
+            if (stroke.points.size() >= k_least_points) strokes.push_back(std::move(stroke));
         };
         for (std::size_t end = 0; end < links_.ends.size(); ++end)
             if (links_.partner[end] == k_unlinked && !graph_.segments[end / 2].closed) start_at(end);
@@ -114,6 +114,32 @@ void straighten_ends(TracedStroke& stroke) {
     std::reverse(stroke.points.begin(), stroke.points.end());
 }
 
+/// Whether a stroke is no longer than twice its greatest width between crossings.
+bool is_dot(const TracedStroke& stroke, const FloatImage& width) {
+    float widest = stroke.width;
+    for (const TracedPoint& point : stroke.points) {
+        const int x = static_cast<int>(point.center.x()), y = static_cast<int>(point.center.y());
+        if (!point.at_crossing) widest = std::max(widest, width.pixel(x, y)[0]);
+    }
+    return static_cast<float>(stroke.points.size()) < k_least_aspect * widest;
+}
+
+float darkness_at(const FloatImage& image, const Vec2& at) {
+    const float x = std::clamp(at.x() - 0.5f, 0.0f, static_cast<float>(image.width - 1));
+    const float y = std::clamp(at.y() - 0.5f, 0.0f, static_cast<float>(image.height - 1));
+    const int left = static_cast<int>(x), top = static_cast<int>(y);
+    const int right = std::min(left + 1, image.width - 1), bottom = std::min(top + 1, image.height - 1);
+    const float sx = x - static_cast<float>(left), sy = y - static_cast<float>(top);
+    return std::lerp(std::lerp(image.pixel(left, top)[0], image.pixel(right, top)[0], sx),
+                     std::lerp(image.pixel(left, bottom)[0], image.pixel(right, bottom)[0], sx), sy);
+}
+
+/// A point of a stroke as counted from its front or back, or the farthest one there is.
+const TracedPoint& point_from(const TracedStroke& stroke, bool back, std::size_t i) {
+    const std::size_t last = stroke.points.size() - 1;
+    return stroke.points[back ? last - std::min(i, last) : std::min(i, last)];
+}
+
 }  // namespace
 
 std::vector<TracedStroke> trace_strokes(const PixelMask& skeleton, const FloatImage& width, const FloatImage& darkness,
@@ -121,6 +147,7 @@ std::vector<TracedStroke> trace_strokes(const PixelMask& skeleton, const FloatIm
     const SkeletonGraph graph = skeleton_graph(skeleton);
     const SegmentLinks links = link_segments(graph, width, darkness, faintest);
     std::vector<TracedStroke> strokes = Assembly(graph, links).run();
+    std::erase_if(strokes, [&](const TracedStroke& stroke) { return is_dot(stroke, width); });
     for (TracedStroke& stroke : strokes) {
         straighten_ends(stroke);
         orient_along(stroke);
@@ -145,6 +172,22 @@ void orient_along(TracedStroke& stroke) {
         const float angle = std::atan2(slope.y(), slope.x());
         stroke.points[i].orientation = angle < 0 ? angle + k_pi : (angle < k_pi ? angle : 0);
     }
+}
+
+Vec2 way_out(const TracedStroke& stroke, bool back) {
+    const TracedPoint &end = point_from(stroke, back, 0), &inward = point_from(stroke, back, k_end_points);
+    const Vec2 along(std::cos(inward.orientation), std::sin(inward.orientation));
+    return along.dot(end.center - inward.center) < 0 ? Vec2(-along) : along;
+}
+
+std::optional<float> way_to_tip(const FloatImage& darkness, const TracedStroke& stroke, bool back, float width) {
+    const Vec2 out = way_out(stroke, back), end = point_from(stroke, back, 0).center;
+    float dark = 0;
+    for (std::size_t i = 1; i <= k_end_points; ++i)
+        dark = std::max(dark, darkness_at(darkness, point_from(stroke, back, i).center));
+    for (float way = -0.5f * width; way < 2 * width + 3; way += k_tip_step)
+        if (darkness_at(darkness, end + way * out) < 0.5f * dark) return way - 0.5f * k_tip_step;
+    return std::nullopt;
 }
 
 float length_along(const TracedStroke& stroke) {

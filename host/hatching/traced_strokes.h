@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "host/hatching/skeleton_graph.h"
@@ -41,6 +42,12 @@ std::vector<TracedStroke> trace_strokes(const PixelMask& skeleton, const FloatIm
 /// Sets the orientations of points that are not yet measured to those of the center line around them, from points that
 /// are within about two widths along the stroke.
 void orient_along(TracedStroke& stroke);
+
+/// The direction in which a stroke leaves its front or back.
+Vec2 way_out(const TracedStroke& stroke, bool back);
+/// How far from its first or last point a stroke's ink goes on in that direction until it is half as dark, in pixels;
+/// negative if the point is beyond. Nothing if it does not end within two widths, as where it meets another stroke.
+std::optional<float> way_to_tip(const FloatImage& darkness, const TracedStroke& stroke, bool back, float width);
 
 /// Length of the center line as walked along the orientations, so that jitter across them adds nothing.
 float length_along(const TracedStroke& stroke);

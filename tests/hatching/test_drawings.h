@@ -1,18 +1,19 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <functional>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "host/core/parallel.h"
 #include "host/core/random.h"
+#include "host/hatching/drawing_filters.h"
 #include "host/imaging/image.h"
 #include "host/mesh/mesh.h"
 
@@ -72,6 +73,63 @@ inline FloatImage ink_drawing(std::span<const InkStroke> strokes, int width, int
               [&](int x, int y, float share) { light.pixel(x, y)[0] *= 1 - share * stroke.tone; });
     for (float& value : light.data) value = 1 - value;
     return light;
+}
+
+/// What a scanner does to a drawing.
+struct ScanOptions {
+    float blur = 0;    ///< standard deviation, pixels
+    float noise = 0;   ///< standard deviation, of gray
+    float paper = 1;   ///< gray
+    float uneven = 0;  ///< by how much paper darkens from one corner to the other
+    std::uint64_t seed = 1;
+};
+
+inline Image scanned(const FloatImage& darkness, const ScanOptions& options = {}) {
+    const FloatImage soft = gaussian_blur(darkness, options.blur);
+    Image scan(darkness.width, darkness.height, 1);
+    Random random(options.seed);
+    for (int y = 0; y < scan.height; ++y)
+        for (int x = 0; x < scan.width; ++x) {
+            const float u = static_cast<float>(x) / static_cast<float>(scan.width);
+            const float v = static_cast<float>(y) / static_cast<float>(scan.height);
+            const float paper = options.paper - options.uneven * (0.6f * u * u + 0.4f * v);
+            const float gray = paper * (1 - soft.pixel(x, y)[0]) + options.noise * static_cast<float>(random.normal());
+            scan.pixel(x, y)[0] = static_cast<std::uint8_t>(std::clamp(std::lround(255 * gray), 0L, 255L));
+        }
+    return scan;
+}
+
+/// A share of values that are in order, 0.5 for the median.
+inline float quantile(std::vector<float> values, double share) {
+    if (values.empty()) return std::numeric_limits<float>::quiet_NaN();
+    std::sort(values.begin(), values.end());
+    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+inline Vec2 direction(float angle) {
+    return {std::cos(angle), std::sin(angle)};
+}
+
+/// Parallel strokes.
+struct Family {
+    float angle = 0, spacing = 8, width = 2, tone = 1, length = 200;
+    int strokes = 25;  ///< odd: one goes through the center
+
+    float half_across() const { return 0.5f * spacing * static_cast<float>(strokes); }
+    bool hatches(const Vec2& from_center) const {
+        const Vec2 along = direction(angle), across(-along.y(), along.x());
+        return std::abs(along.dot(from_center)) <= 0.5f * length && std::abs(across.dot(from_center)) <= half_across();
+    }
+};
+
+inline void add_family(const Family& family, const Vec2& center, std::vector<InkStroke>& strokes) {
+    const Vec2 along = direction(family.angle), across(-along.y(), along.x());
+    for (int k = 0; k < family.strokes; ++k) {
+        const Vec2 middle =
+            center + (static_cast<float>(k) - 0.5f * static_cast<float>(family.strokes - 1)) * family.spacing * across;
+        const Vec2 half = 0.5f * family.length * along;
+        strokes.push_back({{middle - half, middle + half}, family.width, family.tone});
+    }
 }
 
 }  // namespace exemplar::test

@@ -56,8 +56,10 @@ struct LearnedProperty {
 /// Eq. 4.9): each round adds the feature whose log(a x + b), with the a and b that fit log y best under the current
 /// weights, minimizes sum of w_i r^-1/2 exp(r (log y_i - log(a x_i + b))^2), with r by line search (the first: r = 1);
 /// it ends where the rows held out are fitted best. Beyond the thesis, the exponents of the chosen terms, in the thesis
-/// r_k / sum of r, are also fitted by least squares, and kept if that fits the rows held out better. Inverses of
-/// features that are next to zero on a hundredth of the rows are left out.
+/// r_k / sum of r, are also fitted by least squares, and models found by forward selection compete, whose terms fit
+/// what those before them leave: all terms of boosting aim at y, so that it may not come to the second factor of a
+/// product. What fits the rows held out best is kept. Inverses of features that are next to zero on a hundredth of the
+/// rows are left out.
 LearnedProperty learn_property(
     const PropertyTraining& training, const std::function<void()>& progress = [] {});
 

@@ -144,7 +144,7 @@ TEST(OrientationMixture, IsDeterministic) {
 }
 
 TEST(OrientationMixture, OfNoSamplesHasNoRules) {
-    EXPECT_TRUE(learn_mixture({}).rules.empty());
+    EXPECT_TRUE(learn_mixture(OrientationSamples{}).rules.empty());
 }
 
 }  // namespace

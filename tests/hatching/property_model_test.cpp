@@ -22,7 +22,7 @@ FeatureMatrix random_features(std::size_t rows, std::uint64_t seed) {
     FeatureMatrix features;
     features.rows = rows;
     for (std::size_t k = 0; k < 8; ++k)
-        for (float& x : features.add("x" + std::to_string(k))) {
+        for (float& x : features.add(std::string("x").append(std::to_string(k)))) {
             const double u = random.uniform();
             x = static_cast<float>(k < 2 ? u : k == 2 ? 0.5 + 2.5 * u : k == 3 ? 2 * u - 1 : random.normal());
         }

@@ -7,7 +7,7 @@
 
 namespace exemplar {
 
-ContentKey content_key(std::string_view use, std::initializer_list<std::span<const std::byte>> parts) {
+ContentKey content_key(std::string_view use, std::span<const std::span<const std::byte>> parts) {
     const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), XXH3_freeState);
     if (!state) throw std::bad_alloc();
     XXH3_128bits_reset_withSeed(state.get(), XXH3_64bits(use.data(), use.size()));

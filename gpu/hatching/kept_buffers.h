@@ -17,7 +17,10 @@ namespace exemplar {
 /// Stands for contents: XXH3 with 128 bits of what they are made of.
 using ContentKey = std::array<std::uint64_t, 2>;
 /// Of values that are used in a certain way; equal bytes in other parts or another use give another key.
-ContentKey content_key(std::string_view use, std::initializer_list<std::span<const std::byte>> parts);
+ContentKey content_key(std::string_view use, std::span<const std::span<const std::byte>> parts);
+inline ContentKey content_key(std::string_view use, std::initializer_list<std::span<const std::byte>> parts) {
+    return content_key(use, std::span(parts.begin(), parts.size()));
+}
 
 /// Buffers that are filled once and used again as long as their contents are asked for, whoever has them: so what
 /// belongs to a mesh is uploaded for its first view only. Those that were not asked for the longest are given up.

@@ -27,9 +27,8 @@ using Word = std::uint32_t;
 
 static_assert(k_slab_lanes == 4 * k_slab_quads);
 static_assert(shared::k_curvature_texels == 2 + 3 * k_hatching_scales.size());
-// The columns of one scale are one slab.
 constexpr std::size_t k_scale_columns = 2 * k_curvature_functions;
-static_assert(k_scale_columns <= k_slab_lanes);
+static_assert(shared::k_curvature_values == k_curvature_functions && k_scale_columns < shared::k_other_scale);
 
 constexpr std::size_t k_block = 1024;  // vertices that are packed at once
 
@@ -44,14 +43,11 @@ std::span<const std::byte> bytes_of(const std::vector<T>& values) {
     return std::as_bytes(std::span(values));
 }
 
-/// The columns [first, first + count) that are wanted.
-std::vector<GpuPixelProjection::Wanted> wanted_of(std::span<const std::uint32_t> which, std::size_t first,
-                                                  std::size_t count) {
-    std::vector<GpuPixelProjection::Wanted> wanted;
-    for (std::size_t k = 0; k < which.size(); ++k) {
-        if (which[k] >= first && which[k] - first < count) wanted.push_back({static_cast<Word>(which[k] - first), k});
-    }
-    return wanted;
+/// Calls use(columns) for as many of the columns as a slab has lanes, then for the next.
+template <typename Use>
+void for_each_slab(std::span<const std::uint32_t> which, Use&& use) {
+    for (std::size_t first = 0; first < which.size(); first += k_slab_lanes)
+        use(which.subspan(first, std::min<std::size_t>(k_slab_lanes, which.size() - first)));
 }
 
 vec4 texel_of(const Vec3& v, float w) {
@@ -94,7 +90,7 @@ Kernel view_curvature_kernel(Device& device) {
     return {
         device,
         shaders::hatching_view_curvature_comp,
-        {.push_constants = layout_of<ViewCurvatureParameters>(), .elements = {layout_of<vec4>(), layout_of<vec4>()}}};
+        {.push_constants = layout_of<ViewCurvatureParameters>(), .elements = {layout_of<vec4>(), layout_of<float>()}}};
 }
 
 }  // namespace
@@ -113,11 +109,8 @@ void GpuPixelProjection::scalars(const TriangleMesh& mesh, const FacePoints& poi
                                  std::span<const std::uint32_t> which, std::span<float> out) {
     check_scalars(mesh, points, values, which, out);
     if (out.empty()) return;
-    std::vector<Slab> slabs;
-    for (std::size_t first = 0; first < values.cols(); first += k_slab_lanes) {
-        std::vector<Wanted> wanted = wanted_of(which, first, k_slab_lanes);
-        if (!wanted.empty()) slabs.push_back({scalar_slab(values, first), std::move(wanted)});
-    }
+    std::vector<Shared> slabs;
+    for_each_slab(which, [&](auto columns) { slabs.push_back(scalar_slab(values, columns)); });
     project(mesh, points, slabs, out);
 }
 
@@ -125,51 +118,32 @@ void GpuPixelProjection::curvature(const HatchingSurface& surface, const Hatchin
                                    std::span<const std::uint32_t> which, std::span<float> out) {
     check_curvature(surface, points, which, out);
     if (out.empty()) return;
-    std::vector<Slab> slabs;
-    for (std::size_t scale = 0; scale < k_hatching_scales.size(); ++scale) {
-        std::vector<Wanted> wanted = wanted_of(which, scale * k_scale_columns, k_scale_columns);
-        if (!wanted.empty()) slabs.push_back({curvature_slab(surface, view, scale), std::move(wanted)});
-    }
+    const Shared states = curvature_states(surface);
+    std::vector<Shared> slabs;
+    for_each_slab(which, [&](auto columns) { slabs.push_back(curvature_slab(*states, surface, view, columns)); });
     project(surface.mesh, points, slabs, out);
 }
 
-void GpuPixelProjection::project(const TriangleMesh& mesh, const FacePoints& points, std::span<const Slab> slabs,
+void GpuPixelProjection::project(const TriangleMesh& mesh, const FacePoints& points, std::span<const Shared> slabs,
                                  std::span<float> out) {
     const Shared on_faces = corners(mesh);
+    const std::size_t columns = out.size() / points.size();
     for_each_tile(points, [&](const Tile& tile) {
-        for (const Slab& slab : slabs) {
-            // What is wanted twice goes out in another pass.
-            for (std::vector<Wanted> rest = slab.wanted; !rest.empty();)
-                rest = project_once(*on_faces, *slab.buffer, tile, rest, points.size(), out);
+        const std::size_t column_bytes = tile.stride * sizeof(float);
+        reserve(device_, columns_, std::min<std::size_t>(k_slab_lanes, (columns + 3) / 4 * 4) * column_bytes);
+        for (std::size_t s = 0; s < slabs.size(); ++s) {
+            std::vector<HostPart> parts;
+            for (std::size_t k = s * k_slab_lanes; k < std::min(columns, (s + 1) * k_slab_lanes); ++k)
+                parts.push_back({parts.size() * column_bytes,
+                                 std::as_writable_bytes(out.subspan(k * points.size() + tile.first, tile.count))});
+            const ProjectionParameters parameters{.points = static_cast<Word>(tile.count),
+                                                  .stride = static_cast<Word>(tile.stride),
+                                                  .quads = static_cast<Word>((parts.size() + 3) / 4)};
+            stream_.dispatch(project_, tile.stride / 4, {*on_faces, faces_, barycentrics_, *slabs[s], columns_},
+                             parameters);
+            stream_.fetch(columns_, parts);
         }
     });
-}
-
-/// Projects each lane once and returns what is left.
-std::vector<GpuPixelProjection::Wanted> GpuPixelProjection::project_once(const Buffer& corners, const Buffer& slab,
-                                                                         const Tile& tile,
-                                                                         std::span<const Wanted> wanted,
-                                                                         std::size_t points, std::span<float> out) {
-    ProjectionParameters parameters{
-        .points = static_cast<Word>(tile.count), .stride = static_cast<Word>(tile.stride), .places = {}};
-    std::ranges::fill(parameters.places, shared::k_no_places);
-    std::vector<HostPart> parts;
-    std::vector<Wanted> left;
-    for (const Wanted& w : wanted) {
-        Word& places = parameters.places[w.lane / 4];
-        const Word shift = 8 * (w.lane % 4);
-        if ((places >> shift & shared::k_no_place) != shared::k_no_place) {
-            left.push_back(w);
-            continue;
-        }
-        places ^= (shared::k_no_place ^ static_cast<Word>(parts.size())) << shift;
-        parts.push_back({parts.size() * tile.stride * sizeof(float),
-                         std::as_writable_bytes(out.subspan(w.column * points + tile.first, tile.count))});
-    }
-    reserve(device_, columns_, parts.size() * tile.stride * sizeof(float));
-    stream_.dispatch(project_, tile.stride / 4, {corners, faces_, barycentrics_, slab, columns_}, parameters);
-    stream_.fetch(columns_, parts);
-    return left;
 }
 
 void GpuPixelProjection::directions(const TriangleMesh& mesh, const HatchingView& view, const FacePoints& points,
@@ -253,15 +227,14 @@ GpuPixelProjection::Shared GpuPixelProjection::positions(const TriangleMesh& mes
     });
 }
 
-/// Columns from `first` on, as many as a slab has lanes.
-GpuPixelProjection::Shared GpuPixelProjection::scalar_slab(const FeatureMatrix& values, std::size_t first) {
-    const std::size_t columns = std::min<std::size_t>(k_slab_lanes, values.cols() - first);
-    const std::span<const float> some(values.values.data() + first * values.rows, columns * values.rows);
-    const std::array<std::size_t, 1> rows{values.rows};
-    return kept_.get(content_key("scalars", {std::as_bytes(std::span(rows)), std::as_bytes(some)}), [&] {
+GpuPixelProjection::Shared GpuPixelProjection::scalar_slab(const FeatureMatrix& values,
+                                                           std::span<const std::uint32_t> which) {
+    std::vector<std::span<const std::byte>> columns;
+    for (const std::uint32_t k : which) columns.push_back(std::as_bytes(values.column(k)));
+    return kept_.get(content_key("scalars", columns), [&] {
         return packed(device_, stream_, values.rows, k_slab_quads, [&](std::size_t v, vec4* out) {
             std::array<float, k_slab_lanes> lanes{};
-            for (std::size_t k = 0; k < columns; ++k) lanes[k] = some[k * values.rows + v];
+            for (std::size_t k = 0; k < which.size(); ++k) lanes[k] = values.column(which[k])[v];
             std::memcpy(out, lanes.data(), sizeof lanes);
         });
     });
@@ -304,30 +277,48 @@ GpuPixelProjection::Shared GpuPixelProjection::curvature_states(const HatchingSu
     });
 }
 
-/// Of one scale, computed when the recorded work runs.
-GpuPixelProjection::Shared GpuPixelProjection::curvature_slab(const HatchingSurface& surface, const HatchingView& view,
-                                                              std::size_t scale) {
-    constexpr std::size_t k_state = shared::k_curvature_texels * sizeof(vec4), k_row = k_slab_quads * sizeof(vec4);
+/// Computed when the recorded work runs.
+GpuPixelProjection::Shared GpuPixelProjection::curvature_slab(const Buffer& states, const HatchingSurface& surface,
+                                                              const HatchingView& view,
+                                                              std::span<const std::uint32_t> which) {
     const std::size_t vertices = surface.mesh.vertex_count();
-    const Shared states = curvature_states(surface);
-    auto slab = std::make_shared<Buffer>(device_, vertices * k_row);
-    // Parts begin at multiples of 64 states, which satisfies every device's alignment.
-    const std::size_t seen = buffer_limit(device_.info(), vertices * k_row) / k_row;
-    const std::size_t step = std::max<std::size_t>(seen / 64 * 64, 64);
-    ViewCurvatureParameters parameters{.eye = homogeneous_eye(view.camera),
-                                       .vertices = 0,
-                                       .scale = static_cast<Word>(scale),
-                                       .limit = 2 / static_cast<float>(k_hatching_scales[scale]),
-                                       .unused = 0};
-    for (std::size_t first = 0; first < vertices; first += step) {
-        const std::size_t count = std::min(step, vertices - first);
-        parameters.vertices = static_cast<Word>(count);
-        stream_.dispatch(
-            view_curvature_, count,
-            {BufferRange(*states, first * k_state, count * k_state), BufferRange(*slab, first * k_row, count * k_row)},
-            parameters);
+    auto slab = std::make_shared<Buffer>(device_, vertices * k_slab_lanes * sizeof(float));
+    for (std::size_t scale = 0; scale < k_hatching_scales.size(); ++scale) {
+        ViewCurvatureParameters parameters{.eye = homogeneous_eye(view.camera),
+                                           .vertices = 0,
+                                           .scale = static_cast<Word>(scale),
+                                           .limit = 2 / static_cast<float>(k_hatching_scales[scale]),
+                                           .unused = 0,
+                                           .columns = {}};
+        std::array<std::uint8_t, k_slab_lanes> columns;
+        columns.fill(shared::k_other_scale);
+        for (std::size_t lane = 0; lane < which.size(); ++lane) {
+            if (which[lane] / k_scale_columns == scale)
+                columns[lane] = static_cast<std::uint8_t>(which[lane] % k_scale_columns);
+        }
+        for (std::size_t lane = 0; lane < k_slab_lanes; ++lane)
+            parameters.columns[lane / 4] |= Word{columns[lane]} << 8 * (lane % 4);
+        const bool some = std::ranges::any_of(columns, [](std::uint8_t c) { return c != shared::k_other_scale; });
+        if (some) record_curvature(states, *slab, vertices, parameters);
     }
     return slab;
+}
+
+/// In parts that a kernel can see; they begin at multiples of 64 vertices, which satisfies every device's alignment.
+void GpuPixelProjection::record_curvature(const Buffer& states, const Buffer& slab, std::size_t vertices,
+                                          const ViewCurvatureParameters& parameters) {
+    constexpr std::size_t k_state = shared::k_curvature_texels * sizeof(vec4), k_row = k_slab_lanes * sizeof(float);
+    const std::size_t seen = std::min<std::size_t>(buffer_limit(device_.info(), vertices * k_row) / k_row,
+                                                   device_.info().max_texels / shared::k_curvature_texels);
+    const std::size_t step = std::max<std::size_t>(seen / 64 * 64, 64);
+    for (std::size_t first = 0; first < vertices; first += step) {
+        ViewCurvatureParameters part = parameters;
+        part.vertices = static_cast<Word>(std::min(step, vertices - first));
+        stream_.dispatch(view_curvature_, part.vertices,
+                         {BufferRange(states, first * k_state, part.vertices * k_state),
+                          BufferRange(slab, first * k_row, part.vertices * k_row)},
+                         part);
+    }
 }
 
 }  // namespace exemplar

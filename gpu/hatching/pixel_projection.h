@@ -13,6 +13,7 @@
 #include "gpu/runtime/profiler.h"
 #include "gpu/runtime/stream.h"
 #include "host/hatching/pixel_projection.h"
+#include "shaders/shared/hatching_features.h"
 
 namespace exemplar {
 
@@ -37,33 +38,25 @@ class GpuPixelProjection final : public PixelProjection {
     void directions(const TriangleMesh& mesh, const HatchingView& view, const FacePoints& points,
                     std::span<const std::span<const Vec3>> fields, std::span<DoubledAngle> out) override;
 
-    /// A lane of a slab of columns, and the column of the output that it becomes.
-    struct Wanted {
-        std::uint32_t lane;
-        std::size_t column;
-    };
-
   private:
     using Shared = std::shared_ptr<Buffer>;
     struct Tile {
         std::size_t first, count, stride;
     };
-    struct Slab {
-        Shared buffer;
-        std::vector<Wanted> wanted;
-    };
     template <typename Use>
     void for_each_tile(const FacePoints& points, Use&& use);
     void upload_points(const FacePoints& points, const Tile& tile);
-    void project(const TriangleMesh& mesh, const FacePoints& points, std::span<const Slab> slabs, std::span<float> out);
-    std::vector<Wanted> project_once(const Buffer& corners, const Buffer& slab, const Tile& tile,
-                                     std::span<const Wanted> wanted, std::size_t points, std::span<float> out);
+    void project(const TriangleMesh& mesh, const FacePoints& points, std::span<const Shared> slabs,
+                 std::span<float> out);
     Shared corners(const TriangleMesh& mesh);
     Shared positions(const TriangleMesh& mesh);
-    Shared scalar_slab(const FeatureMatrix& values, std::size_t first);
+    Shared scalar_slab(const FeatureMatrix& values, std::span<const std::uint32_t> which);
     Shared directions_slab(std::span<const std::span<const Vec3>> fields);
     Shared curvature_states(const HatchingSurface& surface);
-    Shared curvature_slab(const HatchingSurface& surface, const HatchingView& view, std::size_t scale);
+    Shared curvature_slab(const Buffer& states, const HatchingSurface& surface, const HatchingView& view,
+                          std::span<const std::uint32_t> which);
+    void record_curvature(const Buffer& states, const Buffer& slab, std::size_t vertices,
+                          const shared::ViewCurvatureParameters& parameters);
 
     Device& device_;
     std::size_t tile_points_;

@@ -106,41 +106,47 @@ class Boosting {
         }
     }
 
-    /// The function of these fields with the best weights. A sum that is not of length one counts as if it were: its
-    /// items are divided by the length, and fitted again.
+    /// The function of these fields with the best weights: those of sums that are near the targets, then by
+    /// Gauss-Newton steps those of sums that have their directions, of whatever length.
     OrientationFunction matched(const FieldProducts& products, const std::vector<Eigen::Index>& chosen) const {
-        Eigen::MatrixXd normal = products.normal(chosen, chosen);
-        Eigen::VectorXd right = products.right(chosen);
-        OrientationFunction function;
-        for (const Eigen::Index k : chosen) function.terms.push_back({static_cast<std::uint32_t>(k), 0});
-        for (int pass = 0; pass < 4; ++pass) {
-            const Eigen::VectorXd weights = ridge_solution(normal, right);
-            for (std::size_t k = 0; k < chosen.size(); ++k)
-                function.terms[k].weight = static_cast<float>(weights[static_cast<Eigen::Index>(k)]);
-            if (chosen.size() == 1) break;
-            normal.setZero();
-            right.setZero();
-            add_normalized(function, normal, right);
+        Eigen::VectorXd weights = ridge_solution(products.normal(chosen, chosen), products.right(chosen));
+        if (chosen.size() > 1) {
+            for (int step = 0; step < 5; ++step) weights += direction_step(function_of(chosen, weights), weights);
         }
+        return function_of(chosen, weights);
+    }
+
+    static OrientationFunction function_of(const std::vector<Eigen::Index>& fields, const Eigen::VectorXd& weights) {
+        OrientationFunction function;
+        for (std::size_t k = 0; k < fields.size(); ++k)
+            function.terms.push_back(
+                {static_cast<std::uint32_t>(fields[k]), static_cast<float>(weights[static_cast<Eigen::Index>(k)])});
         return function;
     }
 
-    /// Sums of products of the terms' fields, divided by the length of the function's sum.
-    void add_normalized(const OrientationFunction& function, Eigen::MatrixXd& normal, Eigen::VectorXd& right) const {
-        Eigen::Matrix2Xd v(2, right.size());
+    /// The change of weights that turns the function's directions to the targets, to first order; the weights' common
+    /// factor turns nothing and stays. A sum that is next to zero would count too much.
+    Eigen::VectorXd direction_step(const OrientationFunction& function, const Eigen::VectorXd& weights) const {
+        constexpr double k_least_length = 0.1;
+        Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(weights.size(), weights.size());
+        Eigen::VectorXd right = Eigen::VectorXd::Zero(weights.size()), turn(weights.size());
+        Eigen::Matrix2Xd v(2, weights.size());
         for (std::size_t i = 0; i < weight_.size(); ++i) {
             const auto w = static_cast<double>(training_.weight[i]);
             if (training_.held_out[i] || !(w > 0)) continue;
-            Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-            for (Eigen::Index k = 0; k < right.size(); ++k) {
-                const auto& term = function.terms[static_cast<std::size_t>(k)];
-                v.col(k) = in_double(training_.fields.feature(term.feature, i));
-                sum += static_cast<double>(term.weight) * v.col(k);
-            }
-            const double length = std::max(sum.norm(), 0.1);
-            right += w / length * v.transpose() * in_double(training_.target[i]);
-            normal += w / (length * length) * v.transpose() * v;
+            for (Eigen::Index k = 0; k < weights.size(); ++k)
+                v.col(k) = in_double(training_.fields.feature(function.terms[static_cast<std::size_t>(k)].feature, i));
+            const Eigen::Vector2d sum = v * weights;
+            const double length = sum.norm();
+            if (!(length > 0)) continue;
+            const Eigen::Vector2d across(-sum.y() / length, sum.x() / length);
+            turn = v.transpose() * across / std::max(length, k_least_length);
+            right += w * across.dot(in_double(training_.target[i])) * turn;
+            normal += w * turn * turn.transpose();
         }
+        normal += normal.trace() / std::max(weights.squaredNorm(), 1e-12) * weights * weights.transpose();
+        normal.diagonal().array() += 1e-12;
+        return ridge_solution(normal, right);
     }
 
     void normalize_weights() {

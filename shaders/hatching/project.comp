@@ -2,7 +2,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "shaders/lib/dispatch.glsl"
-#include "shaders/lib/when.glsl"
 #include "shaders/shared/hatching_features.h"
 
 // Columns of a slab at points of faces (host/hatching/pixel_projection.cpp): of four points per invocation, so that a corner
@@ -23,9 +22,7 @@ void main() {
     const vec4 b = texelFetch(barycentrics, int(quad)), c = texelFetch(barycentrics, int(stride + quad));
     ivec3 first[4];
     [[unroll]] for (uint i = 0; i < 4; ++i) first[i] = ivec3(k_slab_quads * texelFetch(corners, int(faces[i])).xyz);
-    for (uint q = 0; q < k_slab_quads; ++q) {
-        const uint places = parameters.places[q];
-        if (places == k_no_places) continue;
+    for (uint q = 0; q < parameters.quads; ++q) {
         mat4 values;
         [[unroll]] for (uint i = 0; i < 4; ++i) {
             const ivec3 at = first[i] + int(q);
@@ -33,9 +30,6 @@ void main() {
                         c[i] * texelFetch(slab, at.z);
         }
         values = transpose(values);
-        [[unroll]] for (uint lane = 0; lane < 4; ++lane) {
-            const uint place = bitfieldExtract(places, int(8 * lane), 8);
-            when (place != k_no_place) columns[place * stride + quad] = values[lane];
-        }
+        [[unroll]] for (uint lane = 0; lane < 4; ++lane) columns[(4 * q + lane) * stride + quad] = values[lane];
     }
 }

@@ -1,17 +1,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_control_flow_attributes : require
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/lib/eye.glsl"
 #include "shaders/lib/view_curvature.glsl"
 #include "shaders/shared/hatching_features.h"
 
-// What depends on surface and view at one scale (host/hatching/hatching_view.cpp), and its magnitudes, as a slab: one vertex
-// per invocation. Reads 80 bytes and writes 128.
+// What depends on surface and view at one scale (host/hatching/hatching_view.cpp), and its magnitudes, in their lanes of a
+// slab: one vertex per invocation. Reads 80 bytes and writes 4 per lane.
 layout(local_size_x = 64) in;
 layout(push_constant) uniform Push { ViewCurvatureParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer states;                      // vertices x k_curvature_texels
-layout(set = 0, binding = 1, std430) writeonly buffer Slab { vec4 slab[]; };    // vertices x k_slab_quads
+layout(set = 0, binding = 1, std430) writeonly buffer Slab { float slab[]; };   // vertices x k_slab_lanes
 
 // Derivative of radial curvature along w's projection, times the sine between w and the normal
 // (host/lines/view_curvature.cpp); uv is not shorter than its square root tells.
@@ -41,12 +40,14 @@ void main() {
     const vec4 seen = clamp(vec4(dot(k, uv * uv) / squared_sine, sqrt(largest),
                                  sqrt(least_view_curvature(k, largest, cosine)),
                                  (k.y - k.x) * uv.x * uv.y / squared_sine), -limit, limit);
-    const float values[16] = float[](clamp(0.5 * (k.x + k.y), -limit, limit), clamp(k.x * k.y, -square, square),
+    const float values[k_curvature_values] = float[](clamp(0.5 * (k.x + k.y), -limit, limit), clamp(k.x * k.y, -square, square),
                                      first.x, first.y, first.z, first.w,
                                      derivative.x, derivative.y, derivative.z, derivative.w,
-                                     seen.x, clamp(along, -square, square), seen.y, seen.z, seen.w, 0.0);
-    [[unroll]] for (uint q = 0; q < k_slab_quads; ++q) {
-        const vec2 two = vec2(values[2 * q], values[2 * q + 1]);
-        slab[vertex * k_slab_quads + q] = vec4(two.x, abs(two.x), two.y, abs(two.y));
+                                     seen.x, clamp(along, -square, square), seen.y, seen.z, seen.w);
+    for (uint lane = 0; lane < k_slab_lanes; ++lane) {
+        const uint column = bitfieldExtract(parameters.columns[lane / 4], int(8 * (lane % 4)), 8);
+        if (column == k_other_scale) continue;
+        const float value = values[column / 2];
+        slab[vertex * k_slab_lanes + lane] = column % 2 == 0 ? value : abs(value);
     }
 }

@@ -10,14 +10,12 @@ const uint k_slab_lanes = 32;
 // Fields of directions come in slabs too: of each vertex k_slab_fields vec4s.
 const uint k_slab_fields = 4;
 
-// A slab at points of faces. Where a lane goes, a byte each: the column of the output, or k_no_place.
+// A slab at points of faces.
 struct ProjectionParameters {
     uint points;
     uint stride;  // points from one column of barycentrics and of the output to the next: a multiple of 4
-    uint places[8];  // per quad
+    uint quads;   // of the slab that count
 };
-const uint k_no_place = 255u;
-const uint k_no_places = 0xFFFFFFFFu;
 
 // Fields of directions in the picture.
 struct DirectionParameters {
@@ -37,13 +35,16 @@ struct DirectionParameters {
 // View-dependent curvature at one scale. Of each vertex there are k_curvature_texels: position and normal, then at each
 // scale e1 with k1, e2 with k2, and the derivative; curvatures in units of 1 / (median distance).
 const uint k_curvature_texels = 11;
+const uint k_curvature_values = 15;
 struct ViewCurvatureParameters {
     vec4 eye;  // and 1; of a parallel projection the direction to it, and 0
     uint vertices;
     uint scale;
-    float limit;  // of curvatures
+    float limit;      // of curvatures
     uint unused;
+    uint columns[8];  // of the scale, a byte for each lane of the slab: 2 k is value k, 2 k + 1 its magnitude
 };
+const uint k_other_scale = 255u;  // lanes that are of another scale, or of none
 
 // Rules of segments: terms [begin[s], begin[s + 1]) of segment s.
 struct RuleParameters {
@@ -80,10 +81,10 @@ const float k_largest_value = 1e19f;
 const float k_no_value = -1e30f;
 
 #ifdef __cplusplus
-EXEMPLAR_LAYOUT(ProjectionParameters, points, stride, places)
+EXEMPLAR_LAYOUT(ProjectionParameters, points, stride, quads)
 EXEMPLAR_LAYOUT(DirectionParameters, clip_x, clip_y, clip_w, points, stride, fields, width, height, unused0, unused1,
                 unused2)
-EXEMPLAR_LAYOUT(ViewCurvatureParameters, eye, vertices, scale, limit, unused)
+EXEMPLAR_LAYOUT(ViewCurvatureParameters, eye, vertices, scale, limit, unused, columns)
 EXEMPLAR_LAYOUT(RuleParameters, rows, stride)
 EXEMPLAR_LAYOUT(RuleTerm, field, weight, unused0, unused1)
 EXEMPLAR_LAYOUT(PropertyParameters, quads, stride, terms, log_factor)

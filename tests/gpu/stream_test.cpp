@@ -188,6 +188,19 @@ TEST(Stream, UploadsWhatIsComputedOnTheWay) {
     EXPECT_THAT(words, ::testing::ElementsAre(0, 0x03030303u, 0, 0));
 }
 
+TEST(Stream, FetchesPartsOfABuffer) {
+    const Buffer buffer = Buffer::of<float>(shared_device(), iota(8));
+    std::vector<float> first(2), second(3);
+    Stream stream(shared_device());
+    const auto part = [](std::size_t from, std::vector<float>& to) {
+        return HostPart{from * sizeof(float), std::as_writable_bytes(std::span(to))};
+    };
+    stream.fetch(buffer, std::vector<HostPart>{part(5, first), part(1, second)});
+    EXPECT_THAT(first, ::testing::ElementsAre(5, 6));
+    EXPECT_THAT(second, ::testing::ElementsAre(1, 2, 3));
+    EXPECT_THROW(stream.fetch(buffer, std::vector<HostPart>{part(0, first), part(6, second)}), DeviceError);
+}
+
 TEST(Stream, RefusesWrongArguments) {
     const Kernel kernel = affine_kernel();
     Buffer buffer(shared_device(), 4096);

@@ -18,52 +18,92 @@ namespace {
 
 /// Sums of one bin of a feature.
 struct BinSums {
-    double weight = 0, target = 0, squares = 0;
+    double weight = 0, target = 0;
 };
 
 /// A weak regressor while it is sought: log(a x + b).
 struct Candidate {
-    double error = std::numeric_limits<double>::infinity();  // weighted mean of squares
+    double error = std::numeric_limits<double>::infinity();  // weighted mean of squares, up to a constant
     PropertyModel::Term term;
 };
 
-class Boosting {
+class Learning {
   public:
-    Boosting(const PropertyTraining& training, const std::function<void()>& progress)
+    Learning(const PropertyTraining& training, const std::function<void()>& progress)
         : training_(training), progress_(progress), log_target_(training.target.size()), weight_(log_target_.size()) {
-        for (std::size_t i = 0; i < log_target_.size(); ++i) {
-            log_target_[i] = std::log(training.target[i]);
-            weight_[i] = training.held_out[i] ? 0 : 1;
-        }
-        least_ = 0.25f * *std::ranges::min_element(training.target);
+        for (std::size_t i = 0; i < log_target_.size(); ++i) log_target_[i] = std::log(training.target[i]);
         measure_bins();
     }
 
     LearnedProperty run() {
         LearnedProperty best = constant();
-        std::size_t idle = 0;
-        for (std::size_t round = 0; round < training_.most_terms && idle < k_patience; ++round) {
-            check_interrupt();
-            normalize_weights();
-            if (!add_term(round == 0)) break;
-            idle = keep_better(best) ? 0 : idle + 1;
-            progress_();
-        }
+        boost(best);
+        select(best);
         return best;
     }
 
   private:
     static constexpr std::size_t k_patience = 4;
 
+    void begin() {
+        model_ = {};
+        values_.clear();
+        for (std::size_t i = 0; i < weight_.size(); ++i) weight_[i] = training_.held_out[i] ? 0 : 1;
+    }
+
+    /// What the next term is to be: no less than a quarter of the least there is.
+    void aim_at(std::vector<double> aim) {
+        aim_ = std::move(aim);
+        least_ = static_cast<float>(0.25 * std::exp(*std::ranges::min_element(aim_)));
+    }
+
+    /// As the thesis has it: all terms aim at y.
+    void boost(LearnedProperty& best) {
+        begin();
+        aim_at(log_target_);
+        std::size_t idle = 0;
+        for (std::size_t round = 0; round < training_.most_terms && idle < k_patience; ++round) {
+            check_interrupt();
+            normalize_weights();
+            if (!add_boosted(round == 0)) break;
+            PropertyModel averaged = model_;
+            float sum = 0;
+            for (const auto& term : averaged.terms) sum += term.exponent;
+            for (auto& term : averaged.terms) term.exponent /= sum;
+            const bool better = keep_better(averaged, best), refitted_better = keep_better(refitted(), best);
+            idle = better || refitted_better ? 0 : idle + 1;
+            progress_();
+        }
+    }
+
+    /// Forward selection: each term aims at what those before it leave.
+    void select(LearnedProperty& best) {
+        begin();
+        normalize_weights();
+        PropertyModel model = constant().model;
+        std::size_t idle = 0;
+        for (std::size_t round = 0; round < training_.most_terms && idle < k_patience; ++round) {
+            check_interrupt();
+            std::vector<double> rest(log_target_.size());
+            for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = log_target_[i] - log_value(model, i);
+            aim_at(std::move(rest));
+            if (!add_selected()) break;
+            model = refitted();
+            idle = keep_better(model, best) ? 0 : idle + 1;
+            progress_();
+        }
+    }
+
     LearnedProperty constant() const {
         double sum = 0, count = 0;
-        for (std::size_t i = 0; i < weight_.size(); ++i) {
-            sum += weight_[i] * log_target_[i];
-            count += weight_[i];
+        for (std::size_t i = 0; i < log_target_.size(); ++i) {
+            if (training_.held_out[i]) continue;
+            sum += log_target_[i];
+            count += 1;
         }
         LearnedProperty learned;
         learned.model.factor = static_cast<float>(std::exp(count > 0 ? sum / count : 0));
-        learned.error = error(learned.model, {});
+        learned.error = error(learned.model);
         return learned;
     }
 
@@ -106,47 +146,37 @@ class Boosting {
 
     /// The best a and b for one power of a feature, from sums per bin: by regression of y, then by Gauss-Newton steps
     /// on log y.
-    Candidate fit(std::uint32_t feature, std::span<const BinSums> sums, std::span<const BinSums> by_block) const {
+    Candidate fit(std::uint32_t feature, std::span<const BinSums> sums, std::span<const double> exponents) const {
         const std::vector<float>& middle = middle_[feature / k_powers];
-        const std::size_t power = feature % k_powers;
         Candidate candidate;
         candidate.term.feature = feature;
         candidate.term.least = least_;
         std::vector<double> x(sums.size());
-        double low = std::numeric_limits<double>::infinity(), high = -low;
+        double low = std::numeric_limits<double>::infinity(), high = -low, squares = 0;
         for (std::size_t b = 0; b < sums.size(); ++b) {
-            x[b] = static_cast<double>(power_of(middle[b], power));
+            x[b] = static_cast<double>(power_of(middle[b], feature % k_powers));
             if (!(sums[b].weight > 0)) continue;
             low = std::min(low, x[b]);
             high = std::max(high, x[b]);
+            squares += sums[b].target * sums[b].target / sums[b].weight;
         }
         if (!(high > low)) return candidate;
         candidate.term.low = static_cast<float>(low);
         candidate.term.high = static_cast<float>(high);
-        const auto [a, b, error] = fit_line(x, sums, low, high);
-        candidate.term.a = static_cast<float>(a);
-        candidate.term.b = static_cast<float>(b);
-        candidate.error = error_of_blocks(x, sums, by_block, low, high);
-        return candidate;
-    }
-
-    /// Squares of each block about the line that is fitted to the others.
-    double error_of_blocks(std::span<const double> x, std::span<const BinSums> sums, std::span<const BinSums> by_block,
-                           double low, double high) const {
-        double total = 0;
-        std::vector<BinSums> others(sums.size());
-        for (std::size_t block = 0; block < k_property_blocks; ++block) {
-            const std::span<const BinSums> own = by_block.subspan(block * sums.size(), sums.size());
-            for (std::size_t k = 0; k < sums.size(); ++k)
-                others[k] = {sums[k].weight - own[k].weight, sums[k].target - own[k].target, 0};
-            for (BinSums& bin : others) bin = bin.weight > 1e-12 ? bin : BinSums{};
-            const auto [a, b, error] = fit_line(x, others, low, high);
-            for (std::size_t k = 0; k < sums.size(); ++k) {
-                const double value = std::log(std::max(a * x[k] + b, static_cast<double>(least_)));
-                total += own[k].squares - 2 * value * own[k].target + value * value * own[k].weight;
-            }
+        for (const double exponent : exponents) {
+            std::vector<BinSums> scaled(sums.begin(), sums.end());
+            for (BinSums& bin : scaled) bin.target /= exponent;
+            const auto [a, b, left] = fit_line(x, scaled, low, high);
+            // Beside what the line leaves of the bins' means there is what differs within bins: all there is, which is
+            // the same for all features, without the means' own squares.
+            const double error = exponent * exponent * left - squares;
+            if (!(error < candidate.error)) continue;
+            candidate.term.a = static_cast<float>(a);
+            candidate.term.b = static_cast<float>(b);
+            candidate.term.exponent = static_cast<float>(exponent);
+            candidate.error = error;
         }
-        return total;
+        return candidate;
     }
 
     struct Line {
@@ -191,36 +221,52 @@ class Boosting {
         return {best_a * scale, best_b - best_a * scale * low, best};
     }
 
-    std::vector<Candidate> candidates() const {
+    std::vector<Candidate> candidates(std::span<const double> exponents) const {
         std::vector<Candidate> all(training_.features.cols() * k_powers);
         parallel_for(training_.features.cols(), [&](std::size_t f) {
-            const std::size_t count = middle_[f].size();
-            std::vector<BinSums> sums(count), by_block(k_property_blocks * count);
+            std::vector<BinSums> sums(middle_[f].size());
             const std::span<const std::uint8_t> bins = training_.quantized.column(f);
             for (std::size_t i = 0; i < weight_.size(); ++i) {
-                BinSums& bin = by_block[training_.block[i] * count + bins[i]];
-                bin.weight += weight_[i];
-                bin.target += weight_[i] * log_target_[i];
-                bin.squares += weight_[i] * log_target_[i] * log_target_[i];
-            }
-            for (std::size_t k = 0; k < by_block.size(); ++k) {
-                sums[k % count].weight += by_block[k].weight;
-                sums[k % count].target += by_block[k].target;
+                sums[bins[i]].weight += weight_[i];
+                sums[bins[i]].target += weight_[i] * aim_[i];
             }
             for (std::size_t p = 0; p < (inverses_[f] ? k_powers : 2); ++p)
-                all[f * k_powers + p] = fit(static_cast<std::uint32_t>(f * k_powers + p), sums, by_block);
+                all[f * k_powers + p] = fit(static_cast<std::uint32_t>(f * k_powers + p), sums, exponents);
         });
         return all;
     }
 
-    float log_value(const PropertyModel::Term& term, std::size_t row) const {
+    /// log(a x + b) of a row.
+    float log_value(PropertyModel::Term term, std::size_t row) const {
         const float x = training_.features.column(term.feature / k_powers)[row];
+        term.exponent = 1;
         return PropertyModel::log_value(term, power_of(x, term.feature % k_powers));
+    }
+    /// log y of a row, by a model of the terms that there are.
+    double log_value(const PropertyModel& model, std::size_t row) const {
+        double log_y = std::log(static_cast<double>(model.factor));
+        for (std::size_t k = 0; k < model.terms.size(); ++k)
+            log_y += static_cast<double>(model.terms[k].exponent) * static_cast<double>(values_[k][row]);
+        return log_y;
+    }
+
+    /// Adds the term that leaves the least squares; false if there is none. Exponents are fitted anew later, but a and
+    /// b are those of about the right one.
+    bool add_selected() {
+        constexpr std::array k_exponents{1.0, 0.5, 2.0, -0.5, -1.0};
+        const std::vector<Candidate> all = candidates(k_exponents);
+        const Candidate& best = *std::ranges::min_element(all, {}, &Candidate::error);
+        if (!std::isfinite(best.error)) return false;
+        std::vector<float> values(weight_.size());
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = log_value(best.term, i);
+        model_.terms.push_back(best.term);
+        values_.push_back(std::move(values));
+        return true;
     }
 
     /// Adds the best weak regressor; false if there is none.
-    bool add_term(bool first) {
-        std::vector<Candidate> all = candidates();
+    bool add_boosted(bool first) {
+        std::vector<Candidate> all = candidates(std::array{1.0});
         constexpr std::size_t k_finalists = 8;
         const std::size_t finalists = std::min(k_finalists, all.size());
         std::ranges::partial_sort(all, all.begin() + static_cast<std::ptrdiff_t>(finalists), {}, &Candidate::error);
@@ -285,14 +331,11 @@ class Boosting {
         return {objective(r), r};
     }
 
-    /// Mean squared error over the rows that decide; `values`: the terms' logarithms with exponent 1.
-    double error(const PropertyModel& model, std::span<const std::vector<float>> values) const {
+    /// Mean squared error over the rows that decide, of a model of the terms that there are (or of none).
+    double error(const PropertyModel& model) const {
         double sums[2][2] = {};
         for (std::size_t i = 0; i < log_target_.size(); ++i) {
-            double log_y = std::log(static_cast<double>(model.factor));
-            for (std::size_t k = 0; k < model.terms.size(); ++k)
-                log_y += static_cast<double>(model.terms[k].exponent) * static_cast<double>(values[k][i]);
-            const double e = log_target_[i] - log_y;
+            const double e = log_target_[i] - log_value(model, i);
             sums[training_.held_out[i] ? 1 : 0][0] += e * e;
             sums[training_.held_out[i] ? 1 : 0][1] += 1;
         }
@@ -300,21 +343,14 @@ class Boosting {
         return s[0] / std::max(s[1], 1.0);
     }
 
-    bool keep_better(LearnedProperty& best) const {
-        // Fewer features carry over better to other shapes: a new one has to pay.
-        constexpr double k_worth = 0.98;
-        bool better = false;
-        PropertyModel averaged = model_;
-        float sum = 0;
-        for (const auto& term : averaged.terms) sum += term.exponent;
-        for (auto& term : averaged.terms) term.exponent /= sum;
-        for (const PropertyModel& model : {averaged, refitted()}) {
-            const double e = error(model, values_);
-            if (!(e < k_worth * best.error)) continue;
-            best = {model, e};
-            better = true;
-        }
-        return better;
+    /// Fewer features carry over better to other shapes: a new one has to pay, and what is below a ten-thousandth of y
+    /// is nothing.
+    bool keep_better(const PropertyModel& model, LearnedProperty& best) const {
+        constexpr double k_worth = 0.995, k_nothing = 1e-8;
+        const double e = error(model);
+        if (!(e < k_worth * best.error - k_nothing)) return false;
+        best = {model, e};
+        return true;
     }
 
     PropertyModel refitted() const {
@@ -346,10 +382,11 @@ class Boosting {
     const PropertyTraining& training_;
     const std::function<void()>& progress_;
     std::vector<double> log_target_, weight_;
-    float least_ = 0;
+    std::vector<double> aim_;                 // what the next term is to be, in the logarithm
+    float least_ = 0;                         // of its values
     std::vector<std::vector<float>> middle_;  // per base feature and bin
     std::vector<std::uint8_t> inverses_;      // per base feature: 1 if 1/x and 1/x^2 are used
-    PropertyModel model_;                     // exponents are r
+    PropertyModel model_;                     // exponents of boosted terms are r
     std::vector<std::vector<float>> values_;  // per term and row: log(a x + b)
 };
 
@@ -363,17 +400,14 @@ float PropertyModel::log_value(const Term& term, float x) {
 LearnedProperty learn_property(const PropertyTraining& training, const std::function<void()>& progress) {
     const std::size_t rows = training.features.rows;
     if (rows == 0 || training.target.size() != rows || training.held_out.size() != rows ||
-        training.block.size() != rows || training.quantized.rows != rows)
+        training.quantized.rows != rows)
         throw UsageError(
             "a property is learned from rows of features, one value each; their numbers differ or are zero");
-    for (const std::uint8_t block : training.block) {
-        if (block >= k_property_blocks) throw UsageError("a property is learned from rows of four blocks at most");
-    }
     for (const float y : training.target) {
         if (!(y > 0) || !std::isfinite(y))
             throw DataError("a property is learned from values that are positive and finite");
     }
-    return Boosting(training, progress).run();
+    return Learning(training, progress).run();
 }
 
 }  // namespace exemplar

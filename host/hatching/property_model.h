@@ -39,15 +39,11 @@ struct PropertyModel {
     bool operator==(const PropertyModel&) const = default;
 };
 
-/// Weak regressors have to hold in parts of the drawing that they were not fitted to.
-constexpr std::size_t k_property_blocks = 4;
-
 struct PropertyTraining {
     const FeatureMatrix& features;       ///< base features of the rows
     const QuantizedFeatures& quantized;  ///< of the same
     std::span<const float> target;       ///< y, positive; one per row
     std::span<const std::uint8_t> held_out;
-    std::span<const std::uint8_t> block;  ///< of each row, below k_property_blocks: parts of the drawing
     std::size_t most_terms = 24;
 };
 
@@ -60,9 +56,10 @@ struct LearnedProperty {
 /// Eq. 4.9): each round adds the feature whose log(a x + b), with the a and b that fit log y best under the current
 /// weights, minimizes sum of w_i r^-1/2 exp(r (log y_i - log(a x_i + b))^2), with r by line search (the first: r = 1);
 /// it ends where the rows held out are fitted best. Beyond the thesis, the exponents of the chosen terms, in the thesis
-/// r_k / sum of r, are also fitted by least squares, and the candidates of a round are ranked by how well a line fitted
-/// to the other blocks fits each block. Exponents are kept if that fits the rows held out better. Inverses of
-/// features that are next to zero on a hundredth of the rows are left out.
+/// r_k / sum of r, are also fitted by least squares, and models found by forward selection compete, whose terms fit
+/// what those before them leave: all terms of boosting aim at y, so that it may not come to the second factor of a
+/// product. What fits the rows held out best is kept. Inverses of features that are next to zero on a hundredth of the
+/// rows are left out.
 LearnedProperty learn_property(
     const PropertyTraining& training, const std::function<void()>& progress = [] {});
 

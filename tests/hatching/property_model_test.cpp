@@ -40,13 +40,12 @@ LearnedProperty learned(const Truth& truth, double noise = 0) {
     const FeatureMatrix features = random_features(4000, 1);
     Random random(2);
     std::vector<float> target;
-    std::vector<std::uint8_t> held_out, block;
+    std::vector<std::uint8_t> held_out;
     for (std::size_t i = 0; i < features.rows; ++i) {
         target.push_back(static_cast<float>(truth(features, i) * std::exp(noise * random.normal())));
         held_out.push_back(i % 4 == 0);
-        block.push_back(static_cast<std::uint8_t>(i / 4 % k_property_blocks));
     }
-    return learn_property({features, quantize(features, {}, {}), target, held_out, block});
+    return learn_property({features, quantize(features, {}, {}), target, held_out});
 }
 
 float evaluate(const PropertyModel& model, const FeatureMatrix& features, std::size_t row) {
@@ -162,20 +161,18 @@ TEST(PropertyModel, IsDeterministic) {
 TEST(PropertyModel, BadInputIsRefused) {
     const FeatureMatrix features = random_features(50, 1), none = random_features(0, 1);
     const QuantizedFeatures quantized = quantize(features, {}, {}), no_quantized = quantize(none, {}, {});
-    const std::vector<std::uint8_t> held(50), few(49), wrong(50, 4);
+    const std::vector<std::uint8_t> held(50), few(49);
     const std::vector<float> good(50, 1.0f), missing(49, 1.0f);
-    EXPECT_NO_THROW(learn_property({features, quantized, good, held, held}));
-    EXPECT_THROW(learn_property({features, quantized, missing, held, held}), UsageError);
-    EXPECT_THROW(learn_property({features, quantized, good, few, held}), UsageError);
-    EXPECT_THROW(learn_property({features, quantized, good, held, few}), UsageError);
-    EXPECT_THROW(learn_property({features, quantized, good, held, wrong}), UsageError);
-    EXPECT_THROW(learn_property({features, no_quantized, good, held, held}), UsageError);
-    EXPECT_THROW(learn_property({none, no_quantized, {}, {}, {}}), UsageError);
+    EXPECT_NO_THROW(learn_property({features, quantized, good, held}));
+    EXPECT_THROW(learn_property({features, quantized, missing, held}), UsageError);
+    EXPECT_THROW(learn_property({features, quantized, good, few}), UsageError);
+    EXPECT_THROW(learn_property({features, no_quantized, good, held}), UsageError);
+    EXPECT_THROW(learn_property({none, no_quantized, {}, {}}), UsageError);
     for (const float bad :
          {0.0f, -1.0f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
         std::vector<float> target = good;
         target[17] = bad;
-        EXPECT_THROW(learn_property({features, quantized, target, held, held}), DataError) << bad;
+        EXPECT_THROW(learn_property({features, quantized, target, held}), DataError) << bad;
     }
 }
 

@@ -62,6 +62,7 @@ OrientationFunction one_rule(PixelFeatures& pixels, const DrawingProperties& dra
     for (std::size_t k = k_curvature_fields; curvature_only && k < k_orientation_fields; ++k)
         std::ranges::fill(fields.field(k), DoubledAngle{});
     std::vector<DoubledAngle> target;
+    target.reserve(rows.size());
     for (const std::uint32_t row : rows)
         target.push_back(doubled_angle(drawing.orientation[pixels.pixels().pixel[row]]));
     const std::vector<float> weight(rows.size(), 1.0f);

@@ -68,7 +68,8 @@ TEST(Ink, MayLeaveThePicture) {
     HatchStroke bad = line({0, 0}, {9, 1}, 1);
     bad.widths.pop_back();
     EXPECT_THROW(drawn_ink(std::vector{bad}, 20, 10), UsageError);
-    bad = line({0, 0}, {9, std::numeric_limits<float>::infinity()}, 1);
+    bad = line({0, 0}, {9, 1}, 1);
+    bad.points.back().y() = std::numeric_limits<float>::infinity();
     EXPECT_THROW(drawn_ink(std::vector{bad}, 20, 10), UsageError);
 }
 

@@ -32,13 +32,14 @@ class GpuStrokePlacer final : public StrokePlacer {
     void upload_lists(const PlacementGrid& grid, std::span<const FineStroke> kept);
     void upload_kept(std::span<const FineStroke> kept);
     void record_round(std::uint32_t rounds_left);
+    void record_end();
     void place_all();
     void double_rooms();
     std::vector<FineStroke> download();
 
     Device& device_;
     Stream stream_;
-    Kernel trace_, claim_, contest_, settle_, place_;
+    Kernel seed_, trace_, claim_, contest_, settle_, place_;
     shared::PlacementParameters parameters_{};
     shared::PlacementCounts counts_{};
     Buffer grid_, near_, claims_, lists_, trials_, ways_, points_, strokes_, count_buffer_;  // kept between calls

@@ -41,8 +41,13 @@ static_assert(sizeof(PlacementTexel) == sizeof(uvec4) && sizeof(FinePoint) == 2 
 constexpr std::uint32_t k_batch = 16, k_claim_rounds = 4096;
 static_assert(k_claim_rounds % k_batch == 0);
 
-/// Of a stroke's length times its spacing, what a workgroup does alone.
-constexpr double k_part_pixels = 1 << 15;
+/// Drivers may end a shader's loops after 65536 rounds: workgroups share the pixels around a stroke where one would
+/// take so many.
+constexpr double k_most_loops = 16384;
+std::uint32_t parts_of(const PlacementGrid& grid, double spacing) {
+    const double passes = 1 + static_cast<double>(grid.rules.room) / shared::k_hatch_group, side = 2.5 * spacing + 4;
+    return 1 + static_cast<std::uint32_t>(passes * side * side / k_most_loops);
+}
 
 SeedListRecord record_of(const SeedList& list) {
     return {static_cast<std::uint32_t>(list.source) | list.layer << shared::k_layer_shift, list.first, list.second,
@@ -113,12 +118,12 @@ GpuStrokePlacer::GpuStrokePlacer(Device& device, Profiler* profiler) : device_(d
     trace_ = Kernel(device, shaders::hatching_trace_comp,
                     {.push_constants = parameters, .elements = {four, word, list, trial, point}});
     claim_ = Kernel(device, shaders::hatching_claim_comp,
-                    {.push_constants = parameters, .elements = {four, word, trial, word}, .constants = {{0, 0}}});
+                    {.push_constants = parameters, .elements = {four, point, trial, word}, .constants = {{0, 0}}});
     contest_ = Kernel(device, shaders::hatching_claim_comp,
-                      {.push_constants = parameters, .elements = {four, word, trial, word}, .constants = {{0, 1}}});
+                      {.push_constants = parameters, .elements = {four, point, trial, word}, .constants = {{0, 1}}});
     settle_ = Kernel(device, shaders::hatching_settle_comp, {.push_constants = parameters, .elements = {list, trial}});
     place_ = Kernel(device, shaders::hatching_place_comp,
-                    {.push_constants = parameters, .elements = {four, word, trial, point, word}});
+                    {.push_constants = parameters, .elements = {four, point, trial, point, word}});
     count_buffer_ = Buffer(device, sizeof(PlacementCounts));
 }
 
@@ -182,8 +187,7 @@ void GpuStrokePlacer::upload_lists(const PlacementGrid& grid, std::span<const Fi
         reserve(device_, buffer, room * item);
         return static_cast<std::uint32_t>(room);
     };
-    // Drivers may end a loop after 65536 rounds. The pixels around a stroke are about its length times its spacing.
-    parameters_.parts = 1 + static_cast<std::uint32_t>(grid.rules.room * estimate.spacing / k_part_pixels);
+    parameters_.parts = parts_of(grid, estimate.spacing);
     parameters_.stroke_room = rooms(strokes_, estimate.strokes, kept.size(), sizeof(StrokeRecord));
     parameters_.point_room = rooms(points_, estimate.points, points, sizeof(FinePoint));
     parameters_.list_room =

@@ -22,8 +22,7 @@ class GpuStrokePlacer final : public StrokePlacer {
   public:
     explicit GpuStrokePlacer(Device& device, Profiler* profiler = nullptr);
     using StrokePlacer::place;
-    /// Throws DeviceLimitError, too, for pictures over the device's limits: each layer takes 4 bytes per pixel of one
-    /// binding, and both 16 bytes of texels.
+    /// Throws DeviceLimitError, too, for pictures over the device's limits: of texels there are two per pixel.
     std::vector<HatchStroke> place(const HatchingFields& fields, std::span<const std::uint8_t> barriers,
                                    const StrokeOptions& options, std::span<const HatchStroke> kept) override;
 

@@ -6,6 +6,7 @@
 
 #include "embedded/hatching_claim_comp.h"
 #include "embedded/hatching_place_comp.h"
+#include "embedded/hatching_seed_comp.h"
 #include "embedded/hatching_settle_comp.h"
 #include "embedded/hatching_trace_comp.h"
 #include "host/hatching/kept_strokes.h"
@@ -26,7 +27,7 @@ static_assert(shared::k_pixel_bits == k_pixel_bits && shared::k_pixel == k_pixel
               shared::k_unit_bits == k_unit_bits && shared::k_share_bits == k_share_bits &&
               shared::k_spacing_bits == k_spacing_bits && shared::k_length_bits == k_length_bits &&
               shared::k_step == k_step && shared::k_least_steps == k_least_steps &&
-              shared::k_most_round_work == k_most_round_work && shared::k_right_barrier == k_barrier_right &&
+              shared::k_most_places == k_most_places && shared::k_right_barrier == k_barrier_right &&
               shared::k_lower_barrier == k_barrier_below);
 static_assert(shared::k_part_source == static_cast<std::uint32_t>(SeedSource::part) &&
               shared::k_left_side_source == static_cast<std::uint32_t>(SeedSource::left_side) &&
@@ -40,8 +41,13 @@ static_assert(sizeof(PlacementTexel) == sizeof(uvec4) && sizeof(FinePoint) == 2 
 constexpr std::uint32_t k_batch = 16, k_claim_rounds = 4096;
 static_assert(k_claim_rounds % k_batch == 0);
 
-/// Of a stroke's length times its spacing, what a workgroup does alone.
-constexpr double k_part_pixels = 1 << 15;
+/// Drivers may end a shader's loops after 65536 rounds: workgroups share the pixels around a stroke where one would
+/// take so many.
+constexpr double k_most_loops = 16384;
+std::uint32_t parts_of(const PlacementGrid& grid, double spacing) {
+    const double passes = 1 + static_cast<double>(grid.rules.room) / shared::k_hatch_group, side = 2.5 * spacing + 4;
+    return 1 + static_cast<std::uint32_t>(passes * side * side / k_most_loops);
+}
 
 SeedListRecord record_of(const SeedList& list) {
     return {static_cast<std::uint32_t>(list.source) | list.layer << shared::k_layer_shift, list.first, list.second,
@@ -105,18 +111,19 @@ void double_room(Device& device, Stream& stream, Buffer& buffer, std::uint32_t& 
 
 GpuStrokePlacer::GpuStrokePlacer(Device& device, Profiler* profiler) : device_(device), stream_(device, profiler) {
     const StructLayout word = layout_of<std::uint32_t>(), four = layout_of<uvec4>(), point = layout_of<FinePoint>(),
-                       parameters = layout_of<PlacementParameters>(), trial = layout_of<TrialRecord>();
-    trace_ = Kernel(
-        device, shaders::hatching_trace_comp,
-        {.push_constants = parameters, .elements = {four, word, word, layout_of<SeedListRecord>(), trial, point}});
+                       parameters = layout_of<PlacementParameters>(), trial = layout_of<TrialRecord>(),
+                       list = layout_of<SeedListRecord>();
+    seed_ = Kernel(device, shaders::hatching_seed_comp,
+                   {.push_constants = parameters, .elements = {four, word, word, list, trial}});
+    trace_ = Kernel(device, shaders::hatching_trace_comp,
+                    {.push_constants = parameters, .elements = {four, word, list, trial, point}});
     claim_ = Kernel(device, shaders::hatching_claim_comp,
-                    {.push_constants = parameters, .elements = {four, word, trial, word}, .constants = {{0, 0}}});
+                    {.push_constants = parameters, .elements = {four, point, trial, word}, .constants = {{0, 0}}});
     contest_ = Kernel(device, shaders::hatching_claim_comp,
-                      {.push_constants = parameters, .elements = {four, word, trial, word}, .constants = {{0, 1}}});
-    settle_ = Kernel(device, shaders::hatching_settle_comp,
-                     {.push_constants = parameters, .elements = {layout_of<SeedListRecord>(), trial}});
+                      {.push_constants = parameters, .elements = {four, point, trial, word}, .constants = {{0, 1}}});
+    settle_ = Kernel(device, shaders::hatching_settle_comp, {.push_constants = parameters, .elements = {list, trial}});
     place_ = Kernel(device, shaders::hatching_place_comp,
-                    {.push_constants = parameters, .elements = {four, word, trial, point, word}});
+                    {.push_constants = parameters, .elements = {four, point, trial, point, word}});
     count_buffer_ = Buffer(device, sizeof(PlacementCounts));
 }
 
@@ -170,6 +177,7 @@ void GpuStrokePlacer::upload_lists(const PlacementGrid& grid, std::span<const Fi
                .strokes = static_cast<std::uint32_t>(kept.size()),
                .points = points,
                .full = 0,
+               .held_groups = 0,
                .trial_groups = {groups_of(trials), 1, 1},
                .candidate_groups = {0, 1, 1},
                .place_groups = {0, 1, 1}};
@@ -179,8 +187,7 @@ void GpuStrokePlacer::upload_lists(const PlacementGrid& grid, std::span<const Fi
         reserve(device_, buffer, room * item);
         return static_cast<std::uint32_t>(room);
     };
-    // Drivers may end a loop after 65536 rounds. The pixels around a stroke are about its length times its spacing.
-    parameters_.parts = 1 + static_cast<std::uint32_t>(grid.rules.room * estimate.spacing / k_part_pixels);
+    parameters_.parts = parts_of(grid, estimate.spacing);
     parameters_.stroke_room = rooms(strokes_, estimate.strokes, kept.size(), sizeof(StrokeRecord));
     parameters_.point_room = rooms(points_, estimate.points, points, sizeof(FinePoint));
     parameters_.list_room =
@@ -204,12 +211,19 @@ void GpuStrokePlacer::upload_kept(std::span<const FineStroke> kept) {
 void GpuStrokePlacer::record_round(std::uint32_t rounds_left) {
     parameters_.rounds_left = rounds_left;
     constexpr std::size_t k_trials = offsetof(PlacementCounts, trial_groups),
-                          k_candidates = offsetof(PlacementCounts, candidate_groups),
-                          k_placed = offsetof(PlacementCounts, place_groups);
-    stream_.dispatch_indirect(trace_, count_buffer_, k_trials,
-                              {grid_, near_, points_, lists_, trials_, ways_, count_buffer_}, parameters_);
+                          k_candidates = offsetof(PlacementCounts, candidate_groups);
+    stream_.dispatch_indirect(seed_, count_buffer_, k_trials, {grid_, near_, points_, lists_, trials_, count_buffer_},
+                              parameters_);
+    stream_.dispatch_indirect(trace_, count_buffer_, k_trials, {grid_, near_, lists_, trials_, ways_, count_buffer_},
+                              parameters_);
     stream_.dispatch_indirect(claim_, count_buffer_, k_candidates, {grid_, ways_, trials_, claims_}, parameters_);
     stream_.dispatch_indirect(contest_, count_buffer_, k_candidates, {grid_, ways_, trials_, claims_}, parameters_);
+    record_end();
+}
+
+/// Settles who has won, and places those strokes.
+void GpuStrokePlacer::record_end() {
+    constexpr std::size_t k_placed = offsetof(PlacementCounts, place_groups);
     stream_.dispatch(settle_, Threads(shared::k_settle_group), {lists_, trials_, count_buffer_, strokes_}, parameters_);
     stream_.dispatch_indirect(place_, count_buffer_, k_placed, {grid_, ways_, trials_, points_, near_}, parameters_);
 }
@@ -219,11 +233,15 @@ void GpuStrokePlacer::place_all() {
         if (round == 0) stream_.fill(claims_, ~0U);
         for (std::uint32_t i = 0; i < k_batch; ++i) record_round(k_claim_rounds - 1 - round - i);
         stream_.fetch(count_buffer_, std::span(&counts_, 1));
-        if (counts_.full) double_rooms();
+        while (counts_.full) {
+            double_rooms();
+            record_end();
+            stream_.fetch(count_buffer_, std::span(&counts_, 1));
+        }
     }
 }
 
-/// Gives strokes twice the room that they had too little of, and lets the round be done again.
+/// Gives strokes twice the room that they had too little of, and lets the end of the round be done again.
 void GpuStrokePlacer::double_rooms() {
     const auto enlarge = [&](std::uint32_t what, Buffer& buffer, std::uint32_t& room, std::size_t item) {
         if (counts_.full & what) double_room(device_, stream_, buffer, room, item);
@@ -232,7 +250,7 @@ void GpuStrokePlacer::double_rooms() {
     enlarge(shared::k_full_points, points_, parameters_.point_room, sizeof(FinePoint));
     enlarge(shared::k_full_lists, lists_, parameters_.list_room, sizeof(SeedListRecord));
     counts_.full = 0;
-    counts_.trial_groups[0] = groups_of(counts_.trials);
+    counts_.candidate_groups[0] = counts_.held_groups;
     stream_.upload<PlacementCounts>(count_buffer_, std::span(&counts_, 1));
 }
 

@@ -22,8 +22,7 @@ class GpuStrokePlacer final : public StrokePlacer {
   public:
     explicit GpuStrokePlacer(Device& device, Profiler* profiler = nullptr);
     using StrokePlacer::place;
-    /// Throws DeviceLimitError, too, for pictures over the device's limits: each layer takes 4 bytes per pixel of one
-    /// binding, and both 16 bytes of texels.
+    /// Throws DeviceLimitError, too, for pictures over the device's limits: of texels there are two per pixel.
     std::vector<HatchStroke> place(const HatchingFields& fields, std::span<const std::uint8_t> barriers,
                                    const StrokeOptions& options, std::span<const HatchStroke> kept) override;
 
@@ -32,13 +31,14 @@ class GpuStrokePlacer final : public StrokePlacer {
     void upload_lists(const PlacementGrid& grid, std::span<const FineStroke> kept);
     void upload_kept(std::span<const FineStroke> kept);
     void record_round(std::uint32_t rounds_left);
+    void record_end();
     void place_all();
     void double_rooms();
     std::vector<FineStroke> download();
 
     Device& device_;
     Stream stream_;
-    Kernel trace_, claim_, contest_, settle_, place_;
+    Kernel seed_, trace_, claim_, contest_, settle_, place_;
     shared::PlacementParameters parameters_{};
     shared::PlacementCounts counts_{};
     Buffer grid_, near_, claims_, lists_, trials_, ways_, points_, strokes_, count_buffer_;  // kept between calls

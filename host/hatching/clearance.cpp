@@ -1,7 +1,6 @@
 #include "host/hatching/clearance.h"
 
 #include <algorithm>
-#include <atomic>
 
 namespace exemplar {
 
@@ -14,13 +13,6 @@ std::int32_t near_reach(std::int32_t spacing) {
 
 std::uint32_t noted_stride(std::int32_t spacing) {
     return static_cast<std::uint32_t>(std::max(1, spacing >> (k_spacing_bits + 2)));
-}
-
-void lower(std::uint32_t& there, std::uint32_t word) {
-    const std::atomic_ref<std::uint32_t> shared(there);
-    std::uint32_t seen = shared.load(std::memory_order_relaxed);
-    while (word < seen && !shared.compare_exchange_weak(seen, word, std::memory_order_relaxed)) {
-    }
 }
 
 Clearance::Clearance(const PlacementGrid& grid) : grid_(grid), words_(k_hatch_layers * grid.size(), k_far) {}

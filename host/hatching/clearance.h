@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -67,6 +68,11 @@ inline bool is_noted(std::size_t i, std::size_t count, std::int32_t spacing) {
 }
 
 /// The least of `word` and what is there remains; safe among threads.
-void lower(std::uint32_t& there, std::uint32_t word);
+inline void lower(std::uint32_t& there, std::uint32_t word) {
+    const std::atomic_ref<std::uint32_t> shared(there);
+    std::uint32_t seen = shared.load(std::memory_order_relaxed);
+    while (word < seen && !shared.compare_exchange_weak(seen, word, std::memory_order_relaxed)) {
+    }
+}
 
 }  // namespace exemplar

@@ -17,8 +17,8 @@ constexpr int k_length_bits = 2;   ///< lengths of strokes are in units of 1/4 p
 /// Strokes are followed in steps of this many units, a pixel but for what rounding may add: one never skips a pixel.
 constexpr std::int32_t k_step = k_pixel - 2;
 constexpr std::int32_t k_least_steps = 2;  ///< of a stroke
-/// When a list of places has taken so many steps in a round it waits for the next: kernels must come to an end.
-constexpr std::int32_t k_most_round_work = 16384;
+/// Of a list of places, how many are looked at in a round: kernels must come to an end.
+constexpr std::uint32_t k_most_places = 16384;
 
 /// What the placement of strokes knows of a pixel.
 struct PlacementTexel {

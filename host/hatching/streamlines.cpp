@@ -1,6 +1,7 @@
 #include "host/hatching/streamlines.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "host/core/parallel.h"
@@ -13,9 +14,8 @@
 namespace exemplar {
 namespace {
 
-/// What a list of places gives in a round: nothing more ever, nothing yet, or a stroke that wins or loses.
+/// What a list of places gives in a round: nothing more ever, nothing yet, or a stroke that loses or wins.
 enum class TrialState { closed, pending, lost, won };
-
 struct Trial {
     TrialState state = TrialState::closed;
     std::uint32_t claim = 0;
@@ -57,25 +57,26 @@ class Placement {
     const std::vector<FineStroke>& strokes() const { return strokes_; }
 
   private:
-    /// Tries the places of a list from where it was left, up to the first that gives a stroke, or until that has taken
-    /// long enough for a round.
+    /// Tries the first place of a list, from where it was left on, that a stroke may begin at.
     void try_next(SeedList& list, std::size_t place) {
         Trial& trial = trials_[place];
-        trial.state = TrialState::closed;
-        std::int32_t work = 0;
-        for (const std::uint32_t count = seed_count(grid_, list); list.next < count; ++list.next) {
-            if (work >= k_most_round_work) {
-                trial.state = TrialState::pending;
-                return;
-            }
-            ++work;
-            const auto seed = seed_at(grid_, clearance_, points_, list, list.next);
-            if (!seed || !trace_stroke(grid_, clearance_, *seed, trial.candidate, work)) continue;
-            trial.state = TrialState::lost;
-            trial.claim = claims_.claim_of(static_cast<std::uint32_t>(place), trial.candidate.shortness);
-            claims_.claim(list.layer, trial.candidate.way, trial.claim);
+        const auto seed = next_seed(list);
+        trial.state = list.next < seed_count(grid_, list) ? TrialState::pending : TrialState::closed;
+        if (!seed) return;
+        if (!trace_stroke(grid_, clearance_, *seed, trial.candidate)) {
+            ++list.next;
             return;
         }
+        trial.state = TrialState::lost;
+        trial.claim = claims_.claim_of(static_cast<std::uint32_t>(place), trial.candidate.shortness);
+        claims_.claim(list.layer, trial.candidate.way, trial.claim);
+    }
+
+    std::optional<StrokeSeed> next_seed(SeedList& list) const {
+        const std::uint32_t end = std::min(seed_count(grid_, list), list.next + k_most_places);
+        for (; list.next < end; ++list.next)
+            if (const auto seed = seed_at(grid_, clearance_, points_, list, list.next)) return seed;
+        return {};
     }
 
     void settle(Trial& trial) const {

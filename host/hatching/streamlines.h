@@ -12,7 +12,8 @@ namespace exemplar {
 /// How strokes are placed.
 struct StrokeOptions {
     std::uint64_t seed = 1;
-    /// Strokes of a layer end where they come nearer to each other than this share of the spacing, in (0, 1).
+    /// Strokes of a layer end where they come nearer to each other than this share of the spacing, in (0, 1). Where
+    /// that is under a pixel some may come nearer.
     float test_distance = 0.7f;
     /// A stroke that has less room than this share of its target length, in [0, 1], is not drawn; three spacings are
     /// always enough, two where other strokes end only one of its ends, and one where none does.

@@ -85,9 +85,8 @@ std::uint32_t shortness_of(const StrokeWay& way, std::int32_t steps) {
 }  // namespace
 
 bool trace_stroke(const PlacementGrid& grid, const Clearance& clearance, const StrokeSeed& seed,
-                  StrokeCandidate& candidate, std::int32_t& work) {
+                  StrokeCandidate& candidate) {
     const StrokeWay way(grid, clearance, seed);
-    work += way.work();
     const Span span = Fitter(grid, clearance, way, seed.layer).fitted();
     if (span.steps() < least_steps(grid, way.texel(), crowded_ends(way))) return false;
     candidate.way.clear();

@@ -19,8 +19,8 @@ struct StrokeCandidate {
 /// Follows the stroke from a seed, a pixel that has strokes (StrokeWay). Where it ends by its length, with less room
 /// before it than another stroke would need, it is moved up to what is there; with too little room for that at both
 /// ends it takes all of it, or half where that were too long. Returns whether it is long enough
-/// (StrokeOptions::least_length), and adds to `work` how many steps that took.
+/// (StrokeOptions::least_length).
 bool trace_stroke(const PlacementGrid& grid, const Clearance& clearance, const StrokeSeed& seed,
-                  StrokeCandidate& candidate, std::int32_t& work);
+                  StrokeCandidate& candidate);
 
 }  // namespace exemplar

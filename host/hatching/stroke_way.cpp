@@ -52,7 +52,6 @@ StrokeWay::StrokeWay(const PlacementGrid& grid, const Clearance& clearance, cons
     if (on.end == StrokeEnd::length) walk(on, 1 << k_share_bits);
     look_ahead(on);
     look_ahead(back);
-    work_ += last();
 }
 
 std::int32_t StrokeWay::gap_steps() const {
@@ -114,7 +113,7 @@ void StrokeWay::step(StrokeBranch& branch) {
 }
 
 /// Whether a point comes nearer than the test distance to what the stroke has passed, beyond what it just did.
-bool StrokeWay::meets_itself(StrokeBranch& branch, FinePoint next, const PlacementTexel& texel) {
+bool StrokeWay::meets_itself(StrokeBranch& branch, FinePoint next, const PlacementTexel& texel) const {
     if (branch.quiet > 0) {
         --branch.quiet;
         return false;
@@ -127,7 +126,7 @@ bool StrokeWay::meets_itself(StrokeBranch& branch, FinePoint next, const Placeme
 }
 
 /// How far a point is from the stroke but for the last two test distances before it; or from afar, less than that.
-std::int32_t StrokeWay::distance_to_itself(const StrokeBranch& branch, FinePoint next, std::int32_t test) {
+std::int32_t StrokeWay::distance_to_itself(const StrokeBranch& branch, FinePoint next, std::int32_t test) const {
     const std::int32_t sign = &branch == branches_.data() ? 1 : -1;
     const std::int32_t begin = branch.reach() - last(), end = branch.reach() - (2 * test >> k_pixel_bits);
     const std::int32_t stride = 1 + (end - begin) / k_most_pieces;
@@ -138,7 +137,6 @@ std::int32_t StrokeWay::distance_to_itself(const StrokeBranch& branch, FinePoint
         const bool is_far = afar > 2 * test >> k_itself_bits;
         nearest = std::min(nearest,
                            is_far ? afar : distance_to_line(next, from, from_seed(sign * std::min(i + stride, end))));
-        ++work_;
     }
     return nearest;
 }

@@ -55,16 +55,14 @@ class StrokeWay {
     std::int32_t length_share() const { return length_share_; }
     /// Steps of the gap between two strokes in line.
     std::int32_t gap_steps() const;
-    /// Steps and other pieces of work that it took.
-    std::int32_t work() const { return work_; }
 
   private:
     FinePoint from_seed(std::int32_t i) const;
     void walk(StrokeBranch& branch, std::int32_t share);
     void look_ahead(StrokeBranch& branch);
     void step(StrokeBranch& branch);
-    bool meets_itself(StrokeBranch& branch, FinePoint next, const PlacementTexel& texel);
-    std::int32_t distance_to_itself(const StrokeBranch& branch, FinePoint next, std::int32_t test);
+    bool meets_itself(StrokeBranch& branch, FinePoint next, const PlacementTexel& texel) const;
+    std::int32_t distance_to_itself(const StrokeBranch& branch, FinePoint next, std::int32_t test) const;
 
     const PlacementGrid& grid_;
     const Clearance& clearance_;
@@ -72,7 +70,6 @@ class StrokeWay {
     const PlacementTexel& texel_;
     std::int32_t length_share_ = 0;
     std::int32_t least_turn_ = 0, most_turn_ = 0;  // of all steps so far, from the seed on
-    std::int32_t work_ = 0;
     std::array<StrokeBranch, 2> branches_;
 };
 

@@ -56,18 +56,20 @@ class Matcher {
         std::vector<float> factors(stroke.points.size());
         for (std::size_t i = 0; i < factors.size(); ++i) {
             const Pixel at(stroke.points[i], fields_);
-            const int reach = tone_reach(fields_.spacing[fields_.index(at.x, at.y)]);
+            const int reach = reach_at(at);
             const double is = tone.mean(at.x, at.y, reach), wanted = target_.mean(at.x, at.y, reach);
             const double ratio = is > 0 ? wanted / is : 1;
             factors[i] = static_cast<float>(ratio) * (thickness[i] > 0 ? stroke.widths[i] / thickness[i] : 1);
         }
-        const Pixel middle(stroke.points[factors.size() / 2], fields_);
         // Points are two pixels apart.
-        const auto reach = static_cast<std::size_t>(tone_reach(fields_.spacing[fields_.index(middle.x, middle.y)]) / 2);
-        factors = smoothed(factors, reach);
+        const int reach = reach_at(Pixel(stroke.points[factors.size() / 2], fields_)) / 2;
+        factors = smoothed(factors, static_cast<std::size_t>(reach));
         for (std::size_t i = 0; i < factors.size(); ++i)
             stroke.widths[i] = thickness[i] * std::clamp(factors[i], k_least_width_factor, k_most_width_factor);
     }
+
+    /// Three spacings: over less, strokes would swell at their ends beside every gap.
+    int reach_at(const Pixel& at) const { return 2 * tone_reach(fields_.spacing[fields_.index(at.x, at.y)]); }
 
     const HatchingFields& fields_;
     WindowMeans target_;

@@ -12,9 +12,9 @@ constexpr float k_least_width_factor = 0.6f, k_most_width_factor = 1.6f;
 
 /// Makes strokes thicker where a drawing is lighter than target_tone(), and thinner where it is darker, so that gaps
 /// between strokes, and how strokes overlap, change its tones less. In each iteration the width of every point is
-/// multiplied by the ratio of target to tone around it (see measure_tone), a mean over one and a half spacings to both
-/// sides along the stroke, and kept within these factors of the thickness there. Throws UsageError for strokes that
-/// drawn_ink() does not take, or a negative number of iterations.
-void match_tone(std::span<HatchStroke> strokes, const HatchingFields& fields, int iterations = 8);
+/// multiplied by the ratio of target to tone in a window six spacings wide around it, a mean over three spacings to
+/// both sides along the stroke, and kept within these factors of the thickness there. More iterations gain little.
+/// Throws UsageError for strokes that drawn_ink() does not take, or a negative number of iterations.
+void match_tone(std::span<HatchStroke> strokes, const HatchingFields& fields, int iterations = 3);
 
 }  // namespace exemplar

@@ -10,7 +10,7 @@ layout(local_size_x = k_hatch_group) in;
 layout(constant_id = 0) const bool k_looks = false;
 layout(push_constant) uniform Push { PlacementParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer grid;
-layout(set = 0, binding = 1) uniform usamplerBuffer way_points;
+layout(set = 0, binding = 1, std430) readonly buffer Ways { ivec2 ways[]; };
 layout(set = 0, binding = 2, std430) buffer Trials { TrialRecord trials[]; };
 layout(set = 0, binding = 3, std430) buffer Claims { uint claims[]; };
 #include "shaders/lib/candidate.glsl"
@@ -22,10 +22,9 @@ bool take(ivec2 point, int reach, uint first, uint claim) {
     const int most = (reach >> parameters.near_shift) * (reach >> parameters.near_shift);
     ivec2 low, high;
     pixels_within(point, reach, low, high);
-    low += in_tile();
     bool lost = false;
-    for (int y = low.y; y <= high.y; y += k_tile)
-        for (int x = low.x; x <= high.x; x += k_tile) {
+    for (int y = low.y + candidate_part(); y <= high.y; y += int(parameters.parts))
+        for (int x = low.x; x <= high.x; ++x) {
             const ivec2 way = way_from_center(ivec2(x, y), point);
             if (dot_of(way, way) > most) continue;
             const uint pixel = first + uint(index_of(ivec2(x, y)));
@@ -42,11 +41,10 @@ void main() {
     const TrialRecord trial = trials[place];
     const uint first = (trial.state >> k_layer_shift) * parameters.width * parameters.height;
     bool lost = false;
-    uint noted = 0u;
-    for (uint i = 0u; i < trial.way_count; ++i) {
+    for (uint i = gl_LocalInvocationID.x; i < trial.way_count; i += k_hatch_group) {
         const ivec2 point = way_point(place, trial.way_begin, i);
         const int spacing = spacing_of(texel_of(point));
-        if (!is_noted(i, trial.way_count, spacing) || noted++ % parameters.parts != candidate_part()) continue;
+        if (!is_noted(i, trial.way_count, spacing)) continue;
         const int reach = share_of_spacing(spacing, parameters.test_share) / 2 + k_half_diagonal;
         if (take(point, reach, first, trial.claim)) lost = true;
     }

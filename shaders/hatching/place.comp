@@ -9,7 +9,7 @@
 layout(local_size_x = k_hatch_group) in;
 layout(push_constant) uniform Push { PlacementParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer grid;
-layout(set = 0, binding = 1) uniform usamplerBuffer way_points;
+layout(set = 0, binding = 1, std430) readonly buffer Ways { ivec2 ways[]; };
 layout(set = 0, binding = 2, std430) readonly buffer Trials { TrialRecord trials[]; };
 layout(set = 0, binding = 3, std430) writeonly buffer StrokePoints { ivec2 stroke_points[]; };
 layout(set = 0, binding = 4, std430) buffer Near { uint near[]; };
@@ -19,9 +19,8 @@ void note(ivec2 point, int reach, uint first) {
     const int most = (reach >> parameters.near_shift) * (reach >> parameters.near_shift);
     ivec2 low, high;
     pixels_within(point, reach, low, high);
-    low += in_tile();
-    for (int y = low.y; y <= high.y; y += k_tile)
-        for (int x = low.x; x <= high.x; x += k_tile) {
+    for (int y = low.y + candidate_part(); y <= high.y; y += int(parameters.parts))
+        for (int x = low.x; x <= high.x; ++x) {
             const ivec2 way = way_from_center(ivec2(x, y), point);
             const int squared = dot_of(way, way);
             if (squared > most) continue;
@@ -36,12 +35,10 @@ void main() {
     if ((trial.state & k_lost_trial) != 0u) return;
 
     const uint first = (trial.state >> k_layer_shift) * parameters.width * parameters.height;
-    uint noted = 0u;
-    for (uint i = 0u; i < trial.count; ++i) {
+    for (uint i = gl_LocalInvocationID.x; i < trial.count; i += k_hatch_group) {
         const ivec2 point = way_point(place, trial.way_begin, trial.begin + i);
-        if (i % k_hatch_group == gl_LocalInvocationID.x && candidate_part() == 0u) stroke_points[trial.target + i] = point;
+        stroke_points[trial.target + i] = point;
         const int spacing = spacing_of(texel_of(point));
-        if (is_noted(i, trial.count, spacing) && noted++ % parameters.parts == candidate_part())
-            note(point, near_reach(spacing), first);
+        if (is_noted(i, trial.count, spacing)) note(point, near_reach(spacing), first);
     }
 }

@@ -29,7 +29,7 @@ bool is_kept(uint i) {
     if (counts.in_blocks != 0u || i >= counts.front) return false;
     if (i >= counts.trials) return true;
     const bool is_part = (lists[parameters.blocks + i].kind & k_source_mask) == k_part_source;
-    return (trials[i].state & (k_open_trial | k_pending_trial)) != 0u && !(is_part && has_won(i));
+    return (trials[i].state & k_pending_trial) != 0u && !(is_part && has_won(i));
 }
 
 Round measured(uint items) {
@@ -40,7 +40,7 @@ Round measured(uint items) {
             own.points += trials[i].count;
         }
         if (is_kept(i)) own.kept += 1u;
-        if (i < counts.trials && (trials[i].state & (k_open_trial | k_pending_trial)) != 0u) own.waiting += 1u;
+        if (i < counts.trials && (trials[i].state & k_pending_trial) != 0u) own.waiting += 1u;
     }
     Round all;
     sum_before(own.won);
@@ -137,6 +137,7 @@ void main() {
         go_on(round, placing);
     } else {
         counts.full = full;
+        counts.held_groups = placing;
         set_groups(0u);
         counts.trial_groups[0] = 0u;
     }

@@ -3,18 +3,16 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/hatching.h"
 
-// Tries the places of seed lists, each from where it was left, up to the first that gives a stroke (host/hatching/
-// streamlines.cpp). One list per invocation: reads some twenty texels per pixel of way, and writes 8 bytes.
+// Follows the strokes of a round from their seeds (host/hatching/stroke_tracing.cpp). One stroke per invocation: reads some
+// twenty texels per pixel of its way, and writes 8 bytes.
 layout(local_size_x = k_hatch_group) in;
 layout(push_constant) uniform Push { PlacementParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer grid;
 layout(set = 0, binding = 1) uniform usamplerBuffer near;
-layout(set = 0, binding = 2) uniform usamplerBuffer stroke_points;
-layout(set = 0, binding = 3, std430) buffer Lists { SeedListRecord lists[]; };
-layout(set = 0, binding = 4, std430) writeonly buffer Trials { TrialRecord trials[]; };
-layout(set = 0, binding = 5, std430) buffer Ways { ivec2 ways[]; };
-layout(set = 0, binding = 6, std430) buffer Counts { PlacementCounts counts; };
-#include "shaders/lib/stroke_seeds.glsl"
+layout(set = 0, binding = 2, std430) buffer Lists { SeedListRecord lists[]; };
+layout(set = 0, binding = 3, std430) buffer Trials { TrialRecord trials[]; };
+layout(set = 0, binding = 4, std430) buffer Ways { ivec2 ways[]; };
+layout(set = 0, binding = 5, std430) buffer Counts { PlacementCounts counts; };
 #include "shaders/lib/stroke_tracing.glsl"
 
 // What place i of the round's list claims pixels with (StrokeClaims::claim_of).
@@ -24,10 +22,12 @@ uint claim_of(uint i, uint shortness) {
     return (parameters.rounds_left << 2 | shortness) << 18 | chance;
 }
 
-void put_trial(uint i, Way way, ivec2 part) {
-    trials[i].claim = claim_of(i, shortness(way, part.y - part.x));
-    trials[i].way_begin = way.back.reach == 0 ? 0u : parameters.room - uint(way.back.reach);
-    trials[i].way_count = uint(last_of(way) + 1);
+void put_trial(uint i, ivec2 part) {
+    const uint begin = ring_index(-back_reach()) - way_first;
+    trials[i].state |= k_open_trial;
+    trials[i].claim = claim_of(i, shortness(part.y - part.x));
+    trials[i].way_begin = begin;
+    trials[i].way_count = uint(last_place() + 1);
     trials[i].begin = uint(part.x);
     trials[i].count = uint(part.y - part.x + 1);
     trials[atomicAdd(counts.candidate_groups[0], parameters.parts) / parameters.parts].listed = i;
@@ -35,34 +35,12 @@ void put_trial(uint i, Way way, ivec2 part) {
 
 void main() {
     const uint i = linear_thread();
-    if (i >= counts.trials) return;
+    if (i >= counts.trials || (trials[i].state & k_seeded_trial) == 0u) return;
 
-    const uint index = counts.in_blocks != 0u ? i : parameters.blocks + i;
-    SeedListRecord list = lists[index];
-    const uint count = seed_count(list), layer = list.kind >> k_layer_shift;
-    bool open = false;
-    ivec2 part = ivec2(0);
-    Way way;
-    int work = 0;
-    while (!open && list.next < count && work < k_most_round_work) {
-        ivec2 point = ivec2(0), heading = ivec2(0);
-        bool found = false;
-        while (!found && list.next < count && work < k_most_round_work) {
-            ++work;
-            found = seed_at(list, list.next, point, heading);
-            if (!found) ++list.next;
-        }
-        when (found) {
-            const Branch on = Branch(point, heading, 1, 0, 0, 0, 0, k_no_end);
-            const Branch back = Branch(point, -heading, -1, 0, 0, 0, 0, k_no_end);
-            way = Way(i * parameters.room, layer, point, texel_of(point), 0, ivec2(0), work, on, back);
-            open = trace(way, part);
-            work = way.work;
-            if (!open) ++list.next;
-        }
-    }
-    const uint state = open ? k_open_trial : list.next < count ? k_pending_trial : 0u;
-    lists[index].next = list.next;
-    trials[i].state = state | layer << k_layer_shift;
-    if (open) put_trial(i, way, part);
+    const ivec2 seed = ivec2(trials[i].seed_x, trials[i].seed_y), heading = ivec2(trials[i].heading_x, trials[i].heading_y);
+    ivec2 part;
+    if (trace(i * parameters.room, trials[i].state >> k_layer_shift, seed, heading, part))
+        put_trial(i, part);
+    else
+        ++lists[counts.in_blocks != 0u ? i : parameters.blocks + i].next;
 }

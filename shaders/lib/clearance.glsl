@@ -6,9 +6,9 @@
 const uint k_far = 0xffffffffu;
 
 uint squared_distance(ivec2 pixel, int first, ivec2 point) {
-    const uint word = is_inside(pixel) ? texelFetch(near, first + index_of(pixel)).x : k_far;
+    const uint word = texelFetch(near, first + index_of(pixel)).x;
     const ivec2 way = ivec2(word >> 11 & 2047u, word & 2047u) - 1024 - way_from_center(pixel, point);
-    return word == k_far ? k_far : uint(dot_of(way, way));
+    return mix(k_far, uint(dot_of(way, way)), all(bvec2(word != k_far, is_inside(pixel))));
 }
 
 // From a point to the nearest that the four pixels around it know, in units of 2^near_shift; k_far if they know none.

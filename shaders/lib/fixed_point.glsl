@@ -1,4 +1,6 @@
-// Whole numbers for positions and directions (host/hatching/fixed_point.h): results are the same on every device.
+// Whole numbers for positions and directions (host/hatching/fixed_point.h): results are the same on every device. Here and in
+// what builds on it choices are made by selecting, not by branching: CPU drivers run both sides of a branch anyway, and some
+// take very long to compile many of them within a loop.
 #ifndef EXEMPLAR_FIXED_POINT_GLSL
 #define EXEMPLAR_FIXED_POINT_GLSL
 #include "shaders/shared/hatching.h"
@@ -13,22 +15,19 @@ int cross_of(ivec2 a, ivec2 b) {
 // The root of a float is near on every device; the rest is exact.
 uint floor_sqrt(uint n) {
     uint root = uint(sqrt(float(n)));
-    if (root * root > n) --root;
-    if ((root + 1u) * (root + 1u) <= n) ++root;
-    return root;
+    root -= uint(root * root > n);
+    return root + uint((root + 1u) * (root + 1u) <= n);
 }
 
 // a / b rounded to nearest, halves away from zero.
-int rounded_quotient(int a, uint b) {
-    const int quotient = int((uint(abs(a)) + b / 2u) / b);
-    return a < 0 ? -quotient : quotient;
+ivec2 rounded_quotient(ivec2 a, uint b) {
+    return sign(a) * ivec2((uvec2(abs(a)) + b / 2u) / b);
 }
 
 // The unit vector along a vector, times k_unit; zero for none.
 ivec2 direction_of(ivec2 way) {
     const uint size = floor_sqrt(uint(way.x * way.x) + uint(way.y * way.y));
-    if (size == 0u) return ivec2(0);
-    return ivec2(rounded_quotient(way.x * k_unit, size), rounded_quotient(way.y * k_unit, size));
+    return rounded_quotient(way * k_unit, max(size, 1u));
 }
 
 ivec2 moved(ivec2 from, ivec2 way, int size) {

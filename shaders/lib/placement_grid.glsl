@@ -4,22 +4,27 @@
 #define EXEMPLAR_PLACEMENT_GRID_GLSL
 #include "shaders/lib/fixed_point.glsl"
 
-bool is_inside(ivec2 pixel) {
-    return pixel.x >= 0 && pixel.y >= 0 && pixel.x < int(parameters.width) && pixel.y < int(parameters.height);
+ivec2 last_pixel() {
+    return ivec2(parameters.width, parameters.height) - 1;
 }
+bool is_inside(ivec2 pixel) {
+    return all(equal(pixel, clamp(pixel, ivec2(0), last_pixel())));
+}
+// Of a pixel, or the nearest in the picture.
 int index_of(ivec2 pixel) {
-    return pixel.y * int(parameters.width) + pixel.x;
+    const ivec2 near_pixel = clamp(pixel, ivec2(0), last_pixel());
+    return near_pixel.y * int(parameters.width) + near_pixel.x;
 }
 // Directions of both layers, sizes and flags; nothing beyond the picture.
 uvec4 texel_at(ivec2 pixel) {
-    return is_inside(pixel) ? texelFetch(grid, index_of(pixel)) : uvec4(0u);
+    return mix(uvec4(0u), texelFetch(grid, index_of(pixel)), bvec4(is_inside(pixel)));
 }
 uvec4 texel_of(ivec2 point) {
     return texel_at(point >> k_pixel_bits);
 }
 // The word of a layer's direction; 0: no strokes.
 uint direction_word(uvec4 texel, uint layer) {
-    return layer == 0u ? texel.x : texel.y;
+    return mix(texel.y, texel.x, layer == 0u);
 }
 int spacing_of(uvec4 texel) {
     return int(texel.z & 0xffffu);
@@ -44,7 +49,7 @@ void pixels_within(ivec2 point, int reach, out ivec2 low, out ivec2 high) {
     const ivec2 pixel = point >> k_pixel_bits;
     const int pixels = (reach >> k_pixel_bits) + 1;
     low = max(pixel - pixels, ivec2(0));
-    high = min(pixel + pixels, ivec2(parameters.width, parameters.height) - 1);
+    high = min(pixel + pixels, last_pixel());
 }
 ivec2 way_from_center(ivec2 pixel, ivec2 point) {
     return (point - pixel * k_pixel - k_pixel / 2) >> parameters.near_shift;

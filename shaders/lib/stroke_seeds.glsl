@@ -23,7 +23,7 @@ int bits_of(uint count) {
     return findMSB(count - 1u) + 1;
 }
 uint reversed_bits(uint word, int count) {
-    return count == 0 ? 0u : bitfieldReverse(word) >> (32 - count);
+    return mix(0u, bitfieldReverse(word) >> (32 - max(count, 1)), count > 0);
 }
 uint every_second_bit(uint word) {
     word &= 0x55555555u;

@@ -1,5 +1,7 @@
-// Follows strokes from their seeds (host/hatching/stroke_tracing.cpp). The including shader declares `ways`, the points of
-// the ways that are looked at: those of a trial in a ring of `room`, the seed first, one branch after it and the other before.
+// Follows a stroke from its seed (host/hatching/stroke_way.cpp, stroke_tracing.cpp). An invocation follows one at a time; what
+// it knows of it is in variables of its own, as drivers take long over structures that many functions hand on. The including
+// shader declares `ways`, the points of the ways that are looked at: those of a trial in a ring of `room`, the seed first, one
+// side after it and the other before.
 #ifndef EXEMPLAR_STROKE_TRACING_GLSL
 #define EXEMPLAR_STROKE_TRACING_GLSL
 #include "shaders/lib/clearance.glsl"
@@ -29,38 +31,33 @@ struct Branch {
     uint end;
 };
 
-// What is looked at from one seed.
-struct Way {
-    uint first;  // point of its ring
-    uint layer;
-    ivec2 seed;
-    uvec4 texel;  // that the seed is in
-    int length_share;
-    ivec2 turns;  // the least and the most of all steps so far, from the seed on
-    int work;     // steps and other pieces of work that it took
-    Branch on;
-    Branch back;
-};
+// The way: the side that is walked on or was last, and the other.
+Branch branch, other;
+uint way_first;    // point of its ring
+uint way_layer;
+uvec4 way_texel;   // that the seed is in
+int length_share;  // of targets, that its length is
+ivec2 turns;       // the least and the most of all steps so far, from the seed on
 
-ivec2 point_from_seed(uint first, int i) {
-    return ways[first + uint(i < 0 ? i + int(parameters.room) : i)];
+uint ring_index(int from_seed) {
+    return way_first + uint(mix(from_seed, from_seed + int(parameters.room), from_seed < 0));
 }
-// Places are counted in steps, from the end of one side to that of the other.
-ivec2 point_at(Way way, int place) {
-    return point_from_seed(way.first, place - way.back.reach);
+int back_reach() {
+    return mix(other.reach, branch.reach, branch.sign < 0);
 }
-int last_of(Way way) {
-    return way.on.reach + way.back.reach;
+// Places are counted in steps, from the end of one side to that of the other: the number of the last.
+int last_place() {
+    return branch.reach + other.reach;
 }
 int target_steps(uvec4 texel, int share) {
     return length_of(texel) * share >> (k_share_bits + k_length_bits);
 }
-int least_steps(uvec4 texel, int crowded_ends) {
-    const int by_length = target_steps(texel, parameters.least_share);
-    return max(min(by_length, (1 + crowded_ends) * spacing_of(texel) >> k_spacing_bits), k_least_steps);
+int least_steps(int crowded_ends) {
+    const int by_length = target_steps(way_texel, parameters.least_share);
+    return max(min(by_length, (1 + crowded_ends) * spacing_of(way_texel) >> k_spacing_bits), k_least_steps);
 }
-int gap_steps(uvec4 texel) {
-    return (share_of_spacing(spacing_of(texel), parameters.test_share) >> k_pixel_bits) + 1;
+int gap_steps() {
+    return (share_of_spacing(spacing_of(way_texel), parameters.test_share) >> k_pixel_bits) + 1;
 }
 
 int length_of_way(ivec2 way) {
@@ -70,157 +67,156 @@ int length_of_way(ivec2 way) {
 int distance_to_line(ivec2 point, ivec2 from, ivec2 to) {
     const ivec2 line = (to - from) >> k_itself_bits, begin = (point - from) >> k_itself_bits;
     const int along = dot_of(begin, line);
-    const bool before = along <= 0, beyond = along >= dot_of(line, line);
-    if (before || beyond) return length_of_way(before ? begin : (point - to) >> k_itself_bits);
-    return abs(cross_of(begin, line)) / length_of_way(line);
+    const bool on_line = all(bvec2(along > 0, along < dot_of(line, line)));
+    const ivec2 end = mix((point - to) >> k_itself_bits, begin, bvec2(along <= 0));
+    const int size = length_of_way(mix(end, line, bvec2(on_line)));
+    return mix(size, abs(cross_of(begin, line)) / max(size, 1), on_line);
 }
 
-// How far a point is from the stroke but for the last two test distances before it; or from afar, less than that.
-int distance_to_itself(Way way, Branch branch, Branch other, ivec2 next, int test, inout int work) {
-    const int begin = -other.reach, end = branch.reach - (2 * test >> k_pixel_bits);
-    const int stride = 1 + max(end - begin, 0) / k_most_pieces;
+// Whether a point comes nearer than the test distance to what the stroke has passed, but for the last two test distances
+// before it. From afar, less than the distance will do.
+bool meets_itself(ivec2 next, uvec4 texel) {
+    const bool far_turned = max(branch.turn - turns.x, turns.y - branch.turn) > k_far_turn;
+    const int test = share_of_spacing(spacing_of(texel), parameters.test_share);
+    const int begin = -other.reach, last = branch.reach - (2 * test >> k_pixel_bits);
+    const int stride = 1 + max(last - begin, 0) / k_most_pieces, end = mix(begin, last, all(bvec2(branch.quiet == 0, far_turned)));
     int nearest = k_far_from_itself;
     for (int i = begin; i < end; i += stride) {
-        const ivec2 from = point_from_seed(way.first, branch.sign * i), off = abs(next - from);
-        const ivec2 to = point_from_seed(way.first, branch.sign * min(i + stride, end));
+        const ivec2 from = ways[ring_index(branch.sign * i)], to = ways[ring_index(branch.sign * min(i + stride, end))];
+        const ivec2 off = abs(next - from);
         const int afar = (max(off.x, off.y) - stride * k_pixel) >> k_itself_bits;
-        const bool is_far = afar > 2 * test >> k_itself_bits;
-        nearest = min(nearest, is_far ? afar : distance_to_line(next, from, to));
-        ++work;
+        nearest = min(nearest, mix(distance_to_line(next, from, to), afar, afar > 2 * test >> k_itself_bits));
     }
-    return nearest;
+    const int beyond = nearest - (test >> k_itself_bits);
+    const int quiet = mix(0, beyond >> (k_pixel_bits - k_itself_bits), far_turned);
+    branch.quiet = mix(quiet, branch.quiet - 1, branch.quiet > 0);
+    return beyond < 0;
 }
 
-// Whether a point comes nearer than the test distance to what the stroke has passed, beyond what it just did.
-bool meets_itself(inout Way way, inout Branch branch, Branch other, ivec2 next, uvec4 texel) {
-    bool met = false;
-    const bool far_turned = max(branch.turn - way.turns.x, way.turns.y - branch.turn) > k_far_turn;
-    when (branch.quiet == 0 && far_turned) {
-        const int test = share_of_spacing(spacing_of(texel), parameters.test_share);
-        const int beyond = distance_to_itself(way, branch, other, next, test, way.work) - (test >> k_itself_bits);
-        branch.quiet = max(beyond >> (k_pixel_bits - k_itself_bits), 0) + 1;
-        met = beyond < 0;
-    }
-    branch.quiet = max(branch.quiet - 1, 0);
-    return met;
-}
-
-void take_step(inout Way way, inout Branch branch, Branch other) {
+void take_step() {
     const ivec2 middle = moved(branch.tip, branch.heading, k_step / 2);
-    const ivec2 heading = direction_at(way.layer, middle, branch.heading);
+    const ivec2 heading = direction_at(way_layer, middle, branch.heading);
     const ivec2 next = moved(branch.tip, heading, k_step);
     const uvec4 texel = texel_of(next);
-    if (heading == ivec2(0) || direction_word(texel, way.layer) == 0u || !is_free_step(branch.tip, next) ||
-        dot_of(heading, branch.heading) < parameters.least_turn_cosine * k_unit) {
-        branch.end = k_region_end;
-        return;
+    const bool is_straight = dot_of(heading, branch.heading) >= parameters.least_turn_cosine * k_unit;
+    const bool free = all(bvec4(heading != ivec2(0), direction_word(texel, way_layer) != 0u, is_straight,
+                                is_free_step(branch.tip, next)));
+    branch.turn += int(free) * (cross_of(branch.heading, heading) >> k_unit_bits);
+    bool clear = all(bvec2(free, is_clear(way_layer, next, spacing_of(texel), parameters.test_share)));
+    if (clear) clear = !meets_itself(next, texel);
+    if (clear) {
+        turns = ivec2(min(turns.x, branch.turn), max(turns.y, branch.turn));
+        branch.tip = next;
+        branch.heading = heading;
+        branch.reach += 1;
+        ways[ring_index(branch.sign * branch.reach)] = next;
+    } else {
+        branch.end = free ? k_crowd_end : k_region_end;
     }
-    branch.turn += cross_of(branch.heading, heading) >> k_unit_bits;
-    bool clear = is_clear(way.layer, next, spacing_of(texel), parameters.test_share);
-    when (clear) clear = !meets_itself(way, branch, other, next, texel);
-    if (!clear) {
-        branch.end = k_crowd_end;
-        return;
+}
+
+// Ends a leg of the walk and begins the next, on the other side or the same.
+void turn_to_leg(int leg) {
+    if (leg <= 3) branch.steps = branch.reach;
+    if (leg == 1 || leg == 2 || leg == 4) {
+        const Branch swapped = branch;
+        branch = other;
+        other = swapped;
     }
-    way.turns = ivec2(min(way.turns.x, branch.turn), max(way.turns.y, branch.turn));
-    branch.tip = next;
-    branch.heading = heading;
-    branch.reach += 1;
-    const int place = branch.sign * branch.reach;
-    ways[way.first + uint(place < 0 ? place + int(parameters.room) : place)] = next;
+    if (leg < 2 || branch.end == k_length_end) branch.end = k_no_end;
+    branch.quiet = 0;
 }
 
 // Walks in five legs: on to a share of the length, back to all of it, and where that ended early on; then ahead of both ends.
-void walk(inout Way way, int first_share) {
-    const int ahead = gap_steps(way.texel) + least_steps(way.texel, 2);
-    for (int leg = 0; leg < 5; ++leg) {
-        const bool is_back = leg == 1 || leg == 4;
-        Branch branch = way.on, other = way.back;
-        if (is_back) {
-            branch = way.back;
-            other = way.on;
+void walk(int first_share) {
+    const int ahead = gap_steps() + least_steps(2);
+    int leg = 0;
+    while (leg < 5) {
+        const int share = leg == 0 ? first_share : 1 << k_share_bits;
+        const int target = target_steps(texel_of(branch.tip), length_share) * share >> k_share_bits;
+        const bool done = leg < 3 ? last_place() >= target : branch.reach == branch.steps + ahead;
+        if (branch.end == k_no_end && done) branch.end = k_length_end;
+        if (branch.end == k_no_end) {
+            take_step();
+        } else {
+            ++leg;
+            if (leg < 5) turn_to_leg(leg);
         }
-        if (leg >= 2 && branch.end != k_length_end) continue;
-        const int share = leg == 0 ? first_share : 1 << k_share_bits, most = branch.steps + ahead;
-        branch.end = k_no_end;
-        branch.quiet = 0;
-        while (branch.end == k_no_end) {
-            const int target = target_steps(texel_of(branch.tip), way.length_share) * share >> k_share_bits;
-            if (leg < 3 ? branch.reach + other.reach >= target : branch.reach == most)
-                branch.end = k_length_end;
-            else
-                take_step(way, branch, other);
-        }
-        if (leg < 3) branch.steps = branch.reach;
-        if (is_back)
-            way.back = branch;
-        else
-            way.on = branch;
     }
-    way.work += last_of(way);
 }
 
 // 1 if a place of the way is beside the gap at the end of a stroke, or that is not known.
-int is_in_line(Way way, int place) {
-    if (place < 0 || place > last_of(way)) return 1;
-    const ivec2 point = point_at(way, place);
+int is_in_line(int place) {
+    const bool known = place == clamp(place, 0, last_place());
+    const ivec2 point = ways[ring_index(mix(0, place - back_reach(), known))];
     const int spacing = spacing_of(texel_of(point));
-    return is_clear(way.layer, point, spacing, k_beside_stroke) && !is_clear(way.layer, point, spacing, k_beside_gap) ? 1
-                                                                                                                    : 0;
+    const uint squared = squared_distance(way_layer, point);
+    const uint least = uint(share_of_spacing(spacing, k_beside_stroke) >> parameters.near_shift);
+    const uint most = uint(share_of_spacing(spacing, k_beside_gap) >> parameters.near_shift);
+    return int(any(bvec2(!known, all(bvec2(squared >= least * least, squared < most * most)))));
 }
 
 // A part of the way, begin and end in steps, or it moved by up to two gaps either way, or shortened by as much at its free
 // end: the first of which the fewest free ends have their gap beside that of another stroke.
-ivec2 out_of_line(Way way, ivec2 part, ivec2 move) {
-    const int gap = gap_steps(way.texel), steps = part.y - part.x;
+ivec2 out_of_line(ivec2 part, ivec2 move) {
+    const int gap = gap_steps(), steps = part.y - part.x;
     ivec2 best = part;
     int least = 3;
     for (int i = 0; i < 5; ++i) {
         const int shift = ((i + 1) / 2) * (i % 2 == 0 ? -gap : gap);
         const ivec2 shifted = part + shift * move;
         const int left = shifted.y - shifted.x;
-        if (shifted.x < 0 || shifted.y > last_of(way) || left > steps || 4 * left < 3 * steps) continue;
-        int in_line = 0;
-        if (move.x != 0) in_line += is_in_line(way, shifted.x - gap / 2);
-        if (move.y != 0) in_line += is_in_line(way, shifted.y + gap / 2);
-        if (in_line >= least) continue;
-        least = in_line;
-        best = shifted;
+        const bool valid =
+            all(bvec4(shifted.x >= 0, shifted.y <= last_place(), left <= steps, 4 * left >= 3 * steps));
+        int in_line = mix(3, 0, valid);
+        if (move.x != 0) in_line += is_in_line(shifted.x - gap / 2);
+        if (move.y != 0) in_line += is_in_line(shifted.y + gap / 2);
+        if (in_line < least) best = shifted;
+        least = min(least, in_line);
     }
     return best;
 }
 
-// The part of the way that becomes the stroke.
-ivec2 fitted(Way way) {
-    const int steps = way.on.steps + way.back.steps, all = last_of(way);
-    const bool on_is_free = way.on.end == k_length_end, back_is_free = way.back.end == k_length_end;
+// The part of the way that becomes the stroke. The walk ends with the side that it went back, so `other` is the one on.
+ivec2 fitted() {
+    const int steps = branch.steps + other.steps, all = last_place();
+    const bool on_is_free = other.end == k_length_end, back_is_free = branch.end == k_length_end;
     ivec2 part = ivec2(0, all), move = ivec2(back_is_free, on_is_free);
-    if (on_is_free && back_is_free)
-        part = ivec2(way.back.reach - way.back.steps, way.back.reach + way.on.steps);
-    else if (on_is_free)
-        part = ivec2(0, steps), move = ivec2(0, -1);
-    else if (back_is_free)
+    if (on_is_free && back_is_free) {
+        part = branch.reach + ivec2(-branch.steps, other.steps);
+    } else if (on_is_free) {
+        part = ivec2(0, steps);
+        move = ivec2(0, -1);
+    } else if (back_is_free) {
         part = ivec2(all - steps, all);
-    if (on_is_free || back_is_free) return out_of_line(way, part, move);
-    if (all <= target_steps(way.texel, (1 << k_share_bits) + parameters.jitter)) return part;
-    const int half_steps = max((all - gap_steps(way.texel)) / 2, least_steps(way.texel, 2));
-    return way.on.steps == way.on.reach ? ivec2(all - half_steps, all) : ivec2(0, half_steps);
+    }
+    if (on_is_free || back_is_free) return out_of_line(part, move);
+    if (all <= target_steps(way_texel, (1 << k_share_bits) + parameters.jitter)) return part;
+    const int half_steps = max((all - gap_steps()) / 2, least_steps(2));
+    return other.steps == other.reach ? ivec2(all - half_steps, all) : ivec2(0, half_steps);
 }
 
-// Follows the stroke from a seed; whether it is long enough, and which part of its way it is.
-bool trace(inout Way way, out ivec2 part) {
-    const uint chance = scatter(uint(way.seed.x) ^ scatter(uint(way.seed.y) ^ scatter(parameters.seed + way.layer)));
-    way.length_share = (1 << k_share_bits) + ((int(chance & 2047u) - 1024) * parameters.jitter >> k_share_bits);
-    ways[way.first] = way.seed;
-    walk(way, 256 + int(chance >> 11 & 511u));
-    part = fitted(way);
-    const int crowded = (way.on.end == k_crowd_end ? 1 : 0) + (way.back.end == k_crowd_end ? 1 : 0);
-    return part.y - part.x >= least_steps(way.texel, crowded);
+// Follows the stroke of a layer from a seed, with the points of its way from `first` on; whether it is long enough, and which
+// part of its way it is.
+bool trace(uint first, uint layer, ivec2 seed, ivec2 heading, out ivec2 part) {
+    way_first = first;
+    way_layer = layer;
+    way_texel = texel_of(seed);
+    turns = ivec2(0);
+    branch = Branch(seed, heading, 1, 0, 0, 0, 0, k_no_end);
+    other = Branch(seed, -heading, -1, 0, 0, 0, 0, k_no_end);
+    ways[first] = seed;
+    const uint chance = scatter(uint(seed.x) ^ scatter(uint(seed.y) ^ scatter(parameters.seed + layer)));
+    length_share = (1 << k_share_bits) + ((int(chance & 2047u) - 1024) * parameters.jitter >> k_share_bits);
+    walk(256 + int(chance >> 11 & 511u));
+    part = fitted();
+    const int crowded = (branch.end == k_crowd_end ? 1 : 0) + (other.end == k_crowd_end ? 1 : 0);
+    return part.y - part.x >= least_steps(crowded);
 }
 
-// 0 if a stroke has three quarters of its target length or more; up to 3.
-uint shortness(Way way, int steps) {
-    return uint(3 - clamp(4 * steps / max(target_steps(way.texel, way.length_share), 1), 0, 3));
+// 0 if a stroke of the way has three quarters of its target length or more; up to 3.
+uint shortness(int steps) {
+    return uint(3 - clamp(4 * steps / max(target_steps(way_texel, length_share), 1), 0, 3));
 }
 
 #endif

@@ -14,7 +14,7 @@ const int k_spacing_bits = 6;
 const int k_length_bits = 2;
 const int k_step = 4094;
 const int k_least_steps = 2;
-const int k_most_round_work = 16384;
+const uint k_most_places = 16384;
 const uint k_right_barrier = 1u;
 const uint k_lower_barrier = 2u;
 
@@ -63,6 +63,10 @@ const uint k_source_mask = 255u;
 
 // What is tried at a place of the round's list. The points of its way are at (way_begin + i) % room of the place's room.
 struct TrialRecord {
+    int seed_x;
+    int seed_y;
+    int heading_x;
+    int heading_y;
     uint state;
     uint claim;
     uint way_begin;
@@ -72,9 +76,11 @@ struct TrialRecord {
     uint listed;  // not of this place: the listed[i] of all are the places that have something to try, in any order
     uint target;  // where the stroke's points go
 };
-const uint k_open_trial = 1u;  // flags of a state, which has the layer from bit k_layer_shift on
-const uint k_lost_trial = 2u;
-const uint k_pending_trial = 4u;  // its list is not used up, but the round was too short for more
+// Flags of a state, which has the layer from bit k_layer_shift on.
+const uint k_pending_trial = 1u;  // its list is not used up
+const uint k_seeded_trial = 2u;   // there is a place where a stroke may begin
+const uint k_open_trial = 4u;     // and a stroke
+const uint k_lost_trial = 8u;
 
 // Numbers that the device finds by itself: how much there is, and the arguments of indirect commands.
 struct PlacementCounts {
@@ -83,7 +89,8 @@ struct PlacementCounts {
     uint front;      // lists of the front
     uint strokes;
     uint points;
-    uint full;  // what there is no room for, of all that this round would place: it is to be done again
+    uint full;  // what there is no room for, of all that this round would place: its end is to be done again
+    uint held_groups;  // of candidates, then
     uint trial_groups[3];
     uint candidate_groups[3];  // PlacementParameters::parts per trial that has something to try
     uint place_groups[3];
@@ -106,8 +113,8 @@ EXEMPLAR_LAYOUT(PlacementParameters, width, height, seed, test_share, hole_share
                 near_shift, room, candidates, block_bits, blocks, rounds_left, stroke_room, point_room, list_room, parts,
                 unused0, unused1)
 EXEMPLAR_LAYOUT(SeedListRecord, kind, first, second, next)
-EXEMPLAR_LAYOUT(TrialRecord, state, claim, way_begin, way_count, begin, count, listed, target)
-EXEMPLAR_LAYOUT(PlacementCounts, trials, in_blocks, front, strokes, points, full, trial_groups, candidate_groups,
+EXEMPLAR_LAYOUT(TrialRecord, seed_x, seed_y, heading_x, heading_y, state, claim, way_begin, way_count, begin, count, listed, target)
+EXEMPLAR_LAYOUT(PlacementCounts, trials, in_blocks, front, strokes, points, full, held_groups, trial_groups, candidate_groups,
                 place_groups)
 EXEMPLAR_LAYOUT(StrokeRecord, first, count, layer, unused)
 #endif

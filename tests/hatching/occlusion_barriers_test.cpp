@@ -66,7 +66,7 @@ TEST(OcclusionBarriers, ABallIsDividedFromTheWallBehindIt) {
     for (int y = 0; y + 1 < k_size; ++y)
         for (int x = 0; x + 1 < k_size; ++x) {
             const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
-            const std::uint8_t bits = barriers[static_cast<std::size_t>(y * k_size + x)];
+            const std::uint8_t bits = barriers[static_cast<std::size_t>(y) * k_size + static_cast<std::size_t>(x)];
             EXPECT_EQ((bits & k_barrier_right) != 0, is_ball(fx, fy) != is_ball(fx + 1, fy)) << x << " " << y;
             EXPECT_EQ((bits & k_barrier_below) != 0, is_ball(fx, fy) != is_ball(fx, fy + 1)) << x << " " << y;
         }

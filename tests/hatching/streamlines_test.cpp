@@ -11,6 +11,8 @@
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
 #include "host/hatching/occlusion_barriers.h"
+#include "host/hatching/placement_grid.h"
+#include "host/hatching/stroke_claims.h"
 #include "host/hatching/stroke_statistics.h"
 #include "tests/support/hatching_scenes.h"
 
@@ -28,6 +30,7 @@ float length_of(const HatchStroke& stroke) {
 
 std::vector<float> lengths_of(const std::vector<HatchStroke>& strokes) {
     std::vector<float> lengths;
+    lengths.reserve(strokes.size());
     for (const HatchStroke& stroke : strokes) lengths.push_back(length_of(stroke));
     std::ranges::sort(lengths);
     return lengths;
@@ -277,10 +280,9 @@ TEST(Streamlines, TakeWhatIsHardlyThere) {
     const auto dense = placer.place(nothing);
     for (const HatchStroke& stroke : dense) EXPECT_LE(length_of(stroke), 4);
     // Denser than pixels: as dense as strokes get.
-    const HatchingFields fine = even_fields(30, 30, 0.3f, 0.2f, 10);
-    const auto strokes = placer.place(fine);
-    EXPECT_GE(measure_spacing(strokes, fine).least_ratio, 0.65);
-    EXPECT_GT(strokes.size(), 50u);
+    EXPECT_EQ(placer.place(even_fields(30, 30, 0.3f, 0.2f, 10)), placer.place(even_fields(30, 30, 0.3f, 1, 10)));
+    const HatchingFields fine = even_fields(60, 60, 0.3f, 1.6f, 10);
+    EXPECT_GE(measure_spacing(placer.place(fine), fine).least_ratio, 0.65);
     // Sparser than the picture.
     EXPECT_LE(placer.place(even_fields(50, 50, 0.3f, 2000, 1e9f)).size(), 1u);
     EXPECT_GE(placer.place(even_fields(9, 300, 0.1f, 5, 100)).size(), 40u);
@@ -328,6 +330,42 @@ TEST(Streamlines, RefuseOptionsOutOfRange) {
     for (const float value : {0.0f, 2.0f, k_nan}) refused({.sharpest_turn = value});
     for (const float value : {-0.1f, k_nan}) refused({.length_hysteresis = value});
     for (const float value : {0.0f, 2.0f, k_nan}) refused({.most_deviation = value});
+}
+
+/// Claims are counted down round by round, and begin anew when there are none left.
+TEST(StrokeClaims, GoToTheLeastOfTheirRoundHoweverManyThereWere) {
+    const HatchingFields fields = even_fields(30, 30, 0);
+    const PlacementGrid grid = make_placement_grid(fields, {}, {});
+    StrokeClaims claims(grid);
+    const auto way = [](int y) {
+        std::vector<FinePoint> points;
+        for (int x = 5; x < 25; ++x) points.push_back({x * k_pixel, y * k_pixel});
+        return points;
+    };
+    for (int round = 0; round < 9000; ++round) {
+        claims.begin_round();
+        const std::uint32_t full = claims.claim_of(7, 0), shorter = claims.claim_of(3, 1),
+                            beside = claims.claim_of(4, 3);
+        ASSERT_LT(full, shorter);
+        claims.claim(0, way(10), shorter);
+        claims.claim(0, way(14), full);
+        claims.claim(0, way(20), beside);
+        claims.claim(1, way(14), shorter);
+        ASSERT_TRUE(claims.wins(0, way(14), full));
+        ASSERT_FALSE(claims.wins(0, way(10), shorter));
+        ASSERT_TRUE(claims.wins(0, way(20), beside));
+        ASSERT_TRUE(claims.wins(1, way(14), shorter));
+    }
+}
+
+TEST(StrokeClaims, AreAllDifferent) {
+    const PlacementGrid grid = make_placement_grid(even_fields(3, 3, 0), {}, {});
+    StrokeClaims claims(grid);
+    claims.begin_round();
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t place = 0; place < 1U << 18; ++place) all.push_back(claims.claim_of(place, place % 4));
+    std::ranges::sort(all);
+    EXPECT_EQ(std::ranges::adjacent_find(all), all.end());
 }
 
 /// The share of strokes in `before` that are among `after`, but for a tenth of a pixel of each point and its ends.

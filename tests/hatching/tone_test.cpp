@@ -85,7 +85,8 @@ TEST(Ink, MeansOverWindowsAreMeans) {
                 double total = 0, count = 0;
                 for (int j = std::max(0, y - reach); j <= std::min(k_height - 1, y + reach); ++j)
                     for (int i = std::max(0, x - reach); i <= std::min(k_width - 1, x + reach); ++i) {
-                        total += static_cast<double>(values[static_cast<std::size_t>(j * k_width + i)]);
+                        total += static_cast<double>(
+                            values[static_cast<std::size_t>(j) * k_width + static_cast<std::size_t>(i)]);
                         ++count;
                     }
                 ASSERT_NEAR(means.mean(x, y, reach), total / count, 1e-9);

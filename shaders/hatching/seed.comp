@@ -1,0 +1,39 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/lib/dispatch.glsl"
+#include "shaders/shared/hatching.h"
+
+// Looks for the next place of seed lists that a stroke may begin at, from where each was left on (host/hatching/stroke_front.cpp).
+// One list per invocation: reads some 15 texels per place.
+layout(local_size_x = k_hatch_group) in;
+layout(push_constant) uniform Push { PlacementParameters parameters; };
+layout(set = 0, binding = 0) uniform usamplerBuffer grid;
+layout(set = 0, binding = 1) uniform usamplerBuffer near;
+layout(set = 0, binding = 2) uniform usamplerBuffer stroke_points;
+layout(set = 0, binding = 3, std430) buffer Lists { SeedListRecord lists[]; };
+layout(set = 0, binding = 4, std430) writeonly buffer Trials { TrialRecord trials[]; };
+layout(set = 0, binding = 5, std430) readonly buffer Counts { PlacementCounts counts; };
+#include "shaders/lib/stroke_seeds.glsl"
+
+void main() {
+    const uint i = linear_thread();
+    if (i >= counts.trials) return;
+
+    const uint index = counts.in_blocks != 0u ? i : parameters.blocks + i;
+    const SeedListRecord list = lists[index];
+    const uint count = seed_count(list), end = min(count, list.next + k_most_places);
+    uint next = list.next;
+    bool found = false;
+    ivec2 point = ivec2(0), heading = ivec2(0);
+    while (!found && next < end) {
+        found = seed_at(list, next, point, heading);
+        if (!found) ++next;
+    }
+    lists[index].next = next;
+    trials[i].seed_x = point.x;
+    trials[i].seed_y = point.y;
+    trials[i].heading_x = heading.x;
+    trials[i].heading_y = heading.y;
+    trials[i].state = (next < count ? k_pending_trial : 0u) | (found ? k_seeded_trial : 0u) |
+                      (list.kind >> k_layer_shift) << k_layer_shift;
+}

@@ -18,7 +18,7 @@ namespace {
 
 /// Sums of one bin of a feature.
 struct BinSums {
-    double weight = 0, target = 0;
+    double weight = 0, target = 0, squares = 0;
 };
 
 /// A weak regressor while it is sought: log(a x + b).
@@ -221,7 +221,9 @@ class Learning {
         return {best_a * scale, best_b - best_a * scale * low, best};
     }
 
-    std::vector<Candidate> candidates(std::span<const double> exponents) const {
+    /// Of all expanded features, `count` at most: of those that fit best, the ones that hold best in other blocks.
+    std::vector<Candidate> candidates(std::span<const double> exponents, std::size_t count) const {
+        constexpr std::size_t k_checked = 64;
         std::vector<Candidate> all(training_.features.cols() * k_powers);
         parallel_for(training_.features.cols(), [&](std::size_t f) {
             std::vector<BinSums> sums(middle_[f].size());
@@ -233,7 +235,59 @@ class Learning {
             for (std::size_t p = 0; p < (inverses_[f] ? k_powers : 2); ++p)
                 all[f * k_powers + p] = fit(static_cast<std::uint32_t>(f * k_powers + p), sums, exponents);
         });
+        std::erase_if(all, [](const Candidate& candidate) { return !std::isfinite(candidate.error); });
+        keep_least(all, k_checked);
+        parallel_for(all.size(), [&](std::size_t i) { all[i].error = error_of_blocks(all[i].term); });
+        keep_least(all, count);
         return all;
+    }
+
+    static void keep_least(std::vector<Candidate>& all, std::size_t count) {
+        count = std::min(count, all.size());
+        std::ranges::partial_sort(all, all.begin() + static_cast<std::ptrdiff_t>(count), {}, &Candidate::error);
+        all.resize(count);
+    }
+
+    /// Squares of each block about the curve that is fitted to the others, with the exponent of the term.
+    double error_of_blocks(const PropertyModel::Term& term) const {
+        const std::size_t base = term.feature / k_powers, count = middle_[base].size();
+        const double exponent = static_cast<double>(term.exponent);
+        const std::vector<BinSums> by_block = sums_by_block(base, exponent);
+        std::vector<double> x(count);
+        for (std::size_t b = 0; b < count; ++b)
+            x[b] = static_cast<double>(power_of(middle_[base][b], term.feature % k_powers));
+        double total = 0;
+        for (std::size_t block = 0; block < k_property_blocks; ++block) {
+            std::vector<BinSums> others(count);
+            for (std::size_t i = 0; i < by_block.size(); ++i) {
+                if (i / count == block) continue;
+                others[i % count].weight += by_block[i].weight;
+                others[i % count].target += by_block[i].target;
+            }
+            const auto [a, b, error] =
+                fit_line(x, others, static_cast<double>(term.low), static_cast<double>(term.high));
+            for (std::size_t k = 0; k < count; ++k) {
+                const BinSums& own = by_block[block * count + k];
+                const double value = std::log(std::max(a * x[k] + b, static_cast<double>(least_)));
+                total += own.squares - 2 * value * own.target + value * value * own.weight;
+            }
+        }
+        return exponent * exponent * total;
+    }
+
+    /// Per block and bin of a feature, of what a term without its exponent aims at.
+    std::vector<BinSums> sums_by_block(std::size_t feature, double exponent) const {
+        const std::size_t count = middle_[feature].size();
+        std::vector<BinSums> sums(k_property_blocks * count);
+        const std::span<const std::uint8_t> bins = training_.quantized.column(feature);
+        for (std::size_t i = 0; i < weight_.size(); ++i) {
+            BinSums& bin = sums[training_.block[i] * count + bins[i]];
+            const double target = aim_[i] / exponent;
+            bin.weight += weight_[i];
+            bin.target += weight_[i] * target;
+            bin.squares += weight_[i] * target * target;
+        }
+        return sums;
     }
 
     /// log(a x + b) of a row.
@@ -254,34 +308,30 @@ class Learning {
     /// b are those of about the right one.
     bool add_selected() {
         constexpr std::array k_exponents{1.0, 0.5, 2.0, -0.5, -1.0};
-        const std::vector<Candidate> all = candidates(k_exponents);
-        const Candidate& best = *std::ranges::min_element(all, {}, &Candidate::error);
-        if (!std::isfinite(best.error)) return false;
+        const std::vector<Candidate> best = candidates(k_exponents, 1);
+        if (best.empty()) return false;
+        const PropertyModel::Term& term = best[0].term;
         std::vector<float> values(weight_.size());
-        for (std::size_t i = 0; i < values.size(); ++i) values[i] = log_value(best.term, i);
-        model_.terms.push_back(best.term);
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = log_value(term, i);
+        model_.terms.push_back(term);
         values_.push_back(std::move(values));
         return true;
     }
 
     /// Adds the best weak regressor; false if there is none.
     bool add_boosted(bool first) {
-        std::vector<Candidate> all = candidates(std::array{1.0});
         constexpr std::size_t k_finalists = 8;
-        const std::size_t finalists = std::min(k_finalists, all.size());
-        std::ranges::partial_sort(all, all.begin() + static_cast<std::ptrdiff_t>(finalists), {}, &Candidate::error);
         double best = std::numeric_limits<double>::infinity(), best_r = 1;
         std::vector<float> best_values;
         PropertyModel::Term term;
-        for (std::size_t c = 0; c < finalists; ++c) {
-            if (!std::isfinite(all[c].error)) continue;
+        for (const Candidate& candidate : candidates(std::array{1.0}, k_finalists)) {
             std::vector<float> values(weight_.size());
-            for (std::size_t i = 0; i < values.size(); ++i) values[i] = log_value(all[c].term, i);
+            for (std::size_t i = 0; i < values.size(); ++i) values[i] = log_value(candidate.term, i);
             const auto [objective, r] = line_search(values, first);
             if (!(objective < best)) continue;
             best = objective;
             best_r = r;
-            term = all[c].term;
+            term = candidate.term;
             best_values = std::move(values);
         }
         if (best_values.empty()) return false;
@@ -346,7 +396,7 @@ class Learning {
     /// Fewer features carry over better to other shapes: a new one has to pay, and what is below a ten-thousandth of y
     /// is nothing.
     bool keep_better(const PropertyModel& model, LearnedProperty& best) const {
-        constexpr double k_worth = 0.995, k_nothing = 1e-8;
+        constexpr double k_worth = 0.98, k_nothing = 1e-8;
         const double e = error(model);
         if (!(e < k_worth * best.error - k_nothing)) return false;
         best = {model, e};
@@ -400,9 +450,12 @@ float PropertyModel::log_value(const Term& term, float x) {
 LearnedProperty learn_property(const PropertyTraining& training, const std::function<void()>& progress) {
     const std::size_t rows = training.features.rows;
     if (rows == 0 || training.target.size() != rows || training.held_out.size() != rows ||
-        training.quantized.rows != rows)
+        training.block.size() != rows || training.quantized.rows != rows)
         throw UsageError(
             "a property is learned from rows of features, one value each; their numbers differ or are zero");
+    for (const std::uint8_t block : training.block) {
+        if (block >= k_property_blocks) throw UsageError("a property is learned from rows of four blocks at most");
+    }
     for (const float y : training.target) {
         if (!(y > 0) || !std::isfinite(y))
             throw DataError("a property is learned from values that are positive and finite");

@@ -39,11 +39,15 @@ struct PropertyModel {
     bool operator==(const PropertyModel&) const = default;
 };
 
+/// Parts of a drawing, such as its quarters.
+constexpr std::size_t k_property_blocks = 4;
+
 struct PropertyTraining {
     const FeatureMatrix& features;       ///< base features of the rows
     const QuantizedFeatures& quantized;  ///< of the same
     std::span<const float> target;       ///< y, positive; one per row
     std::span<const std::uint8_t> held_out;
+    std::span<const std::uint8_t> block;  ///< which part of the drawing each row is in, below k_property_blocks
     std::size_t most_terms = 24;
 };
 
@@ -58,8 +62,9 @@ struct LearnedProperty {
 /// it ends where the rows held out are fitted best. Beyond the thesis, the exponents of the chosen terms, in the thesis
 /// r_k / sum of r, are also fitted by least squares, and models found by forward selection compete, whose terms fit
 /// what those before them leave: all terms of boosting aim at y, so that it may not come to the second factor of a
-/// product. What fits the rows held out best is kept. Inverses of features that are next to zero on a hundredth of the
-/// rows are left out.
+/// product. What fits the rows held out best is kept, a term more only if it is better by 2%. Features are preferred
+/// whose function, fitted to the other blocks of the drawing, holds in each: many fit one shape by chance. Inverses of
+/// features that are next to zero on a hundredth of the rows are left out.
 LearnedProperty learn_property(
     const PropertyTraining& training, const std::function<void()>& progress = [] {});
 

@@ -94,6 +94,26 @@ class Learning {
         return held_out_rectangles(x, y, group, k_held_out, seed);
     }
 
+    /// Which quarter of the drawing each row is in: left or right, upper or lower half of the rows.
+    std::vector<std::uint8_t> quarters(std::span<const std::uint32_t> rows) const {
+        const auto width = static_cast<std::uint32_t>(drawing_.width);
+        std::vector<std::uint32_t> x, y;
+        for (const std::uint32_t row : rows) {
+            x.push_back(pixel(row) % width);
+            y.push_back(pixel(row) / width);
+        }
+        const auto middle = [](std::vector<std::uint32_t> values) {
+            const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+            std::ranges::nth_element(values, at);
+            return *at;
+        };
+        const std::uint32_t middle_x = middle(x), middle_y = middle(y);
+        std::vector<std::uint8_t> quarter(rows.size());
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            quarter[i] = static_cast<std::uint8_t>((x[i] < middle_x ? 0 : 1) + (y[i] < middle_y ? 0 : 2));
+        return quarter;
+    }
+
     void learn_rules() {
         const std::vector<std::uint32_t> all = rows_where(
             [&](std::uint32_t p) { return drawing_.center[p] && !drawing_.crossing[p] && drawing_.level[p] > 0; });
@@ -257,7 +277,7 @@ class Learning {
         const FeatureMatrix features = features_of(rows, true);
         const QuantizedFeatures quantized = quantize(features, {}, {});
         const LearnedProperty learned =
-            learn_property({features, quantized, target, held_out(rows, {}, options_.seed + 12)},
+            learn_property({features, quantized, target, held_out(rows, {}, options_.seed + 12), quarters(rows)},
                            [&] { progress_(name_of(property)); });
         style_.properties[p] = learned.model;
         report_.property[p] = std::sqrt(learned.error);

@@ -35,6 +35,13 @@ double value(const FeatureMatrix& features, std::size_t column, std::size_t row)
     return static_cast<double>(features.column(column)[row]);
 }
 
+/// Four blocks.
+std::vector<std::uint8_t> blocks(std::size_t rows) {
+    std::vector<std::uint8_t> block;
+    for (std::size_t i = 0; i < rows; ++i) block.push_back(static_cast<std::uint8_t>(4 * i / rows));
+    return block;
+}
+
 /// Of 4000 rows, every fourth held out, with relative noise.
 LearnedProperty learned(const Truth& truth, double noise = 0) {
     const FeatureMatrix features = random_features(4000, 1);
@@ -45,7 +52,7 @@ LearnedProperty learned(const Truth& truth, double noise = 0) {
         target.push_back(static_cast<float>(truth(features, i) * std::exp(noise * random.normal())));
         held_out.push_back(i % 4 == 0);
     }
-    return learn_property({features, quantize(features, {}, {}), target, held_out});
+    return learn_property({features, quantize(features, {}, {}), target, held_out, blocks(features.rows)});
 }
 
 float evaluate(const PropertyModel& model, const FeatureMatrix& features, std::size_t row) {
@@ -97,6 +104,26 @@ TEST(PropertyModel, FindsInversesAndSquares) {
     const LearnedProperty found = learned(square);
     EXPECT_LT(unseen_error(found.model, square), 0.03);
     EXPECT_TRUE(uses_only(found.model, {3}));
+}
+
+// One that fits everywhere but in a quarter, and one that is a little worse, but everywhere.
+TEST(PropertyModel, PrefersWhatHoldsEverywhere) {
+    Random random(7);
+    FeatureMatrix features;
+    features.rows = 4000;
+    const std::vector<std::uint8_t> block = blocks(features.rows);
+    std::vector<float> target;
+    std::vector<std::uint8_t> held_out;
+    for (const char* name : {"by chance", "true"}) features.add(name);
+    for (std::size_t i = 0; i < features.rows; ++i) {
+        const auto truth = static_cast<float>(1 + random.uniform());
+        target.push_back(truth);
+        features.column(1)[i] = truth * static_cast<float>(std::exp(0.05 * random.normal()));
+        features.column(0)[i] = block[i] == 3 ? static_cast<float>(1.5 + 0.01 * random.uniform()) : truth;
+        held_out.push_back(block[i] != 3 && i % 4 == 0);
+    }
+    const LearnedProperty found = learn_property({features, quantize(features, {}, {}), target, held_out, block, 1});
+    EXPECT_TRUE(uses_only(found.model, {1}));
 }
 
 TEST(PropertyModel, AConstantNeedsNoFeatures) {
@@ -161,18 +188,20 @@ TEST(PropertyModel, IsDeterministic) {
 TEST(PropertyModel, BadInputIsRefused) {
     const FeatureMatrix features = random_features(50, 1), none = random_features(0, 1);
     const QuantizedFeatures quantized = quantize(features, {}, {}), no_quantized = quantize(none, {}, {});
-    const std::vector<std::uint8_t> held(50), few(49);
+    const std::vector<std::uint8_t> held(50), few(49), block(50), fifth(50, 4);
     const std::vector<float> good(50, 1.0f), missing(49, 1.0f);
-    EXPECT_NO_THROW(learn_property({features, quantized, good, held}));
-    EXPECT_THROW(learn_property({features, quantized, missing, held}), UsageError);
-    EXPECT_THROW(learn_property({features, quantized, good, few}), UsageError);
-    EXPECT_THROW(learn_property({features, no_quantized, good, held}), UsageError);
-    EXPECT_THROW(learn_property({none, no_quantized, {}, {}}), UsageError);
+    EXPECT_NO_THROW(learn_property({features, quantized, good, held, block}));
+    EXPECT_THROW(learn_property({features, quantized, missing, held, block}), UsageError);
+    EXPECT_THROW(learn_property({features, quantized, good, few, block}), UsageError);
+    EXPECT_THROW(learn_property({features, quantized, good, held, few}), UsageError);
+    EXPECT_THROW(learn_property({features, quantized, good, held, fifth}), UsageError);
+    EXPECT_THROW(learn_property({features, no_quantized, good, held, block}), UsageError);
+    EXPECT_THROW(learn_property({none, no_quantized, {}, {}, {}}), UsageError);
     for (const float bad :
          {0.0f, -1.0f, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {
         std::vector<float> target = good;
         target[17] = bad;
-        EXPECT_THROW(learn_property({features, quantized, target, held}), DataError) << bad;
+        EXPECT_THROW(learn_property({features, quantized, target, held, block}), DataError) << bad;
     }
 }
 

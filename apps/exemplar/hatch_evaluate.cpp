@@ -16,6 +16,7 @@
 #include "host/data/npy.h"
 #include "host/hatching/hatching_errors.h"
 #include "host/hatching/occlusion_barriers.h"
+#include "host/hatching/stroke_relaxation.h"
 #include "host/hatching/stroke_statistics.h"
 #include "host/hatching/style_learning.h"
 #include "host/hatching/tone_matching.h"
@@ -203,7 +204,7 @@ class StyleEvaluation {
         row["global_rule_degrees"] = rule_error(global_, pixels, truth);
         row["curvature_only_degrees"] = rule_error(curvature_, pixels, truth);
         const auto barriers = occlusion_barriers(pixels.gbuffer().depth, truth.width, truth.height);
-        std::vector<HatchStroke> strokes = scene.placer().place(predicted.fields, barriers, {}, {});
+        std::vector<HatchStroke> strokes = place_evenly(scene.placer(), predicted.fields, barriers, {});
         match_tone(strokes, predicted.fields);
         row["drawn_spacing"] = measure_spacing(strokes, predicted.fields).median_error;
         row["drawn_tone"] = measure_tone(strokes, predicted.fields).median_error;

@@ -39,7 +39,7 @@ std::vector<float> derivative_weights(float sigma) {
 
 void filter_row(const float* row, int width, std::span<const float> weights, std::vector<float>& padded, float* out) {
     const int reach = static_cast<int>(weights.size() / 2);
-    padded.resize(static_cast<std::size_t>(width + 2 * reach));
+    padded.resize(static_cast<std::size_t>(width) + 2 * static_cast<std::size_t>(reach));
     for (int x = -reach; x < width + reach; ++x) padded[x + reach] = row[std::clamp(x, 0, width - 1)];
     std::fill_n(out, width, 0.0f);
     for (std::size_t k = 0; k < weights.size(); ++k)

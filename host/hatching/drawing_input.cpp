@@ -45,8 +45,9 @@ FloatImage gray_over_white(const Image& drawing) {
 
 Terms terms_at(std::size_t i, const FloatImage& gray) {
     const std::size_t width = static_cast<std::size_t>(gray.width);
-    const double x = 2 * (static_cast<double>(i % width) + 0.5) / gray.width - 1;
-    const double y = 2 * (static_cast<double>(i / width) + 0.5) / gray.height - 1;
+    const std::size_t row = i / width, column = i % width;
+    const double x = 2 * (static_cast<double>(column) + 0.5) / gray.width - 1;
+    const double y = 2 * (static_cast<double>(row) + 0.5) / gray.height - 1;
     return (Terms() << 1, x, y, x * x, x * y, y * y).finished();
 }
 

@@ -116,6 +116,7 @@ std::string describe(const HatchingStyle& style, const CalibratedStumps& classif
     std::map<std::uint32_t, std::size_t> counts;
     for (const Stump& stump : classifier.stumps.stumps) ++counts[stump.feature];
     std::vector<std::pair<std::size_t, std::uint32_t>> order;
+    order.reserve(counts.size());
     for (const auto& [feature, count] : counts) order.emplace_back(count, feature);
     std::ranges::sort(order, std::ranges::greater{});
     std::string text;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
@@ -63,6 +64,26 @@ std::vector<T> chosen(std::span<const T> values, std::span<const std::uint32_t> 
     return out;
 }
 
+Booster booster_of(const ClassifierTraining& training, const TrainingSet& set) {
+    const BoostOptions options{.shrinkage = k_shrinkage, .seed = training.seed};
+    return training.gentle ? Booster::gentle(set, options) : Booster(set, training.classes, options);
+}
+
+/// So many rounds with all rows: what was held out is a part of the drawing, too.
+BoostedStumps with_all_rows(const ClassifierTraining& training, const QuantizedFeatures& quantized,
+                            std::span<const float> weights, std::size_t rounds, const std::function<void()>& progress) {
+    std::vector<std::uint32_t> rows(training.features.rows);
+    std::iota(rows.begin(), rows.end(), 0U);
+    const TrainingSet set{quantized, training.labels, weights, rows};
+    Booster booster = booster_of(training, set);
+    for (std::size_t round = 0; round < rounds; ++round) {
+        check_interrupt();
+        booster.add_stump();
+        progress();
+    }
+    return booster.classifier();
+}
+
 }  // namespace
 
 LearnedClassifier learn_classifier(const ClassifierTraining& training, const std::function<void()>& progress) {
@@ -77,8 +98,7 @@ LearnedClassifier learn_classifier(const ClassifierTraining& training, const std
     weights.resize(training.features.rows, 1.0f);
     const QuantizedFeatures quantized = quantize(features.matrix, weights, {});
     const TrainingSet set{quantized, training.labels, weights, rows};
-    const BoostOptions options{.shrinkage = k_shrinkage, .seed = training.seed};
-    Booster booster = training.gentle ? Booster::gentle(set, options) : Booster(set, training.classes, options);
+    Booster booster = booster_of(training, set);
 
     const std::vector<std::int32_t> labels = chosen(training.labels, judges);
     const std::vector<float> judge_weights = chosen(std::span<const float>(weights), judges);
@@ -97,7 +117,7 @@ LearnedClassifier learn_classifier(const ClassifierTraining& training, const std
         best_rounds = round;
         best = {{{}, held.link, held.scale}, held.error, held.loss};
     }
-    best.classifier.stumps = truncate(booster.classifier(), best_rounds);
+    best.classifier.stumps = with_all_rows(training, quantized, weights, best_rounds, progress);
     for (Stump& stump : best.classifier.stumps.stumps) stump.feature = features.expanded[stump.feature];
     return best;
 }

@@ -15,7 +15,8 @@ std::vector<std::array<std::uint32_t, 2>> neighbor_pairs(const CoveredPixels& pi
         const int x = static_cast<int>(pixels.pixel[i]) % width, y = static_cast<int>(pixels.pixel[i]) / width;
         for (const auto& [dx, dy] : k_steps) {
             if (x + dx < 0 || x + dx >= width || y + dy >= height) continue;
-            const std::int32_t j = pixels.row[static_cast<std::size_t>((y + dy) * width + x + dx)];
+            const std::int32_t j = pixels.row[static_cast<std::size_t>(y + dy) * static_cast<std::size_t>(width) +
+                                              static_cast<std::size_t>(x + dx)];
             if (j >= 0) pairs.push_back({i, static_cast<std::uint32_t>(j)});
         }
     }

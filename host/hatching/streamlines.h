@@ -14,7 +14,7 @@ struct StrokeOptions {
     std::uint64_t seed = 1;
     /// Strokes of a layer end where they come nearer to each other than this share of the spacing, in (0, 1). Where
     /// that is under a pixel some may come nearer.
-    float test_distance = 0.7f;
+    float test_distance = 0.65f;
     /// A stroke that has less room than this share of its target length, in [0, 1], is not drawn; three spacings are
     /// always enough, two where other strokes end only one of its ends, and one where none does.
     float least_length = 1.0f / 3;

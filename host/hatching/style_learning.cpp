@@ -12,6 +12,7 @@
 #include "host/core/stopwatch.h"
 #include "host/hatching/expanded_features.h"
 #include "host/hatching/pixel_classifier.h"
+#include "host/hatching/powers.h"
 
 namespace exemplar {
 namespace {
@@ -254,6 +255,7 @@ class Learning {
     void learn_levels() {
         const std::vector<std::uint32_t> rows = sample(numbers(0, pixels_.size()), options_.samples, options_.seed + 8);
         std::vector<std::int32_t> labels;
+        labels.reserve(rows.size());
         for (const std::uint32_t row : rows) labels.push_back(drawing_.level[pixel(row)]);
         const FeatureMatrix features = features_of(rows, true);
         const LearnedClassifier learned = learn_classifier(
@@ -273,6 +275,7 @@ class Learning {
                                         name_of(property), rows.size()));
         rows = sample(std::move(rows), options_.samples, options_.seed + 11);
         std::vector<float> target;
+        target.reserve(rows.size());
         for (const std::uint32_t row : rows) target.push_back(values[pixel(row)]);
         const FeatureMatrix features = features_of(rows, true);
         const QuantizedFeatures quantized = quantize(features, {}, {});
@@ -280,7 +283,23 @@ class Learning {
             learn_property({features, quantized, target, held_out(rows, {}, options_.seed + 12), quarters(rows)},
                            [&] { progress_(name_of(property)); });
         style_.properties[p] = learned.model;
+        if (property == StrokeProperty::length)
+            style_.properties[p].factor *= longest_share(learned.model, features, target);
         report_.property[p] = std::sqrt(learned.error);
+    }
+
+    /// Strokes are as long as they are meant to be, or as there is room: by how much the longer ones are over the mean.
+    static float longest_share(const PropertyModel& model, const FeatureMatrix& features,
+                               std::span<const float> target) {
+        constexpr double k_quantile = 0.9;
+        std::vector<float> ratio(target.size());
+        for (std::size_t i = 0; i < ratio.size(); ++i)
+            ratio[i] = target[i] / model.evaluate([&](std::uint32_t k) {
+                return power_of(features.column(k / k_powers)[i], k % k_powers);
+            });
+        const auto at = ratio.begin() + static_cast<std::ptrdiff_t>(k_quantile * static_cast<double>(ratio.size() - 1));
+        std::ranges::nth_element(ratio, at);
+        return *at;
     }
 
     PixelFeatures& pixels_;

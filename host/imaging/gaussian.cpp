@@ -13,8 +13,8 @@ namespace exemplar {
 
 double GaussianKernel::moment(int power) const {
     double sum = 0;
-    for (int k = -radius; k <= radius; ++k)
-        sum += weights[static_cast<std::size_t>(radius + k)] * std::pow(k / static_cast<double>(sigma), power);
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        sum += weights[i] * std::pow((static_cast<double>(i) - radius) / static_cast<double>(sigma), power);
     return sum;
 }
 

@@ -60,8 +60,8 @@ Plane masked(const Mask& mask, const ImageStack& images, std::size_t image) {
 /// Weights of a Gaussian times powers of the offset, which is in units of sigma.
 std::vector<double> weights_of_order(const GaussianKernel& kernel, int order) {
     std::vector<double> weights = kernel.weights;
-    for (int k = -kernel.radius; k <= kernel.radius; ++k)
-        weights[static_cast<std::size_t>(kernel.radius + k)] *= std::pow(k / static_cast<double>(kernel.sigma), order);
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        weights[i] *= std::pow((static_cast<double>(i) - kernel.radius) / static_cast<double>(kernel.sigma), order);
     return weights;
 }
 

@@ -6,6 +6,7 @@
 #include "host/core/random.h"
 #include "host/hatching/ink.h"
 #include "host/hatching/occlusion_barriers.h"
+#include "host/hatching/stroke_relaxation.h"
 
 namespace exemplar {
 namespace {
@@ -40,7 +41,7 @@ RuledDrawing draw_by_rule(std::string_view style, PixelFeatures& pixels, StrokeP
     StrokeOptions options;
     options.seed = seed;
     out.strokes =
-        placer.place(fields, occlusion_barriers(pixels.gbuffer().depth, fields.width, fields.height), options, {});
+        place_evenly(placer, fields, occlusion_barriers(pixels.gbuffer().depth, fields.width, fields.height), options);
     Random random(seed);
     for (HatchStroke& stroke : out.strokes) {
         const Vec2& middle = stroke.points[stroke.points.size() / 2];

@@ -75,7 +75,7 @@ Rule contour_rule() {
 Rule light_rule() {
     return {{"image.L.N@2", "image.a@3", "image.I@2", "image.V.N@3"}, [](const NamedFeatures& of, std::size_t row) {
                 Targets t;
-                t.level = of(1, row) < 0.55f ? 2 : of(0, row) < 0.7f ? 1 : 0;
+                t.level = of(1, row) < 0.9f ? 2 : of(0, row) < 0.7f ? 1 : 0;
                 t.direction = {of.direction("grad L.N,3", row), of.direction("perp grad L.N,3", row)};
                 t.spacing = 5.5f + 6 * of(0, row);
                 t.thickness = 2;

@@ -74,7 +74,8 @@ TEST(DirectionSmoothing, TurnsEvenlyBetweenWhatIsGiven) {
     for (std::size_t v = 0; v < completed.size(); ++v) {
         // The sum of two vectors of doubled angle, as far apart as 0.4, in between: to second order linear in the
         // angle.
-        const float t = static_cast<float>(v / k_around) / (k_rings - 1);
+        const std::size_t ring = v / k_around;
+        const float t = static_cast<float>(ring) / (k_rings - 1);
         const float x = (1 - t) * std::cos(2 * k_low) + t * std::cos(2 * k_high),
                     y = (1 - t) * std::sin(2 * k_low) + t * std::sin(2 * k_high);
         EXPECT_LT(angle_between(completed[v], helix(normals[v], 0.5f * std::atan2(y, x))), 2e-3f) << v;

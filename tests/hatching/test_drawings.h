@@ -42,8 +42,9 @@ inline std::uint64_t covered_samples(int x, int y, const Vec2& a, const Vec2& b,
     if (distance < half - 0.75f) return ~std::uint64_t{0};
     std::uint64_t bits = 0;
     for (int k = 0; k < 64; ++k) {
-        const Vec2 at(static_cast<float>(x) + (static_cast<float>(k % 8) + 0.5f) / 8,
-                      static_cast<float>(y) + (static_cast<float>(k / 8) + 0.5f) / 8);
+        const int row = k / 8, column = k % 8;
+        const Vec2 at(static_cast<float>(x) + (static_cast<float>(column) + 0.5f) / 8,
+                      static_cast<float>(y) + (static_cast<float>(row) + 0.5f) / 8);
         if (distance_to(at, a, b) <= half) bits |= std::uint64_t{1} << k;
     }
     return bits;

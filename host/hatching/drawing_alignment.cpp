@@ -125,19 +125,36 @@ struct ViewObject {
     float size;
 };
 
+/// Places on one border that are to lie on another. Only those vote where the two run alike: where the hatching ends in
+/// the midst of the object, because the rest is lit, its border crosses the object's, and would draw it along.
+struct Votes {
+    struct Vote {
+        Vec2 place;
+        float inset;  ///< how far inside of the object ink is to be expected, give or take as much
+    };
+    std::vector<Vote> cast;
+    std::size_t all = 0;  ///< places, those that do not vote included: each counts as one that fits nowhere
+};
+
 /// The drawing in the view as some place puts it.
 struct ViewDrawing {
-    std::vector<Vec2> ends;      ///< of strokes
-    std::vector<Vec2> contacts;  ///< ink at the border of the inked region: where strokes end, and the outermost ones
+    Votes ends;      ///< of strokes
+    Votes contacts;  ///< ink at the border of the inked region: where strokes end, and the outermost ones
+    Votes hull;      ///< the border of the object
     std::vector<Vec2> ink;
     FloatImage distance;  ///< to the border of the inked region, signed
 };
 
+float total_length(const TracedDrawing& drawing) {
+    float length = 0;
+    for (const TracedStroke& stroke : drawing.strokes) length += length_along(stroke);
+    return length;
+}
+
 /// Mean width of strokes: their ink over their length and the darkness of their center lines.
 float mean_width(const FloatImage& darkness, const TracedDrawing& drawing) {
-    float length = 0;
+    const float length = total_length(drawing);
     double ink = 0, center = 0, count = 0;
-    for (const TracedStroke& stroke : drawing.strokes) length += length_along(stroke);
     for (std::size_t i = 0; i < darkness.data.size(); ++i) {
         if (drawing.ink.data[i]) ink += static_cast<double>(darkness.data[i]);
         if (drawing.skeleton.data[i]) center += static_cast<double>(darkness.data[i]), ++count;
@@ -159,35 +176,73 @@ std::vector<Vec2> ends_of(const FloatImage& darkness, const TracedDrawing& drawi
     return ends;
 }
 
+/// The way out of a region, of length 1; zero where all is equally far from its border.
+Vec2 way_out_of(const FloatImage& distance, const Vec2& place) {
+    constexpr float k_step = 3;  // pixels: wider than the notches between strokes
+    const Vec2 x(k_step, 0), y(0, k_step);
+    const Vec2 gradient(distance_at(distance, place + x) - distance_at(distance, place - x),
+                        distance_at(distance, place + y) - distance_at(distance, place - y));
+    const float length = gradient.norm();
+    return length > 0 ? Vec2(gradient / length) : Vec2(0, 0);
+}
+
+Votes votes_of(const std::vector<Vec2>& places, const FloatImage& drawing, const FloatImage& object) {
+    constexpr float k_alike = 0.82f;  // 35 degrees
+    Votes votes{{}, places.size()};
+    for (const Vec2& place : places)
+        if (way_out_of(drawing, place).dot(way_out_of(object, place)) > k_alike) votes.cast.push_back({place, 0});
+    return votes;
+}
+
+/// Strokes end at the object's border, but where they run along it the outermost is anywhere up to a spacing inside.
+void expect_insets(Votes& votes, const std::vector<Vec2>& ends, float spacing) {
+    for (Votes::Vote& vote : votes.cast) {
+        const auto near = [&](const Vec2& end) { return (vote.place - end).squaredNorm() < spacing * spacing; };
+        if (std::ranges::none_of(ends, near)) vote.inset = 0.5f * spacing;
+    }
+}
+
+/// Mean distance between strokes: the area they fill over their length.
+float mean_spacing(const TracedDrawing& drawing, const PixelMask& region) {
+    const float length = total_length(drawing);
+    const auto area = static_cast<float>(std::ranges::count_if(region.data, [](std::uint8_t set) { return set != 0; }));
+    return length > 0 ? area / length : 0;
+}
+
+std::vector<Vec2> thinned_out(const std::vector<Vec2>& points) {
+    std::vector<Vec2> some;
+    const std::size_t count = std::min(k_border_points, points.size());
+    for (std::size_t i = 0; i < count; ++i) some.push_back(points[i * points.size() / count]);
+    return some;
+}
+
 ViewDrawing drawing_in_view(const FloatImage& darkness, const Similarity& to_view, const ViewObject& object,
                             bool with_ends) {
     const FloatImage view = warp_drawing(darkness, to_view, object.distance.width, object.distance.height);
     ViewDrawing drawing;
-    PixelMask all;
+    std::vector<Vec2> ends, contacts, inside;
+    std::optional<TracedDrawing> traced;
     if (with_ends) {
-        TracedDrawing traced = trace_drawing(view, PixelMask(view.width, view.height, 1, 1), k_faintest);
-        drawing.ends = ends_of(view, traced);
-        all = std::move(traced.ink);
-    } else {
-        all = ink_pixels(gaussian_blur(view, 0.5f), k_faintest);
+        traced = trace_drawing(view, PixelMask(view.width, view.height, 1, 1), k_faintest);
+        ends = ends_of(view, *traced);
     }
+    const PixelMask all = traced ? traced->ink : ink_pixels(gaussian_blur(view, 0.5f), k_faintest);
     const PixelMask region = inked_region(all, object.size), ink = both(all, region);
     drawing.distance = signed_distance(region);
-    std::vector<Vec2> contacts, inside;
     for (int y = 0; y < ink.height; ++y)
         for (int x = 0; x < ink.width; ++x) {
             if (!ink.pixel(x, y)[0]) continue;
             inside.push_back(center_of({x, y}));
             if (drawing.distance.pixel(x, y)[0] > -1.5f) contacts.push_back(center_of({x, y}));
         }
-    const auto thin_out = [](const std::vector<Vec2>& points) {
-        std::vector<Vec2> some;
-        const std::size_t count = std::min(k_border_points, points.size());
-        for (std::size_t i = 0; i < count; ++i) some.push_back(points[i * points.size() / count]);
-        return some;
-    };
-    drawing.contacts = thin_out(contacts);
-    drawing.ink = thin_out(inside);
+    drawing.ends = votes_of(ends, drawing.distance, object.distance);
+    drawing.contacts = votes_of(thinned_out(contacts), drawing.distance, object.distance);
+    drawing.hull = votes_of(object.border, drawing.distance, object.distance);
+    drawing.ink = thinned_out(inside);
+    if (traced) {
+        const float spacing = std::min(mean_spacing(*traced, region), 2 * k_closing * object.size);
+        for (Votes* votes : {&drawing.contacts, &drawing.hull}) expect_insets(*votes, ends, spacing);
+    }
     return drawing;
 }
 
@@ -196,25 +251,31 @@ float robust(float distance, float half) {
     return distance * distance / (distance * distance + half * half);
 }
 
+double mean_loss(const Votes& votes, const auto& loss) {
+    if (votes.all == 0) return 1;
+    auto sum = static_cast<double>(votes.all - votes.cast.size());
+    for (const Votes::Vote& vote : votes.cast) sum += static_cast<double>(loss(vote));
+    return sum / static_cast<double>(votes.all);
+}
+
 /// How badly the drawing lies over the object after a small change: ink at its border is to be at the object's, and the
 /// object's border to have ink, but neither where they are far apart; ink is not to be outside.
 double loss_of(const ViewDrawing& drawing, const ViewObject& object, const Similarity& change, float half) {
     const Similarity back = change.inverse();
-    double ends = 0, contacts = 0, hull = 0, outside = 0;
-    for (const Vec2& p : drawing.ends)
-        ends += static_cast<double>(robust(distance_at(object.distance, change.apply(p)), half));
-    for (const Vec2& p : drawing.contacts)
-        contacts += static_cast<double>(robust(distance_at(object.distance, change.apply(p)) + 0.5f, half));
-    for (const Vec2& p : object.border)
-        hull += static_cast<double>(robust(distance_at(drawing.distance, back.apply(p)) + 0.5f, 2 * half));
-    for (const Vec2& p : drawing.ink)
-        outside +=
-            static_cast<double>(std::clamp(distance_at(object.distance, change.apply(p)) / (4 * half), 0.0f, 1.0f));
-    const auto mean = [](double sum, const std::vector<Vec2>& points) {
-        return points.empty() ? 1.0 : sum / static_cast<double>(points.size());
+    const auto away = [&](const Vec2& p) { return distance_at(object.distance, change.apply(p)); };
+    const auto at_end = [&](const Votes::Vote& end) { return robust(away(end.place), half); };
+    const auto at_contact = [&](const Votes::Vote& contact) {
+        return robust(away(contact.place) + 0.5f + contact.inset, std::max(half, contact.inset));
     };
-    return (drawing.ends.empty() ? 0 : k_end_weight * mean(ends, drawing.ends)) + mean(contacts, drawing.contacts) +
-           k_hull_weight * mean(hull, object.border) + k_outside_weight * mean(outside, drawing.ink);
+    const auto at_hull = [&](const Votes::Vote& hull) {
+        const float gap = distance_at(drawing.distance, back.apply(hull.place)) + 0.5f;
+        return robust(gap - hull.inset, std::max(2 * half, hull.inset));
+    };
+    double outside = 0;
+    for (const Vec2& p : drawing.ink) outside += static_cast<double>(std::clamp(away(p) / (4 * half), 0.0f, 1.0f));
+    return (drawing.ends.all == 0 ? 0 : k_end_weight * mean_loss(drawing.ends, at_end)) +
+           mean_loss(drawing.contacts, at_contact) + k_hull_weight * mean_loss(drawing.hull, at_hull) +
+           k_outside_weight * (drawing.ink.empty() ? 1 : outside / static_cast<double>(drawing.ink.size()));
 }
 
 /// A place in the view and its loss.
@@ -280,7 +341,8 @@ Candidate best_likely(const FloatImage& darkness, const std::vector<Similarity>&
     for (const Similarity& place : places) consider(place, 0);
     if (places.empty()) return best;
     consider(straightened(best.to_view, object.center), 1);
-    for (const std::size_t stage : {1u, 2u, 3u})
+    // Who votes, and what insets are expected, is told better from a better place: so the first stage comes twice.
+    for (const std::size_t stage : {1u, 1u, 2u, 3u})
         best.to_view = refined_in_view(darkness, best.to_view, object, loss_scale(stage, object), true);
     best = judged(darkness, best.to_view, object);
     const Candidate straight = judged(darkness, straightened(best.to_view, object.center), object);

@@ -52,10 +52,11 @@ struct DrawingAlignment {
 /// counts is how well the border of the inked region lies on the object's where it is near it, how much of the object's
 /// border has ink at it, and that there is none outside. All scales, tilts and places are tried on a coarse grid, the
 /// best ones are refined (NLopt's Subplex) and the very best is at the view's full resolution, with a loss that does
-/// not mind strokes ending short of the border. A drawing of the view's aspect ratio that fits if it is just scaled to
-/// the view's size is left at that unless another place is clearly better. A border without corners does not tell how
-/// the drawing is turned. Throws UsageError if an image has not one channel or the object no pixel, DataError for a
-/// drawing without ink, and for one that fits nowhere.
+/// not mind strokes ending short of the border: only where the drawing's border and the object's run alike do they draw
+/// each other, and strokes along the border are expected half a spacing inside. A drawing of the view's aspect ratio
+/// that fits if it is just scaled to the view's size is left at that unless another place is clearly better. A border
+/// without corners does not tell how the drawing is turned. Throws UsageError if an image has not one channel or the
+/// object no pixel, DataError for a drawing without ink, and for one that fits nowhere.
 DrawingAlignment align_drawing(const FloatImage& darkness, const Image& object, const AlignmentOptions& options = {});
 
 /// The drawing as the view has it: width x height pixels, each the mean of what it covers of the drawing, and 0 (paper)

@@ -36,6 +36,7 @@ float growth_threshold(const OrientationSamples& samples, const SampleNeighbors&
 
 /// A cluster that grows: its one or two mean directions.
 struct Growing {
+    std::uint8_t level = 1;  // of its strokes
     std::array<DoubledAngle, 2> sum{};
     std::array<std::size_t, 2> count{};
 
@@ -71,7 +72,7 @@ class Growth {
   private:
     void grow(std::uint32_t seed) {
         const auto number = static_cast<std::uint32_t>(growing_.size());
-        Growing cluster;
+        Growing cluster{samples_.level[seed]};
         std::vector<std::uint32_t> open{seed};
         take(seed, number, 0, cluster);
         while (!open.empty()) {
@@ -80,7 +81,7 @@ class Growth {
             const std::uint32_t at = open.back();
             open.pop_back();
             for (const std::uint32_t near : neighbors_.of(at)) {
-                if (cluster_[near] != k_unassigned) continue;
+                if (cluster_[near] != k_unassigned || samples_.level[near] != cluster.level) continue;
                 const int j = direction_for(near, cluster);
                 if (j < 0) continue;
                 take(near, number, static_cast<std::size_t>(j), cluster);
@@ -128,10 +129,13 @@ class Growth {
     }
 
     void join(std::size_t i, std::span<const std::uint32_t> kept, OrientationClusters& out) const {
-        float best = 5;
+        float best = 9;
         for (std::uint32_t k = 0; k < kept.size(); ++k) {
+            const Growing& cluster = growing_[kept[k]];
             for (std::size_t j = 0; j < 2; ++j) {
-                const float difference = growing_[kept[k]].difference(j, samples_.direction[i]);
+                // One of the other level only if there is none of its own.
+                const float difference =
+                    cluster.difference(j, samples_.direction[i]) + (cluster.level == samples_.level[i] ? 0.0f : 4.0f);
                 if (!(difference < best)) continue;
                 best = difference;
                 out.cluster[i] = k;

@@ -12,6 +12,7 @@ namespace exemplar {
 namespace {
 
 constexpr double k_least_share = 0.04;
+constexpr float k_apart = 1;               // |u - v|^2 of directions that differ by 30 degrees: strokes that cross do
 constexpr double k_least_variance = 1e-3;  // of |u - f|^2: about a degree
 
 /// An expert and what is thought of it: the columns of gamma and beta.
@@ -24,9 +25,9 @@ struct Expert {
     std::vector<float> gamma;                  // per sample
     std::vector<float> beta;                   // per sample: of the first direction
     std::vector<std::array<float, 2>> errors;  // r_icj
-    std::vector<float> error;                  // r_ic, median filtered
-    double held_out_error = 0;
-    std::array<FieldProducts, 2> products;  // of each direction, for the search for pairs to merge
+    std::vector<float> nearest;                // r_ic of Eq. 4.12
+    std::vector<float> error;                  // the same, median filtered
+    std::array<FieldProducts, 2> products;     // of each direction, for the search for pairs to merge
 };
 
 class Mixture {
@@ -58,7 +59,10 @@ class Mixture {
         double last = -1;
         for (std::size_t iteration = 0; iteration < options_.iterations; ++iteration) {
             check_interrupt();
-            for (Expert& expert : experts_) update_model(expert);
+            for (Expert& expert : experts_) {
+                if (iteration > 0) update_kind(expert);
+                update_model(expert);
+            }
             update_variance();
             const double error = update_labels();
             dissolve_small();
@@ -68,54 +72,79 @@ class Mixture {
         }
     }
 
-    LearnedOrientation learn(const std::vector<float>& weight) const {
-        return learn_orientation({samples_.fields, samples_.direction, weight, held_out_});
+    /// Whether there is cross-hatching in a segment (more than 10%, as clusters have it) changes with its border.
+    void update_kind(Expert& expert) const {
+        double all = 0, crossed = 0;
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
+            all += static_cast<double>(expert.gamma[i]);
+            crossed += samples_.level[i] == 2 ? static_cast<double>(expert.gamma[i]) : 0;
+        }
+        const bool cross = crossed > 0.1 * all;
+        if (cross == expert.cross) return;
+        expert.cross = cross;
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
+            const bool second = cross && samples_.level[i] == 2 && expert.errors[i][0] > k_apart;
+            expert.beta[i] = second ? 0.0f : 1.0f;
+        }
     }
 
     void update_model(Expert& expert) const {
-        double held_out_error = 0;
+        expert.rule = {};
         for (std::size_t j = 0; j < (expert.cross ? 2U : 1U); ++j) {
             std::vector<float> weight(samples_.size());
             for (std::size_t i = 0; i < weight.size(); ++i)
                 weight[i] = expert.gamma[i] * (j == 0 ? expert.beta[i] : 1 - expert.beta[i]);
-            const LearnedOrientation learned = learn(weight);
-            expert.rule.function[j] = learned.function;
-            held_out_error += (expert.cross ? expert.part[j] : 1) * learned.error;
+            expert.rule.function[j] =
+                learn_orientation({samples_.fields, samples_.direction, weight, held_out_}).function;
         }
-        expert.held_out_error = held_out_error;
         measure_errors(expert);
     }
 
     void measure_errors(Expert& expert) const {
         expert.errors.resize(samples_.size());
-        std::vector<float> nearest(samples_.size());
+        expert.nearest.resize(samples_.size());
         parallel_for(
             samples_.size(),
             [&](std::size_t i) {
                 for (std::size_t j = 0; j < 2; ++j) {
-                    const bool exists = j == 0 || expert.cross;
-                    expert.errors[i][j] = exists
-                                              ? squared_distance(samples_.direction[i],
-                                                                 expert.rule.function[j].evaluate(samples_.fields, i))
-                                              : 4.0f;
+                    const OrientationFunction& function = expert.rule.function[j];
+                    expert.errors[i][j] =
+                        function.terms.empty()
+                            ? 4.0f
+                            : squared_distance(samples_.direction[i], function.evaluate(samples_.fields, i));
                 }
                 // Single strokes follow the first direction; without that, a region with another rule may pass for the
                 // second direction of a cross-hatched one beside it.
-                nearest[i] =
+                expert.nearest[i] =
                     samples_.level[i] == 1 ? expert.errors[i][0] : std::min(expert.errors[i][0], expert.errors[i][1]);
             },
             1024);
         expert.error.resize(samples_.size());
         parallel_ranges(samples_.size(), 256, [&](std::size_t begin, std::size_t end) {
-            std::vector<float> around;
-            for (std::size_t i = begin; i < end; ++i) {
-                around.clear();
-                for (const std::uint32_t near : neighbors_.of(i)) around.push_back(nearest[near]);
-                const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
-                std::ranges::nth_element(around, middle);
-                expert.error[i] = *middle;
-            }
+            std::array<std::vector<float>, 2> around;
+            for (std::size_t i = begin; i < end; ++i) expert.error[i] = filtered(expert.nearest, i, around);
         });
+    }
+
+    /// The median of errors around a sample; where strokes cross, of each direction on its own, and the mean of the two
+    /// by their numbers: the median of all sees only the direction that more samples follow, so that a rule for one
+    /// direction would take the other along. `around` is room to work in.
+    float filtered(const std::vector<float>& errors, std::size_t i, std::array<std::vector<float>, 2>& around) const {
+        for (auto& side : around) side.clear();
+        for (const std::uint32_t near : neighbors_.of(i)) {
+            if (samples_.level[near] != samples_.level[i]) continue;
+            const bool across =
+                samples_.level[i] == 2 && squared_distance(samples_.direction[i], samples_.direction[near]) > k_apart;
+            around[across ? 1 : 0].push_back(errors[near]);
+        }
+        float sum = 0;
+        for (auto& side : around) {
+            if (side.empty()) continue;
+            const auto middle = side.begin() + static_cast<std::ptrdiff_t>(side.size() / 2);
+            std::ranges::nth_element(side, middle);
+            sum += static_cast<float>(side.size()) * *middle;
+        }
+        return sum / static_cast<float>(around[0].size() + around[1].size());
     }
 
     /// Eqs. 4.13, 4.14.
@@ -171,14 +200,16 @@ class Mixture {
         return static_cast<float>(1 / (1 + odds));
     }
 
+    double share_of(const Expert& expert) const {
+        return static_cast<double>(std::accumulate(expert.gamma.begin(), expert.gamma.end(), 0.0)) /
+               static_cast<double>(samples_.size());
+    }
+
     void dissolve_small() {
-        const auto share = [&](const Expert& expert) {
-            return static_cast<double>(std::accumulate(expert.gamma.begin(), expert.gamma.end(), 0.0)) /
-                   static_cast<double>(samples_.size());
-        };
+        for (Expert& expert : experts_) expert.share = share_of(expert);
         while (experts_.size() > 1) {
-            const auto smallest = std::ranges::min_element(experts_, {}, share);
-            if (share(*smallest) >= k_least_share) return;
+            const auto smallest = std::ranges::min_element(experts_, {}, &Expert::share);
+            if (smallest->share >= k_least_share) return;
             experts_.erase(smallest);
             for (std::size_t i = 0; i < samples_.size(); ++i) {
                 float sum = 0;
@@ -186,6 +217,7 @@ class Mixture {
                 for (Expert& e : experts_)
                     e.gamma[i] = sum > 0 ? e.gamma[i] / sum : 1 / static_cast<float>(experts_.size());
             }
+            for (Expert& expert : experts_) expert.share = share_of(expert);
         }
     }
 
@@ -195,19 +227,15 @@ class Mixture {
         expert.cross = a.cross || b.cross;
         expert.gamma.resize(samples_.size());
         expert.beta.resize(samples_.size());
+        const bool turn_a = swapped && !b.cross, turn_b = swapped && b.cross;
         for (std::size_t i = 0; i < samples_.size(); ++i) {
             const float sum = a.gamma[i] + b.gamma[i];
             expert.gamma[i] = sum;
-            const float other = swapped ? 1 - b.beta[i] : b.beta[i];
-            expert.beta[i] = sum > 0 ? (a.gamma[i] * a.beta[i] + b.gamma[i] * other) / sum : 1.0f;
-        }
-        double first = 0, all = 0;
-        for (std::size_t i = 0; i < samples_.size(); ++i) {
-            first += static_cast<double>(expert.gamma[i] * expert.beta[i]);
-            all += static_cast<double>(expert.gamma[i]);
+            const float of_a = turn_a ? 1 - a.beta[i] : a.beta[i], of_b = turn_b ? 1 - b.beta[i] : b.beta[i];
+            const bool single = !(sum > 0) || samples_.level[i] == 1;
+            expert.beta[i] = single ? 1.0f : (a.gamma[i] * of_a + b.gamma[i] * of_b) / sum;
         }
         expert.share = a.share + b.share;
-        expert.part = {all > 0 ? first / all : 1, all > 0 ? 1 - first / all : 0};
         update_model(expert);
         return expert;
     }
@@ -244,7 +272,7 @@ class Mixture {
         for (std::size_t a = 0; a < experts_.size(); ++a) {
             for (std::size_t b = a + 1; b < experts_.size(); ++b) {
                 for (const bool swapped : {false, true}) {
-                    if (swapped && !(experts_[a].cross && experts_[b].cross)) continue;
+                    if (swapped && !experts_[a].cross && !experts_[b].cross) continue;
                     pairs.push_back({a, b, swapped, 0});
                 }
             }
@@ -260,19 +288,37 @@ class Mixture {
         return pairs;
     }
 
-    /// Merges a pair whose common rule loses next to nothing on what is held out; false if there is none.
+    /// Whether a rule explains the samples of two experts as well as they did, but for a tenth more than their errors
+    /// and what a degree of noise makes: errors of the same samples are compared, those held out (all, if none is).
+    /// What lies over a border, and any other expert fits better than the one rule, counts as the other's.
+    bool explains_as_well(const Expert& one, const Expert& a, const Expert& b) const {
+        std::array<double, 2> together{}, apart{}, weight{};  // of samples trained on, and held out
+        for (std::size_t i = 0; i < samples_.size(); ++i) {
+            const Expert* best = &one;
+            for (const Expert& e : experts_) {
+                if (&e != &a && &e != &b && e.error[i] < best->error[i]) best = &e;
+            }
+            const auto capped = [i](const Expert& e) { return static_cast<double>(std::min(e.nearest[i], k_apart)); };
+            const auto of_a = static_cast<double>(a.gamma[i]), of_b = static_cast<double>(b.gamma[i]);
+            const std::size_t set = held_out_[i] ? 1 : 0;
+            together[set] += (of_a + of_b) * capped(*best);
+            apart[set] += of_a * capped(a) + of_b * capped(b);
+            weight[set] += of_a + of_b;
+        }
+        const std::size_t judge = weight[1] > 0 ? 1 : 0;
+        return together[judge] <= 1.1 * apart[judge] + k_least_variance * weight[judge];
+    }
+
+    /// Merges a pair that one rule explains as well as two; false if there is none.
     bool merge_best_pair() {
         constexpr std::size_t k_tried = 6;
         std::vector<Pair> pairs = promising_pairs();
         for (std::size_t k = 0; k < std::min(k_tried, pairs.size()); ++k) {
             check_interrupt();
             const Expert &x = experts_[pairs[k].a], &y = experts_[pairs[k].b];
-            const double apart = (x.share * x.held_out_error + y.share * y.held_out_error) / (x.share + y.share);
             Expert expert = merged(x, y, pairs[k].swapped);
             progress_();
-            // A tenth more, and what a degree and a half of noise makes.
-            constexpr double k_noise = 0.003;
-            if (expert.held_out_error > 1.1 * apart + k_noise) continue;
+            if (!explains_as_well(expert, x, y)) continue;
             experts_[pairs[k].a] = std::move(expert);
             experts_.erase(experts_.begin() + static_cast<std::ptrdiff_t>(pairs[k].b));
             return true;
@@ -286,7 +332,6 @@ class Mixture {
         out.segment.resize(samples_.size());
         for (const Expert& expert : experts_) {
             out.rules.push_back(expert.rule);
-            if (!expert.cross) out.rules.back().function[1] = {};
             out.share.push_back(expert.share);
         }
         for (std::size_t i = 0; i < samples_.size(); ++i) {

@@ -36,10 +36,12 @@ struct OrientationMixture {
 
 /// Finds which regions of a drawing follow which rule, and the rules, at once (thesis Sec. 4.4.1, Eqs. 4.10-4.14): a
 /// mixture of experts by expectation maximization, from grow_clusters(). Beyond the thesis, segments of less than
-/// four hundredths are dissolved, and two segments become one where one rule explains both nearly as well as two:
-/// clusters begin as regions of about one direction, while a rule may turn with the surface. Also, where the drawing
-/// has single strokes (level 1), only the first direction of a segment counts in Eq. 4.12. No samples give no rules.
-/// Deterministic. Throws Interrupted at Ctrl-C.
+/// four hundredths are dissolved, and two segments become one where one rule explains both, on what is held out, with
+/// no more than a tenth more than the errors of the two and of what a degree of noise makes: clusters begin as regions
+/// of about one direction, while a rule may turn with the surface. A segment has a second direction if more than 10% of
+/// it is cross-hatched, whatever it began as. Also, where the drawing has single strokes (level 1), only the first
+/// direction of a segment counts in Eq. 4.12, and the medians of errors are of samples of the same level and, where
+/// strokes cross, of each direction on its own. No samples give no rules. Deterministic. Throws Interrupted at Ctrl-C.
 OrientationMixture learn_mixture(
     const OrientationSamples& samples, const MixtureOptions& options = {},
     const std::function<void()>& progress = [] {});

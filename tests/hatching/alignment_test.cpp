@@ -130,6 +130,7 @@ INSTANTIATE_TEST_SUITE_P(Scans, Alignment,
                                          AlignmentCase{"cow_on_its_side", cow, -30, 1.3, 92.5, 700, 760},
                                          AlignmentCase{"cow_upside_down_small", cow, -500, 0.8, 175, 500, 400},
                                          AlignmentCase{"blob_tilted", blob, -500, 1.4, -9.2, 700, 600},
+                                         AlignmentCase{"blob_part_blank", blob, -35, 1.9, 3, 900, 800},
                                          AlignmentCase{"star_part_blank", star, -35, 1.2, -5, 700, 500}),
                          k_name_of);
 

@@ -95,8 +95,7 @@ void run_draw(HatchDrawJob& job) {
 
 void add_frames_options(CLI::App& command, HatchDrawJob& job) {
     add_frame_options(command, job.frames, "", "draw");
-    command
-        .add_option("--fps", job.frames_per_second, "frames a second that clips of glTF files are sampled at")
+    command.add_option("--fps", job.frames_per_second, "frames a second that clips of glTF files are sampled at")
         ->capture_default_str()
         ->check(CLI::Range(0.1, 1000.0));
     command
@@ -148,7 +147,9 @@ void add_hatch_draw_command(CLI::App& hatch) {
     command->add_option("MESH", arguments->scene.mesh, "mesh (OFF, OBJ, PLY, STL, glTF) or animation (glTF, folder)")
         ->required()
         ->type_name("");
-    command->add_option("--out", arguments->out, "what to write: .svg, .png, .mp4, or a folder for a picture of each frame")
+    command
+        ->add_option("--out", arguments->out,
+                     "what to write: .svg, .png, .mp4, or a folder for a picture of each frame")
         ->required()
         ->type_name("FILE|FOLDER");
     command

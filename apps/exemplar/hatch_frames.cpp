@@ -120,8 +120,7 @@ class FrameHatcher {
         follow(frame);
         const HatchingView view = frames_.view(frame);
         PixelFeatures pixels(*surface_, view, device_.tools().images);
-        const std::vector<CarriedStroke> carried =
-            carried_strokes(before_, surface_->mesh, view, pixels.gbuffer());
+        const std::vector<CarriedStroke> carried = carried_strokes(before_, surface_->mesh, view, pixels.gbuffer());
         std::vector<HatchStroke> kept;
         if (!job_.fresh)
             for (const CarriedStroke& one : carried) kept.push_back(one.stroke);

@@ -16,7 +16,7 @@
 namespace exemplar {
 namespace {
 
-constexpr float k_farthest_tear = 16;     // pixels
+constexpr float k_farthest_tear = 16;        // pixels
 constexpr float k_depth_share = 1 / 200.0f;  // as of occlusion_barriers
 
 void check_sizes(const HatchingView& view, const GBuffer& gbuffer) {

@@ -14,9 +14,9 @@ namespace exemplar {
 
 /// Where a point of a stroke lies on the surface, whatever moves.
 struct SurfacePlace {
-    std::uint32_t face = k_no_face;             ///< k_no_face: beside the surface
-    std::array<float, 2> barycentric{};         ///< of corners 1 and 2; a little over the face's border, too
-    bool counter_clockwise = true;              ///< how the view showed the corners
+    std::uint32_t face = k_no_face;      ///< k_no_face: beside the surface
+    std::array<float, 2> barycentric{};  ///< of corners 1 and 2; a little over the face's border, too
+    bool counter_clockwise = true;       ///< how the view showed the corners
 };
 
 /// A stroke that lies on the surface.
@@ -33,8 +33,8 @@ std::vector<SurfaceStroke> strokes_on_surface(std::span<const HatchStroke> strok
 
 /// A part of a stroke of the picture before, where the surface has carried it.
 struct CarriedStroke {
-    HatchStroke stroke;                 ///< without widths
-    std::array<bool, 2> is_whole{};     ///< its first and its last point are those of the stroke
+    HatchStroke stroke;              ///< without widths
+    std::array<bool, 2> is_whole{};  ///< its first and its last point are those of the stroke
 };
 
 /// Those strokes where the surface is now, without what left the picture, turned away from the eye or is hidden

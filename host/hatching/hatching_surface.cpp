@@ -281,7 +281,8 @@ class TurningDirections {
         const Vec3 p = before_[b] - before_[a], q = before_[c] - before_[a], normal = p.cross(q);
         const float square = normal.squaredNorm();
         if (!(square > 0)) return Vec3::Zero();
-        const float along_p = direction.cross(q).dot(normal) / square, along_q = p.cross(direction).dot(normal) / square;
+        const float along_p = direction.cross(q).dot(normal) / square,
+                    along_q = p.cross(direction).dot(normal) / square;
         const std::vector<Vec3>& now = mesh_.vertices;
         return std::sqrt(square) * (along_p * (now[b] - now[a]) + along_q * (now[c] - now[a]));
     }

@@ -40,7 +40,7 @@ struct HatchDrawJob {
     /// Whether frames are asked for, not a still of a mesh.
     bool has_frames() const {
         return output == LinesOutput::video || output == LinesOutput::folder || !frames.range.empty() ||
-               !frames.clips.empty() || frames.most > 0;
+               !frames.clips.empty() || frames.most > 0 || turn != 0;
     }
 };
 

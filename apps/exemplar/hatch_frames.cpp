@@ -126,6 +126,7 @@ class FrameHatcher {
             for (const CarriedStroke& one : carried) kept.push_back(one.stroke);
         ViewHatching hatching = hatch_view(style_, pixels, device_.tools(), job_.options(), kept);
         if (frame > 0) flicker_.push_back(measure_flicker(hatching.strokes, carried));
+        stroke_counts_.push_back(hatching.strokes.size());
         before_ = strokes_on_surface(hatching.strokes, surface_->mesh, view, pixels.gbuffer());
         taper_strokes(hatching.strokes, job_.taper);
         return {view.width, view.height, std::move(hatching.strokes),
@@ -134,6 +135,7 @@ class FrameHatcher {
 
     const DrawingStyle& look() const { return look_; }
     const std::vector<HatchingFlicker>& flicker() const { return flicker_; }
+    const std::vector<std::size_t>& stroke_counts() const { return stroke_counts_; }
     const std::string& style_name() const { return style_.name; }
     const std::string& device_name() { return device_.device().info().name; }
 
@@ -155,6 +157,7 @@ class FrameHatcher {
     std::optional<HatchingSurface> surface_;
     std::vector<SurfaceStroke> before_;
     std::vector<HatchingFlicker> flicker_;
+    std::vector<std::size_t> stroke_counts_;  // of each frame
 };
 
 /// Draws all frames and writes them in the way that the job asks for.
@@ -178,6 +181,32 @@ void write_frames(const HatchDrawJob& job, const HatchedFrames& frames, FrameHat
     if (video) video->finish();
 }
 
+nlohmann::json described(const HatchingFlicker& flicker) {
+    return {{"drawn", flicker.drawn},
+            {"appeared", flicker.appeared},
+            {"vanished", flicker.vanished},
+            {"slip", flicker.slip}};
+}
+
+void print_and_report(const HatchDrawJob& job, const HatchedFrames& frames, FrameHatcher& hatcher, double seconds) {
+    const HatchingFlicker flicker = mean_flicker(hatcher.flicker());
+    if (!job.common.quiet) {
+        fmt::print("{}: {}, {:.1f} s each\n", job.out.string(), counted(frames.count(), "frame"),
+                   seconds / static_cast<double>(frames.count()));
+        if (frames.count() > 1)
+            fmt::print(
+                "from a frame to the next {:.1f} % of the length of strokes is new, {:.1f} % vanishes, and ends slip "
+                "by {:.1f} pixels\n",
+                100 * flicker.appeared, 100 * flicker.vanished, flicker.slip);
+    }
+    nlohmann::json report = {{"input", job.scene.mesh.string()},   {"style", hatcher.style_name()},
+                             {"device", hatcher.device_name()},    {"frames", frames.count()},
+                             {"strokes", hatcher.stroke_counts()}, {"seconds", seconds}};
+    if (frames.count() > 1) report["flicker"] = described(flicker);
+    for (const HatchingFlicker& one : hatcher.flicker()) report["flicker_of_frames"].push_back(described(one));
+    write_report(job.common, report);
+}
+
 }  // namespace
 
 void write_hatched_frames(const HatchDrawJob& job) {
@@ -190,28 +219,7 @@ void write_hatched_frames(const HatchDrawJob& job) {
                                      job.out.string(), frames.count()));
     FrameHatcher hatcher(job, frames);
     write_frames(job, frames, hatcher);
-    const HatchingFlicker flicker = mean_flicker(hatcher.flicker());
-    const double seconds = watch.wall();
-    if (!job.common.quiet) {
-        fmt::print("{}: {}, {:.1f} s each\n", job.out.string(), counted(frames.count(), "frame"),
-                   seconds / static_cast<double>(frames.count()));
-        if (frames.count() > 1)
-            fmt::print(
-                "from a frame to the next {:.1f} % of the length of strokes is new, {:.1f} % vanishes, and ends slip "
-                "by {:.1f} pixels\n",
-                100 * flicker.appeared, 100 * flicker.vanished, flicker.slip);
-    }
-    nlohmann::json report = {{"input", job.scene.mesh.string()},
-                             {"style", hatcher.style_name()},
-                             {"device", hatcher.device_name()},
-                             {"frames", frames.count()},
-                             {"seconds", seconds}};
-    if (frames.count() > 1)
-        report["flicker"] = {{"drawn", flicker.drawn},
-                             {"appeared", flicker.appeared},
-                             {"vanished", flicker.vanished},
-                             {"slip", flicker.slip}};
-    write_report(job.common, report);
+    print_and_report(job, frames, hatcher, watch.wall());
 }
 
 }  // namespace exemplar

@@ -3,54 +3,18 @@
 #include <fmt/format.h>
 
 #include "apps/exemplar/arguments.h"
-#include "apps/exemplar/hatch_scene.h"
+#include "apps/exemplar/hatch_draw.h"
 #include "host/core/errors.h"
 #include "host/core/progress.h"
 #include "host/core/stopwatch.h"
 #include "host/core/text.h"
-#include "host/hatching/hatching_drawing.h"
-#include "host/hatching/line_directions.h"
-#include "host/hatching/occlusion_barriers.h"
 #include "host/hatching/stroke_statistics.h"
-#include "host/hatching/tone_matching.h"
 #include "host/imaging/png.h"
 
 namespace exemplar {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct DrawArguments {
-    fs::path style, out, properties;
-    HatchSceneArguments scene;
-    CommonOptions common;
-    std::vector<std::string> curves{"contours"};
-    float taper = 6, scale = 1;
-    bool no_tone = false, outlines = false;
-    std::uint64_t seed = 1;
-};
-
-Drawing feature_curves(const HatchScene& scene, const HatchingView& view, const std::vector<std::string>& words,
-                       const DrawingStyle& style) {
-    Drawing drawing;
-    std::vector<LineType> types;
-    for (const std::string& word : words) {
-        if (word == "none") continue;
-        const auto type = line_type_meant(word);
-        if (!type)
-            throw UsageError(fmt::format("--curves '{}' is no type of lines; see 'exemplar lines --help'", word));
-        types.push_back(*type);
-    }
-    StrokeView stroke_view;
-    stroke_view.camera = view.camera;
-    stroke_view.width = view.width;
-    stroke_view.height = view.height;
-    stroke_view.feature_size = scene.surface().feature_size;
-    const BoundingBox box = bounding_box(scene.surface().mesh);
-    const Vec3 middle = (0.5 * (box.low + box.high)).cast<float>();
-    stroke_view.unit_depth = std::max(-(view.camera.view * middle.homogeneous()).z(), 1e-20f);
-    return draw_lines(line_surface(scene.surface()), types, style, stroke_view);
-}
 
 void write_properties(const fs::path& folder, const HatchingPrediction& prediction) {
     fs::create_directories(folder);
@@ -72,86 +36,122 @@ void write_properties(const fs::path& folder, const HatchingPrediction& predicti
     }
 }
 
-HatchedDrawing hatch(const DrawArguments& arguments, HatchScene& scene, const HatchingFields& fields) {
-    HatchedDrawing drawing{fields.width, fields.height, {}, {}};
-    StrokeOptions options;
-    options.seed = arguments.seed;
-    const auto barriers = occlusion_barriers(scene.pixels().gbuffer().depth, fields.width, fields.height);
-    drawing.strokes = scene.placer().place(fields, barriers, options, {});
-    if (!arguments.no_tone) match_tone(drawing.strokes, fields);
-    return drawing;
+nlohmann::json seconds_of(const HatchScene& scene, const ViewHatching& hatching) {
+    nlohmann::json seconds = {{"targets", hatching.prediction_seconds}, {"strokes", hatching.stroke_seconds}};
+    for (const auto& [step, time] : scene.surface().seconds) seconds["surface: " + step] = time;
+    for (const auto& [step, time] : hatching.prediction.seconds) seconds[std::string("targets: ") + step] = time;
+    return seconds;
 }
 
-void run_draw(const DrawArguments& arguments) {
-    const auto limits = apply_common_options(arguments.common);
-    require_input(arguments.style);
-    require_hatch_scene(arguments.scene);
-    const bool svg = arguments.out.extension() == ".svg";
-    if (!svg && arguments.out.extension() != ".png")
-        throw UsageError(fmt::format("{}: give a name that ends in .svg or .png", arguments.out.string()));
-    require_output_file(arguments.out);
-    const HatchingStyle style = load_hatching_style(arguments.style);
+void draw_still(const HatchDrawJob& job) {
+    const HatchingStyle style = load_hatching_style(job.style);
     Progress progress("drawing", 4);
     Stopwatch watch;
-    HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
+    HatchScene scene(job.scene, job.common.device, job.common.quiet);
     const double surface_seconds = watch.wall();
     progress.advance(1, "surface");
+    const ViewHatching hatching = hatch_view(style, scene.pixels(), scene.tools(), job.options());
+    const HatchingFields& fields = hatching.prediction.fields;
+    progress.advance(2, "strokes");
     watch = {};
-    const HatchingPrediction prediction = predict_hatching(style, scene.pixels(), scene.scorer(), scene.evaluator());
-    const double predict_seconds = watch.wall();
-    progress.advance(1, "targets");
-    watch = {};
-    HatchedDrawing drawing = hatch(arguments, scene, prediction.fields);
-    const SpacingMeasure spacing = measure_spacing(drawing.strokes, prediction.fields);
-    const ToneMeasure tone = measure_tone(drawing.strokes, prediction.fields);
-    taper_strokes(drawing.strokes, arguments.taper);
-    progress.advance(1, "strokes");
-    const double stroke_seconds = watch.wall();
-    watch = {};
+    const SpacingMeasure spacing = measure_spacing(hatching.strokes, fields);
+    const ToneMeasure tone = measure_tone(hatching.strokes, fields);
+    HatchedDrawing drawing{fields.width, fields.height, hatching.strokes, {}};
+    taper_strokes(drawing.strokes, job.taper);
     const DrawingStyle look = load_style("ink");
-    drawing.curves = feature_curves(scene, scene.pixels().view(), arguments.curves, look);
-    if (svg) {
-        SvgOptions options;
-        options.form = arguments.outlines ? SvgForm::outlines : SvgForm::lines;
-        options.title = arguments.scene.mesh.stem().string();
-        write_hatching_svg(arguments.out, drawing, look, options);
-    } else {
-        write_png(arguments.out, hatching_picture(drawing, look, arguments.scale));
-    }
-    if (!arguments.properties.empty()) write_properties(arguments.properties, prediction);
+    drawing.curves = feature_curves(scene.surface(), scene.pixels().view(), job.curve_types(), look);
+    write_hatched_drawing(job, drawing, look);
+    if (!job.properties.empty()) write_properties(job.properties, hatching.prediction);
     progress.finish();
-    if (!arguments.common.quiet)
-        fmt::print("{}: {}; spacing off by {:.0f}%, tone by {:.0f}% in the median\n", arguments.out.string(),
+    if (!job.common.quiet)
+        fmt::print("{}: {}; spacing off by {:.0f}%, tone by {:.0f}% in the median\n", job.out.string(),
                    counted(drawing.strokes.size(), "stroke"), 100 * spacing.median_error, 100 * tone.median_error);
-    nlohmann::json seconds = {{"surface", surface_seconds},
-                              {"targets", predict_seconds},
-                              {"strokes", stroke_seconds},
-                              {"output", watch.wall()}};
-    for (const auto& [step, time] : scene.surface().seconds) seconds["surface: " + step] = time;
-    for (const auto& [step, time] : prediction.seconds) seconds[std::string("targets: ") + step] = time;
-    write_report(arguments.common, {{"mesh", arguments.scene.mesh.string()},
-                                    {"style", style.name},
-                                    {"device", scene.device_name()},
-                                    {"faces", scene.surface().mesh.face_count()},
-                                    {"pixels", scene.pixels().size()},
-                                    {"strokes", drawing.strokes.size()},
-                                    {"spacing_error", spacing.median_error},
-                                    {"tone_error", tone.median_error},
-                                    {"seconds", seconds}});
+    nlohmann::json seconds = seconds_of(scene, hatching);
+    seconds["surface"] = surface_seconds;
+    seconds["output"] = watch.wall();
+    write_report(job.common, {{"mesh", job.scene.mesh.string()},
+                              {"style", style.name},
+                              {"device", scene.device_name()},
+                              {"faces", scene.surface().mesh.face_count()},
+                              {"pixels", scene.pixels().size()},
+                              {"strokes", drawing.strokes.size()},
+                              {"spacing_error", spacing.median_error},
+                              {"tone_error", tone.median_error},
+                              {"seconds", seconds}});
+}
+
+void run_draw(HatchDrawJob& job) {
+    const auto limits = apply_common_options(job.common);
+    require_input(job.style);
+    require_hatch_scene(job.scene);
+    job.curve_types();
+    job.output = lines_output_of(job.out);
+    if (job.output == LinesOutput::folder)
+        require_output_folder(job.out);
+    else
+        require_output_file(job.out);
+    job.has_frames() ? write_hatched_frames(job) : draw_still(job);
+}
+
+void add_frames_options(CLI::App& command, HatchDrawJob& job) {
+    add_frame_options(command, job.frames, "", "draw");
+    command.add_option("--fps", job.frames_per_second, "frames a second that clips of glTF files are sampled at")
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 1000.0));
+    command
+        .add_option("--turn", job.turn,
+                    "degrees that the object turns by from a frame to the next; a mesh turns all around, or for as "
+                    "many frames as --frames says")
+        ->type_name("DEGREES")
+        ->check(CLI::Range(-90.0, 90.0));
+    command.add_flag("--fresh", job.fresh, "draws each frame anew, instead of keeping strokes on the surface");
+    command.add_flag("--remeasure", job.remeasure,
+                     "measures each frame's surface as a whole, instead of keeping what changes slowly");
 }
 
 }  // namespace
 
+std::vector<LineType> HatchDrawJob::curve_types() const {
+    std::vector<LineType> types;
+    for (const std::string& word : curves) {
+        if (word == "none") continue;
+        const auto type = line_type_meant(word);
+        if (!type)
+            throw UsageError(fmt::format("--curves '{}' is no type of lines; see 'exemplar lines --help'", word));
+        types.push_back(*type);
+    }
+    return types;
+}
+
+void write_hatched_drawing(const HatchDrawJob& job, const HatchedDrawing& drawing, const DrawingStyle& look) {
+    if (job.output != LinesOutput::svg) {
+        write_png(job.out, hatching_picture(drawing, look, job.scale));
+        return;
+    }
+    SvgOptions options;
+    options.form = job.outlines ? SvgForm::outlines : SvgForm::lines;
+    options.title = job.scene.mesh.stem().string();
+    write_hatching_svg(job.out, drawing, look, options);
+}
+
 void add_hatch_draw_command(CLI::App& hatch) {
-    auto arguments = std::make_shared<DrawArguments>();
-    CLI::App* command = hatch.add_subcommand("draw", "Draws a mesh in a learned style");
+    auto arguments = std::make_shared<HatchDrawJob>();
+    CLI::App* command = hatch.add_subcommand("draw", "Draws a mesh or an animation in a learned style");
     command->footer(
         "Examples:\n"
         "  exemplar hatch draw mine.safetensors cow.obj --out cow.svg\n"
-        "  exemplar hatch draw mine.safetensors cow.obj --view side --curves contours,suggestive --out cow.png");
+        "  exemplar hatch draw mine.safetensors cow.obj --view side --curves contours,suggestive --out cow.png\n"
+        "  exemplar hatch draw mine.safetensors figure.glb --frames 0:60 --out walk.mp4\n"
+        "  exemplar hatch draw mine.safetensors cow.obj --turn 3 --out turning");
     command->add_option("STYLE", arguments->style, "style file of 'exemplar hatch train'")->required()->type_name("");
-    command->add_option("MESH", arguments->scene.mesh, "mesh (OFF, OBJ, PLY, STL, glTF)")->required()->type_name("");
-    command->add_option("--out", arguments->out, "what to write: .svg or .png")->required()->type_name("FILE");
+    command->add_option("MESH", arguments->scene.mesh, "mesh (OFF, OBJ, PLY, STL, glTF) or animation (glTF, folder)")
+        ->required()
+        ->type_name("");
+    command
+        ->add_option("--out", arguments->out,
+                     "what to write: .svg, .png, .mp4, or a folder for a picture of each frame")
+        ->required()
+        ->type_name("FILE|FOLDER");
     command
         ->add_option("--curves", arguments->curves,
                      "feature curves drawn with it, as 'exemplar lines --types' has them, or none")
@@ -173,6 +173,7 @@ void add_hatch_draw_command(CLI::App& hatch) {
         ->capture_default_str()
         ->check(whole_number(0));
     add_hatch_scene_options(*command, arguments->scene);
+    add_frames_options(*command, *arguments);
     add_device_option(*command, arguments->common);
     add_common_options(*command, arguments->common);
     command->callback([arguments] { run_draw(*arguments); });

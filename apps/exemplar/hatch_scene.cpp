@@ -3,13 +3,7 @@
 #include <fmt/format.h>
 
 #include "apps/exemplar/arguments.h"
-#include "gpu/hatching/hatching_evaluator.h"
-#include "gpu/hatching/pixel_projection.h"
-#include "gpu/hatching/stroke_placer.h"
-#include "gpu/imaging/gbuffer_renderer.h"
-#include "gpu/imaging/image_derivatives.h"
-#include "gpu/learn/stump_scorer.h"
-#include "gpu/runtime/device.h"
+#include "gpu/hatching/hatching_device.h"
 #include "host/core/errors.h"
 #include "host/mesh/io.h"
 
@@ -38,22 +32,8 @@ HatchingView hatching_view(const HatchSceneArguments& arguments, const TriangleM
 }
 
 struct HatchScene::Impl {
-    explicit Impl(const std::string& name)
-        : device({.name = name}),
-          gbuffers(device),
-          filters(device),
-          projection(device),
-          scorer(device),
-          placer(device),
-          evaluator(device) {}
-    Device device;
-    GpuGBufferRenderer gbuffers;
-    GpuImageFilters filters;
-    GpuPixelProjection projection;
-    GpuStumpScorer scorer;
-    GpuStrokePlacer placer;
-    GpuHatchingEvaluator evaluator;
-    ImageTools tools{gbuffers, filters, projection};
+    explicit Impl(const std::string& name) : device({.name = name}) {}
+    HatchingDevice device;
     HatchingSurface surface;
     HatchingView view;
     std::unique_ptr<PixelFeatures> pixels;
@@ -65,7 +45,7 @@ HatchScene::HatchScene(const HatchSceneArguments& arguments, const std::string& 
     mesh_warnings(file, arguments.mesh, quiet);
     impl_->surface = measure_surface(file.mesh);
     impl_->view = hatching_view(arguments, impl_->surface.mesh);
-    impl_->pixels = std::make_unique<PixelFeatures>(impl_->surface, impl_->view, impl_->tools);
+    impl_->pixels = std::make_unique<PixelFeatures>(impl_->surface, impl_->view, impl_->device.tools().images);
 }
 
 HatchScene::~HatchScene() = default;
@@ -76,17 +56,20 @@ const HatchingSurface& HatchScene::surface() const {
 PixelFeatures& HatchScene::pixels() {
     return *impl_->pixels;
 }
+const HatchingTools& HatchScene::tools() const {
+    return impl_->device.tools();
+}
 StumpScorer& HatchScene::scorer() {
-    return impl_->scorer;
+    return tools().scorer;
 }
 HatchingEvaluator& HatchScene::evaluator() {
-    return impl_->evaluator;
+    return tools().evaluator;
 }
 StrokePlacer& HatchScene::placer() {
-    return impl_->placer;
+    return tools().placer;
 }
 const std::string& HatchScene::device_name() const {
-    return impl_->device.info().name;
+    return impl_->device.device().info().name;
 }
 
 }  // namespace exemplar

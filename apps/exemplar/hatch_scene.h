@@ -9,8 +9,7 @@
 #include "apps/exemplar/lines_camera.h"
 #include "host/hatching/hatching_surface.h"
 #include "host/hatching/pixel_features.h"
-#include "host/hatching/streamlines.h"
-#include "host/hatching/style_prediction.h"
+#include "host/hatching/view_hatching.h"
 
 namespace exemplar {
 
@@ -35,6 +34,7 @@ class HatchScene {
 
     const HatchingSurface& surface() const;
     PixelFeatures& pixels();
+    const HatchingTools& tools() const;
     StumpScorer& scorer();
     HatchingEvaluator& evaluator();
     StrokePlacer& placer();

@@ -78,20 +78,6 @@ Value choice(const std::string& word, const char* option, const std::vector<std:
     return static_cast<Value>(at - words.begin());
 }
 
-/// By the end of the name; a name without one is a folder.
-LinesOutput output_of(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (extension == ".svg") return LinesOutput::svg;
-    if (extension == ".png") return LinesOutput::picture;
-    for (const char* video : {".mp4", ".mkv", ".webm", ".mov"})
-        if (extension == video) return LinesOutput::video;
-    if (extension.empty()) return LinesOutput::folder;
-    throw UsageError(fmt::format("{}: '{}' is not written; give a name that ends in .svg, .png or .mp4, or a folder",
-                                 path.string(), extension));
-}
-
 void require_comparable(const LinesJob& job) {
     if (job.output == LinesOutput::svg)
         throw UsageError(fmt::format("{}: --compare makes pictures; give a name that ends in .png or .mp4, or a folder",
@@ -107,7 +93,7 @@ LinesJob job_of(const LinesArguments& arguments) {
     LinesJob job = arguments.job;
     if (job.source.input.empty()) throw UsageError("no MESH or ANIM is given; see 'exemplar lines --help'");
     if (job.out.empty()) throw UsageError("--out is missing; give the file to write, as drawing.svg");
-    job.output = output_of(job.out);
+    job.output = lines_output_of(job.out);
     if (job.output == LinesOutput::folder)
         require_output_folder(job.out);
     else
@@ -196,6 +182,19 @@ void add_svg_options(CLI::App& command, LinesArguments& arguments) {
 }
 
 }  // namespace
+
+LinesOutput lines_output_of(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".svg") return LinesOutput::svg;
+    if (extension == ".png") return LinesOutput::picture;
+    for (const char* video : {".mp4", ".mkv", ".webm", ".mov"})
+        if (extension == video) return LinesOutput::video;
+    if (extension.empty()) return LinesOutput::folder;
+    throw UsageError(fmt::format("{}: '{}' is not written; give a name that ends in .svg, .png or .mp4, or a folder",
+                                 path.string(), extension));
+}
 
 nlohmann::json describe_job(const LinesJob& job, const LinesSource& source, const StrokeView& view) {
     std::vector<float> matrix;

@@ -13,6 +13,8 @@ namespace exemplar {
 
 /// What is written: a file, or a folder of pictures.
 enum class LinesOutput { svg, picture, video, folder };
+/// By the end of the name; a name without one is a folder. Throws UsageError for what is not written.
+LinesOutput lines_output_of(const std::filesystem::path& path);
 
 /// What 'exemplar lines' is asked to draw, checked: one function per kind of output takes it.
 struct LinesJob {

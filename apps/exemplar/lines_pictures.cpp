@@ -1,17 +1,14 @@
 // exemplar lines: drawings as pictures, folders of pictures and videos, drawn on the device.
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <csignal>
-#include <cstdio>
-#include <cstdlib>
 #include <functional>
 #include <optional>
 
 #include "apps/exemplar/frame_drawer.h"
 #include "apps/exemplar/lines_comparison.h"
 #include "apps/exemplar/lines_job.h"
+#include "apps/exemplar/video.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
@@ -25,59 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 using DrawFrame = std::function<Image(std::size_t)>;
-
-std::string quoted(const std::string& word) {
-    std::string result = "'";
-    for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return result + "'";
-}
-
-/// A video that ffmpeg, a program that must be installed, makes of frames; beside its place until it is whole.
-class Video {
-  public:
-    Video(const fs::path& path, int width, int height, double frames_per_second)
-        : path_(path), part_(path.parent_path() / (".part-" + std::to_string(getpid()) + path.filename().string())) {
-        if (std::system("command -v ffmpeg >/dev/null 2>&1") != 0)
-            throw UsageError(fmt::format(
-                "{}: videos are made by ffmpeg, which is not installed; install it, or give a folder", path.string()));
-        if (path.has_parent_path()) fs::create_directories(path.parent_path());
-        // If it ends early, writing to it is to fail, not to end this program.
-        std::signal(SIGPIPE, SIG_IGN);
-        // Most players want even sizes.
-        const std::string command = fmt::format(
-            "ffmpeg -loglevel error -nostdin -y -f rawvideo -pixel_format rgb24 -video_size {}x{} -framerate {} -i - "
-            "-vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2:color=white' -pix_fmt yuv420p {} >&2",
-            width, height, frames_per_second, quoted(fs::absolute(part_).string()));
-        pipe_ = popen(command.c_str(), "w");
-        if (!pipe_) throw DataError(fmt::format("{}: ffmpeg cannot be started", path.string()));
-    }
-    ~Video() {
-        if (!pipe_) return;
-        pclose(pipe_);
-        std::error_code ignored;
-        fs::remove(part_, ignored);
-    }
-    Video(const Video&) = delete;
-    Video& operator=(const Video&) = delete;
-
-    void add(const Image& image) {
-        if (std::fwrite(image.data.data(), 1, image.data.size(), pipe_) != image.data.size())
-            throw DataError(fmt::format("{}: ffmpeg takes no more frames; is the disk full?", path_.string()));
-    }
-    void finish() {
-        const int status = pclose(std::exchange(pipe_, nullptr));
-        if (status != 0) {
-            std::error_code ignored;
-            fs::remove(part_, ignored);
-            throw DataError(fmt::format("{}: ffmpeg has failed; try a name that ends in .mp4", path_.string()));
-        }
-        fs::rename(part_, path_);
-    }
-
-  private:
-    fs::path path_, part_;
-    std::FILE* pipe_ = nullptr;
-};
 
 /// Calls use(image, number of the frame) for all frames.
 void draw_frames(const DrawFrame& draw, std::size_t count, const std::function<void(const Image&, std::size_t)>& use) {

@@ -1,9 +1,14 @@
 #include "host/hatching/hatching_surface.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
 #include "host/core/stopwatch.h"
@@ -86,6 +91,47 @@ TensorAxes tensor_axes(const std::array<float, 6>& c, const Vec3& normal) {
             direction_confidence(second_gap) * second.squaredNorm()};
 }
 
+/// Curvature at all scales; the feature size, too, unless it is known (not 0).
+void measure_curvature(HatchingSurface& surface, float known_feature_size) {
+    CurvatureEstimator estimator(surface.mesh.faces, surface.mesh.vertex_count());
+    CurvatureOptions options;
+    options.smoothing = 1;
+    surface.line_curvature = estimator.estimate(surface.mesh.vertices, options);
+    surface.feature_size =
+        known_feature_size > 0 ? known_feature_size : feature_size(surface.mesh.vertices, surface.line_curvature);
+    options.smoothing_unit = static_cast<double>(surface.unit);
+    for (std::size_t s = 0; s < k_hatching_scales.size(); ++s) {
+        // The Gaussian with the variance of a disk of that radius.
+        options.smoothing = k_hatching_scales[s] / 2;
+        surface.curvature[s] = estimator.estimate(surface.mesh.vertices, options);
+    }
+}
+
+void complete_principal(const DirectionSmoother& smoother, std::size_t scale, HatchingSurface& surface) {
+    const VertexCurvature& c = surface.curvature[scale];
+    std::vector<float> confidence(c.k1.size());
+    for (std::size_t v = 0; v < confidence.size(); ++v) {
+        // What is flatter than a radius of twice the median distance is flat.
+        const float largest = std::max({std::abs(c.k1[v]), std::abs(c.k2[v]), 0.5f / surface.unit});
+        confidence[v] = direction_confidence((c.k1[v] - c.k2[v]) / (2 * largest));
+    }
+    std::vector<Vec3>& k_max = surface.directions.k_max[scale];
+    std::vector<Vec3>& k_min = surface.directions.k_min[scale];
+    k_max = smoother.complete(c.e1, confidence);
+    k_min.resize(k_max.size());
+    for (std::size_t v = 0; v < k_max.size(); ++v) k_min[v] = surface.normals[v].cross(k_max[v]);
+}
+
+/// Fields that follow from how the surface bends: k_max of each scale (k_min is that turned), ridges and valleys.
+constexpr std::size_t k_bending_fields = k_hatching_scales.size() + 2;
+void complete_bending(const DirectionSmoother& smoother, std::size_t field, HatchingSurface& surface) {
+    if (field < k_hatching_scales.size()) complete_principal(smoother, field, surface);
+    if (field == k_hatching_scales.size())
+        surface.directions.ridges = complete_lines(smoother, surface, LineType::ridges);
+    if (field == k_hatching_scales.size() + 1)
+        surface.directions.valleys = complete_lines(smoother, surface, LineType::valleys);
+}
+
 class Measurement {
   public:
     explicit Measurement(const TriangleMesh& mesh) : prepared_(prepare_mesh(mesh, k_samples)) {
@@ -100,7 +146,8 @@ class Measurement {
     }
 
     HatchingSurface run() {
-        measure_curvature();
+        measure_curvature(surface_, 0);
+        surface_.neighbors = build_face_neighbors(surface_.mesh.faces, surface_.mesh.vertex_count());
         done("curvature");
         measure_descriptors();
         done("descriptors");
@@ -118,21 +165,6 @@ class Measurement {
         surface_.seconds.emplace_back(step, watch_.wall());
         watch_ = Stopwatch();
         check_interrupt();
-    }
-
-    void measure_curvature() {
-        CurvatureEstimator estimator(surface_.mesh.faces, surface_.mesh.vertex_count());
-        CurvatureOptions options;
-        options.smoothing = 1;
-        surface_.line_curvature = estimator.estimate(surface_.mesh.vertices, options);
-        surface_.feature_size = feature_size(surface_.mesh.vertices, surface_.line_curvature);
-        options.smoothing_unit = static_cast<double>(surface_.unit);
-        for (std::size_t s = 0; s < k_hatching_scales.size(); ++s) {
-            // The Gaussian with the variance of a disk of that radius.
-            options.smoothing = k_hatching_scales[s] / 2;
-            surface_.curvature[s] = estimator.estimate(surface_.mesh.vertices, options);
-        }
-        surface_.neighbors = build_face_neighbors(surface_.mesh.faces, surface_.mesh.vertex_count());
     }
 
     void measure_descriptors() {
@@ -161,29 +193,12 @@ class Measurement {
     void complete_directions() {
         const DirectionSmoother smoother(surface_.mesh, surface_.normals);
         SurfaceDirections& out = surface_.directions;
-        // Fourteen systems in all; each field is one, and k_min is k_max turned in the tangent plane.
-        parallel_for(3 * k_hatching_scales.size() + 2, [&](std::size_t field) {
+        parallel_for(6 + k_bending_fields, [&](std::size_t field) {
             const std::size_t scale = field % 3;
-            if (field == 9) out.ridges = complete_lines(smoother, surface_, LineType::ridges);
-            if (field == 10) out.valleys = complete_lines(smoother, surface_, LineType::valleys);
-            if (field < 3) complete_principal(smoother, scale);
-            if (field >= 3 && field < 6) out.e_a[scale] = complete_axis(smoother, scale, true);
-            if (field >= 6 && field < 9) out.e_b[scale] = complete_axis(smoother, scale, false);
+            if (field < 3) out.e_a[scale] = complete_axis(smoother, scale, true);
+            if (field >= 3 && field < 6) out.e_b[scale] = complete_axis(smoother, scale, false);
+            if (field >= 6) complete_bending(smoother, field - 6, surface_);
         });
-    }
-
-    void complete_principal(const DirectionSmoother& smoother, std::size_t scale) {
-        const VertexCurvature& c = surface_.curvature[scale];
-        std::vector<float> confidence(c.k1.size());
-        for (std::size_t v = 0; v < confidence.size(); ++v) {
-            // What is flatter than a radius of twice the median distance is flat.
-            const float largest = std::max({std::abs(c.k1[v]), std::abs(c.k2[v]), 0.5f / surface_.unit});
-            confidence[v] = direction_confidence((c.k1[v] - c.k2[v]) / (2 * largest));
-        }
-        std::vector<Vec3>& k_max = surface_.directions.k_max[scale];
-        k_max = smoother.complete(c.e1, confidence);
-        for (std::size_t v = 0; v < k_max.size(); ++v)
-            surface_.directions.k_min[scale].push_back(surface_.normals[v].cross(k_max[v]));
     }
 
     std::vector<Vec3> complete_axis(const DirectionSmoother& smoother, std::size_t scale, bool first) const {
@@ -236,6 +251,47 @@ class Measurement {
     std::vector<std::vector<std::array<float, 6>>> covariances_;
 };
 
+/// Tangent directions carried along: each is a sum of edges of a face before, and then of the same edges now; the mean
+/// over the faces around a vertex.
+class TurningDirections {
+  public:
+    TurningDirections(const TriangleMesh& mesh, std::span<const Vec3> before) : mesh_(mesh), before_(before) {
+        around_.resize(mesh.vertex_count());
+        for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
+            for (const std::uint32_t v : mesh.faces[f]) around_[v].push_back(f);
+        }
+    }
+
+    void turn(std::span<Vec3> directions, std::span<const Vec3> normals) const {
+        parallel_for(
+            directions.size(),
+            [&](std::size_t v) {
+                Vec3 sum = Vec3::Zero();
+                for (const std::uint32_t f : around_[v]) sum += turned(f, directions[v]);
+                sum -= normals[v] * normals[v].dot(sum);
+                directions[v] = sum.norm() > 0 ? Vec3(sum.normalized()) : Vec3(Vec3::Zero());
+            },
+            1024);
+    }
+
+  private:
+    /// Counts by the area that the face had.
+    Vec3 turned(std::uint32_t f, const Vec3& direction) const {
+        const auto& [a, b, c] = mesh_.faces[f];
+        const Vec3 p = before_[b] - before_[a], q = before_[c] - before_[a], normal = p.cross(q);
+        const float square = normal.squaredNorm();
+        if (!(square > 0)) return Vec3::Zero();
+        const float along_p = direction.cross(q).dot(normal) / square,
+                    along_q = p.cross(direction).dot(normal) / square;
+        const std::vector<Vec3>& now = mesh_.vertices;
+        return std::sqrt(square) * (along_p * (now[b] - now[a]) + along_q * (now[c] - now[a]));
+    }
+
+    const TriangleMesh& mesh_;
+    std::span<const Vec3> before_;
+    std::vector<std::vector<std::uint32_t>> around_;
+};
+
 }  // namespace
 
 std::vector<std::string> descriptor_names() {
@@ -250,6 +306,24 @@ std::vector<std::string> descriptor_names() {
 HatchingSurface measure_surface(const TriangleMesh& mesh) {
     require_usable(mesh, "mesh");
     return Measurement(mesh).run();
+}
+
+void move_surface(HatchingSurface& surface, std::span<const Vec3> vertices) {
+    if (vertices.size() != surface.mesh.vertex_count())
+        throw UsageError(fmt::format("a surface of {} vertices cannot move to {} places", surface.mesh.vertex_count(),
+                                     vertices.size()));
+    for (const Vec3& vertex : vertices)
+        if (!vertex.allFinite()) throw MeshError("a vertex has moved to a place that is not finite");
+    const std::vector<Vec3> before = std::exchange(surface.mesh.vertices, {vertices.begin(), vertices.end()});
+    surface.normals = vertex_normals(surface.mesh);
+    measure_curvature(surface, surface.feature_size);
+    surface.occlusion = measure_self_occlusion(surface.mesh, surface.normals);
+    const TurningDirections turning(surface.mesh, before);
+    SurfaceDirections& directions = surface.directions;
+    for (auto* axes : {&directions.e_a, &directions.e_b})
+        for (std::vector<Vec3>& axis : *axes) turning.turn(axis, surface.normals);
+    const DirectionSmoother smoother(surface.mesh, surface.normals);
+    parallel_for(k_bending_fields, [&](std::size_t field) { complete_bending(smoother, field, surface); });
 }
 
 }  // namespace exemplar

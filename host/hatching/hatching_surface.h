@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,5 +55,11 @@ std::vector<std::string> descriptor_names();
 /// Measures a mesh, on all cores; the result does not depend on their number. Throws MeshError for unusable meshes,
 /// Interrupted at Ctrl-C.
 HatchingSurface measure_surface(const TriangleMesh& mesh);
+
+/// Moves a measured surface to where its vertices are now. Normals, curvature, the fields that follow from it and
+/// self-occlusion are measured anew. What takes long and says which part of an object one is on stays as it was:
+/// descriptors, geodesic distances, units; axes of patches turn with the faces around. Throws UsageError unless there
+/// is a position for each vertex, and MeshError if one is not finite.
+void move_surface(HatchingSurface& surface, std::span<const Vec3> vertices);
 
 }  // namespace exemplar

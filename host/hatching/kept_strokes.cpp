@@ -8,6 +8,7 @@
 
 #include "host/core/errors.h"
 #include "host/hatching/stroke_directions.h"
+#include "host/hatching/stroke_growth.h"
 #include "host/hatching/stroke_way.h"
 
 namespace exemplar {
@@ -137,6 +138,8 @@ std::vector<FineStroke> keep_strokes(const PlacementGrid& grid, std::span<const 
         clearance.add(part);
         kept.push_back(std::move(part));
     }
+    grow_strokes(grid, kept);
+    for (const FineStroke& stroke : kept) clearance.add(stroke);
     return kept;
 }
 

@@ -46,7 +46,8 @@ class StrokePlacer {
 
     /// Strokes of both layers, in the order in which they were placed. `barriers`: occlusion_barriers(), or empty for
     /// none. `kept`: strokes of the picture before, moved to where they belong now; each is cut to the longest part
-    /// that is still valid, in their order, and they come first, unless too little is left. Spacings under 1 pixel
+    /// that is still valid, in their order, and they come first, unless too little is left. Then those that are
+    /// shorter than new strokes may be grow at their ends, as new ones would. Spacings under 1 pixel
     /// or over 256 are taken for that, as are lengths over 1024. Throws UsageError if sizes do not fit, the picture is
     /// over 32768 pixels in width or height, targets of hatched pixels are negative or not finite (or an intensity over
     /// 1), a kept stroke is not finite or of no layer, or an option is out of range.

@@ -36,6 +36,17 @@ std::int32_t distance_to_line(FinePoint point, FinePoint from, FinePoint to) {
 
 }  // namespace
 
+std::optional<StrokeStep> next_step(const PlacementGrid& grid, std::uint32_t layer, FinePoint tip, Direction heading) {
+    const FinePoint middle = moved(tip, heading, k_step / 2);
+    const Direction way = direction_at(grid, layer, middle, heading);
+    const FinePoint next = moved(tip, way, k_step);
+    const PlacementTexel* texel = grid.at(next);
+    if (!way || !texel || !texel->hatched(layer) || !is_free_step(grid, tip, next) ||
+        dot(way, heading) < grid.rules.least_turn_cosine * k_unit)
+        return std::nullopt;
+    return StrokeStep{next, way};
+}
+
 StrokeWay::StrokeWay(const PlacementGrid& grid, const Clearance& clearance, const StrokeSeed& seed)
     : grid_(grid), clearance_(clearance), seed_(seed), texel_(*grid.at(seed.point)) {
     const auto x = static_cast<std::uint32_t>(seed.point.x), y = static_cast<std::uint32_t>(seed.point.y);
@@ -90,26 +101,23 @@ void StrokeWay::look_ahead(StrokeBranch& branch) {
 }
 
 void StrokeWay::step(StrokeBranch& branch) {
-    const FinePoint middle = moved(branch.tip, branch.heading, k_step / 2);
-    const Direction way = direction_at(grid_, seed_.layer, middle, branch.heading);
-    const FinePoint next = moved(branch.tip, way, k_step);
-    const PlacementTexel* texel = grid_.at(next);
-    if (!way || !texel || !texel->hatched(seed_.layer) || !is_free_step(grid_, branch.tip, next) ||
-        dot(way, branch.heading) < grid_.rules.least_turn_cosine * k_unit) {
+    const auto next = next_step(grid_, seed_.layer, branch.tip, branch.heading);
+    if (!next) {
         branch.end = StrokeEnd::region;
         return;
     }
-    branch.turn += cross(branch.heading, way) >> k_unit_bits;
-    if (!clearance_.is_clear(seed_.layer, next, texel->spacing(), grid_.rules.test_share) ||
-        meets_itself(branch, next, *texel)) {
+    branch.turn += cross(branch.heading, next->heading) >> k_unit_bits;
+    const PlacementTexel& texel = *grid_.at(next->point);
+    if (!clearance_.is_clear(seed_.layer, next->point, texel.spacing(), grid_.rules.test_share) ||
+        meets_itself(branch, next->point, texel)) {
         branch.end = StrokeEnd::crowd;
         return;
     }
     least_turn_ = std::min(least_turn_, branch.turn);
     most_turn_ = std::max(most_turn_, branch.turn);
-    branch.tip = next;
-    branch.heading = way;
-    branch.points.push_back(next);
+    branch.tip = next->point;
+    branch.heading = next->heading;
+    branch.points.push_back(next->point);
 }
 
 /// Whether a point comes nearer than the test distance to what the stroke has passed, beyond what it just did.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "host/hatching/clearance.h"
@@ -15,6 +16,15 @@ struct StrokeSeed {
     FinePoint point;
     Direction heading;
 };
+
+/// A step of a stroke: where it leads, in which direction.
+struct StrokeStep {
+    FinePoint point;
+    Direction heading;
+};
+/// The next step of a stroke (second-order Runge-Kutta); none where its layer has no strokes, at a barrier, and where
+/// orientations turn too sharply or cancel out.
+std::optional<StrokeStep> next_step(const PlacementGrid& grid, std::uint32_t layer, FinePoint tip, Direction heading);
 
 /// What ends one side of a stroke: its length, or its layer, a barrier or a sharp turn, or another stroke or itself.
 enum class StrokeEnd { none, length, region, crowd };

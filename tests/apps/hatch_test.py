@@ -70,6 +70,31 @@ class Hatch(ProgramTest):
         self.assertLess(dark, 0.4)
         self.assertEqual((self.folder / "one.png").read_bytes(), (self.folder / "two.png").read_bytes())
 
+    def test_strokes_of_an_animation_stay_on_the_surface(self):
+        self.call("synth", "figure", "--vertices", "800", "--frames", "10", "--seed", "1", "--out", ".")
+        draw = ["hatch", "draw", "style.safetensors", "figure_001.glb", "--frames", "2:5", "--size", "260x240", "--out"]
+        said = self.call(*draw, "walk", "--json", "walk.json").stdout
+        self.assertIn("of the length of strokes is new", said)
+        self.call(*draw, "fresh", "--fresh", "--json", "fresh.json")
+        kept, fresh = (json.loads((self.folder / name).read_text()) for name in ("walk.json", "fresh.json"))
+        self.assertEqual(kept["frames"], 3)
+        for figure in ("appeared", "vanished", "slip"):
+            self.assertLess(kept["flicker"][figure], 0.6 * fresh["flicker"][figure])
+        pictures = sorted((self.folder / "walk").iterdir())
+        self.assertEqual([picture.name for picture in pictures], [f"frame_{i:04}.png" for i in range(3)])
+        self.assertEqual(read_png(pictures[0])[:2], (260, 240))
+        self.assertEqual(pictures[0].read_bytes(), (self.folder / "fresh" / "frame_0000.png").read_bytes())
+        self.assertNotEqual(pictures[2].read_bytes(), (self.folder / "fresh" / "frame_0002.png").read_bytes())
+        self.call("hatch", "draw", "style.safetensors", "figure_001.glb", "--frames", "2", "--size", "260x240", "--out", "frame.svg")
+        self.assertEqual(ElementTree.parse(self.folder / "frame.svg").getroot().get("width"), "260px")
+
+    def test_a_mesh_that_turns(self):
+        self.call("hatch", "draw", "style.safetensors", MESH, "--turn", "3", "--frames", "0:3", "--size", "260x240", "--out", "turning",
+                  "--json", "turning.json")
+        report = json.loads((self.folder / "turning.json").read_text())
+        self.assertEqual(report["frames"], 3)
+        self.assertLess(report["flicker"]["appeared"], 0.3)
+
     def test_evaluation_beside_the_known_rule(self):
         self.call("hatch", "evaluate", MESH, "--styles", "flow", "--size", "500x500", "--json", "evaluation.json", "--export", "rows")
         (result,) = json.loads((self.folder / "evaluation.json").read_text())
@@ -91,6 +116,10 @@ class Hatch(ProgramTest):
         self.call("hatch", "template", "cube.off", *VIEW, "--out", "cube.png")
         self.refused("hatch", "draw", "drawing.png", MESH, "--out", "x.svg", code=1, says="drawing.png")
         self.refused("hatch", "draw", "style.safetensors", MESH, "--out", "x.jpg", code=2, says=[".svg", ".png"])
+        self.refused("hatch", "draw", "style.safetensors", MESH, "--turn", "9", "--frames", "0:2", "--out", "x.png", code=2,
+                     says="no single picture")
+        self.refused("hatch", "draw", "style.safetensors", MESH, "--frames", "0", "--properties", "p", "--out", "x.png", code=2,
+                     says="--properties")
         self.refused("hatch", "draw", "style.safetensors", MESH, "--light", "0,0,0", "--out", "x.svg", code=2, says="--light")
         self.refused("hatch", "draw", "style.safetensors", MESH, "--eye", "0,0,9", "--target", "0,0,99", "--out", "x.svg", code=1,
                      says="shows nothing of the mesh")

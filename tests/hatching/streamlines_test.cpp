@@ -415,22 +415,60 @@ TEST(KeptStrokes, EndWhereTheyAreNoLongerRight) {
     EXPECT_LT(empty_share(after, fields, 0, 1.5f), 0.02);
 }
 
+/// A kept stroke along x.
+HatchStroke row(float y, float from, float to) {
+    HatchStroke stroke{.layer = 0, .points = {}, .widths = {}, .darkness = 1};
+    for (float x = from; x <= to; x += 2) stroke.points.emplace_back(x, y);
+    stroke.widths.assign(stroke.points.size(), 1.0f);
+    return stroke;
+}
+
 TEST(KeptStrokes, GiveWayInTheirOrder) {
-    const HatchingFields fields = even_fields(100, 100, 0);
-    const auto line = [](float y, float from, float to) {
-        HatchStroke stroke{.layer = 0, .points = {}, .widths = {}, .darkness = 1};
-        for (float x = from; x <= to; x += 2) stroke.points.emplace_back(x, y);
-        stroke.widths.assign(stroke.points.size(), 1.0f);
-        return stroke;
-    };
-    const std::vector<HatchStroke> kept{line(50, 20, 70), line(52, 30, 80), line(53, 78, 99)};
+    const HatchingFields fields = even_fields(100, 100, 0, 6, 50);
+    const std::vector<HatchStroke> kept{row(50, 20, 70), row(52, 30, 80), row(53, 78, 99)};
     const auto strokes = CpuStrokePlacer().place(fields, {}, {}, kept);
     ASSERT_GT(strokes.size(), 2u);
     EXPECT_LT((strokes[0].points.front() - Vec2(20, 50)).norm(), 0.1f);
     EXPECT_LT((strokes[0].points.back() - Vec2(70, 50)).norm(), 1.1f);
-    // The second has no more than nine pixels that are far enough from the first.
-    EXPECT_LT((strokes[1].points.front() - Vec2(78, 53)).norm(), 0.1f);
+    // The second has no more than nine pixels that are far enough from the first. The third grows back until it comes
+    // within 0.7 of the spacing of the first.
+    EXPECT_NEAR(strokes[1].points.front().x(), 70 + std::sqrt(4.2f * 4.2f - 9), 2);
+    EXPECT_NEAR(strokes[1].points.front().y(), 53, 0.1f);
+    EXPECT_GT(strokes[1].points.back().x(), 97);
     EXPECT_GE(measure_spacing(strokes, fields).least_ratio, 0.69);
+}
+
+TEST(KeptStrokes, GrowBackToTheirTargets) {
+    HatchingFields fields = even_fields(200, 60, 0);
+    CpuStrokePlacer placer;
+    std::vector<std::uint8_t> barriers(fields.size());
+    const auto grown = [&](float from, float to) {
+        const HatchStroke stroke = row(30.5f, from, to);
+        return placer.place(fields, barriers, {}, std::span(&stroke, 1))[0];
+    };
+    // At their ends, to the target of 60 pixels less the jitter of a tenth; they do not move.
+    const HatchStroke free = grown(80, 110);
+    EXPECT_NEAR(length_of(free), 54, 1.1f);
+    EXPECT_NEAR(free.points.front().x(), 80, 0.1f);
+    EXPECT_NEAR(length_of(grown(80, 136)), 56, 1.1f);
+    // No farther than a barrier and the end of the layer.
+    for_pixels(fields, [&](std::size_t i, float x, float) {
+        if (x == 120.5f) barriers[i] = k_barrier_right;
+        if (x < 75) fields.level[i] = k_no_hatching;
+    });
+    const HatchStroke bounded = grown(80, 110);
+    EXPECT_NEAR(bounded.points.front().x(), 75, 1.1f);
+    EXPECT_NEAR(bounded.points.back().x(), 121, 1.1f);
+}
+
+TEST(KeptStrokes, DoNotGrowIntoThemselves) {
+    const HatchingFields fields = circle_fields(60, 60, 400);
+    HatchStroke stroke{.layer = 0, .points = {}, .widths = {}, .darkness = 1};
+    for (float angle = 0; angle < 2; angle += 0.1f)
+        stroke.points.emplace_back(30 + 20 * std::cos(angle), 30 + 20 * std::sin(angle));
+    const auto strokes = CpuStrokePlacer().place(fields, {}, {}, std::span(&stroke, 1));
+    // Once around, less the test distance.
+    EXPECT_NEAR(length_of(strokes[0]), 2 * std::numbers::pi_v<float> * 20 - 4.2f, 3);
 }
 
 TEST(KeptStrokes, AreCutWhereTheyAreMuchTooLong) {

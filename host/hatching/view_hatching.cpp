@@ -6,6 +6,7 @@
 #include "host/core/stopwatch.h"
 #include "host/hatching/line_directions.h"
 #include "host/hatching/occlusion_barriers.h"
+#include "host/hatching/stroke_relaxation.h"
 #include "host/hatching/tone_matching.h"
 
 namespace exemplar {
@@ -19,7 +20,9 @@ ViewHatching hatch_view(const HatchingStyle& style, PixelFeatures& pixels, const
     watch = {};
     const HatchingFields& fields = out.prediction.fields;
     const auto barriers = occlusion_barriers(pixels.gbuffer().depth, fields.width, fields.height);
-    out.strokes = tools.placer.place(fields, barriers, options.strokes, kept);
+    // Strokes that are kept lie where they were even; to move them would make them slip on the surface.
+    out.strokes = kept.empty() ? place_evenly(tools.placer, fields, barriers, options.strokes)
+                               : tools.placer.place(fields, barriers, options.strokes, kept);
     if (options.matches_tone) match_tone(out.strokes, fields);
     out.stroke_seconds = watch.wall();
     return out;

@@ -33,7 +33,8 @@ struct ViewHatching {
     double prediction_seconds = 0, stroke_seconds = 0;  ///< wall time
 };
 
-/// Hatches a view in a style. `kept`: see StrokePlacer. Throws as predict_hatching and StrokePlacer::place.
+/// Hatches a view in a style. `kept`: see StrokePlacer; without, strokes are spaced as place_evenly() does. Throws as
+/// predict_hatching and StrokePlacer::place.
 ViewHatching hatch_view(const HatchingStyle& style, PixelFeatures& pixels, const HatchingTools& tools,
                         const HatchingOptions& options = {}, std::span<const HatchStroke> kept = {});
 

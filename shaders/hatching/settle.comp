@@ -62,6 +62,8 @@ void compact(uint items) {
         const bool won = has_won(i), kept = is_kept(i);
         SeedListRecord list = SeedListRecord(0u, 0u, 0u, 0u);
         if (kept) list = lists[parameters.blocks + i];
+        // A stroke a pixel from others may hide from the pixels around it: it would be placed again for ever.
+        if (won) ++list.next;
         const uint count = won ? trials[i].count : 0u;
         // Both counts are below 2^16.
         const uint counted = sum_before((won ? 1u : 0u) | (kept ? 1u << 16 : 0u)), total = group_total;

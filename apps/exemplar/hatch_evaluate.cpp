@@ -85,9 +85,25 @@ double rule_error(const OrientationFunction& function, PixelFeatures& pixels, co
     return median_of_values(std::move(errors));
 }
 
-/// Rows of features with truths, as arrays for other programs.
-void export_rows(const fs::path& folder, const std::string& name, PixelFeatures& pixels, const HatchingFields& truth,
-                 std::size_t most, std::uint64_t seed) {
+/// The level and the properties of rows.
+FeatureMatrix targets_of(const HatchingFields& fields, PixelFeatures& pixels, std::span<const std::uint32_t> rows) {
+    FeatureMatrix targets;
+    targets.rows = rows.size();
+    const auto pixel = [&](std::size_t i) { return pixels.pixels().pixel[rows[i]]; };
+    const std::span<float> levels = targets.add("level");
+    for (std::size_t i = 0; i < rows.size(); ++i) levels[i] = fields.level[pixel(i)];
+    for (std::size_t k = 0; k < k_stroke_properties; ++k) {
+        const auto property = static_cast<StrokeProperty>(k);
+        const std::span<float> column = targets.add(name_of(property));
+        for (std::size_t i = 0; i < rows.size(); ++i) column[i] = property_of(fields, property)[pixel(i)];
+    }
+    return targets;
+}
+
+/// Some rows of features, with targets that were measured or are true and, where there are some, those that were
+/// learned, as arrays for other programs.
+void export_rows(const fs::path& folder, const std::string& name, PixelFeatures& pixels, const HatchingFields& targets,
+                 const HatchingFields* learned, std::size_t most, std::uint64_t seed) {
     fs::create_directories(folder);
     std::vector<std::uint32_t> rows(pixels.size());
     std::iota(rows.begin(), rows.end(), 0U);
@@ -95,19 +111,9 @@ void export_rows(const fs::path& folder, const std::string& name, PixelFeatures&
     rows.resize(std::min(rows.size(), most));
     std::vector<std::uint32_t> all(k_pixel_features);
     std::iota(all.begin(), all.end(), 0U);
-    const FeatureMatrix features = pixels.scalars(all, rows);
-    write_npy(folder / (name + "_x.npy"), features);
-    FeatureMatrix targets;
-    targets.rows = rows.size();
-    const std::span<float> levels = targets.add("level");
-    for (std::size_t i = 0; i < rows.size(); ++i) levels[i] = truth.level[pixels.pixels().pixel[rows[i]]];
-    for (std::size_t k = 0; k < k_stroke_properties; ++k) {
-        const auto property = static_cast<StrokeProperty>(k);
-        const std::span<float> column = targets.add(name_of(property));
-        for (std::size_t i = 0; i < rows.size(); ++i)
-            column[i] = property_of(truth, property)[pixels.pixels().pixel[rows[i]]];
-    }
-    write_npy(folder / (name + "_y.npy"), targets);
+    write_npy(folder / (name + "_x.npy"), pixels.scalars(all, rows));
+    write_npy(folder / (name + "_y.npy"), targets_of(targets, pixels, rows));
+    if (learned) write_npy(folder / (name + "_learned.npy"), targets_of(*learned, pixels, rows));
 }
 
 /// The truth in the place of a drawing's targets, where the drawing was measured.
@@ -167,7 +173,8 @@ class StyleEvaluation {
         global_ = one_rule(scene.pixels(), drawing, false, arguments_.seed);
         curvature_ = one_rule(scene.pixels(), drawing, true, arguments_.seed);
         if (!arguments_.peers.empty())
-            export_rows(arguments_.peers, name_ + "_train", scene.pixels(), measured_fields(drawing), 16000, 1);
+            export_rows(arguments_.peers, name_ + "_train", scene.pixels(), measured_fields(drawing), nullptr, 16000,
+                        1);
         progress_.advance(1, name_ + " learned");
     }
 
@@ -208,9 +215,9 @@ class StyleEvaluation {
         match_tone(strokes, predicted.fields);
         row["drawn_spacing"] = measure_spacing(strokes, predicted.fields).median_error;
         row["drawn_tone"] = measure_tone(strokes, predicted.fields).median_error;
-        if (!arguments_.peers.empty() && !training_view)
-            export_rows(arguments_.peers, fmt::format("{}_{}_{}", name_, mesh.stem().string(), view), pixels, truth,
-                        10000, 2);
+        if (!arguments_.peers.empty())
+            export_rows(arguments_.peers, fmt::format("{}_test_{}_{}", name_, mesh.stem().string(), view), pixels,
+                        truth, &predicted.fields, 10000, 2);
         result_["rows"].push_back(row);
         progress_.advance(1, fmt::format("{} on {}, {}", name_, mesh.stem().string(), view));
     }
@@ -223,19 +230,27 @@ class StyleEvaluation {
     nlohmann::json result_;
 };
 
+std::string percent(const nlohmann::json& row, const char* key) {
+    return fmt::format("{:.1f}%", 100 * row[key].get<double>());
+}
+
 void print_result(const nlohmann::json& result) {
     fmt::print("{}: learned in {:.0f} s\n{}", result["style"].get<std::string>(),
                result["training_seconds"].get<double>(), result["in_words"].get<std::string>());
     fmt::print("{:>34} {:>7} {:>7} {:>9} {:>6} {:>9} {:>9} {:>8} {:>6} {:>13} {:>6}\n", "", "degrees", "global",
                "curvature", "level", "thickness", "intensity", "spacing", "length", "drawn spacing", "tone");
+    const nlohmann::json& read = result["measured"];
+    fmt::print("{:>34} {:7.1f} {:>17} {:>6} {:>9} {:>9} {:>8} {:>6}\n", "as read from the drawing",
+               read["orientation_degrees"].get<double>(), "", percent(read, "level_accuracy"),
+               percent(read, "thickness"), percent(read, "intensity"), percent(read, "spacing"),
+               percent(read, "length"));
     for (const nlohmann::json& row : result["rows"]) {
-        const auto percent = [&](const char* key) { return fmt::format("{:.1f}%", 100 * row[key].get<double>()); };
         fmt::print("{:>34} {:7.1f} {:7.1f} {:9.1f} {:>6} {:>9} {:>9} {:>8} {:>6} {:>13} {:>6}\n",
                    row["mesh"].get<std::string>() + ", " + row["view"].get<std::string>(),
                    row["orientation_degrees"].get<double>(), row["global_rule_degrees"].get<double>(),
-                   row["curvature_only_degrees"].get<double>(), percent("level_accuracy"), percent("thickness"),
-                   percent("intensity"), percent("spacing"), percent("length"), percent("drawn_spacing"),
-                   percent("drawn_tone"));
+                   row["curvature_only_degrees"].get<double>(), percent(row, "level_accuracy"),
+                   percent(row, "thickness"), percent(row, "intensity"), percent(row, "spacing"),
+                   percent(row, "length"), percent(row, "drawn_spacing"), percent(row, "drawn_tone"));
     }
 }
 
@@ -281,7 +296,9 @@ void add_hatch_evaluate_command(CLI::App& hatch) {
     command->add_option("--seed", arguments->seed, "of drawing and learning")
         ->capture_default_str()
         ->check(whole_number(0));
-    command->add_option("--export", arguments->peers, "writes features and truths as .npy into this folder")
+    command
+        ->add_option("--export", arguments->peers,
+                     "writes features, truths and what was learned as .npy into this folder")
         ->type_name("FOLDER");
     add_device_option(*command, arguments->common);
     add_common_options(*command, arguments->common);

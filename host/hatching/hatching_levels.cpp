@@ -19,8 +19,15 @@ constexpr std::size_t k_sectors = 12;
 constexpr std::size_t k_apart = 2;
 constexpr float k_sector_step = std::numbers::pi_v<float> / static_cast<float>(k_sectors);
 constexpr float k_along = 0.5f;  ///< minor radius of a point's mask, in spacings, and how far the masks' union shrinks
-constexpr float k_least_region = 4;  ///< area of the smallest region, in squared spacings
-constexpr int k_absorptions = 4;     ///< for small regions inside of small regions
+constexpr float k_intersection_reach = 2;  ///< spacings: strokes that cross each other do so in every one
+constexpr float k_least_region = 4;        ///< area of the smallest region, in squared spacings
+constexpr int k_absorptions = 4;           ///< for small regions inside of small regions
+
+std::size_t pixel_at(const Vec2& at, const PixelMask& mask) {
+    const int x = std::clamp(static_cast<int>(at.x()), 0, mask.width - 1);
+    const int y = std::clamp(static_cast<int>(at.y()), 0, mask.height - 1);
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(mask.width) + static_cast<std::size_t>(x);
+}
 
 /// Sets the pixels of the ellipse around a point that reaches a spacing across the stroke.
 void add_ellipse(const TracedPoint& point, PixelMask& mask) {
@@ -53,10 +60,9 @@ std::vector<std::uint8_t> hatched_by_sector(std::span<const TracedStroke> stroke
             if (orientation_difference(point.orientation, static_cast<float>(sector) * k_sector_step) > k_sector_step)
                 continue;
             add_ellipse(point, covered);
-            const int x = std::clamp(static_cast<int>(point.center.x()), 0, mask.width - 1);
-            const int y = std::clamp(static_cast<int>(point.center.y()), 0, mask.height - 1);
-            lines.pixel(x, y)[0] = 1;
-            spacing.pixel(x, y)[0] = point.spacing;
+            const std::size_t pixel = pixel_at(point.center, mask);
+            lines.data[pixel] = 1;
+            spacing.data[pixel] = point.spacing;
             any = true;
         }
     if (!any) return std::vector<std::uint8_t>(covered.data.size(), 0);
@@ -89,6 +95,20 @@ std::vector<std::uint8_t> crossed_level(const std::array<std::vector<std::uint8_
         },
         4096);
     return level;
+}
+
+/// Strokes of two families that pass beside each other, or meet at an angle, do not cross: cross-hatching is where
+/// intersections are near.
+void demote_far(std::span<const Vec2> intersections, float reach, const PixelMask& mask,
+                std::vector<std::uint8_t>& level) {
+    std::vector<std::uint8_t> crossed(level.size(), 0);
+    for (const Vec2& place : intersections) crossed[pixel_at(place, mask)] = 1;
+    const std::vector<std::int32_t> nearest = nearest_sites(mask.width, mask.height, crossed);
+    for (std::size_t i = 0; i < level.size(); ++i) {
+        if (level[i] != k_cross_hatching) continue;
+        if (nearest[i] == k_no_site || pixel_distance(static_cast<std::int32_t>(i), nearest[i], mask.width) > reach)
+            level[i] = k_single_hatching;
+    }
 }
 
 /// Connected pixels of one level, and how often others are beside them.
@@ -138,11 +158,7 @@ class RegionFinder {
 void demote_regions(std::span<const Vec2> intersections, std::size_t most_of_single, const PixelMask& mask,
                     std::vector<std::uint8_t>& level) {
     std::vector<std::uint32_t> at(level.size(), 0);
-    for (const Vec2& place : intersections) {
-        const int x = std::clamp(static_cast<int>(place.x()), 0, mask.width - 1);
-        const int y = std::clamp(static_cast<int>(place.y()), 0, mask.height - 1);
-        ++at[static_cast<std::size_t>(y) * mask.width + x];
-    }
+    for (const Vec2& place : intersections) ++at[pixel_at(place, mask)];
     const std::vector<std::uint8_t> before = level;
     RegionFinder finder(before, mask);
     for (std::size_t start = 0; start < level.size(); ++start) {
@@ -178,6 +194,7 @@ std::vector<std::uint8_t> hatching_levels(std::span<const TracedStroke> strokes,
     std::array<std::vector<std::uint8_t>, k_sectors> sectors;
     parallel_for(k_sectors, [&](std::size_t c) { sectors[c] = hatched_by_sector(strokes, c, mask); });
     std::vector<std::uint8_t> level = crossed_level(sectors, mask);
+    demote_far(intersections, k_intersection_reach * usual_spacing, mask, level);
     demote_regions(intersections, most_of_single, mask, level);
     const auto least = static_cast<std::size_t>(k_least_region * usual_spacing * usual_spacing);
     for (int round = 0; round < k_absorptions && absorb_small_regions(least, mask, level);) ++round;

@@ -17,7 +17,8 @@ std::vector<Vec2> confirmed_intersections(std::span<const StrokeCrossing> crossi
                                           const PixelMask& skeleton, std::span<const TracedStroke> strokes);
 
 /// Hatching level per pixel of `mask`, zero outside of it (see measure_strokes). A region of cross-hatching has more
-/// than `most_of_single` intersections; regions of less than four squares of `usual_spacing` go to what is around them.
+/// than `most_of_single` intersections, everywhere within two of `usual_spacing`; regions of less than four of its
+/// squares go to what is around them.
 std::vector<std::uint8_t> hatching_levels(std::span<const TracedStroke> strokes, std::span<const Vec2> intersections,
                                           const PixelMask& mask, std::size_t most_of_single, float usual_spacing);
 

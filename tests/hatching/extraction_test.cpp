@@ -275,6 +275,21 @@ TEST(HatchingLevel, OfTwoByTwoStrokesIsSingleAndOfThreeByThreeIsCrossed) {
     }
 }
 
+TEST(HatchingLevel, IsSingleWhereStrokesOfTwoDirectionsDoNotCross) {
+    // Strokes rise and fall in turn, beside some that do cross.
+    std::vector<InkStroke> strokes;
+    for (int row = 0; row < 20; ++row) {
+        const Vec2 middle(90, 20 + 13 * static_cast<float>(row)), half = 20 * direction(row % 2 ? 0.3f : k_pi - 0.3f);
+        strokes.push_back({{middle - half, middle + half}, 2, 1});
+    }
+    add_family({0, 10, 2, 1, 90, 8}, {155, 150}, strokes);
+    add_family({k_pi / 2, 10, 2, 1, 90, 8}, {155, 150}, strokes);
+    const StrokeMeasurements m = measure(strokes);
+    EXPECT_GT(std::count(m.level.begin(), m.level.end(), k_cross_hatching), 60 * 60);
+    for (int y = 0; y < k_size; ++y)
+        for (int x = 0; x < 85; ++x) EXPECT_NE(m.level[static_cast<std::size_t>(y) * k_size + x], k_cross_hatching);
+}
+
 TEST(HatchingLevel, OfALineAloneIsNone) {
     std::vector<InkStroke> strokes;
     add_family({0.3f, 7, 2, 1, 100, 13}, {100, 150}, strokes);

@@ -75,14 +75,25 @@ PropertyModel get_property(const TensorFile& file, const std::string& name, std:
     return model;
 }
 
+Json described(const PixelCrfParameters& cut) {
+    return {{"strength", cut.strength}, {"offset", cut.offset}};
+}
+
+PixelCrfParameters read_cut(const TensorFile& file, const Json& json) {
+    const PixelCrfParameters cut{json.at("strength"), json.at("offset")};
+    if (!(cut.strength >= 0) || !std::isfinite(cut.strength) || !std::isfinite(cut.offset))
+        inconsistent(file, "a weight of its label cuts is out of range");
+    return cut;
+}
+
 void read_description(const TensorFile& file, HatchingStyle& style, std::size_t& stages) {
     const Json json = Json::parse(file.meta("style"));
     style.name = json.at("name");
     style.width = json.at("width");
     style.height = json.at("height");
     style.share = json.at("share").get<std::vector<double>>();
-    style.crf.strength = json.at("strength");
-    style.crf.offset = json.at("offset");
+    style.segment_crf = read_cut(file, json.at("segment_cut"));
+    style.level_crf = read_cut(file, json.at("level_cut"));
     stages = json.at("stages");
     const auto size_fits = [](int size) { return size > 0 && static_cast<std::size_t>(size) <= k_largest_drawing; };
     if (!size_fits(style.width) || !size_fits(style.height)) inconsistent(file, "the size of its drawing is odd");
@@ -90,8 +101,6 @@ void read_description(const TensorFile& file, HatchingStyle& style, std::size_t&
         inconsistent(file, fmt::format("it has {} segments", style.share.size()));
     if (stages == 0 || stages > k_most_stages)
         inconsistent(file, fmt::format("it has {} classifiers of segments", stages));
-    if (!(style.crf.strength >= 0) || !std::isfinite(style.crf.strength) || !std::isfinite(style.crf.offset))
-        inconsistent(file, "a weight of its label cut is out of range");
 }
 
 }  // namespace
@@ -109,8 +118,8 @@ void save_hatching_style(const std::filesystem::path& path, const HatchingStyle&
                            {"width", style.width},
                            {"height", style.height},
                            {"share", style.share},
-                           {"strength", style.crf.strength},
-                           {"offset", style.crf.offset},
+                           {"segment_cut", described(style.segment_crf)},
+                           {"level_cut", described(style.level_crf)},
                            {"stages", style.segments.size()}};
     // The name of a drawing's file may be no text.
     file.metadata["style"] = description.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -24,7 +24,7 @@ struct HatchingStyle {
     std::vector<CalibratedStumps> segments;  ///< cascade: from the second on with contextual features
     CalibratedStumps boundary;               ///< two classes: on a boundary of hatching regions or not
     CalibratedStumps levels;                 ///< three classes
-    PixelCrfParameters crf;
+    PixelCrfParameters segment_crf, level_crf;
     std::array<PropertyModel, k_stroke_properties> properties;
 
     std::size_t feature_count() const;  ///< base features, contextual ones included

@@ -10,7 +10,8 @@
 
 namespace exemplar {
 
-/// Parameters of the pairwise term (thesis Eqs. 4.3, 4.5), common to segment labels and hatching levels.
+/// Parameters of the pairwise term (thesis Eqs. 4.3, 4.5). Segments and hatching levels each have their own, as they do
+/// not have the same boundaries.
 struct PixelCrfParameters {
     float strength = 1;  ///< l: not negative
     float offset = -1;   ///< mu

@@ -55,10 +55,11 @@ class Learning {
         learn_segments();
         done("segments");
         learn_boundary();
-        learn_crf();
         done("boundaries");
         learn_levels();
         done("levels");
+        learn_cuts();
+        done("label cuts");
         for (std::size_t p = 0; p < k_stroke_properties; ++p) learn_property_of(static_cast<StrokeProperty>(p));
         done("properties");
         return std::move(style_);
@@ -169,13 +170,13 @@ class Learning {
             if (learned.error >= last_error) break;
             last_error = learned.error;
             style_.segments.push_back(learned.classifier);
-            score_view(learned.classifier);
+            probabilities_ = view_probabilities(learned.classifier);
             if (style_.rules.size() < 2) break;
         }
     }
 
-    /// Probabilities of segments of all pixels, for contextual features and cuts.
-    void score_view(const CalibratedStumps& classifier) {
+    /// Probabilities of all pixels, for contextual features and cuts.
+    std::vector<float> view_probabilities(const CalibratedStumps& classifier) {
         const std::vector<std::uint32_t> used = used_features(classifier.stumps);
         std::vector<std::uint32_t> which;
         for (const std::uint32_t base : used) {
@@ -190,7 +191,7 @@ class Learning {
                  numbers(k_pixel_features, k_pixel_features + contextual_feature_count(style_.rules.size())))
                 which.push_back(k);
         }
-        probabilities_ = classify(classifier, which, features, scorer_);
+        return classify(classifier, which, features, scorer_);
     }
 
     void learn_boundary() {
@@ -218,15 +219,24 @@ class Learning {
         report_.boundary_error = learned.error;
     }
 
-    /// Eq. 4.16. The sum there grows with every boundary, so that noise would win; its mean over the boundary pixels
-    /// does not. Where there is one segment only, the parameters still smooth levels.
-    void learn_crf() {
-        const std::vector<std::uint32_t> which = used_features(style_.boundary.stumps);
-        const std::vector<float> both = classify(style_.boundary, which, pixels_.scalars(which, {}), scorer_);
+    /// The label cuts of segments and of levels.
+    void learn_cuts() {
+        const std::vector<float> both = view_probabilities(style_.boundary);
         std::vector<float> boundary(both.size() / 2);
         for (std::size_t i = 0; i < boundary.size(); ++i) boundary[i] = both[2 * i + 1];
-        if (style_.rules.size() < 2) return;
         PixelCrf crf(pixels_.pixels(), drawing_.width, boundary);
+        if (style_.rules.size() > 1)
+            style_.segment_crf = learn_crf(crf, probabilities_, style_.rules.size(),
+                                           [&](std::span<const std::int32_t> labels) { return segment_error(labels); });
+        style_.level_crf = learn_crf(crf, view_probabilities(style_.levels), 3,
+                                     [&](std::span<const std::int32_t> labels) { return level_error(labels); });
+    }
+
+    /// Eq. 4.16. The sum there grows with every boundary, so that noise would win; its mean over the boundary pixels
+    /// does not. `error`: the share of labels that are not those of the drawing.
+    template <typename Error>
+    PixelCrfParameters learn_crf(PixelCrf& crf, std::span<const float> probabilities, std::size_t classes,
+                                 const Error& error) {
         struct Trial {
             PixelCrfParameters parameters;
             double agreement, error;
@@ -234,8 +244,8 @@ class Learning {
         std::vector<Trial> trials;
         for (const float strength : {0.3f, 1.0f, 3.0f}) {
             for (const float offset : {-0.7f, -1.5f, -3.0f}) {
-                const auto labels = crf.solve(probabilities_, style_.rules.size(), {strength, offset});
-                trials.push_back({{strength, offset}, crf.boundary_agreement(labels), segment_error(labels)});
+                const auto labels = crf.solve(probabilities, classes, {strength, offset});
+                trials.push_back({{strength, offset}, crf.boundary_agreement(labels), error(labels)});
                 progress_("label cuts");
             }
         }
@@ -243,13 +253,20 @@ class Learning {
         // likely.
         const double least = std::ranges::min(trials, {}, &Trial::error).error;
         std::erase_if(trials, [&](const Trial& trial) { return trial.error > least + 0.01; });
-        style_.crf = std::ranges::max(trials, {}, &Trial::agreement).parameters;
+        return std::ranges::max(trials, {}, &Trial::agreement).parameters;
     }
 
     double segment_error(std::span<const std::int32_t> labels) const {
         double wrong = 0;
         for (std::size_t i = 0; i < rule_rows_.size(); ++i) wrong += labels[rule_rows_[i]] != segment_[i] ? 1 : 0;
         return wrong / static_cast<double>(rule_rows_.size());
+    }
+
+    double level_error(std::span<const std::int32_t> labels) const {
+        double wrong = 0;
+        for (std::uint32_t row = 0; row < labels.size(); ++row)
+            wrong += labels[row] != drawing_.level[pixel(row)] ? 1 : 0;
+        return wrong / static_cast<double>(labels.size());
     }
 
     void learn_levels() {

@@ -50,8 +50,8 @@ class Prediction {
         const std::vector<float> boundary = boundary_probabilities();
         done("classifiers");
         PixelCrf crf(pixels_.pixels(), pixels_.view().width, boundary);
-        const std::vector<std::int32_t> segment = crf.solve(segments, style_.rules.size(), style_.crf);
-        const std::vector<std::int32_t> level = crf.solve(levels, 3, style_.crf);
+        const std::vector<std::int32_t> segment = crf.solve(segments, style_.rules.size(), style_.segment_crf);
+        const std::vector<std::int32_t> level = crf.solve(levels, 3, style_.level_crf);
         done("graph cuts");
         fill_levels(segment, level);
         fill_orientations(segment);

@@ -58,7 +58,8 @@ HatchingStyle small_style() {
     style.segments = {classifier(2, 17), classifier(2, k_context + 5)};
     style.boundary = classifier(2, k_context - 1);
     style.levels = classifier(3, 5);
-    style.crf = {0.5f, -1.75f};
+    style.segment_crf = {0.5f, -1.75f};
+    style.level_crf = {1.25f, -0.75f};
     for (std::size_t p = 0; p < k_stroke_properties; ++p) {
         const auto k = static_cast<std::uint32_t>(p);
         style.properties[p].factor = 1.5f + static_cast<float>(p);
@@ -102,7 +103,8 @@ TEST(HatchingStyleFile, RoundTripKeepsEverythingAndTheBytes) {
     EXPECT_EQ(loaded.height, style.height);
     EXPECT_EQ(loaded.rules, style.rules);
     EXPECT_EQ(loaded.share, style.share);
-    EXPECT_EQ(loaded.crf, style.crf);
+    EXPECT_EQ(loaded.segment_crf, style.segment_crf);
+    EXPECT_EQ(loaded.level_crf, style.level_crf);
     EXPECT_EQ(loaded.properties, style.properties);
     EXPECT_EQ(loaded.segments.size(), 2U);
     EXPECT_EQ(loaded.feature_count(), k_pixel_features + 10);
@@ -266,7 +268,9 @@ TEST(HatchingStyleFile, OddDescriptionsAreRefused) {
     EXPECT_EQ(with("{", "["), unreadable);
     EXPECT_EQ(with("[0.7,0.3]", "[]"), damaged("it has 0 segments"));
     EXPECT_EQ(with("\"stages\":2", "\"stages\":0"), damaged("it has 0 classifiers of segments"));
-    EXPECT_EQ(with("\"strength\":0.5", "\"strength\":-0.5"), damaged("a weight of its label cut is out of range"));
+    for (const char* strength : {"0.5", "1.25"})
+        EXPECT_EQ(with(fmt::format("\"strength\":{}", strength), "\"strength\":-0.5"),
+                  damaged("a weight of its label cuts is out of range"));
     EXPECT_THAT(with("[0.7,0.3]", "[0.7,0.2,0.1]"), HasSubstr("rule.2.0"));
     EXPECT_THAT(with("\"stages\":2", "\"stages\":3"), HasSubstr("segments.2"));
 }

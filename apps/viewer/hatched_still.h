@@ -26,14 +26,16 @@ struct HatchedStill {
     std::string title, device;
 };
 
-/// What is shown now, in a picture of that size: the lines that are shown, and the usual light. Throws UsageError if no
-/// style is open.
+/// What is shown now, in a picture of that size: the lines that are shown, and the usual light. Lines too pale for white
+/// paper are black. Throws UsageError if no style is open, or nothing to draw.
 HatchedStill hatched_still(const ViewerState& state, ViewSize size, const std::string& device);
 
 /// Draws it on a device of its own. `step` is told what comes next (a present participle); what it throws ends it.
-/// Throws as measure_surface, PixelFeatures, and hatch_view.
+/// Throws as measure_surface, PixelFeatures, and hatch_view; DeviceError if the validation layer complains.
 HatchedDrawing draw_still(const HatchedStill& still, const std::function<void(const char*)>& step);
-/// Writes it, as .svg or .png by its name. Throws UsageError for another name, DataError if it cannot be written.
+/// Throws UsageError unless it ends in .svg or .png.
+void require_still_name(const std::filesystem::path& path);
+/// Writes it, as .svg or .png by its name. Throws as require_still_name, DataError if it cannot be written.
 void write_still(const std::filesystem::path& path, const HatchedStill& still, const HatchedDrawing& drawing);
 
 }  // namespace exemplar

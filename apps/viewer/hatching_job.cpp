@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "host/core/errors.h"
+#include "host/core/cancel.h"
 #include "host/core/interrupt.h"
 
 namespace exemplar {
@@ -20,12 +20,14 @@ HatchingJob::~HatchingJob() {
 std::vector<std::filesystem::path> HatchingJob::run(const HatchedStill& still,
                                                     const std::vector<std::filesystem::path>& files) {
     const auto step = [this](const char* what) {
-        if (canceled_) throw Interrupted();
+        check_interrupt();
         what_ = what;
     };
-    const HatchedDrawing drawing = draw_still(still, step);
-    step("saving");
-    for (const std::filesystem::path& file : files) write_still(file, still, drawing);
+    run_cancelable(canceled_, [&] {
+        const HatchedDrawing drawing = draw_still(still, step);
+        step("saving");
+        for (const std::filesystem::path& file : files) write_still(file, still, drawing);
+    });
     return files;
 }
 

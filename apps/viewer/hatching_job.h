@@ -20,7 +20,7 @@ class HatchingJob {
 
     /// Writes to all `files`.
     HatchingJob(HatchedStill still, std::vector<std::filesystem::path> files);
-    /// Cancels it and waits for the end of its step, which may take seconds.
+    /// Cancels it and waits, which takes moments.
     ~HatchingJob();
     HatchingJob(const HatchingJob&) = delete;
     HatchingJob& operator=(const HatchingJob&) = delete;

@@ -62,9 +62,6 @@ void draw_frames(ViewerState& state, FrameRenderer& renderer, const ViewerOption
 }
 
 void save_still(const ViewerState& state, const ViewerOptions& options) {
-    const std::filesystem::path extension = options.hatched_still.extension();
-    if (extension != ".svg" && extension != ".png")
-        throw UsageError(fmt::format("{}: give a name that ends in .svg or .png", options.hatched_still.string()));
     const HatchedStill still = hatched_still(state, options.size, options.device);
     const Stopwatch watch;
     const HatchedDrawing drawing = draw_still(still, [](const char*) { check_interrupt(); });
@@ -81,6 +78,9 @@ void run_headless(const ViewerOptions& options) {
     if (!options.out.empty()) std::filesystem::create_directories(options.out);
     ViewerState state;
     open_files(state, options, options.size);
+    if (!state.has_document())
+        throw UsageError(fmt::format("there is nothing to draw in {}; name a mesh or an animation as FILE",
+                                     options.file.string()));
     if (!options.quiet)
         for (const Messages::Message& message : state.messages.all()) fmt::print(stderr, "warning: {}\n", message.text);
     if (!options.hatched_still.empty()) return save_still(state, options);

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <map>
 
+#include "apps/viewer/hatched_still.h"
 #include "apps/viewer/options.h"
 #include "host/core/errors.h"
 #include "host/core/freed_memory.h"
@@ -106,6 +107,14 @@ void add_options(CLI::App& app, ViewerOptions& options, std::string& size) {
     app.add_option("--lose-device-at", options.losing_frame, "")->group("");
 }
 
+void require_still_options(const ViewerOptions& options) {
+    if (!options.headless || options.hatching.empty())
+        throw UsageError("--save-hatching needs --headless and --hatching");
+    if (!options.out.empty() || options.frames > 0)
+        throw UsageError("--save-hatching draws no frames; leave out --frames and --out");
+    require_still_name(options.hatched_still);
+}
+
 int run(int argc, char** argv) {
     keep_freed_memory();
     CLI::App app("Shows meshes and animations, with their curvature estimated and learned.");
@@ -130,8 +139,7 @@ int run(int argc, char** argv) {
     }
     options.size = parse_size(size);
     if (!options.headless && !options.out.empty()) throw UsageError("--out needs --headless");
-    if (!options.hatched_still.empty() && (!options.headless || options.hatching.empty()))
-        throw UsageError("--save-hatching needs --headless and --hatching");
+    if (!options.hatched_still.empty()) require_still_options(options);
     Progress::set_quiet(options.quiet);
     options.headless ? run_headless(options) : run_window(options);
     return 0;

@@ -77,9 +77,9 @@ void ViewerState::open_document(const fs::path& path, ViewSize view) {
 }
 
 void ViewerState::open_model(const fs::path& path) {
+    auto model = std::make_shared<const CurvatureModel>(load_curvature_model(path));
     if (!document_)
         throw UsageError(fmt::format("{} is a model: open the animation first that it was learned on", path.string()));
-    auto model = std::make_shared<const CurvatureModel>(load_curvature_model(path));
     require_fit(*model, document_->animation);
     set_model(std::move(model), path.filename().string());
 }

@@ -24,7 +24,8 @@ DrawingStyle on_white(DrawingStyle look) {
     return look;
 }
 
-HatchedDrawing draw_on(HatchingDevice& device, const HatchedStill& still, const std::function<void(const char*)>& step) {
+HatchedDrawing draw_on(HatchingDevice& device, const HatchedStill& still,
+                       const std::function<void(const char*)>& step) {
     constexpr float k_taper = 6;  // pixels, as 'exemplar hatch draw' has it
     step("measuring the surface");
     const HatchingSurface surface = measure_surface(still.mesh);

@@ -26,8 +26,8 @@ struct HatchedStill {
     std::string title, device;
 };
 
-/// What is shown now, in a picture of that size: the lines that are shown, and the usual light. Lines too pale for white
-/// paper are black. Throws UsageError if no style is open, or nothing to draw.
+/// What is shown now, in a picture of that size: the lines that are shown, and the usual light. Lines too pale for
+/// white paper are black. Throws UsageError if no style is open, or nothing to draw.
 HatchedStill hatched_still(const ViewerState& state, ViewSize size, const std::string& device);
 
 /// Draws it on a device of its own. `step` is told what comes next (a present participle); what it throws ends it.

@@ -79,8 +79,8 @@ void run_headless(const ViewerOptions& options) {
     ViewerState state;
     open_files(state, options, options.size);
     if (!state.has_document())
-        throw UsageError(fmt::format("there is nothing to draw in {}; name a mesh or an animation as FILE",
-                                     options.file.string()));
+        throw UsageError(
+            fmt::format("there is nothing to draw in {}; name a mesh or an animation as FILE", options.file.string()));
     if (!options.quiet)
         for (const Messages::Message& message : state.messages.all()) fmt::print(stderr, "warning: {}\n", message.text);
     if (!options.hatched_still.empty()) return save_still(state, options);

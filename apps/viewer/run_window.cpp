@@ -40,6 +40,7 @@ constexpr int k_settling_frames = 3;
 std::vector<std::filesystem::path> free_names(const std::string& stem, const std::vector<std::string>& extensions) {
     for (int i = 0;; ++i) {
         std::vector<std::filesystem::path> names;
+        names.reserve(extensions.size());
         for (const std::string& extension : extensions) names.emplace_back(fmt::format("{}_{}{}", stem, i, extension));
         if (std::ranges::none_of(names, [](const auto& name) { return std::filesystem::exists(name); })) return names;
     }

@@ -14,7 +14,7 @@ import unittest
 import xml.etree.ElementTree as ElementTree
 
 from png import read_png
-from program import CUBE, CUBE_QUADS, ProgramTest, write_off
+from program import CUBE, CUBE_QUADS, CUBE_TRIANGLES, ProgramTest, write_off
 
 VIEWER = pathlib.Path(os.environ.get("EXEMPLAR_VIEWER", "build/exemplar-viewer")).absolute()
 WIDTH, HEIGHT = 1280, 720  # of the display
@@ -79,6 +79,14 @@ class Headless(Viewer):
         colored = self.picture("cube.off", "--size", "64x64", "--light", "none")[2]
         self.assertEqual(colored[3 * (32 * 64 + 32):][:3], bytes([64, 120, 200]))  # the second label's color
         self.assertFalse(plain == colored)
+
+    def test_a_mesh_that_is_inside_out_looks_as_one_that_is_not(self):
+        write_off(self.folder / "outside.off", CUBE, CUBE_TRIANGLES)
+        write_off(self.folder / "inside.off", CUBE, [(a, c, b) for a, b, c in CUBE_TRIANGLES])
+        look = ["--size", "64x64", "--lines", "contours,creases"]
+        self.assertTrue(self.picture("inside.off", *look) == self.picture("outside.off", *look))
+        said = self.view("inside.off", "--headless", "--size", "64x64").stderr
+        self.assertIn("inside out", said)
 
     def test_learned_curvature_is_shown_beside_that_of_every_frame(self):
         self.call("curvature", "train", "figure_001.glb", "--out", "m.safetensors", "--augment", "40")

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "host/animation/read_animation.h"
 #include "host/core/errors.h"
@@ -75,9 +76,15 @@ void drop_degenerate_faces(Document& document, const std::string& name) {
     document.source_face.resize(kept);
 }
 
+// Lines are drawn where the surface faces the eye.
+void turn_outward(Document& document) {
+    for (Face& face : document.animation.rest.faces) std::swap(face[1], face[2]);
+    document.remarks.emplace_back("the surface is inside out; its faces were turned around");
+}
+
 Document document_of_mesh(const fs::path& path) {
     MeshFile file = read_mesh(path);
-    require_usable(file.mesh, path.string());
+    const MeshReport report = require_usable(file.mesh, path.string());
     Document document;
     document.path = path;
     document.remarks = std::move(file.warnings);
@@ -87,6 +94,7 @@ Document document_of_mesh(const fs::path& path) {
     document.source_face_count = file.mesh.source_face_count;
     document.animation.rest.vertices = std::move(file.mesh.vertices);
     document.animation.rest.faces = std::move(file.mesh.faces);
+    if (report.inside_out) turn_outward(document);
     drop_degenerate_faces(document, path.string());
     document.animation.rest.source_face_count = static_cast<std::uint32_t>(document.source_face.size());
     if (file.labels)

@@ -61,6 +61,16 @@ void draw_frames(ViewerState& state, FrameRenderer& renderer, const ViewerOption
                    static_cast<double>(own_memory()) / 1048576, frames);
 }
 
+void save_still(const ViewerState& state, const ViewerOptions& options) {
+    const HatchedStill still = hatched_still(state, options.size, options.device);
+    const Stopwatch watch;
+    const HatchedDrawing drawing = draw_still(still, [](const char*) { check_interrupt(); });
+    write_still(options.hatched_still, still, drawing);
+    if (!options.quiet)
+        fmt::print("{}: {} in {}\n", options.hatched_still.string(), counted(drawing.strokes.size(), "stroke"),
+                   format_seconds(watch.wall()));
+}
+
 }  // namespace
 
 void run_headless(const ViewerOptions& options) {
@@ -68,8 +78,12 @@ void run_headless(const ViewerOptions& options) {
     if (!options.out.empty()) std::filesystem::create_directories(options.out);
     ViewerState state;
     open_files(state, options, options.size);
+    if (!state.has_document())
+        throw UsageError(
+            fmt::format("there is nothing to draw in {}; name a mesh or an animation as FILE", options.file.string()));
     if (!options.quiet)
         for (const Messages::Message& message : state.messages.all()) fmt::print(stderr, "warning: {}\n", message.text);
+    if (!options.hatched_still.empty()) return save_still(state, options);
     std::shared_ptr<const ValidationLog> log;
     {
         Device device({.name = options.device});

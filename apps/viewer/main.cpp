@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <map>
 
+#include "apps/viewer/hatched_still.h"
 #include "apps/viewer/options.h"
 #include "host/core/errors.h"
 #include "host/core/freed_memory.h"
@@ -74,6 +75,11 @@ void add_options(CLI::App& app, ViewerOptions& options, std::string& size) {
     app.add_option("FILE", options.file, "mesh (OFF, OBJ, PLY, STL, glTF), animation (glTF), or folder of meshes")
         ->type_name("");
     app.add_option("--model", options.model, "model of the animation's curvature, .safetensors")->type_name("FILE");
+    app.add_option("--hatching", options.hatching, "style of 'exemplar hatch train' for hatched stills, .safetensors")
+        ->type_name("FILE");
+    app.add_option("--save-hatching", options.hatched_still,
+                   "with --headless and --hatching: draws a hatched still, .svg or .png, instead of frames")
+        ->type_name("FILE");
     app.add_option("--clip", options.clip, "clip to play; default: the first")->type_name("NAME");
     app.add_option("--first-frame", options.first_frame, "frame of the clip to begin with; a window stands there");
     app.add_option_function<std::vector<std::string>>(
@@ -101,6 +107,14 @@ void add_options(CLI::App& app, ViewerOptions& options, std::string& size) {
     app.add_option("--lose-device-at", options.losing_frame, "")->group("");
 }
 
+void require_still_options(const ViewerOptions& options) {
+    if (!options.headless || options.hatching.empty())
+        throw UsageError("--save-hatching needs --headless and --hatching");
+    if (!options.out.empty() || options.frames > 0)
+        throw UsageError("--save-hatching draws no frames; leave out --frames and --out");
+    require_still_name(options.hatched_still);
+}
+
 int run(int argc, char** argv) {
     keep_freed_memory();
     CLI::App app("Shows meshes and animations, with their curvature estimated and learned.");
@@ -110,7 +124,8 @@ int run(int argc, char** argv) {
         "Exit codes: 0 done, 1 error (one line says what), 2 wrong usage, 130 interrupted.\n\nExamples:\n"
         "  exemplar synth figure --seed 1 --out shapes\n"
         "  exemplar-viewer shapes/figure_001.glb\n"
-        "  exemplar-viewer shapes/figure_001.glb --headless --frames 30 --out frames");
+        "  exemplar-viewer shapes/figure_001.glb --headless --frames 30 --out frames\n"
+        "  exemplar-viewer bunny.off --headless --hatching mine.safetensors --save-hatching bunny.svg");
     app.set_version_flag("--version", EXEMPLAR_VERSION);
     ViewerOptions options;
     std::string size = "1280x720";
@@ -124,6 +139,7 @@ int run(int argc, char** argv) {
     }
     options.size = parse_size(size);
     if (!options.headless && !options.out.empty()) throw UsageError("--out needs --headless");
+    if (!options.hatched_still.empty()) require_still_options(options);
     Progress::set_quiet(options.quiet);
     options.headless ? run_headless(options) : run_window(options);
     return 0;

@@ -12,7 +12,8 @@ namespace exemplar {
 
 /// What the command line asks for.
 struct ViewerOptions {
-    std::filesystem::path file, model, out;
+    std::filesystem::path file, model, hatching, out;
+    std::filesystem::path hatched_still;  ///< to write without a window, instead of frames; empty: none
     std::string device, clip;
     ViewSize size{1280, 720};
     std::size_t frames = 0;                  ///< to draw before it ends; 0: until the window is closed

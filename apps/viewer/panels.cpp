@@ -83,6 +83,8 @@ void draw_side_panel(ViewerState& state, const PanelSizes& sizes, std::string& p
         if (ImGui::CollapsingHeader("Look", ImGuiTreeNodeFlags_DefaultOpen)) draw_look(state);
         if (ImGui::CollapsingHeader("Lines", ImGuiTreeNodeFlags_DefaultOpen)) draw_lines(state);
         if (ImGui::CollapsingHeader("Curvature", ImGuiTreeNodeFlags_DefaultOpen)) draw_curvature(state, requests);
+        if (ImGui::CollapsingHeader("Hatching", state.hatching() ? ImGuiTreeNodeFlags_DefaultOpen : 0))
+            draw_hatching(state, requests);
         if (state.document().posable() && ImGui::CollapsingHeader("Pose")) draw_pose(state);
         ImGui::SetNextItemOpen(state.show_times);
         state.show_times = ImGui::CollapsingHeader("Frame times (G)");

@@ -31,6 +31,7 @@ bool edit_color(const char* label, Color& color);
 void draw_look(ViewerState& state);
 void draw_lines(ViewerState& state);
 void draw_curvature(ViewerState& state, InterfaceRequests& requests);
+void draw_hatching(ViewerState& state, InterfaceRequests& requests);
 void draw_pose(ViewerState& state);
 void draw_frame_times(ViewerState& state);
 

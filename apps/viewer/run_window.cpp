@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
+#include <vector>
 
 #include "apps/viewer/frame_renderer.h"
 #include "apps/viewer/interface.h"
@@ -34,11 +36,13 @@ constexpr Transition k_interface_drawn{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTP
 // Frames that are drawn after something happened: an interface takes more than one to settle.
 constexpr int k_settling_frames = 3;
 
-/// STEM_0.png, or the next number that is free, in the working folder.
-std::filesystem::path free_name(const std::filesystem::path& file, const std::string& extension) {
+/// STEM_0.png and so on, with the first number that is free for all of them, in the working folder.
+std::vector<std::filesystem::path> free_names(const std::string& stem, const std::vector<std::string>& extensions) {
     for (int i = 0;; ++i) {
-        std::filesystem::path name = fmt::format("{}_{}{}", file.stem().string(), i, extension);
-        if (!std::filesystem::exists(name)) return name;
+        std::vector<std::filesystem::path> names;
+        names.reserve(extensions.size());
+        for (const std::string& extension : extensions) names.emplace_back(fmt::format("{}_{}{}", stem, i, extension));
+        if (std::ranges::none_of(names, [](const auto& name) { return std::filesystem::exists(name); })) return names;
     }
 }
 
@@ -129,6 +133,7 @@ class Viewer {
     void wait_for_work();
     void save(const std::string& extension, const std::function<void(const std::filesystem::path&)>& write);
     void perform(Action action, Session& session);
+    void start_hatching();
     void open(const std::filesystem::path& path);
     void set_title();
     bool ended() const {
@@ -163,19 +168,29 @@ void Viewer::open(const std::filesystem::path& path) {
 void Viewer::wait_for_work() {
     constexpr double k_idle_seconds = 0.5, k_progress_seconds = 0.1;
     const bool busy = (state_.playback.playing() && state_.playback.frame_count() > 1) || options_.frames > 0;
+    const bool works = state_.training || state_.hatching_job;
     const bool waits = !busy && restless_ <= 0;
-    const bool event = waits ? window_.wait(state_.training ? k_progress_seconds : k_idle_seconds) : window_.poll();
+    const bool event = waits ? window_.wait(works ? k_progress_seconds : k_idle_seconds) : window_.poll();
     if (event) restless_ = k_settling_frames;
-    if (state_.training || !state_.messages.all().empty()) restless_ = std::max(restless_, 1);
+    if (works || !state_.messages.all().empty()) restless_ = std::max(restless_, 1);
     --restless_;
 }
 
 // In the working folder, beside what was saved before.
 void Viewer::save(const std::string& extension, const std::function<void(const std::filesystem::path&)>& write) {
-    const std::filesystem::path path = free_name(state_.document().path, extension);
+    const std::filesystem::path path = free_names(state_.document().path.stem().string(), {extension})[0];
     try {
         write(path);
         state_.messages.remark(fmt::format("Saved {}", std::filesystem::absolute(path).string()));
+    } catch (const Error& error) {
+        state_.messages.error(error.what());
+    }
+}
+
+void Viewer::start_hatching() {
+    const std::string stem = state_.document().path.stem().string() + "_hatched";
+    try {
+        state_.start_hatching(interface_.view().size(), options_.device, free_names(stem, {".svg", ".png"}));
     } catch (const Error& error) {
         state_.messages.error(error.what());
     }
@@ -189,6 +204,8 @@ void Viewer::perform(Action action, Session& session) {
         save(".png", [&](const std::filesystem::path& path) { write_png(path, session.picture()); });
     } else if (action == Action::save_svg && state_.has_document()) {
         save(".svg", [&](const std::filesystem::path& path) { save_svg(path, state_, interface_.view().size()); });
+    } else if (action == Action::save_hatching && state_.has_document()) {
+        start_hatching();
     } else if (action == Action::save_model && state_.model()) {
         save(".safetensors", [&](const std::filesystem::path& path) { save_curvature_model(path, *state_.model()); });
     } else {
@@ -204,6 +221,7 @@ void Viewer::run_session(Session& session) {
         state_.playback.advance(seconds);
         state_.messages.advance(seconds);
         state_.collect_training();
+        state_.collect_hatching();
         for (const std::filesystem::path& path : window_.take_drops()) open(path);
         InterfaceRequests requests;
         if (!session.draw(state_, requests)) {

@@ -53,7 +53,7 @@ SurfacePaint next_paint(SurfacePaint paint, bool has_colors) {
 
 void ViewerState::open(const fs::path& path, ViewSize view) {
     if (path.extension() == ".safetensors")
-        open_model(path);
+        is_hatching_style(path) ? open_hatching(path) : open_model(path);
     else if (path.extension() == ".json")
         settings.set_style(load_style(path.string()));
     else if (is_labels_file(path))
@@ -77,11 +77,16 @@ void ViewerState::open_document(const fs::path& path, ViewSize view) {
 }
 
 void ViewerState::open_model(const fs::path& path) {
+    auto model = std::make_shared<const CurvatureModel>(load_curvature_model(path));
     if (!document_)
         throw UsageError(fmt::format("{} is a model: open the animation first that it was learned on", path.string()));
-    auto model = std::make_shared<const CurvatureModel>(load_curvature_model(path));
     require_fit(*model, document_->animation);
     set_model(std::move(model), path.filename().string());
+}
+
+void ViewerState::open_hatching(const fs::path& path) {
+    hatching_ = std::make_shared<const HatchingStyle>(load_hatching_style(path));
+    hatching_name_ = path.filename().string();
 }
 
 void ViewerState::open_labels(const fs::path& path) {
@@ -232,6 +237,7 @@ bool ViewerState::perform(Action action, ViewSize view) {
             return true;
         case Action::save_png:
         case Action::save_svg:
+        case Action::save_hatching:
         case Action::save_model:
         case Action::quit:
             break;
@@ -260,6 +266,23 @@ void ViewerState::collect_training() {
         messages.remark(fmt::format("Learned curvature of {}", document_->animation.name));
     } catch (const Interrupted&) {
         messages.remark("Training was canceled");
+    } catch (const Error& error) {
+        messages.error(error.what());
+    }
+}
+
+void ViewerState::start_hatching(ViewSize size, const std::string& device, std::vector<fs::path> files) {
+    if (hatching_job) return;
+    hatching_job = std::make_unique<HatchingJob>(hatched_still(*this, size, device), std::move(files));
+}
+
+void ViewerState::collect_hatching() {
+    if (!hatching_job || !hatching_job->finished()) return;
+    const std::unique_ptr<HatchingJob> job = std::move(hatching_job);
+    try {
+        for (const fs::path& file : job->take()) messages.remark(fmt::format("Saved {}", fs::absolute(file).string()));
+    } catch (const Interrupted&) {
+        messages.remark("Hatching was canceled");
     } catch (const Error& error) {
         messages.error(error.what());
     }

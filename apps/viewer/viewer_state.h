@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "apps/viewer/controls/frame_times.h"
 #include "apps/viewer/controls/orbit_camera.h"
@@ -12,6 +13,7 @@
 #include "apps/viewer/controls/shortcuts.h"
 #include "apps/viewer/controls/training_job.h"
 #include "apps/viewer/document.h"
+#include "apps/viewer/hatching_job.h"
 #include "apps/viewer/messages.h"
 #include "apps/viewer/surface_scene.h"
 #include "apps/viewer/view_settings.h"
@@ -22,11 +24,13 @@ namespace exemplar {
 /// All that a viewer knows on the host, with or without a window; what is on the device follows from it.
 class ViewerState {
   public:
-    /// Opens a mesh, animation, model (.safetensors), style (.json), labels (_labels.txt, .seg), whatever it is. Throws
-    /// an Error; what was open stays then.
+    /// Opens a mesh, animation, model or style of hatching (.safetensors), style (.json), labels (_labels.txt, .seg),
+    /// whatever it is. Throws an Error; what was open stays then.
     void open(const std::filesystem::path& path, ViewSize view);
     /// A model, whatever its name. Throws ModelError if it is none, or not of the document.
     void open_model(const std::filesystem::path& path);
+    /// A style of hatching. Throws ModelError if it is none.
+    void open_hatching(const std::filesystem::path& path);
     void close();
     void set_clip(std::size_t clip);
     void set_model(std::shared_ptr<const CurvatureModel> model, std::string name);
@@ -41,6 +45,12 @@ class ViewerState {
     /// Takes what training has learned, when it is done.
     void collect_training();
 
+    /// Starts to draw a hatched still of that size, on a device of that name, for those files; nothing while another is
+    /// being drawn. Throws UsageError if no style of hatching is open.
+    void start_hatching(ViewSize size, const std::string& device, std::vector<std::filesystem::path> files);
+    /// Says what was drawn, when it is done.
+    void collect_hatching();
+
     bool has_document() const { return document_ != nullptr; }
     const Document& document() const { return *document_; }
     /// Another number means another document, or model.
@@ -49,6 +59,8 @@ class ViewerState {
     std::size_t clip() const { return clip_; }
     std::shared_ptr<const CurvatureModel> model() const { return model_; }
     const std::string& model_name() const { return model_name_; }
+    std::shared_ptr<const HatchingStyle> hatching() const { return hatching_; }
+    const std::string& hatching_name() const { return hatching_name_; }
     /// With what sliders change of it.
     Moment moment() const;
 
@@ -64,6 +76,7 @@ class ViewerState {
     Messages messages;
     FrameTimes times;
     std::unique_ptr<TrainingJob> training;
+    std::unique_ptr<HatchingJob> hatching_job;
     bool show_panels = true, show_help = false, show_times = false;
 
   private:
@@ -74,6 +87,8 @@ class ViewerState {
     std::size_t clip_ = 0;
     std::shared_ptr<const CurvatureModel> model_;
     std::string model_name_;
+    std::shared_ptr<const HatchingStyle> hatching_;
+    std::string hatching_name_;
 };
 
 }  // namespace exemplar

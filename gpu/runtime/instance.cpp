@@ -23,11 +23,16 @@ void load_loader() {
         throw NoDeviceError("the Vulkan loader is older than 1.3; update libvulkan1");
 }
 
-// The loader's functions work for the handles of every instance, so they are loaded once; those of extensions when the
-// first instance with some is there.
+// The loader's functions work for the handles of every instance, so they are loaded once; again, with those of
+// extensions, when the first instance with some is there. An instance without must not unload these.
 void load_functions(VkInstance instance, bool extended) {
-    static std::once_flag loaded, loaded_extended;
-    std::call_once(extended ? loaded_extended : loaded, [&] { volkLoadInstance(instance); });
+    static std::mutex mutex;
+    static bool has_some = false, has_extended = false;
+    const std::lock_guard lock(mutex);
+    if (has_extended || (has_some && !extended)) return;
+    volkLoadInstance(instance);
+    has_some = true;
+    has_extended = extended;
 }
 
 bool has_layer(const char* name) {

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <csignal>
 
+#include "host/core/cancel.h"
 #include "host/core/errors.h"
 
 namespace exemplar {
@@ -30,7 +31,7 @@ bool interrupted() {
 }
 
 void check_interrupt() {
-    if (interrupted()) throw Interrupted();
+    if (interrupted() || work_canceled()) throw Interrupted();
 }
 
 }  // namespace exemplar

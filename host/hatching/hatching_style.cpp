@@ -103,6 +103,11 @@ void read_description(const TensorFile& file, HatchingStyle& style, std::size_t&
         inconsistent(file, fmt::format("it has {} classifiers of segments", stages));
 }
 
+bool is_style(const TensorFile& file) {
+    const auto kind = file.metadata.find("kind");
+    return kind != file.metadata.end() && kind->second == k_kind;
+}
+
 }  // namespace
 
 std::size_t HatchingStyle::feature_count() const {
@@ -136,9 +141,13 @@ void save_hatching_style(const std::filesystem::path& path, const HatchingStyle&
     write_safetensors(path, file);
 }
 
+bool is_hatching_style(const std::filesystem::path& path) {
+    return is_style(read_safetensors(path));
+}
+
 HatchingStyle load_hatching_style(const std::filesystem::path& path) {
     const TensorFile file = read_safetensors(path);
-    if (const auto kind = file.metadata.find("kind"); kind == file.metadata.end() || kind->second != k_kind)
+    if (!is_style(file))
         throw ModelError(fmt::format("{}: is no hatching style; make one with 'exemplar hatch train'", file.path));
     require_version(file, "format_version", k_format_version, "train it again");
     require_version(file, "feature_version", k_hatching_feature_version, "its features have changed: train it again");

@@ -37,6 +37,8 @@ constexpr int k_hatching_feature_version = 1;
 /// the file, what is wrong, and the mend.
 void save_hatching_style(const std::filesystem::path& path, const HatchingStyle& style);
 HatchingStyle load_hatching_style(const std::filesystem::path& path);
+/// Whether a safetensors file says that it is a hatching style. Throws ModelError if it is no such file.
+bool is_hatching_style(const std::filesystem::path& path);
 
 /// The style in words: which rule hatches which segment (as the legend of thesis Fig. 4.3) and which features drive
 /// each property (as Figs. 4.15, 4.16).

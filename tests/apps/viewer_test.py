@@ -11,12 +11,15 @@ import struct
 import subprocess
 import time
 import unittest
+import xml.etree.ElementTree as ElementTree
 
 from png import read_png
-from program import CUBE, CUBE_QUADS, ProgramTest, write_off
+from program import CUBE, CUBE_QUADS, CUBE_TRIANGLES, ProgramTest, write_off
 
 VIEWER = pathlib.Path(os.environ.get("EXEMPLAR_VIEWER", "build/exemplar-viewer")).absolute()
 WIDTH, HEIGHT = 1280, 720  # of the display
+SVG = "{http://www.w3.org/2000/svg}"
+LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
 
 
 class Viewer(ProgramTest):
@@ -32,6 +35,25 @@ class Viewer(ProgramTest):
     @classmethod
     def view(cls, *arguments, code=0):
         return cls.call(*arguments, code=code, program=VIEWER)
+
+    learned_style = None  # the file
+
+    @classmethod
+    def learn_style(cls):
+        """Leaves a style of hatching in the folder; it is learned once for all classes."""
+        if Viewer.learned_style is None:
+            drawn = ["shapes/fourleg_001.off", "--size", "260x240"]
+            cls.call("synth", "fourleg", "--faces", "600", "--out", "shapes")
+            cls.call("hatch", "example", "contour", *drawn, "--out", "drawing.png")
+            cls.call("hatch", "train", drawn[0], "drawing.png", *drawn[1:], "--out", "style.safetensors")
+            Viewer.learned_style = (cls.folder / "style.safetensors").read_bytes()
+        (cls.folder / "style.safetensors").write_bytes(Viewer.learned_style)
+
+    def still(self, name, *arguments):
+        """The bytes of a hatched still."""
+        self.view("figure_001.glb", "--headless", "--hatching", "style.safetensors", "--save-hatching", name, "--quiet",
+                  "--size", "320x240", *arguments)
+        return (self.folder / name).read_bytes()
 
     def picture(self, *arguments):
         self.view(*arguments, "--headless", "--out", "out", "--quiet")
@@ -58,6 +80,14 @@ class Headless(Viewer):
         self.assertEqual(colored[3 * (32 * 64 + 32):][:3], bytes([64, 120, 200]))  # the second label's color
         self.assertFalse(plain == colored)
 
+    def test_a_mesh_that_is_inside_out_looks_as_one_that_is_not(self):
+        write_off(self.folder / "outside.off", CUBE, CUBE_TRIANGLES)
+        write_off(self.folder / "inside.off", CUBE, [(a, c, b) for a, b, c in CUBE_TRIANGLES])
+        look = ["--size", "64x64", "--lines", "contours,creases"]
+        self.assertTrue(self.picture("inside.off", *look) == self.picture("outside.off", *look))
+        said = self.view("inside.off", "--headless", "--size", "64x64").stderr
+        self.assertIn("inside out", said)
+
     def test_learned_curvature_is_shown_beside_that_of_every_frame(self):
         self.call("curvature", "train", "figure_001.glb", "--out", "m.safetensors", "--augment", "40")
         size = ["--size", "200x100", "--paint", "mean", "--first-frame", "4", "--lines", "none"]
@@ -80,6 +110,59 @@ class Headless(Viewer):
         self.assertGreater(dark[2], dark[1])
         blue = self.picture(*arguments, "--style", "blueprint")
         self.assertEqual(blue[2][:3], bytes.fromhex("16407c"))
+
+    def test_a_hatched_still(self):
+        self.learn_style()
+        drawn = self.still("one.svg", "--first-frame", "3", "--lines", "contours")
+        layers = {g.get(LABEL): len(list(g.iter(SVG + "path"))) for g in ElementTree.fromstring(drawn).findall(SVG + "g")}
+        self.assertEqual(list(layers), ["background", "hatching", "cross_hatching", "contours"])
+        self.assertGreater(layers["hatching"], 20)
+        self.assertGreater(layers["contours"], 0)
+        self.assertEqual(self.still("two.svg", "--first-frame", "3", "--lines", "contours"), drawn)
+        self.assertNotEqual(self.still("moved.svg", "--first-frame", "9", "--lines", "contours"), drawn)
+        bare = self.still("bare.svg", "--first-frame", "3", "--lines", "none")
+        self.assertNotIn(b'"contours"', bare)
+        self.assertIn(bare.split(b"</g>")[1], drawn)  # the strokes are the same
+        self.assert_no_leftovers()
+
+    def test_a_hatched_still_as_a_picture(self):
+        self.learn_style()
+        drawn = self.still("one.png", "--lines", "contours")
+        width, height, pixels = read_png(self.folder / "one.png")
+        self.assertEqual((width, height), (320, 240))
+        dark = sum(value < 128 for value in pixels[::3]) / (width * height)
+        self.assertTrue(0.005 < dark < 0.4, dark)
+        self.assertEqual(self.still("two.png", "--lines", "contours"), drawn)
+        # Lines of a blueprint are pale; here they are on white paper.
+        self.still("blue.png", "--lines", "contours", "--style", "blueprint")
+        inked = sum(value < 128 for value in read_png(self.folder / "blue.png")[2][::3]) / (width * height)
+        self.still("bare.png", "--lines", "none")
+        bare = sum(value < 128 for value in read_png(self.folder / "bare.png")[2][::3]) / (width * height)
+        self.assertGreater(inked, 1.2 * bare)
+
+    def test_what_cannot_be_hatched_is_refused_in_one_line(self):
+        self.learn_style()
+        (self.folder / "text.safetensors").write_text("no model at all")
+        self.call("curvature", "train", "figure_001.glb", "--out", "figure.safetensors", "--augment", "40")
+        draw = ["figure_001.glb", "--headless", "--size", "64x48"]
+        save = [*draw, "--save-hatching", "x.svg", "--hatching"]
+        for arguments, code, says in [([*save, "none.safetensors"], 1, "none.safetensors"),
+                                      ([*save, "text.safetensors"], 1, "text.safetensors"),
+                                      ([*save, "figure.safetensors"], 1, ["figure.safetensors", "no hatching style"]),
+                                      ([*draw, "--model", "style.safetensors"], 1, ["style.safetensors", "no curvature model"]),
+                                      (["text.safetensors", "--headless"], 1, "text.safetensors"),
+                                      (["style.safetensors", "--headless"], 2, "nothing to draw in style.safetensors"),
+                                      (["figure.safetensors", "--headless"], 2, "open the animation first"),
+                                      ([*save, "style.safetensors", "--frames", "2"], 2, "--frames"),
+                                      ([*save, "style.safetensors", "--out", "x"], 2, "--out"),
+                                      ([*draw, "--save-hatching", "x.svg"], 2, "--hatching"),
+                                      ([draw[0], *save[2:], "style.safetensors"], 2, "--headless"),
+                                      ([*draw, "--hatching", "style.safetensors", "--save-hatching", "x.jpg"], 2,
+                                       ["x.jpg", ".svg", ".png"]),
+                                      ([*draw, "--hatching", "style.safetensors", "--save-hatching", "style.safetensors/x.svg"], 1,
+                                       "style.safetensors/x.svg")]:
+            self.refused(*arguments, code=code, says=says, program=VIEWER)
+        self.assertFalse((self.folder / "x.svg").exists())
 
     def test_memory_does_not_grow(self):
         output = self.view("figure_001.glb", "--headless", "--frames", "500", "--size", "96x64", "--paint", "mean").stdout
@@ -234,6 +317,40 @@ class InWindow(Viewer):
         places = [float(x) for x in re.findall(r"[ML]([0-9.]+)", saved().pop().read_text())]
         self.assertTrue(any(x < 300 for x in places) and any(x > 340 for x in places), places[:20])
         self.closes_well(process)
+
+    def test_hatches_in_the_background_what_headless_hatches(self):
+        self.learn_style()
+        process, _ = self.open("figure_001.glb", "--hatching", "style.safetensors", "--first-frame", "3", "--plain",
+                               "--size", "320x240")
+        picture = self.picture("figure_001.glb", "--first-frame", "3", "--size", "320x240")
+        self.until(lambda: self.difference(picture) <= 2, "the window shows the picture")
+        self.xdotool("mousemove", 200, 100, "key", "ctrl+h")
+        time.sleep(0.2)
+        self.xdotool("key", "4")  # what is drawn is what was shown at the key
+        saved = [self.folder / f"figure_001_hatched_0{extension}" for extension in (".svg", ".png")]
+        self.until(lambda: all(file.exists() for file in saved), "Ctrl+H saves a hatched still")
+        self.closes_well(process)
+        for file in saved:
+            self.assertEqual(file.read_bytes(), self.still("still" + file.suffix, "--first-frame", "3"))
+
+    def test_says_that_hatching_needs_a_style(self):
+        process, _ = self.open("figure_001.glb", "--first-frame", "3", "--plain", "--size", "320x240")
+        picture = self.picture("figure_001.glb", "--first-frame", "3", "--size", "320x240")
+        self.until(lambda: self.difference(picture) <= 2, "the window shows the picture")
+        self.xdotool("mousemove", 200, 200, "key", "ctrl+h")
+        self.until(lambda: self.difference(picture) > 50, "a message is shown")
+        self.closes_well(process)
+
+    def test_closes_while_it_hatches(self):
+        self.learn_style()
+        self.call("synth", "fourleg", "--faces", "30000", "--out", "large")
+        process, _ = self.open("large/fourleg_001.off", "--hatching", "style.safetensors", "--size", "640x480")
+        time.sleep(1)
+        self.xdotool("mousemove", 500, 200, "key", "ctrl+h")
+        time.sleep(1)
+        self.closes_well(process)
+        self.assertEqual(list(self.folder.glob("fourleg_001_hatched*")), [])
+        self.assert_no_leftovers()
 
     def test_a_lost_device_is_opened_again(self):
         process, _ = self.open("figure_001.glb", "--first-frame", "7", "--plain", "--size", "640x480",

@@ -184,6 +184,25 @@ TEST(HatchingStyleFile, OtherVersionsAndKindsAreRefusedWithTheMend) {
               "FILE: is no hatching style; make one with 'exemplar hatch train'");
 }
 
+// What opens files of any kind asks before it loads one.
+TEST(HatchingStyleFile, SaysWhetherItIsAStyle) {
+    const fs::path path = temporary("kind.safetensors");
+    save_hatching_style(path, small_style());
+    EXPECT_TRUE(is_hatching_style(path));
+    TensorFile file = read_safetensors(path);
+    file.metadata["format_version"] = "2";  // that of a newer program is one, too, which loading it then tells
+    write_safetensors(path, file);
+    EXPECT_TRUE(is_hatching_style(path));
+    file.metadata["kind"] = "exemplar curvature";
+    write_safetensors(path, file);
+    EXPECT_FALSE(is_hatching_style(path));
+    file.metadata.erase("kind");
+    write_safetensors(path, file);
+    EXPECT_FALSE(is_hatching_style(path));
+    write_file_atomically(path, [](std::ostream& out) { out << "no model at all"; });
+    EXPECT_THROW(is_hatching_style(path), ModelError);
+}
+
 TEST(HatchingStyleFile, FilesCutAnywhereAreRefused) {
     const fs::path path = temporary("whole.safetensors"), cut = temporary("cut.safetensors");
     save_hatching_style(path, small_style());
@@ -198,7 +217,8 @@ TEST(HatchingStyleFile, FilesCutAnywhereAreRefused) {
 TEST(HatchingStyleFile, EveryArrayIsNeeded) {
     const fs::path path = temporary("arrays.safetensors");
     save_hatching_style(path, small_style());
-    for (const auto& [name, tensor] : read_safetensors(path).tensors) {
+    for (const auto& array : read_safetensors(path).tensors) {
+        const std::string& name = array.first;
         const std::string error = error_after([&](TensorFile& file) { file.tensors.erase(name); });
         EXPECT_THAT(error, HasSubstr(name));
         const std::string other = error_after([&](TensorFile& file) {

@@ -41,6 +41,7 @@ constexpr std::array k_shortcuts = {
     Shortcut{Action::reset_pose, GLFW_KEY_R, false, "R", "Undo what sliders changed of the pose"},
     Shortcut{Action::save_png, GLFW_KEY_S, true, "Ctrl+S", "Save the picture as PNG"},
     Shortcut{Action::save_svg, GLFW_KEY_E, true, "Ctrl+E", "Save the lines as SVG"},
+    Shortcut{Action::save_hatching, GLFW_KEY_H, true, "Ctrl+H", "Save a hatched still as SVG and PNG"},
     Shortcut{Action::save_model, GLFW_KEY_M, true, "Ctrl+M", "Save the model of curvature"},
     Shortcut{Action::panels, GLFW_KEY_P, false, "P", "Show or hide the panels"},
     Shortcut{Action::frame_times, GLFW_KEY_G, false, "G", "Show or hide frame times"},

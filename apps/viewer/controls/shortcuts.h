@@ -39,6 +39,7 @@ enum class Action {
     reset_pose,
     save_png,
     save_svg,
+    save_hatching,
     save_model,
     panels,
     frame_times,

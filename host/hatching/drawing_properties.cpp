@@ -1,5 +1,7 @@
 #include "host/hatching/drawing_properties.h"
 
+#include <set>
+
 namespace exemplar {
 
 const char* name_of(StrokeProperty property) {
@@ -19,6 +21,20 @@ const std::vector<float>& property_of(const HatchingFields& fields, StrokeProper
     return *images[static_cast<std::size_t>(property)];
 }
 
+namespace {
+
+std::vector<std::uint8_t> on_crossed_strokes(const StrokeMeasurements& measurements) {
+    std::set<std::int32_t> crossed;
+    for (std::size_t i = 0; i < measurements.size(); ++i)
+        if (measurements.intersection[i]) crossed.insert(measurements.stroke_id[i]);
+    crossed.erase(-1);  // no stroke
+    std::vector<std::uint8_t> on(measurements.size());
+    for (std::size_t i = 0; i < on.size(); ++i) on[i] = crossed.contains(measurements.stroke_id[i]) ? 1 : 0;
+    return on;
+}
+
+}  // namespace
+
 DrawingProperties drawing_properties(const StrokeMeasurements& measurements) {
     DrawingProperties out;
     out.width = measurements.width;
@@ -27,6 +43,7 @@ DrawingProperties drawing_properties(const StrokeMeasurements& measurements) {
     for (std::size_t i = 0; i < out.center.size(); ++i)
         out.center[i] = measurements.skeleton[i] && measurements.spacing[i] > 0 ? 1 : 0;
     out.crossing = measurements.intersection;
+    out.crossed = on_crossed_strokes(measurements);
     out.orientation = measurements.orientation;
     out.property = {measurements.thickness, measurements.intensity, measurements.spacing, measurements.length};
     out.level = measurements.level;

@@ -23,6 +23,7 @@ struct DrawingProperties {
     int width = 0, height = 0;
     std::vector<std::uint8_t> center;    ///< 1: on the center line of a stroke of hatching: where properties are known
     std::vector<std::uint8_t> crossing;  ///< 1: where strokes cross: the direction is not known
+    std::vector<std::uint8_t> crossed;   ///< 1: on a stroke that crosses another: its length is not sure
     std::vector<float> orientation;      ///< radians in [0, pi)
     std::array<std::vector<float>, k_stroke_properties> property;  ///< positive where known
     std::vector<std::uint8_t> level;                               ///< of every pixel of the object

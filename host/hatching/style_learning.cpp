@@ -287,6 +287,7 @@ class Learning {
         const std::vector<float>& values = drawing_.property[p];
         std::vector<std::uint32_t> rows = rows_where(
             [&](std::uint32_t at) { return drawing_.center[at] && drawing_.level[at] > 0 && values[at] > 0; });
+        if (property == StrokeProperty::length) rows = rather_uncrossed(std::move(rows));
         if (rows.size() < k_least_samples)
             throw DataError(fmt::format("the {} of strokes is known at only {} pixels; the drawing has too few",
                                         name_of(property), rows.size()));
@@ -305,10 +306,19 @@ class Learning {
         report_.property[p] = std::sqrt(learned.error);
     }
 
+    /// Those of strokes that cross no other, if there are many: what crosses the gaps between strokes in line makes
+    /// them look like one.
+    std::vector<std::uint32_t> rather_uncrossed(std::vector<std::uint32_t> rows) const {
+        std::vector<std::uint32_t> uncrossed;
+        for (const std::uint32_t row : rows)
+            if (!drawing_.crossed[pixel(row)]) uncrossed.push_back(row);
+        return uncrossed.size() < std::max(k_least_samples, rows.size() / 20) ? rows : uncrossed;
+    }
+
     /// Strokes are as long as they are meant to be, or as there is room: by how much the longer ones are over the mean.
     static float longest_share(const PropertyModel& model, const FeatureMatrix& features,
                                std::span<const float> target) {
-        constexpr double k_quantile = 0.9;
+        constexpr double k_quantile = 0.85;
         std::vector<float> ratio(target.size());
         for (std::size_t i = 0; i < ratio.size(); ++i)
             ratio[i] = target[i] / model.evaluate([&](std::uint32_t k) {

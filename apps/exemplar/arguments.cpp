@@ -119,11 +119,11 @@ void require_output_folder(const fs::path& path) {
         throw UsageError(fmt::format("{}: cannot be written to: {}", path.string(), why));
 }
 
-fs::path usable_cache(const fs::path& cache, bool quiet) {
+fs::path usable_cache(const fs::path& cache, bool quiet, const char* what) {
     if (cache.empty()) return cache;
     const std::string why = why_not_writable(cache);
     if (why.empty()) return cache;
-    if (!quiet) fmt::print(stderr, "warning: features are not remembered: {}; --cache FOLDER gives another\n", why);
+    if (!quiet) fmt::print(stderr, "warning: {} are not remembered: {}; --cache FOLDER gives another\n", what, why);
     return {};
 }
 

@@ -31,8 +31,9 @@ LabelingModel model_of_argument(const std::filesystem::path& path);
 /// Throws UsageError if a file, or a folder of files, cannot be written at `path`. An empty path is no output.
 void require_output_file(const std::filesystem::path& path);
 void require_output_folder(const std::filesystem::path& path);
-/// The folder that remembers features; empty, with a warning, where it cannot be written.
-std::filesystem::path usable_cache(const std::filesystem::path& cache, bool quiet);
+/// The folder that remembers features, or what else it is to remember; empty, with a warning, where it cannot be
+/// written.
+std::filesystem::path usable_cache(const std::filesystem::path& cache, bool quiet, const char* what = "features");
 /// Results beside a mesh could replace the labels, or the mesh, that they were made from: throws UsageError if a mesh
 /// lies in the folder `out`.
 void require_other_folder(const std::filesystem::path& out, const std::vector<std::filesystem::path>& meshes);

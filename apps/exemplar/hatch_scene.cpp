@@ -17,6 +17,9 @@ void add_hatch_scene_options(CLI::App& command, HatchSceneArguments& arguments) 
                     "direction to the light as the eye has it: to the right, up, towards the eye")
         ->type_name("X,Y,Z")
         ->capture_default_str();
+    command.add_option("--cache", arguments.cache, "folder that remembers measured surfaces; '' remembers none")
+        ->type_name("FOLDER")
+        ->capture_default_str();
 }
 
 void require_hatch_scene(const HatchSceneArguments& arguments) {
@@ -43,7 +46,7 @@ HatchScene::HatchScene(const HatchSceneArguments& arguments, const std::string& 
     : impl_(std::make_unique<Impl>(device)) {
     const MeshFile file = read_mesh(arguments.mesh);
     mesh_warnings(file, arguments.mesh, quiet);
-    impl_->surface = measure_surface(file.mesh);
+    impl_->surface = cached_surface(file.mesh, usable_cache(arguments.cache, quiet, "measured surfaces"));
     impl_->view = hatching_view(arguments, impl_->surface.mesh);
     impl_->pixels = std::make_unique<PixelFeatures>(impl_->surface, impl_->view, impl_->device.tools().images);
 }

@@ -9,6 +9,7 @@
 #include "apps/exemplar/lines_camera.h"
 #include "host/hatching/hatching_surface.h"
 #include "host/hatching/pixel_features.h"
+#include "host/hatching/surface_cache.h"
 #include "host/hatching/view_hatching.h"
 
 namespace exemplar {
@@ -17,7 +18,8 @@ namespace exemplar {
 struct HatchSceneArguments {
     std::filesystem::path mesh;
     CameraArguments camera;
-    std::string light = "-0.45,0.55,0.7";  ///< direction to it: x right, y up, z towards the eye
+    std::string light = "-0.45,0.55,0.7";                    ///< direction to it: x right, y up, z towards the eye
+    std::filesystem::path cache = default_surface_folder();  ///< remembers measured surfaces; empty: nothing does
 };
 void add_hatch_scene_options(CLI::App& command, HatchSceneArguments& arguments);
 /// Checks what can be checked before any work; throws UsageError or DataError.
@@ -28,7 +30,7 @@ HatchingView hatching_view(const HatchSceneArguments& arguments, const TriangleM
 /// A mesh that is looked at, and everything that measures and hatches it: on a device.
 class HatchScene {
   public:
-    /// Reads and measures the mesh; tells what is unusual about it unless `quiet`.
+    /// Reads the mesh and measures it, or remembers how it was measured; tells what is unusual about it unless `quiet`.
     HatchScene(const HatchSceneArguments& arguments, const std::string& device, bool quiet);
     ~HatchScene();
 

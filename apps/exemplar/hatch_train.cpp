@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
+#include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/hatch_reading.h"
@@ -23,6 +25,48 @@ struct TrainArguments {
     CommonOptions common;
 };
 
+/// Steps of learning in their order, and the share of the time that each takes of a common drawing, in hundredths.
+struct LearningStep {
+    std::string_view name;
+    std::size_t share;
+};
+constexpr std::array<LearningStep, 11> k_learning_steps{{{"surface", 14},
+                                                         {"reading the drawing", 36},
+                                                         {"orientation rules", 25},
+                                                         {"segments", 14},
+                                                         {"boundaries", 2},
+                                                         {"label cuts", 1},
+                                                         {"hatching levels", 2},
+                                                         {"thickness", 1},
+                                                         {"intensity", 1},
+                                                         {"spacing", 2},
+                                                         {"length", 2}}};
+
+/// Tells how far learning is. Steps that a drawing does not need are passed over.
+class LearningProgress {
+  public:
+    /// All steps before this one are done.
+    void begins(std::string_view step) {
+        const auto at = std::ranges::find(k_learning_steps, step, &LearningStep::name);
+        progress_.advance(at == k_learning_steps.end() ? 0 : passed_before(at), std::string(step));
+    }
+    void finish() {
+        progress_.advance(passed_before(k_learning_steps.end()));
+        progress_.finish();
+    }
+
+  private:
+    using Step = decltype(k_learning_steps)::const_iterator;
+    std::size_t passed_before(Step next) {
+        std::size_t share = 0;
+        for (; current_ < next; ++current_) share += current_->share;
+        return share;
+    }
+
+    Step current_ = k_learning_steps.begin();
+    Progress progress_{"learning", 100};
+};
+
 nlohmann::json describe(const StyleReport& report, const HatchingStyle& style, double reading) {
     nlohmann::json seconds = {{"reading", reading}};
     for (const auto& [step, time] : report.seconds) seconds[step] = time;
@@ -41,22 +85,17 @@ void run_train(const TrainArguments& arguments) {
     require_input(arguments.drawing);
     require_output_file(arguments.out);
     Stopwatch watch;
-    Progress progress("learning", 7);
+    LearningProgress progress;
     HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
-    progress.advance(1, "reading the drawing");
+    progress.begins("reading the drawing");
     const StrokeMeasurements measured = read_drawing(arguments.drawing, scene.pixels(), arguments.common.quiet);
     const double reading = watch.wall();
-    progress.advance(1, "orientation rules");
+    progress.begins("orientation rules");
     StyleLearningOptions options;
     options.seed = options.mixture.seed = arguments.seed;
     StyleReport report;
-    std::string doing = "orientation rules";
     HatchingStyle style = learn_hatching_style(scene.pixels(), drawing_properties(measured), scene.scorer(), options,
-                                               report, [&](const char* what) {
-                                                   if (doing == what) return;
-                                                   doing = what;
-                                                   progress.advance(doing == "label cuts" ? 0 : 1, doing);
-                                               });
+                                               report, [&](const char* step) { progress.begins(step); });
     progress.finish();
     style.name = arguments.drawing.filename().string();
     save_hatching_style(arguments.out, style);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "gpu/hatching/hatching_evaluator.h"
 #include "gpu/hatching/pixel_projection.h"
 #include "gpu/hatching/stroke_placer.h"
@@ -18,7 +20,7 @@ class HatchingDevice {
         : device_(options),
           gbuffers_(device_),
           filters_(device_),
-          projection_(device_),
+          projection_(projection_for(device_)),
           scorer_(device_),
           evaluator_(device_),
           placer_(device_) {}
@@ -30,11 +32,11 @@ class HatchingDevice {
     Device device_;
     GpuGBufferRenderer gbuffers_;
     GpuImageFilters filters_;
-    GpuPixelProjection projection_;
+    std::unique_ptr<PixelProjection> projection_;
     GpuStumpScorer scorer_;
     GpuHatchingEvaluator evaluator_;
     GpuStrokePlacer placer_;
-    ImageTools images_{gbuffers_, filters_, projection_};
+    ImageTools images_{gbuffers_, filters_, *projection_};
     HatchingTools tools_{images_, scorer_, evaluator_, placer_};
 };
 

@@ -321,4 +321,11 @@ void GpuPixelProjection::record_curvature(const Buffer& states, const Buffer& sl
     }
 }
 
+// On a CPU every load of a kernel is expensive, and there is little else here: the kernels take twice as long as the
+// reference on the same cores, before what they load is laid out for them.
+std::unique_ptr<PixelProjection> projection_for(Device& device) {
+    if (device.info().type == DeviceType::cpu) return std::make_unique<CpuPixelProjection>();
+    return std::make_unique<GpuPixelProjection>(device);
+}
+
 }  // namespace exemplar

@@ -66,4 +66,7 @@ class GpuPixelProjection final : public PixelProjection {
     Buffer faces_, barycentrics_, columns_, doubled_;  // of a tile
 };
 
+/// The projection that is fastest with a device: the reference itself where the device is the host's processor.
+std::unique_ptr<PixelProjection> projection_for(Device& device);
+
 }  // namespace exemplar

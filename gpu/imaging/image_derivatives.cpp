@@ -100,14 +100,15 @@ ImageDerivatives GpuImageDerivatives::download() const {
     const auto stack = [&](const Buffer& buffer, std::size_t place) {
         return download_stack(buffer, width, height, count, place);
     };
+    const bool oriented = orientation.bytes() > 0;
     return {.value = stack(value, 0),
             .gradient_x = stack(gradient, 0),
             .gradient_y = stack(gradient, 1),
             .gradient_magnitude = stack(magnitude, 0),
             .maximum_curvature = stack(curvature, 0),
             .minimum_curvature = stack(curvature, 1),
-            .orientation_cos = stack(orientation, 0),
-            .orientation_sin = stack(orientation, 1)};
+            .orientation_cos = oriented ? stack(orientation, 0) : ImageStack(),
+            .orientation_sin = oriented ? stack(orientation, 1) : ImageStack()};
 }
 
 GpuImageFilters::GpuImageFilters(Device& device, Profiler* profiler)
@@ -124,12 +125,12 @@ GpuImageFilters::GpuImageFilters(Device& device, Profiler* profiler)
           kernel_of<OrientationParameters, vec4, vec4, vec4, Word, float>(device, shaders::imaging_orientation_comp)) {}
 
 ImageDerivatives GpuImageFilters::derivatives(const ImageStack& images, std::span<const std::uint32_t> face,
-                                              float sigma) {
+                                              float sigma, bool with_orientations) {
     check_derivatives(images, face);
     const Buffer faces = Buffer::of(device_, face);
     const GpuMaskedImages inside = masked(upload(device_, images, 0, images.count), faces);
     GpuImageDerivatives out;
-    record_derivatives(stream_, inside, sigma, out);
+    record_derivatives(stream_, inside, sigma, out, with_orientations);
     stream_.finish();
     return out.download();
 }
@@ -174,7 +175,7 @@ GpuMaskedImages GpuImageFilters::masked(const GpuImages& images, const Buffer& f
 }
 
 void GpuImageFilters::record_derivatives(Stream& stream, const GpuMaskedImages& images, float sigma,
-                                         GpuImageDerivatives& out) {
+                                         GpuImageDerivatives& out, bool with_orientations) {
     const GpuGaussian gaussian(device_, sigma);
     out.width = images.width;
     out.height = images.height;
@@ -182,17 +183,22 @@ void GpuImageFilters::record_derivatives(Stream& stream, const GpuMaskedImages& 
     const std::size_t bytes =
         static_cast<std::size_t>(images.width) * static_cast<std::size_t>(images.height) * images.count * sizeof(float);
     for (Buffer* buffer : {&out.value, &out.magnitude}) reserve(device_, *buffer, bytes);
-    for (Buffer* buffer : {&out.gradient, &out.curvature, &out.orientation}) reserve(device_, *buffer, 2 * bytes);
+    for (Buffer* buffer : {&out.gradient, &out.curvature}) reserve(device_, *buffer, 2 * bytes);
+    if (with_orientations)
+        reserve(device_, out.orientation, 2 * bytes);
+    else
+        out.orientation = {};
     if (!images.box) {
-        for (const Buffer* buffer : {&out.value, &out.magnitude, &out.gradient, &out.curvature, &out.orientation})
+        for (const Buffer* buffer : {&out.value, &out.magnitude, &out.gradient, &out.curvature})
             stream.fill(*buffer, 0);
+        if (with_orientations) stream.fill(out.orientation, 0);
         return;
     }
     reserve_planes(*images.box);
     sum_mask(stream, gaussian, images);
     sum_images(stream, gaussian, images);
     derive(stream, gaussian.kernel, images, out);
-    orient(stream, gaussian, images, out);
+    if (with_orientations) orient(stream, gaussian, images, out);
 }
 
 void GpuImageFilters::record_blur(Stream& stream, const GpuImages& images, float sigma, GpuImages& out) {

@@ -45,7 +45,7 @@ struct GpuImageDerivatives {
     Buffer gradient;     ///< 2 x count x pixels: x of all images, then y
     Buffer magnitude;    ///< count x pixels: of gradients
     Buffer curvature;    ///< 2 x count x pixels: largest, then least
-    Buffer orientation;  ///< 2 x count x pixels: cos, then sin of the doubled angle, times the coherence
+    Buffer orientation;  ///< 2 x count x pixels: cos, then sin of the doubled angle, times the coherence; or empty
 
     ImageDerivatives download() const;
 };
@@ -60,14 +60,16 @@ class GpuImageFilters final : public ImageFilters {
 
     /// Throw as ImageFilters says; DeviceLimitError if there are more pixels than kernels of the device can see at once
     /// (4 million for four images where storage buffers have 128 MiB).
-    ImageDerivatives derivatives(const ImageStack& images, std::span<const std::uint32_t> face, float sigma) override;
+    ImageDerivatives derivatives(const ImageStack& images, std::span<const std::uint32_t> face, float sigma,
+                                 bool with_orientations = true) override;
     ImageStack blurred(const ImageStack& images, float sigma) override;
 
     /// Images inside the mask of a G-buffer's faces, for derivatives at several scales. Returns when they are there.
     GpuMaskedImages masked(const GpuImages& images, const Buffer& face);
     /// Records what gives the derivatives; `out` gets the buffers that it lacks. Buffers of these filters serve one
     /// recording after the other: streams that run at the same time need filters of their own.
-    void record_derivatives(Stream& stream, const GpuMaskedImages& images, float sigma, GpuImageDerivatives& out);
+    void record_derivatives(Stream& stream, const GpuMaskedImages& images, float sigma, GpuImageDerivatives& out,
+                            bool with_orientations = true);
     /// Records a convolution with a Gaussian, of images that are zero outside.
     void record_blur(Stream& stream, const GpuImages& images, float sigma, GpuImages& out);
 

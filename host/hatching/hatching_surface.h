@@ -56,6 +56,9 @@ std::vector<std::string> descriptor_names();
 /// Interrupted at Ctrl-C.
 HatchingSurface measure_surface(const TriangleMesh& mesh);
 
+/// Identifies the meaning of what measure_surface returns; changes whenever a value does. Part of cache entries.
+constexpr int k_surface_version = 1;
+
 /// Moves a measured surface to where its vertices are now. Normals, curvature, the fields that follow from it and
 /// self-occlusion are measured anew. What takes long and says which part of an object one is on stays as it was:
 /// descriptors, geodesic distances, units; axes of patches turn with the faces around. Throws UsageError unless there

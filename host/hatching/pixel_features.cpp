@@ -105,8 +105,9 @@ struct PixelFeatures::Parts {
     ImageStack shading;
     std::array<std::optional<ImageDerivatives>, k_sigmas.size()> derivatives;
     std::optional<LineImages> lines;
-    std::array<std::optional<std::array<ImageStack, k_line_sigmas.size()>>, k_line_kinds * k_line_thresholds>
-        line_images;
+    // Of all thresholds, which cost little more than one: filters take that many images side by side.
+    std::array<std::optional<ImageStack>, k_line_kinds> drawn;
+    std::array<std::array<std::optional<ImageStack>, k_line_sigmas.size()>, k_line_kinds> line_images;
     std::optional<std::array<std::vector<Vec3>, k_vertex_fields>> fields;  // per vertex
 };
 
@@ -245,29 +246,35 @@ const ImageStack& PixelFeatures::shading() {
 
 const ImageDerivatives& PixelFeatures::derivatives(std::size_t sigma) {
     auto& kept = parts_->derivatives[sigma];
-    if (!kept) kept = tools_.filters.derivatives(shading(), gbuffer_.face, k_sigmas[sigma]);
+    if (!kept) kept = tools_.filters.derivatives(shading(), gbuffer_.face, k_sigmas[sigma], false);
     return *kept;
 }
 
-const ImageStack& PixelFeatures::line_image(std::size_t line, std::size_t sigma) {
-    auto& kept = parts_->line_images[line];
-    if (!kept) {
-        if (!parts_->lines) parts_->lines.emplace(surface_, view_);
-        ImageStack drawn(view_.width, view_.height, 1);
-        drawn.values = parts_->lines->draw(line / k_line_thresholds, line % k_line_thresholds).data;
-        kept.emplace();
-        for (std::size_t s = 0; s < k_line_sigmas.size(); ++s)
-            (*kept)[s] = tools_.filters.blurred(drawn, k_line_sigmas[s]);
-    }
-    return (*kept)[sigma];
+const ImageStack& PixelFeatures::line_drawings(std::size_t kind) {
+    auto& kept = parts_->drawn[kind];
+    if (kept) return *kept;
+    if (!parts_->lines) parts_->lines.emplace(surface_, view_);
+    ImageStack drawn(view_.width, view_.height, k_line_thresholds);
+    parallel_for(k_line_thresholds, [&](std::size_t step) {
+        std::ranges::copy(parts_->lines->draw(kind, step).data, drawn.image(step).begin());
+    });
+    kept = std::move(drawn);
+    return *kept;
+}
+
+std::span<const float> PixelFeatures::line_image(std::size_t line, std::size_t sigma) {
+    const std::size_t kind = line / k_line_thresholds;
+    auto& kept = parts_->line_images[kind][sigma];
+    if (!kept) kept = tools_.filters.blurred(line_drawings(kind), k_line_sigmas[sigma]);
+    return kept->image(line % k_line_thresholds);
 }
 
 void PixelFeatures::picture_column(std::size_t feature, std::span<const std::uint32_t> rows, std::span<float> out) {
     const Gatherer gatherer(*this, rows);
     if (feature >= k_first_line) {
         const std::size_t line = (feature - k_first_line) / k_line_sigmas.size();
-        const ImageStack& image = line_image(line, (feature - k_first_line) % k_line_sigmas.size());
-        return gatherer.from_pixels([&](std::uint32_t pixel) { return image.values[pixel]; }, out);
+        const std::span<const float> image = line_image(line, (feature - k_first_line) % k_line_sigmas.size());
+        return gatherer.from_pixels([&](std::uint32_t pixel) { return image[pixel]; }, out);
     }
     static const std::vector<ImageFeature> k_features = image_features();
     const auto [quantity, image, sigma] = k_features[feature - k_first_image];

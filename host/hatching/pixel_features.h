@@ -48,7 +48,8 @@ class PixelFeatures {
     FacePoints points(std::span<const std::uint32_t> rows) const;
     const ImageStack& shading();
     const ImageDerivatives& derivatives(std::size_t sigma);
-    const ImageStack& line_image(std::size_t line, std::size_t sigma);
+    const ImageStack& line_drawings(std::size_t kind);
+    std::span<const float> line_image(std::size_t line, std::size_t sigma);
     void picture_column(std::size_t feature, std::span<const std::uint32_t> rows, std::span<float> out);
     const HatchingSurface& surface_;
     const HatchingView& view_;

@@ -238,17 +238,20 @@ std::optional<PixelBox> mask_box(std::span<const std::uint32_t> face, int width)
 }
 
 ImageDerivatives CpuImageFilters::derivatives(const ImageStack& images, std::span<const std::uint32_t> face,
-                                              float sigma) {
+                                              float sigma, bool with_orientations) {
     check_derivatives(images, face);
     const GaussianKernel kernel = gaussian_kernel(sigma);
     const ImageStack zeros(images.width, images.height, images.count);
-    ImageDerivatives out{zeros, zeros, zeros, zeros, zeros, zeros, zeros, zeros};
+    ImageDerivatives out{zeros, zeros, zeros, zeros, zeros, zeros, {}, {}};
+    if (with_orientations) out.orientation_cos = out.orientation_sin = zeros;
     const std::optional<PixelBox> box = mask_box(face, images.width);
     if (!box) return out;
     const Mask mask = mask_of(face, images.width, *box);
     const MomentPlanes mask_moments(mask.inside, kernel, 3);
-    for (std::size_t image = 0; image < images.count; ++image)
-        orient(derive(images, image, mask, mask_moments, kernel, out), image, mask, kernel, out);
+    for (std::size_t image = 0; image < images.count; ++image) {
+        const std::array<Plane, 2> gradient = derive(images, image, mask, mask_moments, kernel, out);
+        if (with_orientations) orient(gradient, image, mask, kernel, out);
+    }
     return out;
 }
 

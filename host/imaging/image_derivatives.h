@@ -42,7 +42,8 @@ struct ImageDerivatives {
     ImageStack value;
     ImageStack gradient_x, gradient_y, gradient_magnitude;
     ImageStack maximum_curvature, minimum_curvature;  ///< by sign
-    ImageStack orientation_cos, orientation_sin;      ///< of the doubled angle, times the coherence
+    /// Of the doubled angle, times the coherence; of no images where they are left out.
+    ImageStack orientation_cos, orientation_sin;
 };
 
 /// Gradients below this, per pixel, are taken for noise by the coherence of orientations.
@@ -65,8 +66,9 @@ class ImageFilters {
     /// `face` has a number per pixel, k_no_face outside of the mask, as in G-buffers. What images hold there does not
     /// matter; inside they must be finite. Results round as if values were about 1 at most. Throws UsageError unless
     /// there are 1 to k_most_derived_images images, with a face for each pixel, and sigma is one of gaussian_kernel's.
-    virtual ImageDerivatives derivatives(const ImageStack& images, std::span<const std::uint32_t> face,
-                                         float sigma) = 0;
+    /// Orientations, a third of the work, may be left out.
+    virtual ImageDerivatives derivatives(const ImageStack& images, std::span<const std::uint32_t> face, float sigma,
+                                         bool with_orientations = true) = 0;
     /// Any number of images convolved with a Gaussian, as if they were zero outside. Throws UsageError as
     /// gaussian_kernel.
     virtual ImageStack blurred(const ImageStack& images, float sigma) = 0;
@@ -74,7 +76,8 @@ class ImageFilters {
 
 class CpuImageFilters final : public ImageFilters {
   public:
-    ImageDerivatives derivatives(const ImageStack& images, std::span<const std::uint32_t> face, float sigma) override;
+    ImageDerivatives derivatives(const ImageStack& images, std::span<const std::uint32_t> face, float sigma,
+                                 bool with_orientations = true) override;
     ImageStack blurred(const ImageStack& images, float sigma) override { return gaussian_blur(images, sigma); }
 };
 

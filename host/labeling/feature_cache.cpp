@@ -1,18 +1,12 @@
 #include "host/labeling/feature_cache.h"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
-#include <cstdlib>
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 
-#include "host/core/errors.h"
-#include "host/data/safetensors.h"
+#include "host/data/result_cache.h"
 
 namespace exemplar {
 namespace {
@@ -30,7 +24,6 @@ std::vector<T> flatten(const std::vector<std::array<T, 2>>& pairs) {
 
 TensorFile to_file(const MeshFeatures& features) {
     TensorFile file;
-    file.metadata["version"] = std::to_string(k_feature_version);
     file.metadata["unary"] = Json(features.unary.names).dump();
     file.metadata["pairwise"] = Json(features.pairwise.names).dump();
     file.metadata["seconds"] = Json(features.seconds).dump();
@@ -94,73 +87,22 @@ MeshFeatures from_file(const TensorFile& file, std::size_t faces) {
     return features;
 }
 
-/// The checksum of everything but itself, so that a flipped byte in the data is noticed too.
-std::string checksum(const TensorFile& file) {
-    const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), XXH3_freeState);
-    XXH3_64bits_reset(state.get());
-    for (const auto& [key, value] : file.metadata)
-        if (key != "checksum") XXH3_64bits_update(state.get(), value.data(), value.size());
-    for (const auto& [name, tensor] : file.tensors)
-        XXH3_64bits_update(state.get(), tensor.bytes.data(), tensor.bytes.size());
-    return fmt::format("{:016x}", XXH3_64bits_digest(state.get()));
-}
-
 }  // namespace
-
-std::string content_hash(const TriangleMesh& mesh) {
-    const std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state(XXH3_createState(), XXH3_freeState);
-    XXH3_128bits_reset(state.get());
-    XXH3_128bits_update(state.get(), mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3));
-    XXH3_128bits_update(state.get(), mesh.faces.data(), mesh.faces.size() * sizeof(Face));
-    const XXH128_hash_t hash = XXH3_128bits_digest(state.get());
-    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
-}
 
 fs::path default_feature_folder() {
-    if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache)
-        return fs::path(cache) / "exemplar" / "features";
-    if (const char* home = std::getenv("HOME"); home && *home)
-        return fs::path(home) / ".cache" / "exemplar" / "features";
-    return {};
+    return default_cache_folder("features");
 }
-
-namespace {
-
-/// The features in a cache entry; nothing if there is no entry, or one that is damaged or of another version.
-std::optional<MeshFeatures> read_entry(const fs::path& path, std::size_t faces) {
-    std::error_code unreadable;
-    if (!fs::is_regular_file(path, unreadable)) return std::nullopt;
-    try {
-        const TensorFile file = map_safetensors(path);
-        if (file.meta("version") != std::to_string(k_feature_version)) return std::nullopt;
-        if (file.meta("checksum") != checksum(file)) return std::nullopt;
-        return from_file(file, faces);
-    } catch (const ModelError&) {
-        return std::nullopt;
-    } catch (const Json::exception&) {
-        return std::nullopt;
-    }
-}
-
-void write_entry(const fs::path& path, const MeshFeatures& features) {
-    TensorFile file = to_file(features);
-    file.metadata["checksum"] = checksum(file);
-    try {
-        write_safetensors(path, file);
-    } catch (const DataError&) {
-        // A read-only folder or a full disk must not cost the result: next time it is computed again.
-    }
-}
-
-}  // namespace
 
 MeshFeatures cached_features(const TriangleMesh& mesh, const FeatureOptions& options, const fs::path& folder) {
     if (folder.empty()) return compute_features(mesh, options);
     const fs::path path = folder / fmt::format("{}-v{}-s{}{}.safetensors", content_hash(mesh), k_feature_version,
                                                options.samples, options.orientation ? "-oriented" : "");
-    if (std::optional<MeshFeatures> kept = read_entry(path, mesh.face_count())) return std::move(*kept);
-    MeshFeatures features = compute_features(mesh, options);
-    write_entry(path, features);
+    MeshFeatures features;
+    if (read_cache_entry(path, k_feature_version,
+                         [&](const TensorFile& file) { features = from_file(file, mesh.face_count()); }))
+        return features;
+    features = compute_features(mesh, options);
+    write_cache_entry(path, k_feature_version, to_file(features));
     return features;
 }
 

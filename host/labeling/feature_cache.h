@@ -13,10 +13,7 @@ namespace exemplar {
 MeshFeatures cached_features(const TriangleMesh& mesh, const FeatureOptions& options,
                              const std::filesystem::path& folder);
 
-/// 32 hexadecimal digits that identify a mesh's content (vertices and faces).
-std::string content_hash(const TriangleMesh& mesh);
-
-/// The folder used by default: $XDG_CACHE_HOME/exemplar/features, else ~/.cache/exemplar/features, else empty.
+/// The folder used by default, see default_cache_folder.
 std::filesystem::path default_feature_folder();
 
 }  // namespace exemplar

@@ -13,9 +13,9 @@
 #include "host/core/progress.h"
 #include "host/core/random.h"
 #include "host/core/stopwatch.h"
+#include "host/data/result_cache.h"
 #include "host/labeling/cascade_opinion.h"
 #include "host/labeling/edge_context.h"
-#include "host/labeling/feature_cache.h"
 #include "host/labeling/fold_boosting.h"
 
 namespace exemplar {

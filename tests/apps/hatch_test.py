@@ -37,13 +37,29 @@ class Hatch(ProgramTest):
         self.assertLessEqual(PROPERTIES | {"skeleton", "intersections", "boundaries"}, written)
 
     def test_the_style_is_told_in_words(self):
-        said = self.call("hatch", "train", MESH, "drawing.png", *VIEW, "--out", "again.safetensors").stdout
+        result = self.call("hatch", "train", MESH, "drawing.png", *VIEW, "--out", "again.safetensors")
+        self.assertIn("learning: 100 in", result.stderr)  # hundredths, whichever steps there were
+        said = result.stdout
         for word in ("Segment 1", "hatches along", "Hatching levels are told by", "thickness =", "spacing ="):
             self.assertIn(word, said)
         self.assertEqual((self.folder / "again.safetensors").read_bytes(), (self.folder / "style.safetensors").read_bytes())
         report = json.loads((self.folder / "train.json").read_text())
         self.assertGreaterEqual(report["segments"], 1)
         self.assertLess(report["level_error"], 0.3)
+
+    def test_surfaces_are_remembered(self):
+        draw = ["hatch", "draw", "style.safetensors", MESH, *VIEW, "--out"]
+        cache = self.folder / "cache" / "exemplar" / "surfaces"
+        self.call(*draw, "remembered.svg")
+        known = {path.name for path in cache.iterdir()}
+        self.call(*draw, "anew.svg", "--cache", "")
+        self.assertEqual((self.folder / "anew.svg").read_bytes(), (self.folder / "remembered.svg").read_bytes())
+        self.call(*draw, "elsewhere.svg", "--cache", "elsewhere")
+        entries = [path.name for path in (self.folder / "elsewhere").iterdir()]
+        self.assertEqual(len(entries), 1)
+        self.assertIn(entries[0], known)
+        said = self.call(*draw, "x.svg", "--cache", MESH).stderr
+        self.assertIn("measured surfaces are not remembered", said)
 
     def test_another_view_as_svg(self):
         self.call("hatch", "draw", "style.safetensors", MESH, *VIEW, "--view", "side", "--out", "side.svg", "--json", "draw.json",

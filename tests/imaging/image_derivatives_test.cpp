@@ -274,6 +274,18 @@ TEST(ImageDerivatives, TinyMasksHaveWhatTheyCanTell) {
     }
 }
 
+TEST(ImageDerivatives, OrientationsCanBeLeftOut) {
+    const ImageStack images = random_images(31, 29, 3, 7);
+    const Faces faces = some_shape(31, 29);
+    const ImageDerivatives all = derivatives(images, faces, 2);
+    const ImageDerivatives some = CpuImageFilters().derivatives(images, faces, 2, false);
+    EXPECT_EQ(some.value, all.value);
+    EXPECT_EQ(some.gradient_y, all.gradient_y);
+    EXPECT_EQ(some.minimum_curvature, all.minimum_curvature);
+    EXPECT_EQ(some.orientation_cos, ImageStack());
+    EXPECT_EQ(some.orientation_sin, ImageStack());
+}
+
 TEST(ImageDerivatives, DoNotDependOnTheNumberOfThreads) {
     const ImageStack images = random_images(60, 50, 2, 9);
     const Faces faces = some_shape(60, 50);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "host/data/result_cache.h"
 #include "host/data/safetensors.h"
 #include "tests/labeling/features_support.h"
 #include "tests/support/mesh_files.h"

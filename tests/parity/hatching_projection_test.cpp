@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <initializer_list>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -497,6 +498,17 @@ TEST(KeptBuffers, MakeWhatIsNotThereAndGiveUpTheOldest) {
     EXPECT_EQ(made, 5);
     EXPECT_EQ(kept.bytes(), 5000U);
     EXPECT_EQ(first->bytes(), 400U);
+}
+
+// The reference is faster than kernels on the same cores.
+TEST(PixelProjectionParity, DevicesGetTheFastestProjection) {
+    const std::unique_ptr<PixelProjection> projection = projection_for(shared_device());
+    EXPECT_EQ(dynamic_cast<CpuPixelProjection*>(projection.get()) != nullptr,
+              shared_device().info().type == DeviceType::cpu);
+    Random random(9);
+    const TriangleMesh mesh = strip(65);
+    expect_scalar_parity(*projection, mesh, random_points(mesh, 67, random), random_values(65, 5, random),
+                         all_columns(5));
 }
 
 TEST(KeptBuffers, KeysTellContentsUseAndParts) {

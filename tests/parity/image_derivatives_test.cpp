@@ -153,6 +153,21 @@ TEST(ImageDerivativesParity, StayOnTheDeviceForSeveralScales) {
     EXPECT_EQ(results[1].download().orientation_sin, filters.derivatives(images, faces, 3).orientation_sin);
 }
 
+TEST(ImageDerivativesParity, OrientationsCanBeLeftOut) {
+    GpuImageFilters filters(shared_device());
+    const ImageStack images = random_images(61, 47, 4, 6);
+    const Faces faces = faces_where(61, 47, [](int x, int y) { return x + 2 * y > 30; });
+    const ImageDerivatives all = filters.derivatives(images, faces, 2),
+                           some = filters.derivatives(images, faces, 2, false);
+    EXPECT_EQ(some.value, all.value);
+    EXPECT_EQ(some.gradient_y, all.gradient_y);
+    EXPECT_EQ(some.minimum_curvature, all.minimum_curvature);
+    EXPECT_EQ(some.orientation_cos, ImageStack());
+    const ImageDerivatives nothing = filters.derivatives(images, Faces(faces.size(), k_no_face), 2, false);
+    EXPECT_EQ(nothing.value, ImageStack(61, 47, 4));
+    EXPECT_EQ(nothing.orientation_sin, ImageStack());
+}
+
 TEST(ImageDerivativesParity, RerunsAndOtherSizesBetweenThemChangeNothing) {
     GpuImageFilters filters(shared_device());
     const ImageStack images = random_images(61, 47, 2, 4), others = random_images(90, 90, 4, 5);

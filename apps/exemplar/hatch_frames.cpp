@@ -143,10 +143,12 @@ class FrameHatcher {
     void follow(std::size_t frame) {
         if (surface_ && !frames_.moves()) return;
         const TriangleMesh mesh = frames_.mesh(frame);
-        if (surface_ && !job_.remeasure)
-            move_surface(*surface_, mesh.vertices);
-        else
+        if (!surface_)
+            surface_ = cached_surface(mesh, usable_cache(job_.scene.cache, job_.common.quiet, "measured surfaces"));
+        else if (job_.remeasure)
             surface_ = measure_surface(mesh);
+        else
+            move_surface(*surface_, mesh.vertices);
     }
 
     const HatchDrawJob& job_;

@@ -8,6 +8,7 @@
 #include "apps/viewer/viewer_state.h"
 #include "gpu/hatching/hatching_device.h"
 #include "host/core/errors.h"
+#include "host/hatching/surface_cache.h"
 #include "host/hatching/view_hatching.h"
 #include "host/imaging/png.h"
 
@@ -28,7 +29,7 @@ HatchedDrawing draw_on(HatchingDevice& device, const HatchedStill& still,
                        const std::function<void(const char*)>& step) {
     constexpr float k_taper = 6;  // pixels, as 'exemplar hatch draw' has it
     step("measuring the surface");
-    const HatchingSurface surface = measure_surface(still.mesh);
+    const HatchingSurface surface = cached_surface(still.mesh, default_surface_folder());
     step("hatching");
     PixelFeatures pixels(surface, still.view, device.tools().images);
     ViewHatching hatching = hatch_view(*still.hatching, pixels, device.tools());

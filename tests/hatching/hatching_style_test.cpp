@@ -1,5 +1,6 @@
 #include "host/hatching/hatching_style.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -10,6 +10,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
+#include "host/hatching/direction_completion.h"
 #include "host/hatching/direction_smoothing.h"
 #include "host/hatching/line_directions.h"
 #include "host/hatching/line_images.h"
@@ -293,6 +294,21 @@ void PixelFeatures::picture_column(std::size_t feature, std::span<const std::uin
     gatherer.from_pixels([&](std::uint32_t pixel) { return values[pixel]; }, out);
 }
 
+std::vector<DoubledAngle> PixelFeatures::gradient_directions(std::span<const float> x, std::span<const float> y) const {
+    std::vector<DoubledAngle> directions(x.size());
+    bool complete = true;
+    for (const std::uint32_t pixel : pixels_.pixel) {
+        const Vec2 gradient(x[pixel], y[pixel]);
+        // A picture that is flat to a millionth has no gradient.
+        if (gradient.norm() > 1e-6f)
+            directions[pixel] = doubled(gradient.normalized());
+        else
+            complete = false;
+    }
+    if (!complete) complete_directions(view_.width, view_.height, directions);
+    return directions;
+}
+
 OrientationFields PixelFeatures::orientations(std::span<const std::uint32_t> rows) {
     if (!parts_->lines) parts_->lines.emplace(surface_, view_);
     if (!parts_->fields) parts_->fields = vertex_fields(surface_, view_, *parts_->lines);
@@ -307,14 +323,8 @@ OrientationFields PixelFeatures::orientations(std::span<const std::uint32_t> row
         const ImageDerivatives& all = derivatives(place % k_sigmas.size());
         const std::size_t image = k_order[place / k_sigmas.size()];
         const std::span<const float> x = all.gradient_x.image(image), y = all.gradient_y.image(image);
-        parallel_for(
-            out.rows,
-            [&](std::size_t i) {
-                const Vec2 gradient(x[gatherer.pixel(i)], y[gatherer.pixel(i)]);
-                // A picture that is flat to a millionth has no gradient.
-                out.field(k)[i] = gradient.norm() > 1e-6f ? doubled(gradient.normalized()) : DoubledAngle{};
-            },
-            4096);
+        const std::vector<DoubledAngle> directions = gradient_directions(x, y);
+        for (std::size_t i = 0; i < out.rows; ++i) out.field(k)[i] = directions[gatherer.pixel(i)];
     }
     return out;
 }

@@ -40,7 +40,7 @@ class PixelFeatures {
 
     /// The scalar features `which` of pixels_.pixel[rows[i]]; no rows: of all pixels.
     FeatureMatrix scalars(std::span<const std::uint32_t> which, std::span<const std::uint32_t> rows);
-    /// All orientation features of those pixels.
+    /// All orientation features of those pixels. Where an image has no gradient, its direction is as around there.
     OrientationFields orientations(std::span<const std::uint32_t> rows);
 
   private:
@@ -50,6 +50,7 @@ class PixelFeatures {
     const ImageDerivatives& derivatives(std::size_t sigma);
     const ImageStack& line_drawings(std::size_t kind);
     std::span<const float> line_image(std::size_t line, std::size_t sigma);
+    std::vector<DoubledAngle> gradient_directions(std::span<const float> x, std::span<const float> y) const;
     void picture_column(std::size_t feature, std::span<const std::uint32_t> rows, std::span<float> out);
     const HatchingSurface& surface_;
     const HatchingView& view_;

@@ -118,7 +118,9 @@ class Hatch(ProgramTest):
         for row in result["rows"]:
             self.assertLess(row["orientation_degrees"], 15)
             self.assertGreater(row["level_accuracy"], 0.7)
-        self.assertEqual(len(list((self.folder / "rows").glob("*_x.npy"))), 4)
+        rows = sorted(file.name[len("flow_"):] for file in (self.folder / "rows").iterdir())
+        self.assertEqual(len(rows), 2 + 4 * 3)  # of the drawing, and of each view with what was learned
+        self.assertEqual(rows[-2:], ["train_x.npy", "train_y.npy"])
 
     def test_what_cannot_be_hatched(self):
         write_off(self.folder / "cube.off", CUBE, CUBE_QUADS)

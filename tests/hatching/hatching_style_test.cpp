@@ -30,7 +30,9 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 fs::path temporary(const std::string& name) {
-    return fs::path(testing::TempDir()) / ("exemplar_hatching_" + name);
+    // Tests run beside each other.
+    const std::string test = testing::UnitTest::GetInstance()->current_test_info()->name();
+    return fs::path(testing::TempDir()) / fmt::format("exemplar_hatching_{}_{}", test, name);
 }
 
 CalibratedStumps classifier(std::uint32_t classes, std::uint32_t feature) {

@@ -181,8 +181,9 @@ TEST(CarriedStrokes, StayAsTheyAreInAStillPicture) {
     const std::vector<HatchStroke> first = placer.place(fields);
     std::vector<HatchStroke> strokes = first;
     for (int picture = 0; picture < 20; ++picture) {
-        std::vector<HatchStroke> kept;
         const std::vector<CarriedStroke> carried = carry(strokes, mesh, view, mesh, view);
+        std::vector<HatchStroke> kept;
+        kept.reserve(carried.size());
         for (const CarriedStroke& one : carried) kept.push_back(one.stroke);
         strokes = placer.place(fields, {}, {}, kept);
         const HatchingFlicker flicker = measure_flicker(strokes, carried);
@@ -192,6 +193,7 @@ TEST(CarriedStrokes, StayAsTheyAreInAStillPicture) {
     }
     // They have not worn off either.
     std::vector<CarriedStroke> beginning;
+    beginning.reserve(first.size());
     for (const HatchStroke& stroke : first) beginning.push_back({stroke, {true, true}});
     const HatchingFlicker all = measure_flicker(strokes, beginning);
     EXPECT_LT(all.vanished, 0.1f);
@@ -202,6 +204,7 @@ TEST(HatchingFlicker, IsTheShareThatIsElsewhere) {
     const std::vector<HatchStroke> strokes{line({10, 10}, {50, 10}), line({10, 20}, {50, 20}),
                                            line({10, 40}, {50, 40}, 1)};
     std::vector<CarriedStroke> before;
+    before.reserve(strokes.size());
     for (const HatchStroke& stroke : strokes) before.push_back({stroke, {true, true}});
     const HatchingFlicker same = measure_flicker(strokes, before);
     EXPECT_FLOAT_EQ(same.drawn, 120);

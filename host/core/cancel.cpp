@@ -3,16 +3,22 @@
 #include <tbb/task_arena.h>
 #include <tbb/task_scheduler_observer.h>
 
+#include <memory>
+#include <mutex>
+#include <vector>
+
 namespace exemplar {
 namespace {
 
-// What may cancel the work of this thread.
-thread_local const std::atomic<bool>* canceled_here = nullptr;
+// What cancels work: of an arena, or of none.
+using Canceled = std::atomic<const std::atomic<bool>*>;
+// What cancels the work that this thread does for an arena.
+thread_local const Canceled* canceled_here = nullptr;
 
 /// Threads that join the loops of an arena are told what cancels it, and forget it when they leave.
 class ArenaThreads : public tbb::task_scheduler_observer {
   public:
-    ArenaThreads(tbb::task_arena& arena, const std::atomic<bool>& canceled)
+    ArenaThreads(tbb::task_arena& arena, const Canceled& canceled)
         : tbb::task_scheduler_observer(arena), canceled_(canceled) {
         observe(true);
     }
@@ -24,19 +30,61 @@ class ArenaThreads : public tbb::task_scheduler_observer {
     void on_scheduler_exit(bool) override { canceled_here = nullptr; }
 
   private:
-    const std::atomic<bool>& canceled_;
+    const Canceled& canceled_;
+};
+
+struct CancelableArena {
+    Canceled canceled = nullptr;
+    tbb::task_arena arena;
+    ArenaThreads threads{arena, canceled};
+};
+
+/// The arenas that are not at work. They live as long as the process: what TBB keeps of an observer ends with the last
+/// of its threads that saw it, and that may be on its way when the program ends.
+struct IdleArenas {
+    std::mutex mutex;
+    std::vector<std::unique_ptr<CancelableArena>> arenas;
+};
+IdleArenas& idle_arenas() {
+    static auto* const idle = new IdleArenas;
+    return *idle;
+}
+
+/// An arena for the time of some work.
+class BorrowedArena {
+  public:
+    explicit BorrowedArena(const std::atomic<bool>& canceled) {
+        IdleArenas& idle = idle_arenas();
+        const std::lock_guard lock(idle.mutex);
+        if (idle.arenas.empty()) idle.arenas.push_back(std::make_unique<CancelableArena>());
+        arena_ = std::move(idle.arenas.back());
+        idle.arenas.pop_back();
+        arena_->canceled = &canceled;
+    }
+    ~BorrowedArena() {
+        arena_->canceled = nullptr;
+        IdleArenas& idle = idle_arenas();
+        const std::lock_guard lock(idle.mutex);
+        idle.arenas.push_back(std::move(arena_));
+    }
+    BorrowedArena(const BorrowedArena&) = delete;
+    BorrowedArena& operator=(const BorrowedArena&) = delete;
+
+    void execute(const std::function<void()>& work) { arena_->arena.execute(work); }
+
+  private:
+    std::unique_ptr<CancelableArena> arena_;
 };
 
 }  // namespace
 
 void run_cancelable(const std::atomic<bool>& canceled, const std::function<void()>& work) {
-    tbb::task_arena arena;
-    const ArenaThreads threads(arena, canceled);
-    arena.execute(work);
+    BorrowedArena(canceled).execute(work);
 }
 
 bool work_canceled() {
-    return canceled_here && *canceled_here;
+    const std::atomic<bool>* const canceled = canceled_here ? canceled_here->load() : nullptr;
+    return canceled && *canceled;
 }
 
 }  // namespace exemplar

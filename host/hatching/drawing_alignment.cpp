@@ -341,8 +341,8 @@ Candidate best_likely(const FloatImage& darkness, const std::vector<Similarity>&
     for (const Similarity& place : places) consider(place, 0);
     if (places.empty()) return best;
     consider(straightened(best.to_view, object.center), 1);
-    // Who votes, and what insets are expected, is told better from a better place: so the first stage comes twice.
-    for (const std::size_t stage : {1u, 1u, 2u, 3u})
+    // Who votes, and what insets are expected, is told better from a better place: so the first stage is repeated.
+    for (const std::size_t stage : {1u, 1u, 1u, 2u, 3u})
         best.to_view = refined_in_view(darkness, best.to_view, object, loss_scale(stage, object), true);
     best = judged(darkness, best.to_view, object);
     const Candidate straight = judged(darkness, straightened(best.to_view, object.center), object);

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -296,15 +297,17 @@ void PixelFeatures::picture_column(std::size_t feature, std::span<const std::uin
 
 std::vector<DoubledAngle> PixelFeatures::gradient_directions(std::span<const float> x, std::span<const float> y) const {
     std::vector<DoubledAngle> directions(x.size());
-    bool complete = true;
-    for (const std::uint32_t pixel : pixels_.pixel) {
+    std::atomic<bool> complete = true;
+    const auto set = [&](std::size_t i) {
+        const std::uint32_t pixel = pixels_.pixel[i];
         const Vec2 gradient(x[pixel], y[pixel]);
         // A picture that is flat to a millionth has no gradient.
         if (gradient.norm() > 1e-6f)
             directions[pixel] = doubled(gradient.normalized());
         else
             complete = false;
-    }
+    };
+    parallel_for(size(), set, 16384);
     if (!complete) complete_directions(view_.width, view_.height, directions);
     return directions;
 }

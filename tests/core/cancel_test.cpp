@@ -51,6 +51,43 @@ TEST(Cancel, OtherWorkGoesOn) {
     EXPECT_EQ(count, 2 * k_items);
 }
 
+TEST(Cancel, NextWorkIsNotCanceledByTheLast) {
+    std::atomic<std::size_t> count = 0;
+    for (std::size_t turn = 1; turn <= 20; ++turn) {
+        std::atomic<bool> canceled = false;
+        const auto cancel = [&] {
+            canceled = true;
+            count_all(count);
+        };
+        const std::size_t before = count;
+        EXPECT_THROW(run_cancelable(canceled, cancel), Interrupted);
+        const std::size_t after = count;
+        EXPECT_LT(after, before + k_items);
+        canceled = false;
+        run_cancelable(canceled, [&] { count_all(count); });
+        EXPECT_EQ(count, after + k_items);
+    }
+}
+
+TEST(Cancel, WorkBesideIsNotCanceled) {
+    std::atomic<bool> canceled = false, ended = false;
+    std::thread beside([&] {
+        const auto endless = [&] {
+            for (std::atomic<std::size_t> unused = 0;;) count_all(unused);
+        };
+        EXPECT_THROW(run_cancelable(canceled, endless), Interrupted);
+        ended = true;
+    });
+    const std::atomic<bool> never = false;
+    std::atomic<std::size_t> count = 0;
+    run_cancelable(never, [&] { count_all(count); });
+    EXPECT_FALSE(ended);
+    canceled = true;
+    run_cancelable(never, [&] { count_all(count); });
+    beside.join();
+    EXPECT_EQ(count, 2 * k_items);
+}
+
 TEST(Cancel, ErrorsAreThrownOn) {
     const std::atomic<bool> canceled = false;
     EXPECT_THROW(run_cancelable(canceled, [] { throw MeshError("bad"); }), MeshError);

@@ -12,14 +12,19 @@ namespace exemplar {
 namespace {
 
 constexpr int k_width = 60, k_height = 40;
+constexpr std::size_t k_pixels = std::size_t{k_width} * k_height;
+
+std::size_t index(int x, int y) {
+    return static_cast<std::size_t>(y) * k_width + static_cast<std::size_t>(x);
+}
 
 CoveredPixels pixels_where(const std::function<bool(int, int)>& covered) {
     CoveredPixels pixels;
-    pixels.row.assign(static_cast<std::size_t>(k_width * k_height), -1);
+    pixels.row.assign(k_pixels, -1);
     for (int y = 0; y < k_height; ++y)
         for (int x = 0; x < k_width; ++x) {
             if (!covered(x, y)) continue;
-            pixels.row[static_cast<std::size_t>(y * k_width + x)] = static_cast<std::int32_t>(pixels.pixel.size());
+            pixels.row[index(x, y)] = static_cast<std::int32_t>(pixels.pixel.size());
             pixels.pixel.push_back(static_cast<std::uint32_t>(y * k_width + x));
         }
     return pixels;
@@ -46,9 +51,7 @@ std::vector<int> borders(const std::vector<std::int32_t>& labels) {
     for (int y = 0; y < k_height; ++y) {
         int border = 0, changes = 0;
         for (int x = 1; x < k_width; ++x) {
-            if (labels[static_cast<std::size_t>(y * k_width + x)] ==
-                labels[static_cast<std::size_t>(y * k_width + x - 1)])
-                continue;
+            if (labels[index(x, y)] == labels[index(x - 1, y)]) continue;
             border = x;
             ++changes;
         }
@@ -58,9 +61,9 @@ std::vector<int> borders(const std::vector<std::int32_t>& labels) {
 }
 
 std::vector<float> evidence(float elsewhere, int border, float there) {
-    std::vector<float> boundary(static_cast<std::size_t>(k_width * k_height), elsewhere);
+    std::vector<float> boundary(k_pixels, elsewhere);
     for (int y = 0; border > 0 && y < k_height; ++y)
-        for (const int x : {border - 1, border}) boundary[static_cast<std::size_t>(y * k_width + x)] = there;
+        for (const int x : {border - 1, border}) boundary[index(x, y)] = there;
     return boundary;
 }
 

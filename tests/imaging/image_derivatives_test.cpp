@@ -321,7 +321,8 @@ TEST(GaussianBlur, IsTheConvolutionOfItsDefinition) {
         const ImageStack blurred = CpuImageFilters().blurred(image, sigma);
         const GaussianKernel kernel = gaussian_kernel(sigma);
         const auto weight = [&](int k) {
-            return std::abs(k) > kernel.radius ? 0 : kernel.weights[static_cast<std::size_t>(kernel.radius + k)];
+            const std::ptrdiff_t offset = std::ptrdiff_t{kernel.radius} + k;
+            return std::abs(k) > kernel.radius ? 0 : kernel.weights[static_cast<std::size_t>(offset)];
         };
         for (int y = 0; y < image.height; y += 5)
             for (int x = 0; x < image.width; x += 4) {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "gpu/hatching/kept_buffers.h"
 #include "gpu/hatching/pixel_projection.h"
 #include "host/core/errors.h"
 #include "host/core/random.h"
@@ -471,35 +470,6 @@ TEST(PixelProjectionParity, RefusesWhatTheReferenceRefuses) {
     }
 }
 
-std::shared_ptr<Buffer> keep(KeptBuffers& kept, std::uint64_t content, std::size_t bytes, int& made) {
-    const std::array<std::uint64_t, 1> contents{content};
-    return kept.get(content_key("test", {std::as_bytes(std::span(contents))}), [&] {
-        ++made;
-        return Buffer(shared_device(), bytes);
-    });
-}
-
-TEST(KeptBuffers, MakeWhatIsNotThereAndGiveUpTheOldest) {
-    KeptBuffers kept(1000);
-    int made = 0;
-    const auto first = keep(kept, 1, 400, made);
-    keep(kept, 2, 400, made);
-    EXPECT_EQ(keep(kept, 1, 400, made), first);
-    EXPECT_EQ(made, 2);
-    keep(kept, 3, 400, made);  // in place of 2
-    EXPECT_EQ(kept.bytes(), 800U);
-    EXPECT_EQ(keep(kept, 1, 400, made), first);
-    EXPECT_EQ(made, 3);
-    keep(kept, 2, 400, made);
-    EXPECT_EQ(made, 4);
-    // One that is larger than all stays as long as nothing else is asked for.
-    keep(kept, 4, 5000, made);
-    keep(kept, 4, 5000, made);
-    EXPECT_EQ(made, 5);
-    EXPECT_EQ(kept.bytes(), 5000U);
-    EXPECT_EQ(first->bytes(), 400U);
-}
-
 // The reference is faster than kernels on the same cores.
 TEST(PixelProjectionParity, DevicesGetTheFastestProjection) {
     const std::unique_ptr<PixelProjection> projection = projection_for(shared_device());
@@ -509,17 +479,6 @@ TEST(PixelProjectionParity, DevicesGetTheFastestProjection) {
     const TriangleMesh mesh = strip(65);
     expect_scalar_parity(*projection, mesh, random_points(mesh, 67, random), random_values(65, 5, random),
                          all_columns(5));
-}
-
-TEST(KeptBuffers, KeysTellContentsUseAndParts) {
-    const std::array<std::uint32_t, 4> values{1, 2, 3, 4};
-    const std::span<const std::byte> bytes = std::as_bytes(std::span(values));
-    const ContentKey key = content_key("a", {bytes});
-    EXPECT_EQ(key, content_key("a", {bytes}));
-    EXPECT_NE(key, content_key("b", {bytes}));
-    EXPECT_NE(key, content_key("a", {bytes.first(8), bytes.last(8)}));
-    EXPECT_NE(key, content_key("a", {bytes, {}}));
-    EXPECT_NE(key, content_key("a", {bytes.first(15)}));
 }
 
 }  // namespace

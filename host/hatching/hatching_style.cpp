@@ -18,7 +18,8 @@ using Json = nlohmann::json;
 
 constexpr const char* k_kind = "exemplar hatching style";
 constexpr int k_format_version = 1;
-constexpr std::size_t k_most_segments = 64, k_most_stages = 16, k_largest_drawing = 1 << 15;
+constexpr std::size_t k_most_segments = 64;
+constexpr int k_most_stages = 16, k_largest_drawing = 1 << 15;
 
 void add_function(TensorFile& file, const std::string& name, const OrientationFunction& function) {
     std::vector<std::uint32_t> features;
@@ -86,21 +87,25 @@ PixelCrfParameters read_cut(const TensorFile& file, const Json& json) {
     return cut;
 }
 
+/// A number of something, 1 to `most`: read as a double, as not all that JSON calls numbers have an integer's value.
+int read_count(const TensorFile& file, const Json& json, const char* key, int most) {
+    const double count = json.at(key);
+    if (!(count >= 1 && count <= most) || count != std::floor(count))
+        inconsistent(file, fmt::format("'{}' is {}, which is not a whole number from 1 to {}", key, count, most));
+    return static_cast<int>(count);
+}
+
 void read_description(const TensorFile& file, HatchingStyle& style, std::size_t& stages) {
     const Json json = Json::parse(file.meta("style"));
     style.name = json.at("name");
-    style.width = json.at("width");
-    style.height = json.at("height");
+    style.width = read_count(file, json, "width", k_largest_drawing);
+    style.height = read_count(file, json, "height", k_largest_drawing);
     style.share = json.at("share").get<std::vector<double>>();
     style.segment_crf = read_cut(file, json.at("segment_cut"));
     style.level_crf = read_cut(file, json.at("level_cut"));
-    stages = json.at("stages");
-    const auto size_fits = [](int size) { return size > 0 && static_cast<std::size_t>(size) <= k_largest_drawing; };
-    if (!size_fits(style.width) || !size_fits(style.height)) inconsistent(file, "the size of its drawing is odd");
+    stages = static_cast<std::size_t>(read_count(file, json, "stages", k_most_stages));
     if (style.share.empty() || style.share.size() > k_most_segments)
         inconsistent(file, fmt::format("it has {} segments", style.share.size()));
-    if (stages == 0 || stages > k_most_stages)
-        inconsistent(file, fmt::format("it has {} classifiers of segments", stages));
 }
 
 bool is_style(const TensorFile& file) {

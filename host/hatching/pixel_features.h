@@ -30,6 +30,7 @@ class PixelFeatures {
   public:
     /// Keeps references to all three. Throws DataError if the view does not show the surface.
     PixelFeatures(const HatchingSurface& surface, const HatchingView& view, ImageTools& tools);
+    PixelFeatures(const HatchingSurface& surface, HatchingView&& view, ImageTools& tools) = delete;
     ~PixelFeatures();
 
     const HatchingSurface& surface() const { return surface_; }

@@ -20,6 +20,7 @@
 #include "host/curvature/model.h"
 #include "host/data/corpus.h"
 #include "host/data/safetensors.h"
+#include "host/hatching/hatching_style.h"
 #include "host/labeling/model.h"
 #include "host/lines/style.h"
 #include "host/mesh/io_formats.h"
@@ -257,6 +258,19 @@ bool reads_safetensors(std::string_view content) {
     return true;
 }
 
+/// A model is made for today's features, whenever it was written, so that the corpus outlives them. Whether it is a
+/// model at all.
+bool made_for_today(const fs::path& path, int feature_version) {
+    try {
+        TensorFile file = read_safetensors(path);
+        file.metadata["feature_version"] = std::to_string(feature_version);
+        write_safetensors(path, file);
+        return true;
+    } catch (const ModelError&) {
+        return false;
+    }
+}
+
 bool reads_model(std::string_view content) {
     const fs::path path = scratch_file("x.model", content), again = scratch() / "again.model";
     LabelingModel model;
@@ -264,13 +278,7 @@ bool reads_model(std::string_view content) {
         return accepts<ModelError>(path.string(), content.size(), k_usual_bound, [&] { model = load_model(path); });
     };
     load();
-    try {  // made for today's features, whenever it was written, so that the corpus outlives them
-        TensorFile file = read_safetensors(path);
-        file.metadata["feature_version"] = std::to_string(k_feature_version);
-        write_safetensors(path, file);
-    } catch (const ModelError&) {
-        return false;
-    }
+    if (!made_for_today(path, k_feature_version)) return false;
     if (!load()) return false;
     save_model(again, model);
     const std::string bytes = read_file(again);
@@ -290,6 +298,29 @@ bool reads_curvature(std::string_view content) {
     save_curvature_model(again, load_curvature_model(again));
     require(read_file(again) == bytes, "equal models give equal bytes");
     require_promises(model);
+    return true;
+}
+
+bool reads_hatching(std::string_view content) {
+    const fs::path path = scratch_file("x.hatching", content), again = scratch() / "again.hatching";
+    HatchingStyle style;
+    const auto load = [&] {
+        return accepts<ModelError>(path.string(), content.size(), k_usual_bound,
+                                   [&] { style = load_hatching_style(path); });
+    };
+    load();
+    if (!made_for_today(path, k_hatching_feature_version)) return false;
+    if (!load()) return false;
+    require(style.width > 0 && style.height > 0, "a drawing has a size");
+    require(style.rules.size() == style.share.size() && !style.rules.empty(), "each segment has a rule and a share");
+    require(!style.segments.empty(), "segments are told");
+    for (const PropertyModel& property : style.properties)
+        require(property.factor > 0 && std::isfinite(property.factor), "properties are positive");
+    save_hatching_style(again, style);
+    require(is_hatching_style(again), "a written style says that it is one");
+    const std::string bytes = read_file(again);
+    save_hatching_style(again, load_hatching_style(again));
+    require(read_file(again) == bytes, "equal styles give equal bytes");
     return true;
 }
 
@@ -333,7 +364,7 @@ bool reads_style(std::string_view content) {
     return true;
 }
 
-constexpr std::array<Reader, 13> k_readers{{{"off", reads_off},
+constexpr std::array<Reader, 14> k_readers{{{"off", reads_off},
                                             {"obj", reads_obj},
                                             {"ply", reads_ply},
                                             {"stl", reads_stl},
@@ -344,6 +375,7 @@ constexpr std::array<Reader, 13> k_readers{{{"off", reads_off},
                                             {"safetensors", reads_safetensors},
                                             {"model", reads_model},
                                             {"curvature", reads_curvature},
+                                            {"hatching", reads_hatching},
                                             {"list", reads_list},
                                             {"style", reads_style}}};
 

@@ -282,15 +282,15 @@ TEST(HatchingStyleFile, OddDescriptionsAreRefused) {
     };
     const auto damaged = [](const std::string& what) { return "FILE: damaged file: " + what + "; train it again"; };
     const std::string unreadable = damaged("its description cannot be read"),
-                      odd = damaged("the size of its drawing is odd");
-    EXPECT_EQ(with("\"width\":640", "\"width\":0"), odd);
-    EXPECT_EQ(with("\"height\":480", "\"height\":-480"), odd);
-    EXPECT_EQ(with("\"height\":480", "\"height\":1000000"), odd);
+                      no_width = damaged("'width' is 0, which is not a whole number from 1 to 32768");
+    EXPECT_EQ(with("\"width\":640", "\"width\":0"), no_width);
+    for (const char* bad : {"-480", "1000000", "47.5", "1e300"})
+        EXPECT_THAT(with("\"height\":480", fmt::format("\"height\":{}", bad)), HasSubstr("'height' is")) << bad;
     EXPECT_EQ(with("\"height\":480", "\"height\":\"tall\""), unreadable);
     EXPECT_EQ(with("\"height\":480,", ""), unreadable);
     EXPECT_EQ(with("{", "["), unreadable);
     EXPECT_EQ(with("[0.7,0.3]", "[]"), damaged("it has 0 segments"));
-    EXPECT_EQ(with("\"stages\":2", "\"stages\":0"), damaged("it has 0 classifiers of segments"));
+    EXPECT_EQ(with("\"stages\":2", "\"stages\":0"), damaged("'stages' is 0, which is not a whole number from 1 to 16"));
     for (const char* strength : {"0.5", "1.25"})
         EXPECT_EQ(with(fmt::format("\"strength\":{}", strength), "\"strength\":-0.5"),
                   damaged("a weight of its label cuts is out of range"));

@@ -19,10 +19,10 @@ void draw_hatching(ViewerState& state, InterfaceRequests& requests) {
             requests.actions.push_back(Action::save_hatching);
         return;
     }
-    const HatchingJob::Status status = state.hatching_job->status();
-    const char* what = state.hatching_job->canceled() ? "canceling" : status.what;
-    ImGui::TextUnformatted(fmt::format("{} ({})", what, format_seconds(status.seconds)).c_str());
-    if (ImGui::Button("Cancel##hatching", ImVec2(-1, 0))) state.hatching_job->cancel();
+    HatchingJob& job = *state.hatching_job;
+    ImGui::TextUnformatted(
+        fmt::format("{} ({})", job.canceled() ? "canceling" : job.what(), format_seconds(job.seconds())).c_str());
+    if (ImGui::Button("Cancel##hatching", ImVec2(-1, 0))) job.cancel();
 }
 
 }  // namespace exemplar

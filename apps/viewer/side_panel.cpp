@@ -80,8 +80,8 @@ void draw_training(ViewerState& state) {
         return;
     }
     const TrainingJob::Status status = state.training->status();
-    const std::string text =
-        fmt::format("{} ({})", state.training->canceled() ? "canceling" : status.what, format_seconds(status.seconds));
+    const std::string text = fmt::format("{} ({})", state.training->canceled() ? "canceling" : status.what,
+                                         format_seconds(state.training->seconds()));
     ImGui::ProgressBar(status.share, ImVec2(-1, 0), text.c_str());
     if (ImGui::Button("Cancel", ImVec2(-1, 0))) state.training->cancel();
 }

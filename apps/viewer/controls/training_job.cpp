@@ -10,18 +10,16 @@ namespace exemplar {
 
 TrainingJob::TrainingJob(Animation animation, std::uint64_t seed) {
     Progress::set_listener([this](const ProgressState& state) {
-        if (canceled_) throw Interrupted();
+        if (canceled()) throw Interrupted();
         const std::lock_guard lock(mutex_);
         status_.what = state.what;
         status_.share = static_cast<float>(state.done) / static_cast<float>(std::max<std::size_t>(state.total, 1));
     });
-    result_ = std::async(std::launch::async,
-                         [this, animation = std::move(animation), seed] { return train(animation, seed); });
+    start([this, animation = std::move(animation), seed] { return train(animation, seed); });
 }
 
 TrainingJob::~TrainingJob() {
-    cancel();
-    if (result_.valid()) result_.wait();
+    end();
     Progress::set_listener({});
 }
 
@@ -33,20 +31,14 @@ CurvatureModel TrainingJob::train(const Animation& animation, std::uint64_t seed
     if (animation.kind == AnimationKind::sequence) options.dropped_variance = 0;
     CurvatureTrainingReport report;
     CurvatureModel model = train_curvature(animation, frames, options, report);
-    if (canceled_) throw Interrupted();
+    if (canceled()) throw Interrupted();
     model.training = {{"animation", animation.name}, {"poses", std::to_string(frames.size())}};
     return model;
 }
 
 TrainingJob::Status TrainingJob::status() const {
     const std::lock_guard lock(mutex_);
-    Status status = status_;
-    status.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    return status;
-}
-
-bool TrainingJob::finished() const {
-    return result_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    return status_;
 }
 
 }  // namespace exemplar

@@ -9,6 +9,7 @@
 #include "embedded/hatching_seed_comp.h"
 #include "embedded/hatching_settle_comp.h"
 #include "embedded/hatching_trace_comp.h"
+#include "host/core/interrupt.h"
 #include "host/hatching/kept_strokes.h"
 #include "host/hatching/occlusion_barriers.h"
 #include "host/hatching/stroke_front.h"
@@ -41,14 +42,6 @@ static_assert(sizeof(PlacementTexel) == sizeof(uvec4) && sizeof(FinePoint) == 2 
 constexpr std::uint32_t k_batch = 16, k_claim_rounds = 4096;
 static_assert(k_claim_rounds % k_batch == 0);
 
-/// Drivers may end a shader's loops after 65536 rounds: workgroups share the pixels around a stroke where one would
-/// take so many.
-constexpr double k_most_loops = 16384;
-std::uint32_t parts_of(const PlacementGrid& grid, double spacing) {
-    const double passes = 1 + static_cast<double>(grid.rules.room) / shared::k_hatch_group, side = 2.5 * spacing + 4;
-    return 1 + static_cast<std::uint32_t>(passes * side * side / k_most_loops);
-}
-
 SeedListRecord record_of(const SeedList& list) {
     return {static_cast<std::uint32_t>(list.source) | list.layer << shared::k_layer_shift, list.first, list.second,
             list.next};
@@ -77,21 +70,18 @@ PlacementParameters parameters_of(const PlacementGrid& grid) {
             .stroke_room = 0,
             .point_room = 0,
             .list_room = 0,
-            .parts = 1,
             .unused0 = 0,
             .unused1 = 0};
 }
 
-/// How many points strokes will about have, and how many strokes there will be (rooms grow where that is too few); and
-/// the largest spacing in pixels.
+/// How many points strokes will about have, and how many strokes there will be (rooms grow where that is too few).
 struct Estimate {
-    double points = 4096, strokes = 1024, spacing = 1;
+    double points = 4096, strokes = 1024;
     explicit Estimate(const PlacementGrid& grid) {
         for (const PlacementTexel& texel : grid.texels)
             for (std::uint32_t layer = 0; layer < k_hatch_layers; ++layer) {
                 if (!texel.hatched(layer)) continue;
                 const double points_here = static_cast<double>(1 << k_spacing_bits) / texel.spacing();
-                spacing = std::max(spacing, 1 / points_here);
                 points += points_here;
                 strokes += 2 * points_here / std::max(texel.length() >> k_length_bits, k_least_steps);
             }
@@ -187,7 +177,6 @@ void GpuStrokePlacer::upload_lists(const PlacementGrid& grid, std::span<const Fi
         reserve(device_, buffer, room * item);
         return static_cast<std::uint32_t>(room);
     };
-    parameters_.parts = parts_of(grid, estimate.spacing);
     parameters_.stroke_room = rooms(strokes_, estimate.strokes, kept.size(), sizeof(StrokeRecord));
     parameters_.point_room = rooms(points_, estimate.points, points, sizeof(FinePoint));
     parameters_.list_room =
@@ -231,6 +220,7 @@ void GpuStrokePlacer::record_end() {
 void GpuStrokePlacer::place_all() {
     for (std::uint32_t round = 0; counts_.trials > 0; round = (round + k_batch) % k_claim_rounds) {
         if (round == 0) stream_.fill(claims_, ~0U);
+        check_interrupt();
         for (std::uint32_t i = 0; i < k_batch; ++i) record_round(k_claim_rounds - 1 - round - i);
         stream_.fetch(count_buffer_, std::span(&counts_, 1));
         while (counts_.full) {

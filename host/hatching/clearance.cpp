@@ -4,7 +4,7 @@
 
 namespace exemplar {
 
-constexpr int k_way_bits = 11, k_distance_bits = 10;
+constexpr int k_way_bits = 11;
 constexpr std::int32_t k_way_offset = 1 << (k_way_bits - 1);
 
 std::int32_t near_reach(std::int32_t spacing) {
@@ -25,7 +25,7 @@ void Clearance::add(const FineStroke& stroke) {
         if (!is_noted(i, stroke.points.size(), spacing)) continue;
         for_pixels_within(grid_, point, near_reach(spacing), [&](std::size_t pixel, std::int32_t x, std::int32_t y) {
             const auto squared = static_cast<std::uint32_t>(x * x + y * y);
-            lower(words[pixel], squared >> k_distance_bits << (2 * k_way_bits) |
+            lower(words[pixel], floor_sqrt(squared) << (2 * k_way_bits) |
                                     static_cast<std::uint32_t>(x + k_way_offset) << k_way_bits |
                                     static_cast<std::uint32_t>(y + k_way_offset));
         });

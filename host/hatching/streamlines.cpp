@@ -45,10 +45,8 @@ class Placement {
         parallel_for(
             trials_.size(), [&](std::size_t i) { settle(trials_[i]); }, 8);
         const bool any = std::ranges::any_of(trials_, [](const Trial& t) { return t.state != TrialState::closed; });
-        if (is_front) {
-            leave_won();
-            drop_closed();
-        }
+        leave_won(lists);
+        if (is_front) drop_closed();
         const std::size_t first = strokes_.size();
         for (Trial& trial : trials_)
             if (trial.state == TrialState::won) add(std::move(trial.candidate.stroke));
@@ -89,9 +87,9 @@ class Placement {
     }
 
     /// Where strokes are a pixel apart, one may hide from the pixels around another: it would be placed again for ever.
-    void leave_won() {
+    void leave_won(std::vector<SeedList>& lists) const {
         for (std::size_t i = 0; i < trials_.size(); ++i)
-            if (trials_[i].state == TrialState::won) ++front_[i].next;
+            if (trials_[i].state == TrialState::won) ++lists[i].next;
     }
 
     /// Takes the lists that are used up out of the front, and those of parts that have their stroke.

@@ -23,7 +23,7 @@ bool take(ivec2 point, int reach, uint first, uint claim) {
     ivec2 low, high;
     pixels_within(point, reach, low, high);
     bool lost = false;
-    for (int y = low.y + candidate_part(); y <= high.y; y += int(parameters.parts))
+    for (int y = low.y + candidate_part(); y <= high.y; y += candidate_parts())
         for (int x = low.x; x <= high.x; ++x) {
             const ivec2 way = way_from_center(ivec2(x, y), point);
             if (dot_of(way, way) > most) continue;

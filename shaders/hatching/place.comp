@@ -19,12 +19,12 @@ void note(ivec2 point, int reach, uint first) {
     const int most = (reach >> parameters.near_shift) * (reach >> parameters.near_shift);
     ivec2 low, high;
     pixels_within(point, reach, low, high);
-    for (int y = low.y + candidate_part(); y <= high.y; y += int(parameters.parts))
+    for (int y = low.y + candidate_part(); y <= high.y; y += candidate_parts())
         for (int x = low.x; x <= high.x; ++x) {
             const ivec2 way = way_from_center(ivec2(x, y), point);
             const int squared = dot_of(way, way);
             if (squared > most) continue;
-            const uint word = uint(squared >> 10) << 22 | uint(way.x + 1024) << 11 | uint(way.y + 1024);
+            const uint word = floor_sqrt(uint(squared)) << 22 | uint(way.x + 1024) << 11 | uint(way.y + 1024);
             atomicMin(near[first + uint(index_of(ivec2(x, y)))], word);
         }
 }

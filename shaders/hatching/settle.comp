@@ -64,6 +64,7 @@ void compact(uint items) {
         if (kept) list = lists[parameters.blocks + i];
         // A stroke a pixel from others may hide from the pixels around it: it would be placed again for ever.
         if (won) ++list.next;
+        if (won && counts.in_blocks != 0u) ++lists[i].next;
         const uint count = won ? trials[i].count : 0u;
         // Both counts are below 2^16.
         const uint counted = sum_before((won ? 1u : 0u) | (kept ? 1u << 16 : 0u)), total = group_total;
@@ -119,6 +120,8 @@ void go_on(Round round, uint placing) {
     counts.in_blocks = counts.front == 0u ? 1u : 0u;
     counts.trials = counts.front != 0u ? min(counts.front, parameters.candidates) : done ? 0u : parameters.blocks;
     set_groups(placing);
+    counts.place_groups[1] = counts.candidate_groups[1];
+    counts.candidate_groups[1] = 1u;
 }
 
 void main() {

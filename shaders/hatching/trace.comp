@@ -22,6 +22,16 @@ uint claim_of(uint i, uint shortness) {
     return (parameters.rounds_left << 2 | shortness) << 18 | chance;
 }
 
+// Drivers may end a shader's loops after 65536 rounds: as many workgroups share the pixels around a way as keep far below.
+uint parts_of(uint begin, uint count) {
+    const uint k_most_rounds = 16384u;
+    int spacing = 0;
+    for (uint k = 0u; k < count; ++k)
+        spacing = max(spacing, spacing_of(texel_of(ways[way_first + (begin + k) % parameters.room])));
+    const uint passes = 1u + count / k_hatch_group, side = uint((5 * spacing >> (k_spacing_bits + 1)) + 4);
+    return 1u + passes * side * side / k_most_rounds;
+}
+
 void put_trial(uint i, ivec2 part) {
     const uint begin = ring_index(-back_reach()) - way_first;
     trials[i].state |= k_open_trial;
@@ -30,7 +40,8 @@ void put_trial(uint i, ivec2 part) {
     trials[i].way_count = uint(last_place() + 1);
     trials[i].begin = uint(part.x);
     trials[i].count = uint(part.y - part.x + 1);
-    trials[atomicAdd(counts.candidate_groups[0], parameters.parts) / parameters.parts].listed = i;
+    trials[atomicAdd(counts.candidate_groups[0], 1u)].listed = i;
+    atomicMax(counts.candidate_groups[1], parts_of(begin, trials[i].way_count));
 }
 
 void main() {

@@ -9,12 +9,15 @@ ivec2 way_point(uint place, uint way_begin, uint i) {
     return ways[place * parameters.room + (way_begin + i) % parameters.room];
 }
 
-// The place of the workgroup's candidate, and which rows it does: every so manieth.
+// The place of the workgroup's candidate, and which rows it does: every candidate_parts()-th.
 uint candidate_place() {
-    return trials[linear_group() / parameters.parts].listed;
+    return trials[gl_WorkGroupID.x].listed;
 }
 int candidate_part() {
-    return int(linear_group() % parameters.parts);
+    return int(gl_WorkGroupID.y);
+}
+int candidate_parts() {
+    return int(gl_NumWorkGroups.y);
 }
 
 #endif

@@ -40,7 +40,6 @@ struct PlacementParameters {
     uint stroke_room;
     uint point_room;
     uint list_room;
-    uint parts;  // workgroups that share a candidate's pixels
     uint unused0;
     uint unused1;
 };
@@ -92,7 +91,7 @@ struct PlacementCounts {
     uint full;  // what there is no room for, of all that this round would place: its end is to be done again
     uint held_groups;  // of candidates, then
     uint trial_groups[3];
-    uint candidate_groups[3];  // PlacementParameters::parts per trial that has something to try
+    uint candidate_groups[3];  // trials that have something to try, and how many workgroups share the pixels of each
     uint place_groups[3];
 };
 
@@ -110,7 +109,7 @@ struct StrokeRecord {
 
 #ifdef __cplusplus
 EXEMPLAR_LAYOUT(PlacementParameters, width, height, seed, test_share, hole_share, least_share, jitter, least_turn_cosine,
-                near_shift, room, candidates, block_bits, blocks, rounds_left, stroke_room, point_room, list_room, parts,
+                near_shift, room, candidates, block_bits, blocks, rounds_left, stroke_room, point_room, list_room,
                 unused0, unused1)
 EXEMPLAR_LAYOUT(SeedListRecord, kind, first, second, next)
 EXEMPLAR_LAYOUT(TrialRecord, seed_x, seed_y, heading_x, heading_y, state, claim, way_begin, way_count, begin, count, listed, target)

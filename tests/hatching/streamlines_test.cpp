@@ -70,6 +70,22 @@ TEST(Streamlines, FollowASpacingThatVaries) {
     EXPECT_LT(empty_share(strokes, fields, 0, 1.2f), 0.005);
 }
 
+/// Distances to strokes are kept in few bits for the largest spacing of a picture: that one pixel asks for far more
+/// than the others leaves them as they are.
+TEST(Streamlines, TakeOnePixelOfLongSparseStrokes) {
+    const HatchingFields usual = wavy_fields(150, 120, 3);
+    const auto count = static_cast<double>(CpuStrokePlacer().place(usual).size());
+    for (const float spacing : {40.0f, 128.0f, 256.0f}) {
+        SCOPED_TRACE(spacing);
+        HatchingFields fields = usual;
+        fields.spacing[fields.index(75, 60)] = spacing;
+        fields.length[fields.index(75, 60)] = 4 * spacing;
+        const auto strokes = CpuStrokePlacer().place(fields);
+        EXPECT_NEAR(static_cast<double>(strokes.size()), count, 0.1 * count);
+        EXPECT_LT(measure_spacing(strokes, fields).median_error, 0.15);
+    }
+}
+
 TEST(Streamlines, KeepToTheirLevels) {
     HatchingFields fields = even_fields(240, 240, 0.4f);
     for_pixels(fields, [&](std::size_t i, float x, float y) {

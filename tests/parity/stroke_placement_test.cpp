@@ -79,6 +79,14 @@ TEST_F(StrokePlacement, TakesSparseAndDenseStrokes) {
 }
 
 /// Long targets in a narrow place: many more strokes than their targets tell, so that rooms must grow.
+/// Far more workgroups share the strokes than devices must take in a row.
+TEST_F(StrokePlacement, TakesPicturesWithOnePixelOfLongSparseStrokes) {
+    HatchingFields fields = wavy_fields(150, 120, 3);
+    fields.spacing[fields.index(75, 60)] = 256;
+    fields.length[fields.index(75, 60)] = 1024;
+    expect_same(fields);
+}
+
 TEST_F(StrokePlacement, GrowsWhereThereAreMoreStrokesThanExpected) {
     HatchingFields fields = even_fields(1200, 1200, 1.57f, 2, 1000);
     for_pixels(fields, [&](std::size_t i, float, float y) {

@@ -28,7 +28,8 @@ void add_frame_options(CLI::App& command, FrameArguments& arguments, const std::
                        const std::string& what) {
     command.add_option("--" + prefix + "clips", arguments.clips, "names of the clips to " + what + "; default: all")
         ->type_name("NAME")
-        ->delimiter(',');
+        ->delimiter(',')
+        ->allow_extra_args(false);
     command
         .add_option("--" + prefix + "frames", arguments.range,
                     "frames of each clip, from A up to but without B; or a single one")

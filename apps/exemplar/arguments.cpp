@@ -119,6 +119,20 @@ void require_output_folder(const fs::path& path) {
         throw UsageError(fmt::format("{}: cannot be written to: {}", path.string(), why));
 }
 
+void require_output_picture(const fs::path& path) {
+    if (path.extension() != ".png")
+        throw UsageError(fmt::format("{}: pictures are written as PNG; give a name that ends in .png", path.string()));
+    require_output_file(path);
+}
+
+void require_not_replaced(const fs::path& out, const std::vector<fs::path>& inputs) {
+    for (const fs::path& input : inputs) {
+        std::error_code ignored;  // what does not exist yet replaces nothing
+        if (fs::equivalent(out, input, ignored))
+            throw UsageError(fmt::format("{}: is read, and would be replaced; give another name", out.string()));
+    }
+}
+
 fs::path usable_cache(const fs::path& cache, bool quiet, const char* what) {
     if (cache.empty()) return cache;
     const std::string why = why_not_writable(cache);

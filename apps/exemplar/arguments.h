@@ -31,6 +31,10 @@ LabelingModel model_of_argument(const std::filesystem::path& path);
 /// Throws UsageError if a file, or a folder of files, cannot be written at `path`. An empty path is no output.
 void require_output_file(const std::filesystem::path& path);
 void require_output_folder(const std::filesystem::path& path);
+/// Throws UsageError unless a picture can be written at `path`, whose name ends in .png.
+void require_output_picture(const std::filesystem::path& path);
+/// Throws UsageError if writing `out` would replace one of the files that are read.
+void require_not_replaced(const std::filesystem::path& out, const std::vector<std::filesystem::path>& inputs);
 /// The folder that remembers features, or what else it is to remember; empty, with a warning, where it cannot be
 /// written.
 std::filesystem::path usable_cache(const std::filesystem::path& cache, bool quiet, const char* what = "features");

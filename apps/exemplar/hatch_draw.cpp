@@ -62,6 +62,7 @@ void draw_still(const HatchDrawJob& job) {
     drawing.curves = feature_curves(scene.surface(), scene.pixels().view(), job.curve_types(), look);
     write_hatched_drawing(job, drawing, look);
     if (!job.properties.empty()) write_properties(job.properties, hatching.prediction);
+    progress.advance(1, "output");
     progress.finish();
     if (!job.common.quiet)
         fmt::print("{}: {}; spacing off by {:.0f}%, tone by {:.0f}% in the median\n", job.out.string(),
@@ -90,6 +91,8 @@ void run_draw(HatchDrawJob& job) {
         require_output_folder(job.out);
     else
         require_output_file(job.out);
+    require_not_replaced(job.out, {job.scene.mesh, job.style});
+    if (!job.properties.empty()) require_output_folder(job.properties);
     job.has_frames() ? write_hatched_frames(job) : draw_still(job);
 }
 

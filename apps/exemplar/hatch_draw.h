@@ -39,8 +39,9 @@ struct HatchDrawJob {
     std::vector<LineType> curve_types() const;
     /// Whether frames are asked for, not a still of a mesh.
     bool has_frames() const {
-        return output == LinesOutput::video || output == LinesOutput::folder || !frames.range.empty() ||
-               !frames.clips.empty() || frames.most > 0 || turn != 0;
+        return std::filesystem::is_directory(scene.mesh) || output == LinesOutput::video ||
+               output == LinesOutput::folder || !frames.range.empty() || !frames.clips.empty() || frames.most > 0 ||
+               turn != 0;
     }
 };
 

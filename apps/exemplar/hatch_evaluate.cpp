@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 struct EvaluateArguments {
     std::vector<std::string> styles;
     std::vector<fs::path> meshes;
-    std::string light = HatchSceneArguments{}.light, size = "1000x1000";
+    std::string size = "1000x1000";
     fs::path peers;
     std::uint64_t seed = 1;
     CommonOptions common;
@@ -44,7 +44,6 @@ HatchSceneArguments scene_of(const EvaluateArguments& arguments, const fs::path&
     scene.mesh = mesh;
     scene.camera.view = view;
     scene.camera.size = arguments.size;
-    scene.light = arguments.light;
     return scene;
 }
 
@@ -262,6 +261,7 @@ void run_evaluate(EvaluateArguments arguments) {
             throw UsageError(fmt::format("--styles '{}' is not built in; there are {}", style,
                                          fmt::join(hatching_rule_names(), ", ")));
     }
+    require_distinct_names(arguments.meshes);
     for (const fs::path& mesh : arguments.meshes) require_hatch_scene(scene_of(arguments, mesh, k_views[0]));
     if (!arguments.peers.empty()) require_output_folder(arguments.peers);
     Progress progress("evaluating", arguments.styles.size() * (k_views.size() + arguments.meshes.size()));

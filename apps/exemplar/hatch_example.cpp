@@ -30,7 +30,8 @@ void run_example(const ExampleArguments& arguments) {
         throw UsageError(fmt::format("STYLE '{}' is not built in; there are {}", arguments.style,
                                      fmt::join(hatching_rule_names(), ", ")));
     require_hatch_scene(arguments.scene);
-    require_output_file(arguments.out);
+    require_output_picture(arguments.out);
+    require_not_replaced(arguments.out, {arguments.scene.mesh});
     HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
     const RuledDrawing drawing = draw_by_rule(arguments.style, scene.pixels(), scene.placer(), arguments.seed);
     const HatchingView& view = scene.pixels().view();

@@ -19,6 +19,7 @@
 #include "host/hatching/carried_strokes.h"
 #include "host/hatching/hatching_flicker.h"
 #include "host/imaging/png.h"
+#include "host/mesh/loose_vertices.h"
 
 namespace exemplar {
 namespace {
@@ -45,16 +46,25 @@ class HatchedFrames {
             job.turn != 0 ? static_cast<std::size_t>(std::lround(360 / std::abs(job.turn))) : std::size_t{1};
         const std::size_t of_mesh = std::min(asked.end, std::max(asked.begin + 1, around)) - asked.begin;
         count_ = source_.is_animation() ? source_.frame_count() : of_mesh;
+        first_ = source_.is_animation() ? 0 : asked.begin;
+        if (!source_.is_animation() && (!job.frames.clips.empty() || job.frames.most > 0))
+            throw UsageError(
+                fmt::format("--clips and --poses are for animations: {} is a mesh, whose frames are those of "
+                            "--turn and --frames",
+                            job.scene.mesh.string()));
+        kept_ = vertices_of_faces(source_.animation().rest);
+        surface_ = without_loose_vertices(source_.animation().rest);
         up_ = point_of(job.scene.camera.up, "--up").normalized();
         find_camera();
     }
 
     std::size_t count() const { return count_; }
-    double frames_per_second() const { return source_.frames_per_second(); }
+    double frames_per_second() const { return moves() ? source_.frames_per_second() : job_.frames_per_second; }
     bool moves() const { return source_.is_animation(); }
     TriangleMesh mesh(std::size_t frame) const {
-        TriangleMesh mesh = source_.animation().rest;
-        mesh.vertices = source_.vertices(moves() ? frame : 0);
+        const std::vector<Vec3> all = source_.vertices(moves() ? frame : 0);
+        TriangleMesh mesh = surface_;
+        for (std::size_t i = 0; i < kept_.size(); ++i) mesh.vertices[i] = all[kept_[i]];
         return mesh;
     }
     /// The object turns before a camera that stands still, which is to say that the camera turns around it.
@@ -83,7 +93,7 @@ class HatchedFrames {
     }
 
     Eigen::Affine3f turned(std::size_t frame) const {
-        const auto angle = static_cast<float>(static_cast<double>(frame) * job_.turn * std::numbers::pi / 180);
+        const auto angle = static_cast<float>(static_cast<double>(first_ + frame) * job_.turn * std::numbers::pi / 180);
         return Eigen::Translation3f(center_) * Eigen::AngleAxisf(angle, up_) * Eigen::Translation3f(-center_);
     }
 
@@ -104,7 +114,9 @@ class HatchedFrames {
 
     const HatchDrawJob& job_;
     LinesSource source_;
-    std::size_t count_ = 0;
+    std::size_t count_ = 0, first_ = 0;  // the first: of a mesh that turns
+    std::vector<std::uint32_t> kept_;    // vertices of the source that the surface has
+    TriangleMesh surface_;
     SizedCamera sized_;
     Vec3 up_ = Vec3::UnitY(), center_ = Vec3::Zero();
     float unit_depth_ = 1;
@@ -213,6 +225,7 @@ void print_and_report(const HatchDrawJob& job, const HatchedFrames& frames, Fram
 
 void write_hatched_frames(const HatchDrawJob& job) {
     if (!job.properties.empty()) throw UsageError("--properties is for a still; leave out what asks for frames");
+    if (job.output == LinesOutput::video) require_ffmpeg(job.out);
     const Stopwatch watch;
     const HatchedFrames frames(job);
     const bool single = job.output == LinesOutput::svg || job.output == LinesOutput::picture;

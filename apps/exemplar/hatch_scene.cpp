@@ -6,6 +6,8 @@
 #include "gpu/hatching/hatching_device.h"
 #include "host/core/errors.h"
 #include "host/mesh/io.h"
+#include "host/mesh/loose_vertices.h"
+#include "host/mesh/weld.h"
 
 namespace exemplar {
 
@@ -46,7 +48,8 @@ HatchScene::HatchScene(const HatchSceneArguments& arguments, const std::string& 
     : impl_(std::make_unique<Impl>(device)) {
     const MeshFile file = read_mesh(arguments.mesh);
     mesh_warnings(file, arguments.mesh, quiet);
-    impl_->surface = cached_surface(file.mesh, usable_cache(arguments.cache, quiet, "measured surfaces"));
+    impl_->surface = cached_surface(without_loose_vertices(welded(file.mesh)),
+                                    usable_cache(arguments.cache, quiet, "measured surfaces"));
     impl_->view = hatching_view(arguments, impl_->surface.mesh);
     impl_->pixels = std::make_unique<PixelFeatures>(impl_->surface, impl_->view, impl_->device.tools().images);
 }

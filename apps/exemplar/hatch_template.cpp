@@ -35,7 +35,8 @@ Image shaded_picture(PixelFeatures& pixels) {
 void run_template(const TemplateArguments& arguments) {
     const auto limits = apply_common_options(arguments.common);
     require_hatch_scene(arguments.scene);
-    require_output_file(arguments.out);
+    require_output_picture(arguments.out);
+    require_not_replaced(arguments.out, {arguments.scene.mesh});
     HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
     write_png(arguments.out, shaded_picture(scene.pixels()));
     if (!arguments.common.quiet)

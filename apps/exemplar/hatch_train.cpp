@@ -84,6 +84,7 @@ void run_train(const TrainArguments& arguments) {
     require_hatch_scene(arguments.scene);
     require_input(arguments.drawing);
     require_output_file(arguments.out);
+    require_not_replaced(arguments.out, {arguments.scene.mesh, arguments.drawing});
     Stopwatch watch;
     LearningProgress progress;
     HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);

@@ -10,6 +10,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/text.h"
+#include "host/mesh/loose_vertices.h"
 
 namespace exemplar {
 namespace {
@@ -62,15 +63,12 @@ std::array<int, 2> size_of(const std::string& text) {
 TriangleMesh extent_of(const LinesSource& source) {
     constexpr std::size_t k_most_frames = 60;
     TriangleMesh all;
+    const std::vector<std::uint32_t> used = vertices_of_faces(source.animation().rest);
     const std::size_t count = std::min(source.frame_count(), k_most_frames);
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t frame = count > 1 ? i * (source.frame_count() - 1) / (count - 1) : 0;
         const std::vector<Vec3> vertices = source.vertices(frame);
-        std::vector<bool> used(vertices.size(), false);
-        for (const Face& face : source.faces())
-            for (const std::uint32_t v : face) used[v] = true;
-        for (std::size_t v = 0; v < vertices.size(); ++v)
-            if (used[v]) all.vertices.push_back(vertices[v]);
+        for (const std::uint32_t v : used) all.vertices.push_back(vertices[v]);
     }
     return all;
 }

@@ -23,11 +23,15 @@ std::string quoted(const std::string& word) {
 
 }  // namespace
 
-Video::Video(const fs::path& path, int width, int height, double frames_per_second)
-    : path_(path), part_(path.parent_path() / (".part-" + std::to_string(getpid()) + path.filename().string())) {
+void require_ffmpeg(const fs::path& path) {
     if (std::system("command -v ffmpeg >/dev/null 2>&1") != 0)
         throw UsageError(fmt::format(
             "{}: videos are made by ffmpeg, which is not installed; install it, or give a folder", path.string()));
+}
+
+Video::Video(const fs::path& path, int width, int height, double frames_per_second)
+    : path_(path), part_(path.parent_path() / (".part-" + std::to_string(getpid()) + path.filename().string())) {
+    require_ffmpeg(path);
     if (path.has_parent_path()) fs::create_directories(path.parent_path());
     // If it ends early, writing to it is to fail, not to end this program.
     std::signal(SIGPIPE, SIG_IGN);

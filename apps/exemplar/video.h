@@ -7,10 +7,13 @@
 
 namespace exemplar {
 
+/// Throws UsageError if there is no ffmpeg to make a video at `path`.
+void require_ffmpeg(const std::filesystem::path& path);
+
 /// A video that ffmpeg, a program that must be installed, makes of frames; beside its place until it is whole.
 class Video {
   public:
-    /// Of frames of that size. Throws UsageError if there is no ffmpeg, DataError if it cannot be started.
+    /// Of frames of that size. Throws as require_ffmpeg, DataError if it cannot be started.
     Video(const std::filesystem::path& path, int width, int height, double frames_per_second);
     /// Removes what was not finished.
     ~Video();

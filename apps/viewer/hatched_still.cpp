@@ -11,6 +11,8 @@
 #include "host/hatching/surface_cache.h"
 #include "host/hatching/view_hatching.h"
 #include "host/imaging/png.h"
+#include "host/mesh/loose_vertices.h"
+#include "host/mesh/weld.h"
 
 namespace exemplar {
 namespace {
@@ -50,6 +52,9 @@ HatchedStill hatched_still(const ViewerState& state, ViewSize size, const std::s
     still.hatching = state.hatching();
     still.mesh = state.document().animation.rest;
     still.mesh.vertices = vertices_at(state.document(), state.moment());
+    // What touches in a pose may part in the next; a mesh stays as it is.
+    if (state.document().animation.clips.empty()) still.mesh = welded(still.mesh);
+    still.mesh = without_loose_vertices(still.mesh);
     still.view.camera = state.camera.camera(size);
     still.view.light = usual_light(still.view.camera);
     still.view.width = size.width;

@@ -7,23 +7,24 @@
 
 namespace exemplar {
 
-HatchingJob::HatchingJob(HatchedStill still, std::vector<std::filesystem::path> files) {
-    start([this, still = std::move(still), files = std::move(files)] {
-        run(still, files);
-        return files;
-    });
+HatchingJob::HatchingJob(HatchedStill still, StillNames names) {
+    start([this, still = std::move(still), names = std::move(names)] { return run(still, names); });
 }
 
-void HatchingJob::run(const HatchedStill& still, const std::vector<std::filesystem::path>& files) {
+std::vector<std::filesystem::path> HatchingJob::run(const HatchedStill& still, const StillNames& names) {
     const auto step = [this](const char* what) {
         check_interrupt();
         what_ = what;
     };
+    HatchedDrawing drawing;
     run_cancelable(canceled_flag(), [&] {
-        const HatchedDrawing drawing = draw_still(still, step);
+        drawing = draw_still(still, step);
         step("saving");
-        for (const std::filesystem::path& file : files) write_still(file, still, drawing);
     });
+    // All files or none: no longer to be canceled.
+    std::vector<std::filesystem::path> files = names();
+    for (const std::filesystem::path& file : files) write_still(file, still, drawing);
+    return files;
 }
 
 }  // namespace exemplar

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "apps/viewer/controls/background_job.h"
@@ -9,18 +10,21 @@
 
 namespace exemplar {
 
+/// Gives the files that a still is written to.
+using StillNames = std::function<std::vector<std::filesystem::path>()>;
+
 /// Draws a hatched still in the background and writes it; its result are the files. There may be one at a time.
 class HatchingJob final : public BackgroundJob<std::vector<std::filesystem::path>> {
   public:
-    /// Writes to all `files`.
-    HatchingJob(HatchedStill still, std::vector<std::filesystem::path> files);
+    /// Asks for names when there is something to write, as others may take them until then.
+    HatchingJob(HatchedStill still, StillNames names);
     ~HatchingJob() { end(); }
 
     /// What it is at: a present participle.
     const char* what() const { return what_; }
 
   private:
-    void run(const HatchedStill& still, const std::vector<std::filesystem::path>& files);
+    std::vector<std::filesystem::path> run(const HatchedStill& still, const StillNames& names);
     std::atomic<const char*> what_ = "beginning";
 };
 

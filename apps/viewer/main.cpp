@@ -86,6 +86,7 @@ void add_options(CLI::App& app, ViewerOptions& options, std::string& size) {
            "--lines", [&options](const std::vector<std::string>& words) { options.lines = parse_lines(words); },
            "lines to draw, as in contours,suggestive_contours (the default); none for no lines")
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->type_name("TYPE");
     app.add_option("--style", options.style, "style of the drawing: a built-in name or a file")->type_name("STYLE");
     add_choice(app, "--paint", options.paint, "colors: labels, curvature (mean, gauss, k1, k2), ...", k_paints);

@@ -190,7 +190,9 @@ void Viewer::save(const std::string& extension, const std::function<void(const s
 void Viewer::start_hatching() {
     const std::string stem = state_.document().path.stem().string() + "_hatched";
     try {
-        state_.start_hatching(interface_.view().size(), options_.device, free_names(stem, {".svg", ".png"}));
+        state_.start_hatching(interface_.view().size(), options_.device, [stem] {
+            return free_names(stem, {".svg", ".png"});
+        });
     } catch (const Error& error) {
         state_.messages.error(error.what());
     }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <new>
 
 #include "host/animation/random_poses.h"
 #include "host/core/errors.h"
@@ -268,12 +269,14 @@ void ViewerState::collect_training() {
         messages.remark("Training was canceled");
     } catch (const Error& error) {
         messages.error(error.what());
+    } catch (const std::bad_alloc&) {
+        messages.error("There is not enough memory to learn from this animation");
     }
 }
 
-void ViewerState::start_hatching(ViewSize size, const std::string& device, std::vector<fs::path> files) {
+void ViewerState::start_hatching(ViewSize size, const std::string& device, StillNames names) {
     if (hatching_job) return;
-    hatching_job = std::make_unique<HatchingJob>(hatched_still(*this, size, device), std::move(files));
+    hatching_job = std::make_unique<HatchingJob>(hatched_still(*this, size, device), std::move(names));
 }
 
 void ViewerState::collect_hatching() {
@@ -285,6 +288,8 @@ void ViewerState::collect_hatching() {
         messages.remark("Hatching was canceled");
     } catch (const Error& error) {
         messages.error(error.what());
+    } catch (const std::bad_alloc&) {
+        messages.error("There is not enough memory to hatch this mesh; one of fewer faces may do");
     }
 }
 

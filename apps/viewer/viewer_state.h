@@ -47,7 +47,7 @@ class ViewerState {
 
     /// Starts to draw a hatched still of that size, on a device of that name, for those files; nothing while another is
     /// being drawn. Throws UsageError if no style of hatching is open.
-    void start_hatching(ViewSize size, const std::string& device, std::vector<std::filesystem::path> files);
+    void start_hatching(ViewSize size, const std::string& device, StillNames names);
     /// Says what was drawn, when it is done.
     void collect_hatching();
 

@@ -122,6 +122,38 @@ class Hatch(ProgramTest):
         self.assertEqual(len(rows), 2 + 4 * 3)  # of the drawing, and of each view with what was learned
         self.assertEqual(rows[-2:], ["train_x.npy", "train_y.npy"])
 
+    def test_messy_meshes_are_seen_as_their_surface(self):
+        """A vertex of no face, far away, and triangles that share no vertices."""
+        lines = (self.folder / MESH).read_text().split("\n")
+        vertices, faces = (int(number) for number in lines[1].split()[:2])
+        corners, triangles = lines[2:2 + vertices], lines[2 + vertices:2 + vertices + faces]
+        loose = ["OFF", f"{vertices + 1} {faces} 0", *corners, "100 0 0", *triangles]
+        soup = ["OFF", f"{3 * faces} {faces} 0", *(corners[int(v)] for face in triangles for v in face.split()[1:4]),
+                *(f"3 {3 * i} {3 * i + 1} {3 * i + 2}" for i in range(faces))]
+        pictures = []
+        for name, text in (("whole", lines), ("loose", loose), ("soup", soup)):
+            (self.folder / f"{name}.off").write_text("\n".join(text) + "\n")
+            self.call("hatch", "template", f"{name}.off", *VIEW, "--out", f"{name}.png")
+            pictures.append(read_png(self.folder / f"{name}.png"))
+        self.assertEqual((self.folder / "loose.png").read_bytes(), (self.folder / "whole.png").read_bytes())
+        off = [abs(a - b) for a, b in zip(pictures[0][2], pictures[2][2])]
+        self.assertLess(sum(off) / len(off), 0.1)
+        self.call("hatch", "draw", "style.safetensors", "loose.off", *VIEW, "--turn", "9", "--frames", "1", "--out", "turned.png")
+        self.call("hatch", "draw", "style.safetensors", "whole.off", *VIEW, "--turn", "9", "--frames", "1", "--out", "again.png")
+        self.call("hatch", "draw", "style.safetensors", "whole.off", *VIEW, "--turn", "9", "--frames", "0", "--out", "unturned.png")
+        self.assertEqual((self.folder / "turned.png").read_bytes(), (self.folder / "again.png").read_bytes())
+        self.assertNotEqual((self.folder / "turned.png").read_bytes(), (self.folder / "unturned.png").read_bytes())
+
+    def test_what_is_read_is_not_replaced(self):
+        before = (self.folder / "drawing.png").read_bytes()
+        self.refused("hatch", "train", MESH, "drawing.png", *VIEW, "--out", "./drawing.png", code=2, says="would be replaced")
+        self.assertEqual((self.folder / "drawing.png").read_bytes(), before)
+        self.refused("hatch", "template", MESH, *VIEW, "--out", MESH, code=2, says=".png")
+        self.refused("hatch", "example", "flow", MESH, *VIEW, "--out", "x.jpg", code=2, says=".png")
+        self.refused("hatch", "draw", "style.safetensors", MESH, *VIEW, "--properties", "drawing.png", "--out", "unwritten.svg",
+                     code=2, says="drawing.png")
+        self.assertFalse((self.folder / "unwritten.svg").exists())
+
     def test_what_cannot_be_hatched(self):
         write_off(self.folder / "cube.off", CUBE, CUBE_QUADS)
         train = ["hatch", "train", MESH]
@@ -138,6 +170,10 @@ class Hatch(ProgramTest):
                      says="no single picture")
         self.refused("hatch", "draw", "style.safetensors", MESH, "--frames", "0", "--properties", "p", "--out", "x.png", code=2,
                      says="--properties")
+        # A word after an option is no second value of it.
+        self.refused("hatch", "draw", "--clips", "walk", "style.safetensors", MESH, "--turn", "9", "--out", "x", code=2,
+                     says="are for animations")
+        self.refused("hatch", "evaluate", MESH, MESH, code=2, says="same files")
         self.refused("hatch", "draw", "style.safetensors", MESH, "--light", "0,0,0", "--out", "x.svg", code=2, says="--light")
         self.refused("hatch", "draw", "style.safetensors", MESH, "--eye", "0,0,9", "--target", "0,0,99", "--out", "x.svg", code=1,
                      says="shows nothing of the mesh")

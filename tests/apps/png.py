@@ -5,7 +5,7 @@ import zlib
 
 
 def read_png(path):
-    """Width, height and bytes of an 8-bit image, of 3 channels or, with alpha, 4."""
+    """Width, height and bytes of an 8-bit image, of 1 channel (gray), 3 or, with alpha, 4."""
     data = path.read_bytes()
     chunks, at = {}, 8
     while at < len(data):
@@ -13,8 +13,8 @@ def read_png(path):
         chunks[kind] = chunks.get(kind, b"") + data[at + 8:at + 8 + size]
         at += size + 12
     width, height, depth, color = struct.unpack(">IIBB", chunks[b"IHDR"][:10])
-    assert depth == 8 and color in (2, 6)
-    channels = 3 if color == 2 else 4
+    assert depth == 8
+    channels = {0: 1, 2: 3, 6: 4}[color]
     rows, stride, before = [], channels * width, bytes(channels * width)
     raw = zlib.decompress(chunks[b"IDAT"])
     for y in range(height):

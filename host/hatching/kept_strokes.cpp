@@ -83,7 +83,8 @@ class Keeper {
     bool is_in_place(std::uint32_t layer, const std::vector<FinePoint>& points, std::size_t i) const {
         const FinePoint way = points[std::min(i + 1, points.size() - 1)] - points[i ? i - 1 : 0];
         const Direction heading = direction_of(way.x, way.y);
-        return dot(direction_at(grid_, layer, points[i], heading), heading) >= least_cosine_ * k_unit;
+        const Direction asked = direction_at(grid_, layer, points[i], heading);
+        return asked && dot(asked, heading) >= least_cosine_ * k_unit;
     }
     bool is_clear(std::uint32_t layer, FinePoint point) const {
         return clearance_.is_clear(layer, point, grid_.at(point)->spacing(), grid_.rules.test_share);

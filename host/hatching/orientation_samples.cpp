@@ -101,6 +101,9 @@ std::vector<std::uint8_t> held_out_rectangles(std::span<const std::uint16_t> x, 
                 ++marked;
             }
         }
+        // Of a group in few far pieces none may be left: it is learned from as a whole then.
+        if (marked == members.size())
+            for (const std::uint32_t i : members) held[i] = 0;
     }
     return held;
 }

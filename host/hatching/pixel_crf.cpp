@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/core/interrupt.h"
+
 namespace exemplar {
 namespace {
 
@@ -34,6 +36,7 @@ PixelCrf::PixelCrf(const CoveredPixels& pixels, int width, std::span<const float
 
 std::vector<std::int32_t> PixelCrf::solve(std::span<const float> probabilities, std::size_t classes,
                                           const PixelCrfParameters& parameters) {
+    check_interrupt();
     std::vector<float> unary(probabilities.size());
     for (std::size_t k = 0; k < unary.size(); ++k) unary[k] = -std::log(std::max(probabilities[k], 1e-6f));
     std::vector<double> weight(edges_.size());

@@ -20,7 +20,7 @@ constexpr std::size_t k_curvature_features = k_view_curvature_columns, k_descrip
 constexpr std::size_t k_pixel_features =
     k_curvature_features + k_descriptor_features + k_image_features + k_line_features;  // 301
 
-/// Their names, in order; e.g. "curvature.mean@0.01", "image.L.N@2", "lines.ridges@0.01/5".
+/// Their names, in order; e.g. "curvature.mean@0.01", "image.L.N@2", "lines.ridges>0.01@5".
 const std::vector<std::string>& pixel_feature_names();
 /// Names of the k_orientation_features, as in the legend of thesis Fig. 4.3; e.g. "k_max,1", "perp k_max,1".
 const std::vector<std::string>& orientation_feature_names();

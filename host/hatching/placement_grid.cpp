@@ -17,7 +17,7 @@ namespace exemplar {
 namespace {
 
 constexpr int k_largest_picture = 32768;
-constexpr float k_most_spacing = 256, k_most_length = 1024;  // pixels
+constexpr float k_most_length = 1024;  // pixels
 constexpr std::size_t k_most_candidate_points = std::size_t{1} << 22;
 constexpr std::size_t k_least_candidates = 256, k_most_candidates = 16384;
 constexpr std::uint32_t k_least_block_bits = 5;

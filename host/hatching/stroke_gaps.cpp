@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "host/core/errors.h"
+#include "host/hatching/placement_grid.h"
 
 namespace exemplar {
 namespace {
@@ -142,7 +143,8 @@ bool StrokeGaps::is_hatched(const Vec2& at, std::size_t layer) const {
 }
 
 float StrokeGaps::spacing_at(const Vec2& at) const {
-    return std::max(1.0f, fields_.spacing[fields_.index(static_cast<int>(at.x()), static_cast<int>(at.y()))]);
+    const float spacing = fields_.spacing[fields_.index(static_cast<int>(at.x()), static_cast<int>(at.y()))];
+    return std::clamp(spacing, 1.0f, k_most_spacing);  // as strokes are placed
 }
 
 bool StrokeGaps::stays_hatched(const Vec2& from, const Vec2& way, float distance, std::size_t layer) const {

@@ -35,7 +35,7 @@ void check(const FloatImage& darkness, const Image& mask) {
                         darkness.width, darkness.height, mask.width, mask.height));
 }
 
-/// Mean darkness of what is far from ink: above zero in a noisy scan, as nothing is lighter than paper.
+/// Mean darkness of what is far from ink: not quite zero in a noisy scan.
 float paper_darkness(const FloatImage& darkness, const PixelMask& ink) {
     const std::vector<std::int32_t> nearest = nearest_sites(darkness.width, darkness.height, ink.data);
     double sum = 0;

@@ -270,7 +270,7 @@ float estimate_softness(const FloatImage& darkness, float paper, const StrokeMap
     std::array<double, k_softnesses.size()> misfit{};
     for (std::size_t i = 0; i < misfit.size(); ++i) misfit[i] = misfit_of(profiles, widths, k_softnesses[i]);
     const auto best = static_cast<std::size_t>(std::min_element(misfit.begin(), misfit.end()) - misfit.begin());
-    if (misfit[best] > k_better * misfit[0]) return 0;
+    if (best == 0 || !(misfit[best] <= k_better * misfit[0])) return 0;
     if (best + 1 == misfit.size()) return k_softnesses[best];
     return lowest({k_softnesses[best - 1], k_softnesses[best], k_softnesses[best + 1]},
                   {misfit[best - 1], misfit[best], misfit[best + 1]});

@@ -32,7 +32,8 @@ class Fitter {
         if (back_is_free) return out_of_line({all - steps, all}, {1, 0});
         const std::int32_t most = StrokeWay::target_steps(way_.texel(), (1 << k_share_bits) + grid_.rules.jitter);
         if (all <= most) return {0, all};
-        const std::int32_t half = std::max((all - way_.gap_steps()) / 2, least_steps(grid_, way_.texel(), 2));
+        const std::int32_t half =
+            std::min(all, std::max((all - way_.gap_steps()) / 2, least_steps(grid_, way_.texel(), 2)));
         return on.steps == on.reach() ? Span{all - half, all} : Span{0, half};
     }
 

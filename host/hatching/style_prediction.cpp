@@ -117,8 +117,14 @@ class Prediction {
             std::vector<OrientationFunction> functions;
             for (const OrientationRule& rule : style_.rules) functions.push_back(rule.function[layer]);
             const std::vector<DoubledAngle> directions = evaluator_.orientations(functions, segment, fields);
-            for (std::size_t i = 0; i < directions.size(); ++i)
-                out_.fields.orientation[layer][pixels_.pixels().pixel[i]] = angle_of(directions[i]);
+            for (std::size_t i = 0; i < directions.size(); ++i) {
+                const std::uint32_t pixel = pixels_.pixels().pixel[i];
+                out_.fields.orientation[layer][pixel] = angle_of(directions[i]);
+                // Where there is no direction to hatch along, nothing is hatched.
+                const auto most = static_cast<std::uint8_t>(layer);
+                if (directions[i] == DoubledAngle{})
+                    out_.fields.level[pixel] = std::min(out_.fields.level[pixel], most);
+            }
         }
     }
 

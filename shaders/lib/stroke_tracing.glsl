@@ -192,7 +192,7 @@ ivec2 fitted() {
     }
     if (on_is_free || back_is_free) return out_of_line(part, move);
     if (all <= target_steps(way_texel, (1 << k_share_bits) + parameters.jitter)) return part;
-    const int half_steps = max((all - gap_steps()) / 2, least_steps(2));
+    const int half_steps = min(all, max((all - gap_steps()) / 2, least_steps(2)));
     return other.steps == other.reach ? ivec2(all - half_steps, all) : ivec2(0, half_steps);
 }
 

@@ -452,6 +452,24 @@ TEST(StrokeMeasurements, OfDrawingsWithoutStrokesAreZero) {
     nothing(ink_drawing(strokes, 100, 100), Image(100, 100, 1));  // nothing of the object
 }
 
+/// Nothing is left to explain: by which edge a profile is softened cannot be told.
+TEST(StrokeMeasurements, OfRuledLinesWithHardEdgesAreExact) {
+    for (const int width : {1, 3}) {
+        SCOPED_TRACE(width);
+        FloatImage darkness(120, 100, 1);
+        for (int y = 10; y < 90; ++y)
+            for (int x = 10; x < 110; ++x)
+                if (y % 8 < width) darkness.pixel(x, y)[0] = 1;
+        const StrokeMeasurements m = measure_strokes(darkness, whole(120, 100));
+        std::vector<float> thickness;
+        for (std::size_t i = 0; i < m.size(); ++i)
+            if (m.stroke[i]) thickness.push_back(m.thickness[i]);
+        ASSERT_GT(thickness.size(), 500u);
+        EXPECT_NEAR(quantile(thickness, 0.5), width, 0.1);
+        EXPECT_NEAR(m.median_spacing, 8, 0.1);
+    }
+}
+
 TEST(StrokeMeasurements, OneStrokeHasALengthAndNoSpacing) {
     const StrokeMeasurements m = measure({{{{40, 50}, {200, 120}}, 3, 0.7f}});
     std::vector<float> length;

@@ -141,6 +141,9 @@ TEST(KeptStrokes, MayBeAnywhereButNotAnything) {
     CpuStrokePlacer placer;
     HatchStroke stroke{.layer = 0, .points = {{-1e8f, 1e9f}, {1e30f, 3e8f}}, .widths = {1, 1}, .darkness = 1};
     EXPECT_EQ(placer.place(fields, {}, {}, std::span(&stroke, 1)), placer.place(fields));
+    // Nor across what is asked for.
+    const StrokeOptions any{.most_deviation = std::numbers::pi_v<float> / 2};
+    EXPECT_EQ(placer.place(fields, {}, any, std::span(&stroke, 1)), placer.place(fields, {}, any));
     stroke.points.clear();
     EXPECT_EQ(placer.place(fields, {}, {}, std::span(&stroke, 1)), placer.place(fields));
     stroke.points = {{1, 1}, {std::numeric_limits<float>::quiet_NaN(), 1}};

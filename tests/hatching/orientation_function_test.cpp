@@ -218,6 +218,19 @@ TEST(HeldOutRectangles, AreRegions) {
     EXPECT_LT(changes, pairs / 10);
 }
 
+// Two patches far apart: rectangles may take in each as a whole.
+TEST(HeldOutRectangles, LeaveSomethingToLearnFrom) {
+    std::vector<std::uint16_t> x, y;
+    for (const int patch : {0, 1})
+        for (int i = 0; i < (patch ? 320 : 80); ++i) {
+            x.push_back(static_cast<std::uint16_t>(900 * patch + i % 20));
+            y.push_back(static_cast<std::uint16_t>(900 * patch + i / 20));
+        }
+    const std::vector<std::uint32_t> group(x.size());
+    for (std::uint64_t seed = 1; seed <= 50; ++seed)
+        EXPECT_GT(std::ranges::count(held_out_rectangles(x, y, group, 0.25, seed), 0), 0) << seed;
+}
+
 TEST(SampleNeighbors, AreThoseWithinTheSpacing) {
     Random random(5);
     OrientationSamples samples;

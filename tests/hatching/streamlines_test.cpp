@@ -262,6 +262,12 @@ TEST(Streamlines, TakeWhatIsHardlyThere) {
     EXPECT_EQ(placer.place(even_fields(30, 30, 0.3f, 0.2f, 10)), placer.place(even_fields(30, 30, 0.3f, 1, 10)));
     const HatchingFields fine = even_fields(60, 60, 0.3f, 1.6f, 10);
     EXPECT_GE(measure_spacing(placer.place(fine), fine).least_ratio, 0.65);
+    // Two pixels of strokes that are to have no length.
+    HatchingFields two = even_fields(40, 30, 0, 6, 0);
+    for_pixels(two, [&](std::size_t i, float x, float y) {
+        if (y != 15.5f || (x != 20.5f && x != 21.5f)) two.level[i] = k_no_hatching;
+    });
+    for (const HatchStroke& stroke : placer.place(two)) EXPECT_LE(length_of(stroke), 2);
     // Sparser than the picture.
     EXPECT_LE(placer.place(even_fields(50, 50, 0.3f, 2000, 1e9f)).size(), 1u);
     EXPECT_GE(placer.place(even_fields(9, 300, 0.1f, 5, 100)).size(), 40u);

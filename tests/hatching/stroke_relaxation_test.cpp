@@ -120,6 +120,16 @@ TEST(RelaxSpacing, TakesWhatIsHardlyThere) {
     EXPECT_EQ(strokes, as_they_were);
 }
 
+/// A damaged style may ask for anything; strokes are as far apart as they get.
+TEST(RelaxSpacing, EndsWhateverTheSpacing) {
+    for (const float spacing : {1e5f, 1e9f, 1e30f}) {
+        std::vector<HatchStroke> strokes{{0, {Vec2(5, 25), Vec2(45, 25)}, {1, 1}, 1}};
+        const auto as_they_were = strokes;
+        relax_spacing(strokes, even_fields(50, 50, 0, spacing));
+        EXPECT_EQ(strokes, as_they_were);
+    }
+}
+
 class PlaceEvenly : public ::testing::TestWithParam<int> {};
 
 TEST_P(PlaceEvenly, SpacesStrokesBetterAndKeepsAllElse) {

@@ -13,8 +13,8 @@
 namespace exemplar {
 
 constexpr float k_most_spacing = 256;  ///< pixels
-constexpr int k_spacing_bits = 6;  ///< spacing is in units of 1/64 pixel
-constexpr int k_length_bits = 2;   ///< lengths of strokes are in units of 1/4 pixel
+constexpr int k_spacing_bits = 6;      ///< spacing is in units of 1/64 pixel
+constexpr int k_length_bits = 2;       ///< lengths of strokes are in units of 1/4 pixel
 /// Strokes are followed in steps of this many units, a pixel but for what rounding may add: one never skips a pixel.
 constexpr std::int32_t k_step = k_pixel - 2;
 constexpr std::int32_t k_least_steps = 2;  ///< of a stroke

@@ -34,11 +34,19 @@ class Interruption(ProgramTest):
         cls.random = random.Random(SEED)
         cls.call("synth", "cup", "--count", "3", "--faces", "500", "--out", "cups")
         cls.call("label", "train", "cups", "--out", "cup.safetensors", "--rounds", "5", "--samples", "50")
+        animal, size = "animals/fourleg_001.off", ["--size", "300x260", "--cache", ""]
+        cls.call("synth", "fourleg", "--faces", "1500", "--out", "animals")
+        cls.call("hatch", "example", "contour", animal, *size, "--out", "drawing.png")
+        cls.call("hatch", "train", animal, "drawing.png", *size, "--out", "style.safetensors")
         # No cache: each call computes its features again, so that there is work to interrupt.
         cls.commands = {
             "train": ["label", "train", "cups", "--out", "out/m.safetensors", "--cache", "", *LEARNING],
             "apply": ["label", "apply", "cup.safetensors", "cups", "--out", "out", "--cache", "", "--gltf", "--png"],
             "features": ["features", "cups/cup_001.off", "--samples", "60", "--out", "out/f.npy", "--names", "out/n.json"],
+            "hatch train": ["hatch", "train", animal, "drawing.png", *size, "--out", "out/style.safetensors"],
+            "hatch draw": ["hatch", "draw", "style.safetensors", animal, *size, "--properties", "out/properties",
+                           "--out", "out/drawing.svg", "--json", "out/drawing.json"],
+            "hatch frames": ["hatch", "draw", "style.safetensors", animal, *size, "--turn", "9", "--frames", "0:4", "--out", "out/turning"],
             "synth": ["synth", "human", "--count", "3", "--faces", "2000", "--out", "out"],
         }
         cls.seconds = {}
@@ -88,6 +96,8 @@ class Interruption(ProgramTest):
         elif path.suffix == ".seg":
             _, faces = read_off(self.folder / "cups" / f"{path.stem}.off")
             self.assertEqual(len(content.splitlines()), len(faces), path)
+        elif path.suffix == ".svg":
+            self.assertTrue(content.rstrip().endswith(b"</svg>"), path)
         elif path.suffix == ".html":
             self.assertTrue(content.rstrip().endswith(b"</html>"), path)
         else:

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 namespace exemplar {
@@ -18,8 +19,8 @@ Rgb color_at(const Image& image, std::size_t i) {
 }
 
 TEST(PropertyPicture, GrowsDarkerWithTheValue) {
-    std::vector<float> values;
-    for (int i = 0; i < 200; ++i) values.push_back(static_cast<float>(i));
+    std::vector<float> values(200);
+    std::iota(values.begin(), values.end(), 0.0f);
     std::vector<std::uint8_t> known(200, 1);
     known[50] = 0;
     std::array<float, 2> range{};

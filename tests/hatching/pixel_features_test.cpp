@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <set>
@@ -30,6 +31,11 @@ struct HostTools {
 /// Seen without perspective, so that analytic truths are simple.
 HatchingView parallel_view(const TriangleMesh& mesh, const Vec3& direction) {
     return {fit_camera(mesh, direction, 1.2f, {.vertical_fov = 0}), Vec3(1, 2, 2) / 3, k_width, k_height};
+}
+
+Vec2 center_of(std::uint32_t pixel) {
+    const std::uint32_t row = pixel / k_width;
+    return {static_cast<float>(pixel % k_width) + 0.5f, static_cast<float>(row) + 0.5f};
 }
 
 std::uint32_t number_of(const std::string& name) {
@@ -85,7 +91,7 @@ TEST(PixelFeatures, OfABallAreThoseOfABall) {
     PixelFeatures features(ball(), view, host.tools);
     const std::vector<std::string> names{"curvature.mean@0.05", "image.V.N@1", "image.L.N@1", "image.depth"};
     std::vector<std::uint32_t> which;
-    for (const std::string& name : names) which.push_back(number_of(name));
+    std::ranges::transform(names, std::back_inserter(which), number_of);
     const FeatureMatrix found = features.scalars(which, {});
     EXPECT_EQ(found.names, names);
     const Eigen::Matrix4f to_view = view.camera.view;
@@ -94,9 +100,9 @@ TEST(PixelFeatures, OfABallAreThoseOfABall) {
     std::size_t inside = 0;
     for (std::size_t i = 0; i < features.size(); ++i) {
         const std::uint32_t pixel = features.pixels().pixel[i];
-        const float x = static_cast<float>(pixel % k_width) + 0.5f, y = static_cast<float>(pixel / k_width) + 0.5f;
+        const Vec2 at = center_of(pixel);
         const float half = 0.5f * k_height / 2.1f;  // pixels of a unit, with a margin of a twentieth
-        const Vec3 normal(0.5f * (x - 0.5f * k_width) / half, -0.5f * (y - 0.5f * k_height) / half, 0);
+        const Vec3 normal(0.5f * (at.x() - 0.5f * k_width) / half, -0.5f * (at.y() - 0.5f * k_height) / half, 0);
         const float off = normal.norm();
         // Near the border pictures are blurred with less than a Gaussian around.
         if (off > 0.85f) continue;
@@ -120,12 +126,11 @@ TEST(PixelFeatures, DirectionsOnABallRunOutwardsAndAround) {
     std::size_t inside = 0;
     for (std::size_t i = 0; i < features.size(); ++i) {
         const std::uint32_t pixel = features.pixels().pixel[i];
-        const float x = static_cast<float>(pixel % k_width) + 0.5f - 0.5f * k_width;
-        const float y = static_cast<float>(pixel / k_width) + 0.5f - 0.5f * k_height;
-        const float off = std::hypot(x, y);
+        const Vec2 way = center_of(pixel) - 0.5f * Vec2(k_width, k_height);
+        const float off = way.norm();
         if (off < 20 || off > 75) continue;
         ++inside;
-        const DoubledAngle outwards = doubled_angle(std::atan2(y, x));
+        const DoubledAngle outwards = doubled_angle(std::atan2(way.y(), way.x()));
         EXPECT_LT(squared_distance(fields.field(field_of("grad V.N,3"))[i], outwards), 0.1f);
         EXPECT_LT(squared_distance(fields.field(field_of("VxN"))[i], -1.0f * outwards), 0.1f);
     }

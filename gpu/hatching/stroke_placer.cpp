@@ -69,9 +69,7 @@ PlacementParameters parameters_of(const PlacementGrid& grid) {
             .rounds_left = 0,
             .stroke_room = 0,
             .point_room = 0,
-            .list_room = 0,
-            .unused0 = 0,
-            .unused1 = 0};
+            .list_room = 0};
 }
 
 /// How many points strokes will about have, and how many strokes there will be (rooms grow where that is too few).

@@ -26,9 +26,8 @@ void for_pixels_within(const PlacementGrid& grid, FinePoint point, std::int32_t 
 }
 
 /// How near the strokes of each layer are that have been placed: per pixel, the nearest of their points. A word has the
-/// pixel's distance to it (10 bits) and the way from the center of the pixel to it (11 bits
-/// each for x and y, offset by 1024), distances in units of 2^near_shift; so the nearest is the least, whatever the
-/// order in which they come.
+/// pixel's distance to it (10 bits) and the way from the center of the pixel to it (11 bits each for x and y, offset by
+/// 1024), in units of 2^near_shift; so the nearest is the least, whatever the order in which they come.
 class Clearance {
   public:
     static constexpr std::uint32_t k_far = 0xffffffffU;

@@ -40,8 +40,6 @@ struct PlacementParameters {
     uint stroke_room;
     uint point_room;
     uint list_room;
-    uint unused0;
-    uint unused1;
 };
 
 // Places to try, exemplar::SeedList.
@@ -109,8 +107,7 @@ struct StrokeRecord {
 
 #ifdef __cplusplus
 EXEMPLAR_LAYOUT(PlacementParameters, width, height, seed, test_share, hole_share, least_share, jitter, least_turn_cosine,
-                near_shift, room, candidates, block_bits, blocks, rounds_left, stroke_room, point_room, list_room,
-                unused0, unused1)
+                near_shift, room, candidates, block_bits, blocks, rounds_left, stroke_room, point_room, list_room)
 EXEMPLAR_LAYOUT(SeedListRecord, kind, first, second, next)
 EXEMPLAR_LAYOUT(TrialRecord, seed_x, seed_y, heading_x, heading_y, state, claim, way_begin, way_count, begin, count, listed, target)
 EXEMPLAR_LAYOUT(PlacementCounts, trials, in_blocks, front, strokes, points, full, held_groups, trial_groups, candidate_groups,

@@ -144,6 +144,22 @@ class Hatch(ProgramTest):
         self.assertEqual((self.folder / "turned.png").read_bytes(), (self.folder / "again.png").read_bytes())
         self.assertNotEqual((self.folder / "turned.png").read_bytes(), (self.folder / "unturned.png").read_bytes())
 
+    def test_a_folder_of_meshes_is_drawn_as_its_first_frame(self):
+        lines = (self.folder / MESH).read_text().split("\n")
+        vertices, faces = (int(number) for number in lines[1].split()[:2])
+        corners = [[float(x) for x in line.split()] for line in lines[2:2 + vertices]]
+        triangles = "".join(f"f {' '.join(str(int(v) + 1) for v in line.split()[1:4])}\n"
+                            for line in lines[2 + vertices:2 + vertices + faces])
+        (self.folder / "gait").mkdir()
+        for frame in range(2):
+            moved = "".join(f"v {x} {y * (1 + 0.1 * frame)} {z}\n" for x, y, z in corners)
+            (self.folder / "gait" / f"frame_{frame}.obj").write_text(moved + triangles)
+        for name, more in (("still.svg", []), ("first.svg", ["--frames", "0"]), ("second.svg", ["--frames", "1"])):
+            self.call("hatch", "draw", "style.safetensors", "gait", *VIEW, *more, "--out", name)
+        pictures = [(self.folder / name).read_bytes() for name in ("still.svg", "first.svg", "second.svg")]
+        self.assertEqual(pictures[0], pictures[1])
+        self.assertNotEqual(pictures[0], pictures[2])
+
     def test_what_is_read_is_not_replaced(self):
         before = (self.folder / "drawing.png").read_bytes()
         self.refused("hatch", "train", MESH, "drawing.png", *VIEW, "--out", "./drawing.png", code=2, says="would be replaced")

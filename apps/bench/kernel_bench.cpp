@@ -9,6 +9,7 @@
 #include "gpu/labeling/context_histograms.h"
 #include "gpu/learn/stump_scorer.h"
 #include "host/core/random.h"
+#include "host/labeling/fast_context.h"
 
 namespace exemplar {
 namespace {
@@ -87,6 +88,9 @@ void context_histograms(benchmark::State& state) {
     CpuContextHistograms reference;
     const double reference_ms =
         reference_cpu([&] { reference.accumulate(geometry, probabilities, k_classes, expected); });
+    FastContextHistograms host;
+    const double host_ms = reference_cpu([&] { host.accumulate(geometry, probabilities, k_classes, actual); });
+    if (!verified(state, actual, expected)) return;
     Profiler profiler;
     GpuContextHistograms histograms(bench().device, &profiler);
     const auto call = [&] { histograms.accumulate(geometry, probabilities, k_classes, actual); };
@@ -103,8 +107,68 @@ void context_histograms(benchmark::State& state) {
                    faces * (k_samples * k_classes + 2 * searches + k_context_axes * k_context_bins * k_classes * 3)},
               call);
     state.counters["reference_cpu"] = reference_ms;
+    state.counters["host_cpu"] = host_ms;
 }
 BENCHMARK(context_histograms)->Apply(three_sizes);
+
+// A batch of generated shapes: meshes of 5,000 faces, scored together (argument 1) or one by one (0). Wall time of a
+// call for all of them; call_cpu is that of this process.
+constexpr std::size_t k_batch = 8, k_batch_faces = 5'000;
+
+template <typename Together, typename OneByOne>
+void time_batch(benchmark::State& state, Profiler& profiler, Together&& together, OneByOne&& one_by_one) {
+    const auto call = [&] { state.range(0) == 1 ? together() : one_by_one(); };
+    call();
+    profiler.reset();
+    const Stopwatch watch;
+    for (auto _ : state) call();
+    const auto calls = static_cast<double>(state.iterations());
+    double device_ms = 0.0;
+    for (const auto& [kernel, entry] : profiler.entries()) device_ms += entry.milliseconds;
+    state.counters["call_cpu"] = 1e3 * watch.cpu() / calls;
+    state.counters["device"] = device_ms / calls;
+    state.counters["submissions"] = static_cast<double>(profiler.submissions()) / calls;
+}
+
+void score_batch(benchmark::State& state) {
+    constexpr std::size_t k_columns = 150;
+    Random random(3);
+    const BoostedStumps classifier = random_stumps(k_columns, random);
+    std::vector<FeatureMatrix> features;
+    std::vector<std::vector<float>> out(k_batch, std::vector<float>(k_batch_faces * k_classes));
+    for (std::size_t i = 0; i < k_batch; ++i) features.push_back(random_features(k_batch_faces, k_columns, random));
+    std::vector<ScoredMatrix> matrices;
+    for (std::size_t i = 0; i < k_batch; ++i) matrices.push_back({&features[i], out[i]});
+    Profiler profiler;
+    GpuStumpScorer scorer(bench().device, &profiler);
+    time_batch(
+        state, profiler, [&] { scorer.probabilities_of_all(classifier, Link::softmax, 1.0f, matrices); },
+        [&] {
+            for (const ScoredMatrix& matrix : matrices)
+                scorer.probabilities(classifier, *matrix.features, Link::softmax, 1.0f, matrix.out);
+        });
+}
+BENCHMARK(score_batch)->Arg(0)->Arg(1)->UseRealTime()->Unit(benchmark::kMillisecond);
+
+void context_batch(benchmark::State& state) {
+    Random random(4);
+    std::vector<ContextGeometry> geometry;
+    for (std::size_t i = 0; i < k_batch; ++i) geometry.push_back(random_geometry(k_batch_faces, 1000, random));
+    const std::vector<float> probabilities(k_batch_faces * k_classes, 1.0f / k_classes);
+    std::vector<std::vector<float>> out(
+        k_batch, std::vector<float>(k_context_measures * k_context_bins * k_classes * k_batch_faces));
+    std::vector<ContextMesh> meshes;
+    for (std::size_t i = 0; i < k_batch; ++i) meshes.push_back({&geometry[i], probabilities, out[i]});
+    Profiler profiler;
+    GpuContextHistograms histograms(bench().device, &profiler);
+    time_batch(
+        state, profiler, [&] { histograms.accumulate_all(meshes, k_classes); },
+        [&] {
+            for (const ContextMesh& mesh : meshes)
+                histograms.accumulate(*mesh.geometry, mesh.probabilities, k_classes, mesh.out);
+        });
+}
+BENCHMARK(context_batch)->Arg(0)->Arg(1)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace exemplar

@@ -20,6 +20,7 @@
 //   copy, fma         and as shares of the device's measured ceilings (one multiply-add counts as two operations)
 //   call, call_cpu    milliseconds of the whole call with its transfers: wall clock, and CPU of this process
 //   reference_cpu     milliseconds of CPU of the reference, on one thread where it is of an animated surface
+//   host_cpu          the same of the host's own implementation for devices that are CPUs
 //   copying           of re-projection: device milliseconds of a kernel that only copies, and moves as many bytes
 //   entries           of learned curvature: components that matter to a tile, per attribute
 

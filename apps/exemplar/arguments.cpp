@@ -14,6 +14,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/data/cache_bound.h"
 #include "host/data/corpus.h"
 #include "host/labeling/mesh_labeling.h"
 
@@ -134,7 +135,7 @@ void require_not_replaced(const fs::path& out, const std::vector<fs::path>& inpu
 }
 
 fs::path usable_cache(const fs::path& cache, bool quiet, const char* what) {
-    if (cache.empty()) return cache;
+    if (cache.empty() || cache_bound() == 0) return {};
     const std::string why = why_not_writable(cache);
     if (why.empty()) return cache;
     if (!quiet) fmt::print(stderr, "warning: {} are not remembered: {}; --cache FOLDER gives another\n", what, why);

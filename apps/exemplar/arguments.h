@@ -36,7 +36,7 @@ void require_output_picture(const std::filesystem::path& path);
 /// Throws UsageError if writing `out` would replace one of the files that are read.
 void require_not_replaced(const std::filesystem::path& out, const std::vector<std::filesystem::path>& inputs);
 /// The folder that remembers features, or what else it is to remember; empty, with a warning, where it cannot be
-/// written.
+/// written. Empty, too, if nothing is to be remembered, and throws UsageError for a wrong bound (see cache_bound).
 std::filesystem::path usable_cache(const std::filesystem::path& cache, bool quiet, const char* what = "features");
 /// Results beside a mesh could replace the labels, or the mesh, that they were made from: throws UsageError if a mesh
 /// lies in the folder `out`.

@@ -8,6 +8,7 @@
 #include "gpu/runtime/device.h"
 #include "host/imaging/camera.h"
 #include "host/imaging/png.h"
+#include "host/labeling/fast_context.h"
 
 namespace exemplar {
 namespace {
@@ -20,10 +21,21 @@ const Vec3 k_oblique_view{0.6f, 0.5f, 1.0f};
 }  // namespace
 
 struct DeviceBackend::Impl {
-    explicit Impl(const std::string& name) : device({.name = name}), scorer(device), context(device) {}
+    explicit Impl(const std::string& name) : device({.name = name}), labels_on(device.info().name) {
+        // A device that is this machine's CPU would do by shaders, and copies, what the host does faster itself.
+        if (device.info().type == DeviceType::cpu) {
+            labels_on = "the host";
+            scorer = std::make_unique<CpuStumpScorer>();
+            context = std::make_unique<FastContextHistograms>();
+        } else {
+            scorer = std::make_unique<GpuStumpScorer>(device);
+            context = std::make_unique<GpuContextHistograms>(device);
+        }
+    }
     Device device;
-    GpuStumpScorer scorer;
-    GpuContextHistograms context;
+    std::string labels_on;
+    std::unique_ptr<StumpScorer> scorer;
+    std::unique_ptr<ContextHistograms> context;
     std::optional<MeshRenderer> renderer;  // made by the first picture: a device that only computes labels too
 };
 
@@ -31,7 +43,11 @@ DeviceBackend::DeviceBackend(const std::string& device) : impl_(std::make_unique
 DeviceBackend::~DeviceBackend() = default;
 
 LabelingBackend DeviceBackend::labeling() {
-    return {impl_->scorer, impl_->context};
+    return {*impl_->scorer, *impl_->context};
+}
+
+const std::string& DeviceBackend::labels_on() const {
+    return impl_->labels_on;
 }
 
 const std::string& DeviceBackend::device_name() const {

@@ -7,6 +7,7 @@
 #include "apps/exemplar/bench_data.h"
 #include "apps/exemplar/bench_rows.h"
 #include "host/core/progress.h"
+#include "host/labeling/fast_context.h"
 #include "host/labeling/feature_cache.h"
 #include "host/labeling/mesh_labeling.h"
 #include "host/labeling/training.h"
@@ -17,10 +18,10 @@ namespace {
 constexpr std::size_t k_faces = 20'000, k_training_meshes = 6;
 constexpr std::size_t k_quick_rows = 1500;  // faces per mesh of a model that serves only to be applied
 
-/// The CPU references in place of a device.
+/// What takes the place of a device's shaders on a CPU; keeps to the number of threads.
 struct HostBackend {
     CpuStumpScorer scorer;
-    CpuContextHistograms context;
+    FastContextHistograms context;
     LabelingBackend labeling() { return {scorer, context}; }
 };
 
@@ -140,7 +141,7 @@ void bench_labeling(BenchContext& context, const std::function<void(const BenchR
         result.name = "label";
         result.cost = measure(context.runs(), [&] { label(folder, context.backend().labeling()); });
         result.remarks.push_back(fmt::format("{} stumps of {} labels, scored on {}", stump_count(model),
-                                             model.class_count(), context.backend().device_name()));
+                                             model.class_count(), context.backend().labels_on()));
         if (!context.quick()) result.single_thread = measure_single_thread(1, [&] { label(folder, host.labeling()); });
         row(result);
     };

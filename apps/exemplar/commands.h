@@ -20,6 +20,10 @@ struct CommonOptions {
 void add_device_option(CLI::App& command, CommonOptions& options);
 /// Adds --threads, --quiet and --json to a subcommand.
 void add_common_options(CLI::App& command, CommonOptions& options);
+/// Adds --memory, in GB; 0 leaves it to the program.
+void add_memory_option(CLI::App& command, double& gigabytes);
+/// That in bytes; 0 if it was not given.
+std::size_t memory_of_option(double gigabytes);
 /// Puts --threads and --quiet into effect; called first by every subcommand. The result holds the thread limit.
 std::shared_ptr<void> apply_common_options(const CommonOptions& options);
 /// Writes a JSON file whole; text that is not UTF-8 is replaced, not refused.
@@ -34,8 +38,13 @@ void add_synth_command(CLI::App& app);
 void add_label_command(CLI::App& app);
 void add_train_command(CLI::App& label);
 void add_apply_command(CLI::App& label);
+void add_batch_command(CLI::App& label);
 void add_evaluate_command(CLI::App& label);
 void add_stress_command(CLI::App& label);
+void add_category_command(CLI::App& app);
+void add_category_train_command(CLI::App& category);
+void add_category_apply_command(CLI::App& category);
+void add_category_evaluate_command(CLI::App& category);
 void add_curvature_command(CLI::App& app);
 void add_curvature_train_command(CLI::App& curvature);
 void add_curvature_evaluate_command(CLI::App& curvature);
@@ -48,6 +57,12 @@ void add_hatch_extract_command(CLI::App& hatch);
 void add_hatch_train_command(CLI::App& hatch);
 void add_hatch_draw_command(CLI::App& hatch);
 void add_hatch_evaluate_command(CLI::App& hatch);
+void add_catalog_command(CLI::App& app);
+void add_catalog_add_command(CLI::App& catalog);
+void add_catalog_list_command(CLI::App& catalog);
+void add_catalog_status_command(CLI::App& catalog);
+void add_catalog_export_command(CLI::App& catalog);
+void add_catalog_merge_command(CLI::App& catalog);
 void add_demo_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
 

@@ -9,11 +9,13 @@ void add_label_command(CLI::App& app) {
     command->footer(
         "Example:\n  exemplar label train shapes --out human.safetensors\n"
         "  exemplar label apply human.safetensors mesh.obj --out labeled\n"
+        "  exemplar label batch shapes --model human.safetensors --out labeled\n"
         "  exemplar label evaluate --protocol sb6 shapes --out report\n"
         "  exemplar label stress human.safetensors mesh.obj");
     command->require_subcommand(1);
     add_train_command(*command);
     add_apply_command(*command);
+    add_batch_command(*command);
     add_evaluate_command(*command);
     add_stress_command(*command);
 }

@@ -80,10 +80,12 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     app.set_version_flag("--version", EXEMPLAR_VERSION);
     add_label_command(app);
+    add_category_command(app);
     add_curvature_command(app);
     add_lines_command(app);
     add_hatch_command(app);
     add_features_command(app);
+    add_catalog_command(app);
     add_synth_command(app);
     add_devices_command(app);
     add_demo_command(app);
@@ -109,6 +111,16 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
         ->check(whole_number(0, 4096));
     command.add_flag("--quiet", options.quiet, "no progress and no remarks");
     command.add_option("--json", options.json, "also write the report as JSON to this file")->type_name("FILE");
+}
+
+void add_memory_option(CLI::App& command, double& gigabytes) {
+    command.add_option("--memory", gigabytes, "GB of memory to use at most; if not given, half of what there is")
+        ->check(CLI::Range(0.1, 1e6))
+        ->type_name("GB");
+}
+
+std::size_t memory_of_option(double gigabytes) {
+    return static_cast<std::size_t>(1e9 * gigabytes);
 }
 
 std::shared_ptr<void> apply_common_options(const CommonOptions& options) {

@@ -87,37 +87,59 @@ std::vector<vec4> mass_prefixes(const Masses& masses, std::span<const std::vecto
     return prefixes;
 }
 
+constexpr std::size_t k_pack_faces = 64;
+
+// Four samples' ranges of a face, the first in the lowest byte.
+std::uint32_t packed(const std::array<std::array<std::uint8_t, k_pack_faces>, k_block>& ranges, std::size_t sample,
+                     std::size_t face) {
+    return std::uint32_t{ranges[sample][face]} | std::uint32_t{ranges[sample + 1][face]} << 8 |
+           std::uint32_t{ranges[sample + 2][face]} << 16 | std::uint32_t{ranges[sample + 3][face]} << 24;
+}
+
 // One block of samples: the ranges of faces seen from 16 samples, the first in the lowest byte of x. What stands in the
-// place of missing samples does not matter: they have no mass. Each texel is written once, as device memory may be slow
-// to read.
+// place of missing samples does not matter: they have no mass. Goes by way of arrays that cannot overlap, which
+// compilers vectorize; device memory is written in whole runs, as it may be slow.
 void pack_ranges(const ContextGeometry& geometry, Range samples, std::size_t first_face, std::span<uvec4> texels) {
-    for (std::size_t i = 0; i < texels.size(); ++i) {
-        std::array<std::uint32_t, 4> words{};
-        const std::uint8_t* range = geometry.geodesic_bin.data() + samples.first * geometry.faces + first_face + i;
+    std::array<std::array<std::uint8_t, k_pack_faces>, k_block> ranges{};
+    std::array<uvec4, k_pack_faces> some;
+    for (std::size_t first = 0; first < texels.size(); first += k_pack_faces) {
+        const std::size_t count = std::min(k_pack_faces, texels.size() - first);
+        const std::uint8_t* from = geometry.geodesic_bin.data() + samples.first * geometry.faces + first_face + first;
         for (std::size_t j = 0; j < samples.count; ++j)
-            words[j / 4] |= std::uint32_t{range[j * geometry.faces]} << (8 * (j % 4));
-        texels[i] = {words[0], words[1], words[2], words[3]};
+            std::copy_n(from + j * geometry.faces, count, ranges[j].begin());
+        for (std::size_t i = 0; i < k_pack_faces; ++i)
+            some[i] = {packed(ranges, 0, i), packed(ranges, 4, i), packed(ranges, 8, i), packed(ranges, 12, i)};
+        std::copy_n(some.begin(), count, texels.begin() + static_cast<std::ptrdiff_t>(first));
     }
 }
 
-std::size_t histogram_bytes(std::size_t faces, std::size_t classes) {
-    return k_columns_per_class * classes * faces * sizeof(float);
+std::size_t histogram_bytes(std::size_t columns, std::size_t classes, std::size_t faces) {
+    return columns * classes * faces * sizeof(float);
 }
 
-// Samples per pass so that the prefix sums of one class block pass no limit. One less than whole blocks: the prefix
-// sums, one more than samples, then are.
-std::size_t samples_per_pass(const DeviceInfo& info, std::size_t tile_bytes) {
-    const std::size_t prefixes = std::min<std::size_t>(buffer_limit(info, tile_bytes) / sizeof(vec4), info.max_texels);
+// The largest number of samples of a part so that the prefix sums of one class block pass no limit. One less than whole
+// blocks: the prefix sums, one more than samples, then are.
+std::size_t samples_per_part(const DeviceInfo& info, std::size_t limit) {
+    const std::size_t prefixes = std::min<std::size_t>(limit / sizeof(vec4), info.max_texels);
     return std::max<std::size_t>(prefixes / k_context_axes / k_block, 1) * k_block - 1;
 }
 
-// Faces per tile so that neither the ranges nor the positions nor the histograms of one class block pass the limits.
-std::size_t faces_per_tile(const DeviceInfo& info, std::size_t tile_bytes, std::size_t samples) {
-    const std::size_t limit = buffer_limit(info, tile_bytes), blocks = sample_blocks(samples);
+// Of faces, so that neither the ranges nor the positions nor the histograms of one class block pass the limits.
+std::size_t faces_per_part(const DeviceInfo& info, std::size_t limit, std::size_t samples) {
+    const std::size_t blocks = sample_blocks(samples);
     const std::size_t by_bytes =
-        limit / std::max({blocks * sizeof(uvec4), histogram_bytes(1, k_class_block), k_context_axes * sizeof(float)});
+        limit / std::max({blocks * sizeof(uvec4), histogram_bytes(k_columns_per_class, k_class_block, 1),
+                          k_context_axes * sizeof(float)});
     const std::size_t by_texels = info.max_texels / std::max(blocks, k_context_axes);
     return std::max<std::size_t>(std::min(by_bytes, by_texels), 1);
+}
+
+// Of classes, so that neither the histograms nor the prefix sums pass them.
+std::size_t classes_per_part(const DeviceInfo& info, std::size_t limit, std::size_t samples, std::size_t faces) {
+    const std::size_t prefixes = k_context_axes * (samples + 1);
+    const std::size_t blocks = std::min({limit / histogram_bytes(k_columns_per_class, k_class_block, faces),
+                                         limit / (prefixes * sizeof(vec4)), info.max_texels / prefixes});
+    return k_class_block * std::max<std::size_t>(blocks, 1);
 }
 
 template <typename Use>
@@ -125,47 +147,47 @@ void for_each_range(std::size_t count, std::size_t step, Use&& use) {
     for (std::size_t first = 0; first < count; first += step) use(Range{first, std::min(step, count - first)});
 }
 
-}  // namespace
-
-GpuContextHistograms::Samples::Samples(Device& device, const ContextGeometry& geometry, Range part)
-    : range(part),
-      face(std::span(geometry.sample_face).subspan(part.first, part.count)),
-      area(std::span(geometry.sample_area).subspan(part.first, part.count)) {
-    std::vector<float> sorted_positions;
+// The samples' order along each axis, by rising position.
+std::vector<std::vector<std::uint32_t>> orders_of(const ContextGeometry& geometry,
+                                                  std::span<const std::uint32_t> sample_face) {
+    std::vector<std::vector<std::uint32_t>> orders(k_context_axes, std::vector<std::uint32_t>(sample_face.size()));
     for (std::size_t axis = 0; axis < k_context_axes; ++axis) {
-        const auto position = [&](std::uint32_t sample) {
-            return geometry.axis_position[axis * geometry.faces + face[sample]];
-        };
-        order[axis].resize(part.count);
-        std::iota(order[axis].begin(), order[axis].end(), 0u);
-        std::ranges::stable_sort(order[axis], {}, position);
-        std::ranges::transform(order[axis], std::back_inserter(sorted_positions), position);
+        std::iota(orders[axis].begin(), orders[axis].end(), 0u);
+        std::ranges::stable_sort(orders[axis], {}, [&](std::uint32_t sample) {
+            return geometry.axis_position[axis * geometry.faces + sample_face[sample]];
+        });
     }
-    sorted = Buffer::of<float>(device, sorted_positions);
+    return orders;
 }
 
-GpuContextHistograms::Tile::Tile(Device& device, Stream& stream, const ContextGeometry& geometry, Range samples,
-                                 Range part)
-    : faces(part),
-      ranges(device, sample_blocks(samples.count) * faces.count * sizeof(uvec4)),
-      positions(device, k_context_axes * faces.count * sizeof(float)) {
-    stream.upload_with(ranges, ranges.bytes(), 0, [&](std::span<std::byte> memory) {
-        const std::span texels(reinterpret_cast<uvec4*>(memory.data()), memory.size() / sizeof(uvec4));
-        parallel_for(sample_blocks(samples.count), [&](std::size_t block) {
-            const std::size_t first = k_block * block;
-            pack_ranges(geometry, {samples.first + first, std::min(k_block, samples.count - first)}, faces.first,
-                        texels.subspan(block * faces.count, faces.count));
-        });
-    });
+std::vector<float> sorted_positions(const ContextGeometry& geometry, std::span<const std::uint32_t> sample_face,
+                                    std::span<const std::vector<std::uint32_t>> orders) {
+    std::vector<float> positions;
     for (std::size_t axis = 0; axis < k_context_axes; ++axis)
-        stream.upload<float>(
-            positions, std::span(geometry.axis_position).subspan(axis * geometry.faces + faces.first, faces.count),
-            axis * faces.count * sizeof(float));
+        for (const std::uint32_t sample : orders[axis])
+            positions.push_back(geometry.axis_position[axis * geometry.faces + sample_face[sample]]);
+    return positions;
 }
+
+// One after the other on both sides.
+bool continues(const BufferPart& a, const BufferPart& b) {
+    return a.source == b.source && a.offset + a.target.size() == b.offset &&
+           a.target.data() + a.target.size() == b.target.data();
+}
+
+// Adds a part to those that are fetched, as one with the last where possible.
+void add_fetched(const BufferPart& part, std::vector<BufferPart>& parts) {
+    if (!parts.empty() && continues(parts.back(), part))
+        parts.back().target = {parts.back().target.data(), parts.back().target.size() + part.target.size()};
+    else
+        parts.push_back(part);
+}
+
+}  // namespace
 
 GpuContextHistograms::GpuContextHistograms(Device& device, Profiler* profiler, std::size_t tile_bytes)
     : device_(device),
-      tile_bytes_(tile_bytes),
+      tile_bytes_(buffer_limit(device.info(), tile_bytes)),
       faces_per_thread_(device.info().type == DeviceType::cpu ? k_faces_on_cpu : 1),
       stream_(device, profiler),
       geodesic_kernel_(device, shaders::labeling_context_geodesic_comp,
@@ -176,62 +198,171 @@ GpuContextHistograms::GpuContextHistograms(Device& device, Profiler* profiler, s
                    {.push_constants = layout_of<AxisContextParameters>(),
                     .elements = {layout_of<float>(), layout_of<float>(), layout_of<vec4>(), layout_of<float>()}}) {}
 
-void GpuContextHistograms::accumulate(const ContextGeometry& geometry, std::span<const float> probabilities,
-                                      std::size_t classes, std::span<float> out) {
-    check_context_geometry(geometry);
-    check_context_sizes(geometry.faces, probabilities, classes, out);
-    std::ranges::fill(out, 0.0f);
-    const Job job{geometry, probabilities, classes, out};
-    for_each_range(geometry.sample_face.size(), samples_per_pass(device_.info(), tile_bytes_), [&](Range range) {
-        const Samples samples(device_, geometry, range);
-        const std::size_t step = std::min(faces_per_tile(device_.info(), tile_bytes_, range.count), geometry.faces);
-        const std::vector<ClassChunk> chunks = class_chunks(job, samples, step);
-        for_each_range(geometry.faces, step, [&](Range faces) {
-            const Tile tile(device_, stream_, geometry, range, faces);
-            for (const ClassChunk& chunk : chunks) add_tile(job, samples, tile, chunk);
+void GpuContextHistograms::accumulate_all(std::span<const ContextMesh> meshes, std::size_t classes) {
+    for (const ContextMesh& mesh : meshes) check_context(mesh, classes);
+    std::vector<Part> parts;
+    for (const ContextMesh& mesh : meshes) {
+        if (mesh.geometry->sample_face.empty()) std::ranges::fill(mesh.out, 0.0f);
+        add_parts(mesh, classes, parts);
+    }
+    for (std::span<const Part> left = parts; !left.empty();) {
+        const std::size_t count = together(left);
+        run(left.first(count));
+        left = left.subspan(count);
+    }
+}
+
+// In order of samples: the first ones' histograms are the sums that those of later ones are added to.
+void GpuContextHistograms::add_parts(const ContextMesh& mesh, std::size_t classes, std::vector<Part>& parts) const {
+    const DeviceInfo& info = device_.info();
+    const std::size_t all_faces = mesh.geometry->faces;
+    for_each_range(mesh.geometry->sample_face.size(), samples_per_part(info, tile_bytes_), [&](Range samples) {
+        const std::size_t face_step = std::min(faces_per_part(info, tile_bytes_, samples.count), all_faces);
+        const std::size_t class_step = classes_per_part(info, tile_bytes_, samples.count, face_step);
+        for_each_range(all_faces, face_step, [&](Range faces) {
+            for_each_range(classes, class_step, [&](Range some) {
+                parts.push_back({&mesh, classes, samples, faces, some});
+            });
         });
     });
 }
 
-std::vector<GpuContextHistograms::ClassChunk> GpuContextHistograms::class_chunks(const Job& job, const Samples& samples,
-                                                                                 std::size_t tile_faces) {
-    const std::size_t limit = buffer_limit(device_.info(), tile_bytes_);
-    const std::size_t prefixes_per_block = k_context_axes * (samples.range.count + 1);
-    const std::size_t most_blocks =
-        std::min({limit / histogram_bytes(tile_faces, k_class_block), limit / (prefixes_per_block * sizeof(vec4)),
-                  device_.info().max_texels / prefixes_per_block});
-    const Masses masses{samples.face, samples.area, job.probabilities, job.classes};
-    std::vector<ClassChunk> chunks;
-    for_each_range(job.classes, k_class_block * std::max<std::size_t>(most_blocks, 1), [&](Range classes) {
-        chunks.push_back(
-            {classes, Buffer::of<vec4>(device_, mass_blocks(masses, classes.first, classes.count)),
-             Buffer::of<vec4>(device_, mass_prefixes(masses, samples.order, classes.first, classes.count))});
-    });
-    return chunks;
+// How many of the parts, at least one, fit into one submission.
+std::size_t GpuContextHistograms::together(std::span<const Part> parts) const {
+    std::size_t count = 0, bytes = 0;
+    for (const Part& part : parts) {
+        bytes += std::max({sample_blocks(part.samples.count) * part.faces.count * sizeof(uvec4),
+                           class_blocks(part.classes.count) * k_context_axes * (part.samples.count + 1) * sizeof(vec4),
+                           histogram_bytes(k_columns_per_class, part.classes.count, part.faces.count)});
+        if (count > 0 && bytes > tile_bytes_) break;
+        ++count;
+    }
+    return count;
 }
 
-void GpuContextHistograms::add_tile(const Job& job, const Samples& samples, const Tile& tile, const ClassChunk& chunk) {
-    const std::size_t bytes = histogram_bytes(tile.faces.count, chunk.classes.count);
-    reserve(device_, histograms_, bytes);
-    const BufferRange histograms(histograms_, 0, bytes);
-    const auto faces = static_cast<std::uint32_t>(tile.faces.count);
-    const auto sample_count = static_cast<std::uint32_t>(samples.range.count);
-    const auto classes = static_cast<std::uint32_t>(chunk.classes.count);
-    const std::uint32_t threads = (faces + faces_per_thread_ - 1) / faces_per_thread_;
-    stream_.dispatch(
-        geodesic_kernel_, Threads(threads, class_blocks(classes)), {tile.ranges, chunk.masses, histograms},
-        GeodesicContextParameters{faces, static_cast<std::uint32_t>(sample_blocks(sample_count)), classes, threads});
-    AxisContextParameters axes{.edges = {}, .faces = faces, .samples = sample_count, .classes = classes, .padding = 0};
-    for (std::size_t axis = 0; axis < k_context_axes; ++axis) axes.edges[axis] = to_vec4(job.geometry.axis_edges[axis]);
-    stream_.dispatch(axes_kernel_, Threads(faces, k_context_axes),
-                     {tile.positions, samples.sorted, chunk.prefixes, histograms}, axes);
-    tile_.resize(bytes / sizeof(float));
-    stream_.fetch(histograms_, std::span(tile_));
-    for (std::size_t row = 0; row < tile_.size() / faces; ++row) {
-        const std::size_t bin = row / classes, label = chunk.classes.first + row % classes;
-        float* out = job.out.data() + (bin * job.classes + label) * job.geometry.faces + tile.faces.first;
-        for (std::size_t f = 0; f < faces; ++f) out[f] += tile_[row * faces + f];
+void GpuContextHistograms::run(std::span<const Part> parts) {
+    // Each slot keeps the largest buffers that it ever needed; those of many large parts would fill the device.
+    if (kept_bytes() > 8 * tile_bytes_) slots_.clear();
+    if (slots_.size() < parts.size()) slots_.resize(parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i) reserve_slot(parts[i], slots_[i]);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        upload(parts[i], slots_[i]);
+        dispatch(parts[i], slots_[i]);
     }
+    fetch(parts);
+}
+
+std::size_t GpuContextHistograms::kept_bytes() const {
+    std::size_t bytes = 0;
+    for (const Slot& slot : slots_)
+        for (const Buffer* const buffer :
+             {&slot.ranges, &slot.masses, &slot.positions, &slot.sorted, &slot.prefixes, &slot.geodesic, &slot.axes})
+            bytes += buffer->bytes();
+    return bytes;
+}
+
+void GpuContextHistograms::reserve_slot(const Part& part, Slot& slot) {
+    const std::size_t samples = part.samples.count, faces = part.faces.count, classes = part.classes.count;
+    const std::size_t blocks = class_blocks(classes);
+    reserve(device_, slot.ranges, sample_blocks(samples) * faces * sizeof(uvec4));
+    reserve(device_, slot.masses, blocks * sample_blocks(samples) * k_block * sizeof(vec4));
+    reserve(device_, slot.positions, k_context_axes * faces * sizeof(float));
+    reserve(device_, slot.sorted, k_context_axes * samples * sizeof(float));
+    reserve(device_, slot.prefixes, k_context_axes * blocks * (samples + 1) * sizeof(vec4));
+    reserve(device_, slot.geodesic, histogram_bytes(k_context_bins, classes, faces));
+    reserve(device_, slot.axes, histogram_bytes(k_context_axes * k_context_bins, classes, faces));
+}
+
+void GpuContextHistograms::upload(const Part& part, Slot& slot) {
+    const ContextGeometry& geometry = *part.mesh->geometry;
+    const Range samples = part.samples, faces = part.faces;
+    const std::size_t range_bytes = sample_blocks(samples.count) * faces.count * sizeof(uvec4);
+    stream_.upload_with(slot.ranges, range_bytes, 0, [&](std::span<std::byte> memory) {
+        const std::span texels(reinterpret_cast<uvec4*>(memory.data()), memory.size() / sizeof(uvec4));
+        parallel_for(sample_blocks(samples.count), [&](std::size_t block) {
+            const std::size_t first = k_block * block;
+            pack_ranges(geometry, {samples.first + first, std::min(k_block, samples.count - first)}, faces.first,
+                        texels.subspan(block * faces.count, faces.count));
+        });
+    });
+    for (std::size_t axis = 0; axis < k_context_axes; ++axis)
+        stream_.upload<float>(
+            slot.positions, std::span(geometry.axis_position).subspan(axis * geometry.faces + faces.first, faces.count),
+            axis * faces.count * sizeof(float));
+    const std::span sample_face = std::span(geometry.sample_face).subspan(samples.first, samples.count);
+    const std::span sample_area = std::span(geometry.sample_area).subspan(samples.first, samples.count);
+    const std::vector<std::vector<std::uint32_t>> orders = orders_of(geometry, sample_face);
+    const Masses masses{sample_face, sample_area, part.mesh->probabilities, part.all_classes};
+    const auto [first_class, classes] = part.classes;
+    stream_.upload<float>(slot.sorted, sorted_positions(geometry, sample_face, orders));
+    stream_.upload<vec4>(slot.masses, mass_blocks(masses, first_class, classes));
+    stream_.upload<vec4>(slot.prefixes, mass_prefixes(masses, orders, first_class, classes));
+}
+
+void GpuContextHistograms::dispatch(const Part& part, const Slot& slot) {
+    const auto faces = static_cast<std::uint32_t>(part.faces.count);
+    const auto samples = static_cast<std::uint32_t>(part.samples.count);
+    const auto classes = static_cast<std::uint32_t>(part.classes.count);
+    const auto blocks = static_cast<std::uint32_t>(sample_blocks(samples));
+    const std::size_t mass_rows = class_blocks(classes);
+    const std::uint32_t threads = (faces + faces_per_thread_ - 1) / faces_per_thread_;
+    stream_.dispatch(geodesic_kernel_, Threads(threads, class_blocks(classes)),
+                     {BufferRange(slot.ranges, 0, std::size_t{blocks} * faces * sizeof(uvec4)),
+                      BufferRange(slot.masses, 0, mass_rows * blocks * k_block * sizeof(vec4)),
+                      BufferRange(slot.geodesic, 0, histogram_bytes(k_context_bins, classes, faces))},
+                     GeodesicContextParameters{faces, blocks, classes, threads});
+    AxisContextParameters axes{.edges = {}, .faces = faces, .samples = samples, .classes = classes, .padding = 0};
+    for (std::size_t axis = 0; axis < k_context_axes; ++axis)
+        axes.edges[axis] = to_vec4(part.mesh->geometry->axis_edges[axis]);
+    stream_.dispatch(axes_kernel_, Threads(faces, k_context_axes),
+                     {BufferRange(slot.positions, 0, k_context_axes * faces * sizeof(float)),
+                      BufferRange(slot.sorted, 0, k_context_axes * samples * sizeof(float)),
+                      BufferRange(slot.prefixes, 0, k_context_axes * mass_rows * (samples + 1) * sizeof(vec4)),
+                      BufferRange(slot.axes, 0, histogram_bytes(k_context_axes * k_context_bins, classes, faces))},
+                     axes);
+}
+
+void GpuContextHistograms::fetch(std::span<const Part> parts) {
+    std::size_t later = 0;
+    for (const Part& part : parts)
+        if (part.samples.first > 0) later += k_columns_per_class * part.classes.count * part.faces.count;
+    later_.resize(later);
+    struct Sum {
+        std::span<float> out;
+        std::span<const float> added;
+    };
+    std::vector<Sum> sums;
+    std::vector<BufferPart> fetched;
+    later = 0;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        for_each_column(parts[i], [&](std::size_t column, std::span<float> out) {
+            std::span<float> target = out;
+            if (parts[i].samples.first > 0) {
+                target = std::span(later_).subspan(later, out.size());
+                sums.push_back({out, target});
+                later += out.size();
+            }
+            const std::size_t of_geodesic = k_context_bins * parts[i].classes.count;
+            const bool geodesic = column < of_geodesic;
+            add_fetched({geodesic ? &slots_[i].geodesic : &slots_[i].axes,
+                         (geodesic ? column : column - of_geodesic) * out.size_bytes(), std::as_writable_bytes(target)},
+                        fetched);
+        });
+    stream_.fetch(fetched);
+    for (const Sum& sum : sums)
+        for (std::size_t f = 0; f < sum.out.size(); ++f) sum.out[f] += sum.added[f];
+}
+
+// Calls use(column, out) for the columns of a part's histograms: bins of all measures x its classes.
+template <typename Use>
+void GpuContextHistograms::for_each_column(const Part& part, Use&& use) {
+    const std::size_t all_faces = part.mesh->geometry->faces;
+    for (std::size_t bin = 0; bin < k_columns_per_class; ++bin)
+        for (std::size_t c = 0; c < part.classes.count; ++c) {
+            const std::size_t column = bin * part.all_classes + part.classes.first + c;
+            use(bin * part.classes.count + c,
+                part.mesh->out.subspan(column * all_faces + part.faces.first, part.faces.count));
+        }
 }
 
 }  // namespace exemplar

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "embedded/learn_stumps_comp.h"
+#include "host/learn/grouped_stumps.h"
 #include "shaders/shared/stumps.h"
 
 namespace exemplar {
@@ -24,7 +26,7 @@ static_assert(shared::k_link_softmax == static_cast<std::uint32_t>(Link::softmax
 constexpr std::uint32_t k_quads_on_cpu = 4;
 
 // A classifier as the kernel wants it.
-struct GroupedStumps {
+struct DeviceStumps {
     std::vector<std::uint32_t> columns;  // features that are used, by rising number
     std::vector<GroupedStump> stumps;
     std::vector<StumpGroup> groups;
@@ -39,19 +41,14 @@ std::vector<std::uint32_t> used_features(const BoostedStumps& classifier) {
     return used;
 }
 
-GroupedStumps group(const BoostedStumps& classifier) {
-    GroupedStumps result{
+DeviceStumps group(const BoostedStumps& classifier) {
+    const GroupedStumps grouped(classifier);
+    DeviceStumps result{
         .columns = used_features(classifier), .stumps = {}, .groups = {}, .constant = classifier.constant()};
-    std::vector<Stump> sorted = classifier.stumps;
-    std::ranges::stable_sort(sorted, {}, &Stump::classes);
-    std::uint64_t last_classes = 0;
-    for (const Stump& stump : sorted) {
-        const auto index = static_cast<std::uint32_t>(result.stumps.size());
-        if (result.groups.empty() || stump.classes != last_classes)
-            result.groups.push_back({index, index, static_cast<std::uint32_t>(stump.classes),
-                                     static_cast<std::uint32_t>(stump.classes >> 32)});
-        last_classes = stump.classes;
-        ++result.groups.back().end;
+    for (const GroupedStumps::Group& group : grouped.groups)
+        result.groups.push_back({group.first, group.end, static_cast<std::uint32_t>(group.classes),
+                                 static_cast<std::uint32_t>(group.classes >> 32)});
+    for (const Stump& stump : grouped.stumps) {
         const auto column = std::ranges::lower_bound(result.columns, stump.feature) - result.columns.begin();
         result.stumps.push_back({static_cast<std::uint32_t>(column), stump.threshold, stump.above, stump.below});
     }
@@ -67,6 +64,32 @@ void copy_finite(std::span<const float> values, std::span<std::byte> memory) {
         const float above = values[i] > -k_largest ? values[i] : -k_largest;
         out[i] = above < k_largest ? above : k_largest;
     }
+}
+
+// Rows of one matrix in a tile.
+struct Piece {
+    const ScoredMatrix* matrix;
+    std::size_t first;  // of the matrix
+    std::size_t rows;
+    std::size_t place;  // of the first row in the tile
+};
+
+// Rows [first, first + rows) of all matrices one after the other.
+std::vector<Piece> pieces_of(std::span<const ScoredMatrix> matrices, std::size_t first, std::size_t rows) {
+    std::vector<Piece> pieces;
+    std::size_t begin = 0;
+    for (const ScoredMatrix& matrix : matrices) {
+        const std::size_t end = begin + matrix.features->rows;
+        const std::size_t from = std::max(begin, first), to = std::min(end, first + rows);
+        if (from < to) pieces.push_back({&matrix, from - begin, to - from, from - first});
+        begin = end;
+    }
+    return pieces;
+}
+
+template <typename T>
+BufferRange whole(const Buffer& buffer, const std::vector<T>& values) {
+    return {buffer, 0, values.size() * sizeof(T)};
 }
 
 }  // namespace
@@ -102,39 +125,68 @@ const Kernel& GpuStumpScorer::kernel(std::uint32_t classes) {
     return kernel;
 }
 
-void GpuStumpScorer::probabilities(const BoostedStumps& classifier, const FeatureMatrix& features, Link link,
-                                   float scale, std::span<float> out) {
-    check_scoring(classifier, features, scale, out);
-    if (features.rows == 0) return;
-    const std::size_t classes = classifier.class_count;
-    const GroupedStumps grouped = group(classifier);
-    const Buffer stumps = Buffer::of<GroupedStump>(device_, grouped.stumps);
-    const Buffer groups = Buffer::of<StumpGroup>(device_, grouped.groups);
-    const Buffer constant = Buffer::of<float>(device_, grouped.constant);
+struct GpuStumpScorer::Classifier {
+    const DeviceStumps& grouped;
+    std::uint32_t class_count;
+    Link link;
+    float scale;
+};
 
-    const std::size_t tile_rows = rows_per_tile(features.rows, grouped.columns.size(), classes);
-    const std::size_t column_bytes = tile_rows * sizeof(float);
-    reserve(device_, features_, grouped.columns.size() * column_bytes);
-    reserve(device_, probabilities_, tile_rows * classes * sizeof(float));
-    for (std::size_t first = 0; first < features.rows; first += tile_rows) {
-        const std::size_t rows = std::min(tile_rows, features.rows - first);
-        for (std::size_t c = 0; c < grouped.columns.size(); ++c)
-            stream_.upload_with(features_, rows * sizeof(float), c * column_bytes, [&](std::span<std::byte> memory) {
-                copy_finite(features.column(grouped.columns[c]).subspan(first, rows), memory);
-            });
-        const std::size_t threads = (rows + tile_unit() - 1) / tile_unit() * shared::k_stump_neighbors;
-        const StumpParameters parameters{.rows = static_cast<std::uint32_t>(rows),
-                                         .stride = static_cast<std::uint32_t>(tile_rows / 4),
-                                         .threads = static_cast<std::uint32_t>(threads),
-                                         .groups = static_cast<std::uint32_t>(grouped.groups.size()),
-                                         .link = static_cast<std::uint32_t>(link),
-                                         .scale = scale};
-        stream_.dispatch(kernel(classifier.class_count), threads,
-                         {BufferRange(features_, 0, grouped.columns.size() * column_bytes), stumps, groups, constant,
-                          BufferRange(probabilities_, 0, tile_rows * classes * sizeof(float))},
-                         parameters);
-        stream_.fetch(probabilities_, out.subspan(first * classes, rows * classes));
-    }
+void GpuStumpScorer::probabilities_of_all(const BoostedStumps& classifier, Link link, float scale,
+                                          std::span<const ScoredMatrix> matrices) {
+    for (const ScoredMatrix& matrix : matrices) check_scoring(classifier, *matrix.features, scale, matrix.out);
+    const std::size_t rows =
+        std::accumulate(matrices.begin(), matrices.end(), std::size_t{0},
+                        [](std::size_t sum, const ScoredMatrix& matrix) { return sum + matrix.features->rows; });
+    if (rows == 0) return;
+    const DeviceStumps grouped = group(classifier);
+    const std::size_t tile_rows = rows_per_tile(rows, grouped.columns.size(), classifier.class_count);
+    reserve(device_, features_, grouped.columns.size() * tile_rows * sizeof(float));
+    reserve(device_, probabilities_, tile_rows * classifier.class_count * sizeof(float));
+    upload<GroupedStump>(stumps_, grouped.stumps);
+    upload<StumpGroup>(groups_, grouped.groups);
+    upload<float>(constant_, grouped.constant);
+    for (std::size_t first = 0; first < rows; first += tile_rows)
+        score_tile({grouped, classifier.class_count, link, scale}, matrices, first, std::min(tile_rows, rows - first),
+                   tile_rows);
+}
+
+// With the work that is recorded next, so that it costs no submission of its own.
+template <typename T>
+void GpuStumpScorer::upload(Buffer& buffer, const std::vector<T>& values) {
+    reserve(device_, buffer, values.size() * sizeof(T));
+    stream_.upload<T>(buffer, values);
+}
+
+void GpuStumpScorer::score_tile(const Classifier& classifier, std::span<const ScoredMatrix> matrices, std::size_t first,
+                                std::size_t rows, std::size_t stride) {
+    const DeviceStumps& grouped = classifier.grouped;
+    const std::size_t classes = classifier.class_count, column_bytes = stride * sizeof(float);
+    const std::vector<Piece> pieces = pieces_of(matrices, first, rows);
+    for (std::size_t c = 0; c < grouped.columns.size(); ++c)
+        stream_.upload_with(features_, rows * sizeof(float), c * column_bytes, [&](std::span<std::byte> memory) {
+            for (const Piece& piece : pieces)
+                copy_finite(piece.matrix->features->column(grouped.columns[c]).subspan(piece.first, piece.rows),
+                            memory.subspan(piece.place * sizeof(float)));
+        });
+    const std::size_t threads = (rows + tile_unit() - 1) / tile_unit() * shared::k_stump_neighbors;
+    const StumpParameters parameters{.rows = static_cast<std::uint32_t>(rows),
+                                     .stride = static_cast<std::uint32_t>(stride / 4),
+                                     .threads = static_cast<std::uint32_t>(threads),
+                                     .groups = static_cast<std::uint32_t>(grouped.groups.size()),
+                                     .link = static_cast<std::uint32_t>(classifier.link),
+                                     .scale = classifier.scale};
+    stream_.dispatch(kernel(classifier.class_count), threads,
+                     {BufferRange(features_, 0, grouped.columns.size() * column_bytes), whole(stumps_, grouped.stumps),
+                      whole(groups_, grouped.groups), whole(constant_, grouped.constant),
+                      BufferRange(probabilities_, 0, stride * classes * sizeof(float))},
+                     parameters);
+    std::vector<HostPart> parts;
+    parts.reserve(pieces.size());
+    for (const Piece& piece : pieces)
+        parts.push_back({piece.place * classes * sizeof(float), std::as_writable_bytes(piece.matrix->out.subspan(
+                                                                    piece.first * classes, piece.rows * classes))});
+    stream_.fetch(probabilities_, parts);
 }
 
 }  // namespace exemplar

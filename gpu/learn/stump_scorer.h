@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <map>
 #include <span>
+#include <vector>
 
 #include "gpu/runtime/buffer.h"
 #include "gpu/runtime/device.h"
@@ -13,18 +14,24 @@
 
 namespace exemplar {
 
-/// Boosted stumps on the device. Only the features that stumps use are uploaded, in tiles of rows that fit the device's
-/// limits. Probabilities agree with CpuStumpScorer within 1e-5: sums are taken in another order, and exp differs
-/// between devices.
+/// Boosted stumps on the device. Only the features that stumps use are uploaded. The rows of all matrices that are
+/// scored together lie side by side, in tiles that fit the device's limits: a submission each. Probabilities agree with
+/// CpuStumpScorer within 1e-5: sums are taken in another order, and exp differs between devices.
 class GpuStumpScorer final : public StumpScorer {
   public:
     /// `tile_bytes` bounds the memory of a tile's features and of its probabilities below the device's own limits.
     explicit GpuStumpScorer(Device& device, Profiler* profiler = nullptr,
                             std::size_t tile_bytes = std::size_t{256} << 20);
-    void probabilities(const BoostedStumps& classifier, const FeatureMatrix& features, Link link, float scale,
-                       std::span<float> out) override;
+    void probabilities_of_all(const BoostedStumps& classifier, Link link, float scale,
+                              std::span<const ScoredMatrix> matrices) override;
 
   private:
+    // A classifier on the device.
+    struct Classifier;
+    void score_tile(const Classifier& classifier, std::span<const ScoredMatrix> matrices, std::size_t first,
+                    std::size_t rows, std::size_t stride);
+    template <typename T>
+    void upload(Buffer& buffer, const std::vector<T>& values);
     const Kernel& kernel(std::uint32_t classes);
     std::size_t tile_unit() const;
     std::size_t rows_per_tile(std::size_t rows, std::size_t columns, std::size_t classes) const;
@@ -33,7 +40,8 @@ class GpuStumpScorer final : public StumpScorer {
     std::size_t tile_bytes_;
     Stream stream_;
     std::map<std::uint32_t, Kernel> kernels_;  // by class count
-    Buffer features_, probabilities_;          // kept between calls
+    // Kept between calls.
+    Buffer stumps_, groups_, constant_, features_, probabilities_;
 };
 
 }  // namespace exemplar

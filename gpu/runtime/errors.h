@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "host/core/device_memory_error.h"
 #include "host/core/errors.h"
 
 namespace exemplar {
@@ -25,12 +26,6 @@ class DeviceLostError : public DeviceError {
 
 /// What a window showed images on is gone; a new surface must be made of it.
 class SurfaceLostError : public DeviceError {
-  public:
-    using DeviceError::DeviceError;
-};
-
-/// The device's or the host's memory is used up.
-class DeviceMemoryError : public DeviceError {
   public:
     using DeviceError::DeviceError;
 };

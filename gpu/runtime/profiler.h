@@ -7,7 +7,8 @@
 
 namespace exemplar {
 
-/// Device time per kernel, from timestamps around every dispatch of the streams that have this profiler.
+/// Device time per kernel, from timestamps around every dispatch of the streams that have this profiler, and how often
+/// those streams have waited for submitted work.
 class Profiler {
   public:
     struct Entry {
@@ -27,9 +28,16 @@ class Profiler {
         const auto found = entries_.find(kernel);
         return found == entries_.end() ? 0.0 : found->second.milliseconds;
     }
-    void reset() { entries_.clear(); }
+    void add_submission() { ++submissions_; }
+    /// Submissions that streams have waited for.
+    std::size_t submissions() const { return submissions_; }
+    void reset() {
+        entries_.clear();
+        submissions_ = 0;
+    }
 
   private:
+    std::size_t submissions_ = 0;
     std::map<std::string, Entry> entries_;
 };
 

@@ -354,14 +354,19 @@ void Stream::finish() {
 }
 
 void Stream::fetch(const Buffer& source, std::span<const HostPart> parts) {
-    const bool mapped = source && source.resource()->mapped;
-    for (const HostPart& part : parts) {
-        if (!mapped) download_bytes(source, part.target, part.offset);
-    }
+    std::vector<BufferPart> of_source;
+    of_source.reserve(parts.size());
+    for (const HostPart& part : parts) of_source.push_back({&source, part.offset, part.target});
+    fetch(of_source);
+}
+
+void Stream::fetch(std::span<const BufferPart> parts) {
+    const auto mapped = [](const BufferPart& part) { return *part.source && part.source->resource()->mapped; };
+    for (const BufferPart& part : parts)
+        if (!mapped(part)) download_bytes(*part.source, part.target, part.offset);
     finish();
-    for (const HostPart& part : parts) {
-        if (mapped) source.read(part.target, part.offset);
-    }
+    for (const BufferPart& part : parts)
+        if (mapped(part)) part.source->read(part.target, part.offset);
 }
 
 // Lets go of everything that finished work used.

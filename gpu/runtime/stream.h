@@ -30,6 +30,13 @@ struct HostPart {
     std::span<std::byte> target;
 };
 
+/// The same of any buffer.
+struct BufferPart {
+    const Buffer* source;
+    std::size_t offset;
+    std::span<std::byte> target;
+};
+
 /// A sequence of device work: record, submit, wait; then record again. Commands run as if one after the other: barriers
 /// follow from what each command reads and writes, and a stream sees what earlier submitted streams wrote. One thread
 /// at a time may use a stream. Waits for its work when it ends.
@@ -129,6 +136,8 @@ class Stream {
     }
     /// The same of parts of a buffer.
     void fetch(const Buffer& source, std::span<const HostPart> parts);
+    /// The same of parts of several buffers.
+    void fetch(std::span<const BufferPart> parts);
 
     /// All barriers of the current recording, or of the last one while there is none.
     const std::vector<Barrier>& barriers() const { return barriers_; }

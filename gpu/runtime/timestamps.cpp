@@ -56,6 +56,7 @@ std::uint64_t Timestamps::elapsed_ticks(std::size_t dispatch) const {
 }
 
 void Timestamps::collect() {
+    if (profiler_) profiler_->add_submission();
     for (std::size_t i = 0; i < dispatches_.size(); ++i)
         profiler_->add(dispatches_[i], static_cast<double>(elapsed_ticks(i)) * device_.info().timestamp_period * 1e-6);
     clear();

@@ -22,7 +22,7 @@ class Timestamps {
 
     void start(VkCommandBuffer commands, std::string_view name);
     void stop(VkCommandBuffer commands, VkPipelineStageFlags2 stage);
-    /// Adds the recorded times to the profiler; call it when the commands are done.
+    /// Adds the recorded times and the submission to the profiler; call it when the commands are done.
     void collect();
     /// Forgets what was recorded.
     void clear() { dispatches_.clear(); }

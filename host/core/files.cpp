@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "host/core/errors.h"
+#include "host/core/memory_budget.h"
 #include "host/core/text.h"
 
 namespace exemplar {
@@ -100,6 +101,18 @@ void write_file_atomically(const fs::path& path, const std::function<void(std::o
     temporary.kept = true;
 }
 
+namespace {
+
+/// A file of holes takes no room on a disk, and a pipe may never end.
+void require_memory_for(const fs::path& path, std::uintmax_t bytes) {
+    constexpr std::uintmax_t k_always_there = 64 << 20;
+    if (bytes < k_always_there || bytes <= usable_memory() / 2) return;
+    throw DataError(fmt::format("{}: {:.1f} GB are too many to read in {:.1f} GB of memory", path.string(),
+                                1e-9 * static_cast<double>(bytes), 1e-9 * static_cast<double>(usable_memory())));
+}
+
+}  // namespace
+
 std::string read_file(const fs::path& path) {
     std::error_code ignored;  // opening says more
     if (fs::is_directory(path, ignored)) throw DataError(path.string() + ": is a folder, not a file");
@@ -109,6 +122,7 @@ std::string read_file(const fs::path& path) {
     // What has no size, or another one by now, such as a pipe, is read to its end piece by piece.
     constexpr std::size_t k_piece = 65536;
     const std::uintmax_t size = fs::file_size(path, ignored);
+    if (!ignored) require_memory_for(path, size);
     std::string content(ignored ? k_piece : static_cast<std::size_t>(size) + 1, '\0');
     std::size_t filled = 0;
     errno = 0;
@@ -116,6 +130,7 @@ std::string read_file(const fs::path& path) {
         stream.read(content.data() + filled, static_cast<std::streamsize>(content.size() - filled));
         filled += static_cast<std::size_t>(stream.gcount());
         if (!stream) break;
+        require_memory_for(path, 2 * content.size());
         content.resize(content.size() + std::max(k_piece, content.size() / 2));
     }
     if (stream.bad()) throw DataError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));

@@ -1,6 +1,8 @@
 #include "host/data/result_cache.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <xxhash.h>
 
 #include <cstdlib>
@@ -33,6 +35,23 @@ std::string checksum(const TensorFile& file) {
     return fmt::format("{:016x}", XXH3_64bits_digest(state.get()));
 }
 
+/// Makes now the time of the last use. In a folder that others own or nobody may write to, the entry keeps its age.
+void mark_as_used(const fs::path& path) {
+    utimensat(AT_FDCWD, path.c_str(), nullptr, 0);
+}
+
+std::uint64_t bytes_of(const TensorFile& file) {
+    std::uint64_t bytes = 0;
+    for (const auto& [name, tensor] : file.tensors) bytes += tensor.bytes.size();
+    return bytes;
+}
+
+/// Whether the folder is looked through after this entry.
+bool is_time_to_trim(const fs::path& path, std::uint64_t bytes, std::uint64_t most_bytes) {
+    const std::string name = path.filename().string();
+    return bytes >= most_bytes / 100 || XXH3_64bits(name.data(), name.size()) % 16 == 0;
+}
+
 }  // namespace
 
 fs::path default_cache_folder(std::string_view kind) {
@@ -58,6 +77,7 @@ bool read_cache_entry(const fs::path& path, int version, const std::function<voi
         if (file.meta("version") != std::to_string(version)) return false;
         if (file.meta("checksum") != checksum(file)) return false;
         parse(file);
+        mark_as_used(path);
         return true;
     } catch (const ModelError&) {
         return false;
@@ -66,14 +86,17 @@ bool read_cache_entry(const fs::path& path, int version, const std::function<voi
     }
 }
 
-void write_cache_entry(const fs::path& path, int version, TensorFile file) {
+void write_cache_entry(const fs::path& path, int version, TensorFile file, std::uint64_t most_bytes) {
+    const std::uint64_t bytes = bytes_of(file);
+    if (bytes > most_bytes || most_bytes == 0) return;
     file.metadata["version"] = std::to_string(version);
     file.metadata["checksum"] = checksum(file);
     try {
         write_safetensors(path, file);
     } catch (const DataError&) {
-        // Next time it is computed again.
+        return;  // next time it is computed again
     }
+    if (is_time_to_trim(path, bytes, most_bytes)) trim_cache(path.parent_path(), most_bytes, path);
 }
 
 }  // namespace exemplar

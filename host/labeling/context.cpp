@@ -47,9 +47,7 @@ void add_samples(const ContextGeometry& geometry, std::span<const double> masses
     }
 }
 
-}  // namespace
-
-void check_context_geometry(const ContextGeometry& geometry) {
+void check_geometry(const ContextGeometry& geometry) {
     const std::size_t samples = geometry.sample_face.size();
     const bool consistent =
         geometry.sample_area.size() == samples && geometry.geodesic_bin.size() == samples * geometry.faces &&
@@ -58,19 +56,9 @@ void check_context_geometry(const ContextGeometry& geometry) {
     if (!consistent) throw UsageError("the sizes of a ContextGeometry contradict each other; compute it again");
 }
 
-void check_context_sizes(std::size_t faces, std::span<const float> probabilities, std::size_t classes,
-                         std::span<const float> out) {
-    if (classes == 0 || probabilities.size() != faces * classes)
-        throw UsageError("contextual histograms need probabilities of faces x classes, with at least one class");
-    if (out.size() != k_context_measures * k_context_bins * classes * faces)
-        throw UsageError("contextual histograms need an output of measures x bins x classes x faces");
-}
-
-void CpuContextHistograms::accumulate(const ContextGeometry& geometry, std::span<const float> probabilities,
-                                      std::size_t classes, std::span<float> out) {
-    check_context_geometry(geometry);
-    check_context_sizes(geometry.faces, probabilities, classes, out);
-    const std::vector<double> masses = sample_masses(geometry, probabilities, classes);
+void accumulate_mesh(const ContextMesh& mesh, std::size_t classes) {
+    const ContextGeometry& geometry = *mesh.geometry;
+    const std::vector<double> masses = sample_masses(geometry, mesh.probabilities, classes);
     const std::size_t columns = k_context_measures * k_context_bins * classes;
     parallel_ranges(geometry.faces, k_face_block, [&](std::size_t begin, std::size_t end) {
         std::vector<double> histograms(columns);
@@ -78,9 +66,25 @@ void CpuContextHistograms::accumulate(const ContextGeometry& geometry, std::span
             std::ranges::fill(histograms, 0.0);
             add_samples(geometry, masses, classes, face, histograms);
             for (std::size_t column = 0; column < columns; ++column)
-                out[column * geometry.faces + face] = static_cast<float>(histograms[column]);
+                mesh.out[column * geometry.faces + face] = static_cast<float>(histograms[column]);
         }
     });
+}
+
+}  // namespace
+
+void check_context(const ContextMesh& mesh, std::size_t classes) {
+    check_geometry(*mesh.geometry);
+    const std::size_t faces = mesh.geometry->faces;
+    if (classes == 0 || mesh.probabilities.size() != faces * classes)
+        throw UsageError("contextual histograms need probabilities of faces x classes, with at least one class");
+    if (mesh.out.size() != k_context_measures * k_context_bins * classes * faces)
+        throw UsageError("contextual histograms need an output of measures x bins x classes x faces");
+}
+
+void CpuContextHistograms::accumulate_all(std::span<const ContextMesh> meshes, std::size_t classes) {
+    for (const ContextMesh& mesh : meshes) check_context(mesh, classes);
+    for (const ContextMesh& mesh : meshes) accumulate_mesh(mesh, classes);
 }
 
 }  // namespace exemplar

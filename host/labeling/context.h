@@ -30,27 +30,37 @@ struct ContextGeometry {
     std::array<std::array<float, k_context_bins - 1>, k_context_axes> axis_edges{};
 };
 
+/// One of the meshes whose histograms are taken together; see ContextHistograms.
+struct ContextMesh {
+    const ContextGeometry* geometry;
+    std::span<const float> probabilities;
+    std::span<float> out;
+};
+
 /// Contextual label histograms (Eq. A.1): for each face i, class l, measure t and bin b the sum over samples j with
 /// dist_t(i, j) in bin b of sample_area[j] * P(l | j). Column order: (measure * bins + bin) * classes + class.
 /// `probabilities` is faces x classes, item-major; `out` is (k_context_measures * k_context_bins * classes) x faces,
-/// feature-major. The CPU implementation is the reference; gpu/labeling implements it in a shader.
+/// feature-major. The CPU implementation is the reference; gpu/labeling implements it in a shader. Throws UsageError if
+/// the sizes of a geometry and its spans contradict each other.
 class ContextHistograms {
   public:
     virtual ~ContextHistograms() = default;
-    virtual void accumulate(const ContextGeometry& geometry, std::span<const float> probabilities, std::size_t classes,
-                            std::span<float> out) = 0;
+    void accumulate(const ContextGeometry& geometry, std::span<const float> probabilities, std::size_t classes,
+                    std::span<float> out) {
+        const ContextMesh one{&geometry, probabilities, out};
+        accumulate_all(std::span(&one, 1), classes);
+    }
+    /// The same of several meshes, in less time than one by one: each gets what it would get alone, bit for bit on one
+    /// device. Nothing is computed if one of them is refused.
+    virtual void accumulate_all(std::span<const ContextMesh> meshes, std::size_t classes) = 0;
 };
 
-/// Throws UsageError if the sizes inside a geometry contradict each other.
-void check_context_geometry(const ContextGeometry& geometry);
-/// Throws UsageError if the spans of accumulate() do not fit a geometry of that many faces.
-void check_context_sizes(std::size_t faces, std::span<const float> probabilities, std::size_t classes,
-                         std::span<const float> out);
+/// Throws UsageError if the sizes inside a mesh's geometry contradict each other, or its spans do not fit it.
+void check_context(const ContextMesh& mesh, std::size_t classes);
 
 class CpuContextHistograms final : public ContextHistograms {
   public:
-    void accumulate(const ContextGeometry& geometry, std::span<const float> probabilities, std::size_t classes,
-                    std::span<float> out) override;
+    void accumulate_all(std::span<const ContextMesh> meshes, std::size_t classes) override;
 };
 
 }  // namespace exemplar

@@ -93,16 +93,25 @@ fs::path default_feature_folder() {
     return default_cache_folder("features");
 }
 
+std::string feature_entry_name(const TriangleMesh& mesh, const FeatureOptions& options) {
+    return fmt::format("{}-v{}-s{}{}.safetensors", content_hash(mesh), k_feature_version, options.samples,
+                       options.orientation ? "-oriented" : "");
+}
+
+std::optional<MeshFeatures> remembered_features(const TriangleMesh& mesh, const FeatureOptions& options,
+                                                const fs::path& folder) {
+    MeshFeatures features;
+    const auto parse = [&](const TensorFile& file) { features = from_file(file, mesh.face_count()); };
+    if (folder.empty() || !read_cache_entry(folder / feature_entry_name(mesh, options), k_feature_version, parse))
+        return {};
+    return features;
+}
+
 MeshFeatures cached_features(const TriangleMesh& mesh, const FeatureOptions& options, const fs::path& folder) {
     if (folder.empty()) return compute_features(mesh, options);
-    const fs::path path = folder / fmt::format("{}-v{}-s{}{}.safetensors", content_hash(mesh), k_feature_version,
-                                               options.samples, options.orientation ? "-oriented" : "");
-    MeshFeatures features;
-    if (read_cache_entry(path, k_feature_version,
-                         [&](const TensorFile& file) { features = from_file(file, mesh.face_count()); }))
-        return features;
-    features = compute_features(mesh, options);
-    write_cache_entry(path, k_feature_version, to_file(features));
+    if (std::optional<MeshFeatures> known = remembered_features(mesh, options, folder)) return std::move(*known);
+    MeshFeatures features = compute_features(mesh, options);
+    write_cache_entry(folder / feature_entry_name(mesh, options), k_feature_version, to_file(features));
     return features;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
@@ -21,11 +22,73 @@ void require_features(const FeatureMatrix& matrix, const std::vector<std::string
                                  names.size(), matrix.cols()));
 }
 
-/// Scores one stage of a cascade; stage 0 must not see contextual columns, which the model guarantees.
-std::vector<float> score(const CalibratedStumps& stage, const FeatureMatrix& matrix, StumpScorer& scorer) {
-    std::vector<float> out(matrix.rows * stage.stumps.class_count);
-    scorer.probabilities(stage.stumps, matrix, stage.link, stage.scale, out);
-    return out;
+using Meshes = std::span<MeshFeatures* const>;
+/// Probabilities of each mesh.
+using Scores = std::vector<std::vector<float>>;
+
+/// Scores one stage of a cascade for all meshes together; stage 0 must not see contextual columns, which the model
+/// guarantees.
+Scores score(const CalibratedStumps& stage, Meshes meshes, FeatureMatrix MeshFeatures::*matrix, StumpScorer& scorer) {
+    Scores scores;
+    scores.reserve(meshes.size());
+    std::vector<ScoredMatrix> scored;
+    for (const MeshFeatures* mesh : meshes) {
+        const FeatureMatrix& features = mesh->*matrix;
+        scores.emplace_back(features.rows * stage.stumps.class_count);
+        scored.push_back({&features, scores.back()});
+    }
+    scorer.probabilities_of_all(stage.stumps, stage.link, stage.scale, scored);
+    return scores;
+}
+
+/// Runs the unary cascade, stage by stage.
+Scores score_unary(const LabelingModel& model, Meshes meshes, const LabelingBackend& backend) {
+    for (const MeshFeatures* mesh : meshes) require_features(mesh->unary, model.unary_names, "face");
+    Scores scores = score(model.unary.front(), meshes, &MeshFeatures::unary, backend.scorer);
+    std::vector<CascadeOpinion> opinions(meshes.size(), {model.averaged_labels, model.class_count()});
+    for (std::size_t m = 0; m < meshes.size(); ++m) opinions[m].add_stage(scores[m]);
+    const std::vector<std::string> names = context_names(model.label_names);
+    for (std::size_t stage = 1; stage < model.unary.size(); ++stage) {
+        check_interrupt();
+        std::vector<ContextMesh> contexts;
+        for (std::size_t m = 0; m < meshes.size(); ++m)
+            contexts.push_back(
+                {&meshes[m]->context, scores[m], context_columns(meshes[m]->unary, model.unary_names.size(), names)});
+        backend.context.accumulate_all(contexts, model.class_count());
+        scores = score(model.unary[stage], meshes, &MeshFeatures::unary, backend.scorer);
+        for (std::size_t m = 0; m < meshes.size(); ++m) opinions[m].add_stage(scores[m]);
+    }
+    return scores;
+}
+
+/// P(boundary) of each mesh's edges.
+Scores score_boundary(const LabelingModel& model, Meshes meshes, const LabelingBackend& backend) {
+    Scores boundaries;
+    if (model.pairwise.empty()) {
+        for (const MeshFeatures* mesh : meshes) boundaries.emplace_back(mesh->edges.size(), k_even_odds);
+        return boundaries;
+    }
+    for (const MeshFeatures* mesh : meshes) require_features(mesh->pairwise, model.pairwise_names, "edge");
+    const std::vector<std::string> names = edge_context_names();
+    for (std::size_t stage = 0; stage < model.pairwise.size(); ++stage) {
+        for (std::size_t m = 0; m < boundaries.size(); ++m)  // none before the first stage
+            accumulate_edge_context(*meshes[m], boundaries[m],
+                                    context_columns(meshes[m]->pairwise, model.pairwise_names.size(), names));
+        boundaries = score(model.pairwise[stage], meshes, &MeshFeatures::pairwise, backend.scorer);
+        for (std::vector<float>& boundary : boundaries) boundary = boundary_column(boundary);
+    }
+    return boundaries;
+}
+
+/// Notes for each mesh its share of the seconds that all took, by their numbers of faces.
+void add_seconds(const char* stage, double seconds, std::span<FaceScores> scores) {
+    std::size_t all = 0;
+    for (const FaceScores& mesh : scores) all += mesh.probabilities.size();
+    for (FaceScores& mesh : scores) {
+        const double share =
+            static_cast<double>(mesh.probabilities.size()) / static_cast<double>(std::max<std::size_t>(all, 1));
+        mesh.seconds.emplace_back(stage, seconds * share);
+    }
 }
 
 }  // namespace
@@ -71,56 +134,50 @@ void drop_context_columns(MeshFeatures& features) {
 
 std::vector<float> unary_probabilities(const LabelingModel& model, MeshFeatures& features,
                                        const LabelingBackend& backend) {
-    require_features(features.unary, model.unary_names, "face");
-    std::vector<float> probabilities = score(model.unary.front(), features.unary, backend.scorer);
-    CascadeOpinion opinion(model.averaged_labels, model.class_count());
-    opinion.add_stage(probabilities);
-    const std::vector<std::string> names = context_names(model.label_names);
-    for (std::size_t stage = 1; stage < model.unary.size(); ++stage) {
-        check_interrupt();
-        const std::span<float> context = context_columns(features.unary, model.unary_names.size(), names);
-        backend.context.accumulate(features.context, probabilities, model.class_count(), context);
-        probabilities = score(model.unary[stage], features.unary, backend.scorer);
-        opinion.add_stage(probabilities);
-    }
-    return probabilities;
+    MeshFeatures* const mesh = &features;
+    return std::move(score_unary(model, std::span(&mesh, 1), backend).front());
 }
 
 std::vector<float> boundary_probabilities(const LabelingModel& model, MeshFeatures& features,
                                           const LabelingBackend& backend) {
-    if (model.pairwise.empty()) return std::vector<float>(features.edges.size(), k_even_odds);
-    require_features(features.pairwise, model.pairwise_names, "edge");
-    std::vector<float> boundary = boundary_column(score(model.pairwise.front(), features.pairwise, backend.scorer));
-    for (std::size_t stage = 1; stage < model.pairwise.size(); ++stage) {
-        const std::span<float> context =
-            context_columns(features.pairwise, model.pairwise_names.size(), edge_context_names());
-        accumulate_edge_context(features, boundary, context);
-        boundary = boundary_column(score(model.pairwise[stage], features.pairwise, backend.scorer));
-    }
-    return boundary;
+    MeshFeatures* const mesh = &features;
+    return std::move(score_boundary(model, std::span(&mesh, 1), backend).front());
+}
+
+std::vector<FaceScores> score_faces(const LabelingModel& model, std::span<MeshFeatures* const> meshes,
+                                    const LabelingBackend& backend) {
+    std::vector<FaceScores> scores(meshes.size());
+    const Stopwatch watch;
+    Scores unary = score_unary(model, meshes, backend);
+    for (std::size_t m = 0; m < meshes.size(); ++m) scores[m].probabilities = std::move(unary[m]);
+    const double unary_seconds = watch.wall();
+    add_seconds("unary", unary_seconds, scores);
+    Scores boundary = score_boundary(model, meshes, backend);
+    for (std::size_t m = 0; m < meshes.size(); ++m) scores[m].boundary = std::move(boundary[m]);
+    add_seconds("pairwise", watch.wall() - unary_seconds, scores);
+    return scores;
+}
+
+FaceLabeling cut_faces(const LabelingModel& model, const MeshFeatures& features, FaceScores scores) {
+    check_interrupt();
+    const Stopwatch watch;
+    const std::size_t classes = model.class_count();
+    FaceLabeling result;
+    result.probabilities = std::move(scores.probabilities);
+    result.seconds = std::move(scores.seconds);
+    const CrfTerms terms = make_crf_terms(features, result.probabilities, classes, scores.boundary);
+    result.label = solve_crf(features, terms, model.crf);
+    merge_small_components(features, model.crf, model.smallest_component, result.label);
+    result.confidence.reserve(result.label.size());
+    for (std::size_t f = 0; f < result.label.size(); ++f)
+        result.confidence.push_back(result.probabilities[f * classes + result.label[f]]);
+    result.seconds.emplace_back("cut", watch.wall());
+    return result;
 }
 
 FaceLabeling label_faces(const LabelingModel& model, MeshFeatures& features, const LabelingBackend& backend) {
-    FaceLabeling result;
-    Stopwatch watch;
-    double before = 0;
-    const auto lap = [&](const char* stage) {
-        result.seconds.emplace_back(stage, watch.wall() - before);
-        before = watch.wall();
-    };
-    result.probabilities = unary_probabilities(model, features, backend);
-    lap("unary");
-    const std::vector<float> boundary = boundary_probabilities(model, features, backend);
-    lap("pairwise");
-    check_interrupt();
-    const std::size_t classes = model.class_count();
-    const CrfTerms terms = make_crf_terms(features, result.probabilities, classes, boundary);
-    result.label = solve_crf(features, terms, model.crf);
-    merge_small_components(features, model.crf, model.smallest_component, result.label);
-    lap("cut");
-    for (std::size_t f = 0; f < result.label.size(); ++f)
-        result.confidence.push_back(result.probabilities[f * classes + result.label[f]]);
-    return result;
+    MeshFeatures* const mesh = &features;
+    return cut_faces(model, features, std::move(score_faces(model, std::span(&mesh, 1), backend).front()));
 }
 
 }  // namespace exemplar

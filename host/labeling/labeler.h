@@ -18,6 +18,13 @@ struct LabelingBackend {
     ContextHistograms& context;
 };
 
+/// What the classifiers say about one mesh, before the cut.
+struct FaceScores {
+    std::vector<float> probabilities;                     ///< faces x classes: what the unary cascade says
+    std::vector<float> boundary;                          ///< P(boundary) per interior edge
+    std::vector<std::pair<std::string, double>> seconds;  ///< its share of the wall time: unary, pairwise
+};
+
 /// What inference says about one mesh, per triangle.
 struct FaceLabeling {
     std::vector<std::int32_t> label;                      ///< after the CRF and the merging of small pieces
@@ -49,7 +56,20 @@ std::vector<float> unary_probabilities(const LabelingModel& model, MeshFeatures&
 /// Runs the boundary classifiers: one probability per edge. `features.pairwise` gains the contextual columns.
 std::vector<float> boundary_probabilities(const LabelingModel& model, MeshFeatures& features,
                                           const LabelingBackend& backend);
-/// Labels a mesh (thesis Sec. 3.2).
+
+// Labeling in two steps, so that many meshes keep a device and the cores busy: the classifiers for several meshes
+// together, then the cut of each.
+
+/// Runs all classifiers for several meshes (distinct ones): a submission to the device per classifier and histograms
+/// where it has room, whatever the number of meshes. Each mesh gets what it would get alone, bit for bit on one device;
+/// its features gain (or reuse) the contextual columns. Throws ModelError where the features of one are not those the
+/// model was trained on.
+std::vector<FaceScores> score_faces(const LabelingModel& model, std::span<MeshFeatures* const> meshes,
+                                    const LabelingBackend& backend);
+/// Cuts a mesh into parts by what score_faces said about it. On the host alone; threads may cut different meshes at
+/// once.
+FaceLabeling cut_faces(const LabelingModel& model, const MeshFeatures& features, FaceScores scores);
+/// Labels a mesh (thesis Sec. 3.2): score_faces, then cut_faces.
 FaceLabeling label_faces(const LabelingModel& model, MeshFeatures& features, const LabelingBackend& backend);
 
 }  // namespace exemplar

@@ -68,18 +68,39 @@ LabeledCorpus working_corpus(LabeledCorpus corpus, std::size_t most_faces) {
     return corpus;
 }
 
+WorkingFeatures working_features(const FeatureOptions& options, const TriangleMesh& mesh,
+                                 const std::filesystem::path& cache, std::size_t most_faces) {
+    const Stopwatch watch;
+    SimplifiedMesh working = working_mesh(mesh, most_faces);
+    WorkingFeatures prepared;
+    prepared.cache_entry = feature_entry_name(working.mesh, options);
+    prepared.features = cached_features(working.mesh, options, cache);
+    prepared.face_of = std::move(working.face_of);
+    prepared.seconds = watch.wall();
+    return prepared;
+}
+
+std::vector<FaceScores> score_meshes(const LabelingModel& model, std::span<WorkingFeatures* const> meshes,
+                                     const LabelingBackend& backend) {
+    std::vector<MeshFeatures*> features;
+    for (WorkingFeatures* mesh : meshes) features.push_back(&mesh->features);
+    return score_faces(model, features, backend);
+}
+
+FaceLabeling finish_labeling(const LabelingModel& model, const WorkingFeatures& mesh, FaceScores scores) {
+    FaceLabeling labeling = cut_faces(model, mesh.features, std::move(scores));
+    labeling.seconds.emplace(labeling.seconds.begin(), "features", mesh.seconds);
+    labeling.label = per_original_face(labeling.label, mesh.face_of);
+    labeling.confidence = per_original_face(labeling.confidence, mesh.face_of);
+    labeling.probabilities = per_original_face(labeling.probabilities, mesh.face_of, model.class_count());
+    return labeling;
+}
+
 FaceLabeling label_mesh(const LabelingModel& model, const TriangleMesh& mesh, const std::filesystem::path& cache,
                         const LabelingBackend& backend, std::size_t most_faces) {
-    const Stopwatch watch;
-    const SimplifiedMesh working = working_mesh(mesh, most_faces);
-    MeshFeatures features = cached_features(working.mesh, model.feature_options, cache);
-    const double feature_seconds = watch.wall();
-    FaceLabeling labeling = label_faces(model, features, backend);
-    labeling.seconds.emplace(labeling.seconds.begin(), "features", feature_seconds);
-    labeling.label = per_original_face(labeling.label, working.face_of);
-    labeling.confidence = per_original_face(labeling.confidence, working.face_of);
-    labeling.probabilities = per_original_face(labeling.probabilities, working.face_of, model.class_count());
-    return labeling;
+    WorkingFeatures prepared = working_features(model.feature_options, mesh, cache, most_faces);
+    WorkingFeatures* const one = &prepared;
+    return finish_labeling(model, prepared, std::move(score_meshes(model, std::span(&one, 1), backend).front()));
 }
 
 }  // namespace exemplar

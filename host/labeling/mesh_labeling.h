@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,9 +30,26 @@ SimplifiedMesh working_mesh(const TriangleMesh& mesh, std::size_t most_faces = k
 /// area among the faces it stands for.
 LabeledCorpus working_corpus(LabeledCorpus corpus, std::size_t most_faces = k_most_working_faces);
 
-/// Labels a mesh of any size (thesis Sec. 3.2): features (remembered in `cache`, see cached_features) and labels are
-/// computed on the working mesh and brought back to its triangles. `seconds` of the result begin
-/// with "features".
+/// A mesh on its way to its labels: what its labels are computed on.
+struct WorkingFeatures {
+    MeshFeatures features;               ///< of the working mesh
+    std::vector<std::uint32_t> face_of;  ///< for each face of the original the face of the working mesh
+    std::string cache_entry;             ///< where a cache of features keeps them
+    double seconds = 0;                  ///< wall time that this took
+};
+
+/// The first step of labeling a mesh of any size: the features (remembered in `cache`, see cached_features) of its
+/// working mesh. Throws what compute_features throws.
+WorkingFeatures working_features(const FeatureOptions& options, const TriangleMesh& mesh,
+                                 const std::filesystem::path& cache, std::size_t most_faces = k_most_working_faces);
+/// The second, of several meshes together: score_faces of their working meshes.
+std::vector<FaceScores> score_meshes(const LabelingModel& model, std::span<WorkingFeatures* const> meshes,
+                                     const LabelingBackend& backend);
+/// The last: cut_faces, brought back to the original's triangles. `seconds` of the result begin with "features".
+/// Threads may do this for different meshes at once.
+FaceLabeling finish_labeling(const LabelingModel& model, const WorkingFeatures& mesh, FaceScores scores);
+
+/// Labels a mesh of any size (thesis Sec. 3.2): the three steps, one after the other.
 FaceLabeling label_mesh(const LabelingModel& model, const TriangleMesh& mesh, const std::filesystem::path& cache,
                         const LabelingBackend& backend, std::size_t most_faces = k_most_working_faces);
 

@@ -105,7 +105,7 @@ void save_model(const std::filesystem::path& path, const LabelingModel& model) {
     file.metadata["kind"] = k_kind;
     file.metadata["format_version"] = std::to_string(k_model_format_version);
     file.metadata["feature_version"] = std::to_string(k_feature_version);
-    file.metadata["model"] = describe(model).dump();
+    file.metadata["model"] = describe(model).dump(-1, ' ', false, Json::error_handler_t::replace);
     for (std::size_t s = 0; s < model.unary.size(); ++s)
         add_classifier(file, fmt::format("unary.{}", s), model.unary[s]);
     for (std::size_t s = 0; s < model.pairwise.size(); ++s)

@@ -88,6 +88,9 @@ void check_group(const ReportData& group) {
             throw UsageError(fmt::format("report page: {}: confusion entry {} is not a share of area", where, share));
     for (const ReportMesh& item : group.meshes) check_mesh(item, classes);
     for (const ReportCurve& curve : group.curves) check_curve(curve, where);
+    for (const ReportTable& table : group.tables)
+        for (const auto& row : table.rows)
+            check_count(row.size(), table.columns.size(), fmt::format("table '{}'", table.title), "cells in a row");
 }
 
 // ---- packing
@@ -203,6 +206,14 @@ Json describe_measures(const std::vector<ReportMeasure>& measures) {
     return result;
 }
 
+Json describe_tables(const std::vector<ReportTable>& tables) {
+    Json result = Json::array();
+    for (const ReportTable& table : tables)
+        result.push_back(
+            {{"title", table.title}, {"note", table.note}, {"columns", table.columns}, {"rows", table.rows}});
+    return result;
+}
+
 Json describe_scores(const std::vector<ReportScore>& scores) {
     Json result = Json::array();
     for (const ReportScore& score : scores)
@@ -251,6 +262,7 @@ Json describe_group(const ReportData& group) {
             {"scores", describe_scores(group.scores)},
             {"stages", describe_stages(group.stage_features)},
             {"curves", describe_curves(group.curves)},
+            {"tables", describe_tables(group.tables)},
             {"meshes", Json::array()}};
 }
 

@@ -59,6 +59,13 @@ struct ReportMesh {
     double recognition_rate = 0;          ///< share of the area labeled right, in [0, 1]; NaN if unknown
 };
 
+/// A table of texts, shown below all others; columns of numbers are set right.
+struct ReportTable {
+    std::string title, note;
+    std::vector<std::string> columns;            ///< their heads
+    std::vector<std::vector<std::string>> rows;  ///< a text per column each
+};
+
 /// One group of a report, e.g. a category: its meshes, and what is known about the model that labeled them.
 /// Empty tables are left out of the page.
 struct ReportData {
@@ -79,6 +86,7 @@ struct ReportData {
     std::vector<ReportScore> scores;                  ///< of every tested mesh
     std::vector<ReportStageFeatures> stage_features;  ///< in the order of the cascade
     std::vector<ReportCurve> curves;                  ///< in the order of the cascade
+    std::vector<ReportTable> tables;                  ///< of anything else
 };
 
 /// A drawing below the groups.

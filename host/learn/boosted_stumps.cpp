@@ -8,23 +8,38 @@
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
+#include "host/learn/grouped_stumps.h"
 
 namespace exemplar {
 namespace {
 
 constexpr std::size_t k_block = 256;  // rows scored together: H of a block stays in the first-level cache
 
+/// A classifier as it is summed: the stumps that the same classes share give one sum for all of them.
+struct Sum {
+    std::uint32_t class_count;
+    GroupedStumps grouped;
+    std::vector<float> constant;
+
+    explicit Sum(const BoostedStumps& classifier)
+        : class_count(classifier.class_count), grouped(classifier), constant(classifier.constant()) {}
+};
+
 /// H of rows [begin, begin + count), class-major with stride k_block.
-void sum_stumps(const BoostedStumps& classifier, std::span<const float> constant, const FeatureMatrix& features,
-                std::size_t begin, std::size_t count, std::span<float> h) {
-    for (std::size_t c = 0; c < constant.size(); ++c) std::fill_n(h.data() + c * k_block, count, constant[c]);
+void sum_stumps(const Sum& sum, const FeatureMatrix& features, std::size_t begin, std::size_t count,
+                std::span<float> h) {
+    for (std::size_t c = 0; c < sum.class_count; ++c) std::fill_n(h.data() + c * k_block, count, sum.constant[c]);
     std::array<float, k_block> response;
-    for (const Stump& stump : classifier.stumps) {
-        const float* x = features.column(stump.feature).data() + begin;
-        for (std::size_t i = 0; i < count; ++i) response[i] = x[i] > stump.threshold ? stump.above : stump.below;
-        for (std::uint64_t left = stump.classes; left != 0; left &= left - 1) {
-            float* sum = h.data() + static_cast<std::size_t>(std::countr_zero(left)) * k_block;
-            for (std::size_t i = 0; i < count; ++i) sum[i] += response[i];
+    for (const GroupedStumps::Group& group : sum.grouped.groups) {
+        response.fill(0.0f);
+        for (std::size_t m = group.first; m < group.end; ++m) {
+            const Stump stump = sum.grouped.stumps[m];
+            const float* x = features.column(stump.feature).data() + begin;
+            for (std::size_t i = 0; i < count; ++i) response[i] += x[i] > stump.threshold ? stump.above : stump.below;
+        }
+        for (std::uint64_t left = group.classes; left != 0; left &= left - 1) {
+            float* of_class = h.data() + static_cast<std::size_t>(std::countr_zero(left)) * k_block;
+            for (std::size_t i = 0; i < count; ++i) of_class[i] += response[i];
         }
     }
 }
@@ -41,6 +56,23 @@ void normalize(std::span<float> row) {
     float sum = 0.0f;
     for (float& value : row) sum += value = std::exp(value - largest);
     for (float& value : row) value /= sum;
+}
+
+void score_rows(const Sum& sum, const FeatureMatrix& features, Link link, float scale, std::span<float> out) {
+    const std::size_t classes = sum.class_count;
+    const std::size_t blocks = (features.rows + k_block - 1) / k_block;
+    parallel_ranges(blocks, 1, [&](std::size_t first, std::size_t last) {
+        std::vector<float> h(classes * k_block);
+        for (std::size_t begin = first * k_block; begin < std::min(last * k_block, features.rows); begin += k_block) {
+            const std::size_t count = std::min(k_block, features.rows - begin);
+            sum_stumps(sum, features, begin, count, h);
+            for (std::size_t i = 0; i < count; ++i) {
+                const std::span<float> row = out.subspan((begin + i) * classes, classes);
+                for (std::size_t c = 0; c < classes; ++c) row[c] = log_weight(scale * h[c * k_block + i], link);
+                normalize(row);
+            }
+        }
+    });
 }
 
 }  // namespace
@@ -98,24 +130,11 @@ void check_scoring(const BoostedStumps& classifier, const FeatureMatrix& feature
     if (!(scale > 0.0f)) throw UsageError("the link's scale is " + std::to_string(scale) + "; it must be above zero");
 }
 
-void CpuStumpScorer::probabilities(const BoostedStumps& classifier, const FeatureMatrix& features, Link link,
-                                   float scale, std::span<float> out) {
-    check_scoring(classifier, features, scale, out);
-    const std::size_t classes = classifier.class_count;
-    const std::vector<float> constant = classifier.constant();
-    const std::size_t blocks = (features.rows + k_block - 1) / k_block;
-    parallel_ranges(blocks, 1, [&](std::size_t first, std::size_t last) {
-        std::vector<float> h(classes * k_block);
-        for (std::size_t begin = first * k_block; begin < std::min(last * k_block, features.rows); begin += k_block) {
-            const std::size_t count = std::min(k_block, features.rows - begin);
-            sum_stumps(classifier, constant, features, begin, count, h);
-            for (std::size_t i = 0; i < count; ++i) {
-                const std::span<float> row = out.subspan((begin + i) * classes, classes);
-                for (std::size_t c = 0; c < classes; ++c) row[c] = log_weight(scale * h[c * k_block + i], link);
-                normalize(row);
-            }
-        }
-    });
+void CpuStumpScorer::probabilities_of_all(const BoostedStumps& classifier, Link link, float scale,
+                                          std::span<const ScoredMatrix> matrices) {
+    for (const ScoredMatrix& matrix : matrices) check_scoring(classifier, *matrix.features, scale, matrix.out);
+    const Sum sum(classifier);
+    for (const ScoredMatrix& matrix : matrices) score_rows(sum, *matrix.features, link, scale, matrix.out);
 }
 
 }  // namespace exemplar

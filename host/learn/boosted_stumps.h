@@ -48,6 +48,12 @@ struct CalibratedStumps {
     float scale = 1;  ///< s of the link, > 0
 };
 
+/// One of the matrices that a classifier scores together, and where its probabilities go: rows x class_count.
+struct ScoredMatrix {
+    const FeatureMatrix* features;
+    std::span<float> out;
+};
+
 /// Evaluates a classifier for many items. The CPU implementation is the reference; gpu/learn implements it in a shader.
 class StumpScorer {
   public:
@@ -55,8 +61,15 @@ class StumpScorer {
     /// Class probabilities, rows x class_count, item-major. A NaN feature compares as not above.
     /// `scale` is the link's s (> 0). Throws ModelError if a stump names a feature that the matrix lacks or a class
     /// that the classifier lacks, UsageError if `out` has another size or the scale is not above zero.
-    virtual void probabilities(const BoostedStumps& classifier, const FeatureMatrix& features, Link link, float scale,
-                               std::span<float> out) = 0;
+    void probabilities(const BoostedStumps& classifier, const FeatureMatrix& features, Link link, float scale,
+                       std::span<float> out) {
+        const ScoredMatrix one{&features, out};
+        probabilities_of_all(classifier, link, scale, std::span(&one, 1));
+    }
+    /// The same of several matrices, in less time than one by one: each gets what it would get alone, bit for bit on
+    /// one device. Nothing is scored if one of them is refused.
+    virtual void probabilities_of_all(const BoostedStumps& classifier, Link link, float scale,
+                                      std::span<const ScoredMatrix> matrices) = 0;
 };
 
 /// Throws what StumpScorer::probabilities says of arguments that do not fit together: ModelError or UsageError.
@@ -65,8 +78,8 @@ void check_scoring(const BoostedStumps& classifier, const FeatureMatrix& feature
 
 class CpuStumpScorer final : public StumpScorer {
   public:
-    void probabilities(const BoostedStumps& classifier, const FeatureMatrix& features, Link link, float scale,
-                       std::span<float> out) override;
+    void probabilities_of_all(const BoostedStumps& classifier, Link link, float scale,
+                              std::span<const ScoredMatrix> matrices) override;
 };
 
 }  // namespace exemplar

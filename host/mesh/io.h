@@ -18,6 +18,9 @@ struct MeshFile {
     /// Per source face, from a PLY `label` property (names from `comment label INDEX NAME` lines, else the numbers), or
     /// from the material names of a glTF file that Exemplar wrote. Absent in all other files.
     std::optional<FaceLabels> labels;
+    /// Per source face, from a PLY float property `confidence` (see write_ply): as read, NaN for triangles of strips.
+    /// Empty in all other files.
+    std::vector<float> confidence;
     /// One-line remarks about what was repaired or left out while reading.
     std::vector<std::string> warnings;
 };

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cstring>
+#include <fstream>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
+#include <vector>
 
-#include "host/core/errors.h"
-#include "host/core/files.h"
 #include "host/mesh/io_text.h"
 #include "host/mesh/io_write_text.h"
 
@@ -180,11 +182,80 @@ std::string file_of_uri(const std::string& uri) {
     return inside ? path.string() : std::string();
 }
 
+std::string normal_path(const std::string& path) {
+    return fs::path(path).lexically_normal().string();
+}
+
+/// The bytes of buffers in files of their own, by the path that the library asks for. It opens no file itself.
+using BufferFiles = std::map<std::string, std::vector<unsigned char>>;
+
+/// What such a file may have, as the glTF file itself.
+constexpr std::uint64_t k_most_bytes = std::numeric_limits<std::uint32_t>::max() / 2;
+
+fs::path folder_of_buffers(const fs::path& folder) {
+    return folder.empty() ? fs::path(".") : folder;
+}
+
+/// Reads buffers in files of their own, from the folder of the glTF file alone, wherever links in it lead, and no more
+/// than the JSON tells of them.
+class BufferReader {
+  public:
+    BufferReader(const fs::path& folder, const std::string& name) : folder_(folder_of_buffers(folder)), name_(name) {}
+
+    /// `place` is what file_of_uri makes of the address of buffer `index`.
+    void read(std::size_t index, const std::string& place, const Json& buffer) {
+        const std::string what = fmt::format("buffer {}, {},", index, quote(place));
+        const fs::path path = inside(place, what);
+        const std::uint64_t bytes = checked_size(path, buffer, what);
+        if (!seen_.insert(path).second) fail(name_, fmt::format("{} is the same file as another; merge the two", what));
+        std::vector<unsigned char> content(bytes);
+        std::ifstream file(path, std::ios::binary);
+        file.read(reinterpret_cast<char*>(content.data()), static_cast<std::streamsize>(bytes));
+        if (!file) fail(name_, what + " cannot be read");
+        files_[normal_path((folder_ / place).string())] = std::move(content);
+    }
+    BufferFiles take() { return std::move(files_); }
+
+  private:
+    /// The file itself.
+    fs::path inside(const std::string& place, const std::string& what) const {
+        std::error_code error;
+        const fs::path root = fs::canonical(folder_, error);
+        fs::path path = error ? fs::path() : fs::canonical(folder_ / place, error);
+        if (error) fail(name_, fmt::format("{} cannot be read: {}", what, error.message()));
+        if (*path.lexically_relative(root).begin() == "..")
+            fail(name_, what + " is a link that leads out of the folder of this file; put a copy in its place");
+        if (!fs::is_regular_file(path, error)) fail(name_, what + " is no file");
+        return path;
+    }
+    std::uint64_t checked_size(const fs::path& path, const Json& buffer, const std::string& what) {
+        const auto declared = buffer.find("byteLength");
+        if (declared == buffer.end() || !declared->is_number_unsigned()) fail(name_, what + " has no byteLength");
+        std::error_code error;
+        const auto bytes = declared->get<std::uint64_t>(), found = std::uint64_t{fs::file_size(path, error)};
+        if (error) fail(name_, fmt::format("{} cannot be read: {}", what, error.message()));
+        if (found != bytes)
+            fail(name_, fmt::format("{} has {} bytes instead of {}; copy or export it again", what, found, bytes));
+        if (bytes > k_most_bytes - all_bytes_) fail(name_, "its buffers are larger than 2 GiB; split it");
+        all_bytes_ += bytes;
+        return bytes;
+    }
+
+    fs::path folder_;
+    const std::string& name_;
+    BufferFiles files_;
+    std::set<fs::path> seen_;
+    std::uint64_t all_bytes_ = 0;
+};
+
 /// Every buffer has bytes of its own: the first may be the binary chunk, each other has an address that no other has.
-void check_buffers(const Json& document, const GltfChunks& chunks, const std::string& name) {
+/// Returns those that lie in files.
+BufferFiles read_buffers(const Json& document, const GltfChunks& chunks, const std::string& name,
+                         const fs::path& folder) {
     const auto buffers = document.find("buffers");
-    if (buffers == document.end() || !buffers->is_array()) return;
+    if (buffers == document.end() || !buffers->is_array()) return {};
     std::set<std::string> seen;
+    std::vector<std::pair<std::size_t, std::string>> in_files;
     for (std::size_t i = 0; i < buffers->size(); ++i) {
         const Json& buffer = (*buffers)[i];
         const bool has_uri = buffer.is_object() && buffer.contains("uri") && buffer["uri"].is_string();
@@ -194,11 +265,16 @@ void check_buffers(const Json& document, const GltfChunks& chunks, const std::st
             continue;
         }
         const auto uri = buffer["uri"].get<std::string>();
-        const std::string place = uri.starts_with("data:") ? uri : file_of_uri(uri);
+        const bool embedded = uri.starts_with("data:");
+        const std::string place = embedded ? uri : file_of_uri(uri);
         if (place.empty()) fail(name, fmt::format("buffer {} is no file in the folder of this one: {}", i, quote(uri)));
         if (!seen.insert(place).second)
             fail(name, fmt::format("buffer {} has the same uri as another; merge the two", i));
+        if (!embedded) in_files.emplace_back(i, place);
     }
+    BufferReader reader(folder, name);
+    for (const auto& [index, place] : in_files) reader.read(index, place, (*buffers)[index]);
+    return reader.take();
 }
 
 /// Text as the library takes it: .glb with cut-down JSON if there is a binary chunk.
@@ -207,28 +283,21 @@ std::string rebuilt(const Json& document, const GltfChunks& chunks) {
     return chunks.binary.empty() ? json : binary_gltf(std::move(json), chunks.binary);
 }
 
-/// Buffers in files of their own are read only from the folder of the glTF file, not from the working folder.
-tinygltf::FsCallbacks folder_callbacks(std::string* folder) {
+/// Gives the library what was read, and nothing else.
+tinygltf::FsCallbacks callbacks_for(BufferFiles* files) {
     tinygltf::FsCallbacks callbacks{};
     callbacks.FileExists = [](const std::string& path, void* data) {
-        std::error_code ignored;
-        return path.starts_with(*static_cast<std::string*>(data) + "/") && fs::is_regular_file(path, ignored);
+        return static_cast<BufferFiles*>(data)->contains(normal_path(path));
     };
     callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
-    callbacks.ReadWholeFile = [](std::vector<unsigned char>* out, std::string* error, const std::string& path, void*) {
-        try {
-            const std::string content = read_file(path);
-            out->assign(content.begin(), content.end());
-            return true;
-        } catch (const DataError& reason) {
-            *error = reason.what();
-            return false;
-        }
+    callbacks.ReadWholeFile = [](std::vector<unsigned char>* out, std::string*, const std::string& path, void* data) {
+        *out = std::move((*static_cast<BufferFiles*>(data))[normal_path(path)]);
+        return true;
     };
     callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
         return false;
     };
-    callbacks.user_data = folder;
+    callbacks.user_data = files;
     return callbacks;
 }
 
@@ -238,11 +307,13 @@ std::string first_line(const std::string& text) {
     return line.empty() ? "tinygltf cannot read it" : printable(line, 200);
 }
 
-tinygltf::Model load_model(const std::string& bytes, const std::string& name, const fs::path& folder) {
+tinygltf::Model load_model(const std::string& bytes, const std::string& name, const fs::path& folder,
+                           BufferFiles files) {
     tinygltf::TinyGLTF loader;
     tinygltf::Model model;
-    std::string error, warning, base = folder.empty() ? "." : folder.string();
-    loader.SetFsCallbacks(folder_callbacks(&base));
+    std::string error, warning;
+    const std::string base = folder_of_buffers(folder).string();
+    loader.SetFsCallbacks(callbacks_for(&files));
     const auto size = static_cast<unsigned>(bytes.size());
     bool loaded = false;
     try {
@@ -262,8 +333,7 @@ tinygltf::Model load_model(const std::string& bytes, const std::string& name, co
 
 tinygltf::Model load_gltf(std::string_view content, const std::string& name, const fs::path& folder,
                           GltfContent wanted) {
-    if (content.size() > std::numeric_limits<std::uint32_t>::max() / 2)
-        fail(name, "the file is larger than 2 GiB; split it");
+    if (content.size() > k_most_bytes) fail(name, "the file is larger than 2 GiB; split it");
     GltfChunks chunks;
     if (content.starts_with("glTF"))
         chunks = binary_chunks(content, name);
@@ -271,8 +341,8 @@ tinygltf::Model load_gltf(std::string_view content, const std::string& name, con
         chunks.json = content;
     const Json document = parse_json(chunks.json, name);
     check_extensions(document, name);
-    check_buffers(document, chunks, name);
-    return load_model(rebuilt(cut_down(document, wanted), chunks), name, folder);
+    BufferFiles files = read_buffers(document, chunks, name, folder);
+    return load_model(rebuilt(cut_down(document, wanted), chunks), name, folder, std::move(files));
 }
 
 std::string binary_gltf(std::string json, std::string_view binary) {

@@ -16,7 +16,8 @@ enum class GltfContent { geometry, animation };
 /// glTF 2.0 (.gltf or .glb, told apart by content) through tinygltf. The library trusts parts of its input (lengths of
 /// binary chunks, deep nesting, many buffers that share one chunk), so a file is checked and cut down to what is wanted
 /// before the library sees it; whatever the library returns must be checked again before it is used (GltfReader).
-/// Buffers in files of their own are looked for in `folder`. Throws MeshError that begins with `name`.
+/// Buffers in files of their own are read from `folder` alone, and not through links that lead out of it; the library
+/// opens no file. Throws MeshError that begins with `name`.
 tinygltf::Model load_gltf(std::string_view content, const std::string& name, const std::filesystem::path& folder,
                           GltfContent wanted);
 

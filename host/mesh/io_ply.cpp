@@ -98,7 +98,7 @@ class BinaryValues {
 };
 
 /// What a property means to a mesh.
-enum class Role { none, x, y, z, corners, strips, label };
+enum class Role { none, x, y, z, corners, strips, label, confidence };
 
 bool is_index_list(const PlyProperty& property) {
     const bool named = property.name == "vertex_indices" || property.name == "vertex_index";
@@ -114,6 +114,7 @@ Role role_of(const PlyElement& element, const PlyProperty& property) {
     if (element.name == "face") {
         if (is_index_list(property)) return Role::corners;
         if (property.name == "label" && !property.count_type) return Role::label;
+        if (property.name == "confidence" && !property.count_type) return Role::confidence;
     }
     if (element.name == "tristrips" && is_index_list(property)) return Role::strips;
     return Role::none;
@@ -128,7 +129,8 @@ std::vector<Role> roles_of(const PlyElement& element) {
 struct PlyContent {
     PolygonList polygons;
     std::vector<std::int32_t> labels;  ///< per polygon, if has_labels
-    bool has_labels = false;
+    std::vector<float> confidence;     ///< per polygon, if has_confidence
+    bool has_labels = false, has_confidence = false;
 };
 
 /// Reads the body of one file; Values is AsciiValues or BinaryValues.
@@ -150,10 +152,12 @@ class BodyReader {
     void check_declarations() {
         for (const PlyElement& element : header_.elements) {
             const std::vector<Role> roles = roles_of(element);
-            for (Role role : {Role::x, Role::y, Role::z, Role::corners, Role::strips, Role::label})
+            for (Role role : {Role::x, Role::y, Role::z, Role::corners, Role::strips, Role::label, Role::confidence})
                 if (std::ranges::count(roles, role) > 1)
-                    mesh_io::fail(name_, fmt::format("element {} declares coordinates, vertex indices or labels twice",
-                                                     element.name));
+                    mesh_io::fail(
+                        name_,
+                        fmt::format("element {} declares coordinates, vertex indices, confidences or labels twice",
+                                    element.name));
             const auto need = [&](Role role, const char* what) {
                 if (std::ranges::find(roles, role) == roles.end())
                     mesh_io::fail(name_, fmt::format("element {} has no property {}", element.name, what));
@@ -166,6 +170,7 @@ class BodyReader {
             } else if (element.name == "face") {
                 need(Role::corners, "vertex_indices that is a list of integers");
                 content_.has_labels = std::ranges::find(roles, Role::label) != roles.end();
+                content_.has_confidence = std::ranges::find(roles, Role::confidence) != roles.end();
             } else if (element.name == "tristrips") {
                 need(Role::strips, "vertex_indices that is a list of integers");
             }
@@ -202,6 +207,7 @@ class BodyReader {
             if (a == b || b == c || c == a) continue;
             content_.polygons.add(triangle);
             if (content_.has_labels) content_.labels.push_back(-1);
+            if (content_.has_confidence) content_.confidence.push_back(std::numeric_limits<float>::quiet_NaN());
         }
         corners_.clear();
     }
@@ -224,6 +230,9 @@ class BodyReader {
                 break;
             case Role::label:
                 add_label(value);
+                break;
+            case Role::confidence:
+                content_.confidence.push_back(static_cast<float>(value));
                 break;
             default:
                 break;
@@ -304,6 +313,7 @@ MeshFile read_ply(std::string_view content, const std::string& name) {
                           : BodyReader(BinaryValues(content, name, header), name, header).read(file.warnings);
     file.mesh = std::move(body.polygons).triangulate(file.warnings);
     if (body.has_labels) file.labels = named_labels(std::move(body.labels), header.label_names);
+    file.confidence = std::move(body.confidence);
     return file;
 }
 

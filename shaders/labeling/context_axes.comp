@@ -66,7 +66,7 @@ void main() {
             const vec4 mass = (prefix(first + behind[b + 1]) - prefix(first + behind[b])) +
                               (prefix(first + before[b]) - prefix(first + before[b + 1]));
             [[dont_unroll]] for (uint c = 0; c < classes; ++c)
-                histograms[histogram_column(axis + 1, b, parameters.classes, first_class + c) * parameters.faces + face] = mass[c];
+                histograms[histogram_column(axis, b, parameters.classes, first_class + c) * parameters.faces + face] = mass[c];
         }
     }
 }

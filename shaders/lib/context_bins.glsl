@@ -1,4 +1,5 @@
-// Where contextual histograms are written: column (measure * bins + bin) * classes + class, feature-major.
+// Where contextual histograms are written: column (measure * bins + bin) * classes + class, feature-major. Measures count
+// from 0 in each kernel's output.
 #ifndef EXEMPLAR_CONTEXT_BINS_GLSL
 #define EXEMPLAR_CONTEXT_BINS_GLSL
 

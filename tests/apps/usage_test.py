@@ -7,7 +7,7 @@ import unittest
 from program import DOCS, ProgramTest, CUBE, CUBE_QUADS, CUBE_TRIANGLES, read_labels, read_off, write_off
 
 DEVICE_COMMANDS = ["label train", "label apply", "label evaluate", "label stress", "devices", "demo", "bench", "lines"]
-HOST_COMMANDS = ["features", "synth", "curvature train", "curvature evaluate", "curvature study"]
+HOST_COMMANDS = ["category train", "category apply", "category evaluate", "features", "synth", "curvature train", "curvature evaluate", "curvature study"]
 COMMANDS = DEVICE_COMMANDS + HOST_COMMANDS
 
 

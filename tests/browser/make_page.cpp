@@ -83,6 +83,10 @@ ReportData make_group(const std::string& kind, std::list<SynthShape>& shapes) {
                             {"unary 1", {{"curvature", 10}, {"context", 90}}}};
     group.first_features = {"curvature.k1.2", "shape_context.44"};
     group.curves = invented_curves();
+    group.tables = {{"Anything",
+                     "Texts from <b>elsewhere</b>.",
+                     {"Name", "Count", "Remark"},
+                     {{"<script>alert(1)</script>.off", "1,234", "<img src=x onerror=alert(1)>"}, {"plain", "5", ""}}}};
     group.timings = {{"features", 12.5}, {"training", 480}};
     group.summary = {{"Recognition rate", fmt::format("{:.1f} %", 100 * group.recognition_rate)}};
     return group;

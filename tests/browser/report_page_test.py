@@ -256,7 +256,7 @@ class WithoutWebgl(PageTest):
         self.assertFalse(self.browser.script("return [...document.querySelectorAll('canvas')]"
                                              ".some(canvas => canvas.checkVisibility())"))
         titles = self.texts(".panel h3")
-        self.assertEqual(sorted(titles), ["All groups", "Chosen features", "Confusion", "Measures", "Tested meshes",
+        self.assertEqual(sorted(titles), ["All groups", "Anything", "Chosen features", "Confusion", "Measures", "Tested meshes",
                                           "Time", "Validation"])
         self.assertEqual(self.texts(".overview tbody th"), ["human", "cup"])
         self.assertEqual(self.texts("#grid .name span:first-child"), ["human-3", "human-2", "human-1"])
@@ -269,6 +269,12 @@ class WithoutWebgl(PageTest):
         self.assertEqual(len(self.texts(".confusion tbody tr")), 9)
         self.assertEqual(len(self.texts(".charts svg path.curve")), 6)
         self.assertEqual(self.texts(".families tbody th")[0], "context")
+
+    def test_texts_of_a_table_stay_texts(self):
+        self.assertEqual(self.texts(".texts tbody th"), ["<script>alert(1)</script>.off", "plain"])
+        self.assertEqual(self.texts(".texts tbody td"), ["1,234", "<img src=x onerror=alert(1)>", "5", ""])
+        self.assertEqual(self.texts(".texts td.number"), ["1,234", "5"])
+        self.assertEqual(self.browser.find_all(".texts img, .texts script"), [])
 
     def test_a_column_sorts_the_tested_meshes(self):
         names = ".scores tbody th"

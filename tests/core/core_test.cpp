@@ -11,6 +11,7 @@
 #include "host/core/progress.h"
 #include "host/core/random.h"
 #include "host/core/text.h"
+#include "tests/support/mesh_files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace exemplar {
@@ -74,6 +75,16 @@ TEST(Files, MissingFilesAndFoldersAreNamed) {
     if (fs::exists("/proc/self/mem")) {  // opens, but cannot be read
         EXPECT_THROW(read_file("/proc/self/mem"), DataError);
     }
+}
+
+TEST(Files, WhatIsLargerThanMemoryIsRefused) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "holes.off") << "OFF";
+    std::error_code error;
+    fs::resize_file(folder / "holes.off", std::uintmax_t{1} << 42, error);
+    if (error) GTEST_SKIP() << "no file of 4 TB can be made here: " << error.message();
+    EXPECT_THAT(mesh_files::error_of<DataError>([&] { read_file(folder / "holes.off"); }),
+                testing::AllOf(testing::HasSubstr("holes.off"), testing::HasSubstr("GB of memory")));
 }
 
 TEST(Files, ViewsHaveTheContent) {

@@ -21,6 +21,7 @@
 #include "host/data/corpus.h"
 #include "host/data/safetensors.h"
 #include "host/hatching/hatching_style.h"
+#include "host/labeling/category_model.h"
 #include "host/labeling/model.h"
 #include "host/lines/style.h"
 #include "host/mesh/io_formats.h"
@@ -260,10 +261,10 @@ bool reads_safetensors(std::string_view content) {
 
 /// A model is made for today's features, whenever it was written, so that the corpus outlives them. Whether it is a
 /// model at all.
-bool made_for_today(const fs::path& path, int feature_version) {
+bool made_for_today(const fs::path& path, int version, const char* key = "feature_version") {
     try {
         TensorFile file = read_safetensors(path);
-        file.metadata["feature_version"] = std::to_string(feature_version);
+        file.metadata[key] = std::to_string(version);
         write_safetensors(path, file);
         return true;
     } catch (const ModelError&) {
@@ -324,6 +325,31 @@ bool reads_hatching(std::string_view content) {
     return true;
 }
 
+bool reads_categories(std::string_view content) {
+    const fs::path path = scratch_file("x.categories", content), again = scratch() / "again.categories";
+    CategoryModel model;
+    const auto load = [&] {
+        return accepts<ModelError>(path.string(), content.size(), k_usual_bound,
+                                   [&] { model = load_category_model(path); });
+    };
+    load();
+    if (!made_for_today(path, k_feature_version)) return false;
+    if (!made_for_today(path, k_shape_descriptor_version, "descriptor_version")) return false;
+    if (!load()) return false;
+    const ShapeDescriptor shape{model.features, std::vector<float>(model.scores.mean.size(), 0.5F)};
+    const CategoryOpinion opinion = recognize(model, shape);
+    require(opinion.category >= -1 && opinion.category < static_cast<std::int32_t>(model.category_count()),
+            "a category or none");
+    require(opinion.probability.size() == model.category_count(), "a probability per category");
+    require(opinion.confidence >= 0 && opinion.confidence <= 1, "a confidence");
+    for (const float p : opinion.probability) require(p >= 0 && p <= 1, "probabilities");
+    save_category_model(again, model);
+    const std::string bytes = read_file(again);
+    save_category_model(again, load_category_model(again));
+    require(read_file(again) == bytes, "equal models give equal bytes");
+    return true;
+}
+
 bool reads_list(std::string_view content) {
     const fs::path path = scratch_file("list.txt", content);
     std::vector<fs::path> meshes;
@@ -364,7 +390,7 @@ bool reads_style(std::string_view content) {
     return true;
 }
 
-constexpr std::array<Reader, 14> k_readers{{{"off", reads_off},
+constexpr std::array<Reader, 15> k_readers{{{"off", reads_off},
                                             {"obj", reads_obj},
                                             {"ply", reads_ply},
                                             {"stl", reads_stl},
@@ -376,6 +402,7 @@ constexpr std::array<Reader, 14> k_readers{{{"off", reads_off},
                                             {"model", reads_model},
                                             {"curvature", reads_curvature},
                                             {"hatching", reads_hatching},
+                                            {"categories", reads_categories},
                                             {"list", reads_list},
                                             {"style", reads_style}}};
 

@@ -201,6 +201,26 @@ TEST(Stream, FetchesPartsOfABuffer) {
     EXPECT_THROW(stream.fetch(buffer, std::vector<HostPart>{part(0, first), part(6, second)}), DeviceError);
 }
 
+// The memory of the first may be the device's own, that of the others is the host's.
+TEST(Stream, FetchesPartsOfSeveralBuffersByOneSubmission) {
+    Profiler profiler;
+    Stream stream(shared_device(), &profiler);
+    Buffer one(shared_device(), 32), two(shared_device(), 32, BufferMemory::upload),
+        three(shared_device(), 32, BufferMemory::readback);
+    for (Buffer* buffer : {&one, &two, &three}) buffer->upload<float>(iota(8));
+    std::vector<float> got(7, -1.0f);
+    const auto part = [&](const Buffer& source, std::size_t from, std::size_t first, std::size_t count) {
+        return BufferPart{&source, from * sizeof(float), std::as_writable_bytes(std::span(got).subspan(first, count))};
+    };
+    stream.copy(one, 0, two, 16, 16);
+    stream.fetch(std::vector<BufferPart>{part(one, 6, 0, 2), part(two, 3, 2, 3), part(three, 5, 5, 1)});
+    EXPECT_THAT(got, ::testing::ElementsAre(6, 7, 3, 0, 1, 5, -1));
+    EXPECT_EQ(profiler.submissions(), 1u);
+    EXPECT_THROW(stream.fetch(std::vector<BufferPart>{part(one, 0, 0, 1), part(two, 7, 1, 2)}), DeviceError);
+    profiler.reset();
+    EXPECT_EQ(profiler.submissions(), 0u);
+}
+
 TEST(Stream, RefusesWrongArguments) {
     const Kernel kernel = affine_kernel();
     Buffer buffer(shared_device(), 4096);

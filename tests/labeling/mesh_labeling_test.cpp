@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
 
 #include "host/labeling/training.h"
 #include "tests/support/shapes.h"
@@ -56,6 +59,21 @@ TEST(MeshLabeling, LabelsOfASimplifiedMeshComeBackToItsFaces) {
     EXPECT_EQ(labeling.confidence.size(), unseen.mesh.face_count());
     EXPECT_EQ(labeling.probabilities.size(), 2 * unseen.mesh.face_count());
     EXPECT_EQ(labeling.seconds.front().first, "features");
+
+    // The same in steps, together with a mesh that is not simplified.
+    const TriangleMesh small = shapes::icosphere(2, 1.0F);
+    WorkingFeatures large = working_features(model.feature_options, unseen.mesh, {}, 1000),
+                    other = working_features(model.feature_options, small, {}, 1000);
+    const std::array<WorkingFeatures*, 2> both{&other, &large};
+    std::vector<FaceScores> scores = score_meshes(model, both, {scorer, context});
+    const FaceLabeling in_steps = finish_labeling(model, large, std::move(scores[1]));
+    EXPECT_EQ(in_steps.label, labeling.label);
+    EXPECT_EQ(in_steps.confidence, labeling.confidence);
+    EXPECT_EQ(in_steps.probabilities, labeling.probabilities);
+    EXPECT_EQ(in_steps.seconds.front().first, "features");
+    EXPECT_EQ(finish_labeling(model, other, std::move(scores[0])).label,
+              label_mesh(model, small, {}, {scorer, context}, 1000).label);
+
     std::size_t right = 0;
     for (std::size_t f = 0; f < unseen.label.size(); ++f) right += labeling.label[f] == unseen.label[f] ? 1 : 0;
     EXPECT_GT(static_cast<double>(right), 0.93 * static_cast<double>(unseen.label.size()));

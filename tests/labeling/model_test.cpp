@@ -78,6 +78,14 @@ TEST(LabelingModelFile, RoundTripKeepsEverythingAndTheBytes) {
     EXPECT_EQ(read_file(path), read_file(again));
 }
 
+TEST(LabelingModelFile, NamesOfMeshesMayBeInAnyEncoding) {
+    const fs::path path = temporary("encoding.safetensors");
+    LabelingModel model = small_model();
+    model.provenance = {"horse \xff 0123"};
+    save_model(path, model);
+    EXPECT_EQ(load_model(path).provenance, std::vector<std::string>{"horse \xEF\xBF\xBD 0123"});
+}
+
 TEST(LabelingModelFile, OtherVersionsAreRefusedWithTheMend) {
     EXPECT_THAT(error_after("newer", [](TensorFile& f) { f.metadata["format_version"] = "99"; }),
                 testing::HasSubstr("use a newer Exemplar"));

@@ -146,6 +146,7 @@ TEST(ReportPage, NamesCannotBreakOutOfTheirPlace) {
     group.scores = {{evil, group.measures}};
     group.stage_features = {{evil, {{evil, 1}}}};
     group.curves = {{evil, {{1, 1, 1}}}};
+    group.tables = {{evil, evil, {evil}, {{evil}}}};
     group.reference_name = group.feature_families[0].first = group.timings[0].first = group.summary[0].first =
         group.summary[0].second = evil;
     const std::string page = written(page_path("evil"), evil, std::vector{group});
@@ -162,7 +163,8 @@ TEST(ReportPage, NamesCannotBreakOutOfTheirPlace) {
          {shown["title"], shown["subtitle"], shown["labels"][1], shown["meshes"][0]["name"], shown["features"][0],
           shown["families"][0][0], shown["timings"][0][0], shown["measures"][0]["name"], shown["scores"][0]["name"],
           shown["stages"][0]["stage"], shown["curves"][0]["name"], shown["reference"], shown["summary"][0][0],
-          shown["summary"][0][1]})
+          shown["summary"][0][1], shown["tables"][0]["title"], shown["tables"][0]["note"],
+          shown["tables"][0]["columns"][0], shown["tables"][0]["rows"][0][0]})
         EXPECT_EQ(name, evil);
 }
 
@@ -346,6 +348,9 @@ TEST(ReportPage, RefusesWhatDoesNotFit) {
         expect_refused("curve 'unary 0' goes from 4 to", [&](Groups& g, TriangleMesh&) {
             g[0].curves = {{"unary 0", {{1, 1, 1}, {4, 1, 1}, {rounds, 1, 1}}}};
         });
+    expect_refused("1 cells in a row", [](Groups& g, TriangleMesh&) {
+        g[0].tables = {{"t", "", {"a", "b"}, {{"1"}}}};
+    });
     expect_refused("256 labels", [](Groups& g, TriangleMesh&) { g[0].label_names.resize(256); });
     expect_refused("vertex 42 of 42", [](Groups&, TriangleMesh& m) { m.faces[9][1] = 42; });
     expect_refused("not finite", [](Groups&, TriangleMesh& m) { m.vertices[5][0] = INFINITY; });

@@ -5,7 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
+#include <thread>
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
@@ -151,6 +153,72 @@ TEST_F(SlowTraining, PartsInSeparatePiecesHaveNoBoundaries) {
     EXPECT_EQ(label_faces(model, features, {scorer_, context_}).label, corpus.meshes[1].label);
 }
 
+/// Counts what a device would be asked.
+class CountingBackend {
+  public:
+    LabelingBackend labeling() { return {scorer_, context_}; }
+    std::size_t scored() const { return scorer_.calls; }
+    std::size_t contexts() const { return context_.calls; }
+
+  private:
+    struct Scorer final : StumpScorer {
+        std::size_t calls = 0;
+        CpuStumpScorer cpu;
+        void probabilities_of_all(const BoostedStumps& classifier, Link link, float scale,
+                                  std::span<const ScoredMatrix> matrices) override {
+            ++calls;
+            cpu.probabilities_of_all(classifier, link, scale, matrices);
+        }
+    };
+    struct Context final : ContextHistograms {
+        std::size_t calls = 0;
+        CpuContextHistograms cpu;
+        void accumulate_all(std::span<const ContextMesh> meshes, std::size_t classes) override {
+            ++calls;
+            cpu.accumulate_all(meshes, classes);
+        }
+    };
+    Scorer scorer_;
+    Context context_;
+};
+
+TEST_F(SlowTraining, ManyMeshesAreScoredTogetherAndCutOnThreadsAsOneByOne) {
+    const LabelingModel model = train(generated("human", 1, 3, 1000), quick_options());
+    ASSERT_EQ(model.unary.size(), 2U);
+    ASSERT_FALSE(model.pairwise.empty());
+    std::vector<MeshFeatures> features;
+    for (const std::size_t faces : {700UL, 1500UL, 1001UL, 2000UL})
+        features.push_back(compute_features(make_shape("human", 90 + faces, faces).mesh, model.feature_options));
+    std::vector<FaceLabeling> alone;
+    alone.reserve(features.size());
+    for (MeshFeatures mesh : features) alone.push_back(label_faces(model, mesh, {scorer_, context_}));
+
+    CountingBackend counting;
+    std::vector<MeshFeatures*> meshes;
+    meshes.reserve(features.size());
+    for (MeshFeatures& mesh : features) meshes.push_back(&mesh);
+    std::vector<FaceScores> scores = score_faces(model, meshes, counting.labeling());
+    ASSERT_EQ(scores.size(), 4U);
+    EXPECT_EQ(counting.scored(), model.unary.size() + model.pairwise.size());
+    EXPECT_EQ(counting.contexts(), 1U);
+    std::vector<FaceLabeling> together(4);
+    const auto cut = [&](std::size_t first) {
+        for (std::size_t m = first; m < 4; m += 2) together[m] = cut_faces(model, features[m], scores[m]);
+    };
+    std::thread even(cut, 0), odd(cut, 1);
+    even.join(), odd.join();
+    for (std::size_t m = 0; m < 4; ++m) {
+        SCOPED_TRACE(m);
+        EXPECT_EQ(together[m].label, alone[m].label);
+        EXPECT_EQ(together[m].probabilities, alone[m].probabilities);
+        EXPECT_EQ(together[m].confidence, alone[m].confidence);
+        ASSERT_EQ(together[m].seconds.size(), 3U);
+        for (std::size_t i = 0; i < 3; ++i)
+            EXPECT_EQ(together[m].seconds[i].first, (std::array{"unary", "pairwise", "cut"})[i]);
+    }
+    EXPECT_TRUE(score_faces(model, {}, counting.labeling()).empty());
+}
+
 TEST_F(SlowTraining, AModelRefusesOtherFeatures) {
     const LabeledCorpus corpus = generated("cup", 1, 2, 1000);
     const LabelingModel model = train(corpus, quick_options());
@@ -158,6 +226,9 @@ TEST_F(SlowTraining, AModelRefusesOtherFeatures) {
     MeshFeatures features = compute_features(corpus.meshes[0].mesh, other);
     features.unary.names[3] = "another.feature";
     EXPECT_THROW(label_faces(model, features, {scorer_, context_}), ModelError);
+    MeshFeatures good = compute_features(corpus.meshes[1].mesh, other);
+    const std::array<MeshFeatures*, 2> both{&good, &features};
+    EXPECT_THROW(score_faces(model, both, {scorer_, context_}), ModelError);
 }
 
 TEST(Training, NothingToLearnFromIsAnError) {

@@ -1,6 +1,7 @@
 // A malformed file gives one line that names the file and the place; nothing crashes and nothing large is allocated.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/support/mesh_files.h"
 
@@ -344,6 +345,78 @@ TEST(BadFile, GltfContainerAndJson) {
                 HasSubstr("decode"));
     EXPECT_THAT(read_error("a.gltf", tetrahedron_gltf("'uri':'missing.bin',")), HasSubstr("missing.bin"));
     EXPECT_THAT(read_error("a.gltf", tetrahedron_gltf("")), HasSubstr("buffer 0 has no bytes"));
+}
+
+/// A folder with a.gltf whose buffer is buffer.bin, beside other files.
+class GltfBufferFile : public testing::Test {
+  protected:
+    GltfBufferFile() {
+        std::filesystem::create_directories(folder_ / "in/below");
+        mesh_files::write_bytes(folder_ / "in/a.gltf", tetrahedron_gltf("'uri':'buffer.bin',"));
+        mesh_files::write_bytes(folder_ / "out.bin", buffer_bytes());
+        mesh_files::write_bytes(folder_ / "in/below/in.bin", buffer_bytes());
+    }
+    void link_to(const std::filesystem::path& target) const { std::filesystem::create_symlink(target, buffer_); }
+    std::string error() const {
+        return error_of<MeshError>([&] { read_mesh(folder_ / "in/a.gltf"); });
+    }
+    mesh_files::TemporaryFolder folder_;
+    std::filesystem::path buffer_ = folder_ / "in/buffer.bin";
+};
+
+TEST_F(GltfBufferFile, LinksThatLeadOutAreRefused) {
+    for (const std::filesystem::path& target : {folder_ / "out.bin", std::filesystem::path("../out.bin")}) {
+        link_to(target);
+        EXPECT_THAT(error(), AllOf(HasSubstr("a.gltf: "), HasSubstr("buffer.bin"), HasSubstr("leads out"),
+                                   HasSubstr("put a copy")));
+        std::filesystem::remove(buffer_);
+    }
+    std::filesystem::create_directory_symlink(folder_.path(), folder_ / "in/up");
+    mesh_files::write_bytes(folder_ / "in/a.gltf", tetrahedron_gltf("'uri':'up/out.bin',"));
+    EXPECT_THAT(error(), HasSubstr("leads out"));
+}
+
+TEST_F(GltfBufferFile, LinksThatStayInsideAreFollowed) {
+    link_to("below/in.bin");
+    EXPECT_EQ(read_mesh(folder_ / "in/a.gltf").mesh.face_count(), 4U);
+    std::filesystem::create_directory_symlink(folder_ / "in", folder_ / "elsewhere");
+    EXPECT_EQ(read_mesh(folder_ / "elsewhere/a.gltf").mesh.face_count(), 4U);
+}
+
+TEST_F(GltfBufferFile, WhatIsNoFileIsRefused) {
+    link_to("/dev/zero");
+    EXPECT_THAT(error(), HasSubstr("leads out"));
+    std::filesystem::remove(buffer_);
+    link_to("nowhere");
+    EXPECT_THAT(error(), HasSubstr("buffer.bin"));
+    std::filesystem::remove(buffer_);
+    ASSERT_EQ(mkfifo(buffer_.c_str(), 0600), 0);
+    EXPECT_THAT(error(), HasSubstr("is no file"));
+    std::filesystem::remove(buffer_);
+    std::filesystem::create_directory(buffer_);
+    EXPECT_THAT(error(), HasSubstr("is no file"));
+}
+
+TEST_F(GltfBufferFile, HasAsManyBytesAsTheJsonTells) {
+    mesh_files::write_bytes(buffer_, buffer_bytes() + "more");
+    EXPECT_THAT(error(), HasSubstr("76 bytes instead of 72"));
+    mesh_files::write_bytes(buffer_, "");
+    EXPECT_THAT(error(), HasSubstr("0 bytes instead of 72"));
+    // A hole costs no disk, but reading it would cost its memory.
+    std::filesystem::resize_file(buffer_, std::uintmax_t{1} << 40);
+    EXPECT_THAT(error(), HasSubstr("instead of 72"));
+    std::string declared = tetrahedron_gltf("'uri':'buffer.bin',");
+    declared.replace(declared.find("\"byteLength\":72"), 15, "\"byteLength\":1099511627776");
+    mesh_files::write_bytes(folder_ / "in/a.gltf", declared);
+    EXPECT_THAT(error(), HasSubstr("larger than 2 GiB"));
+}
+
+TEST_F(GltfBufferFile, TwoNamesOfOneFileAreRefused) {
+    link_to("below/in.bin");
+    std::string twice = tetrahedron_gltf("'uri':'buffer.bin',");
+    twice.insert(twice.rfind("]}"), mesh_files::json_text(",{'uri':'below/in.bin','byteLength':72}"));
+    mesh_files::write_bytes(folder_ / "in/a.gltf", twice);
+    EXPECT_THAT(error(), HasSubstr("same file"));
 }
 
 TEST(BadFile, GltfMeshesRepeatedBeyondMeasure) {

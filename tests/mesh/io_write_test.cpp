@@ -198,6 +198,18 @@ TEST(RoundTrip, PlyKeepsLabelsAndTheirNames) {
     EXPECT_EQ(read->label, labels.label);
 }
 
+TEST(RoundTrip, PlyKeepsConfidences) {
+    const TemporaryFolder folder;
+    const TriangleMesh mesh = rough_sphere();
+    const FaceLabels labels = striped_labels(mesh.face_count(), true);
+    std::vector<float> confidence;
+    for (std::size_t f = 0; f < mesh.face_count(); ++f) confidence.push_back(static_cast<float>(f) / 1000);
+    write_ply(folder / "a.ply", mesh, &labels, confidence);
+    EXPECT_EQ(read_mesh(folder / "a.ply").confidence, confidence);
+    write_ply(folder / "b.ply", mesh, &labels);
+    EXPECT_THAT(read_mesh(folder / "b.ply").confidence, testing::IsEmpty());
+}
+
 TEST(RoundTrip, GltfKeepsNamesPerFace) {
     const TemporaryFolder folder;
     const TriangleMesh mesh = rough_sphere();

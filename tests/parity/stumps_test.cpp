@@ -97,6 +97,21 @@ TEST(StumpParity, ClassifiersOfAnyLength) {
     }
 }
 
+// The device asks once where several stumps ask the same.
+TEST(StumpParity, RepeatedStumpsCountAsOftenAsTheyCome) {
+    GpuStumpScorer scorer(testing::shared_device());
+    Random random(13);
+    const FeatureMatrix features = random_features(130, 10, random);
+    std::vector<BoostedStumps> classifiers(4, random_stumps(5, 80, 10, random));
+    for (BoostedStumps& classifier : classifiers)
+        for (Stump& stump : classifier.stumps) {
+            stump.threshold = std::round(2.0f * stump.threshold) / 2.0f;
+            stump.above += static_cast<float>(random.uniform(-0.2, 0.2));
+            stump.below += static_cast<float>(random.uniform(-0.2, 0.2));
+        }
+    expect_parity(scorer, mean_classifier(classifiers), features, Link::softmax, 2.0f);
+}
+
 TEST(StumpParity, RowsAreTiledToTheLimit) {
     Random random(4);
     const FeatureMatrix features = random_features(1001, 25, random);
@@ -132,6 +147,95 @@ TEST(StumpParity, IsDeterministic) {
     scorer.probabilities(classifier, features, Link::sigmoid, 1.0f, first);
     scorer.probabilities(classifier, features, Link::sigmoid, 1.0f, second);
     EXPECT_EQ(first, second);
+}
+
+struct Group {
+    std::vector<FeatureMatrix> features;
+    std::vector<std::vector<float>> out;
+
+    Group(const std::vector<std::size_t>& rows, std::size_t columns, std::uint32_t classes, Random& random) {
+        for (const std::size_t count : rows) {
+            features.push_back(random_features(count, columns, random));
+            out.emplace_back(count * classes, -1.0f);
+        }
+    }
+    std::vector<ScoredMatrix> matrices() {
+        std::vector<ScoredMatrix> result;
+        for (std::size_t i = 0; i < features.size(); ++i) result.push_back({&features[i], out[i]});
+        return result;
+    }
+};
+
+void expect_as_one_by_one(StumpScorer& scorer, const BoostedStumps& classifier, Group group) {
+    scorer.probabilities_of_all(classifier, Link::sigmoid, 1.5f, group.matrices());
+    for (std::size_t i = 0; i < group.features.size(); ++i) {
+        SCOPED_TRACE("matrix " + std::to_string(i));
+        std::vector<float> alone(group.out[i].size());
+        scorer.probabilities(classifier, group.features[i], Link::sigmoid, 1.5f, alone);
+        EXPECT_EQ(group.out[i], alone);
+        expect_parity(scorer, classifier, group.features[i], Link::sigmoid, 1.5f);
+    }
+}
+
+// With the least limit a tile has 128 rows on a CPU, 32 on a GPU.
+TEST(StumpParity, MatricesOfAGroupAreScoredAsOneByOne) {
+    Random random(9);
+    const BoostedStumps classifier = random_stumps(5, 100, 30, random);
+    const std::vector<std::size_t> sizes{0, 1, 31, 32, 33, 0, 127, 128, 129, 3, 1003, 0};
+    for (const std::size_t tile_bytes : {std::size_t{1}, std::size_t{30} * 4 * 300, std::size_t{1} << 28}) {
+        SCOPED_TRACE(tile_bytes);
+        GpuStumpScorer scorer(testing::shared_device(), nullptr, tile_bytes);
+        expect_as_one_by_one(scorer, classifier, Group(sizes, 30, 5, random));
+        for (const std::size_t only : {0u, 127u, 128u, 129u})
+            expect_as_one_by_one(scorer, classifier, Group({only}, 30, 5, random));
+        expect_as_one_by_one(scorer, classifier, Group({}, 30, 5, random));
+    }
+    CpuStumpScorer reference;
+    expect_as_one_by_one(reference, classifier, Group(sizes, 30, 5, random));
+}
+
+TEST(StumpParity, ManyMatricesAreOneSubmission) {
+    Random random(10);
+    Profiler profiler;
+    GpuStumpScorer scorer(testing::shared_device(), &profiler);
+    std::vector<std::size_t> sizes(200);
+    for (std::size_t& size : sizes) size = random.index(40);
+    Group group(sizes, 20, 4, random);
+    for (const std::size_t stumps : {50u, 300u}) {
+        const BoostedStumps classifier = random_stumps(4, stumps, 20, random);
+        profiler.reset();
+        scorer.probabilities_of_all(classifier, Link::sigmoid, 1.5f, group.matrices());
+        EXPECT_EQ(profiler.submissions(), 1u);
+        expect_as_one_by_one(scorer, classifier, group);
+    }
+    Group none({0, 0, 0}, 20, 4, random);
+    profiler.reset();
+    scorer.probabilities_of_all(random_stumps(4, 50, 20, random), Link::softmax, 1.0f, none.matrices());
+    EXPECT_EQ(profiler.submissions(), 0u);
+}
+
+TEST(StumpParity, AGroupOverTheLimitIsASubmissionPerTile) {
+    Random random(11);
+    Profiler profiler;
+    GpuStumpScorer scorer(testing::shared_device(), &profiler, std::size_t{25} * 4 * 256);
+    Group group({100, 156, 256, 1, 254}, 25, 3, random);  // 767 rows
+    BoostedStumps classifier = random_stumps(3, 50, 25, random);
+    for (std::uint32_t c = 0; c < 25; ++c) classifier.stumps[c].feature = c;  // all are uploaded
+    scorer.probabilities_of_all(classifier, Link::softmax, 1.0f, group.matrices());
+    EXPECT_EQ(profiler.submissions(), 3u);
+}
+
+TEST(StumpParity, NothingOfAGroupIsScoredIfOneIsRefused) {
+    GpuStumpScorer gpu(testing::shared_device());
+    CpuStumpScorer cpu;
+    Random random(12);
+    const BoostedStumps classifier = random_stumps(3, 40, 5, random);
+    for (StumpScorer* scorer : std::initializer_list<StumpScorer*>{&gpu, &cpu}) {
+        Group group({10, 10}, 5, 3, random);
+        group.features[1] = random_features(10, 1, random);
+        EXPECT_THROW(scorer->probabilities_of_all(classifier, Link::softmax, 1.0f, group.matrices()), ModelError);
+        EXPECT_EQ(group.out[0], std::vector<float>(30, -1.0f));
+    }
 }
 
 TEST(StumpParity, RefusesWhatTheReferenceRefuses) {

@@ -73,6 +73,15 @@ function timingsPanel({ timings }) {
   const rows = timings.map(([what, seconds]) => element('tr', {}, element('th', { scope: 'row', text: what }), numberCell(duration(seconds))));
   return panel('Time', 'Wall time of each step.', element('table', { class: 'rows' }, element('tbody', {}, ...rows)));
 }
+/** A table of texts; columns of numbers are set right. */
+function tablePanel({ title, note, columns, rows }) {
+  const right = columns.map((_, c) => c > 0 && rows.some(row => row[c]) && rows.every(row => /^([\d.,]+( %| s)?|–)?$/.test(row[c])));
+  const head = columns.map((text, c) => element('th', { scope: 'col', class: right[c] ? 'soft number' : 'soft', text }));
+  const lines = rows.map(([name, ...texts]) => element('tr', {}, element('th', { scope: 'row', text: name }),
+    ...texts.map((text, c) => element('td', { class: right[c + 1] ? 'number' : null, text }))));
+  const table = element('table', { class: 'wide-table texts' }, element('thead', {}, element('tr', {}, ...head)), element('tbody', {}, ...lines));
+  return panel(title, note, scrollable(title, table, rows.length > 15 ? 'tall' : ''));
+}
 /** Two columns of panels that are each as wide as half the page; one if the other is empty. */
 function columns(left, right) {
   const filled = [left, right].filter(panels => panels.length).map(panels => element('div', {}, ...panels));
@@ -85,5 +94,6 @@ function showTables(group) {
   $('panels').replaceChildren(
     ...(wide ? [...confusion, ...columns(measures, timings)] : columns([...measures, ...timings], confusion)),
     ...some(group.scores, scoresPanel), ...some(group.curves, curvesPanel),
-    ...some([...group.families, ...group.stages, ...group.features], featuresPanel));
+    ...some([...group.families, ...group.stages, ...group.features], featuresPanel),
+    ...group.tables.map(tablePanel));
 }

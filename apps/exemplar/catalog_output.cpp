@@ -1,0 +1,32 @@
+#include "apps/exemplar/catalog_output.h"
+
+#include <algorithm>
+
+namespace exemplar {
+namespace {
+
+/// `text` between two `mark`s, each mark in it doubled.
+std::string quoted(std::string_view text, char mark) {
+    std::string out(1, mark);
+    for (const char c : text) {
+        if (c == mark) out += mark;
+        out += c;
+    }
+    return out + mark;
+}
+
+}  // namespace
+
+std::string csv_field(std::string_view text) {
+    constexpr std::string_view k_begin_formulas = "=+-@\t\r";
+    const bool formula = !text.empty() && k_begin_formulas.find(text.front()) != std::string_view::npos;
+    std::string field(text);
+    if (formula) field.insert(field.begin(), '\'');
+    return field.find_first_of(",\"\r\n") == std::string::npos ? field : quoted(field, '"');
+}
+
+std::string sql_text(std::string_view text) {
+    return quoted(text, '\'');
+}
+
+}  // namespace exemplar

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "host/core/bounded_queue.h"
+#include "host/core/stopwatch.h"
+
+namespace exemplar {
+
+/// What a stage of a pipeline did.
+struct StageLoad {
+    std::string name;
+    std::size_t workers = 0;
+    std::size_t items = 0;   ///< that it worked on
+    std::size_t groups = 0;  ///< calls
+    double busy = 0;         ///< seconds at work, of all workers
+    double load = 0;         ///< share of the time that its workers were at work, in [0, 1]
+};
+
+/// Items that run through stages, each with threads of its own, one behind the other: while the last items of one stage
+/// are worked on, the next stage is at work on those before. Between two stages a bounded queue waits, so that no more
+/// items are on their way than that. Items may overtake each other where a stage has several workers.
+template <typename Item>
+class Pipeline {
+  public:
+    struct Stage {
+        std::string name;
+        std::size_t workers;  ///< at least 1
+        std::size_t group;    ///< items that are worked on in one call at most; those that wait, never waiting for more
+        std::size_t room;     ///< items that may wait for it
+        std::function<void(std::span<Item>)> work;
+    };
+
+    /// `source` gives the items, called by one thread; nothing ends them.
+    Pipeline(std::function<std::optional<Item>()> source, std::vector<Stage> stages)
+        : source_(std::move(source)), stages_(std::move(stages)) {
+        for (const Stage& stage : stages_) {
+            queues_.push_back(std::make_unique<BoundedQueue<Item>>(stage.room));
+            reports_.push_back({.name = stage.name, .workers = stage.workers});
+        }
+        running_ = std::vector<std::atomic<std::size_t>>(stages_.size());
+    }
+
+    /// Works until the source ends and all its items have left the last stage. What a stage or the source throws ends
+    /// all of them once the calls they are in have returned, and is thrown here: the first such exception.
+    /// `abandoned` is called then, from any thread, to wake those who wait for something else.
+    void run(const std::function<void()>& abandoned = {}) {
+        abandoned_ = abandoned;
+        const Stopwatch watch;
+        {
+            std::vector<std::jthread> threads;
+            guard([&] { start(threads); });  // the system may have no more threads
+        }
+        for (StageLoad& report : reports_)
+            report.load = report.busy / (watch.wall() * static_cast<double>(report.workers));
+        if (error_) std::rethrow_exception(error_);
+    }
+
+    /// Of the stages, in order, after run().
+    const std::vector<StageLoad>& reports() const { return reports_; }
+
+  private:
+    void start(std::vector<std::jthread>& threads) {
+        for (std::size_t s = 0; s < stages_.size(); ++s) running_[s] = stages_[s].workers;
+        threads.emplace_back([this] { guard([this] { run_source(); }); });
+        for (std::size_t s = 0; s < stages_.size(); ++s)
+            for (std::size_t w = 0; w < stages_[s].workers; ++w)
+                threads.emplace_back([this, s] { guard([this, s] { run_stage(s); }); });
+    }
+    void run_source() {
+        while (std::optional<Item> item = source_())
+            if (!queues_.front()->push(std::move(*item))) break;
+        queues_.front()->close();
+    }
+    void run_stage(std::size_t s) {
+        for (;;) {
+            std::vector<Item> items = queues_[s]->pop_some(stages_[s].group);
+            if (items.empty()) break;
+            const Stopwatch watch;
+            stages_[s].work(items);
+            count(s, items.size(), watch.wall());
+            if (s + 1 == stages_.size()) continue;
+            for (Item& item : items) queues_[s + 1]->push(std::move(item));
+        }
+        if (--running_[s] == 0 && s + 1 < stages_.size()) queues_[s + 1]->close();
+    }
+    void count(std::size_t report, std::size_t items, double seconds) {
+        const std::lock_guard lock(mutex_);
+        reports_[report].items += items;
+        ++reports_[report].groups;
+        reports_[report].busy += seconds;
+    }
+    template <typename Work>
+    void guard(Work&& work) {
+        try {
+            work();
+        } catch (...) {
+            {
+                const std::lock_guard lock(mutex_);
+                if (!error_) error_ = std::current_exception();
+            }
+            for (auto& queue : queues_) queue->abandon();
+            if (abandoned_) abandoned_();
+        }
+    }
+
+    std::function<std::optional<Item>()> source_;
+    std::vector<Stage> stages_;
+    std::function<void()> abandoned_;
+    std::vector<std::unique_ptr<BoundedQueue<Item>>> queues_;  ///< before each stage
+    std::vector<std::atomic<std::size_t>> running_;            ///< workers of each stage that are not done
+    std::vector<StageLoad> reports_;
+    std::mutex mutex_;
+    std::exception_ptr error_;
+};
+
+}  // namespace exemplar

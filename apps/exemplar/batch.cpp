@@ -282,6 +282,9 @@ void run_shard(BatchCommand options) {
                         options.source.string(), plan.models.string()));
     require_output_folder(plan.out);
     refuse_links(plan.out);
+    if (!fs::exists(plan.out / k_output_mark))
+        throw DataError(fmt::format("{}: its output folder {} was not made by the program; write the shards again",
+                                    options.source.string(), plan.out.string()));
     DeviceBackend backend(options.common.device);
     const WorkerFolder worker(plan.out);
     ShardWork work(std::move(shard), number_of_task("SLURM_RESTART_COUNT") % 2 == 1);

@@ -10,6 +10,7 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/interrupt.h"
+#include "host/data/shape_record.h"
 #include "host/data/shape_scan.h"
 
 namespace exemplar {
@@ -20,36 +21,6 @@ using Json = nlohmann::json;
 
 constexpr int k_format = 1;
 constexpr std::string_view k_begin = R"({"exemplar_shard":)";
-
-/// Bytes of any encoding as JSON, which is UTF-8: each byte a code point.
-std::string to_text(const std::string& bytes) {
-    std::string text;
-    for (const char c : bytes) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte < 0x80) {
-            text += c;
-        } else {
-            text += static_cast<char>(0xc0 | (byte >> 6));
-            text += static_cast<char>(0x80 | (byte & 0x3f));
-        }
-    }
-    return text;
-}
-
-std::string to_bytes(const std::string& text) {
-    std::string bytes;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const auto lead = static_cast<unsigned char>(text[i]);
-        if (lead < 0x80) {
-            bytes += text[i];
-        } else if (lead <= 0xc3 && i + 1 < text.size()) {
-            bytes += static_cast<char>((lead << 6) | (static_cast<unsigned char>(text[++i]) & 0x3f));
-        } else {
-            throw DataError("a path holds what is no byte");
-        }
-    }
-    return bytes;
-}
 
 Json to_json(const BatchPlan& plan) {
     return {{"exemplar_shard", k_format},
@@ -203,14 +174,14 @@ std::optional<CatalogShape> ShardWork::next() {
         CatalogShape shape = std::move(shard_.shapes[next_++]);
         const fs::path path = shard_.plan.out / "labeled" / (shape.name + ".json");
         std::error_code ignored;
-        const bool is_there = fs::exists(path, ignored);
+        const bool is_there = fs::exists(fs::symlink_status(path, ignored));
         const auto record = read_record(path);
         if (record && record->run == shard_.plan.key && is_about(*record, shape)) {
             counts_.count(*record, false);
             continue;
         }
         // One of another run, a damaged one, or of the file before it changed; not one that has come this moment.
-        if (is_there) fs::remove(path, ignored);
+        if (is_there) remove_record(shard_.plan.out / "labeled", shape.name);
         return shape;
     }
     return {};

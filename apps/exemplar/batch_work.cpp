@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <new>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include "apps/exemplar/labeled_output.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/core/interrupt.h"
 
 namespace exemplar {
 namespace {
@@ -19,20 +22,45 @@ namespace fs = std::filesystem;
 /// So few that two programs that share a catalog end together, so many that asking costs nothing.
 constexpr std::size_t k_claimed_at_once = 4;
 
-constexpr std::array k_endings{"_labels.txt", ".seg", ".ply", ".glb"};
+constexpr std::string_view k_optional_ending = ".glb";
+constexpr std::array<std::string_view, 4> k_endings{"_labels.txt", ".seg", ".ply", k_optional_ending};
+
+/// Removes a file of a shape's results.
+void remove_file(const fs::path& file) {
+    std::error_code error;
+    fs::remove(file, error);
+    if (error) throw DataError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
+}
 
 /// Moves a shape's files from a folder to another one of the same file system, in the place of all that it had there.
 void move_files(const fs::path& from, const fs::path& to, const std::string& name) {
-    for (const char* const ending : k_endings) {
-        const fs::path source = from / (name + ending), target = to / (name + ending);
+    for (const std::string_view ending : k_endings) {
+        const fs::path source = from / fmt::format("{}{}", name, ending), target = to / source.filename();
         std::error_code error;
         fs::rename(source, target, error);
-        if (error == std::errc::no_such_file_or_directory) fs::remove(target, error);
-        if (error) throw DataError(fmt::format("{}: cannot be written: {}", target.string(), error.message()));
+        if (error == std::errc::no_such_file_or_directory && ending == k_optional_ending)
+            remove_file(target);
+        else if (error)
+            throw DataError(fmt::format("{}: cannot be written: {}", target.string(), error.message()));
     }
 }
 
+void remove_files(const fs::path& folder, const std::string& name) {
+    for (const std::string_view ending : k_endings) remove_file(folder / fmt::format("{}{}", name, ending));
+}
+
+/// Whether anything is there, be it a link that leads nowhere.
+bool is_taken(const fs::path& path) {
+    std::error_code ignored;
+    return fs::exists(fs::symlink_status(path, ignored));
+}
+
 }  // namespace
+
+void remove_record(const fs::path& folder, const std::string& name) {
+    const fs::path file = fs::path(name).filename().string() + ".json";
+    remove_file(make_output_folder(folder, name) / file);
+}
 
 void BatchCounts::count(const ShapeRecord& record, bool is_new) {
     if (!is_new) ++taken_over;
@@ -42,12 +70,15 @@ void BatchCounts::count(const ShapeRecord& record, bool is_new) {
 
 void reopen_shapes(CatalogRun& run, bool retry) {
     std::vector<std::int64_t> missing;
-    std::error_code ignored;
     run.for_each(
         [&](const CatalogRun::Labeled& labeled) {
-            const fs::path path = run.record_path(labeled.shape);
-            if (retry && labeled.state != "done") fs::remove(path, ignored);
-            if (!run.record_of(labeled.shape)) missing.push_back(labeled.shape.id);
+            std::optional<ShapeRecord> record = run.record_of(labeled.shape);
+            // Another program may have tried again what the catalog had as failed when this one began to ask.
+            if (retry && record && record->state() != "done") {
+                remove_record(run.folder(), labeled.shape.name);
+                record.reset();
+            }
+            if (!record) missing.push_back(labeled.shape.id);
         },
         "state <> 'claimed'");
     for (const std::int64_t shape : missing) run.reopen(shape);
@@ -91,8 +122,7 @@ std::optional<CatalogShape> CatalogWork::next() {
         }
         CatalogShape shape = std::move(claimed_.front());
         claimed_.pop_front();
-        std::error_code ignored;
-        const bool is_there = fs::exists(run_.record_path(shape), ignored);
+        const bool is_there = is_taken(run_.record_path(shape));
         // A program that was killed after the record was written, and before the catalog was told.
         if (const auto record = run_.record_of(shape)) {
             run_.finish(shape.id, *record);
@@ -100,7 +130,7 @@ std::optional<CatalogShape> CatalogWork::next() {
             continue;
         }
         // One of another run, a damaged one, or of the file before it changed; not one that has come this moment.
-        if (is_there) fs::remove(run_.record_path(shape), ignored);
+        if (is_there) remove_record(run_.folder(), shape.name);
         return shape;
     }
 }
@@ -129,12 +159,23 @@ void BatchWriter::write_labels(BatchShape& shape, const fs::path& target) const 
     shape.record.confidence = described["confidence"];
 }
 
+/// What a file format cannot hold is the shape's own fault; a full disk is not.
+void BatchWriter::try_to_write_labels(BatchShape& shape, const fs::path& target) const {
+    try {
+        write_labels(shape, target);
+    } catch (const MeshError& error) {
+        shape.record.error = error.what();
+    } catch (const std::bad_alloc&) {
+        shape.record.error = shape.shape.path.string() + ": there is not enough memory to write its labels";
+    }
+}
+
 /// Whether another program has been faster.
 bool BatchWriter::is_done(BatchShape& shape, const fs::path& path) const {
-    std::error_code ignored;
-    if (!fs::exists(path, ignored)) return false;
+    if (!is_taken(path)) return false;
     std::optional<ShapeRecord> other = read_record(path);
-    if (!other || other->run != key_ || other->content != shape.record.content)
+    // One of the same run may be about the file as it was before or after this moment: whoever asks next sees that.
+    if (!other || other->run != key_)
         throw DataError(
             fmt::format("{}: another run, with other models or options, writes to the same folder; give one of "
                         "them another --out",
@@ -149,20 +190,25 @@ bool BatchWriter::write(BatchShape& shape) const {
     const std::string name = fs::path(shape.shape.name).filename().string();
     const fs::path staging = worker_.path() / "shape", target = folder / (name + ".json");
     fs::remove_all(staging);
-    if (shape.record.error.empty()) write_labels(shape, staging / name);
-    if (is_done(shape, target)) return false;
-    move_files(staging, folder, name);
     ShapeRecord& record = shape.record;
+    if (record.error.empty()) try_to_write_labels(shape, staging / name);
+    if (is_done(shape, target)) return false;
+    const bool failed = !record.error.empty();
+    if (!failed) move_files(staging, folder, name);
     record.run = key_;
     record.worker = worker_.id();
     record.finished = seconds_since_1970();
     record.seconds["write"] = watch.wall();
     const fs::path written = worker_.path() / "record.json";
     for (;;) {
+        check_interrupt();
         write_json(written, to_json(record));
-        if (commit_file(written, target)) return true;
+        if (commit_file(written, target)) break;
         if (is_done(shape, target)) return false;
     }
+    // Not before: another program may have been at the same shape at the same time, with more success.
+    if (failed) remove_files(folder, name);
+    return true;
 }
 
 }  // namespace exemplar

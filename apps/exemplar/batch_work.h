@@ -42,6 +42,8 @@ class BatchWork {
     BatchCounts counts_;
 };
 
+/// Removes the record of the shape `name` in a run's folder. Throws DataError where a link lies on the way.
+void remove_record(const std::filesystem::path& folder, const std::string& name);
 /// Makes those open again that have no record in the run's folder any longer (somebody has removed it, or another run
 /// has replaced it) and, with `retry`, those that failed or were of unknown category.
 void reopen_shapes(CatalogRun& run, bool retry);
@@ -82,6 +84,7 @@ class BatchWriter {
 
   private:
     bool is_done(BatchShape& shape, const std::filesystem::path& record) const;
+    void try_to_write_labels(BatchShape& shape, const std::filesystem::path& target) const;
     void write_labels(BatchShape& shape, const std::filesystem::path& target) const;
     std::filesystem::path folder_;
     const WorkerFolder& worker_;

@@ -17,6 +17,7 @@
 #include "host/core/stopwatch.h"
 #include "host/core/text.h"
 #include "host/data/shape_scan.h"
+#include "host/mesh/io.h"
 
 namespace exemplar {
 namespace {
@@ -101,8 +102,13 @@ class Adder {
         waiting_.clear();
     }
     void look_into(CatalogShape& shape) {
-        const std::size_t needed = reading_memory(static_cast<std::uint64_t>(shape.bytes));
-        const MemoryBudget::Share share = budget_.take(std::min(needed, memory_));
+        auto bytes = static_cast<std::uint64_t>(shape.bytes);
+        const auto take = [&] { return budget_.take(std::min(reading_memory(bytes), memory_)); };
+        if (reading_memory(bytes) <= memory_) {
+            const MemoryBudget::Share looking = take();
+            bytes += bytes_beside(shape.path);
+        }
+        const MemoryBudget::Share share = take();
         CatalogShape described = describe_shape(shape.path, memory_);
         described.name = std::move(shape.name);
         described.category = std::move(shape.category);
@@ -124,7 +130,8 @@ class Adder {
 AddCounts add_to_catalog(Catalog& catalog, const std::vector<fs::path>& sources, const AddOptions& options) {
     std::size_t total = 0;
     const auto warn = [&](const fs::path& link) {
-        if (!options.quiet) fmt::print(stderr, "warning: {}: leads out of the folder: left out\n", link.string());
+        if (!options.quiet)
+            fmt::print(stderr, "warning: {}: leads out of the folder: left out\n", without_controls(link.string()));
     };
     for (const fs::path& source : sources)
         find_in_source(

@@ -62,7 +62,7 @@ void Progress::advance(std::size_t steps, const std::string& detail) {
     const std::lock_guard lock(mutex_);
     if (finished_) return;
     done_ += steps;
-    detail_ = detail;
+    detail_ = without_controls(detail);
     if (const auto hears = listener()) {
         (*hears)({what_, done_, total_});
         return;

@@ -6,8 +6,16 @@
 
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
+#include "host/core/text.h"
 
 namespace exemplar {
+namespace {
+
+void print_error(const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", without_controls(error.what()).c_str());
+}
+
+}  // namespace
 
 int run_program(int (*run)(int argc, char** argv), int argc, char** argv) noexcept {
     install_interrupt_handler();
@@ -17,12 +25,12 @@ int run_program(int (*run)(int argc, char** argv), int argc, char** argv) noexce
         std::fputs("interrupted\n", stderr);
         return 130;
     } catch (const UsageError& error) {
-        std::fprintf(stderr, "error: %s\n", error.what());
+        print_error(error);
         return 2;
     } catch (const std::bad_alloc&) {
         std::fputs("error: out of memory; use fewer or smaller meshes\n", stderr);
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "error: %s\n", error.what());
+        print_error(error);
     }
     return 1;
 }

@@ -92,6 +92,13 @@ bool is_utf8(std::string_view text) {
     return true;
 }
 
+std::string without_controls(std::string_view text) {
+    std::string line(text);
+    for (char& c : line)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    return line;
+}
+
 std::string counted(std::size_t count, std::string_view one, std::string_view more) {
     if (count != 1 && more.empty()) return fmt::format("{} {}s", count, one);
     return fmt::format("{} {}", count, count == 1 ? one : more);

@@ -32,7 +32,7 @@ double number_of(const Json& json) {
 ShapeRecord from_json(const Json& json) {
     ShapeRecord record;
     json.at("run").get_to(record.run);
-    json.at("content").get_to(record.content);
+    record.content = to_bytes(json.at("content").get<std::string>());  // has the category, of any encoding
     json.at("worker").get_to(record.worker);
     json.at("error").get_to(record.error);
     json.at("model").get_to(record.model);
@@ -66,9 +66,38 @@ Json parse_shallow(const std::string& text) {
     return Json::parse(text, is_kept, false);
 }
 
+std::string to_text(const std::string& bytes) {
+    std::string text;
+    for (const char c : bytes) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 0x80) {
+            text += c;
+        } else {
+            text += static_cast<char>(0xc0 | (byte >> 6));
+            text += static_cast<char>(0x80 | (byte & 0x3f));
+        }
+    }
+    return text;
+}
+
+std::string to_bytes(const std::string& text) {
+    std::string bytes;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto lead = static_cast<unsigned char>(text[i]);
+        if (lead < 0x80) {
+            bytes += text[i];
+        } else if (lead <= 0xc3 && i + 1 < text.size()) {
+            bytes += static_cast<char>((lead << 6) | (static_cast<unsigned char>(text[++i]) & 0x3f));
+        } else {
+            throw DataError("text holds what is no byte");
+        }
+    }
+    return bytes;
+}
+
 Json to_json(const ShapeRecord& record) {
     return {{"run", record.run},
-            {"content", record.content},
+            {"content", to_text(record.content)},
             {"worker", record.worker},
             {"error", record.error},
             {"model", record.model},

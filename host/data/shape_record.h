@@ -35,6 +35,10 @@ struct ShapeRecord {
     double seconds_all() const;
 };
 
+/// Bytes of any encoding as JSON, which is UTF-8: each byte a code point.
+std::string to_text(const std::string& bytes);
+/// The bytes that to_text was given. Throws DataError where the text is of no bytes.
+std::string to_bytes(const std::string& text);
 nlohmann::json to_json(const ShapeRecord& record);
 /// JSON of strangers, without what is nested deeper than any record, as going through that would exhaust the stack; a
 /// discarded value if it is damaged.

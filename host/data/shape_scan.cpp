@@ -143,7 +143,8 @@ CatalogShape describe_shape(const fs::path& path, std::size_t most_memory) {
     shape.path = path;
     try {
         shape = stat_shape(path);
-        const auto bytes = static_cast<std::uint64_t>(shape.bytes);
+        auto bytes = static_cast<std::uint64_t>(shape.bytes);
+        if (reading_memory(bytes) <= most_memory) bytes += bytes_beside(path);
         if (reading_memory(bytes) > most_memory)
             throw MeshError(
                 fmt::format("{}: {:.1f} GB are more than can be read in {:.1f} GB of memory; --memory allows more",

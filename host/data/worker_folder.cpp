@@ -57,9 +57,12 @@ bool is_held(const fs::path& lock) {
     return held;
 }
 
-/// Whether a worker ran on this machine. Where locks do not reach other machines, theirs look free while they are held.
+/// Whether a worker ran on this machine: its name, as new_id made it, less the last two parts. Where locks do not reach
+/// other machines, theirs look free while they are held.
 bool is_of_this_host(const fs::path& lock) {
-    return lock.filename().string().starts_with(host_name() + '-');
+    std::string host = lock.stem().string();
+    for (int part = 0; part < 2; ++part) host.resize(std::min(host.rfind('-'), host.size()));
+    return host == host_name();
 }
 
 bool is_old(const fs::path& path) {

@@ -24,6 +24,8 @@ using Item = std::unique_ptr<BatchShape>;
 
 /// What a face of the working mesh takes while its features are computed, and what each shape takes at least.
 constexpr std::size_t k_bytes_per_face = 24'000;
+/// What a face of the mesh itself takes while the mesh is simplified.
+constexpr std::size_t k_bytes_per_original_face = 160;
 constexpr std::size_t k_bytes_per_shape = 4 << 20;
 
 std::size_t bytes_of(const MeshFeatures& features) {
@@ -71,7 +73,7 @@ class Batch {
     }
     static std::size_t memory_for(std::size_t faces, std::size_t file_bytes) {
         return k_bytes_per_shape + k_bytes_per_face * std::min<std::size_t>(faces, k_most_working_faces) +
-               reading_memory(file_bytes);
+               k_bytes_per_original_face * faces + reading_memory(file_bytes);
     }
 
     /// A stage that works on one shape at a time, unless an earlier stage gave it up.

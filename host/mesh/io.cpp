@@ -9,6 +9,7 @@
 #include "host/core/files.h"
 #include "host/core/text.h"
 #include "host/mesh/io_formats.h"
+#include "host/mesh/io_gltf_file.h"
 #include "host/mesh/io_text.h"
 
 namespace exemplar {
@@ -73,6 +74,15 @@ MeshFile read_mesh(const fs::path& path) {
     }
     const std::string content = read_content(path);
     return read_content_as(extension, content, path);
+}
+
+std::uint64_t bytes_beside(const fs::path& path) {
+    if (mesh_io::lower_case(path.extension().string()) != ".gltf") return 0;
+    try {
+        return mesh_io::gltf_bytes_beside(read_content(path), path.string());
+    } catch (const std::exception&) {  // told by read_mesh
+        return 0;
+    }
 }
 
 }  // namespace exemplar

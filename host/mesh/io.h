@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -32,6 +33,9 @@ struct MeshFile {
 /// (see validate_mesh). Throws MeshError with file and line (or byte) for anything malformed; never allocates more than
 /// a small multiple of the file's size.
 MeshFile read_mesh(const std::filesystem::path& path);
+
+/// How many bytes a .gltf file says to have in files beside it; 0 for any other file, and for one that is damaged.
+std::uint64_t bytes_beside(const std::filesystem::path& path);
 
 /// Extensions that read_mesh takes, lower case with dot.
 std::span<const std::string_view> mesh_extensions();

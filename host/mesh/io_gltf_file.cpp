@@ -345,6 +345,20 @@ tinygltf::Model load_gltf(std::string_view content, const std::string& name, con
     return load_model(rebuilt(cut_down(document, wanted), chunks), name, folder, std::move(files));
 }
 
+std::uint64_t gltf_bytes_beside(std::string_view json, const std::string& name) {
+    const Json document = parse_json(json, name);
+    const auto buffers = document.find("buffers");
+    if (buffers == document.end() || !buffers->is_array()) return 0;
+    std::uint64_t bytes = 0;
+    for (const Json& buffer : *buffers) {
+        if (!buffer.is_object() || !buffer.contains("uri") || !buffer.contains("byteLength")) continue;
+        const Json &uri = buffer["uri"], &length = buffer["byteLength"];
+        if (!uri.is_string() || uri.get_ref<const std::string&>().starts_with("data:")) continue;
+        if (length.is_number_unsigned()) bytes += std::min(length.get<std::uint64_t>(), k_most_bytes);
+    }
+    return std::min(bytes, k_most_bytes);  // more is not read
+}
+
 std::string binary_gltf(std::string json, std::string_view binary) {
     constexpr std::size_t k_header_bytes = 12, k_chunk_header_bytes = 8;
     json.resize((json.size() + 3) / 4 * 4, ' ');  // chunks are aligned to four bytes

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -20,6 +21,9 @@ enum class GltfContent { geometry, animation };
 /// opens no file. Throws MeshError that begins with `name`.
 tinygltf::Model load_gltf(std::string_view content, const std::string& name, const std::filesystem::path& folder,
                           GltfContent wanted);
+
+/// How many bytes the buffers have that lie in files of their own, by the JSON of a .gltf file. Throws MeshError.
+std::uint64_t gltf_bytes_beside(std::string_view json, const std::string& name);
 
 /// The bytes of a .glb file of a JSON chunk and a binary chunk.
 std::string binary_gltf(std::string json, std::string_view binary);

@@ -13,7 +13,7 @@ namespace exemplar::mesh_io {
 namespace {
 
 /// Copies of a mesh cost a file a few bytes each; this bounds what they may grow to.
-constexpr std::uint64_t k_free_elements = 300'000, k_elements_per_byte = 8;
+constexpr std::uint64_t k_free_elements = 300'000, k_elements_per_byte = 2;
 
 int gltf_type(int components) {
     switch (components) {

@@ -285,6 +285,9 @@ SimplifiedMesh simplify_mesh(const TriangleMesh& mesh, std::size_t faces) {
         throw MeshError(
             "the mesh has too many faces and cannot be simplified: they share no vertices; join those at the same "
             "place");
+    if (result.mesh.face_count() > 2 * faces)
+        throw MeshError(
+            "the mesh has too many faces and cannot be simplified: they connect vertices at random; export it again");
     result.mesh.source_face_count = static_cast<std::uint32_t>(result.mesh.face_count());
     result.face_of = assign_faces(unit, clustering, result.mesh);
     for (Vec3& v : result.mesh.vertices) v = frame.from_unit(v);

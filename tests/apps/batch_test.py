@@ -206,15 +206,34 @@ class BatchLabelingTest(BatchTest):
         write_off(self.folder / "linked" / "sub" / "a.off", CUBE, CUBE_QUADS)
         (self.folder / "out-linked" / "labeled").mkdir(parents=True)
         (self.folder / "out-linked" / "labeled" / "sub").symlink_to(outside)
+        (outside / "a.json").write_text("{}")  # as the record would be named
         self.refused("label", "batch", "linked", "--model", "cup.safetensors", "--out", "out-linked", code=1,
                      says="is no folder")
-        self.assertEqual(list(outside.iterdir()), [])
+        self.assertEqual(list(outside.iterdir()), [outside / "a.json"])
         for name in ("labeled", ".work", ".exemplar-output", "index.html"):
             out = self.folder / f"out-{name}"
             out.mkdir()
             (out / name).symlink_to(outside)
             self.refused("label", "batch", "linked", "--model", "cup.safetensors", "--out", out, code=1, says="is a link")
-        self.assertEqual(list(outside.iterdir()), [])
+        self.assertEqual(list(outside.iterdir()), [outside / "a.json"])
+
+    def test_a_record_that_is_a_link_is_made_anew(self):
+        write_off(self.folder / "moved" / "a.off", CUBE, CUBE_QUADS)
+        record = self.folder / "out-moved" / "labeled" / "a.json"
+        for target in ("vanished", self.folder / "moved" / "a.off"):
+            self.batch("moved", "out-moved")
+            record.unlink()
+            record.symlink_to(target)
+            self.assertIn("1 shape labeled", self.batch("moved", "out-moved").stdout)
+            self.assertTrue(record.is_file() and not record.is_symlink())
+        self.assertTrue((self.folder / "moved" / "a.off").read_text().startswith("OFF"))
+
+    def test_a_shard_that_names_a_folder_of_others(self):
+        write_off(self.folder / "foreign" / "a.off", CUBE, CUBE_QUADS)
+        self.batch("foreign", "out-foreign", "--tasks", "1")
+        (self.folder / "out-foreign" / ".exemplar-output").unlink()
+        self.refused("label", "batch", "out-foreign/shards/1/1.shard", code=1, says="was not made by the program")
+        self.assertFalse((self.folder / "out-foreign" / "labeled" / "a.json").exists())
 
     def test_results_inside_the_folder_of_shapes_are_no_shapes(self):
         shutil.copytree(self.folder / "shapes", self.folder / "own")

@@ -137,6 +137,10 @@ TEST(Text, FormatsSeconds) {
     EXPECT_EQ(format_seconds(3900), "1 h 05 min");
 }
 
+TEST(Text, ControlsDoNothing) {
+    EXPECT_EQ(without_controls("a\x1b[2Jb\nc\x7f \xc3\xa4"), "a?[2Jb?c? \xc3\xa4");
+}
+
 TEST(Random, IsTheSameSequenceEverywhere) {
     Random random(1);
     EXPECT_EQ(random.next(), 0x910a2dec89025cc1ULL);

@@ -383,6 +383,16 @@ TEST_F(CatalogRunTest, TheRecordOfAFileThatHasChangedMeanwhileCounts) {
     EXPECT_EQ(run_.counts().done, 1);
 }
 
+TEST_F(CatalogRunTest, ACategoryOfAnotherEncodingIsFoundAgain) {
+    CatalogShape shape = shape_at("/latin.off");
+    shape.category = "caf\xe9";
+    put({shape});
+    mesh_files::write_bytes(run_.record_path(shape), to_json(record_for(shape, run_)).dump());
+    ASSERT_TRUE(run_.record_of(shape).has_value());
+    EXPECT_EQ(run_.merge_records([](std::size_t) {}), 1u);
+    EXPECT_EQ(run_.merge_records([](std::size_t) {}), 0u);
+}
+
 TEST_F(CatalogRunTest, ANameThatLeadsOutOfTheFolderIsRefused) {
     CatalogShape shape = all().front();
     shape.name = "../../etc/passwd";

@@ -79,12 +79,13 @@ TEST_F(RunSummaryTest, CountsByCategory) {
 }
 
 TEST_F(RunSummaryTest, AreaIsTheMeanOverAllShapesOfTheCategory) {
+    using nlohmann::json;  // json{one} is a list of one to GCC and a copy of the one to Clang
     const auto part = [](const char* name, double area, double confidence) {
-        return nlohmann::json{{"label", name}, {"area_share", area}, {"confidence", confidence}};
+        return json{{"label", name}, {"area_share", area}, {"confidence", confidence}};
     };
-    add(record("cup", 1, {part("body", 0.75, 0.5), part("handle", 0.25, 1)}));
-    add(record("cup", 1, {part("body", 1, 1)}));
-    add(record("chair", 1, {part("seat", 1, 1)}));
+    add(record("cup", 1, json::array({part("body", 0.75, 0.5), part("handle", 0.25, 1)})));
+    add(record("cup", 1, json::array({part("body", 1, 1)})));
+    add(record("chair", 1, json::array({part("seat", 1, 1)})));
     const std::vector<LabelSummary> labels = summarize_labels(catalog_, run_.id(), "cup", 10);
     ASSERT_EQ(labels.size(), 2U);
     EXPECT_EQ(labels[0].label, "body");
@@ -98,7 +99,7 @@ TEST_F(RunSummaryTest, AreaIsTheMeanOverAllShapesOfTheCategory) {
 }
 
 TEST_F(RunSummaryTest, StrangeRowsCostNothing) {
-    add(record("cup", 1, {{{"label", "body"}, {"area_share", 1}, {"confidence", 1}}}));
+    add(record("cup", 1, nlohmann::json::array({{{"label", "body"}, {"area_share", 1}, {"confidence", 1}}})));
     add(record("cup", 1, {1, "two", {{"no", "label"}}}));
     catalog_.database().execute("UPDATE labels SET labels = '[{\"label\"', seconds = 'x' WHERE shape = 2");
     const std::vector<LabelSummary> labels = summarize_labels(catalog_, run_.id(), "cup", 10);

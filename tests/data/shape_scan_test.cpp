@@ -96,6 +96,10 @@ TEST_F(ScanTest, DescribesGoodAndBadFiles) {
     write_bytes(folder_ / "huge.off", "OFF");
     fs::resize_file(folder_ / "huge.off", std::uintmax_t{1} << 40);
     EXPECT_THAT(describe_shape(folder_ / "huge.off", k_memory).problem, HasSubstr("more than can be read"));
+    const std::string gltf =
+        R"({"asset": {"version": "2.0"}, "buffers": [{"uri": "beside.bin", "byteLength": 2000000000}]})";
+    write_bytes(folder_ / "small.gltf", gltf);
+    EXPECT_THAT(describe_shape(folder_ / "small.gltf", k_memory).problem, HasSubstr("more than can be read"));
 }
 
 TEST_F(ScanTest, EqualContentHasEqualHashes) {
@@ -131,6 +135,17 @@ TEST(WorkerFolder, OfTheLivingStaysAndOfTheDeadGoes) {
         EXPECT_TRUE(fs::exists(first.path()));
     }
     EXPECT_FALSE(WorkerFolder::may_be_alive(out.path(), "../somewhere"));
+}
+
+TEST(WorkerFolder, OfAnotherMachineStays) {
+    const TemporaryFolder out;
+    const std::string own = WorkerFolder(out.path()).id();
+    // This machine's name and more, as if it were the beginning of the other's.
+    const std::string other = own.substr(0, own.rfind('-', own.rfind('-') - 1)) + "-1-4711-0123abcd";
+    fs::create_directory(out / ".work" / other);
+    write_bytes(out / ".work" / (other + ".lock"), "");
+    const WorkerFolder next(out.path());
+    EXPECT_TRUE(fs::exists(out / ".work" / other));
 }
 
 TEST(OutputFolder, IsMadeBelowTheOutputAndThroughNoLink) {

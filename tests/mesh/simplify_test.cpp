@@ -141,5 +141,13 @@ TEST(Simplify, ASoupOfLooseTrianglesIsRefused) {
     EXPECT_THROW(simplify_mesh(soup, 100), MeshError);
 }
 
+TEST(Simplify, FacesBetweenVerticesAtRandomAreRefused) {
+    TriangleMesh mesh = shapes::icosphere(4, 1.0F);
+    Random random(7);
+    for (Face& face : mesh.faces)
+        for (std::uint32_t& v : face) v = static_cast<std::uint32_t>(random.index(mesh.vertex_count()));
+    EXPECT_THROW(simplify_mesh(mesh, 500), MeshError);
+}
+
 }  // namespace
 }  // namespace exemplar

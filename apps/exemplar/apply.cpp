@@ -32,7 +32,8 @@ nlohmann::json apply_to(const std::filesystem::path& path, const LabelingModel& 
     const MeshFile file = read_mesh(path);
     const std::vector<std::string> warnings = mesh_warnings(file, path, options.common.quiet);
     const double read_seconds = watch.wall();
-    const FaceLabeling labeling = label_mesh(model, file.mesh, cache, backend.labeling());
+    const FaceLabeling labeling =
+        of_file(path, [&] { return label_mesh(model, file.mesh, cache, backend.labeling()); });
     const LabeledOutput output = make_labeled_output(file.mesh, model, labeling);
     const std::filesystem::path stem = options.out / path.stem();
     write_labeled_files(stem, file.mesh, output, options.gltf);

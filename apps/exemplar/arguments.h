@@ -26,6 +26,15 @@ std::vector<std::filesystem::path> meshes_of_arguments(const std::vector<std::fi
 /// What is unusual about a mesh read from `path`, a line each, and how it is worked around; printed unless `quiet`.
 /// Throws MeshError if it cannot be labeled.
 std::vector<std::string> mesh_warnings(const MeshFile& file, const std::filesystem::path& path, bool quiet);
+/// Calls `work`, which works on a mesh read from `path`. Throws MeshError that begins with it.
+template <typename Work>
+auto of_file(const std::filesystem::path& path, Work&& work) {
+    try {
+        return work();
+    } catch (const MeshError& error) {
+        throw MeshError(path.string() + ": " + error.what());
+    }
+}
 /// load_model for a file that may be anything; throws ModelError saying what makes a model.
 LabelingModel model_of_argument(const std::filesystem::path& path);
 /// Throws UsageError if a file, or a folder of files, cannot be written at `path`. An empty path is no output.

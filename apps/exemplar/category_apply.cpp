@@ -41,7 +41,8 @@ nlohmann::json recognize_mesh(const std::filesystem::path& path, const CategoryM
                               const std::filesystem::path& cache, bool quiet) {
     const MeshFile file = read_mesh(path);
     const std::vector<std::string> warnings = mesh_warnings(file, path, quiet);
-    const CategoryOpinion opinion = recognize(model, cached_shape_descriptor(file.mesh, model.feature_options, cache));
+    const CategoryOpinion opinion = of_file(
+        path, [&] { return recognize(model, cached_shape_descriptor(file.mesh, model.feature_options, cache)); });
     const auto [best, second] = two_most_probable(opinion.probability);
     const bool known = opinion.category >= 0;
     const std::string name = known ? model.category_names[best] : std::string(k_unknown_category);

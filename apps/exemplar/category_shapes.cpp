@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "apps/exemplar/arguments.h"
 #include "host/core/errors.h"
@@ -87,6 +88,7 @@ CategorizedShapes describe_categories(const std::vector<CategoryMeshes>& categor
     std::size_t count = 0;
     for (const CategoryMeshes& category : categories) count += category.meshes.size();
     Progress progress("describing shapes", count);
+    std::map<std::string, std::pair<std::string, fs::path>> first_of;  // content to category and file
     CategorizedShapes result;
     result.feature_options = options;
     for (const CategoryMeshes& category : categories) {
@@ -95,10 +97,14 @@ CategorizedShapes describe_categories(const std::vector<CategoryMeshes>& categor
             check_interrupt();
             const MeshFile file = read_mesh(path);
             mesh_warnings(file, path, quiet);
-            result.shapes.push_back(cached_shape_descriptor(file.mesh, options, cache));
+            result.shapes.push_back(of_file(path, [&] { return cached_shape_descriptor(file.mesh, options, cache); }));
             result.category.push_back(static_cast<std::int32_t>(result.category_names.size() - 1));
-            result.provenance.push_back(
-                fmt::format("{} {} {}", category.name, path.stem().string(), content_hash(file.mesh)));
+            const std::string hash = content_hash(file.mesh);
+            const auto first = first_of.emplace(hash, std::pair(category.name, path)).first;
+            if (first->second.first != category.name && !quiet)
+                fmt::print(stderr, "warning: {}: has the same content as {}, which is in category {}\n", path.string(),
+                           first->second.second.string(), first->second.first);
+            result.provenance.push_back(fmt::format("{} {} {}", category.name, path.stem().string(), hash));
             progress.advance(1, path.filename().string());
         }
     }

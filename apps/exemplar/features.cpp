@@ -41,7 +41,7 @@ void run_features(const FeaturesOptions& options) {
     const Stopwatch watch;
     const bool large = file.mesh.face_count() > k_most_working_faces;
     if (large) announce_simplification(options, file.mesh.face_count());
-    const SimplifiedMesh working = working_mesh(file.mesh);
+    const SimplifiedMesh working = of_file(options.mesh, [&] { return working_mesh(file.mesh); });
     const MeshFeatures features = compute_features(working.mesh, options.features);
     const FeatureMatrix& matrix = options.pairwise ? features.pairwise : features.unary;
     const std::size_t rows = options.pairwise ? matrix.rows : working.face_of.size();

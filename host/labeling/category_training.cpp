@@ -27,6 +27,8 @@ constexpr double k_ridge = 0.05;
 constexpr std::size_t k_most_folds = 10;
 /// The share of strangers among the shapes that the confidence is for.
 constexpr double k_stranger_share = 0.2;
+/// A stranger is made up of a shape and each of so many others: two parameters learn nothing from more.
+constexpr std::size_t k_most_pairs = 20;
 /// A deviation below this share of the mean is rounding.
 constexpr double k_least_variation = 1e-6;
 /// The scale that is searched for scores reaches from 0.02 to 10 times this.
@@ -77,11 +79,28 @@ void squash(Rows& matrix, const Eigen::VectorXd& weights, CategoryScores& scores
     }
 }
 
-/// Ridge regression in its dual form, as descriptors have more values than there are shapes:
+/// Ridge regression in its dual form, as descriptors mostly have more values than there are shapes:
 ///
 ///     (Z Z^T / D + ridge diag(1 / w)) A = Y - b,   weights = A^T Z / D
 ///
-/// with a target per category, of which b is the weighted mean.
+/// with a target per category, of which b is the weighted mean; or with more shapes the same in its primal form:
+///
+///     (Z^T diag(w) Z / D + ridge 1) weights^T = Z^T diag(w) (Y - b) / D
+Rows ridge_weights(const Rows& z, const Eigen::VectorXd& weights, const Eigen::MatrixXd& target) {
+    const auto values = static_cast<double>(z.cols());
+    if (z.rows() <= z.cols()) {
+        Eigen::MatrixXd kernel = z * z.transpose() / values;
+        kernel.diagonal() += k_ridge * weights.cwiseInverse();
+        const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(kernel);
+        return in_place.solve(target).transpose() * z / values;
+    }
+    const Rows weighted = weights.asDiagonal() * z;
+    Eigen::MatrixXd normal = weighted.transpose() * z / values;
+    normal.diagonal().array() += k_ridge;
+    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(normal);
+    return in_place.solve(weighted.transpose() * target / values).transpose();
+}
+
 CategoryScores fit(const Problem& problem, const Indices& shapes) {
     CategoryScores scores;
     const Eigen::VectorXd weights = balanced_weights(problem, shapes);
@@ -94,12 +113,8 @@ CategoryScores fit(const Problem& problem, const Indices& shapes) {
     const Eigen::RowVectorXd offset = weights.transpose() * target / static_cast<double>(rows);
     target.rowwise() -= offset;
 
-    const auto values = static_cast<double>(z.cols());
-    Eigen::MatrixXd kernel = z * z.transpose() / values;
-    kernel.diagonal() += k_ridge * weights.cwiseInverse();
-    const Eigen::MatrixXd dual = kernel.llt().solve(target);
-    const Rows primal = dual.transpose() * z / values;
-    for (const double value : primal.reshaped<Eigen::RowMajor>()) scores.weights.push_back(static_cast<float>(value));
+    const Rows found = ridge_weights(z, weights, target);
+    for (const double value : found.reshaped<Eigen::RowMajor>()) scores.weights.push_back(static_cast<float>(value));
     for (const double value : offset) scores.offset.push_back(static_cast<float>(value));
     return scores;
 }
@@ -121,18 +136,35 @@ HeldOut held_out(std::size_t category, bool stranger, std::vector<double> scores
     return item;
 }
 
-/// The fold of each shape; none (k_most_folds) of one that is its category's only one.
+bool are_equal(const Problem& problem, std::size_t a, std::size_t b) {
+    return std::ranges::equal(problem.descriptor(a), problem.descriptor(b));
+}
+
+/// The shapes of a category, copies of one mesh together.
+std::vector<Indices> distinct_shapes(const Problem& problem, std::size_t category) {
+    std::vector<Indices> distinct;
+    for (std::size_t i = 0; i < problem.training->category.size(); ++i) {
+        if (problem.category(i) != category) continue;
+        const auto same = std::ranges::find_if(
+            distinct, [&](const Indices& copies) { return are_equal(problem, copies.front(), i); });
+        if (same == distinct.end())
+            distinct.push_back({i});
+        else
+            same->push_back(i);
+    }
+    return distinct;
+}
+
+/// The fold of each shape, copies in the same; none (k_most_folds) where a category has but one.
 Indices make_folds(const Problem& problem, std::uint64_t seed) {
-    const std::size_t shapes = problem.training->category.size();
-    Indices fold(shapes, k_most_folds);
+    Indices fold(problem.training->category.size(), k_most_folds);
     for (std::size_t c = 0; c < problem.categories(); ++c) {
-        Indices members;
-        for (std::size_t i = 0; i < shapes; ++i)
-            if (problem.category(i) == c) members.push_back(i);
+        std::vector<Indices> members = distinct_shapes(problem, c);
         Random random = Random(seed).fork(c);
         random.shuffle(members);
         if (members.size() < 2) continue;
-        for (std::size_t rank = 0; rank < members.size(); ++rank) fold[members[rank]] = rank % k_most_folds;
+        for (std::size_t rank = 0; rank < members.size(); ++rank)
+            for (const std::size_t i : members[rank]) fold[i] = rank % k_most_folds;
     }
     return fold;
 }
@@ -143,8 +175,20 @@ std::vector<float> mean_of(std::span<const float> a, std::span<const float> b) {
     return mean;
 }
 
-/// Holds a fold out: its shapes, and with two categories their means with the shapes of the other one.
-std::vector<HeldOut> hold_fold_out(const Problem& problem, const Indices& fold, std::size_t k) {
+/// Shapes of other categories than that of `shape`, at most k_most_pairs.
+Indices some_others(const Problem& problem, std::size_t shape, std::uint64_t seed) {
+    Indices others;
+    for (std::size_t j = 0; j < problem.training->category.size(); ++j)
+        if (problem.category(j) != problem.category(shape)) others.push_back(j);
+    if (others.size() <= k_most_pairs) return others;
+    Random random = Random(seed).fork(shape);
+    random.shuffle(others);
+    others.resize(k_most_pairs);
+    return others;
+}
+
+/// Holds a fold out: its shapes, and with two categories their means with shapes of the other one.
+std::vector<HeldOut> hold_fold_out(const Problem& problem, const Indices& fold, std::size_t k, std::uint64_t seed) {
     Indices rest, out;
     for (std::size_t i = 0; i < fold.size(); ++i) (fold[i] == k ? out : rest).push_back(i);
     if (out.empty()) return {};
@@ -154,14 +198,13 @@ std::vector<HeldOut> hold_fold_out(const Problem& problem, const Indices& fold, 
         items.push_back(held_out(problem.category(i), false, scores.of(problem.descriptor(i))));
     if (problem.categories() > 2) return items;
     for (const std::size_t i : out)
-        for (std::size_t j = 0; j < fold.size(); ++j)
-            if (problem.category(j) != problem.category(i))
-                items.push_back(held_out(problem.category(i), true,
-                                         scores.of(mean_of(problem.descriptor(i), problem.descriptor(j)))));
+        for (const std::size_t j : some_others(problem, i, seed))
+            items.push_back(
+                held_out(problem.category(i), true, scores.of(mean_of(problem.descriptor(i), problem.descriptor(j)))));
     return items;
 }
 
-/// Holds a category out with all of its shapes.
+/// Holds a category out with all of its shapes, but for copies of what is learned as another category.
 std::vector<HeldOut> hold_category_out(const Problem& problem, std::size_t category) {
     Indices rest, out;
     for (std::size_t i = 0; i < problem.training->category.size(); ++i)
@@ -169,6 +212,7 @@ std::vector<HeldOut> hold_category_out(const Problem& problem, std::size_t categ
     const CategoryScores scores = fit(problem, rest);
     std::vector<HeldOut> items;
     for (const std::size_t i : out) {
+        if (std::ranges::any_of(rest, [&](std::size_t j) { return are_equal(problem, i, j); })) continue;
         std::vector<double> of_shape = scores.of(problem.descriptor(i));
         of_shape.erase(of_shape.begin() + static_cast<std::ptrdiff_t>(category));  // that model knows none of it
         items.push_back(held_out(category, true, std::move(of_shape)));
@@ -181,7 +225,8 @@ std::vector<HeldOut> hold_all_out(const Problem& problem, std::uint64_t seed) {
     const std::size_t whole = problem.categories() > 2 ? problem.categories() : 0;
     std::vector<std::vector<HeldOut>> parts(k_most_folds + whole);
     parallel_for(parts.size(), [&](std::size_t p) {
-        parts[p] = p < k_most_folds ? hold_fold_out(problem, fold, p) : hold_category_out(problem, p - k_most_folds);
+        parts[p] =
+            p < k_most_folds ? hold_fold_out(problem, fold, p, seed) : hold_category_out(problem, p - k_most_folds);
     });
     std::vector<HeldOut> items;
     for (std::vector<HeldOut>& part : parts) std::ranges::move(part, std::back_inserter(items));
@@ -318,6 +363,13 @@ void require_usable(const CategorizedShapes& training) {
     for (const ShapeDescriptor& shape : training.shapes)
         if (shape.features != features || shape.values.size() != k_shape_statistics * features.size())
             throw UsageError("shapes have different features; compute all with the same options");
+    const Problem problem{&training};
+    std::size_t most = 0;
+    for (std::size_t c = 0; c < problem.categories(); ++c) most = std::max(most, distinct_shapes(problem, c).size());
+    if (most < 2)
+        throw UsageError(
+            "each category has copies of one mesh only: nothing tells how alike meshes of a category are; give two "
+            "different ones of one at least");
 }
 
 }  // namespace

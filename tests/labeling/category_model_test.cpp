@@ -112,6 +112,35 @@ TEST(Categories, NoiseIsNotRecognized) {
     EXPECT_GT(report.called_unknown, 0.4) << "nothing is to be known, so nothing should be said";
 }
 
+TEST(Categories, MoreShapesThanValuesAreLearnedAsWell) {
+    CategoryReport report;
+    const std::size_t values = k_shape_statistics * k_features;
+    const CategoryModel model = train_categories(made_up_shapes({values / 2, values / 2, values / 2}), {}, report);
+    EXPECT_EQ(report.right, 1);
+    EXPECT_GT(report.strangers_unknown, 0.9);
+    Random random(99);
+    for (std::size_t c = 0; c < 6; ++c)
+        EXPECT_EQ(recognize(model, made_up_shape(c, random)).category, c < 3 ? static_cast<std::int32_t>(c) : -1) << c;
+}
+
+TEST(Categories, CopiesAreHeldOutTogether) {
+    CategorizedShapes shapes = made_up_shapes({8, 8, 8});
+    Random random(3);
+    for (std::size_t i = 0; i < shapes.shapes.size(); ++i)
+        for (std::size_t k = 0; k < shapes.shapes[i].values.size(); ++k)
+            shapes.shapes[i].values[k] =
+                i % 2 == 1 ? shapes.shapes[i - 1].values[k] : static_cast<float>(random.normal());
+    CategoryReport report;
+    train_categories(shapes, {}, report);
+    EXPECT_LT(report.nearest_right, 0.7) << "noise is known by its copies only";
+    EXPECT_THROW(
+        {
+            for (ShapeDescriptor& shape : shapes.shapes) shape = shapes.shapes[0];
+            train_categories(shapes, {}, report);
+        },
+        UsageError);
+}
+
 TEST(Categories, UnitsOfFeaturesDoNotMatterNorDoSingleOddValues) {
     CategorizedShapes shapes = made_up_shapes({5, 5, 5}), scaled = shapes;
     for (ShapeDescriptor& shape : scaled.shapes) shape.values[3] = 1000 * shape.values[3] - 7;
@@ -139,7 +168,9 @@ TEST(Categories, EqualSeedsGiveEqualBytesOnAnyNumberOfThreads) {
     const CategorizedShapes shapes = made_up_shapes({6, 12, 4});
     const std::string bytes = bytes_of(trained(shapes, 5));
     EXPECT_EQ(bytes_of(trained(shapes, 5)), bytes);
-    EXPECT_NE(bytes_of(trained(shapes, 6)), bytes);
+    CategoryModel other = trained(shapes, 6);
+    other.seed = 5;
+    EXPECT_NE(bytes_of(other), bytes) << "other folds";
     const ThreadLimit limit(1);
     EXPECT_EQ(bytes_of(trained(shapes, 5)), bytes);
 }
@@ -233,6 +264,19 @@ TEST(CategoryEvaluation, TestsWhatWasNotTrainedOn) {
     for (std::size_t t = 0; t < 4; ++t)
         for (std::size_t p = 0; p < 5; ++p) EXPECT_EQ(confusion[t * 5 + p], t == p ? 2U : 0U);
     EXPECT_EQ(category_confusion(all, {{7, -1, 0, 0}})[1 * 5 + 4], 1U) << "unknown is the last column";
+}
+
+TEST(CategoryEvaluation, DoesNotKnowWhatItTests) {
+    CategorizedShapes all = made_up_shapes({12, 12, 12});
+    Random random(4);
+    for (ShapeDescriptor& shape : all.shapes)
+        for (float& value : shape.values) value = static_cast<float>(random.normal());
+    Split split;
+    for (std::size_t i = 0; i < 36; ++i) (i % 2 ? split.train : split.test).push_back(i);
+    const CategoryTest test = test_categories(all, split, {});
+    const auto right = std::ranges::count_if(
+        test.shapes, [&](const RecognizedShape& shape) { return shape.nearest == all.category[shape.shape]; });
+    EXPECT_LT(right, 13) << "of 18 shapes of noise in three categories";
 }
 
 /// A split of made-up shapes, which come in the order of their categories: of each category the first `train_count`
@@ -357,14 +401,17 @@ TEST(CategoryModelFile, MutationsNeverCrash) {
     save_category_model(folder / "model", trained(made_up_shapes({2, 2})));
     const std::string good = read_file(folder / "model");
     Random random(11);
+    const ShapeDescriptor shape = made_up_shape(0, random);
     for (int i = 0; i < 500; ++i) {
         std::string bytes = good.substr(0, random.uniform() < 0.3 ? random.index(good.size()) : good.size());
         for (std::size_t flips = random.index(4); flips > 0 && !bytes.empty(); --flips)
             bytes[random.index(bytes.size())] = static_cast<char>(random.next());
         write_file_atomically(folder / "model", [&](std::ostream& out) { out << bytes; });
         try {
-            load_category_model(folder / "model");
+            const CategoryModel model = load_category_model(folder / "model");
+            for (const float p : recognize(model, shape).probability) ASSERT_TRUE(std::isfinite(p));
         } catch (const ModelError&) {
+        } catch (const UsageError&) {  // it has other features than the shape
         }
     }
 }

@@ -66,7 +66,7 @@ void require_input(const fs::path& path) {
     throw DataError(fmt::format("{}: no such file or folder{}", path.string(), suggest_file(path)));
 }
 
-std::vector<fs::path> meshes_of_argument(const fs::path& source) {
+std::vector<fs::path> meshes_of_argument(const fs::path& source, MissingMeshes missing) {
     require_input(source);
     const auto known = mesh_extensions();
     std::string extension = source.extension().string();
@@ -76,7 +76,7 @@ std::vector<fs::path> meshes_of_argument(const fs::path& source) {
     if (!mesh && fs::is_regular_file(source) && first_bytes(source).find('\0') != std::string::npos)
         throw DataError(fmt::format("{}: is neither a mesh ({}) nor a list of meshes (text, a path a line)",
                                     source.string(), fmt::join(known, " ")));
-    return list_meshes(source);
+    return list_meshes(source, missing);
 }
 
 std::vector<fs::path> meshes_of_arguments(const std::vector<fs::path>& sources) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "host/core/errors.h"
+#include "host/data/corpus.h"
 #include "host/labeling/model.h"
 #include "host/mesh/io.h"
 
@@ -20,7 +22,8 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most = std::numer
 /// Throws DataError if nothing is at `path`, with the nearest name in its folder.
 void require_input(const std::filesystem::path& path);
 /// The meshes of a folder, a list or a mesh file (see list_meshes). Throws DataError if it is none of them.
-std::vector<std::filesystem::path> meshes_of_argument(const std::filesystem::path& source);
+std::vector<std::filesystem::path> meshes_of_argument(const std::filesystem::path& source,
+                                                      MissingMeshes missing = MissingMeshes::refused);
 /// The same of several sources; a mesh that is in more than one comes once.
 std::vector<std::filesystem::path> meshes_of_arguments(const std::vector<std::filesystem::path>& sources);
 /// What is unusual about a mesh read from `path`, a line each, and how it is worked around; printed unless `quiet`.

@@ -4,12 +4,11 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
-#include <thread>
+#include <utility>
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/backend.h"
+#include "apps/exemplar/batch_elsewhere.h"
 #include "apps/exemplar/batch_page.h"
 #include "apps/exemplar/batch_run.h"
 #include "apps/exemplar/batch_shards.h"
@@ -34,20 +33,6 @@ using Json = nlohmann::json;
 
 /// How shapes are labeled and what is written of them; results of another version are made anew.
 constexpr int k_batch_version = 1;
-/// To Slurm.
-constexpr std::chrono::seconds k_between_questions{5};
-
-struct BatchCommand {
-    CommonOptions common;
-    fs::path source, model, models, out;
-    fs::path cache = default_feature_folder();
-    double memory = 0;
-    std::size_t group = 8, tasks = 0;
-    bool gltf = false, keep_small = false, retry = false;
-    bool slurm = false, wait = false;
-    SlurmOptions slurm_options;
-};
-
 /// Names what the results depend on, but for the shapes.
 std::string run_key(const BatchModels& models, bool gltf, bool keep_small) {
     const std::string key = fmt::format("{} features {} batch {} gltf {} small {}", models.key(), k_feature_version,
@@ -67,10 +52,6 @@ BatchModels load_models(const fs::path& path, bool keep_small) {
     if (keep_small)
         for (BatchModel& model : models.models) model.model.crf.merge_fraction = 0;
     return models;
-}
-
-fs::path whole(const fs::path& path) {
-    return fs::absolute(path).lexically_normal();
 }
 
 AddOptions add_options(const BatchCommand& options) {
@@ -135,133 +116,6 @@ void run_here(const BatchCommand& options, Catalog& catalog, CatalogRun& run, co
                    counted(static_cast<std::size_t>(unusable), "shape"), shell_word(catalog.database().name()));
 }
 
-/// What a task is told of how to work; empty values are left to it.
-std::vector<std::string> task_arguments(const BatchCommand& options) {
-    std::vector<std::string> words{"--quiet", "--group", std::to_string(options.group)};
-    const auto add = [&](const char* option, const std::string& value) { words.insert(words.end(), {option, value}); };
-    add("--cache", options.cache.empty() ? "" : whole(options.cache).string());
-    if (!options.common.device.empty()) add("--device", options.common.device);
-    if (options.common.threads) add("--threads", std::to_string(options.common.threads));
-    if (options.memory > 0) add("--memory", fmt::format("{}", options.memory));
-    return words;
-}
-
-void print_how_to_run(const std::vector<fs::path>& shards, const std::vector<std::string>& arguments) {
-    std::string words;
-    for (const std::string& argument : arguments) words += ' ' + shell_word(argument);
-    const std::string folder = shell_word(shards.front().parent_path().string());
-    const std::string program = shell_word(this_program().string());
-    fmt::print("run them anywhere that sees the same files, in any order, one at a time on a machine, say by\n");
-    fmt::print("    for shard in {}/*.shard; do {} label batch \"$shard\"{}; done\n", folder, program, words);
-    // -q: GNU parallel has a shell read the words once more
-    fmt::print("    parallel -q -j1 {} label batch {{}}{} ::: {}/*.shard\n", program, words, folder);
-}
-
-std::size_t shapes_left(CatalogRun& run) {
-    const CatalogRun::Counts counts = run.counts();
-    return static_cast<std::size_t>(counts.open + counts.claimed);
-}
-
-std::size_t take_results_over(CatalogRun& run) {
-    return run.merge_records([](std::size_t) {});
-}
-
-void sleep_interruptibly(std::chrono::seconds time) {
-    const auto end = std::chrono::steady_clock::now() + time;
-    while (std::chrono::steady_clock::now() < end) {
-        check_interrupt();
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    }
-}
-
-/// Takes results over until no task is left. Returns Slurm's problem if it has not answered for long, else nothing.
-std::string wait_for_tasks(CatalogRun& run, const SlurmJob& job, Progress& progress) {
-    constexpr double k_patience = 600;  // s: longer than slurmctld takes to start again
-    Stopwatch since_answer, since_pass;
-    double pass = 0;  // s that it took
-    for (;;) {
-        sleep_interruptibly(k_between_questions);
-        const SlurmAnswer answer = ask_for_job(job);
-        // a look for each record costs a file server something
-        if (answer.job == SlurmAnswer::Job::ended || since_pass.wall() > 10 * pass) {
-            const Stopwatch watch;
-            progress.advance(take_results_over(run));
-            pass = watch.wall();
-            since_pass = Stopwatch();
-        }
-        if (answer.job == SlurmAnswer::Job::ended) return {};
-        if (answer.job == SlurmAnswer::Job::alive) since_answer = Stopwatch();
-        if (since_answer.wall() > k_patience) return answer.problem;
-    }
-}
-
-/// Waits for the tasks of a job and takes their results over. Returns what is wrong if shapes are left, else nothing.
-std::string wait_for_job(CatalogRun& run, const SlurmJob& job, const fs::path& folder, const std::string& merge) {
-    Progress progress("labeling on the cluster", shapes_left(run));
-    const std::string problem = wait_for_tasks(run, job, progress);
-    if (!problem.empty())
-        return fmt::format("Slurm does not answer ({}); job {} goes on, and '{}' takes its results over", problem,
-                           job.number, merge);
-    // Network file systems remember for up to half a minute that there was no such file.
-    for (int i = 0; i < 6 && shapes_left(run) > 0; ++i) {
-        sleep_interruptibly(k_between_questions);
-        progress.advance(take_results_over(run));
-    }
-    progress.finish();
-    const std::size_t left = shapes_left(run);
-    if (left == 0) return {};
-    return fmt::format(
-        "all tasks of job {} have ended and {} left to label; {}/{}_*.log say why, and the same command "
-        "again does what is left",
-        job.number, left == 1 ? "1 shape is" : counted(left, "shape") + " are", folder.string(), job.number);
-}
-
-/// The page and the report of a run whose shapes are labeled elsewhere.
-void report_elsewhere(const BatchCommand& options, Catalog& catalog, CatalogRun& run, const BatchPlan& plan,
-                      Json json) {
-    const CatalogRun::Counts counts = run.counts();
-    if (options.wait || json["shards"].empty()) {
-        write_batch_page(plan.out / "index.html", catalog, run, {});
-        fmt::print("{} labeled, {} of unknown category, {} failed, {} to do\n",
-                   counted(static_cast<std::size_t>(counts.done), "shape"), counts.unknown, counts.failed,
-                   counts.open + counts.claimed);
-    }
-    json["labeled"] = counts.done;
-    json["unknown"] = counts.unknown;
-    json["failed"] = counts.failed;
-    json["open"] = counts.open + counts.claimed;
-    write_report(options.common, json);
-}
-
-/// Leaves the work to tasks, of Slurm or by hand.
-void run_elsewhere(const BatchCommand& options, Catalog& catalog, CatalogRun& run, const BatchPlan& plan) {
-    take_results_over(run);
-    const std::vector<fs::path> shards = write_shards(run, plan, options.tasks);
-    const std::string merge = fmt::format("exemplar catalog merge {}", shell_word(catalog.database().name()));
-    Json json{{"run", run.id()}, {"shards", Json::array()}, {"job", nullptr}};
-    for (const fs::path& shard : shards) json["shards"].push_back(shard.string());
-    std::string problem;
-    if (shards.empty()) {
-        fmt::print("nothing is left to label\n");
-    } else {
-        const fs::path folder = shards.front().parent_path();
-        const std::vector<std::string> arguments = task_arguments(options);
-        fmt::print("{} in {}\n", counted(shards.size(), "shard"), folder.string());
-        if (options.slurm) {
-            const SlurmJob job = submit_shards(shards, options.slurm_options, arguments);
-            json["job"] = job.number;
-            fmt::print("submitted as job {}\n", job.number);
-            std::fflush(stdout);
-            if (options.wait) problem = wait_for_job(run, job, folder, merge);
-        } else {
-            print_how_to_run(shards, arguments);
-        }
-        if (!options.wait) fmt::print("then take the results over with\n    {}\n", merge);
-    }
-    report_elsewhere(options, catalog, run, plan, json);
-    if (!problem.empty()) throw DataError(problem);
-}
-
 /// Slurm gives a task less than the machine has.
 void heed_slurm(BatchCommand& options) {
     if (options.common.threads == 0) options.common.threads = number_of_task("SLURM_CPUS_PER_TASK");
@@ -269,7 +123,24 @@ void heed_slurm(BatchCommand& options) {
     if (options.memory == 0) options.memory = 0.5e-9 * static_cast<double>(std::min(memory_of_task(), usable_memory()));
 }
 
+/// A shard says itself what is labeled, how and where to.
+void check_shard_usage(const BatchCommand& options) {
+    for (const auto& [is_given, option] : {std::pair(!options.model.empty(), "--model"),
+                                           {!options.models.empty(), "--models"},
+                                           {!options.out.empty(), "--out"},
+                                           {options.gltf, "--gltf"},
+                                           {options.keep_small, "--keep-small"},
+                                           {options.retry, "--retry"},
+                                           {options.tasks > 0, "--tasks"},
+                                           {options.slurm, "--slurm"},
+                                           {options.wait, "--wait"}})
+        if (is_given)
+            throw UsageError(fmt::format("{}: is a shard, whose catalog was given such options; leave out {}",
+                                         options.source.string(), option));
+}
+
 void run_shard(BatchCommand options) {
+    check_shard_usage(options);
     heed_slurm(options);
     const auto limits = apply_common_options(options.common);
     Shard shard = read_shard(options.source);
@@ -309,8 +180,8 @@ void run_batch(const BatchCommand& options) {
     const fs::path& source_of_models = options.model.empty() ? options.models : options.model;
     const BatchModels models = load_models(source_of_models, options.keep_small);
     prepare_output(options);
-    const BatchPlan plan{.models = whole(source_of_models),
-                         .out = whole(options.out),
+    const BatchPlan plan{.models = whole_path(source_of_models),
+                         .out = whole_path(options.out),
                          .key = run_key(models, options.gltf, options.keep_small),
                          .gltf = options.gltf,
                          .keep_small = options.keep_small};

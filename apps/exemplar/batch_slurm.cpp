@@ -12,13 +12,17 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <ostream>
 #include <sstream>
 #include <string_view>
 
+#include "apps/exemplar/commands.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/memory_budget.h"
+#include "host/data/shape_record.h"
 
 extern char** environ;
 
@@ -106,6 +110,22 @@ std::vector<std::string> sbatch_words(const fs::path& folder, std::size_t tasks,
     return words;
 }
 
+/// Beside the shards; what job they were given to.
+constexpr const char* k_job_file = "job.json";
+
+/// The job of a folder of shards; nothing if there is none, or it is another run's.
+std::optional<SlurmJob> job_of(const fs::path& shards, const std::string& run) {
+    std::error_code ignored;
+    if (!fs::exists(shards / k_job_file, ignored)) return {};
+    const nlohmann::json json = parse_shallow(read_file(shards / k_job_file));
+    const auto word = [&](const char* key) {
+        const bool is_there = json.is_object() && json.contains(key) && json[key].is_string();
+        return is_there ? json[key].get<std::string>() : std::string();
+    };
+    if (word("run") != run || word("job").empty()) return {};
+    return SlurmJob{word("job"), word("cluster")};
+}
+
 /// Whether a task of squeue's answer has not ended. Other lines are not about tasks: squeue heads the answer of each
 /// cluster by its name, and may have remarks.
 bool has_living_state(const std::string& answer) {
@@ -139,7 +159,7 @@ fs::path this_program() {
 }
 
 SlurmJob submit_shards(std::span<const fs::path> shards, const SlurmOptions& options,
-                       std::span<const std::string> arguments) {
+                       std::span<const std::string> arguments, const std::string& run) {
     const fs::path folder = shards.front().parent_path();
     write_file_atomically(folder / "task.sh", [&](std::ostream& out) { out << script_for(folder, arguments); });
     const std::vector<std::string> words = sbatch_words(folder, shards.size(), options);
@@ -158,7 +178,9 @@ SlurmJob submit_shards(std::span<const fs::path> shards, const SlurmOptions& opt
     std::string last = output.text.substr(0, output.text.find_last_not_of('\n') + 1);
     last = last.substr(last.rfind('\n') + 1);
     const std::size_t end = std::min(last.find(';'), last.size());
-    return {.number = last.substr(0, end), .cluster = last.substr(std::min(end + 1, last.size()))};
+    SlurmJob job{.number = last.substr(0, end), .cluster = last.substr(std::min(end + 1, last.size()))};
+    write_json(folder / k_job_file, {{"job", job.number}, {"cluster", job.cluster}, {"run", run}});
+    return job;
 }
 
 SlurmAnswer ask_for_job(const SlurmJob& job) {
@@ -170,6 +192,20 @@ SlurmAnswer ask_for_job(const SlurmJob& job) {
         return {SlurmAnswer::Job::ended, {}};
     if (output.code != 0) return {SlurmAnswer::Job::unknown, "squeue: " + first_line(output.text)};
     return {has_living_state(output.text) ? SlurmAnswer::Job::alive : SlurmAnswer::Job::ended, {}};
+}
+
+std::vector<SlurmJob> jobs_at_work(const fs::path& out, const std::string& run) {
+    std::vector<SlurmJob> jobs;
+    std::error_code error;
+    for (fs::directory_iterator it(out / "shards", error), end; !error && it != end; it.increment(error)) {
+        const std::optional<SlurmJob> job = job_of(it->path(), run);
+        if (!job) continue;
+        if (ask_for_job(*job).job == SlurmAnswer::Job::ended)
+            fs::remove(it->path() / k_job_file, error);  // it need not be asked for again
+        else
+            jobs.push_back(*job);
+    }
+    return jobs;
 }
 
 std::size_t number_of_task(const char* name) {

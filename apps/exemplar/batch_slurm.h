@@ -30,13 +30,15 @@ struct SlurmAnswer {
 
 /// Submits an array of tasks, one per shard (all in one folder, 1.shard, 2.shard, ...), each of which runs `exemplar
 /// label batch SHARD` with `arguments`, and is run again elsewhere if its node fails. The script and the logs are in
-/// the folder of the shards. Throws DataError with what sbatch says.
+/// the folder of the shards, and so is, once it is submitted, what job it is. Throws DataError with what sbatch says.
 SlurmJob submit_shards(std::span<const std::filesystem::path> shards, const SlurmOptions& options,
-                       std::span<const std::string> arguments);
+                       std::span<const std::string> arguments, const std::string& run);
 
 /// Whether tasks of a job wait or run. Slurm forgets jobs some minutes after their end: one that it does not know has
 /// ended.
 SlurmAnswer ask_for_job(const SlurmJob& job);
+/// The jobs that were submitted for shards of this run below OUT/shards, and have not ended as far as Slurm tells.
+std::vector<SlurmJob> jobs_at_work(const std::filesystem::path& out, const std::string& run);
 
 /// A number that Slurm tells its tasks by a variable; 0 if it does not.
 std::size_t number_of_task(const char* name);

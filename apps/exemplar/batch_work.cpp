@@ -113,6 +113,7 @@ bool CatalogWork::claim_some() {
 std::optional<CatalogShape> CatalogWork::next() {
     const std::lock_guard lock(mutex_);
     for (;;) {
+        check_interrupt();
         if (claimed_.empty() && !claim_some()) {
             if (!again_) return {};
             again_ = false;  // once more from the beginning: another program may have died meanwhile

@@ -26,12 +26,13 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t k_at_a_time = 256;  ///< shapes that are kept in one step, and lost if the program is killed
 
-/// Calls `found` for every mesh of a source; `left_out` hears of links that lead out of a folder.
+/// Calls `found` for every mesh of a source. What a list names and is not there is found, too: a shape like others that
+/// cannot be read.
 void find_in_source(const fs::path& source, const std::function<void(const FoundShape&)>& found,
-                    const std::function<void(const fs::path&)>& left_out) {
+                    const LeftOut& left_out) {
     require_input(source);
     if (fs::is_directory(source)) return find_shapes(source, found, left_out);
-    for (const fs::path& path : meshes_of_argument(source)) {
+    for (const fs::path& path : meshes_of_argument(source, MissingMeshes::kept)) {
         const fs::path absolute = fs::absolute(path).lexically_normal();
         const fs::path relative = absolute.lexically_relative(fs::absolute(source).lexically_normal().parent_path());
         const bool below = !relative.empty() && *relative.begin() != "..";
@@ -129,9 +130,8 @@ class Adder {
 
 AddCounts add_to_catalog(Catalog& catalog, const std::vector<fs::path>& sources, const AddOptions& options) {
     std::size_t total = 0;
-    const auto warn = [&](const fs::path& link) {
-        if (!options.quiet)
-            fmt::print(stderr, "warning: {}: leads out of the folder: left out\n", without_controls(link.string()));
+    const auto warn = [&](const fs::path& path, const std::string& why) {
+        if (!options.quiet) fmt::print(stderr, "warning: {}: {}: left out\n", without_controls(path.string()), why);
     };
     for (const fs::path& source : sources)
         find_in_source(
@@ -140,7 +140,8 @@ AddCounts add_to_catalog(Catalog& catalog, const std::vector<fs::path>& sources,
     for (const fs::path& source : sources) {
         const fs::path below = options.named_after_source ? name_of_source(source) : fs::path();
         find_in_source(
-            source, [&](const FoundShape& found) { adder.add(found, below); }, [](const fs::path&) {});
+            source, [&](const FoundShape& found) { adder.add(found, below); },
+            [](const fs::path&, const std::string&) {});
     }
     return adder.finish();
 }

@@ -126,12 +126,10 @@ void write_csv(std::ostream& out, Catalog& catalog, std::optional<CatalogRun>& r
 }
 
 void write_json_rows(std::ostream& out, Catalog& catalog, std::optional<CatalogRun>& run, const fs::path& cache) {
-    const char* separator = "[\n";
-    for_each_row(catalog, run, [&](const Row& row) {
-        out << separator << describe(row, cache).dump(-1, ' ', false, Json::error_handler_t::replace);
-        separator = ",\n";
+    write_json_list(out, [&](const auto& write) {
+        for_each_row(catalog, run, [&](const Row& row) { write(describe(row, cache)); });
     });
-    out << (std::string_view(separator) == "[\n" ? "[]\n" : "\n]\n");
+    out << '\n';
 }
 
 void run_export(const ExportCommand& options) {

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <ostream>
+
 #include "apps/exemplar/catalog_output.h"
 #include "apps/exemplar/catalog_runs.h"
 #include "apps/exemplar/commands.h"
+#include "host/core/files.h"
 #include "host/core/text.h"
 #include "host/labeling/feature_cache.h"
 #include "host/mesh/io_text.h"
@@ -52,15 +55,17 @@ void print_shape(const CatalogShape& shape) {
 void run_list(const ListCommand& options) {
     const auto limits = apply_common_options(options.common);
     Catalog catalog(options.catalog, Database::Open::existing);
-    Json shapes = Json::array();
-    const bool report = !options.common.json.empty();
-    catalog.for_each(
-        [&](const CatalogShape& shape) {
-            if (!options.common.quiet) print_shape(shape);
-            if (report) shapes.push_back(describe_shape_row(shape, options.cache));
-        },
-        condition(options));
-    write_report(options.common, {{"catalog", options.catalog.string()}, {"shapes", std::move(shapes)}});
+    const std::string where = condition(options);
+    if (!options.common.quiet) catalog.for_each(print_shape, where);
+    if (options.common.json.empty()) return;
+    write_file_atomically(options.common.json, [&](std::ostream& out) {
+        out << R"({"catalog": )" << json_text(options.catalog.string()) << R"(, "shapes": )";
+        write_json_list(out, [&](const auto& write) {
+            catalog.for_each([&](const CatalogShape& shape) { write(describe_shape_row(shape, options.cache)); },
+                             where);
+        });
+        out << "}\n";
+    });
 }
 
 /// Counts by one column, the most frequent first.

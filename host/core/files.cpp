@@ -22,16 +22,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A name no other thread or process uses at this moment.
-fs::path temporary_beside(const fs::path& path) {
-    static std::atomic<unsigned> counter{0};
-    fs::path name = path;
-    name += fmt::format(".{}.{}.tmp", getpid(), counter++);
-    return name;
-}
-
 [[noreturn]] void fail(const fs::path& path, int error) {
     throw DataError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(error)));
+}
+
+/// A new empty file of a name that nobody has, not even a link: in a folder that others write to, somebody may have
+/// laid one, and process numbers come again.
+fs::path temporary_beside(const fs::path& path, const fs::path& named) {
+    static std::atomic<unsigned> counter{0};
+    for (;;) {
+        fs::path name = path;
+        name += fmt::format(".{}.{}.tmp", getpid(), counter++);
+        const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file < 0 && errno == EEXIST) continue;
+        if (file < 0) fail(named, errno);
+        close(file);
+        return name;
+    }
 }
 
 /// Removes the temporary file unless the write was completed.
@@ -94,7 +101,7 @@ void write_file_atomically(const fs::path& path, const std::function<void(std::o
     if (error) fail(path, error.value());
 
     const fs::path target = link_target(path);
-    RemoveUnlessKept temporary{temporary_beside(target)};
+    RemoveUnlessKept temporary{temporary_beside(target, path)};
     write_stream(temporary.path, path, write);
     fs::rename(temporary.path, target, error);
     if (error) fail(path, error.value());

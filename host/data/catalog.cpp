@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <functional>
 #include <utility>
@@ -120,11 +121,18 @@ std::string output_part(std::string part) {
     return cut_to(std::move(part), k_longest_part);
 }
 
-/// A folder as an output part that is no name of a shape's results: beside a folder a.ply the results of a.off lie.
+/// What the files of a shape's results end in, after its name.
+constexpr std::array<std::string_view, 5> k_result_endings{".json", ".seg", ".ply", ".glb", "_labels.txt"};
+
+/// Whether a folder of that name may be where a shape has results: a.ply lies where those of a.off do.
+bool is_result(std::string_view part) {
+    return std::ranges::any_of(k_result_endings, [&](std::string_view ending) { return part.ends_with(ending); });
+}
+
+/// A folder as an output part that is no name of a shape's results.
 std::string output_folder_part(std::string part) {
     std::string safe = output_part(std::move(part));
-    for (const std::string_view ending : {".json", ".seg", ".ply", ".glb", "_labels.txt"})
-        if (safe.ends_with(ending)) safe[safe.rfind('.')] = '_';
+    if (is_result(safe)) safe[safe.rfind('.')] = '_';
     return safe;
 }
 
@@ -172,8 +180,10 @@ bool is_output_name(std::string_view name) {
     if (name.size() > k_longest_name) return false;
     for (;;) {
         const std::size_t slash = name.find('/');
-        if (!is_output_part(name.substr(0, slash))) return false;
+        const std::string_view part = name.substr(0, slash);
+        if (!is_output_part(part)) return false;
         if (slash == std::string_view::npos) return true;
+        if (is_result(part)) return false;
         name.remove_prefix(slash + 1);
     }
 }

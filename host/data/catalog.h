@@ -65,7 +65,8 @@ CatalogShape read_shape(const Statement& row);
 double seconds_since_1970();
 
 /// Whether files of that name lie below the folder they are written to, and in no hidden one: parts between slashes of
-/// printable characters, none empty or beginning with a dot, at most 200 bytes each and 1000 in all.
+/// printable characters, none empty or beginning with a dot, no folder called like a result (a.ply), at most 200 bytes
+/// each and 1000 in all.
 bool is_output_name(std::string_view name);
 /// An output name that is as near to `path` (relative, with or without extension) as can be.
 std::string output_name(const std::filesystem::path& path);

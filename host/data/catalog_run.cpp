@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/memory_budget.h"
@@ -35,6 +37,32 @@ ShapeRecord record_of_row(const Statement& row, int first) {
     if (Json labels = parse_shallow(row.text(first + 9)); labels.is_array()) record.labels = labels;
     if (Json seconds = parse_shallow(row.text(first + 10)); seconds.is_object()) record.seconds = seconds;
     return record;
+}
+
+/// Whether a record is older than a file that is as the catalog knows it: then its content need not be looked at.
+bool is_outlived(const ShapeRecord& record, const CatalogShape& shape) {
+    using std::chrono::file_clock, std::chrono::nanoseconds;
+    const auto changed = file_clock::to_sys(file_clock::time_point(nanoseconds(shape.modified)));
+    if (!(record.finished < std::chrono::duration<double>(changed.time_since_epoch()).count())) return false;
+    try {
+        const CatalogShape now = stat_shape(shape.path);
+        return now.bytes == shape.bytes && now.modified == shape.modified;
+    } catch (const DataError&) {
+        return false;
+    }
+}
+
+/// The shapes that a query for those above `after` gives, in order of number. Throws DataError where it does not, as in
+/// a file that somebody has made up: to ask for those above the last one would never end.
+std::vector<CatalogShape> shapes_above(std::int64_t after, Statement& query, const std::string& catalog) {
+    std::vector<CatalogShape> shapes;
+    while (query.step()) {
+        shapes.push_back(read_shape(query));
+        if (shapes.back().id <= after)
+            throw DataError(fmt::format("{}: is damaged: its shapes have no numbers; add them to a new one", catalog));
+        after = shapes.back().id;
+    }
+    return shapes;
 }
 
 }  // namespace
@@ -71,7 +99,7 @@ std::vector<CatalogShape> CatalogRun::claim(const std::string& worker, std::size
                         "ORDER BY id LIMIT ?3",
                         k_shape_columns, k_content));
         open.bind(id_, after, static_cast<std::int64_t>(most));
-        while (open.step()) shapes.push_back(read_shape(open));
+        shapes = shapes_above(after, open, database.name());
         Statement take = database.prepare(
             "INSERT OR REPLACE INTO labels(run, shape, state, worker, content) VALUES(?, ?, 'claimed', ?, ?)");
         for (const CatalogShape& shape : shapes) take.bind(id_, shape.id, worker, content_of(shape)).run();
@@ -157,9 +185,7 @@ std::vector<CatalogShape> CatalogRun::open_shapes(std::size_t most, std::int64_t
                     "run = ?1 AND shape = shapes.id AND state <> 'claimed' AND content = {}) ORDER BY id LIMIT ?3",
                     k_shape_columns, k_content));
     query.bind(id_, after, static_cast<std::int64_t>(most));
-    std::vector<CatalogShape> shapes;
-    while (query.step()) shapes.push_back(read_shape(query));
-    return shapes;
+    return shapes_above(after, query, catalog_.database().name());
 }
 
 std::size_t CatalogRun::merge_records(const std::function<void(std::size_t)>& looked) {
@@ -181,6 +207,7 @@ std::size_t CatalogRun::merge_records(const std::function<void(std::size_t)>& lo
 
 bool CatalogRun::merge(const CatalogShape& shape, const ShapeRecord& record) {
     if (record.content == content_of(shape)) return finish(shape.id, record);
+    if (is_outlived(record, shape)) return false;
     // Elsewhere the file was found to have changed; the record counts if it is about the file as it is now.
     CatalogShape now = describe_shape(shape.path, usable_memory() / 2);
     now.name = shape.name;

@@ -40,7 +40,7 @@ std::size_t comment_begin(const std::string& line) {
     return line.size();
 }
 
-std::vector<fs::path> meshes_of_list(const fs::path& list) {
+std::vector<fs::path> meshes_of_list(const fs::path& list, MissingMeshes missing) {
     std::vector<fs::path> paths;
     const std::string content = read_file(list);
     std::istringstream lines(content);
@@ -53,7 +53,7 @@ std::vector<fs::path> meshes_of_list(const fs::path& list) {
         if (line.empty()) continue;
         fs::path path = line;
         if (path.is_relative() && !is_there(path)) path = list.parent_path() / path;
-        if (!is_there(path))
+        if (missing == MissingMeshes::refused && !is_there(path))
             throw DataError(fmt::format("{}:{}: no such mesh: {}{}", list.string(), number,
                                         mesh_io::printable(line, 200), suggest_file(path)));
         paths.push_back(path);
@@ -116,7 +116,7 @@ bool is_mesh_file(const fs::path& path) {
     return std::find(known.begin(), known.end(), extension) != known.end();
 }
 
-std::vector<fs::path> list_meshes(const fs::path& source) {
+std::vector<fs::path> list_meshes(const fs::path& source, MissingMeshes missing) {
     if (!is_there(source))
         throw DataError(fmt::format("{}: no such folder or list{}", source.string(), suggest_file(source)));
     std::vector<fs::path> paths;
@@ -125,7 +125,7 @@ std::vector<fs::path> list_meshes(const fs::path& source) {
     else if (is_mesh_file(source))
         paths = {source};
     else
-        paths = meshes_of_list(source);
+        paths = meshes_of_list(source, missing);
     if (paths.empty())
         throw DataError(fmt::format("{}: holds no meshes ({})", source.string(), fmt::join(mesh_extensions(), " ")));
     return paths;

@@ -27,10 +27,14 @@ struct LabeledCorpus {
 /// Whether the name ends as that of a mesh.
 bool is_mesh_file(const std::filesystem::path& path);
 
+/// What is done with meshes that a list names and that are not there.
+enum class MissingMeshes { refused, kept };
+
 /// Mesh paths of `source`: a mesh file itself, a folder (its mesh files in natural order, not below) or a text file
 /// with a path a line (relative to the working folder or to the list's; a '#' at the start or after a space begins a
-/// comment). Throws DataError when there are none.
-std::vector<std::filesystem::path> list_meshes(const std::filesystem::path& source);
+/// comment). Throws DataError when there are none, or one of a list is not there, unless such are kept.
+std::vector<std::filesystem::path> list_meshes(const std::filesystem::path& source,
+                                               MissingMeshes missing = MissingMeshes::refused);
 
 /// Where the labels of a mesh are: NAME_labels.txt beside it, or in `labels_folder` if one is given.
 std::filesystem::path labels_path(const std::filesystem::path& mesh, const std::filesystem::path& labels_folder = {});

@@ -61,7 +61,7 @@ double ShapeRecord::seconds_all() const {
     return all;
 }
 
-Json parse_shallow(const std::string& text) {
+Json parse_shallow(std::string_view text) {
     const auto is_kept = [](int depth, Json::parse_event_t, Json&) { return depth <= k_deepest; };
     return Json::parse(text, is_kept, false);
 }

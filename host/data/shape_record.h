@@ -42,7 +42,7 @@ std::string to_bytes(const std::string& text);
 nlohmann::json to_json(const ShapeRecord& record);
 /// JSON of strangers, without what is nested deeper than any record, as going through that would exhaust the stack; a
 /// discarded value if it is damaged.
-nlohmann::json parse_shallow(const std::string& text);
+nlohmann::json parse_shallow(std::string_view text);
 /// The record at `path`; nothing if there is none, or a damaged one.
 std::optional<ShapeRecord> read_record(const std::filesystem::path& path);
 /// Moves the file `written` to `path` unless a file is there: of several processes that do so at once, on one machine

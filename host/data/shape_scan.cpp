@@ -48,23 +48,20 @@ bool is_output_folder(const fs::path& folder) {
     return fs::exists(folder / k_output_mark, ignored);
 }
 
-std::vector<fs::directory_entry> entries_of(const fs::path& folder) {
+std::vector<fs::directory_entry> entries_of(const fs::path& folder, std::error_code& error) {
     std::vector<fs::directory_entry> entries;
-    std::error_code error;
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
         if (!is_hidden(it->path())) entries.push_back(*it);
-    if (error) throw DataError(fmt::format("{}: cannot be read: {}", folder.string(), error.message()));
     std::ranges::sort(entries, natural_less, [](const fs::directory_entry& entry) { return entry.path().string(); });
     return entries;
 }
 
 /// Whether an entry of a folder is a mesh to read. A link to a folder is not followed: it may lead in circles.
-bool is_shape(const fs::directory_entry& entry, const fs::path& root,
-              const std::function<void(const fs::path&)>& left_out) {
+bool is_shape(const fs::directory_entry& entry, const fs::path& root, const LeftOut& left_out) {
     std::error_code ignored;
     if (!is_mesh_file(entry.path()) || !entry.is_regular_file(ignored)) return false;
     if (!entry.is_symlink(ignored) || stays_inside(entry.path(), root)) return true;
-    left_out(entry.path());
+    left_out(entry.path(), "leads out of the folder");
     return false;
 }
 
@@ -82,9 +79,13 @@ void describe(const fs::path& path, CatalogShape& shape) {
 
 }  // namespace
 
-void find_shapes(const fs::path& folder, const std::function<void(const FoundShape&)>& found,
-                 const std::function<void(const fs::path&)>& left_out) {
+void find_shapes(const fs::path& folder, const std::function<void(const FoundShape&)>& found, const LeftOut& left_out) {
     const fs::path root = fs::absolute(folder).lexically_normal();
+    if (is_output_folder(root))
+        throw DataError(
+            fmt::format("{}: was written to by batch labeling, and results are no shapes; if it holds shapes as well, "
+                        "remove {} from it",
+                        folder.string(), k_output_mark));
     std::vector<fs::path> open{root};
     while (!open.empty()) {
         check_interrupt();
@@ -92,7 +93,12 @@ void find_shapes(const fs::path& folder, const std::function<void(const FoundSha
         open.pop_back();
         if (is_output_folder(here)) continue;
         std::vector<fs::path> below;
-        for (const fs::directory_entry& entry : entries_of(here)) {
+        std::error_code error;
+        const std::vector<fs::directory_entry> entries = entries_of(here, error);
+        const std::string why = error ? "cannot be read: " + error.message() : "";
+        if (error && here == root) throw DataError(fmt::format("{}: {}", folder.string(), why));
+        if (error) left_out(here, why);
+        for (const fs::directory_entry& entry : entries) {
             std::error_code ignored;
             if (entry.is_directory(ignored) && !entry.is_symlink(ignored))
                 below.push_back(entry.path());
@@ -124,6 +130,16 @@ std::size_t reading_memory(std::uint64_t file_bytes) {
     return k_memory_per_byte * file_bytes;
 }
 
+std::uint64_t bytes_to_read(const fs::path& path, std::size_t most_memory) {
+    auto bytes = static_cast<std::uint64_t>(stat_shape(path).bytes);
+    if (reading_memory(bytes) <= most_memory) bytes += bytes_beside(path);
+    if (reading_memory(bytes) > most_memory)
+        throw MeshError(
+            fmt::format("{}: {:.1f} GB are more than can be read in {:.1f} GB of memory; --memory allows more",
+                        path.string(), 1e-9 * static_cast<double>(bytes), 1e-9 * static_cast<double>(most_memory)));
+    return bytes;
+}
+
 CatalogShape stat_shape(const fs::path& path) {
     std::error_code error;
     CatalogShape shape;
@@ -143,12 +159,7 @@ CatalogShape describe_shape(const fs::path& path, std::size_t most_memory) {
     shape.path = path;
     try {
         shape = stat_shape(path);
-        auto bytes = static_cast<std::uint64_t>(shape.bytes);
-        if (reading_memory(bytes) <= most_memory) bytes += bytes_beside(path);
-        if (reading_memory(bytes) > most_memory)
-            throw MeshError(
-                fmt::format("{}: {:.1f} GB are more than can be read in {:.1f} GB of memory; --memory allows more",
-                            path.string(), 1e-9 * static_cast<double>(bytes), 1e-9 * static_cast<double>(most_memory)));
+        bytes_to_read(path, most_memory);
         shape.hash = file_hash(path);
         describe(path, shape);
     } catch (const std::bad_alloc&) {

@@ -15,17 +15,25 @@ struct FoundShape {
     std::filesystem::path relative;  ///< to the folder that was searched
 };
 
+/// Hears of what is not searched, and why.
+using LeftOut = std::function<void(const std::filesystem::path& path, const std::string& why)>;
+
 /// Calls `found` for every mesh file in a folder and below it, in natural order. Links are followed to files of the
-/// same folder only, and hidden files and folders are left out: what a folder holds decides about nothing outside.
-/// `left_out` hears of each link that leads elsewhere. Throws DataError for a folder that cannot be read.
+/// same folder only, and hidden files and folders are left out: what a folder holds decides about nothing outside. So
+/// are folders that batch labeling has written to. `left_out` hears of each link that leads elsewhere, and of folders
+/// below that cannot be read. Throws DataError if `folder` itself cannot be read, or is one that was written to.
 void find_shapes(const std::filesystem::path& folder, const std::function<void(const FoundShape&)>& found,
-                 const std::function<void(const std::filesystem::path&)>& left_out);
+                 const LeftOut& left_out);
 
 /// The content hash of a file: XXH3-128, 32 hexadecimal digits. Throws DataError if it cannot be read.
 std::string file_hash(const std::filesystem::path& path);
 
 /// Memory that reading a mesh file of so many bytes may take.
 std::size_t reading_memory(std::uint64_t file_bytes);
+
+/// Bytes that are read of a mesh file and of those that it names (buffers of glTF). Throws MeshError if reading them
+/// would take more than `most_memory`, DataError if there is no such file.
+std::uint64_t bytes_to_read(const std::filesystem::path& path, std::size_t most_memory);
 
 /// Size and time of a file, as a catalog keeps them; path and name are left to the caller. Throws DataError.
 CatalogShape stat_shape(const std::filesystem::path& path);

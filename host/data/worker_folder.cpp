@@ -28,7 +28,7 @@ constexpr const char* k_work = ".work";
 }
 
 int open_lock(const fs::path& path) {
-    const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    const int file = open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (file < 0) fail(path, errno);
     return file;
 }
@@ -50,7 +50,7 @@ std::string new_id() {
 
 /// Whether somebody holds the lock. Where the system cannot lock, somebody may.
 bool is_held(const fs::path& lock) {
-    const int file = open(lock.c_str(), O_RDWR | O_CLOEXEC);
+    const int file = open(lock.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
     if (file < 0) return errno != ENOENT;
     const bool held = flock(file, LOCK_EX | LOCK_NB) != 0;
     close(file);

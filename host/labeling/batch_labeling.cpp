@@ -24,6 +24,8 @@ using Item = std::unique_ptr<BatchShape>;
 
 /// What a face of the working mesh takes while its features are computed, and what each shape takes at least.
 constexpr std::size_t k_bytes_per_face = 24'000;
+/// What more samples than usual add to a face: distances to them, and the bins these are in.
+constexpr std::size_t k_usual_samples = 1000, k_bytes_per_sample = 5;
 /// What a face of the mesh itself takes while the mesh is simplified.
 constexpr std::size_t k_bytes_per_original_face = 160;
 constexpr std::size_t k_bytes_per_shape = 4 << 20;
@@ -65,15 +67,37 @@ class Batch {
         auto item = std::make_unique<BatchShape>();
         item->shape = std::move(*shape);
         // A polygon becomes several faces, about two for each vertex.
-        const std::int64_t faces = std::max(item->shape.faces, 2 * item->shape.vertices);
-        const std::size_t needed = memory_for(static_cast<std::size_t>(std::max<std::int64_t>(faces, 0)),
-                                              static_cast<std::size_t>(std::max<std::int64_t>(item->shape.bytes, 0)));
-        item->memory = budget_.take(std::min(needed, most_memory_));
+        const std::int64_t most = std::max(item->shape.faces, 2 * item->shape.vertices);
+        const auto faces = static_cast<std::size_t>(std::max<std::int64_t>(most, 0));
+        const auto bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(item->shape.bytes, 0));
+        take_memory(*item, faces, bytes);
+        const std::uint64_t now = bytes_now(item->shape.path);
+        if (now > bytes) take_memory(*item, faces, now);
         return item;
     }
-    static std::size_t memory_for(std::size_t faces, std::size_t file_bytes) {
-        return k_bytes_per_shape + k_bytes_per_face * std::min<std::size_t>(faces, k_most_working_faces) +
+    void take_memory(BatchShape& item, std::size_t faces, std::uint64_t bytes) {
+        item.memory = {};  // who waits holds nothing
+        item.memory = budget_.take(std::min(memory_for(faces, bytes), most_memory_));
+    }
+    /// Bytes of a file that has grown, or names others; 0 if it is not to be read, as reading it will tell.
+    std::uint64_t bytes_now(const std::filesystem::path& path) const {
+        try {
+            return bytes_to_read(path, most_memory_);
+        } catch (const Error&) {
+            return 0;
+        }
+    }
+    std::size_t memory_for(std::size_t faces, std::uint64_t file_bytes) const {
+        const std::size_t working = std::min<std::size_t>(faces, k_most_working_faces);
+        const std::size_t samples = std::max(std::min(models_.features.samples, working), k_usual_samples);
+        return k_bytes_per_shape + (k_bytes_per_face + k_bytes_per_sample * (samples - k_usual_samples)) * working +
                k_bytes_per_original_face * faces + reading_memory(file_bytes);
+    }
+    /// What scoring adds to features: of each label a probability of two stages, and the columns of the context.
+    static std::size_t memory_of_scores(const BatchShape& item) {
+        if (!item.model) return 0;
+        const std::size_t columns = k_context_measures * k_context_bins + 2;
+        return sizeof(float) * columns * item.model->model.class_count() * item.prepared.features.unary.rows;
     }
 
     /// A stage that works on one shape at a time, unless an earlier stage gave it up.
@@ -103,13 +127,13 @@ class Batch {
         CatalogShape& shape = item.shape;
         std::string hash;
         try {
-            const auto bytes = static_cast<std::uint64_t>(stat_shape(shape.path).bytes);
-            if (reading_memory(bytes) <= most_memory_) hash = file_hash(shape.path);
+            const std::uint64_t bytes = bytes_to_read(shape.path, most_memory_);
+            hash = file_hash(shape.path);
             item.memory.resize(memory_for(static_cast<std::size_t>(std::max<std::int64_t>(shape.faces, 0)), bytes));
         } catch (const DataError& error) {  // it has vanished
             throw MeshError(error.what());
         }
-        if (hash != shape.hash || !shape.problem.empty()) look_again(item);
+        if (hash != shape.hash) look_again(item);
         item.record.content = content_of(shape);
         if (!shape.problem.empty()) throw MeshError(shape.problem);
         item.mesh = read_mesh(shape.path).mesh;
@@ -131,7 +155,8 @@ class Batch {
         arena_.execute([&] { item.prepared = working_features(models_.features, item.mesh, options_.cache); });
         item.record.features = item.prepared.cache_entry;
         choose_model(item);
-        item.memory.resize(k_bytes_per_shape + bytes_of(item.prepared.features) + 100 * item.mesh.face_count());
+        item.memory.resize(k_bytes_per_shape + bytes_of(item.prepared.features) + memory_of_scores(item) +
+                           100 * item.mesh.face_count());
         item.record.seconds["features"] = watch.wall();
     }
     /// By the category that the user gave, or else by the one that is recognized.

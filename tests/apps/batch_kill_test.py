@@ -32,6 +32,16 @@ class KillTest(BatchTest):
             found[record.stem] = [(file.stat().st_ino, file.stat().st_mtime_ns) for file in files]
         return found
 
+    def kill_one_of_two(self, generator):
+        """What the dead one had claimed is done by the other."""
+        dead, other = self.batch(), self.batch()
+        time.sleep(generator.uniform(0.3, 1) * LONGEST * self.whole)
+        dead.kill()
+        dead.communicate()
+        output, errors = other.communicate(timeout=200)
+        self.assertEqual(other.returncode, 0, output + errors)
+        return dead.returncode == -signal.SIGKILL
+
     def kill_at_random(self, generator, processes):
         for process in processes:
             time.sleep(generator.uniform(0, LONGEST * self.whole) / len(processes))
@@ -63,6 +73,12 @@ class KillTest(BatchTest):
                 self.assertEqual((lost, repeated), (set(), set()), f"kill {kills}")
                 before = now
             finished += len(before)
+            if len(before) < self.SHAPES and self.kill_one_of_two(generator):
+                kills += 1
+                after = self.finished()
+                self.assertEqual(len(after), self.SHAPES, "what a dead program had claimed was left")
+                self.assertEqual({name: after[name] for name in before}, before)
+                before = after
             after = self.run_to_the_end()
             self.assertEqual({name: after[name] for name in before}, before)
         print(f"{kills} kills in {rounds} rounds; {finished} shapes finished by programs that were killed", flush=True)

@@ -177,6 +177,7 @@ class BatchLabelingTest(BatchTest):
         self.assert_all_labeled("shared", self.SHAPES)
         done = [json.loads((self.folder / f"shared{i}.json").read_text())["labeled"] for i in range(2)]
         self.assertEqual(sum(done), self.SHAPES)
+        self.assertGreater(min(done), 0)
 
     def test_names_from_anywhere_stay_in_the_folder(self):
         outside = self.folder / "outside"
@@ -248,7 +249,7 @@ class BatchLabelingTest(BatchTest):
         if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400k", "none", disk], capture_output=True).returncode:
             self.skipTest("no right to mount a small disk")
         self.addCleanup(subprocess.run, ["umount", disk], check=True)
-        self.refused("label", "batch", "shapes", "--model", "cup.safetensors", "--out", "disk/out", code=1, says="")
+        self.refused("label", "batch", "shapes", "--model", "cup.safetensors", "--out", "disk/out", code=1, says=["disk/out", " full"])
         done = len(self.records("disk/out"))
         self.assertLess(done, self.SHAPES)
         subprocess.run(["mount", "-o", "remount,size=8m", disk], check=True)
@@ -293,6 +294,34 @@ class BatchLabelingTest(BatchTest):
         self.refused("label", "batch", shard, code=1, says="leads out of the folder")
         shard.write_text(whole.replace('"keep_small":false', '"keep_small":true'))
         self.refused("label", "batch", shard, code=1, says="not those that the shard was written for")
+        shard.write_text(whole)
+        for options in (["--retry"], ["--out", "elsewhere"], ["--model", "cup.safetensors"], ["--gltf"], ["--slurm", "--tasks", "2"]):
+            self.refused("label", "batch", shard, *options, code=2, says=["1.shard: is a shard", options[0]])
+
+    def test_a_list_with_a_mesh_that_is_gone(self):
+        listed = sorted((self.folder / "shapes").glob("*.off"))[:2]
+        (self.folder / "list.txt").write_text(f"{listed[0]}\n{self.folder}/gone.off\n{listed[1]}\n")
+        self.assertIn("2 shapes labeled", self.batch("list.txt", "out-list").stdout)
+        self.call("catalog", "list", "out-list/catalog.db", "--problems", "--json", "gone.json")
+        [gone] = json.loads((self.folder / "gone.json").read_text())["shapes"]
+        self.assertIn("gone.off: cannot be read", gone["problem"])
+
+    def test_nobodys_link_is_written_through(self):
+        """Somebody has laid links where the program may write for a moment, and guessed the number of its process."""
+        secret = self.folder / "secret.txt"
+        secret.write_text("secret")
+        out = self.folder / "out-guessed"
+        (out / ".work").mkdir(parents=True)
+        (out / ".work" / ".lock").symlink_to(self.folder / "made")
+        self.refused("label", "batch", "shapes", "--model", "cup.safetensors", "--out", out, code=1, says=".lock: cannot be written")
+        (out / ".work" / ".lock").unlink()
+        guess = ("p=$$; for n in 0 1 2; do for name in .exemplar-output index.html; do ln -s \"$1\" \"$2/$name.$p.$n.tmp\"; done; done; "
+                 "shift 2; exec \"$@\"")
+        subprocess.run(["sh", "-c", guess, "sh", secret, out, os.environ["EXEMPLAR_PROGRAM"], "label", "batch", "shapes", "--model",
+                        "cup.safetensors", "--out", out], cwd=self.folder, env=self.environment, check=True, capture_output=True)
+        self.assertEqual(secret.read_text(), "secret")
+        self.assertFalse((self.folder / "made").exists())
+        self.assert_all_labeled("out-guessed", self.SHAPES)
 
     def test_slurm_where_there_is_none(self):
         environment = dict(self.environment, PATH="/nonexistent")

@@ -1,10 +1,12 @@
 """Ctrl-C and kill -9 at random moments: nothing half-written, one line, and evaluation goes on where it stopped."""
 
+import contextlib
 import json
 import os
 import pathlib
 import random
 import signal
+import sqlite3
 import struct
 import time
 import unittest
@@ -42,6 +44,7 @@ class Interruption(ProgramTest):
         cls.commands = {
             "train": ["label", "train", "cups", "--out", "out/m.safetensors", "--cache", "", *LEARNING],
             "apply": ["label", "apply", "cup.safetensors", "cups", "--out", "out", "--cache", "", "--gltf", "--png"],
+            "batch": ["label", "batch", "cups", "--model", "cup.safetensors", "--out", "out", "--cache", "", "--gltf"],
             "features": ["features", "cups/cup_001.off", "--samples", "60", "--out", "out/f.npy", "--names", "out/n.json"],
             "hatch train": ["hatch", "train", animal, "drawing.png", *size, "--out", "out/style.safetensors"],
             "hatch draw": ["hatch", "draw", "style.safetensors", animal, *size, "--properties", "out/properties",
@@ -98,6 +101,11 @@ class Interruption(ProgramTest):
             self.assertEqual(len(content.splitlines()), len(faces), path)
         elif path.suffix == ".svg":
             self.assertTrue(content.rstrip().endswith(b"</svg>"), path)
+        elif path.suffix == ".db":
+            with contextlib.closing(sqlite3.connect(path)) as database:
+                self.assertEqual(database.execute("PRAGMA integrity_check").fetchall(), [("ok",)])
+        elif path.name in (".exemplar-output", ".lock") or path.suffix == ".lock":
+            self.assertEqual(content, b"", path)
         elif path.suffix == ".html":
             self.assertTrue(content.rstrip().endswith(b"</html>"), path)
         else:
@@ -105,7 +113,7 @@ class Interruption(ProgramTest):
 
     def check_folder(self, folder, temporary_allowed):
         for path in (self.folder / folder).rglob("*"):
-            if path.is_dir():
+            if path.is_dir() or path.suffix in (".db-wal", ".db-shm"):  # parts of a database
                 continue
             if path.suffix == ".tmp":
                 self.assertTrue(temporary_allowed, path)

@@ -251,11 +251,12 @@ TEST_F(CatalogTest, NothingOfAStrangersCatalogIsRun) {
 
 TEST(OutputName, NothingLeadsOutOfAFolder) {
     for (const char* name :
-         {"", "/", "..", ".", "a/..", "../a", "a//b", "/a", "a/", ".a", "a/.b", "a\\b", "a\nb", "a\x7f"})
+         {"", "/", "..", ".", "a/..", "../a", "a//b", "/a", "a/", ".a", "a/.b", "a\\b", "a\nb", "a\x7f", "a.ply/b",
+          "a/b_labels.txt/c"})
         EXPECT_FALSE(is_output_name(name)) << name;
     EXPECT_FALSE(is_output_name(std::string("a\0b", 3)));
     EXPECT_FALSE(is_output_name(std::string(201, 'a')));
-    for (const char* name : {"a", "a/b", "a..b", "a b/c.d", "\xc3\xa4"}) EXPECT_TRUE(is_output_name(name)) << name;
+    for (const char* name : {"a", "a/b", "a..b", "a b/c.d", "a/b.ply", "\xc3\xa4"}) EXPECT_TRUE(is_output_name(name)) << name;
 }
 
 TEST(OutputName, AnyPathBecomesOne) {
@@ -376,7 +377,13 @@ TEST_F(CatalogRunTest, TheRecordOfAFileThatHasChangedMeanwhileCounts) {
     before.hash = "of another content";
     before.faces = 99;
     put({before});
-    mesh_files::write_bytes(run_.record_path(now), to_json(record_for(now, run_)).dump());
+    ShapeRecord record = record_for(now, run_);
+    record.finished = 1;  // in 1970, before there was such a file
+    mesh_files::write_bytes(run_.record_path(now), to_json(record).dump());
+    EXPECT_EQ(run_.merge_records([](std::size_t) {}), 0u);
+    EXPECT_EQ(catalog_.find(file)->hash, before.hash) << "it was looked at";
+    record.finished = seconds_since_1970() + 1;
+    mesh_files::write_bytes(run_.record_path(now), to_json(record).dump());
     EXPECT_EQ(run_.merge_records([](std::size_t) {}), 1u);
     EXPECT_EQ(catalog_.find(file)->hash, now.hash);
     EXPECT_EQ(catalog_.find(file)->faces, 1);
@@ -391,6 +398,22 @@ TEST_F(CatalogRunTest, ACategoryOfAnotherEncodingIsFoundAgain) {
     ASSERT_TRUE(run_.record_of(shape).has_value());
     EXPECT_EQ(run_.merge_records([](std::size_t) {}), 1u);
     EXPECT_EQ(run_.merge_records([](std::size_t) {}), 0u);
+}
+
+TEST_F(CatalogRunTest, ShapesWithoutNumbersEndNoLoop) {
+    const TemporaryFolder folder;
+    const fs::path path = folder / "made_up.db";
+    Catalog(path, Database::Open::create).put(std::vector{shape_at("/a.off")});
+    {
+        Database database(path, Database::Open::existing);
+        database.execute(
+            "CREATE TABLE other AS SELECT * FROM shapes; DROP TABLE shapes; UPDATE other SET id = 'x'; ALTER TABLE other "
+            "RENAME TO shapes");
+    }
+    Catalog catalog(path, Database::Open::existing);
+    CatalogRun run(catalog, "key", folder.path(), "");
+    EXPECT_THAT(error_of<DataError>([&] { run.claim("me", 4, 0); }), HasSubstr("is damaged"));
+    EXPECT_THAT(error_of<DataError>([&] { run.merge_records([](std::size_t) {}); }), HasSubstr("is damaged"));
 }
 
 TEST_F(CatalogRunTest, ANameThatLeadsOutOfTheFolderIsRefused) {

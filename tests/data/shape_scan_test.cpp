@@ -32,7 +32,10 @@ class ScanTest : public testing::Test {
         left_out_.clear();
         find_shapes(
             folder_ / below, [&](const FoundShape& shape) { names.push_back(shape.relative.string()); },
-            [&](const fs::path& link) { left_out_.push_back(link.filename().string()); });
+            [&](const fs::path& path, const std::string& why) {
+                left_out_.push_back(path.filename().string());
+                EXPECT_NE(why, "");
+            });
         return names;
     }
     TemporaryFolder folder_;
@@ -69,6 +72,23 @@ TEST_F(ScanTest, WhatWasWrittenIsNoInput) {
     mesh("out/labeled/a.ply");
     write_bytes(folder_ / "out" / k_output_mark, "");
     EXPECT_THAT(found(), ElementsAre("a.off"));
+    EXPECT_THAT(error_of<DataError>([&] { found("out"); }), HasSubstr(k_output_mark));
+    EXPECT_THAT(found("out/labeled"), ElementsAre("a.ply"));
+}
+
+TEST_F(ScanTest, AFolderThatCannotBeReadIsLeftOut) {
+    mesh("a.off");
+    mesh("locked/b.off");
+    mesh("z/c.off");
+    fs::permissions(folder_.path(), fs::perms::all);
+    fs::permissions(folder_ / "locked", fs::perms::none);
+    const uid_t user = geteuid(), nobody = 65534;
+    if (user == 0) ASSERT_EQ(seteuid(nobody), 0);  // root may read every folder
+    EXPECT_THAT(found(), ElementsAre("a.off", "z/c.off"));
+    EXPECT_THAT(left_out_, ElementsAre("locked"));
+    EXPECT_THROW(found("locked"), DataError);
+    if (user == 0) ASSERT_EQ(seteuid(user), 0);
+    fs::permissions(folder_ / "locked", fs::perms::owner_all);
 }
 
 TEST_F(ScanTest, DescribesGoodAndBadFiles) {

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <tuple>
 
@@ -20,6 +21,8 @@
 #include "host/curvature/model.h"
 #include "host/data/corpus.h"
 #include "host/data/safetensors.h"
+#include "host/data/shape_record.h"
+#include "host/data/shard.h"
 #include "host/hatching/hatching_style.h"
 #include "host/labeling/category_model.h"
 #include "host/labeling/model.h"
@@ -361,6 +364,36 @@ bool reads_list(std::string_view content) {
     return true;
 }
 
+bool reads_shard(std::string_view content) {
+    const fs::path path = scratch_file("x.shard", content), again = scratch() / "again.shard";
+    Shard shard;
+    if (!accepts<DataError>(path.string(), content.size(), k_usual_bound, [&] { shard = read_shard(path); }))
+        return false;
+    for (const CatalogShape& shape : shard.shapes) {
+        require(is_output_name(shape.name), "results lie in the output folder");
+        require(shape.faces >= 0 && shape.bytes >= 0, "counts");
+    }
+    write_shard(again, shard);
+    const std::string bytes = read_file(again);
+    require(is_shard(again), "what is written begins as a shard");
+    write_shard(again, read_shard(again));
+    require(read_file(again) == bytes, "a written shard is read again");
+    return true;
+}
+
+bool reads_record(std::string_view content) {
+    const fs::path path = scratch_file("x.json", content), again = scratch() / "again.json";
+    std::optional<ShapeRecord> record;
+    accepts<DataError>(path.string(), content.size(), k_usual_bound, [&] { record = read_record(path); });
+    if (!record) return false;
+    const std::string state = record->state();
+    require(state == "done" || state == "failed" || state == "unknown", "a state");
+    mesh_files::write_bytes(again, to_json(*record).dump());
+    const std::optional<ShapeRecord> back = read_record(again);
+    require(back && to_json(*back) == to_json(*record), "a written record is read again");
+    return true;
+}
+
 /// The text of a style that draws lines just as another does.
 std::string text_of(const LineStyle& line) {
     const StrokeThickness& t = line.thickness;
@@ -390,7 +423,7 @@ bool reads_style(std::string_view content) {
     return true;
 }
 
-constexpr std::array<Reader, 15> k_readers{{{"off", reads_off},
+constexpr std::array<Reader, 17> k_readers{{{"off", reads_off},
                                             {"obj", reads_obj},
                                             {"ply", reads_ply},
                                             {"stl", reads_stl},
@@ -404,6 +437,8 @@ constexpr std::array<Reader, 15> k_readers{{{"off", reads_off},
                                             {"hatching", reads_hatching},
                                             {"categories", reads_categories},
                                             {"list", reads_list},
+                                            {"shard", reads_shard},
+                                            {"record", reads_record},
                                             {"style", reads_style}}};
 
 }  // namespace

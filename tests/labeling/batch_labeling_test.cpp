@@ -88,6 +88,7 @@ class BatchLabeling : public testing::Test {
         const auto keep = [&](BatchShape& shape) {
             records_[shape.shape.name] = shape.record;
             labels_[shape.shape.name] = shape.labeling.label;
+            changed_ += shape.changed ? 1 : 0;
             if (written_) written_();
         };
         return label_batch(give, keep, models_, {scorer_, context_}, options_);
@@ -102,6 +103,7 @@ class BatchLabeling : public testing::Test {
     std::vector<CatalogShape> shapes_;
     std::map<std::string, ShapeRecord> records_;
     std::map<std::string, std::vector<std::int32_t>> labels_;
+    std::size_t changed_ = 0;
     std::function<void()> written_;
 };
 
@@ -178,6 +180,32 @@ TEST_F(BatchLabeling, AShapeLargerThanTheBudgetIsLabeledAlone) {
     run();
     ASSERT_EQ(records_.size(), 5u);
     for (const auto& [name, record] : records_) EXPECT_EQ(record.error, "") << name;
+}
+
+TEST_F(BatchLabeling, AFileTooLargeForThisProgramStaysWhatItIs) {
+    add(halves(2.0F).mesh);
+    add(halves(2.0F).mesh);
+    std::string large = read_file(shapes_[1].path);
+    large += "# " + std::string(1 << 20, 'x') + "\n";
+    mesh_files::write_bytes(shapes_[1].path, large);
+    shapes_.pop_back();
+    add_file(folder_ / "1.off");
+    options_.memory = 1 << 20;  // too little to read a megabyte
+    run();
+    EXPECT_EQ(error("0"), "");
+    EXPECT_THAT(error("1"), HasSubstr("more than can be read"));
+    EXPECT_EQ(records_["1"].content, shapes_[1].hash) << "another program may have the memory";
+    EXPECT_EQ(changed_, 0U);
+}
+
+TEST_F(BatchLabeling, WhatAFileNamesCountsWithIt) {
+    const std::string buffer = R"({"uri": "beside.bin", "byteLength": 2000000000})";
+    mesh_files::write_bytes(folder_ / "a.gltf", R"({"asset": {"version": "2.0"}, "buffers": []})");
+    add_file(folder_ / "a.gltf");
+    mesh_files::write_bytes(folder_ / "a.gltf", R"({"asset": {"version": "2.0"}, "buffers": [)" + buffer + "]}");
+    shapes_.front().problem.clear();
+    run();
+    EXPECT_THAT(error("a"), HasSubstr("more than can be read"));
 }
 
 TEST_F(BatchLabeling, TheGivenCategoryChoosesTheModel) {

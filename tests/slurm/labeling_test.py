@@ -225,6 +225,21 @@ class LabelingOnTwoNodes(Labeling):
             self.cluster.start_controller()
         self.finish(out)
 
+    def test_an_interrupted_wait_is_taken_up_again(self):
+        """The job goes on; it is not submitted once more, but waited for."""
+        out = "interrupted"
+        self.submit(out)
+        self.wait_for(out, lambda: self.watch(out), "a result")
+        self.process.send_signal(signal.SIGINT)
+        _, errors = self.process.communicate(timeout=60)
+        self.assertEqual(self.process.returncode, 130, errors)
+        job, = {name.partition("_")[0] for name in self.cluster.jobs()}
+        self.assertIn(f"job {job} goes on: the same command waits for it again, 'scancel {job}' ends it", errors)
+        self.refused(*self.batch(out, "--slurm", "--tasks", str(TASKS)), code=1, says=f"job {job} of an earlier call is still at work")
+        self.submit(out)
+        self.finish(out)
+        self.assertEqual([folder.name for folder in (self.folder / out / "shards").iterdir()], ["1"])
+
     def test_all_tasks_fail(self):
         """Their model is gone once they start; that the job is over does not mean that all is well."""
         out = "gone"

@@ -250,13 +250,13 @@ TEST_F(CatalogTest, NothingOfAStrangersCatalogIsRun) {
 }
 
 TEST(OutputName, NothingLeadsOutOfAFolder) {
-    for (const char* name :
-         {"", "/", "..", ".", "a/..", "../a", "a//b", "/a", "a/", ".a", "a/.b", "a\\b", "a\nb", "a\x7f", "a.ply/b",
-          "a/b_labels.txt/c"})
+    for (const char* name : {"", "/", "..", ".", "a/..", "../a", "a//b", "/a", "a/", ".a", "a/.b", "a\\b", "a\nb",
+                             "a\x7f", "a.ply/b", "a/b_labels.txt/c"})
         EXPECT_FALSE(is_output_name(name)) << name;
     EXPECT_FALSE(is_output_name(std::string("a\0b", 3)));
     EXPECT_FALSE(is_output_name(std::string(201, 'a')));
-    for (const char* name : {"a", "a/b", "a..b", "a b/c.d", "a/b.ply", "\xc3\xa4"}) EXPECT_TRUE(is_output_name(name)) << name;
+    for (const char* name : {"a", "a/b", "a..b", "a b/c.d", "a/b.ply", "\xc3\xa4"})
+        EXPECT_TRUE(is_output_name(name)) << name;
 }
 
 TEST(OutputName, AnyPathBecomesOne) {
@@ -407,7 +407,8 @@ TEST_F(CatalogRunTest, ShapesWithoutNumbersEndNoLoop) {
     {
         Database database(path, Database::Open::existing);
         database.execute(
-            "CREATE TABLE other AS SELECT * FROM shapes; DROP TABLE shapes; UPDATE other SET id = 'x'; ALTER TABLE other "
+            "CREATE TABLE other AS SELECT * FROM shapes; DROP TABLE shapes; UPDATE other SET id = 'x'; ALTER TABLE "
+            "other "
             "RENAME TO shapes");
     }
     Catalog catalog(path, Database::Open::existing);

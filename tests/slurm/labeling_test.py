@@ -228,16 +228,24 @@ class LabelingOnTwoNodes(Labeling):
     def test_an_interrupted_wait_is_taken_up_again(self):
         """The job goes on; it is not submitted once more, but waited for."""
         out = "interrupted"
-        self.submit(out)
-        self.wait_for(out, lambda: self.watch(out), "a result")
+        for name in self.cluster.names:
+            self.cluster.drain(name)
+        self.submit(out, shapes="few")
+        self.wait_for(out, lambda: (self.shard(out, 1).parent / "job.json").exists(), "the job")
         self.process.send_signal(signal.SIGINT)
         _, errors = self.process.communicate(timeout=60)
         self.assertEqual(self.process.returncode, 130, errors)
-        job, = {name.partition("_")[0] for name in self.cluster.jobs()}
+        [job] = {name.partition("_")[0] for name in self.cluster.jobs()}
         self.assertIn(f"job {job} goes on: the same command waits for it again, 'scancel {job}' ends it", errors)
-        self.refused(*self.batch(out, "--slurm", "--tasks", str(TASKS)), code=1, says=f"job {job} of an earlier call is still at work")
-        self.submit(out)
-        self.finish(out)
+        self.refused(*self.batch(out, "--slurm", "--tasks", str(TASKS), shapes="few"), code=1,
+                     says=f"job {job} of an earlier call is still at work")
+        self.submit(out, shapes="few")
+        for name in self.cluster.names:
+            self.cluster.resume(name)
+        output, errors = self.process.communicate(timeout=120)
+        self.assertEqual(self.process.returncode, 0, output + errors)
+        self.assertIn(f"job {job} of an earlier call is still at work\n", output)
+        self.assert_all_labeled(out, FEW)
         self.assertEqual([folder.name for folder in (self.folder / out / "shards").iterdir()], ["1"])
 
     def test_all_tasks_fail(self):

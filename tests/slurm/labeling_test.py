@@ -231,17 +231,20 @@ class LabelingOnTwoNodes(Labeling):
         for name in self.cluster.names:
             self.cluster.drain(name)
         self.submit(out, shapes="few")
-        self.wait_for(out, lambda: (self.shard(out, 1).parent / "job.json").exists(), "the job")
-        self.process.send_signal(signal.SIGINT)
-        _, errors = self.process.communicate(timeout=60)
-        self.assertEqual(self.process.returncode, 130, errors)
-        [job] = {name.partition("_")[0] for name in self.cluster.jobs()}
-        self.assertIn(f"job {job} goes on: the same command waits for it again, 'scancel {job}' ends it", errors)
-        self.refused(*self.batch(out, "--slurm", "--tasks", str(TASKS), shapes="few"), code=1,
-                     says=f"job {job} of an earlier call is still at work")
-        self.submit(out, shapes="few")
-        for name in self.cluster.names:
-            self.cluster.resume(name)
+        told = self.shard(out, 1).parent / "job.json"
+        try:
+            self.wait_for(out, told.exists, "the job")
+            job = json.loads(told.read_text())["job"]
+            self.process.send_signal(signal.SIGINT)
+            _, errors = self.process.communicate(timeout=60)
+            self.assertEqual(self.process.returncode, 130, errors)
+            self.assertIn(f"job {job} goes on: the same command waits for it again, 'scancel {job}' ends it", errors)
+            self.refused(*self.batch(out, "--slurm", "--tasks", str(TASKS), shapes="few"), code=1,
+                         says=f"job {job} of an earlier call is still at work")
+            self.submit(out, shapes="few")
+        finally:
+            for name in self.cluster.names:
+                self.cluster.resume(name)
         output, errors = self.process.communicate(timeout=120)
         self.assertEqual(self.process.returncode, 0, output + errors)
         self.assertIn(f"job {job} of an earlier call is still at work\n", output)

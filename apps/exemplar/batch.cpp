@@ -16,7 +16,6 @@
 #include "apps/exemplar/catalog_add.h"
 #include "apps/exemplar/commands.h"
 #include "host/core/errors.h"
-#include "host/core/files.h"
 #include "host/core/freed_memory.h"
 #include "host/core/interrupt.h"
 #include "host/core/memory_budget.h"
@@ -77,7 +76,7 @@ void prepare_output(const BatchCommand& options) {
         throw UsageError(
             fmt::format("{}: is the folder of the shapes; give another folder to write to", options.out.string()));
     refuse_links(options.out);
-    write_file_atomically(options.out / k_output_mark, [](std::ostream&) {});
+    mark_output_folder(options.out);
 }
 
 std::size_t most_memory(const BatchCommand& options) {
@@ -107,7 +106,7 @@ void run_here(const BatchCommand& options, Catalog& catalog, CatalogRun& run, co
     CatalogWork work(catalog, run, plan.out, worker.id());
     const BatchWriter writer(run.folder(), worker, run.key(), plan.gltf);
     const BatchResult result = run_work(work, writer, models, backend, batch_options(options));
-    write_batch_page(plan.out / "index.html", catalog, run,
+    write_batch_page(plan.out, catalog, run,
                      {result.stages, result.counts.all() - result.counts.taken_over, result.wall});
     const std::int64_t unusable = catalog.count("problem <> ''");
     report(options, result, backend, {{"run", run.id()}, {"unusable", unusable}});

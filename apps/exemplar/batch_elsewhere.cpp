@@ -147,7 +147,7 @@ void report_elsewhere(const BatchCommand& options, Catalog& catalog, CatalogRun&
                       Json json) {
     const CatalogRun::Counts counts = run.counts();
     if (options.wait || json["shards"].empty()) {
-        write_batch_page(plan.out / "index.html", catalog, run, {});
+        write_batch_page(plan.out, catalog, run, {});
         if (!options.common.quiet)
             fmt::print("{} labeled, {} of unknown category, {} failed, {} to do\n",
                        counted(static_cast<std::size_t>(counts.done), "shape"), counts.unknown, counts.failed,

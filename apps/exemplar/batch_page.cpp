@@ -9,8 +9,10 @@
 
 #include "apps/exemplar/catalog_runs.h"
 #include "apps/exemplar/shown_shapes.h"
+#include "host/core/errors.h"
 #include "host/core/text.h"
 #include "host/data/run_summary.h"
+#include "host/data/worker_folder.h"
 #include "host/labeling/report_page.h"
 #include "host/mesh/io_text.h"
 
@@ -18,6 +20,8 @@ namespace exemplar {
 namespace {
 
 using Row = std::vector<std::string>;
+
+constexpr const char* k_page = "index.html";
 
 // Bounds of what is shown: a mesh of 5,000 faces takes 80 kB of the page, a row of a table at most 2 kB.
 constexpr std::size_t k_most_views = 48, k_views_per_category = 6, k_most_shown_faces = 5000;
@@ -263,7 +267,7 @@ void join_into_overview(std::vector<ReportData>& groups) {
 
 }  // namespace
 
-void write_batch_page(const std::filesystem::path& path, Catalog& catalog, CatalogRun& run, const BatchReport& report) {
+void write_batch_page(const std::filesystem::path& out, Catalog& catalog, CatalogRun& run, const BatchReport& report) {
     const std::vector<CategorySummary> categories = summarize_categories(catalog, run.id(), k_most_rows);
     const auto labeled = static_cast<std::size_t>(
         std::ranges::count_if(categories, [](const CategorySummary& category) { return category.done > 0; }));
@@ -275,7 +279,11 @@ void write_batch_page(const std::filesystem::path& path, Catalog& catalog, Catal
     for (std::size_t c = 0; c < shown_categories; ++c)
         groups.push_back(category_group(catalog, run, categories[c], views, meshes));
     if (groups.size() == 2) join_into_overview(groups);
-    write_report_page(path, "Labeled shapes", groups);
+    const WorkerFolder worker(out);  // half a page of a program that was killed is removed by the next
+    write_report_page(worker.path() / k_page, "Labeled shapes", groups);
+    std::error_code error;
+    std::filesystem::rename(worker.path() / k_page, out / k_page, error);
+    if (error) throw DataError(fmt::format("{}: cannot be written: {}", (out / k_page).string(), error.message()));
 }
 
 }  // namespace exemplar

@@ -16,9 +16,9 @@ struct BatchReport {
     double seconds = 0;      ///< wall time
 };
 
-/// Writes a page about a run of any number of shapes (see write_report_page): what became of them, stages, categories,
-/// labels, errors, the least sure shapes, and some labeled ones to turn, read from the run's folder. It stays below
-/// about 20 MB. Throws DataError if it cannot be written.
-void write_batch_page(const std::filesystem::path& path, Catalog& catalog, CatalogRun& run, const BatchReport& report);
+/// Writes OUT/index.html, a page about a run of any number of shapes (see write_report_page): what became of them,
+/// stages, categories, labels, errors, the least sure shapes, and some labeled ones to turn, read from the run's
+/// folder. It stays below about 20 MB. Throws DataError if it cannot be written.
+void write_batch_page(const std::filesystem::path& out, Catalog& catalog, CatalogRun& run, const BatchReport& report);
 
 }  // namespace exemplar

@@ -152,7 +152,7 @@ void renew_page(Catalog& catalog, CatalogRun& run) {
     const fs::path out = run.folder().parent_path();
     std::error_code ignored;
     refuse_links(out);
-    if (fs::exists(out / k_output_mark, ignored)) write_batch_page(out / "index.html", catalog, run, {});
+    if (fs::exists(out / k_output_mark, ignored)) write_batch_page(out, catalog, run, {});
 }
 
 void run_merge(const ExportCommand& options) {

@@ -27,7 +27,8 @@ constexpr const char* k_work = ".work";
     throw DataError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(reason)));
 }
 
-int open_lock(const fs::path& path) {
+/// Opens a file that only has to be there, or makes it. Where links lead, nothing is made.
+int open_or_make(const fs::path& path) {
     const int file = open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (file < 0) fail(path, errno);
     return file;
@@ -87,7 +88,7 @@ void remove_dead(const fs::path& work) {
 
 }  // namespace
 
-FileLock::FileLock(const fs::path& path) : file_(open_lock(path)) {
+FileLock::FileLock(const fs::path& path) : file_(open_or_make(path)) {
     // Where the system cannot lock, what the lock is for (removing leftovers) is left undone by is_held.
     while (flock(file_, LOCK_EX) != 0 && errno == EINTR) continue;
 }
@@ -106,7 +107,7 @@ WorkerFolder::WorkerFolder(const fs::path& output) : id_(new_id()) {
     remove_dead(work);
     path_ = work / id_;
     lock_path_ = work / (id_ + k_lock);
-    lock_ = open_lock(lock_path_);
+    lock_ = open_or_make(lock_path_);
     flock(lock_, LOCK_EX | LOCK_NB);
     fs::create_directory(path_, error);
     if (error) fail(path_, error.value());
@@ -132,6 +133,13 @@ void refuse_links(const fs::path& output) {
                 fmt::format("{}: is a link, and nothing is written where links lead; remove it or give "
                             "another output folder",
                             (output / name).string()));
+}
+
+void mark_output_folder(const fs::path& output) {
+    std::error_code error;
+    fs::create_directories(output, error);
+    if (error) fail(output, error.value());
+    close(open_or_make(output / k_output_mark));
 }
 
 fs::path make_output_folder(const fs::path& output, const std::string& name) {

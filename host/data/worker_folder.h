@@ -52,5 +52,7 @@ std::filesystem::path make_output_folder(const std::filesystem::path& output, co
 
 /// The name of an empty file in folders that batch labeling writes to: they hold no shapes to label.
 constexpr const char* k_output_mark = ".exemplar-output";
+/// Makes that file if there is none. Throws DataError.
+void mark_output_folder(const std::filesystem::path& output);
 
 }  // namespace exemplar

@@ -1,5 +1,7 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <filesystem>
@@ -51,6 +53,16 @@ TEST(Files, LinksStayAndPipesAreNotReplaced) {
     write_file_atomically(folder / "null.txt", [](std::ostream& out) { out << "gone"; });
     EXPECT_TRUE(fs::is_symlink(folder / "null.txt"));
     EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST(Files, NobodysLinkIsWrittenThrough) {
+    const TemporaryFolder folder;
+    write_file_atomically(folder / "secret.txt", [](std::ostream& out) { out << "secret"; });
+    for (int n = 0; n < 1000; ++n)  // as the temporary file would be called
+        fs::create_symlink(folder / "secret.txt", folder / fmt::format("a.txt.{}.{}.tmp", getpid(), n));
+    write_file_atomically(folder / "a.txt", [](std::ostream& out) { out << "hello"; });
+    EXPECT_EQ(read_file(folder / "a.txt"), "hello");
+    EXPECT_EQ(read_file(folder / "secret.txt"), "secret");
 }
 
 TEST(Files, PlacesThatCannotBeWrittenAreNamed) {

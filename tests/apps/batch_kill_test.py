@@ -1,11 +1,12 @@
 """Batch labeling is killed again and again at random moments: it loses no finished shape and repeats none."""
 
+import contextlib
 import os
 import pathlib
 import random
 import shutil
 import signal
-import subprocess
+import sqlite3
 import time
 import unittest
 
@@ -32,10 +33,22 @@ class KillTest(BatchTest):
             found[record.stem] = [(file.stat().st_ino, file.stat().st_mtime_ns) for file in files]
         return found
 
+    def claiming(self):
+        """The numbers of the processes that have claimed shapes."""
+        try:
+            with contextlib.closing(sqlite3.connect(self.folder / "out" / "catalog.db")) as database:
+                rows = database.execute("SELECT DISTINCT worker FROM labels WHERE state = 'claimed'").fetchall()
+        except sqlite3.OperationalError:  # it is just being made
+            return set()
+        return {int(worker.split("-")[-2]) for [worker] in rows}
+
     def kill_one_of_two(self, generator):
-        """What the dead one had claimed is done by the other."""
+        """What the dead one had claimed is done by the other, which had begun before."""
         dead, other = self.batch(), self.batch()
-        time.sleep(generator.uniform(0.3, 1) * LONGEST * self.whole)
+        while not {dead.pid, other.pid} <= self.claiming():
+            self.assertIsNone(other.poll(), "one did all the work")
+            time.sleep(0.005)
+        time.sleep(generator.uniform(0, 0.02) * self.whole)
         dead.kill()
         dead.communicate()
         output, errors = other.communicate(timeout=200)

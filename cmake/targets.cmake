@@ -21,11 +21,7 @@ endif()
 if(exemplar_march)
   target_compile_options(exemplar_options INTERFACE -march=${exemplar_march})
 endif()
-# Instrumented code is many times larger, so fmt, which is header-only elsewhere, comes from its library: that takes
-# more than half of the time off the build.
-set(EXEMPLAR_FMT fmt::fmt-header-only)
 if(EXEMPLAR_SANITIZE OR EXEMPLAR_FUZZERS)
-  set(EXEMPLAR_FMT fmt::fmt)
   set(exemplar_sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all)
   target_compile_options(exemplar_options INTERFACE ${exemplar_sanitizers} -O1 -g1 -fno-omit-frame-pointer)
   target_link_options(exemplar_options INTERFACE ${exemplar_sanitizers})

@@ -56,7 +56,7 @@ std::size_t expect_same_chains(const Scene& scene, const std::vector<LineType>& 
                         {.eye = camera.position(), .feature_size = scene.size(), .thresholds = {}}, camera);
     std::set<std::pair<bool, Walk>> expected, actual;
     for (const LineType type : types) {
-        const Own own = own_segments(found.found, type);
+        const ReadSegments own = segments_of_type(found.found.segments, type);
         for (const Chain& chain : chain_segments(scene.mesh.faces, scene.neighbors, own.segments)) {
             Walk walk;
             for (const ChainLink& link : chain.links) walk.emplace_back(own.numbers[link.segment], link.reversed);

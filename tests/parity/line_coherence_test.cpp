@@ -82,7 +82,7 @@ TEST_P(CoherenceParity, TexturesLieWhereTheReferenceLaysThem) {
     for (int frame = 0; frame < 4; ++frame) {
         motion.draw(frame);
         const Found found = motion.found();
-        const std::vector<LineSegment> segments = own_segments(found, GetParam()).segments;
+        const std::vector<LineSegment> segments = segments_of_type(found.segments, GetParam()).segments;
         const std::vector<vec4> actual = motion.traces(segments.size());
         const LineSurface surface = motion.scene.surface();
         const std::vector<Chain> chains = chain_segments(surface.faces, surface.neighbors, segments);

@@ -76,7 +76,7 @@ DrawnLines draw(const Scene& scene, LineType type, bool parallel, const LineStyl
     drawn.visible.resize(counts.points);
     renderer.strokes().visible().download(std::span(drawn.visible));
 
-    drawn.segments = own_segments({counts, records}, type).segments;
+    drawn.segments = segments_of_type(records, type).segments;
     const std::vector<Chain> chains = chain_segments(scene.mesh.faces, scene.neighbors, drawn.segments);
     // The device orders chains by the segment they start with.
     std::map<std::uint32_t, Stroke> by_start;

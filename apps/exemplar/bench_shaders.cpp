@@ -62,6 +62,11 @@ std::string describe_differences(const Measurement& measurement) {
 }
 
 void print_measurement(const Measurement& measurement, const Ceilings& ceilings) {
+    if (!measurement.refused.empty()) {
+        fmt::print("\n{}, {} {}: over this device's limits: {}\n", measurement.operation, measurement.size,
+                   measurement.items, measurement.refused);
+        return;
+    }
     fmt::print("\n{}, {} {}; differences from the reference (allowed): {}\n", measurement.operation, measurement.size,
                measurement.items, describe_differences(measurement));
     if (!measurement.fits()) {

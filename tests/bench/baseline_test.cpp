@@ -63,7 +63,9 @@ TEST(Ratio, SmallDifferencesDoNotCountHoweverCertain) {
 
 Measurement measurement(double milliseconds, double of_references, double share = 0.001) {
     Random random(3);
-    Measurement result{.operation = "work", .items = "items", .size = 100};
+    Measurement result;
+    result.operation = "work";
+    result.size = 100;
     result.kernels.push_back({"a.comp", noisy(milliseconds, share, 7, random), {}});
     result.references = {{"copy", noisy(of_references, share, 7, random)},
                          {"multiply_add", noisy(2 * of_references, share, 7, random)}};

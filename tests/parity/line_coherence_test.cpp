@@ -28,9 +28,9 @@ struct Motion {
     explicit Motion(std::vector<LineType> types) {
         LineThresholds thresholds;
         thresholds.principal_highlights = 0.001f;  // so that there are some
-        picture.view = {.camera = fit_camera(scene.mesh, Vec3(3.07f, 2.11f, 4.23f), float(k_width) / k_height),
-                        .width = k_width,
-                        .height = k_height,
+        picture.view = {.camera = fit_camera(scene.mesh, Vec3(3.07f, 2.11f, 4.23f), picture_aspect()),
+                        .width = picture_width(),
+                        .height = picture_height(),
                         .unit_depth = 20,
                         .feature_size = scene.size()};
         picture.families = line_families(types);

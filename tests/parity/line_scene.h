@@ -24,7 +24,19 @@ using shared::LinePoint;
 using shared::LineSegmentRecord;
 using shared::vec4;
 
-constexpr int k_width = 800, k_height = 600;
+/// Devices that kernels see few texels on (SwiftShader: 65536) get smaller surfaces and pictures.
+inline bool sees_few_texels() {
+    return shared_device().info().max_texels < 800 * 600;
+}
+inline int picture_width() {
+    return sees_few_texels() ? 280 : 800;
+}
+inline int picture_height() {
+    return sees_few_texels() ? 210 : 600;
+}
+inline float picture_aspect() {
+    return static_cast<float>(picture_width()) / static_cast<float>(picture_height());
+}
 
 /// A surface with estimated curvature, on both sides.
 struct Scene : MeasuredSurface {
@@ -63,7 +75,7 @@ struct Scene : MeasuredSurface {
 };
 
 inline TriangleMesh lumpy() {
-    return shapes::transformed(shapes::icosphere(5, 1), [](const Vec3& p) -> Vec3 {
+    return shapes::transformed(shapes::icosphere(sees_few_texels() ? 4 : 5, 1), [](const Vec3& p) -> Vec3 {
         return p * (1 + 0.2f * std::sin(3 * p.x() + 1) + 0.15f * p.y() * std::cos(4 * p.z()));
     });
 }

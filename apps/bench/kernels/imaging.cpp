@@ -126,7 +126,7 @@ TriangleMesh pictured_torus(std::size_t pixels) {
 }
 
 // Devices round positions of vertices to 1/16 of a pixel or less: edges pass other pixels there.
-constexpr double k_share_at_edges = 0.02;
+constexpr double k_share_at_edges = 0.04;
 
 struct GBuffers {
     GBuffers(Device& device, Profiler& profiler, std::size_t pixels)

@@ -40,7 +40,10 @@ using shared::LinePoint;
 using shared::LineSegmentRecord;
 using shared::vec4;
 
-constexpr int k_width = 800, k_height = 600;
+// Smaller for devices that kernels see few texels on.
+int width_for(const Device& device) {
+    return device.info().max_texels < 800 * 600 ? 280 : 800;
+}
 
 // Curvature as the host estimates it, so that both find lines on the same surface.
 struct CurvedTorus {
@@ -83,11 +86,11 @@ LineThresholds low_thresholds() {
 // Blunt, so that what is hidden does not change a stroke.
 constexpr StrokeThickness k_thickness{.taper = 0};
 
-LinePicture picture_of(const CurvedTorus& torus) {
+LinePicture picture_of(const CurvedTorus& torus, int width) {
     LinePicture picture;
-    picture.view = {.camera = fit_camera(torus.mesh, Vec3(3.07f, 2.11f, 4.23f), float(k_width) / k_height),
-                    .width = k_width,
-                    .height = k_height,
+    picture.view = {.camera = fit_camera(torus.mesh, Vec3(3.07f, 2.11f, 4.23f), 4.0f / 3),
+                    .width = width,
+                    .height = width * 3 / 4,
                     .unit_depth = 20,
                     .feature_size = feature_size(torus.mesh.vertices, torus.curvature)};
     picture.families = line_families(k_line_types);
@@ -209,7 +212,7 @@ struct LineDrawing {
         : torus(device, vertices),
           surface(device, torus.mesh),
           line_surface(surface),
-          picture(picture_of(torus)),
+          picture(picture_of(torus, width_for(device))),
           stream(device, &profiler),
           renderer(device, line_surface) {}
     void run() {
@@ -244,7 +247,8 @@ std::map<std::string, Work> LineDrawing::work() const {
                faces = static_cast<double>(torus.mesh.face_count()),
                segments = static_cast<double>(drawn.segments.size()), points = static_cast<double>(drawn.points.size());
     const double groups = (faces + segments) / shared::k_count_group, jumps = std::ceil(std::log2(segments + 1));
-    constexpr double k_fields = 16 * (8 + 5), k_pixels = double{k_width} * k_height;
+    constexpr double k_fields = 16 * (8 + 5);
+    const double pixels = static_cast<double>(picture.view.width) * picture.view.height;
     const auto of = [](double count, double bytes, double operations) {
         return Work{.bytes = count * bytes, .operations = count * operations};
     };
@@ -259,7 +263,7 @@ std::map<std::string, Work> LineDrawing::work() const {
             {"lines/jump.comp", of(2 * segments * jumps, 64 + 32, 4)},
             {"lines/rank.comp", of(segments, 64 + 16 + 4, 20)},
             {"lines/points.comp", of(segments, 16 + 32 + 32 + 32, 5)},
-            {"lines/visibility.comp", {.bytes = points * (32 + 32 + 8) + 4 * k_pixels, .operations = points * 100}},
+            {"lines/visibility.comp", {.bytes = points * (32 + 32 + 8) + 4 * pixels, .operations = points * 100}},
             {"lines/strokes.comp", of(points, 32 + 8 + 32 + 32, 100)},
             {"lines/traces.comp", of(segments, 32 + 16 + 32 + 20, 40)},
             {"lines/votes.comp", of(points, 64 + 32 + 12, 80)},

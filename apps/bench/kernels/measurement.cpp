@@ -9,6 +9,7 @@
 #include "apps/bench/kernels/statistics.h"
 #include "embedded/runtime_copy_comp.h"
 #include "embedded/runtime_multiply_add_comp.h"
+#include "gpu/runtime/errors.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
 
@@ -70,6 +71,28 @@ Measurement read_measurement(const nlohmann::json& json) {
     return measurement;
 }
 
+void compare_and_time(Device& device, const OperationKind& kind, const KernelFilter& filter,
+                      const TimingOptions& options, Measurement& measurement) {
+    Profiler profiler;
+    const Operation operation = kind.prepare(device, profiler, measurement.size);
+    operation.run();
+    operation.run();
+    measurement.differences = operation.differences();
+    if (!measurement.fits()) return;
+    const auto copy = prepare_reference(device, shaders::runtime_copy_comp, k_reference_vectors),
+               multiply_add = prepare_reference(device, shaders::runtime_multiply_add_comp, k_reference_items);
+    const std::vector<KernelTimes> times =
+        time_in_turns(std::vector<Timed>{{"operation", &operation, &profiler},
+                                         {"copy", &copy->operation, &copy->profiler},
+                                         {"multiply_add", &multiply_add->operation, &multiply_add->profiler}},
+                      options);
+    for (auto& [kernel, work] : operation.work())
+        if (filter.wants(kind, kernel) && times[0].contains(kernel))
+            measurement.kernels.push_back({kernel, times[0].at(kernel), work});
+    for (const KernelTimes& reference : {times[1], times[2]})
+        measurement.references.insert(reference.begin(), reference.end());
+}
+
 }  // namespace
 
 double KernelRow::median_milliseconds() const {
@@ -119,30 +142,18 @@ Measurement measure_operation(Device& device, const OperationKind& kind, std::si
     measurement.operation = kind.name;
     measurement.items = kind.items;
     measurement.size = size;
-    Profiler profiler;
-    const Operation operation = kind.prepare(device, profiler, size);
-    operation.run();
-    operation.run();
-    measurement.differences = operation.differences();
-    if (!measurement.fits()) return measurement;
-    const auto copy = prepare_reference(device, shaders::runtime_copy_comp, k_reference_vectors),
-               multiply_add = prepare_reference(device, shaders::runtime_multiply_add_comp, k_reference_items);
-    const std::vector<KernelTimes> times =
-        time_in_turns(std::vector<Timed>{{"operation", &operation, &profiler},
-                                         {"copy", &copy->operation, &copy->profiler},
-                                         {"multiply_add", &multiply_add->operation, &multiply_add->profiler}},
-                      options);
-    for (auto& [kernel, work] : operation.work())
-        if (filter.wants(kind, kernel) && times[0].contains(kernel))
-            measurement.kernels.push_back({kernel, times[0].at(kernel), work});
-    for (const KernelTimes& reference : {times[1], times[2]})
-        measurement.references.insert(reference.begin(), reference.end());
+    try {
+        compare_and_time(device, kind, filter, options, measurement);
+    } catch (const DeviceLimitError& error) {
+        measurement.refused = error.what();
+    }
     return measurement;
 }
 
 nlohmann::ordered_json to_json(const Measurement& measurement, const Device& device, const Ceilings& ceilings) {
     nlohmann::ordered_json json = {
         {"operation", measurement.operation}, {"items", measurement.items}, {"size", measurement.size}};
+    if (!measurement.refused.empty()) json["refused"] = measurement.refused;
     json["differences"] = nlohmann::ordered_json::array();
     for (const Difference& difference : measurement.differences)
         json["differences"].push_back(

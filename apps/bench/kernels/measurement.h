@@ -25,6 +25,7 @@ struct KernelRow {
 struct Measurement {
     std::string operation, items;
     std::size_t size = 0;
+    std::string refused;  ///< why the device cannot take this size; empty if it can
     std::vector<Difference> differences;
     std::vector<KernelRow> kernels;
     /// Milliseconds of kernels that only copy, or only multiply and add, in turns with the operation: how fast the
@@ -52,7 +53,8 @@ class KernelFilter {
     std::string expression_;
 };
 
-/// Prepares an operation, runs it twice and compares it; times it unless it differs from its reference.
+/// Prepares an operation, runs it twice and compares it; times it unless it is over the device's limits or differs from
+/// its reference.
 Measurement measure_operation(Device& device, const OperationKind& kind, std::size_t size, const KernelFilter& filter,
                               const TimingOptions& options);
 

@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Sets everything up, builds Release and runs all tests.
-#   tests/run.sh [--browser] [--slurm] [ctest arguments]     for example: tests/run.sh -L cpu, tests/run.sh -R curvature
+#   tests/run.sh [--browser] [--slurm] [--swiftshader] [ctest arguments]     for example: tests/run.sh -L cpu, tests/run.sh -R curvature
 # --browser also installs Chromium and opens a report page in it; --slurm also installs Slurm and GNU parallel and runs a cluster of
-# two nodes on this machine. Without, those tests are skipped.
+# two nodes on this machine. Without, those tests are skipped. --swiftshader runs the tests of kernels a second time, on the
+# SwiftShader that comes with Debian's Chromium: a driver with the least that Vulkan asks for.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source apps/setup.sh
 packages=()
+swiftshader=
 unset EXEMPLAR_BROWSER EXEMPLAR_SLURM
 while true; do
     case "${1:-}" in
@@ -16,6 +18,9 @@ while true; do
         --slurm)
             packages+=(slurm-wlm munge parallel)
             export EXEMPLAR_SLURM=1 ;;
+        --swiftshader)
+            packages+=(chromium)
+            swiftshader=1 ;;
         *) break ;;
     esac
     shift
@@ -27,4 +32,9 @@ done
 exemplar_install "${packages[@]}"
 exemplar_build
 export EXEMPLAR_VALIDATION=${EXEMPLAR_VALIDATION:-1}
-exec ctest --test-dir "$exemplar_build" --output-on-failure -j "$(nproc)" "$@"
+ctest --test-dir "$exemplar_build" --output-on-failure -j "$(nproc)" "$@"
+if [ -n "$swiftshader" ]; then
+    echo "The tests of kernels again, on SwiftShader"
+    export VK_ICD_FILENAMES=/usr/lib/chromium/vk_swiftshader_icd.json
+    exec ctest --test-dir "$exemplar_build" --output-on-failure -j "$(nproc)" -L gpu -E '^apps\.' "$@"
+fi

@@ -92,7 +92,11 @@ void add_bench_command(CLI::App& app) {
     command->add_flag("--quick", options->quick, "one run of each, and none on one thread that takes long");
     add_device_option(*command, options->common);
     add_common_options(*command, options->common);
-    command->callback([options] { run_bench(*options); });
+    add_bench_shaders_command(*command);
+    // Without a subcommand of its own.
+    command->callback([options, command] {
+        if (command->get_subcommands().empty()) run_bench(*options);
+    });
 }
 
 }  // namespace exemplar

@@ -33,6 +33,7 @@ void write_report(const CommonOptions& options, const nlohmann::json& report);
 
 // One function per file of the same name: adds the subcommand, whose callback does the work and throws Error.
 void add_devices_command(CLI::App& app);
+void add_doctor_command(CLI::App& app);
 void add_features_command(CLI::App& app);
 void add_synth_command(CLI::App& app);
 void add_label_command(CLI::App& app);
@@ -65,5 +66,6 @@ void add_catalog_export_command(CLI::App& catalog);
 void add_catalog_merge_command(CLI::App& catalog);
 void add_demo_command(CLI::App& app);
 void add_bench_command(CLI::App& app);
+void add_bench_shaders_command(CLI::App& bench);
 
 }  // namespace exemplar

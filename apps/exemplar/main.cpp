@@ -88,6 +88,7 @@ int run(int argc, char** argv) {
     add_catalog_command(app);
     add_synth_command(app);
     add_devices_command(app);
+    add_doctor_command(app);
     add_demo_command(app);
     add_bench_command(app);
     try {

@@ -26,7 +26,7 @@ static_assert(k_least_flat == 1e-6f && k_least_divisor == 0.2f);
 // On a CPU every load of a kernel is expensive, so that a component, once loaded, serves a whole tile; a GPU wants many
 // invocations.
 std::uint32_t suitable_quads(const Device& device) {
-    return device.info().type == DeviceType::cpu ? k_tile_quads : 1;
+    return device.tuning().choose(k_reprojected_quads, device.info().type == DeviceType::cpu ? k_tile_quads : 1);
 }
 
 Kernel make_kernel(Device& device, AttributeSet set, std::uint32_t quads) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -14,6 +15,10 @@
 #include "host/curvature/predictor.h"
 
 namespace exemplar {
+
+/// Vertices per invocation, by four.
+inline constexpr std::array<std::uint32_t, 3> k_reprojection_quads{1, 2, 4};
+inline constexpr TunableParameter k_reprojected_quads{"curvature/reproject.comp", "quads", k_reprojection_quads};
 
 struct ReprojectionOptions {
     /// The bases are read in ranges of at most so many texels (16 bytes each), and of what the device allows.

@@ -19,6 +19,11 @@ constexpr std::size_t k_quad = 4;
 // wants many invocations.
 constexpr std::uint32_t k_outputs_on_cpu = 8, k_outputs_on_gpu = 4;
 
+std::uint32_t chosen_outputs(const Device& device, const TunableParameter& parameter) {
+    return device.tuning().choose(parameter,
+                                  device.info().type == DeviceType::cpu ? k_outputs_on_cpu : k_outputs_on_gpu);
+}
+
 std::size_t quads_of(const GaussianKernel& kernel) {
     return (kernel.weights.size() + k_quad - 1) / k_quad;
 }
@@ -52,11 +57,12 @@ GpuGaussian::GpuGaussian(Device& device, float sigma)
     : kernel(gaussian_kernel(sigma)), weights(Buffer::of<float>(device, padded_weights(kernel))) {}
 
 GaussianSums::GaussianSums(Device& device)
-    : outputs_(device.info().type == DeviceType::cpu ? k_outputs_on_cpu : k_outputs_on_gpu),
+    : outputs_(chosen_outputs(device, k_sum_outputs)),
+      mask_outputs_(chosen_outputs(device, k_mask_outputs)),
       mask_(device, shaders::imaging_mask_sums_comp,
             {.push_constants = layout_of<SumParameters>(),
              .elements = {layout_of<float>(), layout_of<vec4>(), layout_of<vec4>()},
-             .constants = {{1, outputs_}}}) {
+             .constants = {{1, mask_outputs_}}}) {
     const StructLayout four = layout_of<vec4>();
     for (std::uint32_t i = 0; i < by_count_.size(); ++i)
         by_count_[i] = Kernel(device, shaders::imaging_weighted_sums_comp,
@@ -77,7 +83,7 @@ void GaussianSums::record(Stream& stream, const GpuGaussian& gaussian, Axis axis
 void GaussianSums::record_mask(Stream& stream, const GpuGaussian& gaussian, Size size, const Buffer& in,
                                const Buffer& out) {
     const SumParameters parameters = parameters_of(gaussian.kernel, Axis::x, size);
-    stream.dispatch(mask_, threads_of(parameters, outputs_), {in, gaussian.weights, out}, parameters);
+    stream.dispatch(mask_, threads_of(parameters, mask_outputs_), {in, gaussian.weights, out}, parameters);
 }
 
 }  // namespace exemplar

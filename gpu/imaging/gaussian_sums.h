@@ -12,6 +12,11 @@
 
 namespace exemplar {
 
+/// Pixels per invocation.
+inline constexpr std::array<std::uint32_t, 4> k_outputs_per_invocation{2, 4, 8, 16};
+inline constexpr TunableParameter k_sum_outputs{"imaging/weighted_sums.comp", "outputs", k_outputs_per_invocation};
+inline constexpr TunableParameter k_mask_outputs{"imaging/mask_sums.comp", "outputs", k_outputs_per_invocation};
+
 /// A Gaussian with its weights on the device.
 struct GpuGaussian {
     GaussianKernel kernel;
@@ -39,8 +44,8 @@ class GaussianSums {
     void record_mask(Stream& stream, const GpuGaussian& gaussian, Size size, const Buffer& in, const Buffer& out);
 
   private:
-    std::uint32_t outputs_;           // pixels per invocation
-    std::array<Kernel, 4> by_count_;  // of planes, from 1 on
+    std::uint32_t outputs_, mask_outputs_;  // pixels per invocation
+    std::array<Kernel, 4> by_count_;        // of planes, from 1 on
     Kernel mask_;
 };
 

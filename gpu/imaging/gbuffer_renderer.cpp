@@ -84,14 +84,14 @@ GBuffer GpuGBuffer::download() const {
     return out;
 }
 
-GpuGBufferRenderer::GpuGBufferRenderer(Device& device, int tile_size, std::size_t part_bytes)
+GpuGBufferRenderer::GpuGBufferRenderer(Device& device, int tile_size, std::size_t part_bytes, Profiler* profiler)
     : device_(device),
       tile_size_(tile_size),
       part_bytes_(part_limit(device.info(), part_bytes)),
       canvas_(device, k_number_format),
       pipeline_(face_pipeline(device, canvas_.depth_format())),
       points_(point_kernel(device)),
-      stream_(device) {
+      stream_(device, profiler) {
     if (tile_size <= 0) throw UsageError(fmt::format("G-buffer: tiles of {} pixels; give at least 1", tile_size));
 }
 

@@ -36,7 +36,8 @@ class GpuGBufferRenderer final : public GBufferRenderer {
     /// `tile_size` is the largest width and height, in pixels, that is drawn at once. `part_bytes` bounds each of a
     /// mesh's buffers below the device's own limits; larger meshes are drawn in parts. Throws DeviceError if the device
     /// cannot draw, UsageError for tiles without pixels.
-    explicit GpuGBufferRenderer(Device& device, int tile_size = 2048, std::size_t part_bytes = std::size_t{1} << 30);
+    explicit GpuGBufferRenderer(Device& device, int tile_size = 2048, std::size_t part_bytes = std::size_t{1} << 30,
+                                Profiler* profiler = nullptr);
 
     /// Throws UsageError if the image is empty, DeviceLimitError if it has more pixels than kernels of the device can
     /// see at once, or a tile is larger than its images can be.

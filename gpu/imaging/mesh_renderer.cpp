@@ -69,14 +69,14 @@ void check_arguments(const TriangleMesh& mesh, std::span<const Color> face_color
 
 }  // namespace
 
-MeshRenderer::MeshRenderer(Device& device, int tile_size, std::size_t part_bytes)
+MeshRenderer::MeshRenderer(Device& device, int tile_size, std::size_t part_bytes, Profiler* profiler)
     : device_(device),
       tile_size_(tile_size),
       part_bytes_(buffer_limit(device.info(), part_bytes)),
       canvas_(device, k_color_format),
       pipeline_(mesh_pipeline(device, canvas_.depth_format())),
       resolve_(device, shaders::imaging_resolve_comp, {.push_constants = layout_of<shared::ResolveParameters>()}),
-      stream_(device) {
+      stream_(device, profiler) {
     if (tile_size <= 0) throw UsageError(fmt::format("render: tiles of {} pixels; give at least 1", tile_size));
 }
 

@@ -31,7 +31,8 @@ class MeshRenderer {
     /// `tile_size` is the largest width and height, in pixels, that is drawn at once; it bounds the memory, not the
     /// picture. `part_bytes` bounds each of a mesh's buffers below the device's own limits; larger meshes are drawn in
     /// parts. Throws DeviceError if the device cannot draw.
-    explicit MeshRenderer(Device& device, int tile_size = 1024, std::size_t part_bytes = std::size_t{1} << 30);
+    explicit MeshRenderer(Device& device, int tile_size = 1024, std::size_t part_bytes = std::size_t{1} << 30,
+                          Profiler* profiler = nullptr);
 
     /// An RGB image. `face_colors` holds one sRGB color per face. Throws UsageError if the image is empty or the number
     /// of colors is not the number of faces, DeviceLimitError if the device's images are too small for a tile.

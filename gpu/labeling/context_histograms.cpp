@@ -188,7 +188,8 @@ void add_fetched(const BufferPart& part, std::vector<BufferPart>& parts) {
 GpuContextHistograms::GpuContextHistograms(Device& device, Profiler* profiler, std::size_t tile_bytes)
     : device_(device),
       tile_bytes_(buffer_limit(device.info(), tile_bytes)),
-      faces_per_thread_(device.info().type == DeviceType::cpu ? k_faces_on_cpu : 1),
+      faces_per_thread_(
+          device.tuning().choose(k_context_faces, device.info().type == DeviceType::cpu ? k_faces_on_cpu : 1)),
       stream_(device, profiler),
       geodesic_kernel_(device, shaders::labeling_context_geodesic_comp,
                        {.push_constants = layout_of<GeodesicContextParameters>(),

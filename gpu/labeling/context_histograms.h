@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -16,6 +17,10 @@ namespace exemplar {
 
 /// What a tile's largest buffer takes at most, unless the device's limits are lower.
 constexpr std::size_t k_context_tile_bytes = std::size_t{256} << 20;
+
+/// Faces per invocation.
+inline constexpr std::array<std::uint32_t, 4> k_faces_per_invocation{1, 2, 4, 8};
+inline constexpr TunableParameter k_context_faces{"labeling/context_geodesic.comp", "faces", k_faces_per_invocation};
 
 /// Contextual label histograms on the device. Meshes are cut to parts that fit the device's limits, and as many parts
 /// as fit together are one submission. Values agree with CpuContextHistograms within 1e-5 of a total mass of 1 with

@@ -96,7 +96,8 @@ BufferRange whole(const Buffer& buffer, const std::vector<T>& values) {
 
 GpuStumpScorer::GpuStumpScorer(Device& device, Profiler* profiler, std::size_t tile_bytes)
     : device_(device),
-      quads_(device.info().type == DeviceType::cpu ? k_quads_on_cpu : 1),
+      quads_(device.tuning().choose(k_stump_quads, device.info().type == DeviceType::cpu ? k_quads_on_cpu : 1)),
+      from_storage_(device.tuning().choose(k_stump_storage, 0)),
       tile_bytes_(buffer_limit(device.info(), tile_bytes)),
       stream_(device, profiler) {}
 
@@ -120,8 +121,8 @@ const Kernel& GpuStumpScorer::kernel(std::uint32_t classes) {
         kernel = Kernel(device_, shaders::learn_stumps_comp,
                         {.push_constants = layout_of<StumpParameters>(),
                          .elements = {layout_of<shared::vec4>(), layout_of<shared::uvec4>(), layout_of<shared::uvec4>(),
-                                      layout_of<float>(), layout_of<float>()},
-                         .constants = {{0, classes}, {1, quads_}}});
+                                      layout_of<float>(), layout_of<float>(), layout_of<shared::vec4>()},
+                         .constants = {{0, classes}, {1, quads_}, {2, from_storage_}}});
     return kernel;
 }
 
@@ -176,11 +177,12 @@ void GpuStumpScorer::score_tile(const Classifier& classifier, std::span<const Sc
                                      .groups = static_cast<std::uint32_t>(grouped.groups.size()),
                                      .link = static_cast<std::uint32_t>(classifier.link),
                                      .scale = classifier.scale};
-    stream_.dispatch(kernel(classifier.class_count), threads,
-                     {BufferRange(features_, 0, grouped.columns.size() * column_bytes), whole(stumps_, grouped.stumps),
-                      whole(groups_, grouped.groups), whole(constant_, grouped.constant),
-                      BufferRange(probabilities_, 0, stride * classes * sizeof(float))},
-                     parameters);
+    const BufferRange features(features_, 0, grouped.columns.size() * column_bytes);
+    stream_.dispatch(
+        kernel(classifier.class_count), threads,
+        {features, whole(stumps_, grouped.stumps), whole(groups_, grouped.groups), whole(constant_, grouped.constant),
+         BufferRange(probabilities_, 0, stride * classes * sizeof(float)), features},
+        parameters);
     std::vector<HostPart> parts;
     parts.reserve(pieces.size());
     for (const Piece& piece : pieces)

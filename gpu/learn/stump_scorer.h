@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <map>
 #include <span>
@@ -10,9 +11,17 @@
 #include "gpu/runtime/kernel.h"
 #include "gpu/runtime/profiler.h"
 #include "gpu/runtime/stream.h"
+#include "gpu/runtime/tuning.h"
 #include "host/learn/boosted_stumps.h"
 
 namespace exemplar {
+
+/// Items per invocation, by four.
+inline constexpr std::array<std::uint32_t, 4> k_stump_quad_counts{1, 2, 4, 8};
+inline constexpr TunableParameter k_stump_quads{"learn/stumps.comp", "quads", k_stump_quad_counts};
+/// How features are read: as texels (0) or from a storage buffer (1).
+inline constexpr std::array<std::uint32_t, 2> k_stump_readings{0, 1};
+inline constexpr TunableParameter k_stump_storage{"learn/stumps.comp", "storage", k_stump_readings};
 
 /// Boosted stumps on the device. Only the features that stumps use are uploaded. The rows of all matrices that are
 /// scored together lie side by side, in tiles that fit the device's limits: a submission each. Probabilities agree with
@@ -37,6 +46,7 @@ class GpuStumpScorer final : public StumpScorer {
     std::size_t rows_per_tile(std::size_t rows, std::size_t columns, std::size_t classes) const;
     Device& device_;
     std::uint32_t quads_;  // of items per invocation
+    std::uint32_t from_storage_;
     std::size_t tile_bytes_;
     Stream stream_;
     std::map<std::uint32_t, Kernel> kernels_;  // by class count

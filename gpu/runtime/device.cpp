@@ -21,6 +21,18 @@ bool wants_validation() {
     return !value.empty() && value != "0";
 }
 
+// Without its tuning a device works as well, only not as fast; `exemplar doctor` says that the file is damaged.
+Tuning kept_tuning(const DeviceInfo& info) {
+    if (environment("EXEMPLAR_TUNING") == "0") return {};
+    try {
+        return Tuning::load(tuning_path(info));
+    } catch (const Error&) {
+        return {};
+    }
+}
+
+}  // namespace
+
 bool has_extension(VkPhysicalDevice device, const char* name) {
     std::uint32_t count = 0;
     vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
@@ -29,8 +41,6 @@ bool has_extension(VkPhysicalDevice device, const char* name) {
     return std::ranges::any_of(extensions,
                                [&](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
 }
-
-}  // namespace
 
 Device::Device(const DeviceOptions& options)
     : validating_(wants_validation()),
@@ -44,6 +54,8 @@ Device::Device(const DeviceOptions& options)
     queue_family_ = find_compute_queue(physical_).value();
     vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
     if (options.presentation) require_presentation(*options.presentation);
+    statistics_ = options.statistics && has_executable_statistics(physical_);
+    tuning_ = kept_tuning(info_);
     create(options.presentation.has_value());
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
     try {
@@ -77,7 +89,15 @@ void Device::create(bool presents) {
     features13.dynamicRendering = VK_TRUE;
     auto features =
         empty_structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &features13);
-    const char* const swapchain = VK_KHR_SWAPCHAIN_EXTENSION_NAME;
+    auto executables = empty_structure<VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR>(
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR);
+    executables.pipelineExecutableInfo = VK_TRUE;
+    std::vector<const char*> extensions;
+    if (presents) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+    if (statistics_) {
+        extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+        features13.pNext = &executables;
+    }
     const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                   .pNext = &features,
                                   .flags = 0,
@@ -85,8 +105,8 @@ void Device::create(bool presents) {
                                   .pQueueCreateInfos = &queue,
                                   .enabledLayerCount = 0,
                                   .ppEnabledLayerNames = nullptr,
-                                  .enabledExtensionCount = presents ? 1u : 0u,
-                                  .ppEnabledExtensionNames = &swapchain,
+                                  .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+                                  .ppEnabledExtensionNames = extensions.data(),
                                   .pEnabledFeatures = nullptr};
     check(vkCreateDevice(physical_, &info, nullptr, &device_),
           [&] { return fmt::format("open device '{}'", info_.name); });
@@ -97,6 +117,17 @@ Device::~Device() {
     vkDeviceWaitIdle(device_);
     pipeline_cache_.reset();
     vkDestroyDevice(device_, nullptr);
+}
+
+std::vector<ExecutableStatistic> Device::statistics_of(const std::string& kernel) const {
+    const std::lock_guard lock(statistics_mutex_);
+    const auto found = statistics_of_kernels_.find(kernel);
+    return found == statistics_of_kernels_.end() ? std::vector<ExecutableStatistic>{} : found->second;
+}
+
+void Device::keep_statistics(const std::string& kernel, std::vector<ExecutableStatistic> statistics) {
+    const std::lock_guard lock(statistics_mutex_);
+    statistics_of_kernels_[kernel] = std::move(statistics);
 }
 
 void Device::submit(VkCommandBuffer commands, VkFence fence, const SubmitOrder& order) {

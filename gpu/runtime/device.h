@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -12,8 +13,10 @@
 
 #include "gpu/runtime/commands.h"
 #include "gpu/runtime/device_info.h"
+#include "gpu/runtime/executable_statistics.h"
 #include "gpu/runtime/instance.h"
 #include "gpu/runtime/pipeline_cache.h"
+#include "gpu/runtime/tuning.h"
 
 namespace exemplar {
 
@@ -29,6 +32,7 @@ struct DeviceOptions {
     /// best.
     std::string name{};
     std::optional<PresentationOptions> presentation{};  ///< none: nothing is shown in windows
+    bool statistics = false;                            ///< keep what the driver says of kernels, where it can tell
 };
 
 /// An opened Vulkan device with one queue for compute, copies and drawing. Everything made from it must end before it.
@@ -55,6 +59,16 @@ class Device {
     VkQueue queue() const { return queue_; }
     std::uint32_t queue_family() const { return queue_family_; }
     PipelineCache& pipeline_cache() { return *pipeline_cache_; }
+    /// What kernels made from now on are compiled with: at first what an earlier run has found fastest (tuning_path),
+    /// unless EXEMPLAR_TUNING=0 is in the environment or that file is damaged.
+    Tuning& tuning() { return tuning_; }
+    const Tuning& tuning() const { return tuning_; }
+
+    /// Whether pipelines are to be made with VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR.
+    bool keeps_statistics() const { return statistics_; }
+    /// What the driver says of the kernel of this name that was made last; empty if it does not tell.
+    std::vector<ExecutableStatistic> statistics_of(const std::string& kernel) const;
+    void keep_statistics(const std::string& kernel, std::vector<ExecutableStatistic> statistics);
 
     /// Submits recorded commands; any thread may call it. `fence` is signaled when they are done.
     void submit(VkCommandBuffer commands, VkFence fence, const SubmitOrder& order = {});
@@ -84,6 +98,13 @@ class Device {
     std::uint32_t queue_family_ = 0;
     std::mutex queue_mutex_;
     std::unique_ptr<PipelineCache> pipeline_cache_;
+    Tuning tuning_;
+    bool statistics_ = false;
+    mutable std::mutex statistics_mutex_;
+    std::map<std::string, std::vector<ExecutableStatistic>> statistics_of_kernels_;
 };
+
+/// Whether a device offers an extension.
+bool has_extension(VkPhysicalDevice device, const char* name);
 
 }  // namespace exemplar

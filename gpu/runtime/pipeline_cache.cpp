@@ -1,16 +1,14 @@
 #include "gpu/runtime/pipeline_cache.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <xxhash.h>
 
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
 #include <ostream>
 #include <string>
 #include <system_error>
 
+#include "gpu/runtime/device_cache.h"
 #include "gpu/runtime/errors.h"
 #include "host/core/files.h"
 
@@ -52,15 +50,7 @@ std::string load(const std::filesystem::path& path) {
 }  // namespace
 
 std::filesystem::path pipeline_cache_path(const DeviceInfo& info) {
-    std::filesystem::path folder;
-    if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache)
-        folder = cache;
-    else if (const char* home = std::getenv("HOME"); home && *home)
-        folder = std::filesystem::path(home) / ".cache";
-    else
-        return {};
-    return folder / "exemplar" /
-           fmt::format("pipelines-{:02x}-{:08x}.bin", fmt::join(info.cache_uuid, ""), info.driver_number);
+    return device_cache_path(info, "pipelines", "bin");
 }
 
 PipelineCache::PipelineCache(VkDevice device, const DeviceInfo& info)

@@ -32,7 +32,7 @@ class PipelineCache {
     std::size_t loaded_bytes_ = 0;
 };
 
-/// Where the cache of a device lives: FOLDER/pipelines-UUID-DRIVER.bin; empty if there is no folder.
+/// Where the cache of a device lives (device_cache_path); empty if there is no folder.
 std::filesystem::path pipeline_cache_path(const DeviceInfo& info);
 
 }  // namespace exemplar

@@ -45,7 +45,7 @@ struct LaneLayout {
     std::size_t padded() const { return width * panels; }
 };
 
-/// Calls body.template operator()<width>() with the layout's width as a constant.
+/// Calls the body with the layout's width as a template argument, so that it is a constant there.
 template <typename Body>
 void with_width(const LaneLayout& layout, Body&& body) {
     switch (layout.width) {

@@ -7,7 +7,7 @@
 // it anew: three times the arithmetic of a pass over faces, but nothing of a face is written or read, and two passes are
 // saved. Per vertex of six faces 4 + 32 bytes of topology and 32 of its position and normal are read and 32 written, each
 // once; what its seven ring entries need comes from caches.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const bool k_smoothed = false;
 layout(set = 0, binding = 3) uniform samplerBuffer normals;
 layout(set = 0, binding = 4, std430) writeonly buffer First { vec4 first[]; };    // e1, k1; if smoothed, the form's spins in scaled units

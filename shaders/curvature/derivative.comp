@@ -6,7 +6,7 @@
 // Derivatives of curvature in the principal frames, from the forms at the corners of the faces around each vertex; as
 // curvature.comp. Per vertex of six faces 4 + 32 bytes of topology and 48 of its position and principal frame are read and
 // 16 written, each once; what its seven ring entries need comes from caches.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const bool k_smoothed = false;
 layout(set = 0, binding = 3) uniform samplerBuffer first;    // e1, k1
 layout(set = 0, binding = 4) uniform samplerBuffer second;   // e2, k2

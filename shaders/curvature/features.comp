@@ -5,7 +5,7 @@
 
 // Features of a pose (exemplar::ComponentRegression): monomials of its inputs, or neurons; one per invocation. Reads 16 bytes
 // and three inputs per monomial, a row of weights and all inputs per neuron, and writes 4.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { FeatureParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer table;          // CurvatureFeature
 layout(set = 0, binding = 1) uniform samplerBuffer inputs;

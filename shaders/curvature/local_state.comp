@@ -5,7 +5,7 @@
 
 // Inputs of learned curvature from the local shape of patches (exemplar::StateReader::read_local), one per invocation. Reads
 // 16 bytes and 8 per vertex of its patch; normals and positions come from caches, which the inputs of a patch share. Writes 4.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { LocalInputParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer table;    // LocalInput
 layout(set = 0, binding = 1) uniform usamplerBuffer members;  // vertices of patches

@@ -5,7 +5,7 @@
 
 // Rotations of patches (exemplar::Segments::rotations_of_sequence), one per invocation, from the triangle
 // of three groups of vertices. Per patch 96 bytes are read, 24 positions through caches, and 48 written.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { PatchParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer corners;  // three times k_corner_vertices a patch, four to a texel
 layout(set = 0, binding = 1) uniform samplerBuffer vertices;

@@ -7,7 +7,7 @@
 // that no two write to one place. Per vertex with i influences and m morph offsets 16 + 16 ceil(i / 2) + 4 + 16 m bytes are
 // read and 16 written, each once; the pose itself, 48 bytes per bone and 4 per target, stays in caches. Inputs are texels,
 // which a CPU driver fetches several times as fast as storage buffers.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { PoseParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer rest;         // RestVertex; as floats, small integers might be flushed
 layout(set = 0, binding = 1) uniform usamplerBuffer influences;   // InfluencePair

@@ -8,7 +8,7 @@
 // Curvature from its components (exemplar::reproject_curvature), k_quads x 4 vertices of a tile per invocation. Reads each
 // tile, a byte per vertex and entry, 4 per entry and 2 per vertex and mean, 16 of a normal, 16 of a point and those of its neighbor, and writes
 // 48 per vertex, each once; components, rotations and most neighbors come from caches. The vertices of a tile's last quads may repeat; all of one get the same.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const bool k_principal = false;  // the thesis' eight attributes, else the seven of tensors
 layout(constant_id = 1) const uint k_quads = 1;          // 1, 2 or 4
 layout(push_constant) uniform Push { ReprojectionParameters parameters; };

@@ -5,7 +5,7 @@
 // Diffuses derivatives of curvature and turns them to the principal frames, one vertex per invocation. Per vertex of n near
 // ones 4 + 4 n bytes of topology and 64 of its position, normal, area, derivative and principal direction are read and 16
 // written, each once; what the n need comes from caches.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(set = 0, binding = 5) uniform samplerBuffer first;  // e1, k1
 layout(set = 0, binding = 6, std430) writeonly buffer Derivatives { vec4 derivatives[]; };
 

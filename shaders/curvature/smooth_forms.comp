@@ -5,7 +5,7 @@
 // Diffuses second fundamental forms and turns to their principal frames, one vertex per invocation. Per vertex of n near ones
 // 4 + 4 n bytes of topology and 48 of its position, normal, area and form are read and 32 written, each once; what the n need
 // comes from caches.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(set = 0, binding = 5, std430) writeonly buffer First { vec4 first[]; };    // e1, k1
 layout(set = 0, binding = 6, std430) writeonly buffer Second { vec4 second[]; };  // e2, k2
 

@@ -5,7 +5,7 @@
 
 // Directions of fields on a surface as the picture shows them at points of faces (host/hatching/pixel_projection.cpp), one
 // point per invocation. Reads 112 bytes, and 48 per field; writes 8 per field.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { DirectionParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer corners;       // of faces, a b c 0
 layout(set = 0, binding = 1) uniform usamplerBuffer point_faces;

@@ -5,7 +5,7 @@
 
 // Orientation functions (thesis Eq. 4.7), each row by the rule of its segment, one row per invocation. Reads 8 bytes, and 24
 // per term; writes 8.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { RuleParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer segments;   // of rows
 layout(set = 0, binding = 1) uniform usamplerBuffer begins;     // of segments, and the end

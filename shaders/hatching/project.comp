@@ -6,7 +6,7 @@
 
 // Columns of a slab at points of faces (host/hatching/pixel_projection.cpp): of four points per invocation, so that a corner
 // that is fetched serves four columns, and what is written, four points. Reads 192 bytes and writes 64 per quad of columns.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { ProjectionParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer corners;       // of faces, a b c 0
 layout(set = 0, binding = 1) uniform usamplerBuffer point_faces;   // of four points

@@ -7,7 +7,7 @@
 
 // What depends on surface and view at one scale (host/hatching/hatching_view.cpp), and its magnitudes, in their lanes of a
 // slab: one vertex per invocation. Reads 80 bytes and writes 4 per lane.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { ViewCurvatureParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer states;                      // vertices x k_curvature_texels
 layout(set = 0, binding = 1, std430) writeonly buffer Slab { float slab[]; };   // vertices x k_slab_lanes

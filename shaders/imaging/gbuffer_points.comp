@@ -6,7 +6,7 @@
 // homogeneous functions are zero, (clip.x - ndc.x clip.w) and (clip.y - ndc.y clip.w); they are linear in the barycentric
 // coordinates, so that these follow from their values at the first corner and along two edges. Edges are differences of
 // positions, which floats know well even of tiny faces far from the origin.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { PointParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer positions;                                 // x, y, z, 1
 layout(set = 0, binding = 1) uniform usamplerBuffer faces;                                    // a, b, c, 0

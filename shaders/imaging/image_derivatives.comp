@@ -5,7 +5,7 @@
 
 // Values, gradients and curvatures of up to four images (exemplar::ImageDerivatives) from Gaussian-weighted sums over the
 // pixels of the mask: of images, and of the mask itself. Offsets are per sigma.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { DerivativeParameters parameters; };
 // Sums of the images' values times x^i y^j.
 layout(set = 0, binding = 0) uniform samplerBuffer sums00;

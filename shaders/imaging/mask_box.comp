@@ -3,7 +3,7 @@
 #include "shaders/shared/image_filters.h"
 
 // The smallest rectangle around the pixels that show a face, a row per invocation.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { ImageParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer faces;
 layout(set = 0, binding = 1, std430) buffer Box { uint box[]; };  // left, top, and the ends at the right and below

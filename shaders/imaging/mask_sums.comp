@@ -4,7 +4,7 @@
 #include "shaders/shared/image_filters.h"
 
 // As weighted_sums.comp, of the mask, which is one number per pixel: lane k has the power k of the offset.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 1) const uint k_outputs = 4;
 layout(push_constant) uniform Push { SumParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer inside;   // 1 or 0

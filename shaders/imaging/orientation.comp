@@ -4,7 +4,7 @@
 #include "shaders/lib/image_box.glsl"
 
 // Coherence (cos 2a, sin 2a) of smoothed structure tensors.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { OrientationParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer trace;  // the box
 layout(set = 0, binding = 1) uniform samplerBuffer difference;

@@ -4,7 +4,7 @@
 #include "shaders/lib/image_box.glsl"
 
 // Up to four images side by side in the box, zero outside of the mask.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const bool k_masked = true;
 layout(push_constant) uniform Push { ImageParameters image; };
 layout(set = 0, binding = 0) uniform samplerBuffer values;                          // images x pixels

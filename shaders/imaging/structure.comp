@@ -4,7 +4,7 @@
 #include "shaders/lib/image_box.glsl"
 
 // The structure tensors of single pixels, by the double angle of their gradients.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { ImageParameters image; };
 layout(set = 0, binding = 0) uniform samplerBuffer gradients;  // 2 x images x pixels: all x, all y
 // The box.

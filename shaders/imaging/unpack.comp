@@ -4,7 +4,7 @@
 #include "shaders/lib/image_box.glsl"
 
 // Images one after the other, of whole images side by side.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { ImageParameters image; };
 layout(set = 0, binding = 0) uniform samplerBuffer packed;                         // pixels
 layout(set = 0, binding = 1, std430) writeonly buffer Values { float values[]; };  // images x pixels

@@ -6,7 +6,7 @@
 // Sums of a line's pixels times a Gaussian and powers 0 to k_orders - 1 of the offset, which is per sigma. An invocation
 // has k_outputs pixels of one line (y), so that a pixel, once loaded, serves all of them: the window holds the pixels that
 // four weights of all outputs see, and moves on by four. Lines (x) are side by side. Pixels outside of the line are zero.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const uint k_orders = 1;
 layout(constant_id = 1) const uint k_outputs = 4;
 layout(push_constant) uniform Push { SumParameters parameters; };

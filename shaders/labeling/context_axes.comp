@@ -7,7 +7,7 @@
 // Contextual histograms over the distance along an axis (thesis Eq. A.1): one face (x) and one axis (y) per invocation.
 // Along an axis samples can be sorted, so that the samples between two distances are two runs of the sorted order, found by
 // binary search, and their masses are differences of prefix sums.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { AxisContextParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer positions;  // axes x faces
 layout(set = 0, binding = 1) uniform samplerBuffer sorted;     // axes x samples, rising

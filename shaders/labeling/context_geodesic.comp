@@ -7,7 +7,7 @@
 // Contextual histograms over geodesic distance (thesis Eq. A.1): k_faces faces (x) and one block of four classes (y) per
 // invocation. Loops whose bodies load or store stay loops: unrolled, they took a CPU driver seconds to compile. An invocation's
 // faces are far apart, so that neighbors read neighboring faces.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const uint k_faces = 1;
 layout(push_constant) uniform Push { GeodesicContextParameters parameters; };
 // Sample blocks x faces: the ranges of one face seen from 16 samples, a byte each; k_no_bin where there is no path.

@@ -7,16 +7,23 @@
 // Boosted stumps up to the probabilities (thesis Eq. 2.64 to 2.66), of k_quads x 4 items per invocation. Stumps come grouped
 // by the set of classes that share them: a group is summed once and then added to its classes, so that the cost of a stump
 // does not depend on the number of classes. Loops over classes stay loops: unrolled for many classes, they took a CPU
-// driver longer to compile than to run. Inputs are texels, which a CPU driver fetches six times as fast as storage buffers.
-layout(local_size_x = 64) in;
+// driver longer to compile than to run. Inputs are texels, which a CPU driver fetches six times as fast as storage buffers;
+// features may be read as either (k_from_storage).
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const uint k_classes = 1;
 layout(constant_id = 1) const uint k_quads = 1;
+layout(constant_id = 2) const bool k_from_storage = false;
 layout(push_constant) uniform Push { StumpParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer features;  // columns x stride, four items each
 layout(set = 0, binding = 1) uniform usamplerBuffer stumps;   // GroupedStump; as floats, small integers might be flushed
 layout(set = 0, binding = 2) uniform usamplerBuffer groups;   // StumpGroup
 layout(set = 0, binding = 3, std430) readonly buffer Constants { float constants[]; };
 layout(set = 0, binding = 4, std430) writeonly buffer Probabilities { float probabilities[]; };
+layout(set = 0, binding = 5, std430) readonly buffer StoredFeatures { vec4 stored_features[]; };  // the same as `features`
+
+vec4 fetch_features(uint index) {
+    return k_from_storage ? stored_features[index] : texelFetch(features, int(index));
+}
 
 GroupedStump fetch_stump(uint index) {
     const uvec4 s = texelFetch(stumps, int(index));
@@ -72,7 +79,7 @@ void main() {
             const GroupedStump stump = fetch_stump(s);
             const uint first = stump.column * stride + quad;
             for (uint q = 0; q < k_quads; ++q) {
-                const bvec4 above = greaterThan(texelFetch(features, int(first + q * k_stump_neighbors)), vec4(stump.threshold));
+                const bvec4 above = greaterThan(fetch_features(first + q * k_stump_neighbors), vec4(stump.threshold));
                 sum[q] += mix(vec4(stump.below), vec4(stump.above), above);
             }
         }

@@ -7,7 +7,7 @@
 // The field of apparent ridges (host/lines/apparent_ridges.cpp): how view-dependent curvature grows along its direction, from
 // the faces that this leads into, one vertex per invocation. Per vertex of six faces 4 + 32 bytes of topology and 64 of
 // its own are read and 32 written; what the ring reads comes from caches.
-layout(local_size_x = 64) in;
+layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const uint k_families = 0;
 layout(push_constant) uniform Push { FieldParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer positions;

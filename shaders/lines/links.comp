@@ -3,9 +3,8 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/lines.h"
 
-// Where segments end in the picture, and which others continue them there (host/lines/chains.cpp); then the nodes of both
-// directions, as the jumps begin. One segment per invocation: reads 32 bytes and, from caches, its face, that face's
-// neighbors and their segments; writes 32 + 8 + 64.
+// Where segments end in the picture, and which others continue them there (host/lines/chains.cpp). One segment per
+// invocation: reads 32 bytes and, from caches, its face, that face's neighbors and their segments; writes 32 + 8.
 layout(local_size_x = k_count_group) in;
 layout(push_constant) uniform Push { LinkParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer positions;

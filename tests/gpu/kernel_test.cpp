@@ -1,4 +1,5 @@
 #include "gpu/runtime/kernel.h"
+#include "embedded/imaging_unpack_comp.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,12 +7,14 @@
 #include <bit>
 #include <vector>
 
+#include "embedded/imaging_unpack_comp.h"
 #include "embedded/tests_affine_comp.h"
 #include "embedded/tests_gather_comp.h"
 #include "embedded/tests_weigh_comp.h"
 #include "embedded/tests_wrong_set_comp.h"
 #include "gpu/runtime/errors.h"
 #include "gpu/runtime/stream.h"
+#include "shaders/shared/image_filters.h"
 #include "shaders/shared/test_kernels.h"
 #include "tests/gpu/support/environment.h"
 
@@ -177,6 +180,28 @@ TEST(Kernel, RefusesWorkgroupsOverTheLimit) {
     EXPECT_THROW(Kernel(shared_device(), shaders::tests_affine_comp,
                         {.push_constants = layout_of<AffineParameters>(), .constants = {{0, 0}}}),
                  ShaderError);
+}
+
+Kernel unpacking() {
+    return {shared_device(),
+            shaders::imaging_unpack_comp,
+            {.push_constants = layout_of<shared::ImageParameters>(), .elements = {layout_of<shared::vec4>()}}};
+}
+
+TEST(KernelTest, GroupSizesComeFromTheTuning) {
+    Device& device = shared_device();
+    const Tuning kept = device.tuning();
+    device.tuning() = {};
+    EXPECT_EQ(unpacking().local_size()[0], 64u);
+    device.tuning().set("imaging/unpack.comp", "group", 128);
+    EXPECT_EQ(unpacking().local_size()[0], 128u);
+    // No possible size.
+    device.tuning().set("imaging/unpack.comp", "group", 77);
+    EXPECT_EQ(unpacking().local_size()[0], 64u);
+    // More than some devices allow: never more than this one does.
+    device.tuning().set("imaging/unpack.comp", "group", 512);
+    EXPECT_LE(unpacking().local_size()[0], device.info().max_invocations);
+    device.tuning() = kept;
 }
 
 }  // namespace

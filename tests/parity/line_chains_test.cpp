@@ -29,7 +29,7 @@ FoundChains chain_on_device(const Scene& scene, std::uint32_t families, const Li
     GpuChains chains(lines);
     Stream stream(shared_device());
     lines.record(stream, scene.moment(), families, on_device(options));
-    chains.record(stream, scene.vertices, camera, k_width, k_height);
+    chains.record(stream, scene.vertices, camera, picture_width(), picture_height());
     stream.finish();
     FoundChains result{};
     lines.counts().download(std::span(&result.found.counts, 1));
@@ -50,13 +50,13 @@ FoundChains chain_on_device(const Scene& scene, std::uint32_t families, const Li
 
 /// How many chains both have.
 std::size_t expect_same_chains(const Scene& scene, const std::vector<LineType>& types) {
-    const Camera camera = fit_camera(scene.mesh, Vec3(3.07f, 2.11f, 4.23f), float(k_width) / k_height);
+    const Camera camera = fit_camera(scene.mesh, Vec3(3.07f, 2.11f, 4.23f), picture_aspect());
     const FoundChains found =
         chain_on_device(scene, line_families(types),
                         {.eye = camera.position(), .feature_size = scene.size(), .thresholds = {}}, camera);
     std::set<std::pair<bool, Walk>> expected, actual;
     for (const LineType type : types) {
-        const Own own = own_segments(found.found, type);
+        const ReadSegments own = segments_of_type(found.found.segments, type);
         for (const Chain& chain : chain_segments(scene.mesh.faces, scene.neighbors, own.segments)) {
             Walk walk;
             for (const ChainLink& link : chain.links) walk.emplace_back(own.numbers[link.segment], link.reversed);
@@ -83,7 +83,7 @@ TEST(ChainParity, ChainsAreThoseOfTheReference) {
 
 TEST(ChainParity, PointsAreWhereTheCameraSeesThem) {
     const Scene scene(mixed());
-    const Camera camera = fit_camera(scene.mesh, Vec3(3.07f, 2.11f, 4.23f), float(k_width) / k_height);
+    const Camera camera = fit_camera(scene.mesh, Vec3(3.07f, 2.11f, 4.23f), picture_aspect());
     const FoundChains found =
         chain_on_device(scene, 3, {.eye = camera.position(), .feature_size = scene.size(), .thresholds = {}}, camera);
     float along = 0;
@@ -95,7 +95,7 @@ TEST(ChainParity, PointsAreWhereTheCameraSeesThem) {
         const Face& face = scene.mesh.faces[s.face];
         const Vec3 at = (1 - b - c) * scene.mesh.vertices[face[0]] + b * scene.mesh.vertices[face[1]] +
                         c * scene.mesh.vertices[face[2]];
-        const Vec3 seen = camera.project(at, k_width, k_height);
+        const Vec3 seen = camera.project(at, picture_width(), picture_height());
         ASSERT_NEAR(point.x, seen.x(), 2e-3f);
         ASSERT_NEAR(point.y, seen.y(), 2e-3f);
         ASSERT_NEAR(point.depth, seen.z(), 1e-5f);
@@ -117,7 +117,7 @@ TEST(ChainParity, PointsAreWhereTheCameraSeesThem) {
 
 TEST(ChainParity, RerunsAreTheSameBytes) {
     const Scene scene(mixed());
-    const Camera camera = fit_camera(scene.mesh, Vec3(3.07f, 2.11f, 4.23f), float(k_width) / k_height);
+    const Camera camera = fit_camera(scene.mesh, Vec3(3.07f, 2.11f, 4.23f), picture_aspect());
     const LineOptions options{.eye = camera.position(), .feature_size = scene.size(), .thresholds = {}};
     const FoundChains once = chain_on_device(scene, 0x3ff, options, camera);
     for (int i = 0; i < 5; ++i) {

@@ -28,9 +28,9 @@ struct Motion {
     explicit Motion(std::vector<LineType> types) {
         LineThresholds thresholds;
         thresholds.principal_highlights = 0.001f;  // so that there are some
-        picture.view = {.camera = fit_camera(scene.mesh, Vec3(3.07f, 2.11f, 4.23f), float(k_width) / k_height),
-                        .width = k_width,
-                        .height = k_height,
+        picture.view = {.camera = fit_camera(scene.mesh, Vec3(3.07f, 2.11f, 4.23f), picture_aspect()),
+                        .width = picture_width(),
+                        .height = picture_height(),
                         .unit_depth = 20,
                         .feature_size = scene.size()};
         picture.families = line_families(types);
@@ -82,7 +82,7 @@ TEST_P(CoherenceParity, TexturesLieWhereTheReferenceLaysThem) {
     for (int frame = 0; frame < 4; ++frame) {
         motion.draw(frame);
         const Found found = motion.found();
-        const std::vector<LineSegment> segments = own_segments(found, GetParam()).segments;
+        const std::vector<LineSegment> segments = segments_of_type(found.segments, GetParam()).segments;
         const std::vector<vec4> actual = motion.traces(segments.size());
         const LineSurface surface = motion.scene.surface();
         const std::vector<Chain> chains = chain_segments(surface.faces, surface.neighbors, segments);

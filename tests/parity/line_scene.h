@@ -9,6 +9,7 @@
 
 #include "gpu/lines/chains.h"
 #include "gpu/lines/extraction.h"
+#include "gpu/lines/segment_records.h"
 #include "host/lines/chains.h"
 #include "shaders/shared/lines.h"
 #include "tests/gpu/support/environment.h"
@@ -23,7 +24,19 @@ using shared::LinePoint;
 using shared::LineSegmentRecord;
 using shared::vec4;
 
-constexpr int k_width = 800, k_height = 600;
+/// Devices that kernels see few texels on (SwiftShader: 65536) get smaller surfaces and pictures.
+inline bool sees_few_texels() {
+    return shared_device().info().max_texels < 800 * 600;
+}
+inline int picture_width() {
+    return sees_few_texels() ? 280 : 800;
+}
+inline int picture_height() {
+    return sees_few_texels() ? 210 : 600;
+}
+inline float picture_aspect() {
+    return static_cast<float>(picture_width()) / static_cast<float>(picture_height());
+}
 
 /// A surface with estimated curvature, on both sides.
 struct Scene : MeasuredSurface {
@@ -62,7 +75,7 @@ struct Scene : MeasuredSurface {
 };
 
 inline TriangleMesh lumpy() {
-    return shapes::transformed(shapes::icosphere(5, 1), [](const Vec3& p) -> Vec3 {
+    return shapes::transformed(shapes::icosphere(sees_few_texels() ? 4 : 5, 1), [](const Vec3& p) -> Vec3 {
         return p * (1 + 0.2f * std::sin(3 * p.x() + 1) + 0.15f * p.y() * std::cos(4 * p.z()));
     });
 }
@@ -99,36 +112,11 @@ inline Found extract_on_device(const Scene& scene, GpuLineExtraction& lines, std
     return found;
 }
 
-inline std::uint32_t family_of(const LineSegmentRecord& segment) {
-    return segment.kind & shared::k_kind_family;
-}
+using exemplar::family_of;
 inline std::uint32_t family_of(LineType type, const LineSegment& segment) {
     const LineType types[] = {type};
     const std::uint32_t families = line_families(types);
     return static_cast<std::uint32_t>(std::countr_zero(families)) + segment.family;
-}
-
-/// The device's own segments of one type, for the reference to chain, and their numbers on the device.
-struct Own {
-    std::vector<LineSegment> segments;
-    std::vector<std::uint32_t> numbers;
-};
-inline Own own_segments(const Found& found, LineType type) {
-    Own own;
-    for (std::uint32_t i = 0; i < found.segments.size(); ++i) {
-        const LineSegmentRecord& s = found.segments[i];
-        if (type_of_family(family_of(s)) != type) continue;
-        LineSegment segment;
-        segment.face = s.face;
-        segment.family = family_of(s) == shared::k_second_highlights ? 1 : 0;
-        segment.places = {static_cast<SegmentEnd>(s.kind >> shared::k_kind_first_place & shared::k_kind_place),
-                          static_cast<SegmentEnd>(s.kind >> shared::k_kind_second_place & shared::k_kind_place)};
-        segment.ends = {{{1 - s.ends.x - s.ends.y, s.ends.x, s.ends.y}, {1 - s.ends.z - s.ends.w, s.ends.z, s.ends.w}}};
-        segment.strength = {s.first_strength, s.second_strength};
-        own.segments.push_back(segment);
-        own.numbers.push_back(i);
-    }
-    return own;
 }
 
 }  // namespace exemplar::testing

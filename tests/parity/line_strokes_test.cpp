@@ -42,9 +42,9 @@ struct DrawnLines {
 DrawnLines draw(const Scene& scene, LineType type, bool parallel, const LineStyle& line = even_style()) {
     DrawnLines drawn;
     const FitOptions fit{.vertical_fov = parallel ? 0.0f : 0.4f};
-    drawn.view = {.camera = fit_camera(scene.mesh, Vec3(3.07f, 2.11f, 4.23f), float(k_width) / k_height, fit),
-                  .width = k_width,
-                  .height = k_height,
+    drawn.view = {.camera = fit_camera(scene.mesh, Vec3(3.07f, 2.11f, 4.23f), picture_aspect(), fit),
+                  .width = picture_width(),
+                  .height = picture_height(),
                   .unit_depth = 20,
                   .feature_size = scene.size()};
     const LineType types[] = {type};
@@ -76,7 +76,7 @@ DrawnLines draw(const Scene& scene, LineType type, bool parallel, const LineStyl
     drawn.visible.resize(counts.points);
     renderer.strokes().visible().download(std::span(drawn.visible));
 
-    drawn.segments = own_segments({counts, records}, type).segments;
+    drawn.segments = segments_of_type(records, type).segments;
     const std::vector<Chain> chains = chain_segments(scene.mesh.faces, scene.neighbors, drawn.segments);
     // The device orders chains by the segment they start with.
     std::map<std::uint32_t, Stroke> by_start;
@@ -84,8 +84,8 @@ DrawnLines draw(const Scene& scene, LineType type, bool parallel, const LineStyl
         make_strokes(scene.surface(), type, drawn.segments, chains, nullptr, drawn.view, thresholds, line.thickness);
     for (std::size_t i = 0; i < chains.size(); ++i) by_start[chains[i].links[0].segment] = std::move(strokes[i]);
     for (auto& [start, stroke] : by_start) drawn.expected.push_back(std::move(stroke));
-    drawn.parts =
-        LineVisibility(scene.surface()).visible_parts(type, drawn.segments, drawn.view.camera, k_width, k_height);
+    drawn.parts = LineVisibility(scene.surface())
+                      .visible_parts(type, drawn.segments, drawn.view.camera, picture_width(), picture_height());
     return drawn;
 }
 
@@ -124,7 +124,8 @@ bool is_well_covered(const RayScene& rays, const StrokeView& view, const Vec3& a
     constexpr float k_apart = 2.5f;
     const Eigen::Matrix4f to_world = view.camera.view_projection().inverse();
     const auto world = [&](float x, float y, float depth) -> Vec3 {
-        const Eigen::Vector4f clip(2 * x / k_width - 1, 2 * y / k_height - 1, depth, 1);
+        const Eigen::Vector4f clip(2 * x / static_cast<float>(picture_width()) - 1,
+                                   2 * y / static_cast<float>(picture_height()) - 1, depth, 1);
         return (to_world * clip).hnormalized();
     };
     for (int dy = -1; dy <= 1; ++dy)
@@ -207,7 +208,7 @@ TEST(StrokeRaster, PixelsAreThoseOfTheReference) {
         style.texture = texture;
         style.thickness = {.width = 6, .most = 9, .taper = 10};
         const DrawnLines drawn = draw(scene, LineType::contours, false, style);
-        FloatImage expected(k_width, k_height, 3, 1.0f);
+        FloatImage expected(picture_width(), picture_height(), 3, 1.0f);
         draw_strokes(drawn_strokes(drawn), style, load_stroke_texture(texture), expected);
         double inked = 0, difference = 0, bias = 0;
         for (std::size_t i = 0; i < expected.data.size(); i += 3) {

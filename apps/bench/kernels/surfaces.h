@@ -9,14 +9,14 @@
 #include <utility>
 #include <vector>
 
-#include "apps/bench/kernel_bench.h"
+#include "apps/bench/kernels/operation.h"
 #include "gpu/runtime/buffer.h"
 #include "host/animation/animation.h"
 #include "host/core/random.h"
 #include "host/mesh/curvature.h"
 #include "shaders/shared/types.h"
 
-// The animated surface that kernels are measured on, and how what they leave on the device is compared.
+/// The animated surface that kernels are measured on, and how what they leave on the device is compared.
 
 namespace exemplar {
 
@@ -82,11 +82,11 @@ inline std::vector<Vec3> vectors_of(const Buffer& buffer) {
     return vectors;
 }
 
-inline Buffer uploaded(std::span<const Vec3> vertices) {
+inline Buffer uploaded(Device& device, std::span<const Vec3> vertices) {
     std::vector<shared::vec4> values;
     values.reserve(vertices.size());
     for (const Vec3& v : vertices) values.push_back({v.x(), v.y(), v.z(), 1.0f});
-    return Buffer::of<shared::vec4>(bench().device, values);
+    return Buffer::of<shared::vec4>(device, values);
 }
 
 // The forms as matrices, row by row, whose values do not depend on the signs of principal directions.
@@ -119,11 +119,13 @@ VertexCurvature downloaded(const DeviceCurvature& curvature) {
     return result;
 }
 
+/// Curvatures are of edges about 1 long; what both round is compared as it is.
 template <typename DeviceCurvature>
-bool verified(benchmark::State& state, const DeviceCurvature& curvature, const VertexCurvature& expected) {
+std::vector<Difference> differences_of(const DeviceCurvature& curvature, const VertexCurvature& expected) {
     const VertexCurvature actual = downloaded(curvature);
-    return verified(state, forms(actual), forms(expected)) &&
-           verified(state, derivative_sizes(actual.derivative), derivative_sizes(expected.derivative));
+    return {{"curvature tensors", largest_difference(forms(actual), forms(expected)), 1e-5},
+            {"sizes of derivatives",
+             largest_difference(derivative_sizes(actual.derivative), derivative_sizes(expected.derivative)), 1e-5}};
 }
 
 }  // namespace exemplar

@@ -1,0 +1,184 @@
+#include "apps/bench/kernels/measurement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <regex>
+
+#include "apps/bench/kernels/statistics.h"
+#include "embedded/runtime_copy_comp.h"
+#include "embedded/runtime_multiply_add_comp.h"
+#include "gpu/runtime/errors.h"
+#include "host/core/errors.h"
+#include "host/core/files.h"
+
+namespace exemplar {
+namespace {
+
+// Small enough to take little time beside what they are timed with, and far above the cost of a dispatch.
+constexpr std::size_t k_reference_vectors = 100'000, k_reference_items = 16'384;
+
+struct Reference {
+    Profiler profiler;
+    Operation operation;
+};
+
+std::unique_ptr<Reference> prepare_reference(Device& device, const Shader& kernel, std::size_t size) {
+    for (const OperationKind& kind : operation_kinds())
+        if (kind.kernels.front() == &kernel) {
+            auto reference = std::make_unique<Reference>();
+            reference->operation = kind.prepare(device, reference->profiler, size);
+            reference->operation.run();
+            return reference;
+        }
+    throw Error("no such reference");
+}
+
+nlohmann::ordered_json statistics_json(const Device& device, const std::string& kernel) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    for (const ExecutableStatistic& statistic : device.statistics_of(kernel)) json[statistic.name] = statistic.value;
+    return json;
+}
+
+nlohmann::ordered_json kernel_json(const KernelRow& row, const Device& device, const Ceilings& ceilings) {
+    const Shares shares = shares_of(row, ceilings);
+    nlohmann::ordered_json json = {{"kernel", row.kernel},
+                                   {"ms", row.median_milliseconds()},
+                                   {"ms_of_repeats", row.milliseconds},
+                                   {"relative_error", relative_error(row.milliseconds)},
+                                   {"bytes", row.work.bytes},
+                                   {"operations", row.work.operations},
+                                   {"gb_per_s", row.gb_per_s()},
+                                   {"gop_per_s", row.gop_per_s()},
+                                   {"share_of_copy", shares.of_copy},
+                                   {"share_of_multiply_add", shares.of_multiply_add}};
+    if (const auto statistics = statistics_json(device, row.kernel); !statistics.empty())
+        json["driver_statistics"] = statistics;
+    return json;
+}
+
+Measurement read_measurement(const nlohmann::json& json) {
+    Measurement measurement;
+    json.at("operation").get_to(measurement.operation);
+    json.at("items").get_to(measurement.items);
+    json.at("size").get_to(measurement.size);
+    for (const nlohmann::json& kernel : json.at("kernels"))
+        measurement.kernels.push_back({.kernel = kernel.at("kernel"),
+                                       .milliseconds = kernel.at("ms_of_repeats"),
+                                       .work = {.bytes = kernel.at("bytes"), .operations = kernel.at("operations")}});
+    measurement.references = json.at("references_ms").get<KernelTimes>();
+    return measurement;
+}
+
+void compare_and_time(Device& device, const OperationKind& kind, const KernelFilter& filter,
+                      const TimingOptions& options, Measurement& measurement) {
+    Profiler profiler;
+    const Operation operation = kind.prepare(device, profiler, measurement.size);
+    operation.run();
+    operation.run();
+    measurement.differences = operation.differences();
+    if (!measurement.fits()) return;
+    const auto copy = prepare_reference(device, shaders::runtime_copy_comp, k_reference_vectors),
+               multiply_add = prepare_reference(device, shaders::runtime_multiply_add_comp, k_reference_items);
+    const std::vector<KernelTimes> times =
+        time_in_turns(std::vector<Timed>{{"operation", &operation, &profiler},
+                                         {"copy", &copy->operation, &copy->profiler},
+                                         {"multiply_add", &multiply_add->operation, &multiply_add->profiler}},
+                      options);
+    for (auto& [kernel, work] : operation.work())
+        if (filter.wants(kind, kernel) && times[0].contains(kernel))
+            measurement.kernels.push_back({kernel, times[0].at(kernel), work});
+    for (const KernelTimes& reference : {times[1], times[2]})
+        measurement.references.insert(reference.begin(), reference.end());
+}
+
+}  // namespace
+
+double KernelRow::median_milliseconds() const {
+    return median(milliseconds);
+}
+double KernelRow::gb_per_s() const {
+    return 1e-6 * work.bytes / median_milliseconds();
+}
+double KernelRow::gop_per_s() const {
+    return 1e-6 * work.operations / median_milliseconds();
+}
+
+bool Measurement::fits() const {
+    return std::ranges::all_of(differences, &Difference::fits);
+}
+
+Shares shares_of(const KernelRow& row, const Ceilings& ceilings) {
+    return {row.gb_per_s() / ceilings.copy_gb_per_s, row.gop_per_s() / ceilings.fma_gflop_per_s};
+}
+
+KernelFilter::KernelFilter(const std::string& expression) : expression_(expression) {
+    try {
+        static_cast<void>(std::regex(expression));
+    } catch (const std::regex_error& error) {
+        throw UsageError(fmt::format("--filter '{}' is no regular expression: {}", expression, error.what()));
+    }
+    const auto& kinds = operation_kinds();
+    if (std::ranges::none_of(kinds, [&](const OperationKind& kind) { return wants(kind); }))
+        throw UsageError(fmt::format(
+            "--filter '{}' finds no kernel; 'exemplar bench shaders --list' shows all with their operations",
+            expression));
+}
+
+bool KernelFilter::wants(const OperationKind& kind) const {
+    return std::ranges::any_of(kind.kernels, [&](const Shader* kernel) { return wants(kind, kernel->name); });
+}
+
+bool KernelFilter::wants(const OperationKind& kind, std::string_view kernel) const {
+    const std::regex wanted(expression_);
+    return std::regex_search(kernel.begin(), kernel.end(), wanted) ||
+           std::regex_search(kind.name.begin(), kind.name.end(), wanted);
+}
+
+Measurement measure_operation(Device& device, const OperationKind& kind, std::size_t size, const KernelFilter& filter,
+                              const TimingOptions& options) {
+    Measurement measurement;
+    measurement.operation = kind.name;
+    measurement.items = kind.items;
+    measurement.size = size;
+    try {
+        compare_and_time(device, kind, filter, options, measurement);
+    } catch (const DeviceLimitError& error) {
+        measurement.refused = error.what();
+    }
+    return measurement;
+}
+
+nlohmann::ordered_json to_json(const Measurement& measurement, const Device& device, const Ceilings& ceilings) {
+    nlohmann::ordered_json json = {
+        {"operation", measurement.operation}, {"items", measurement.items}, {"size", measurement.size}};
+    if (!measurement.refused.empty()) json["refused"] = measurement.refused;
+    json["differences"] = nlohmann::ordered_json::array();
+    for (const Difference& difference : measurement.differences)
+        json["differences"].push_back(
+            {{"of", difference.of}, {"largest", difference.largest}, {"tolerance", difference.tolerance}});
+    json["kernels"] = nlohmann::ordered_json::array();
+    for (const KernelRow& row : measurement.kernels) json["kernels"].push_back(kernel_json(row, device, ceilings));
+    json["references_ms"] = measurement.references;
+    return json;
+}
+
+std::vector<Measurement> read_measurements(const std::filesystem::path& path, const DeviceInfo& device) {
+    try {
+        const nlohmann::json json = nlohmann::json::parse(read_file(path));
+        const std::string name = json.at("device").at("name");
+        if (name != device.name)
+            throw UsageError(fmt::format("{}: it was measured on device '{}', this is '{}'; compare the same device",
+                                         path.string(), name, device.name));
+        std::vector<Measurement> measurements;
+        for (const nlohmann::json& measurement : json.at("measurements"))
+            measurements.push_back(read_measurement(measurement));
+        return measurements;
+    } catch (const nlohmann::json::exception&) {
+        throw DataError(
+            fmt::format("{}: this is no report of 'exemplar bench shaders'; make one with --json", path.string()));
+    }
+}
+
+}  // namespace exemplar

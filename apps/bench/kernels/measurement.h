@@ -1,0 +1,66 @@
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/bench/kernels/operation.h"
+#include "apps/bench/kernels/timing.h"
+
+namespace exemplar {
+
+/// One kernel of an operation of one size.
+struct KernelRow {
+    std::string kernel;
+    std::vector<double> milliseconds;  ///< of one run, a value per repeat
+    Work work;
+
+    double median_milliseconds() const;
+    double gb_per_s() const;
+    double gop_per_s() const;
+};
+
+/// An operation of one size, compared with its reference and timed.
+struct Measurement {
+    std::string operation, items;
+    std::size_t size = 0;
+    std::string refused;  ///< why the device cannot take this size; empty if it can
+    std::vector<Difference> differences;
+    std::vector<KernelRow> kernels;
+    /// Milliseconds of kernels that only copy, or only multiply and add, in turns with the operation: how fast the
+    /// device was then.
+    KernelTimes references;
+
+    bool fits() const;
+};
+
+/// A speed as shares of the device's ceilings; the larger of both says what bounds a kernel.
+struct Shares {
+    double of_copy = 0, of_multiply_add = 0;
+};
+Shares shares_of(const KernelRow& row, const Ceilings& ceilings);
+
+/// Which kernels are wanted: all, or those whose name or whose operation's name a regular expression finds. Throws
+/// UsageError if it is none, or finds nothing.
+class KernelFilter {
+  public:
+    explicit KernelFilter(const std::string& expression = "");
+    bool wants(const OperationKind& kind) const;
+    bool wants(const OperationKind& kind, std::string_view kernel) const;
+
+  private:
+    std::string expression_;
+};
+
+/// Prepares an operation, runs it twice and compares it; times it unless it is over the device's limits or differs from
+/// its reference.
+Measurement measure_operation(Device& device, const OperationKind& kind, std::size_t size, const KernelFilter& filter,
+                              const TimingOptions& options);
+
+nlohmann::ordered_json to_json(const Measurement& measurement, const Device& device, const Ceilings& ceilings);
+
+/// What is compared between two files that to_json has filled. Throws DataError, naming the file, if it is none.
+std::vector<Measurement> read_measurements(const std::filesystem::path& path, const DeviceInfo& device);
+
+}  // namespace exemplar

@@ -59,19 +59,11 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/exemplar-config-version.c
 install(FILES ${PROJECT_BINARY_DIR}/exemplar-config.cmake ${PROJECT_BINARY_DIR}/exemplar-config-version.cmake
         DESTINATION ${exemplar_package_dir} COMPONENT development)
 
-# Under the names that Debian gives them.
-find_program(EXEMPLAR_GZIP gzip REQUIRED)
-set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS CHANGELOG.md)
-execute_process(COMMAND ${EXEMPLAR_GZIP} -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md
-                OUTPUT_FILE ${PROJECT_BINARY_DIR}/changelog.gz COMMAND_ERROR_IS_FATAL ANY)
-function(exemplar_install_notices folder component)
-  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${folder} RENAME copyright COMPONENT ${component})
-  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${folder} COMPONENT ${component})
-endfunction()
-exemplar_install_notices(${CMAKE_INSTALL_DOCDIR}-dev development)
-
+# The license, under the name that Debian gives it.
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}-dev RENAME copyright COMPONENT development)
 if(EXEMPLAR_GPU)
-  exemplar_install_notices(${CMAKE_INSTALL_DOCDIR} runtime)
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT runtime)
+  find_program(EXEMPLAR_GZIP gzip REQUIRED)
   set(exemplar_pages ${PROJECT_BINARY_DIR}/help)
   add_custom_command(
     OUTPUT ${exemplar_pages}/made
@@ -86,6 +78,7 @@ if(EXEMPLAR_GPU)
   install(DIRECTORY ${exemplar_pages}/bash/ DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT runtime)
   install(DIRECTORY ${exemplar_pages}/zsh/ DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT runtime)
   install(DIRECTORY ${exemplar_pages}/fish/ DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT runtime)
-  install(FILES ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
+  install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
+  include(cmake/debian.cmake)
 endif()

@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Sets everything up, builds Release and runs all tests.
-#   tests/run.sh [--browser] [--slurm] [ctest arguments]     for example: tests/run.sh -L cpu, tests/run.sh -R curvature
+#   tests/run.sh [--browser] [--slurm] [--package] [ctest arguments]     for example: tests/run.sh -L cpu, tests/run.sh -R curvature
 # --browser also installs Chromium and opens a report page in it; --slurm also installs Slurm and GNU parallel and runs a cluster of
-# two nodes on this machine. Without, those tests are skipped.
+# two nodes on this machine; --package also builds the Debian packages and installs them into a Debian of their own (as root).
+# Without, those tests are skipped.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source apps/setup.sh
 packages=()
-unset EXEMPLAR_BROWSER EXEMPLAR_SLURM
+unset EXEMPLAR_BROWSER EXEMPLAR_SLURM EXEMPLAR_PACKAGES
 while true; do
     case "${1:-}" in
         --browser)
@@ -16,6 +17,9 @@ while true; do
         --slurm)
             packages+=(slurm-wlm munge parallel)
             export EXEMPLAR_SLURM=1 ;;
+        --package)
+            packages+=(debootstrap lintian)
+            export EXEMPLAR_PACKAGES=$PWD/build-package/packages ;;
         *) break ;;
     esac
     shift
@@ -24,7 +28,10 @@ done
     echo "The report page is not opened in a browser (browser.report_page is skipped); --browser asks for that."
 [ -n "${EXEMPLAR_SLURM:-}" ] ||
     echo "No Slurm is started (tests labeled slurm are skipped); --slurm asks for that."
+[ -n "${EXEMPLAR_PACKAGES:-}" ] ||
+    echo "No Debian package is built and installed (package.debian is skipped); --package asks for that."
 exemplar_install "${packages[@]}"
 exemplar_build
+[ -z "${EXEMPLAR_PACKAGES:-}" ] || apps/package.sh "$EXEMPLAR_PACKAGES"
 export EXEMPLAR_VALIDATION=${EXEMPLAR_VALIDATION:-1}
 exec ctest --test-dir "$exemplar_build" --output-on-failure -j "$(nproc)" "$@"

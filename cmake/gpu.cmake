@@ -34,13 +34,14 @@ function(exemplar_shaders target folder)
       VERBATIM)
     target_sources(${target} PRIVATE ${embedded}/${symbol}.cpp ${embedded}/${symbol}.h)
   endforeach()
-  target_include_directories(${target} PUBLIC ${PROJECT_BINARY_DIR}/shaders)
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/shaders>)
 endfunction()
 
-exemplar_library(runtime gpu/runtime exemplar_core Vulkan::Headers PkgConfig::SPIRV_CROSS PkgConfig::XXHASH ${CMAKE_DL_LIBS})
+exemplar_library(runtime gpu/runtime exemplar_core Vulkan::Headers $<BUILD_INTERFACE:PkgConfig::SPIRV_CROSS>
+                                     $<INSTALL_INTERFACE:$<LINK_ONLY:PkgConfig::SPIRV_CROSS>> PRIVATE PkgConfig::XXHASH ${CMAKE_DL_LIBS})
 target_sources(exemplar_runtime PRIVATE ${EXEMPLAR_VOLK_DIR}/volk.c)
 set_source_files_properties(${EXEMPLAR_VOLK_DIR}/volk.c PROPERTIES COMPILE_OPTIONS -w)
-target_include_directories(exemplar_runtime SYSTEM PUBLIC ${EXEMPLAR_VOLK_DIR})
+target_include_directories(exemplar_runtime SYSTEM PUBLIC $<BUILD_INTERFACE:${EXEMPLAR_VOLK_DIR}>)
 exemplar_shaders(exemplar_runtime runtime)
 
 exemplar_library(gpu_learn gpu/learn exemplar_runtime exemplar_learn)

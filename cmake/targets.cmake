@@ -1,9 +1,9 @@
 # What every target of the project shares: warnings, architecture, sanitizers, include root.
 
 add_library(exemplar_options INTERFACE)
-target_include_directories(exemplar_options INTERFACE ${PROJECT_SOURCE_DIR})
-target_compile_options(exemplar_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-                                                  $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>)
+target_include_directories(exemplar_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+set(exemplar_warnings -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>)
+target_compile_options(exemplar_options INTERFACE "$<BUILD_INTERFACE:${exemplar_warnings}>")
 target_link_libraries(exemplar_options INTERFACE Threads::Threads)
 
 # x86-64-v3 (AVX2, FMA) is ten years old; older machines fall back to the compiler's baseline.
@@ -23,18 +23,22 @@ if(exemplar_march)
 endif()
 if(EXEMPLAR_SANITIZE OR EXEMPLAR_FUZZERS)
   set(exemplar_sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all)
-  target_compile_options(exemplar_options INTERFACE ${exemplar_sanitizers} -O1 -g1 -fno-omit-frame-pointer)
+  target_compile_options(exemplar_options INTERFACE
+                         "$<BUILD_INTERFACE:${exemplar_sanitizers};-O1;-g1;-fno-omit-frame-pointer>")
   target_link_options(exemplar_options INTERFACE ${exemplar_sanitizers})
 endif()
 if(EXEMPLAR_FUZZERS)
-  target_compile_options(exemplar_options INTERFACE -fsanitize=fuzzer-no-link)
+  target_compile_options(exemplar_options INTERFACE $<BUILD_INTERFACE:-fsanitize=fuzzer-no-link>)
 endif()
 
-# exemplar_library(NAME DIR DEPENDENCY...): the static library exemplar_NAME of all sources in DIR.
+# exemplar_library(NAME DIR DEPENDENCY...): the static library exemplar_NAME of all sources in DIR. Those of host/ and gpu/ are
+# noted for cmake/install.cmake.
 function(exemplar_library name dir)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${dir}/*.cpp)
   add_library(exemplar_${name} STATIC ${sources})
   target_link_libraries(exemplar_${name} PUBLIC exemplar_options ${ARGN})
+  string(REGEX REPLACE "/.*" "" part ${dir})
+  set_property(GLOBAL APPEND PROPERTY exemplar_libraries_of_${part} exemplar_${name})
 endfunction()
 
 # exemplar_test(NAME LABEL DIR DEPENDENCY...): one GoogleTest program of all sources in tests/DIR;

@@ -1,15 +1,18 @@
 #!/usr/bin/env bash
 # Sets everything up, builds Release and runs all tests.
-#   tests/run.sh [--browser] [--slurm] [--swiftshader] [ctest arguments]     for example: tests/run.sh -L cpu, tests/run.sh -R curvature
-# --browser also installs Chromium and opens a report page in it; --slurm also installs Slurm and GNU parallel and runs a cluster of
-# two nodes on this machine. Without, those tests are skipped. --swiftshader runs the tests of kernels a second time, on the
-# SwiftShader that comes with Debian's Chromium: a driver with the least that Vulkan asks for.
+#   tests/run.sh [OPTION...] [ctest arguments]     for example: tests/run.sh -L cpu, tests/run.sh -R curvature
+# Without these options, what they ask for is skipped:
+#   --browser      also installs Chromium and opens a report page in it
+#   --slurm        also installs Slurm and GNU parallel and runs a cluster of two nodes on this machine
+#   --swiftshader  runs the tests of kernels a second time, on the SwiftShader that comes with Debian's Chromium: a driver with
+#                  the least that Vulkan asks for
+#   --package      also builds the Debian packages and installs them into a Debian of their own (as root)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source apps/setup.sh
 packages=()
 swiftshader=
-unset EXEMPLAR_BROWSER EXEMPLAR_SLURM
+unset EXEMPLAR_BROWSER EXEMPLAR_SLURM EXEMPLAR_PACKAGES
 while true; do
     case "${1:-}" in
         --browser)
@@ -21,6 +24,9 @@ while true; do
         --swiftshader)
             packages+=(chromium)
             swiftshader=1 ;;
+        --package)
+            packages+=(debootstrap lintian)
+            export EXEMPLAR_PACKAGES=$PWD/build-package/packages ;;
         *) break ;;
     esac
     shift
@@ -29,8 +35,11 @@ done
     echo "The report page is not opened in a browser (browser.report_page is skipped); --browser asks for that."
 [ -n "${EXEMPLAR_SLURM:-}" ] ||
     echo "No Slurm is started (tests labeled slurm are skipped); --slurm asks for that."
+[ -n "${EXEMPLAR_PACKAGES:-}" ] ||
+    echo "No Debian package is built and installed (package.debian is skipped); --package asks for that."
 exemplar_install "${packages[@]}"
 exemplar_build
+[ -z "${EXEMPLAR_PACKAGES:-}" ] || apps/package.sh "$EXEMPLAR_PACKAGES"
 export EXEMPLAR_VALIDATION=${EXEMPLAR_VALIDATION:-1}
 ctest --test-dir "$exemplar_build" --output-on-failure -j "$(nproc)" "$@"
 if [ -n "$swiftshader" ]; then

@@ -8,6 +8,7 @@
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/demo_lines.h"
 #include "apps/exemplar/evaluation_run.h"
+#include "apps/help/offered_words.h"
 #include "host/core/interrupt.h"
 #include "host/core/stopwatch.h"
 #include "host/core/text.h"
@@ -96,6 +97,7 @@ void add_demo_command(CLI::App& app) {
     command->footer("Example:\n  exemplar demo --out out/demo");
     command->add_option("--out", options->out, "folder to write to")->capture_default_str()->type_name("FOLDER");
     command->add_option("--kinds", options->kinds, "kinds of shapes (see 'exemplar synth --help'); all by default")
+        ->check(offered_words(synth_kinds()))
         ->type_name("KIND");
     command
         ->add_option("--train", options->train_count,

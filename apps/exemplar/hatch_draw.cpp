@@ -4,6 +4,7 @@
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/hatch_draw.h"
+#include "apps/help/offered_words.h"
 #include "host/core/errors.h"
 #include "host/core/progress.h"
 #include "host/core/stopwatch.h"
@@ -112,6 +113,12 @@ void add_frames_options(CLI::App& command, HatchDrawJob& job) {
                      "measures each frame's surface as a whole, instead of keeping what changes slowly");
 }
 
+std::vector<std::string> curve_words() {
+    std::vector<std::string> words{"none"};
+    for (const LineType type : k_line_types) words.emplace_back(name_of(type));
+    return words;
+}
+
 }  // namespace
 
 std::vector<LineType> HatchDrawJob::curve_types() const {
@@ -159,6 +166,7 @@ void add_hatch_draw_command(CLI::App& hatch) {
         ->add_option("--curves", arguments->curves,
                      "feature curves drawn with it, as 'exemplar lines --types' has them, or none")
         ->type_name("TYPE")
+        ->check(offered_words(curve_words()))
         ->delimiter(',')
         ->allow_extra_args(false)
         ->capture_default_str();

@@ -9,6 +9,7 @@
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/hatch_reading.h"
 #include "apps/exemplar/hatch_scene.h"
+#include "apps/help/offered_words.h"
 #include "host/core/errors.h"
 #include "host/core/progress.h"
 #include "host/core/random.h"
@@ -290,6 +291,7 @@ void add_hatch_evaluate_command(CLI::App& hatch) {
         ->add_option("--styles", arguments->styles,
                      fmt::format("which of {}; default: all", fmt::join(hatching_rule_names(), ", ")))
         ->type_name("NAME")
+        ->check(offered_words(hatching_rule_names()))
         ->delimiter(',')
         ->allow_extra_args(false);
     command->add_option("--size", arguments->size, "pixels of the drawings")->type_name("WxH")->capture_default_str();

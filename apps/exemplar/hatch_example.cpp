@@ -8,6 +8,7 @@
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/hatch_scene.h"
+#include "apps/help/offered_words.h"
 #include "host/core/errors.h"
 #include "host/core/text.h"
 #include "host/imaging/png.h"
@@ -53,7 +54,10 @@ void add_hatch_example_command(CLI::App& hatch) {
         fmt::format("Styles: {}\n\nExample:\n"
                     "  exemplar hatch example contour bunny.off --out drawing.png",
                     fmt::join(hatching_rule_names(), " ")));
-    command->add_option("STYLE", arguments->style, "how it is drawn")->required()->type_name("");
+    command->add_option("STYLE", arguments->style, "how it is drawn")
+        ->required()
+        ->check(offered_words(hatching_rule_names()))
+        ->type_name("");
     command->add_option("MESH", arguments->scene.mesh, "mesh (OFF, OBJ, PLY, STL, glTF)")->required()->type_name("");
     command->add_option("--out", arguments->out, "the drawing to write (PNG)")->required()->type_name("FILE");
     command->add_option("--seed", arguments->seed, "of the hand's jitter")

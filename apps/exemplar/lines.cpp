@@ -9,6 +9,7 @@
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/lines_comparison.h"
 #include "apps/exemplar/lines_job.h"
+#include "apps/help/offered_words.h"
 #include "host/core/errors.h"
 #include "host/core/freed_memory.h"
 #include "host/core/text.h"
@@ -68,6 +69,13 @@ void set_threshold_of_word(const std::string& word, DrawingStyle& style) {
     style.of(type).threshold = value;
 }
 
+std::vector<std::string> form_words() {
+    return {"lines", "outlines"};
+}
+std::vector<std::string> fading_words() {
+    return {"opacity", "width", "none"};
+}
+
 /// What the word is called in a list of words, in their order.
 template <typename Value>
 Value choice(const std::string& word, const char* option, const std::vector<std::string>& words) {
@@ -103,11 +111,11 @@ LinesJob job_of(const LinesArguments& arguments) {
     if (job.compare) require_comparable(job);
     job.style = load_style(arguments.style);
     for (const std::string& word : arguments.thresholds) set_threshold_of_word(word, job.style);
-    job.svg.form = choice<SvgForm>(arguments.form, "--form", {"lines", "outlines"});
+    job.svg.form = choice<SvgForm>(arguments.form, "--form", form_words());
     const std::string fading = !arguments.fading.empty()        ? arguments.fading
                                : job.svg.form == SvgForm::lines ? "opacity"
                                                                 : "width";
-    job.svg.fading = choice<SvgFading>(fading, "--fading", {"opacity", "width", "none"});
+    job.svg.fading = choice<SvgFading>(fading, "--fading", fading_words());
     job.svg.background = !arguments.no_background;
     job.source.derivatives = std::any_of(job.types.begin(), job.types.end(), needs_curvature);
     const bool on_host = job.output == LinesOutput::svg;
@@ -141,13 +149,16 @@ void add_look_options(CLI::App& command, LinesArguments& arguments) {
         ->type_name("TYPE")
         ->delimiter(',')
         ->allow_extra_args(false)
+        ->check(offered_words(type_words()))
         ->capture_default_str();
     command
         .add_option("--style", arguments.style,
                     fmt::format("how they look: {}, or a style file (JSON)", fmt::join(builtin_style_names(), ", ")))
         ->type_name("NAME|FILE")
+        ->check(offered_words(builtin_style_names()))
         ->capture_default_str();
     command.add_option("--print-style", arguments.print_style, "prints a built-in style, to start a file from")
+        ->check(offered_words(builtin_style_names()))
         ->type_name("NAME");
     command
         .add_option("--threshold", arguments.thresholds,
@@ -167,10 +178,12 @@ void add_svg_options(CLI::App& command, LinesArguments& arguments) {
         .add_option("--form", arguments.form,
                     "lines: center lines with a stroke width, for plotters; outlines: filled shapes of varying width")
         ->type_name("FORM")
+        ->check(offered_words(form_words()))
         ->capture_default_str();
     command
         .add_option("--fading", arguments.fading,
                     "weak lines fade by opacity (default of lines), width (of outlines), or not (none)")
+        ->check(offered_words(fading_words()))
         ->type_name("HOW");
     command.add_flag("--curves", arguments.job.svg.curves, "center lines of Bezier curves, which stay smooth enlarged");
     command

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "apps/help/offered_words.h"
 #include "host/core/errors.h"
 #include "host/core/text.h"
 #include "host/mesh/loose_vertices.h"
@@ -152,6 +153,7 @@ void add_camera_options(CLI::App& command, CameraArguments& arguments) {
         .add_option("--view", arguments.view,
                     fmt::format("where it is seen from, as large as it fits: {}", fmt::join(view_names(), ", ")))
         ->type_name("NAME")
+        ->check(offered_words(view_names()))
         ->capture_default_str();
     command.add_option("--eye", arguments.eye, "a point to see it from instead, in the units of the mesh")
         ->type_name("X,Y,Z");

@@ -8,6 +8,7 @@
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/commands.h"
+#include "apps/help/help_pages.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/parallel.h"
@@ -91,6 +92,7 @@ int run(int argc, char** argv) {
     add_doctor_command(app);
     add_demo_command(app);
     add_bench_command(app);
+    add_help_pages_option(app, EXEMPLAR_VERSION);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

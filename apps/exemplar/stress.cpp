@@ -10,6 +10,7 @@
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/labeled_output.h"
+#include "apps/help/offered_words.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
@@ -294,6 +295,7 @@ void add_stress_command(CLI::App& label) {
         ->required()
         ->type_name("");
     command->add_option("--damage", options->damages, "only these damages; all of them, if not given")
+        ->check(offered_words(std::views::transform(damages(), &Damage::name)))
         ->type_name("NAME");
     command->add_option("--seed", options->seed, "seed of what is damaged where")
         ->capture_default_str()

@@ -6,6 +6,7 @@
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/commands.h"
+#include "apps/help/offered_words.h"
 #include "host/animation/write_animation.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
@@ -31,12 +32,17 @@ bool is_one_of(std::span<const std::string_view> names, std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Throws UsageError for a kind that is neither of shapes nor of animations.
-void require_kind(const std::string& kind) {
+std::vector<std::string> all_kinds() {
     const auto shapes = synth_kinds(), animations = synth_animation_kinds();
-    if (is_one_of(shapes, kind) || is_one_of(animations, kind)) return;
     std::vector<std::string> names(shapes.begin(), shapes.end());
     names.insert(names.end(), animations.begin(), animations.end());
+    return names;
+}
+
+/// Throws UsageError for a kind that is neither of shapes nor of animations.
+void require_kind(const std::string& kind) {
+    const std::vector<std::string> names = all_kinds();
+    if (std::ranges::find(names, kind) != names.end()) return;
     throw UsageError(
         fmt::format("unknown kind '{}'{}; the kinds are {}", kind, suggestion(kind, names), fmt::join(names, ", ")));
 }
@@ -121,7 +127,10 @@ void add_synth_command(CLI::App& app) {
                     "  exemplar synth human --count 8 --seed 1 --out shapes\n"
                     "  exemplar synth figure --vertices 20000 --seed 1 --out animations",
                     fmt::join(synth_kinds(), " "), fmt::join(synth_animation_kinds(), " ")));
-    command->add_option("KIND", options->kind, "what to generate")->required()->type_name("");
+    command->add_option("KIND", options->kind, "what to generate")
+        ->required()
+        ->check(offered_words(all_kinds()))
+        ->type_name("");
     command->add_option("--count", options->count, "how many")->capture_default_str()->check(whole_number(1));
     command->add_option("--seed", options->seed, "seed of the first shape or motion; the next ones count up")
         ->capture_default_str()

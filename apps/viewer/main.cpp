@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <map>
 
+#include "apps/help/help_pages.h"
+#include "apps/help/offered_words.h"
 #include "apps/viewer/hatched_still.h"
 #include "apps/viewer/options.h"
 #include "host/core/errors.h"
@@ -43,11 +45,16 @@ void add_choice(CLI::App& app, const std::string& name, std::optional<T>& value,
         ->check(CLI::IsMember(&names));
 }
 
+std::vector<std::string> line_words() {
+    std::vector<std::string> names{"none"};
+    for (const LineType type : k_line_types) names.emplace_back(name_of(type));
+    return names;
+}
+
 // "contours,ridges"; "none" for no lines.
 std::vector<LineType> parse_lines(const std::vector<std::string>& words) {
     std::vector<LineType> types;
-    std::vector<std::string> names{"none"};
-    for (const LineType type : k_line_types) names.emplace_back(name_of(type));
+    const std::vector<std::string> names = line_words();
     for (const std::string& word : words) {
         const std::optional<LineType> type = word == "none" ? std::nullopt : line_type_meant(word);
         if (!type && word != "none")
@@ -87,8 +94,11 @@ void add_options(CLI::App& app, ViewerOptions& options, std::string& size) {
            "lines to draw, as in contours,suggestive_contours (the default); none for no lines")
         ->delimiter(',')
         ->allow_extra_args(false)
+        ->check(offered_words(line_words()))
         ->type_name("TYPE");
-    app.add_option("--style", options.style, "style of the drawing: a built-in name or a file")->type_name("STYLE");
+    app.add_option("--style", options.style, "style of the drawing: a built-in name or a file")
+        ->check(offered_words(builtin_style_names()))
+        ->type_name("NAME|FILE");
     add_choice(app, "--paint", options.paint, "colors: labels, curvature (mean, gauss, k1, k2), ...", k_paints);
     add_choice(app, "--light", options.light, "shading", k_lights);
     add_choice(app, "--curvature", options.source, "curvature that is shown", k_sources);
@@ -131,6 +141,7 @@ int run(int argc, char** argv) {
     ViewerOptions options;
     std::string size = "1280x720";
     add_options(app, options, size);
+    add_help_pages_option(app, EXEMPLAR_VERSION);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the direction of includes by reading the include lines: apps -> gpu -> host, and inside host the layers below.
+"""Checks the direction of includes by reading the include lines: apps, python -> gpu -> host, and inside host the layers below.
 
 Prints one line per violation and exits with 1 if there is any; first makes sure that violations would be found.
 """
@@ -39,21 +39,23 @@ def violation(file, included):
     """Why `file` (path parts) may not include `included` (path parts), or None."""
     top, target = file[0], included[0]
     if top == 'host':
-        if target in ('gpu', 'apps') or included[-1] in ('volk.h', 'vulkan.h', 'vulkan.hpp') or target == 'vulkan':
+        if target in ('gpu', 'apps', 'python') or included[-1] in ('volk.h', 'vulkan.h', 'vulkan.hpp') or target == 'vulkan':
             return 'host/ knows no Vulkan'
         if target == 'host' and included[1] != file[1] and included[1] not in HOST.get(file[1], set()):
             return f'host/{file[1]} is not above host/{included[1]}'
     if top == 'gpu':
-        if target == 'apps':
-            return 'gpu/ is below apps/'
+        if target in ('apps', 'python'):
+            return f'gpu/ is below {target}/'
         if target == 'gpu' and included[1] != file[1] and included[1] not in GPU.get(file[1], set()):
             return f'gpu/{file[1]} is not above gpu/{included[1]}'
+    if {top, target} == {'apps', 'python'}:
+        return 'programs and bindings share libraries, not each other'
     return None
 
 
 def check(root):
     found = []
-    for top in ('host', 'gpu'):
+    for top in ('host', 'gpu', 'apps', 'python'):
         for path in sorted((root / top).rglob('*')):
             if path.suffix not in ('.h', '.cpp'):
                 continue
@@ -69,10 +71,14 @@ def check(root):
 def self_test():
     assert violation(('host', 'mesh', 'a.h'), ('gpu', 'runtime', 'device.h'))
     assert violation(('host', 'mesh', 'a.h'), ('volk.h',))
+    assert violation(('host', 'mesh', 'a.h'), ('python', 'arrays.h'))
+    assert violation(('gpu', 'learn', 'a.h'), ('python', 'arrays.h'))
+    assert violation(('python', 'a.cpp'), ('apps', 'exemplar', 'backend.h'))
     assert violation(('host', 'mesh', 'a.h'), ('host', 'labeling', 'crf.h'))
     assert violation(('gpu', 'runtime', 'a.h'), ('gpu', 'learn', 'b.h'))
     assert not violation(('host', 'labeling', 'a.h'), ('host', 'core', 'errors.h'))
     assert not violation(('gpu', 'learn', 'a.h'), ('host', 'learn', 'b.h'))
+    assert not violation(('python', 'a.cpp'), ('gpu', 'learn', 'b.h'))
     assert not violation(('host', 'mesh', 'a.h'), ('vector',))
 
 

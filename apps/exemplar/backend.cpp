@@ -3,12 +3,9 @@
 #include <optional>
 
 #include "gpu/imaging/mesh_renderer.h"
-#include "gpu/labeling/context_histograms.h"
-#include "gpu/learn/stump_scorer.h"
-#include "gpu/runtime/device.h"
+#include "gpu/labeling/labeling_device.h"
 #include "host/imaging/camera.h"
 #include "host/imaging/png.h"
-#include "host/labeling/fast_context.h"
 
 namespace exemplar {
 namespace {
@@ -21,21 +18,8 @@ const Vec3 k_oblique_view{0.6f, 0.5f, 1.0f};
 }  // namespace
 
 struct DeviceBackend::Impl {
-    explicit Impl(const std::string& name) : device({.name = name}), labels_on(device.info().name) {
-        // A device that is this machine's CPU would do by shaders, and copies, what the host does faster itself.
-        if (device.info().type == DeviceType::cpu) {
-            labels_on = "the host";
-            scorer = std::make_unique<CpuStumpScorer>();
-            context = std::make_unique<FastContextHistograms>();
-        } else {
-            scorer = std::make_unique<GpuStumpScorer>(device);
-            context = std::make_unique<GpuContextHistograms>(device);
-        }
-    }
-    Device device;
-    std::string labels_on;
-    std::unique_ptr<StumpScorer> scorer;
-    std::unique_ptr<ContextHistograms> context;
+    explicit Impl(const std::string& name) : device({.name = name}) {}
+    LabelingDevice device;
     std::optional<MeshRenderer> renderer;  // made by the first picture: a device that only computes labels too
 };
 
@@ -43,20 +27,20 @@ DeviceBackend::DeviceBackend(const std::string& device) : impl_(std::make_unique
 DeviceBackend::~DeviceBackend() = default;
 
 LabelingBackend DeviceBackend::labeling() {
-    return {*impl_->scorer, *impl_->context};
+    return impl_->device.labeling();
 }
 
 const std::string& DeviceBackend::labels_on() const {
-    return impl_->labels_on;
+    return impl_->device.labels_on();
 }
 
 const std::string& DeviceBackend::device_name() const {
-    return impl_->device.info().name;
+    return impl_->device.device().info().name;
 }
 
 void DeviceBackend::render_png(const std::filesystem::path& path, const TriangleMesh& mesh,
                                std::span<const Color> face_colors) {
-    if (!impl_->renderer) impl_->renderer.emplace(impl_->device);
+    if (!impl_->renderer) impl_->renderer.emplace(impl_->device.device());
     const Camera camera = fit_camera(mesh, k_oblique_view, 1.0f);
     write_png(path, impl_->renderer->render(mesh, face_colors, camera, k_picture_size, k_picture_size));
 }

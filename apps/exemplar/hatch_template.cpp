@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/hatch_scene.h"
 #include "host/core/text.h"
+#include "host/hatching/aligned_drawing.h"
 #include "host/imaging/png.h"
 
 namespace exemplar {
@@ -18,27 +17,13 @@ struct TemplateArguments {
     std::filesystem::path out;
 };
 
-/// The shaded view on white, light enough to draw on.
-Image shaded_picture(PixelFeatures& pixels) {
-    const std::vector<std::string>& names = pixel_feature_names();
-    const auto intensity =
-        static_cast<std::uint32_t>(std::ranges::find(names, std::string("image.I@1")) - names.begin());
-    const FeatureMatrix bright = pixels.scalars({&intensity, 1}, {});
-    Image image(pixels.view().width, pixels.view().height, 1, 255);
-    for (std::size_t i = 0; i < bright.rows; ++i) {
-        const float value = 70 + 170 * std::clamp(bright.values[i], 0.0f, 1.0f);
-        image.data[pixels.pixels().pixel[i]] = static_cast<std::uint8_t>(std::lround(value));
-    }
-    return image;
-}
-
 void run_template(const TemplateArguments& arguments) {
     const auto limits = apply_common_options(arguments.common);
     require_hatch_scene(arguments.scene);
     require_output_picture(arguments.out);
     require_not_replaced(arguments.out, {arguments.scene.mesh});
     HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
-    write_png(arguments.out, shaded_picture(scene.pixels()));
+    write_png(arguments.out, drawing_template(scene.pixels()));
     if (!arguments.common.quiet)
         fmt::print("{}: trace it with strokes only; then 'exemplar hatch train' with the same mesh, view and size\n",
                    arguments.out.string());

@@ -2,61 +2,36 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 
 #include "apps/help/offered_words.h"
 #include "host/core/errors.h"
 #include "host/core/text.h"
+#include "host/lines/view_point.h"
 #include "host/mesh/loose_vertices.h"
 
 namespace exemplar {
 namespace {
 
-struct NamedView {
-    const char* name;
-    Vec3 direction;  ///< to the eye, where y is up and z comes to the front
-};
-const std::array<NamedView, 9>& named_views() {
-    static const std::array<NamedView, 9> views = {NamedView{"front", {0, 0, 1}},
-                                                   {"back", {0, 0, -1}},
-                                                   {"right", {1, 0, 0}},
-                                                   {"side", {1, 0, 0}},
-                                                   {"left", {-1, 0, 0}},
-                                                   {"top", {0, 1, 0}},
-                                                   {"bottom", {0, -1, 0}},
-                                                   {"three-quarter", {0.6f, 0.35f, 1}},
-                                                   {"three-quarter-back", {-0.6f, 0.35f, -1}}};
-    return views;
-}
-
-std::vector<std::string> view_names() {
-    std::vector<std::string> names;
-    for (const NamedView& view : named_views()) names.emplace_back(view.name);
-    return names;
-}
-
-Vec3 direction_named(const std::string& name) {
-    for (const NamedView& view : named_views())
-        if (name == view.name) return view.direction;
+void require_view(const std::string& name) {
+    if (view_direction(name)) return;
     const std::vector<std::string> names = view_names();
     throw UsageError(fmt::format("--view '{}' is no view{}; the views are {}, or give --eye X,Y,Z", name,
                                  suggestion(name, names), fmt::join(names, ", ")));
 }
 
 std::array<int, 2> size_of(const std::string& text) {
-    constexpr int k_most = 16384;
     std::array<int, 2> size{};
     const std::size_t cross = text.find('x');
     const auto read = [&](std::size_t begin, std::size_t end, int& value) {
         const auto [stop, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-        return error == std::errc() && stop == text.data() + end && value >= 1 && value <= k_most;
+        return error == std::errc() && stop == text.data() + end && value >= 1 && value <= k_most_picture_size;
     };
     if (cross == std::string::npos || !read(0, cross, size[0]) || !read(cross + 1, text.size(), size[1]))
-        throw UsageError(fmt::format("--size '{}' is no size; write WIDTHxHEIGHT as 1000x800, up to {}", text, k_most));
+        throw UsageError(
+            fmt::format("--size '{}' is no size; write WIDTHxHEIGHT as 1000x800, up to {}", text, k_most_picture_size));
     return size;
 }
 
@@ -74,63 +49,17 @@ TriangleMesh extent_of(const LinesSource& source) {
     return all;
 }
 
-struct Range {
-    float low = std::numeric_limits<float>::max(), high = -low;
-};
-/// Depths of points along the camera's axis.
-Range depths(const Camera& camera, const std::vector<Vec3>& points) {
-    Range range;
-    for (const Vec3& p : points) {
-        const float depth = -(camera.view.block<1, 3>(2, 0) * p)(0) - camera.view(2, 3);
-        range.low = std::min(range.low, depth);
-        range.high = std::max(range.high, depth);
-    }
-    return range;
-}
-
-Vec3 center_of(const std::vector<Vec3>& points) {
-    Vec3 low = points[0], high = points[0];
-    for (const Vec3& p : points) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-    }
-    return 0.5f * (low + high);
-}
-
-/// A camera at --eye. Parallel, it shows as much at the target as one of 23 degrees would.
-Camera placed_camera(const CameraArguments& arguments, const std::vector<Vec3>& points, float aspect) {
-    const Vec3 eye = point_of(arguments.eye, "--eye");
-    const Vec3 target = arguments.target.empty() ? center_of(points) : point_of(arguments.target, "--target");
-    if (eye == target) throw UsageError("--eye and --target are the same point; move one of them");
-    Camera camera;
-    camera.view = look_at(eye, target, point_of(arguments.up, "--up"));
-    const Range range = depths(camera, points);
-    const float size = std::max(range.high - range.low, 1e-3f * (eye - target).norm());
-    const float far = std::max(range.high, 0.0f) + size;
-    const auto angle = static_cast<float>(arguments.field_of_view * std::numbers::pi / 180);
-    if (arguments.field_of_view > 0)
-        camera.projection = perspective(angle, aspect, std::max(0.5f * range.low, 1e-3f * size), far);
-    else
-        camera.projection = orthographic((eye - target).norm() * 0.2035f, aspect, range.low - size, far);
-    return camera;
-}
-
-Camera fitted_camera(const CameraArguments& arguments, const TriangleMesh& extent, float aspect) {
-    const Vec3 up = point_of(arguments.up, "--up");
-    // "front" is turned along with what is up.
-    const Vec3 direction = Eigen::Quaternionf::FromTwoVectors(Vec3::UnitY(), up) * direction_named(arguments.view);
-    FitOptions options;
-    options.vertical_fov = static_cast<float>(arguments.field_of_view * std::numbers::pi / 180);
-    options.up = up;
-    Camera camera = fit_camera(extent, direction, aspect, options);
-    // Frames that were not looked at may reach farther.
-    const Range range = depths(camera, extent.vertices);
-    const float size = std::max(range.high - range.low, 1e-3f * range.high);
-    const float near = std::max(range.low - 0.5f * size, 0.05f * range.low), far = range.high + 0.5f * size;
-    const bool parallel = camera.projection(3, 3) != 0;
-    camera.projection(2, 2) = (parallel ? 1 : far) / (near - far);
-    camera.projection(2, 3) = (parallel ? near : near * far) / (near - far);
-    return camera;
+ViewPoint view_point(const CameraArguments& arguments) {
+    ViewPoint point;
+    point.view = arguments.view;
+    if (!arguments.eye.empty()) point.eye = point_of(arguments.eye, "--eye");
+    if (!arguments.target.empty()) point.target = point_of(arguments.target, "--target");
+    point.up = point_of(arguments.up, "--up");
+    point.field_of_view = arguments.field_of_view;
+    const auto [width, height] = size_of(arguments.size);
+    point.width = width;
+    point.height = height;
+    return point;
 }
 
 }  // namespace
@@ -170,7 +99,7 @@ void add_camera_options(CLI::App& command, CameraArguments& arguments) {
 
 void require_camera(const CameraArguments& arguments) {
     size_of(arguments.size);
-    direction_named(arguments.view);
+    require_view(arguments.view);
     if (!(point_of(arguments.up, "--up").norm() > 0)) throw UsageError("--up is zero; give a direction as 0,1,0");
     if (!arguments.eye.empty()) point_of(arguments.eye, "--eye");
     if (arguments.target.empty()) return;
@@ -179,25 +108,12 @@ void require_camera(const CameraArguments& arguments) {
 }
 
 SizedCamera camera_of(const CameraArguments& arguments, const TriangleMesh& extent) {
-    const auto [width, height] = size_of(arguments.size);
-    const float aspect = static_cast<float>(width) / static_cast<float>(height);
-    return {arguments.eye.empty() ? fitted_camera(arguments, extent, aspect)
-                                  : placed_camera(arguments, extent.vertices, aspect),
-            width, height};
+    const ViewPoint point = view_point(arguments);
+    return {camera_at(point, extent), point.width, point.height};
 }
 
 StrokeView view_of(const CameraArguments& arguments, LinesSource& source) {
-    const TriangleMesh extent = extent_of(source);
-    const SizedCamera camera = camera_of(arguments, extent);
-    StrokeView view;
-    view.width = camera.width;
-    view.height = camera.height;
-    view.camera = camera.camera;
-    const Range center = depths(view.camera, {center_of(extent.vertices)});
-    const Range all = depths(view.camera, extent.vertices);
-    view.unit_depth = std::max({center.low, 1e-3f * (all.high - all.low), 1e-30f});
-    view.feature_size = source.feature_size();
-    return view;
+    return stroke_view(view_point(arguments), extent_of(source), source.feature_size());
 }
 
 }  // namespace exemplar

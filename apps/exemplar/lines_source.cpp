@@ -9,8 +9,6 @@
 #include "host/animation/read_animation.h"
 #include "host/core/errors.h"
 #include "host/mesh/io.h"
-#include "host/mesh/validate.h"
-#include "host/mesh/weld.h"
 
 namespace exemplar {
 namespace {
@@ -20,15 +18,12 @@ namespace fs = std::filesystem;
 /// A mesh as an animation of one frame.
 Animation still_of(const fs::path& path) {
     MeshFile file = read_mesh(path);
-    const MeshReport report = require_usable(file.mesh, path.string());
+    DrawableMesh drawable = drawable_mesh(file.mesh, path.string());
     Animation animation;
     animation.name = path.string();
-    animation.rest = welded(file.mesh);
+    animation.rest = std::move(drawable.mesh);
     animation.warnings = std::move(file.warnings);
-    if (report.inside_out) {
-        for (Face& face : animation.rest.faces) std::swap(face[1], face[2]);
-        animation.warnings.emplace_back("the surface is inside out; its faces were turned around");
-    }
+    if (drawable.turned) animation.warnings.emplace_back("the surface is inside out; its faces were turned around");
     Clip clip;
     clip.name = path.stem().string();
     clip.frames.push_back(animation.rest.vertices);
@@ -90,30 +85,15 @@ LinesSource::LinesSource(const LinesSourceArguments& arguments) : arguments_(arg
         require_fit(*model_, animation_);
         evaluator_ = std::make_unique<CurvatureEvaluator>(*model_);
     }
-    neighbors_ = build_face_neighbors(faces(), vertex_count());
-    if (arguments.split_angle && !model_)
-        split_ = split_at_creases(faces(), vertices(0), neighbors_, *arguments.split_angle);
-    if (split_ && split_->source.size() == vertex_count()) split_.reset();  // there are no creases
-    if (split_)
-        estimator_ = std::make_unique<CurvatureEstimator>(split_->faces, split_->source.size());
-    else
-        estimator_ = std::make_unique<CurvatureEstimator>(faces(), vertex_count());
+    const DrawableOptions options{arguments.smoothing, arguments.derivatives,
+                                  model_ ? std::nullopt : arguments.split_angle};
+    drawable_ = std::make_unique<DrawableSurface>(faces(), vertices(0), options);
+    if (model_) estimator_ = std::make_unique<CurvatureEstimator>(faces(), vertex_count());
 }
 
 std::vector<Vec3> LinesSource::vertices(std::size_t frame) const {
     const FrameRef& ref = frames_[frame];
     return frame_vertices(animation_, animation_.clips[ref.clip], ref.frame);
-}
-
-void LinesSource::measure() {
-    if (split_) split_vertices_ = split_->positions(vertices_);
-    const std::vector<Vec3>& at = split_ ? split_vertices_ : vertices_;
-    if (smoothing_unit_ == 0) smoothing_unit_ = estimator_->median_edge_length(at);
-    CurvatureOptions options;
-    options.derivatives = arguments_.derivatives;
-    options.smoothing = smoothing_unit_ > 0 ? arguments_.smoothing : 0;
-    options.smoothing_unit = smoothing_unit_;
-    curvature_ = &estimator_->estimate(at, options);
 }
 
 void LinesSource::predict(std::size_t frame) {
@@ -131,13 +111,11 @@ LineSurface LinesSource::surface(std::size_t frame) {
         if (model_)
             predict(frame);
         else
-            measure();
+            drawable_->measure(vertices_);
         current_ = frame;
     }
-    if (!split_) return {faces(), vertices_, estimator_->normals(), *curvature_, neighbors_};
-    no_normals_.assign(vertices_.size(), Vec3::UnitZ());
-    edges_.emplace(LineSurface{faces(), vertices_, no_normals_, no_curvature_, neighbors_});
-    return {split_->faces, split_vertices_, estimator_->normals(), *curvature_, neighbors_};
+    if (model_) return {faces(), vertices_, estimator_->normals(), *curvature_, neighbors()};
+    return drawable_->surface();
 }
 
 float LinesSource::feature_size() {

@@ -11,8 +11,8 @@
 #include "host/animation/animation.h"
 #include "host/curvature/model.h"
 #include "host/curvature/samples.h"
+#include "host/lines/drawable_surface.h"
 #include "host/lines/lines.h"
-#include "host/lines/split_surface.h"
 #include "host/mesh/curvature_estimator.h"
 
 namespace exemplar {
@@ -47,17 +47,16 @@ class LinesSource {
     /// The surface at a frame, cut open along edges of the split angle; valid until the next call.
     LineSurface surface(std::size_t frame);
     /// The same as it is, without normals and curvature: what creases and boundaries are of; null if it was not cut.
-    const LineSurface* edges() const { return edges_ ? &*edges_ : nullptr; }
+    const LineSurface* edges() const { return drawable_->edges(); }
     /// Of the first frame, or of the model's training: the same for all frames, so that lines do not flicker.
     float feature_size();
 
     const Animation& animation() const { return animation_; }
     const std::vector<FrameRef>& frames() const { return frames_; }
     const std::optional<CurvatureModel>& model() const { return model_; }
-    const std::vector<FaceNeighbors>& neighbors() const { return neighbors_; }
+    const std::vector<FaceNeighbors>& neighbors() const { return drawable_->neighbors(); }
 
   private:
-    void measure();
     void predict(std::size_t frame);
 
     LinesSourceArguments arguments_;
@@ -65,17 +64,12 @@ class LinesSource {
     bool animated_ = false;
     std::vector<FrameRef> frames_;
     std::optional<CurvatureModel> model_;
-    std::vector<FaceNeighbors> neighbors_;
-    std::unique_ptr<CurvatureEstimator> estimator_;
+    std::unique_ptr<DrawableSurface> drawable_;      ///< with a model its neighbors alone are used
+    std::unique_ptr<CurvatureEstimator> estimator_;  ///< of normals, with a model
     std::unique_ptr<CurvatureEvaluator> evaluator_;
-    double smoothing_unit_ = 0;  ///< the median edge length of the first frame
-    std::optional<SplitSurface> split_;
-    std::vector<Vec3> vertices_, split_vertices_;
-    std::vector<Vec3> no_normals_;
-    VertexCurvature no_curvature_;
-    std::optional<LineSurface> edges_;
-    const VertexCurvature* curvature_ = nullptr;
-    std::optional<std::size_t> current_;  ///< the frame that surface() has made
+    std::vector<Vec3> vertices_;
+    const VertexCurvature* curvature_ = nullptr;  ///< learned
+    std::optional<std::size_t> current_;          ///< the frame that surface() has made
     std::optional<float> feature_size_;
 };
 

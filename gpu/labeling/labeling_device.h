@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "gpu/labeling/context_histograms.h"
+#include "gpu/learn/stump_scorer.h"
+#include "gpu/runtime/device.h"
+#include "host/labeling/fast_context.h"
+#include "host/labeling/labeler.h"
+
+namespace exemplar {
+
+/// A device, and labeling's operations: by shaders, or by the host's own vector units where the device is a CPU. One
+/// thread at a time may use it.
+class LabelingDevice {
+  public:
+    explicit LabelingDevice(const DeviceOptions& options = {}) : device_(options), labels_on_(device_.info().name) {
+        // A device that is this machine's CPU would do by shaders, and copies, what the host does faster itself.
+        if (device_.info().type == DeviceType::cpu) {
+            labels_on_ = "the host";
+            scorer_ = std::make_unique<CpuStumpScorer>();
+            context_ = std::make_unique<FastContextHistograms>();
+        } else {
+            scorer_ = std::make_unique<GpuStumpScorer>(device_);
+            context_ = std::make_unique<GpuContextHistograms>(device_);
+        }
+    }
+
+    LabelingBackend labeling() { return {*scorer_, *context_}; }
+    /// What labeling() computes on: the device's name, or "the host".
+    const std::string& labels_on() const { return labels_on_; }
+    Device& device() { return device_; }
+
+  private:
+    Device device_;
+    std::string labels_on_;
+    std::unique_ptr<StumpScorer> scorer_;
+    std::unique_ptr<ContextHistograms> context_;
+};
+
+}  // namespace exemplar

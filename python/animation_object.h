@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "host/animation/animation.h"
+#include "host/curvature/samples.h"
+#include "host/mesh/mesh.h"
+
+namespace exemplar::python {
+
+/// An animation as Python has it: never changed, with the frames of all clips one after the other.
+struct AnimationObject {
+    explicit AnimationObject(Animation of) : animation(std::move(of)) {
+        if (animation.frame_count() > 0) frames = select_frames(animation, {});
+    }
+    const Animation animation;
+    std::vector<FrameRef> frames;  ///< all of them
+};
+using AnimationPointer = std::shared_ptr<AnimationObject>;
+
+/// A frame by its number; throws UsageError if there is none.
+FrameRef frame_of(const AnimationObject& animation, std::int64_t frame);
+
+}  // namespace exemplar::python

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <memory>
+
+#include "host/mesh/curvature.h"
+
+namespace exemplar::python {
+
+/// Curvature as Python has it: measured or learned.
+using CurvaturePointer = std::shared_ptr<VertexCurvature>;
+
+}  // namespace exemplar::python

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "host/core/errors.h"
+#include "host/mesh/labels.h"
+#include "host/mesh/mesh.h"
+
+namespace exemplar::python {
+
+/// A mesh as Python has it. It never changes once it is made, so any number of threads may work on it, and arrays may
+/// show it.
+struct MeshObject {
+    std::shared_ptr<const TriangleMesh> mesh;
+    std::string name = "mesh";                             ///< in messages: the file's, if it is from one
+    std::shared_ptr<const FaceLabels> labels;              ///< a label per TRIANGLE; null: there are none
+    std::shared_ptr<const std::vector<float>> confidence;  ///< per triangle; null: there are none
+    std::vector<std::string> warnings;
+};
+using MeshPointer = std::shared_ptr<MeshObject>;
+
+/// A mesh without labels.
+MeshPointer make_mesh(TriangleMesh mesh, std::string name, std::vector<std::string> warnings = {});
+
+/// Does work on a mesh: MeshError is thrown with the mesh's name in front.
+template <typename Work>
+auto named(const MeshObject& mesh, Work&& work) {
+    try {
+        return work();
+    } catch (const MeshError& error) {
+        const std::string what = error.what();
+        throw MeshError(what.starts_with(mesh.name + ":") ? what : mesh.name + ": " + what);
+    }
+}
+
+}  // namespace exemplar::python

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/lines/lines.h"
+#include "host/lines/view_point.h"
+
+namespace exemplar::python {
+
+// What line drawings and hatchings have in common.
+
+/// Where a drawing is seen from, as Python gives it.
+struct ViewArguments {
+    std::string view;
+    pybind11::object eye, target, up;
+    double field_of_view;
+    std::pair<std::int64_t, std::int64_t> size;
+};
+/// Throws UsageError naming the argument that is not right.
+ViewPoint view_point_of(const ViewArguments& arguments);
+
+/// Types of lines by their names; throws UsageError for a word that is none.
+std::vector<LineType> line_types_of(const std::vector<std::string>& words);
+
+/// The text that a function writes to a file of the given name.
+std::string written_text(const std::function<void(const std::filesystem::path&)>& write);
+
+constexpr const char* k_view_doc =
+    "`view`: \"front\", \"back\", \"right\", \"left\", \"top\", \"bottom\", \"three-quarter\" or "
+    "\"three-quarter-back\", as large as it\n"
+    "fits; or `eye`, a point to see it from, and maybe `target`, a point to look at. `up`: what is up in the picture.\n"
+    "`field_of_view`: degrees, vertical (0: parallel; up to 170). `size`: width and height in pixels (1 to 16384).\n";
+
+}  // namespace exemplar::python

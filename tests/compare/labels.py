@@ -24,6 +24,7 @@ import time
 import warnings
 
 import numpy
+from scipy.linalg import LinAlgWarning
 from sklearn.ensemble import RandomForestClassifier
 from sklearn.exceptions import ConvergenceWarning
 from sklearn.linear_model import LogisticRegression, Ridge
@@ -47,6 +48,7 @@ TRAINING = {
 TESTED = 4
 GENERATED = ("human", "fourleg", "cup", "chair", "table", "octopus", "glasses")
 HELD_OUT_FOLDS, BOOSTING_FOLDS = 3, 5
+CUT_ROWS = 3000
 # Standardized features count as no further out than this.
 LIMIT = 5.0
 # One label in so many is taken to be noise when probabilities are judged.
@@ -90,6 +92,10 @@ class Category:
         self.export([path for path in train + test if not self.features_of(path).exists()])
         self.test = [Mesh(path, self.features_of(path)) for path in test]
         self.collect([Mesh(path, self.features_of(path)) for path in train], rows)
+
+    def results(self, cv_rows):
+        """The folder of what was learned from so many rows."""
+        return self.folder / f"results-{len(self.y)}-{cv_rows}"
 
     def features_of(self, path):
         return self.folder / f"{path.stem}.npy"
@@ -349,7 +355,7 @@ def compare(category, learners, cv_rows):
     """Results by learner; those that an earlier call found with as many rows are taken over."""
     results = {}
     for name in learners:
-        kept = category.folder / f"results-{len(category.y)}-{cv_rows}" / f"{name}.npz"
+        kept = category.results(cv_rows) / f"{name}.npz"
         if kept.exists():
             results[name] = Result.load(kept)
             continue
@@ -362,27 +368,37 @@ def compare(category, learners, cv_rows):
     return results
 
 
-def trained_model(category, rows):
-    """The model of 'exemplar label train' of these meshes, with one classifier as here."""
+def trained_model(category):
+    """The model of 'exemplar label train' of these meshes; only its cut is used."""
     model = category.folder / "model.safetensors"
     if not model.exists():
         names = category.folder / "train.txt"
         names.write_text("".join(f"{path.resolve()}\n" for path in category.train_paths))
-        subprocess.run([programs.program("exemplar"), "label", "train", names, "--out", model, "--stages", "1", "--rows", str(rows),
-                        "--threads", "1", "--cache", category.folder.parent / "cache", "--quiet"], check=True,
+        subprocess.run([programs.program("exemplar"), "label", "train", names, "--out", model, "--stages", "1", "--rows",
+                        str(CUT_ROWS), "--threads", "1", "--cache", category.folder.parent / "cache", "--quiet"], check=True,
                        stdout=subprocess.DEVNULL)
     return model
 
 
-def cut_errors(category, results, rows):
+def cut_errors(category, results):
     """Share of the surface that is wrong after the graph cut, in percent, per learner."""
-    model = trained_model(category, rows)
     given = {f"{mesh.path.stem}/{name}": result.probabilities(number).astype("<f4")
              for number, mesh in enumerate(category.test) for name, result in results.items()}
-    found = programs.run("compare_faces", ["cut", category.folder.parent / "cache", model], given, scratch=category.folder,
-                         behind=category.test_paths)[0]
+    found = programs.run("compare_faces", ["cut", category.folder.parent / "cache", trained_model(category)], given,
+                         scratch=category.folder, behind=category.test_paths)[0]
     return {name: 100 * float(numpy.mean([category.wrong(mesh, found[f"{mesh.path.stem}/{name}"])[0] for mesh in category.test]))
             for name in results}
+
+
+def kept_cut_errors(category, results, cv_rows):
+    """The same; those that an earlier call found are taken over."""
+    kept = category.results(cv_rows) / "cut.json"
+    known = json.loads(kept.read_text()) if kept.exists() else {}
+    missing = {name: result for name, result in results.items() if name not in known}
+    if missing:
+        known.update(cut_errors(category, missing))
+        kept.write_text(json.dumps(known))
+    return known
 
 
 def print_table(title, learners, by_category, digits=1):
@@ -426,6 +442,7 @@ def main():
     parser.add_argument("--picture", metavar="FILE", help="also draw the errors")
     options = parser.parse_args()
     warnings.simplefilter("ignore", ConvergenceWarning)
+    warnings.simplefilter("ignore", LinAlgWarning)  # of least squares, whose features depend on each other
     source = benchmark_categories if "EXEMPLAR_DATA" in os.environ else generated_categories
     tables = {what: {} for what in ("surface", "label", "log loss", "train", "score", "cut", "parameters")}
     for category in source(options.categories, options.work.resolve(), options.rows):
@@ -437,7 +454,7 @@ def main():
         tables["score"][category.name] = {name: result.score_seconds for name, result in results.items()}
         tables["parameters"][category.name] = {name: result.parameters for name, result in results.items()}
         if options.cut:
-            tables["cut"][category.name] = cut_errors(category, results, options.rows)
+            tables["cut"][category.name] = kept_cut_errors(category, results, options.cv_rows)
         if options.json:
             options.json.write_text(json.dumps(tables, indent=1))
     print_table("surface wrong, %", options.learners, tables["surface"])

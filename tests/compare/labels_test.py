@@ -81,7 +81,7 @@ class CutTest(unittest.TestCase):
             doubtful = [numpy.where(random.uniform(size=(len(scores), 1)) < 0.2, scores[:, ::-1], scores) for scores in known.scores]
             noisy = labels.Result(doubtful, 0, 0, {}, scale=0.3)
             before = noisy.errors(category)["surface"]
-            after = labels.cut_errors(category, {"noisy": noisy}, ROWS)["noisy"]
+            after = labels.cut_errors(category, {"noisy": noisy})["noisy"]
         self.assertGreater(before, 15)
         self.assertLess(after, 0.5 * before)
 

@@ -7,12 +7,13 @@
 #   --swiftshader  runs the tests of kernels a second time, on the SwiftShader that comes with Debian's Chromium: a driver with
 #                  the least that Vulkan asks for
 #   --package      also builds the Debian packages and installs them into a Debian of their own (as root)
+#   --compare      also installs scikit-learn and XGBoost and compares what they learn
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source apps/setup.sh
 packages=()
 swiftshader=
-unset EXEMPLAR_BROWSER EXEMPLAR_SLURM EXEMPLAR_PACKAGES
+unset EXEMPLAR_BROWSER EXEMPLAR_SLURM EXEMPLAR_PACKAGES EXEMPLAR_COMPARE
 while true; do
     case "${1:-}" in
         --browser)
@@ -27,6 +28,9 @@ while true; do
         --package)
             packages+=(debootstrap lintian)
             export EXEMPLAR_PACKAGES=$PWD/build-package/packages ;;
+        --compare)
+            packages+=(python3-sklearn python3-xgboost python3-matplotlib libopenblas0-pthread)
+            export EXEMPLAR_COMPARE=1 ;;
         *) break ;;
     esac
     shift
@@ -37,6 +41,8 @@ done
     echo "No Slurm is started (tests labeled slurm are skipped); --slurm asks for that."
 [ -n "${EXEMPLAR_PACKAGES:-}" ] ||
     echo "No Debian package is built and installed (package.debian is skipped); --package asks for that."
+[ -n "${EXEMPLAR_COMPARE:-}" ] ||
+    echo "Nothing is compared with other learners (tests labeled compare are skipped); --compare asks for that."
 exemplar_install "${packages[@]}"
 exemplar_build
 [ -z "${EXEMPLAR_PACKAGES:-}" ] || apps/package.sh "$EXEMPLAR_PACKAGES"

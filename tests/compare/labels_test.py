@@ -78,7 +78,8 @@ class CutTest(unittest.TestCase):
             category = next(labels.generated_categories(["cup"], pathlib.Path(folder), ROWS, train=3, faces=1000))
             known = labels.compare(category, ["decision tree"], ROWS)["decision tree"]
             random = numpy.random.RandomState(1)
-            doubtful = [numpy.where(random.uniform(size=(len(scores), 1)) < 0.2, scores[:, ::-1], scores) for scores in known.scores]
+            doubtful = [numpy.where(random.uniform(size=(len(scores), 1)) < 0.2, scores[:, ::-1], scores)
+                        for scores in known.scores]
             noisy = labels.Result(doubtful, 0, 0, {}, scale=0.3)
             before = noisy.errors(category)["surface"]
             after = labels.cut_errors(category, {"noisy": noisy})["noisy"]

@@ -58,7 +58,8 @@ class DataSets:
         return programs.run("compare_regress", [method], {"x": self.x, "y": self.y, "test": self.test})[0]["y"]
 
     def by_peer(self, model):
-        return numpy.stack([model.fit(x, y).predict(test) for x, y, test in zip(self.x, self.y, self.test)])
+        in_double = (array.astype(float) for array in (self.x, self.y, self.test))
+        return numpy.stack([model.fit(x, y).predict(test) for x, y, test in zip(*in_double)])
 
 
 def curve_sets(sets, rows, noise, powers, seed=1):

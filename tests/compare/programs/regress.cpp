@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <exception>
 #include <string>
@@ -33,9 +34,10 @@ Eigen::MatrixXd with_constant(const Rows& x) {
 }
 
 Eigen::VectorXf by_least_squares(const Rows& x, const Eigen::VectorXf& y, const Rows& test, bool with_ridge) {
-    constexpr std::array<double, 10> k_ridges{0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1, 10, 100, 1000};
+    std::vector<double> ridges;  // per sample; of all samples from 1e-5 to 1e3 in steps of half a decade
+    for (int step = -10; step <= 6; ++step) ridges.push_back(std::pow(10, 0.5 * step) / static_cast<double>(x.rows()));
     const Eigen::MatrixXd features = with_constant(x), targets = y.cast<double>();
-    const double ridge = with_ridge ? leave_one_out(features, targets, k_ridges).ridge : 0;
+    const double ridge = with_ridge ? leave_one_out(features, targets, ridges).ridge : 0;
     const Eigen::MatrixXd weights = LeastSquares(features, ridge).solve(targets);
     return (with_constant(test) * weights).cast<float>();
 }

@@ -47,6 +47,7 @@ Learner learner_of(const std::string& word) {
     constexpr std::array k_learners{Learner::local, Learner::additive, Learner::averaged, Learner::network,
                                     Learner::global};
     std::vector<std::string> names;
+    names.reserve(k_learners.size());
     for (const Learner learner : k_learners) names.emplace_back(name_of(learner));
     return k_learners.at(place_of(word, "learner", names));
 }

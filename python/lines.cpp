@@ -203,14 +203,7 @@ void add_lines(py::module_& module) {
                                counted(self.drawing.layers.size(), "type"));
         });
     add_svg(drawing);
-    module.def(
-        "line_types",
-        [] {
-            std::vector<std::string> names;
-            for (const LineType type : k_line_types) names.emplace_back(name_of(type));
-            return names;
-        },
-        "The types of lines that draw_lines() knows.");
+    module.def("line_types", &line_type_names, "The types of lines that draw_lines() knows.");
     const ViewPoint usual;
     const std::string doc =
         std::string(

@@ -61,9 +61,16 @@ ViewPoint view_point_of(const ViewArguments& arguments) {
     return point;
 }
 
-std::vector<LineType> line_types_of(const std::vector<std::string>& words) {
-    std::vector<std::string> names = {"all"};
+std::vector<std::string> line_type_names() {
+    std::vector<std::string> names;
+    names.reserve(k_line_types.size());
     for (const LineType type : k_line_types) names.emplace_back(name_of(type));
+    return names;
+}
+
+std::vector<LineType> line_types_of(const std::vector<std::string>& words) {
+    std::vector<std::string> names = line_type_names();
+    names.emplace_back("all");
     std::vector<LineType> wanted, types;
     for (const std::string& word : words) {
         const std::optional<LineType> type = line_type_meant(word);

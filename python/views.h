@@ -25,6 +25,8 @@ struct ViewArguments {
 /// Throws UsageError naming the argument that is not right.
 ViewPoint view_point_of(const ViewArguments& arguments);
 
+/// The names of all types of lines.
+std::vector<std::string> line_type_names();
 /// Types of lines by their names; throws UsageError for a word that is none.
 std::vector<LineType> line_types_of(const std::vector<std::string>& words);
 

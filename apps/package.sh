@@ -3,7 +3,7 @@
 #   apps/package.sh [FOLDER]    the folder for them; build-package/packages if not given
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-EXEMPLAR_BUILD=$PWD/build-package
+export EXEMPLAR_BUILD=$PWD/build-package
 source apps/setup.sh
 packages=$(realpath -m "${1:-$exemplar_build/packages}")
 exemplar_install dpkg-dev fakeroot

@@ -273,6 +273,12 @@ void run_stress(const StressOptions& options) {
     write_report(options.common, run.describe());
 }
 
+std::vector<std::string> damage_names() {
+    std::vector<std::string> names;
+    for (const Damage& damage : damages()) names.emplace_back(damage.name);
+    return names;
+}
+
 std::string list_of_damages() {
     std::string list = "Damages:\n";
     for (const Damage& damage : damages()) list += fmt::format("  {:<17} {}\n", damage.name, damage.what);
@@ -295,7 +301,7 @@ void add_stress_command(CLI::App& label) {
         ->required()
         ->type_name("");
     command->add_option("--damage", options->damages, "only these damages; all of them, if not given")
-        ->check(offered_words(std::views::transform(damages(), &Damage::name)))
+        ->check(offered_words(damage_names()))
         ->type_name("NAME");
     command->add_option("--seed", options->seed, "seed of what is damaged where")
         ->capture_default_str()

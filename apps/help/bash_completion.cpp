@@ -50,7 +50,7 @@ std::string finding_of_command(const CommandHelp& program) {
 /// An option whose last value may be followed by another one counts as the word before the cursor.
 std::string finding_of_option(const CommandHelp& program) {
     const auto many = option_patterns(program, [](const ArgumentHelp& o) { return o.many; });
-    const std::string taken_apart =
+    std::string taken_apart =
         "    # Bash takes --option=value apart.\n"
         "    if [ \"$current\" = = ]; then current=; elif [ \"$previous\" = = ]; then previous=$option; fi\n";
     if (many.empty()) return taken_apart;

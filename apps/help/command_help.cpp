@@ -105,6 +105,10 @@ CLI::Validator offered_words(const std::vector<std::string>& words) {
     return {accept, "", std::string(k_offered) + fmt::format("{}", fmt::join(words, ","))};
 }
 
+CLI::Validator offered_words(std::span<const std::string_view> words) {
+    return offered_words(std::vector<std::string>(words.begin(), words.end()));
+}
+
 std::vector<std::string> words_of(CLI::Option& option) {
     for (const CLI::Validator* validator : validators_of(option)) {
         const std::string name = validator->get_name(), text = validator->get_description();

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <ranges>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace exemplar {
@@ -10,10 +11,7 @@ namespace exemplar {
 /// Words that an option takes, for the completion of shells. Nothing is refused here: what reads the option does that,
 /// and suggests the nearest.
 CLI::Validator offered_words(const std::vector<std::string>& words);
-/// The same of views and other texts.
-CLI::Validator offered_words(const std::ranges::input_range auto& words) {
-    return offered_words(std::vector<std::string>(words.begin(), words.end()));
-}
+CLI::Validator offered_words(std::span<const std::string_view> words);
 
 /// The words given to offered_words or to CLI::IsMember, in their order; empty if an option has neither.
 std::vector<std::string> words_of(CLI::Option& option);

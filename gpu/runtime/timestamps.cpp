@@ -11,6 +11,20 @@ namespace {
 
 constexpr std::uint32_t k_dispatches_per_pool = 512;
 
+// Once something has been drawn, lavapipe takes timestamps on the threads that draw, whenever they come to it, while
+// kernels run at once: a barrier behind a timestamp waits until it has been taken.
+void write(const Device& device, VkCommandBuffer commands, VkPipelineStageFlags2 stage, VkQueryPool pool,
+           std::uint32_t query) {
+    vkCmdWriteTimestamp2(commands, stage, pool, query);
+    if (device.info().type != DeviceType::cpu) return;
+    auto barrier = empty_structure<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);
+    barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    auto dependency = empty_structure<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
+    dependency.memoryBarrierCount = 1;
+    dependency.pMemoryBarriers = &barrier;
+    vkCmdPipelineBarrier2(commands, &dependency);
+}
+
 }  // namespace
 
 bool Timestamps::enabled() const {
@@ -33,15 +47,15 @@ void Timestamps::start(VkCommandBuffer commands, std::string_view name) {
     const auto query = static_cast<std::uint32_t>(2 * (dispatches_.size() % k_dispatches_per_pool));
     if (pool == pools_.size()) add_pool();
     if (query == 0) vkCmdResetQueryPool(commands, pools_[pool].get(), 0, 2 * k_dispatches_per_pool);
-    vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pools_[pool].get(), query);
+    write(device_, commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pools_[pool].get(), query);
     dispatches_.emplace_back(name);
 }
 
 void Timestamps::stop(VkCommandBuffer commands, VkPipelineStageFlags2 stage) {
     if (!enabled()) return;
     const std::size_t last = dispatches_.size() - 1;
-    vkCmdWriteTimestamp2(commands, stage, pools_[last / k_dispatches_per_pool].get(),
-                         static_cast<std::uint32_t>(2 * (last % k_dispatches_per_pool) + 1));
+    write(device_, commands, stage, pools_[last / k_dispatches_per_pool].get(),
+          static_cast<std::uint32_t>(2 * (last % k_dispatches_per_pool) + 1));
 }
 
 std::uint64_t Timestamps::elapsed_ticks(std::size_t dispatch) const {

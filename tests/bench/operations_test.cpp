@@ -8,6 +8,7 @@
 
 #include "apps/bench/kernels/operation.h"
 #include "host/core/files.h"
+#include "host/core/stopwatch.h"
 #include "tests/gpu/support/environment.h"
 
 namespace exemplar {
@@ -41,6 +42,25 @@ TEST(Operations, ParametersAreOfTheirKernels) {
             EXPECT_TRUE(std::ranges::any_of(kind.kernels,
                                             [&](const Shader* kernel) { return kernel->name == parameter.kernel; }))
                 << kind.name << ": " << parameter.kernel;
+}
+
+// Of a kernel that takes some ten milliseconds on a CPU, most of the way there and back is its own time.
+TEST(Profiling, KernelsAreTimedRightlyAfterSomethingWasDrawn) {
+    Device& device = testing::shared_device();
+    if (device.info().type != DeviceType::cpu) GTEST_SKIP() << "on GPUs the way there may take longer than the kernel";
+    const auto prepared = [&](std::string_view name, Profiler& profiler, std::size_t size) {
+        return std::ranges::find(operation_kinds(), name, &OperationKind::name)->prepare(device, profiler, size);
+    };
+    Profiler drawing, calculating;
+    prepared("shaded pictures", drawing, 10'000).run();
+    const Operation operation = prepared("multiply-adds", calculating, 131'072);
+    operation.run();
+    calculating.reset();
+    const Stopwatch watch;
+    operation.run();
+    const double wall = 1e3 * watch.wall(), kernel = calculating.milliseconds("runtime/multiply_add.comp");
+    EXPECT_GT(kernel, 0.5 * wall);
+    EXPECT_LT(kernel, 1.01 * wall);
 }
 
 class OperationTest : public ::testing::TestWithParam<std::size_t> {

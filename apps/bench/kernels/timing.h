@@ -14,7 +14,7 @@ using KernelTimes = std::map<std::string, std::vector<double>>;
 
 struct TimingOptions {
     std::size_t repeats = 7;
-    double seconds = 0.05;  ///< device time of a repeat, at least
+    double seconds = 0.02;  ///< device time of a repeat, at least
 };
 
 /// Something to be timed; `profiler` sees its kernels.

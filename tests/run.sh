@@ -51,5 +51,5 @@ ctest --test-dir "$exemplar_build" --output-on-failure -j "$(nproc)" "$@"
 if [ -n "$swiftshader" ]; then
     echo "The tests of kernels again, on SwiftShader"
     export VK_ICD_FILENAMES=/usr/lib/chromium/vk_swiftshader_icd.json
-    exec ctest --test-dir "$exemplar_build" --output-on-failure -j "$(nproc)" -L gpu -E '^apps\.' "$@"
+    exec ctest --test-dir "$exemplar_build" --output-on-failure -j "$(nproc)" -L gpu -E '^(apps|python)\.' "$@"
 fi

@@ -78,7 +78,8 @@ struct MultiplyAdd {
         return {{"sums", largest_difference(sums, multiplied(sums.size())), 2e-3}};
     }
     std::map<std::string, Work> work() const {
-        const auto items = static_cast<double>(results.bytes() / sizeof(float));
+        const std::size_t count = results.bytes() / sizeof(float);
+        const auto items = static_cast<double>(count);
         return {{"runtime/multiply_add.comp",
                  {.bytes = 4 * items, .operations = 2 * items * k_rounds * shared::k_multiply_adds_per_round}}};
     }

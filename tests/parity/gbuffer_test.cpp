@@ -40,7 +40,7 @@ double differing_share() {
 
 /// The share that may show a face which the reference does not show within a pixel: smaller ones, where they turn away.
 double strange_share() {
-    return 0.001 + 0.05 * pixel_rounding();
+    return std::max(0.001, 0.05 * pixel_rounding());
 }
 
 /// What the rounding of a pixel's place does to barycentrics: over the least height of the face in the picture.

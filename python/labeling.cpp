@@ -92,8 +92,8 @@ LabelingModel train(const std::vector<MeshPointer>& meshes, const TrainOptions& 
 
 ModelPointer train_model(const std::vector<MeshPointer>& meshes, std::uint64_t seed, std::int64_t rounds,
                          std::int64_t patience, std::int64_t stages, std::int64_t bins, std::int64_t rows,
-                         double feature_fraction, double shrinkage, std::int64_t samples, bool orientation,
-                         const fs::path& cache, const std::string& device) {
+                         double feature_fraction, double shrinkage, bool linear, std::int64_t samples,
+                         bool orientation, const fs::path& cache, const std::string& device) {
     constexpr std::int64_t k_any = std::numeric_limits<std::int64_t>::max();
     require_range("rounds", rounds, std::int64_t{1}, std::int64_t{100'000});
     require_range("patience", patience, std::int64_t{1}, k_any);
@@ -112,6 +112,7 @@ ModelPointer train_model(const std::vector<MeshPointer>& meshes, std::uint64_t s
                                .rows_per_mesh = static_cast<std::size_t>(rows),
                                .feature_fraction = feature_fraction,
                                .shrinkage = shrinkage,
+                               .linear = linear,
                                .features = {static_cast<std::size_t>(samples), orientation}};
     return std::make_shared<LabelingModel>(long_result([&] { return train(meshes, options, cache, device); }));
 }
@@ -208,7 +209,7 @@ void add_labeling(py::module_& module) {
         py::arg("rounds") = k_usual.rounds, py::arg("patience") = k_usual.patience,
         py::arg("stages") = k_usual.max_stages, py::arg("bins") = k_usual.bins, py::arg("rows") = k_usual.rows_per_mesh,
         py::arg("feature_fraction") = k_usual.feature_fraction, py::arg("shrinkage") = k_usual.shrinkage,
-        py::arg("samples") = k_usual.features.samples, py::arg("orientation") = false, py::arg("cache") = "",
+        py::arg("linear") = k_usual.linear, py::arg("samples") = k_usual.features.samples, py::arg("orientation") = false, py::arg("cache") = "",
         py::arg("device") = "",
         "Learns to label from labeled meshes (see Mesh.with_labels() and read_labeled()): labels of equal names are\n"
         "one label, and faces with -1 teach nothing. The options are those of `exemplar label train`: `rounds` of\n"
@@ -216,7 +217,8 @@ void add_labeling(py::module_& module) {
         "`stages` of the cascade at most (1 to 64), histogram `bins` (2 to 256), `rows` (faces of each mesh to boost\n"
         "on; 0: all), `feature_fraction` (share of the features that a round looks at, 0.001 to 1), `shrinkage` of "
         "each\n"
-        "response (0.01 to 1), `samples` and `orientation` as in features(). Equal meshes and seeds give equal "
+        "response (0.01 to 1), `linear` (whether stumps are pooled with a linear classifier where that is better on\n"
+        "held-out meshes), `samples` and `orientation` as in features(). Equal meshes and seeds give equal "
         "models.\n"
         "`cache` and `device` as in LabelingModel.label(). Raises UsageError if a mesh has no labels, DataError if\n"
         "nothing is labeled, MeshError for a mesh that cannot be used.");

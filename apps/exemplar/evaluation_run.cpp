@@ -60,6 +60,7 @@ std::string run_key(const EvaluationTask& task, const TrainOptions& train) {
              {"rows", train.rows_per_mesh},
              {"feature_fraction", train.feature_fraction},
              {"shrinkage", train.shrinkage},
+             {"linear", train.linear},
              {"samples", train.features.samples},
              {"orientation", train.features.orientation},
              {"features", k_feature_version},

@@ -60,11 +60,13 @@ std::string number_or_dash(double value, int digits) {
 }  // namespace
 
 void print_training(const LabelingModel& model, const TrainReport& report) {
-    fmt::print("{:>14} {:>7} {:>9} {:>9} {:>8}\n", "classifier", "stumps", "log loss", "error %", "seconds");
+    fmt::print("{:>14} {:>7} {:>9} {:>9} {:>9} {:>8}\n", "classifier", "stumps", "loss", "pooled", "error %",
+               "seconds");
     for (const StageReport& stage : report.stages)
-        fmt::print("{:>14} {:>7} {:>9} {:>9} {:>8.1f}{}\n", stage.what, stage.rounds,
-                   number_or_dash(stage.validation_loss, 4), number_or_dash(100 * stage.validation_error, 2),
-                   stage.seconds, stage.kept ? "" : "  (no gain, left out)");
+        fmt::print("{:>14} {:>7} {:>9} {:>9} {:>9} {:>8.1f}{}\n", stage.what, stage.rounds,
+                   number_or_dash(stage.stumps_loss, 4), number_or_dash(stage.validation_loss, 4),
+                   number_or_dash(100 * stage.validation_error, 2), stage.seconds,
+                   stage.kept ? "" : "  (no gain, left out)");
     fmt::print(
         "CRF: kappa {:.3g}, lambda {:.3g}, mu {:.3g}; segment-weighted error {:.2f} % without, {:.2f} % with the cut "
         "({} settings in {:.1f} s)\n",
@@ -81,6 +83,7 @@ nlohmann::json describe_training(const LabelingModel& model, const TrainReport& 
         stages.push_back({{"classifier", stage.what},
                           {"stumps", stage.rounds},
                           {"validation_loss", stage.validation_loss},
+                          {"stumps_loss", stage.stumps_loss},
                           {"validation_error", stage.validation_error},
                           {"kept", stage.kept},
                           {"curve", std::move(curve)},

@@ -13,9 +13,13 @@ namespace exemplar {
 [[noreturn]] void inconsistent(const TensorFile& file, const std::string& what);
 /// Throws ModelError if one of the values is not finite.
 void require_finite(const TensorFile& file, const std::string& name, const std::vector<float>& values);
-/// Throws ModelError unless the metadata of that key is the version this program knows; `mend` says what to do with an
-/// older file.
-void require_version(const TensorFile& file, const std::string& key, int known, const std::string& mend);
+/// Throws ModelError unless the metadata of that key is a version this program knows, `oldest` to `newest`; `mend` says
+/// what to do with an older file. Returns it.
+int require_version(const TensorFile& file, const std::string& key, int oldest, int newest, const std::string& mend);
+/// The same where one version is known.
+inline void require_version(const TensorFile& file, const std::string& key, int known, const std::string& mend) {
+    require_version(file, key, known, known, mend);
+}
 
 /// Adds a classifier as arrays called NAME.feature, NAME.threshold_above_below, ... (docs/formats.md).
 void add_classifier(TensorFile& file, const std::string& name, const CalibratedStumps& classifier);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "host/core/errors.h"
@@ -177,6 +178,9 @@ class HeldOutScores {
     Calibration judge(std::span<const Link> links) const {
         return calibrate(scores_, pool_.label, weight_, classes_, links);
     }
+    const std::vector<float>& scores() const { return scores_; }
+    /// Of each row in the loss: none where its label is known to its fold alone.
+    const std::vector<float>& weight() const { return weight_; }
 
   private:
     const Pool& pool_;
@@ -190,6 +194,7 @@ struct RoundChoice {
     std::size_t rounds = 0;
     Calibration calibration;
     std::vector<HeldOutPoint> curve;
+    std::vector<float> scores, weight;  ///< H of the held-out rows there, and their weights in the loss
 };
 
 /// Grows the classifiers until the held-out loss has not fallen for `patience` rounds, or to the end.
@@ -207,12 +212,27 @@ RoundChoice choose_rounds(const Pool& pool, FoldBoosters& boosters, const FoldBo
         const Calibration now = scores.judge(usable);
         choice.curve.push_back({round, now.loss, now.error});
         if (options.patience == 0 || choice.rounds == 0 || now.loss < choice.calibration.loss)
-            choice.rounds = round, choice.calibration = now;
+            choice.rounds = round, choice.calibration = now, choice.scores = scores.scores();
         if (options.patience > 0 && round >= choice.rounds + options.patience) break;
     }
     if (std::isnan(choice.calibration.loss))  // nothing could be held out: stay cautious
         choice.rounds = std::min(options.rounds, k_blind_rounds), choice.curve.clear();
+    choice.weight = scores.weight();
     return choice;
+}
+
+/// Fits the linear classifier that is pooled with the stumps, if that helps.
+std::optional<FoldedLinear> fit_beside(const Pool& pool, const RoundChoice& choice, const FoldLabels& labels,
+                                       const FoldBoostingOptions& options) {
+    if (std::isnan(choice.calibration.loss)) return std::nullopt;
+    std::vector<float> stumps = choice.scores;
+    scores_to_probabilities(stumps, options.classes, choice.calibration.link, choice.calibration.scale);
+    std::vector<std::uint32_t> rows(pool.label.size());
+    std::iota(rows.begin(), rows.end(), 0U);
+    std::vector<bool> silent;
+    for (std::size_t fold = 0; fold < options.folds; ++fold) silent.push_back(!labels.of_fold_alone(fold).empty());
+    return fit_linear({pool.features, rows, pool.label, pool.weight, pool.fold, options.classes, options.folds}, stumps,
+                      choice.weight, silent);
 }
 
 /// Probabilities of every item of every mesh from the classifier of the fold that held it out. Labels that it cannot
@@ -220,7 +240,8 @@ RoundChoice choose_rounds(const Pool& pool, FoldBoosters& boosters, const FoldBo
 /// later stage, for which this is the context, would learn that the surroundings never show such a label.
 std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems> meshes,
                                                   const std::vector<BoostedStumps>& of_fold,
-                                                  const CalibratedStumps& everywhere, const FoldLabels& labels,
+                                                  const CalibratedStumps& everywhere,
+                                                  const std::optional<FoldedLinear>& linear, const FoldLabels& labels,
                                                   std::size_t classes, StumpScorer& scorer) {
     std::vector<std::vector<float>> result;
     for (const BoostingItems& mesh : meshes) {
@@ -231,10 +252,13 @@ std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems>
             if (std::none_of(mesh.fold.begin(), mesh.fold.end(), holds)) continue;
             const BoostedStumps& classifier = of_fold[fold].class_count ? of_fold[fold] : everywhere.stumps;
             scorer.probabilities(classifier, *mesh.features, everywhere.link, everywhere.scale, from_fold);
+            if (linear) pool(linear->without_fold[fold], *mesh.features, from_fold);
             const std::vector<std::uint32_t> alone = labels.of_fold_alone(fold);
-            if (!alone.empty())
+            if (!alone.empty()) {
                 scorer.probabilities(everywhere.stumps, *mesh.features, everywhere.link,
                                      k_seen_scale * everywhere.scale, seen);
+                if (linear) pool(linear->mean, *mesh.features, seen, k_seen_scale);
+            }
             for (std::size_t i = 0; i < mesh.fold.size(); ++i) {
                 if (mesh.fold[i] != fold) continue;
                 const std::span<float> item = std::span(scores).subspan(i * classes, classes);
@@ -278,9 +302,11 @@ FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const
     result.rounds = choice.rounds;
     result.classifier.link = choice.calibration.link;
     result.classifier.scale = choice.calibration.scale;
-    result.loss = choice.calibration.loss, result.error = choice.calibration.error;
+    result.loss = result.stumps_loss = choice.calibration.loss, result.error = choice.calibration.error;
     result.curve = std::move(choice.curve);
-    result.out_of_fold = score_out_of_fold(meshes, of_fold, result.classifier, labels, options.classes, scorer);
+    const auto linear = options.linear ? fit_beside(pool, choice, labels, options) : std::nullopt;
+    if (linear) result.linear = linear->mean, result.loss = linear->loss, result.error = linear->error;
+    result.out_of_fold = score_out_of_fold(meshes, of_fold, result.classifier, linear, labels, options.classes, scorer);
     return result;
 }
 

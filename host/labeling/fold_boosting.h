@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "host/labeling/linear_opinion.h"
 #include "host/labeling/model.h"
 #include "host/learn/boosted_stumps.h"
 #include "host/learn/feature_matrix.h"
@@ -31,6 +32,7 @@ struct FoldBoostingOptions {
     double feature_fraction = 1;    ///< share of the features that each round looks at
     double shrinkage = 1;           ///< see BoostOptions
     bool binary = false;            ///< GentleBoost for two classes instead of JointBoost
+    bool linear = false;            ///< pool the stumps with a linear classifier where that lowers the held-out loss
     std::uint64_t seed = 1;
 };
 
@@ -42,6 +44,7 @@ struct HeldOutPoint {
 
 struct FoldBoostingResult {
     CalibratedStumps classifier;  ///< the mean of one trained on all items and those of the folds
+    LinearOpinion linear;         ///< what it is pooled with; not used unless options.linear asks for it
     std::size_t rounds = 0;       ///< of each of them
     /// Per mesh: items x classes, from the classifier that never saw the item; for labels that it cannot know, as one
     /// fold has them all, from the mean, with less confidence.
@@ -50,6 +53,7 @@ struct FoldBoostingResult {
     std::vector<HeldOutPoint> curve;         ///< up to where the search for the number of rounds ended
     double loss = 0;                         ///< weighted log loss of held-out items; NaN if nothing could be held out
     double error = 0;                        ///< weighted share of wrong labels; likewise
+    double stumps_loss = 0;                  ///< the loss of the stumps alone
 };
 
 /// Boosts one classifier per fold and one on everything (see train_labeling). The log loss of the held-out items, after

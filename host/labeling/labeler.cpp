@@ -41,10 +41,18 @@ Scores score(const CalibratedStumps& stage, Meshes meshes, FeatureMatrix MeshFea
     return scores;
 }
 
+/// One stage of the unary cascade, with the linear classifier that it is pooled with.
+Scores score_unary_stage(const LabelingModel& model, std::size_t stage, Meshes meshes, StumpScorer& scorer) {
+    Scores scores = score(model.unary[stage], meshes, &MeshFeatures::unary, scorer);
+    if (stage < model.linear.size())
+        for (std::size_t m = 0; m < meshes.size(); ++m) pool(model.linear[stage], meshes[m]->unary, scores[m]);
+    return scores;
+}
+
 /// Runs the unary cascade, stage by stage.
 Scores score_unary(const LabelingModel& model, Meshes meshes, const LabelingBackend& backend) {
     for (const MeshFeatures* mesh : meshes) require_features(mesh->unary, model.unary_names, "face");
-    Scores scores = score(model.unary.front(), meshes, &MeshFeatures::unary, backend.scorer);
+    Scores scores = score_unary_stage(model, 0, meshes, backend.scorer);
     std::vector<CascadeOpinion> opinions(meshes.size(), {model.averaged_labels, model.class_count()});
     for (std::size_t m = 0; m < meshes.size(); ++m) opinions[m].add_stage(scores[m]);
     const std::vector<std::string> names = context_names(model.label_names);
@@ -55,7 +63,7 @@ Scores score_unary(const LabelingModel& model, Meshes meshes, const LabelingBack
             contexts.push_back(
                 {&meshes[m]->context, scores[m], context_columns(meshes[m]->unary, model.unary_names.size(), names)});
         backend.context.accumulate_all(contexts, model.class_count());
-        scores = score(model.unary[stage], meshes, &MeshFeatures::unary, backend.scorer);
+        scores = score_unary_stage(model, stage, meshes, backend.scorer);
         for (std::size_t m = 0; m < meshes.size(); ++m) opinions[m].add_stage(scores[m]);
     }
     return scores;

@@ -18,7 +18,8 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* k_kind = "exemplar mesh labeling";
-constexpr std::size_t k_most_stages = 64;  ///< a bound against absurd files
+constexpr std::size_t k_most_stages = 64;     ///< bounds against absurd files
+constexpr float k_largest_score = 1e30F;
 
 Json describe(const LabelingModel& model) {
     Json colors = Json::array();
@@ -98,6 +99,43 @@ void check_description(const TensorFile& file, const LabelingModel& model) {
     if (model.unary.empty()) inconsistent(file, "it has no classifier");
 }
 
+/// Arrays NAME.mean, .inverse, .weight, .constant and .ratio_scale (docs/formats.md).
+void add_linear(TensorFile& file, const std::string& name, const LinearOpinion& opinion) {
+    const LinearClassifier& linear = opinion.classifier;
+    file.add(name + ".mean", {linear.feature_count()}, linear.mean);
+    file.add(name + ".inverse", {linear.feature_count()}, linear.inverse);
+    file.add(name + ".weight", {linear.feature_count(), linear.class_count}, linear.weight);
+    file.add(name + ".constant", {linear.class_count}, linear.constant);
+    file.add(name + ".ratio_scale", {2}, std::vector<float>{opinion.ratio, opinion.scale});
+}
+
+/// A bound of |L|, whatever the features are.
+float largest_score(const LinearClassifier& linear) {
+    float sum = 0;
+    for (const float weight : linear.weight) sum += LinearClassifier::k_furthest * std::abs(weight);
+    for (const float constant : linear.constant) sum += std::abs(constant);
+    return sum;
+}
+
+LinearOpinion get_linear(const TensorFile& file, const std::string& name, std::size_t classes, std::size_t features) {
+    LinearOpinion opinion;
+    LinearClassifier& linear = opinion.classifier;
+    linear.class_count = static_cast<std::uint32_t>(classes);
+    linear.mean = file.get<float>(name + ".mean", {features});
+    linear.inverse = file.get<float>(name + ".inverse", {features});
+    linear.weight = file.get<float>(name + ".weight", {features, classes});
+    linear.constant = file.get<float>(name + ".constant", {classes});
+    const auto ratio_scale = file.get<float>(name + ".ratio_scale", {2});
+    for (const auto* values : {&std::as_const(linear.mean), &std::as_const(linear.inverse), &std::as_const(linear.weight),
+                               &std::as_const(linear.constant), &ratio_scale})
+        require_finite(file, name, *values);
+    opinion.ratio = ratio_scale[0], opinion.scale = ratio_scale[1];
+    if (!(opinion.ratio >= 0) || !(opinion.scale > 0)) inconsistent(file, name + ".ratio_scale is negative");
+    if (!(opinion.scale * (opinion.ratio * largest_score(linear) + 1) < k_largest_score))
+        inconsistent(file, name + " has weights so large that scores are not finite");
+    return opinion;
+}
+
 }  // namespace
 
 void save_model(const std::filesystem::path& path, const LabelingModel& model) {
@@ -108,6 +146,8 @@ void save_model(const std::filesystem::path& path, const LabelingModel& model) {
     file.metadata["model"] = describe(model).dump(-1, ' ', false, Json::error_handler_t::replace);
     for (std::size_t s = 0; s < model.unary.size(); ++s)
         add_classifier(file, fmt::format("unary.{}", s), model.unary[s]);
+    for (std::size_t s = 0; s < model.linear.size(); ++s)
+        if (model.linear[s].used()) add_linear(file, fmt::format("linear.{}", s), model.linear[s]);
     for (std::size_t s = 0; s < model.pairwise.size(); ++s)
         add_classifier(file, fmt::format("pairwise.{}", s), model.pairwise[s]);
     file.add("smallest_component", {model.class_count()}, model.smallest_component);
@@ -118,7 +158,7 @@ LabelingModel load_model(const std::filesystem::path& path) {
     const TensorFile file = read_safetensors(path);
     if (const auto kind = file.metadata.find("kind"); kind == file.metadata.end() || kind->second != k_kind)
         throw ModelError(fmt::format("{}: is no mesh labeling model; make one with 'exemplar label train'", file.path));
-    require_version(file, "format_version", k_model_format_version, "train it again");
+    require_version(file, "format_version", 1, k_model_format_version, "train it again");
     require_version(file, "feature_version", k_feature_version, "its features have changed: train it again");
     LabelingModel model;
     try {
@@ -130,9 +170,13 @@ LabelingModel load_model(const std::filesystem::path& path) {
 
     const std::size_t classes = model.class_count();
     const std::size_t context = k_context_measures * k_context_bins * classes;
-    for (std::size_t s = 0; s < model.unary.size(); ++s)
-        model.unary[s] =
-            get_classifier(file, fmt::format("unary.{}", s), classes, model.unary_names.size() + (s ? context : 0));
+    model.linear.resize(model.unary.size());
+    for (std::size_t s = 0; s < model.unary.size(); ++s) {
+        const std::size_t features = model.unary_names.size() + (s ? context : 0);
+        model.unary[s] = get_classifier(file, fmt::format("unary.{}", s), classes, features);
+        const std::string linear = fmt::format("linear.{}", s);
+        if (file.tensors.contains(linear + ".weight")) model.linear[s] = get_linear(file, linear, classes, features);
+    }
     for (std::size_t s = 0; s < model.pairwise.size(); ++s)
         model.pairwise[s] = get_classifier(file, fmt::format("pairwise.{}", s), 2,
                                            model.pairwise_names.size() + (s ? EdgeNeighborhood::k_bins : 0));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/labeling/features.h"
+#include "host/labeling/linear_opinion.h"
 #include "host/learn/boosted_stumps.h"
 #include "host/mesh/labels.h"
 
@@ -31,6 +32,8 @@ struct LabelingModel {
     std::vector<std::string> pairwise_names;  ///< base features, in column order
     /// The cascade: stage 0 sees the base features, later stages also the contextual features of the stage before.
     std::vector<CalibratedStumps> unary;
+    /// What each stage of the unary cascade is pooled with; stages without an entry are stumps alone.
+    std::vector<LinearOpinion> linear;
     /// Labels whose probabilities are the mean of all stages' (see CascadeOpinion).
     std::vector<std::uint32_t> averaged_labels;
     /// The same for boundaries (classes: 0 = same label, 1 = boundary).
@@ -44,7 +47,7 @@ struct LabelingModel {
     std::size_t class_count() const { return label_names.size(); }
 };
 
-constexpr int k_model_format_version = 1;
+constexpr int k_model_format_version = 2;  ///< 1 had no linear classifiers; both are read
 
 /// Writes a safetensors file with all of the model; equal models give equal bytes.
 void save_model(const std::filesystem::path& path, const LabelingModel& model);

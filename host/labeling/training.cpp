@@ -130,7 +130,8 @@ FoldBoostingResult run_stage(const std::string& what, std::span<const BoostingIt
     const Stopwatch watch;
     FoldBoostingResult result = boost_with_folds(items, options, scorer, [&] { progress.advance(); });
     progress.finish();
-    report.stages.push_back({what, result.rounds, result.loss, result.error, true, result.curve, watch.wall()});
+    report.stages.push_back(
+        {what, result.rounds, result.loss, result.stumps_loss, result.error, true, result.curve, watch.wall()});
     return result;
 }
 
@@ -150,8 +151,8 @@ struct Cascade {
 /// Trains stage after stage until the out-of-fold loss rises; returns the out-of-fold probabilities of the last kept
 /// one. `averaged`, if any: set to the labels of one fold, for which all stages count (see CascadeOpinion).
 PerMesh train_cascade(Cascade cascade, const TrainOptions& options, StumpScorer& scorer,
-                      std::vector<CalibratedStumps>& classifiers, std::vector<std::uint32_t>* averaged,
-                      TrainReport& report) {
+                      std::vector<CalibratedStumps>& classifiers, std::vector<LinearOpinion>& linear,
+                      std::vector<std::uint32_t>* averaged, TrainReport& report) {
     PerMesh kept;
     std::vector<CascadeOpinion> opinions;
     double last_loss = std::numeric_limits<double>::infinity();
@@ -174,6 +175,7 @@ PerMesh train_cascade(Cascade cascade, const TrainOptions& options, StumpScorer&
         }
         for (std::size_t m = 0; m < opinions.size(); ++m) opinions[m].add_stage(kept[m]);
         classifiers.push_back(std::move(result.classifier));
+        linear.push_back(std::move(result.linear));
     }
     return kept;
 }
@@ -192,6 +194,7 @@ PerMesh train_unary(const LabeledCorpus& corpus, std::vector<MeshFeatures>& feat
     Cascade cascade{"unary", options.max_stages, k_kept_unary_loss, {}, model.unary_names.size(), context.size(), {},
                     {}};
     cascade.task.classes = classes;
+    cascade.task.linear = options.linear;
     cascade.task.patience = 0;  // the error falls on when the loss rises: see docs/labeling.md
     cascade.task.folds = folds.count;
     cascade.task.seed = options.seed + k_unary_task;
@@ -201,7 +204,8 @@ PerMesh train_unary(const LabeledCorpus& corpus, std::vector<MeshFeatures>& feat
         backend.context.accumulate(features[m].context, probabilities, classes,
                                    context_columns(features[m].unary, model.unary_names.size(), context));
     };
-    return train_cascade(std::move(cascade), options, backend.scorer, model.unary, &model.averaged_labels, report);
+    return train_cascade(std::move(cascade), options, backend.scorer, model.unary, model.linear,
+                         &model.averaged_labels, report);
 }
 
 /// What the boundary classifiers learn from: per mesh and edge 0 = same label, 1 = boundary, -1 = unknown, and a weight
@@ -271,7 +275,8 @@ PerMesh train_pairwise(const LabeledCorpus& corpus, std::vector<MeshFeatures>& f
             features[m], boundary_column(probabilities),
             context_columns(features[m].pairwise, model.pairwise_names.size(), edge_context_names()));
     };
-    PerMesh boundary = train_cascade(std::move(cascade), options, backend.scorer, model.pairwise, nullptr, report);
+    std::vector<LinearOpinion> none;
+    PerMesh boundary = train_cascade(std::move(cascade), options, backend.scorer, model.pairwise, none, nullptr, report);
     for (std::vector<float>& probabilities : boundary) probabilities = boundary_column(probabilities);
     return boundary;
 }

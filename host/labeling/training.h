@@ -13,7 +13,7 @@
 namespace exemplar {
 
 /// Of what equal meshes and options give; to be raised with every change of the learning.
-constexpr int k_training_version = 3;
+constexpr int k_training_version = 4;
 
 struct TrainOptions {
     std::uint64_t seed = 1;
@@ -24,6 +24,7 @@ struct TrainOptions {
     std::size_t rows_per_mesh = 0;   ///< faces (and edges) of each mesh used for boosting, drawn at random; 0 = all
     double feature_fraction = 0.06;  ///< share of the features that each round looks at, drawn at random
     double shrinkage = 0.5;          ///< what each stump's response is multiplied with
+    bool linear = true;              ///< pool face classifiers with linear ones where that lowers the held-out loss
     FeatureOptions features;
 };
 
@@ -32,6 +33,7 @@ struct StageReport {
     std::string what;             ///< "unary 0", "pairwise 1", ...
     std::size_t rounds = 0;       ///< of each of the classifiers that it is the mean of
     double validation_loss = 0;   ///< weighted log loss, out of fold (see calibrate); NaN if nothing could be held out
+    double stumps_loss = 0;       ///< the same of the stumps alone
     double validation_error = 0;  ///< weighted share of wrong labels, out of fold
     bool kept = true;             ///< false for a last stage that did not improve
     std::vector<HeldOutPoint> curve;  ///< of the held-out items, over the rounds
@@ -51,7 +53,8 @@ struct TrainReport {
 /// five folds; for each fold a classifier is trained on the others and validated on it. The probabilities that each
 /// mesh gets from the classifier that never saw it feed the contextual features of the next stage, the choice of the
 /// number of stages, the link between score and probability, and the CRF's parameters; their log loss chooses the
-/// number of rounds of the boundary classifiers. The final classifiers are the mean of those of the folds and one
+/// number of rounds of the boundary classifiers, and whether and how the classifiers of faces are pooled with linear
+/// ones (LinearOpinion), which the thesis does not have. The final classifiers are the mean of those of the folds and one
 /// trained on all meshes. With 2 to 4 meshes there are as many folds as meshes; a single mesh is cut into patches of
 /// faces that serve as folds. What is said of labels that one fold has alone cannot be validated, nor is there context
 /// to learn from: for these the mean of all stages counts.

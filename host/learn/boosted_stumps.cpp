@@ -51,6 +51,7 @@ float log_weight(float scaled, Link link) {
     return std::min(scaled, 0.0f) - std::log1p(std::exp(-std::abs(scaled)));
 }
 
+/// Probabilities from their unnormalized logarithms.
 void normalize(std::span<float> row) {
     const float largest = *std::max_element(row.begin(), row.end());
     float sum = 0.0f;
@@ -76,6 +77,17 @@ void score_rows(const Sum& sum, const FeatureMatrix& features, Link link, float 
 }
 
 }  // namespace
+
+void scores_to_probabilities(std::span<float> scores, std::size_t classes, Link link, float scale) {
+    parallel_for(
+        scores.size() / classes,
+        [&](std::size_t i) {
+            const std::span<float> row = scores.subspan(i * classes, classes);
+            for (float& h : row) h = log_weight(scale * h, link);
+            normalize(row);
+        },
+        k_block);
+}
 
 BoostedStumps mean_classifier(std::span<const BoostedStumps> classifiers) {
     BoostedStumps mean;

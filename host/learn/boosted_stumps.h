@@ -41,6 +41,9 @@ enum class Link : std::uint32_t {
     sigmoid = 1,  ///< sigma(s H_c) / sum sigma(s H)
 };
 
+/// Turns scores H (rows x classes) into probabilities, in place, on all cores.
+void scores_to_probabilities(std::span<float> scores, std::size_t classes, Link link, float scale);
+
 /// A trained classifier and how its scores become probabilities.
 struct CalibratedStumps {
     BoostedStumps stumps;

@@ -184,6 +184,7 @@ def train_labeling(
     rows: int = ...,
     feature_fraction: float = ...,
     shrinkage: float = ...,
+    linear: bool = ...,
     samples: int = ...,
     orientation: bool = ...,
     cache: _Path = ...,

@@ -30,6 +30,18 @@ CalibratedStumps classifier(std::uint32_t classes, std::uint32_t feature) {
     return result;
 }
 
+/// Of so many features, the last of which does not vary.
+LinearOpinion linear(std::size_t features) {
+    LinearOpinion result{{2, {}, {}, {}, {0.5F, 0.5F}}, 4, 0.75F};
+    for (std::size_t f = 0; f < features; ++f) {
+        const auto x = static_cast<float>(f);
+        result.classifier.mean.push_back(x);
+        result.classifier.inverse.push_back(f + 1 < features ? x + 1 : 0);
+        result.classifier.weight.insert(result.classifier.weight.end(), {0.1F * x, -0.1F * x});
+    }
+    return result;
+}
+
 LabelingModel small_model() {
     LabelingModel model;
     model.label_names = {"body", "leg"};
@@ -38,6 +50,7 @@ LabelingModel small_model() {
     model.pairwise_names = {"b.z"};
     model.unary = {classifier(2, 1), classifier(2, 71)};
     model.pairwise = {classifier(2, 0), classifier(2, 5)};
+    model.linear = {{}, linear(72)};
     model.averaged_labels = {1};
     model.crf.compatibility = {0, 1, 1, 0};
     model.smallest_component = {0.1F, 0.2F};
@@ -71,6 +84,15 @@ TEST(LabelingModelFile, RoundTripKeepsEverythingAndTheBytes) {
     EXPECT_EQ(model.unary[1].stumps.stumps[0].feature, 71U);
     EXPECT_EQ(model.unary[1].link, Link::sigmoid);
     EXPECT_EQ(model.unary[1].scale, 1.5F);
+    ASSERT_EQ(model.linear.size(), 2U);
+    EXPECT_FALSE(model.linear[0].used());
+    EXPECT_EQ(model.linear[1].classifier.class_count, 2U);
+    EXPECT_EQ(model.linear[1].classifier.mean, linear(72).classifier.mean);
+    EXPECT_EQ(model.linear[1].classifier.inverse, linear(72).classifier.inverse);
+    EXPECT_EQ(model.linear[1].classifier.weight, linear(72).classifier.weight);
+    EXPECT_EQ(model.linear[1].classifier.constant, linear(72).classifier.constant);
+    EXPECT_EQ(model.linear[1].ratio, 4);
+    EXPECT_EQ(model.linear[1].scale, 0.75F);
     EXPECT_EQ(model.averaged_labels, small_model().averaged_labels);
     EXPECT_EQ(model.seed, small_model().seed);
     EXPECT_EQ(model.smallest_component, small_model().smallest_component);
@@ -95,6 +117,10 @@ TEST(LabelingModelFile, OtherVersionsAreRefusedWithTheMend) {
                 testing::HasSubstr("no number"));
 }
 
+TEST(LabelingModelFile, ModelsOfBeforeAreRead) {
+    EXPECT_EQ(error_after("first", [](TensorFile& f) { f.metadata["format_version"] = "1"; }), "no error");
+}
+
 void replace(std::string& text, const std::string& what, const std::string& by) {
     text.replace(text.find(what), what.size(), by);
 }
@@ -115,6 +141,14 @@ TEST(LabelingModelFile, InconsistentContentIsRefused) {
         [](File& f) {
             f.add("unary.0.threshold_above_below", {1, 3}, std::vector<float>{0, NAN, 0});
         },
+        [](File& f) { f.tensors.erase("linear.1.mean"); },
+        [](File& f) { f.add("linear.1.constant", {3}, std::vector<float>{0, 0, 0}); },
+        [](File& f) { f.add("linear.1.mean", {72}, std::vector<float>(72, NAN)); },
+        [](File& f) { f.add("linear.1.weight", {72, 2}, std::vector<float>(144, 1e30F)); },
+        [](File& f) { f.add("linear.1.ratio_scale", {2}, std::vector<float>{1, 0}); },
+        [](File& f) { f.add("linear.1.ratio_scale", {2}, std::vector<float>{-1, 1}); },
+        [](File& f) { f.add("linear.1.ratio_scale", {2}, std::vector<float>{1e38F, 1e38F}); },
+        [](File& f) { f.add("linear.0.weight", {72, 2}, std::vector<float>(144, 1)); },
         [](File& f) { f.add("unary.0.classes", {1}, std::vector<std::uint64_t>{8}); },
         [](File& f) { replace(f.metadata["model"], "\"kappa\":", "\"kappa\":-"); },
         [](File& f) { replace(f.metadata["model"], "\"samples\":", "\"samples\":-"); },

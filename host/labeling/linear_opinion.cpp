@@ -1,0 +1,127 @@
+#include "host/labeling/linear_opinion.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "host/core/interrupt.h"
+#include "host/core/parallel.h"
+#include "host/learn/boosted_stumps.h"
+#include "host/learn/calibration.h"
+
+namespace exemplar {
+namespace {
+
+constexpr std::size_t k_most_rows = 32768;
+constexpr std::array<double, 4> k_ridges{1e-4, 1e-3, 1e-2, 1e-1};
+constexpr std::array<float, 7> k_ratios{0, 0.5F, 1, 2, 4, 8, 16};
+/// Probabilities of stumps are no less in their logarithm; a label that a fold never saw has none.
+constexpr float k_least_probability = 1e-6F;
+constexpr std::array<Link, 1> k_links{Link::softmax};
+
+float log_of(float probability) { return std::log(std::max(probability, k_least_probability)); }
+
+/// Every so many of the rows that at most k_most_rows are left.
+std::vector<std::uint32_t> some_of(std::span<const std::uint32_t> rows) {
+    const std::size_t step = std::max<std::size_t>(1, (rows.size() + k_most_rows - 1) / k_most_rows);
+    std::vector<std::uint32_t> some;
+    for (std::size_t i = 0; i < rows.size(); i += step) some.push_back(rows[i]);
+    return some;
+}
+
+/// The held-out rows of all folds one after the other, and what is known of them.
+struct HeldOut {
+    std::vector<std::vector<std::uint32_t>> of_fold;
+    std::vector<std::int32_t> label;
+    std::vector<float> weight, log_stumps;
+};
+
+HeldOut hold_out(const LinearRows& data, std::span<const float> stumps, std::span<const float> judged) {
+    HeldOut held{std::vector<std::vector<std::uint32_t>>(data.fold_count), {}, {}, {}};
+    for (const std::uint32_t row : data.rows) held.of_fold[data.fold[row]].push_back(row);
+    for (const std::vector<std::uint32_t>& rows : held.of_fold)
+        for (const std::uint32_t row : rows) {
+            held.label.push_back(data.label[row]);
+            held.weight.push_back(judged[row]);
+            for (const float p : stumps.subspan(row * data.classes, data.classes))
+                held.log_stumps.push_back(log_of(p));
+        }
+    return held;
+}
+
+/// L of all held-out rows, each from the classifier of the other folds.
+std::vector<float> held_out_scores(const LinearRows& data, const HeldOut& held,
+                                   std::span<const LinearClassifier> without_fold) {
+    std::vector<float> scores(held.log_stumps.size());
+    std::size_t first = 0;
+    for (std::size_t fold = 0; fold < held.of_fold.size(); ++fold) {
+        const std::size_t size = held.of_fold[fold].size() * data.classes;
+        linear_scores(without_fold[fold], data.features, held.of_fold[fold], std::span(scores).subspan(first, size));
+        first += size;
+    }
+    return scores;
+}
+
+std::vector<LinearClassifier> solve_without_folds(const LinearTraining& training, double ridge, std::size_t folds) {
+    std::vector<LinearClassifier> classifiers(folds);
+    parallel_for(folds, [&](std::size_t fold) { classifiers[fold] = training.solve(ridge, fold); });
+    return classifiers;
+}
+
+/// The best way found to pool, and the loss of the stumps alone beside it.
+struct Choice {
+    double ridge = 0;
+    float ratio = 0;
+    Calibration calibration;
+    std::vector<LinearClassifier> without_fold;
+};
+
+Choice choose(const LinearRows& data, const HeldOut& held, const LinearTraining& training) {
+    Choice best;
+    best.calibration.loss = std::numeric_limits<double>::infinity();
+    std::vector<float> pooled(held.log_stumps.size());
+    for (const double ridge : k_ridges) {
+        check_interrupt();
+        const std::vector<LinearClassifier> classifiers = solve_without_folds(training, ridge, data.fold_count);
+        const std::vector<float> linear = held_out_scores(data, held, classifiers);
+        for (const float ratio : k_ratios) {
+            for (std::size_t i = 0; i < pooled.size(); ++i) pooled[i] = held.log_stumps[i] + ratio * linear[i];
+            const Calibration now = calibrate(pooled, held.label, held.weight, data.classes, k_links);
+            if (now.loss < best.calibration.loss) best = {ridge, ratio, now, classifiers};
+        }
+    }
+    return best;
+}
+
+}  // namespace
+
+void pool(const LinearOpinion& opinion, const FeatureMatrix& features, std::span<float> probabilities, float trust) {
+    if (!opinion.used()) return;
+    const std::size_t classes = opinion.classifier.class_count;
+    std::vector<float> linear(probabilities.size());
+    linear_scores(opinion.classifier, features, linear);
+    for (std::size_t i = 0; i < linear.size(); ++i)
+        probabilities[i] = log_of(probabilities[i]) + opinion.ratio * linear[i];
+    scores_to_probabilities(probabilities, classes, Link::softmax, trust * opinion.scale);
+}
+
+std::optional<FoldedLinear> fit_linear(const LinearRows& all, std::span<const float> stumps,
+                                       std::span<const float> judged, const std::vector<bool>& silent) {
+    const std::vector<std::uint32_t> rows = some_of(all.rows);
+    const LinearRows data{all.features, rows, all.label, all.weight, all.fold, all.classes, all.fold_count};
+    const LinearTraining training(data);
+    const Choice choice = choose(data, hold_out(data, stumps, judged), training);
+    if (choice.ratio == 0) return std::nullopt;
+
+    FoldedLinear result{{}, {}, choice.ridge, choice.calibration.loss, choice.calibration.error};
+    std::vector<LinearClassifier> heard{training.solve(choice.ridge)};
+    for (std::size_t fold = 0; fold < choice.without_fold.size(); ++fold) {
+        result.without_fold.push_back({choice.without_fold[fold], choice.ratio, choice.calibration.scale});
+        if (!silent[fold]) heard.push_back(choice.without_fold[fold]);
+    }
+    result.mean = {mean_linear(heard), choice.ratio, choice.calibration.scale};
+    return result;
+}
+
+}  // namespace exemplar

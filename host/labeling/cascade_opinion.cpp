@@ -5,6 +5,10 @@
 
 namespace exemplar {
 
+namespace {
+constexpr float k_nothing = 1e-30F;  // a sure classifier's other probabilities vanish, or are too small to be divided
+}
+
 void take_classes(std::span<const std::uint32_t> taken, std::size_t classes, std::span<const float> source,
                   std::span<float> target) {
     if (taken.empty()) return;
@@ -14,7 +18,8 @@ void take_classes(std::span<const std::uint32_t> taken, std::size_t classes, std
         float rest = 1;
         for (const std::uint32_t c : taken) rest -= from[c], to[c] = 0;
         const float others = std::accumulate(to.begin(), to.end(), 0.0F);
-        for (float& p : to) p *= others > 0 ? std::max(rest, 0.0F) / others : 0;
+        const auto count = static_cast<float>(classes - taken.size());
+        for (float& p : to) p = (others > k_nothing ? p / others : 1 / count) * std::max(rest, 0.0F);
         for (const std::uint32_t c : taken) to[c] = from[c];
     }
 }

@@ -7,7 +7,8 @@
 
 namespace exemplar {
 
-/// Gives some classes of each item the probabilities that `source` has for them; the others share the rest as they did.
+/// Gives some classes of each item the probabilities that `source` has for them; the others share the rest as they did,
+/// equally if they had nothing.
 /// Both: items x classes.
 void take_classes(std::span<const std::uint32_t> taken, std::size_t classes, std::span<const float> source,
                   std::span<float> target);

@@ -50,6 +50,17 @@ HeldOut hold_out(const LinearRows& data, std::span<const float> stumps, std::spa
     return held;
 }
 
+/// Whether rows of two labels are judged: of one alone, whoever is surest would be best.
+bool tells_labels_apart(const HeldOut& held) {
+    std::int32_t first = -1;
+    for (std::size_t i = 0; i < held.label.size(); ++i) {
+        if (!(held.weight[i] > 0)) continue;
+        if (first >= 0 && held.label[i] != first) return true;
+        first = held.label[i];
+    }
+    return false;
+}
+
 /// L of all held-out rows, each from the classifier of the other folds.
 std::vector<float> held_out_scores(const LinearRows& data, const HeldOut& held,
                                    std::span<const LinearClassifier> without_fold) {
@@ -110,8 +121,10 @@ std::optional<FoldedLinear> fit_linear(const LinearRows& all, std::span<const fl
                                        std::span<const float> judged, const std::vector<bool>& silent) {
     const std::vector<std::uint32_t> rows = some_of(all.rows);
     const LinearRows data{all.features, rows, all.label, all.weight, all.fold, all.classes, all.fold_count};
+    const HeldOut held = hold_out(data, stumps, judged);
+    if (!tells_labels_apart(held)) return std::nullopt;
     const LinearTraining training(data);
-    const Choice choice = choose(data, hold_out(data, stumps, judged), training);
+    const Choice choice = choose(data, held, training);
     if (choice.ratio == 0) return std::nullopt;
 
     FoldedLinear result{{}, {}, choice.ridge, choice.calibration.loss, choice.calibration.error};

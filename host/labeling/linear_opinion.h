@@ -35,7 +35,7 @@ struct FoldedLinear {
 };
 
 /// Fits linear classifiers, and chooses their ridge and how they are pooled by the log loss of held-out rows (at most some
-/// ten thousand of `data`, evenly chosen); none if pooling does not lower that loss.
+/// ten thousand of `data`, evenly chosen); none if pooling does not lower that loss, or no two labels can be judged.
 /// `stumps`: probabilities of every row of data.features from the stumps that never saw it, rows x classes. `judged`: the
 /// weight of each row in the loss. `silent[fold]`: that fold's classifier has no say in the mean, as it does not know
 /// all labels.

@@ -114,6 +114,9 @@ TEST(LinearOpinion, NothingIsChosenWhereNothingCanBeJudged) {
     const Data data;
     const std::vector<float> none(k_rows, 0.0F);
     EXPECT_FALSE(fit_linear(data.all(), data.stumps(0.7F), none, k_all_speak));
+    std::vector<float> one_label(k_rows);
+    for (std::size_t i = 0; i < k_rows; ++i) one_label[i] = data.label[i] == 1 ? 1.0F : 0.0F;
+    EXPECT_FALSE(fit_linear(data.all(), data.stumps(0.7F), one_label, k_all_speak));
 }
 
 TEST(LinearOpinion, FoldsWithoutSayAreNotInTheMean) {

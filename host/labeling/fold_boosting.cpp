@@ -241,7 +241,8 @@ std::optional<FoldedLinear> fit_beside(const Pool& pool, const RoundChoice& choi
 std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems> meshes,
                                                   const std::vector<BoostedStumps>& of_fold,
                                                   const CalibratedStumps& everywhere,
-                                                  const std::optional<FoldedLinear>& linear, const FoldLabels& labels,
+                                                  const std::optional<FoldedLinear>& linear,
+                                                  std::span<const std::uint32_t> of_one_fold, const FoldLabels& labels,
                                                   std::size_t classes, StumpScorer& scorer) {
     std::vector<std::vector<float>> result;
     for (const BoostingItems& mesh : meshes) {
@@ -252,13 +253,11 @@ std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems>
             if (std::none_of(mesh.fold.begin(), mesh.fold.end(), holds)) continue;
             const BoostedStumps& classifier = of_fold[fold].class_count ? of_fold[fold] : everywhere.stumps;
             scorer.probabilities(classifier, *mesh.features, everywhere.link, everywhere.scale, from_fold);
-            if (linear) pool(linear->without_fold[fold], *mesh.features, from_fold);
+            if (linear) pool(linear->without_fold[fold], *mesh.features, of_one_fold, from_fold);
             const std::vector<std::uint32_t> alone = labels.of_fold_alone(fold);
-            if (!alone.empty()) {
+            if (!alone.empty())
                 scorer.probabilities(everywhere.stumps, *mesh.features, everywhere.link,
                                      k_seen_scale * everywhere.scale, seen);
-                if (linear) pool(linear->mean, *mesh.features, seen, k_seen_scale);
-            }
             for (std::size_t i = 0; i < mesh.fold.size(); ++i) {
                 if (mesh.fold[i] != fold) continue;
                 const std::span<float> item = std::span(scores).subspan(i * classes, classes);
@@ -306,7 +305,8 @@ FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const
     result.curve = std::move(choice.curve);
     const auto linear = options.linear ? fit_beside(pool, choice, labels, options) : std::nullopt;
     if (linear) result.linear = linear->mean, result.loss = linear->loss, result.error = linear->error;
-    result.out_of_fold = score_out_of_fold(meshes, of_fold, result.classifier, linear, labels, options.classes, scorer);
+    result.out_of_fold = score_out_of_fold(meshes, of_fold, result.classifier, linear, result.of_one_fold, labels,
+                                           options.classes, scorer);
     return result;
 }
 

@@ -45,7 +45,8 @@ Scores score(const CalibratedStumps& stage, Meshes meshes, FeatureMatrix MeshFea
 Scores score_unary_stage(const LabelingModel& model, std::size_t stage, Meshes meshes, StumpScorer& scorer) {
     Scores scores = score(model.unary[stage], meshes, &MeshFeatures::unary, scorer);
     if (stage < model.linear.size())
-        for (std::size_t m = 0; m < meshes.size(); ++m) pool(model.linear[stage], meshes[m]->unary, scores[m]);
+        for (std::size_t m = 0; m < meshes.size(); ++m)
+            pool(model.linear[stage], meshes[m]->unary, model.averaged_labels, scores[m]);
     return scores;
 }
 

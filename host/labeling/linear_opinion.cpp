@@ -7,6 +7,7 @@
 
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
+#include "host/labeling/cascade_opinion.h"
 #include "host/learn/boosted_stumps.h"
 #include "host/learn/calibration.h"
 
@@ -107,14 +108,17 @@ Choice choose(const LinearRows& data, const HeldOut& held, const LinearTraining&
 
 }  // namespace
 
-void pool(const LinearOpinion& opinion, const FeatureMatrix& features, std::span<float> probabilities, float trust) {
+void pool(const LinearOpinion& opinion, const FeatureMatrix& features, std::span<const std::uint32_t> unjudged,
+          std::span<float> probabilities) {
     if (!opinion.used()) return;
+    const std::vector<float> stumps(probabilities.begin(), probabilities.end());
     const std::size_t classes = opinion.classifier.class_count;
     std::vector<float> linear(probabilities.size());
     linear_scores(opinion.classifier, features, linear);
     for (std::size_t i = 0; i < linear.size(); ++i)
         probabilities[i] = log_of(probabilities[i]) + opinion.ratio * linear[i];
-    scores_to_probabilities(probabilities, classes, Link::softmax, trust * opinion.scale);
+    scores_to_probabilities(probabilities, classes, Link::softmax, opinion.scale);
+    take_classes(unjudged, classes, stumps, probabilities);
 }
 
 std::optional<FoldedLinear> fit_linear(const LinearRows& all, std::span<const float> stumps,

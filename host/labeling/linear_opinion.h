@@ -13,7 +13,8 @@ namespace exemplar {
 /// What a linear classifier adds to the probabilities of boosted stumps. Stumps tell labels apart by thresholds of
 /// single features and lose small parts that only many features together show; a linear classifier finds those, and
 /// knows no thresholds. The two are pooled by their logarithms: P_c is proportional to
-/// exp(scale * (log P_stumps,c + ratio * L_c)).
+/// exp(scale * (log P_stumps,c + ratio * L_c)). Labels that training saw in one fold alone keep what the stumps say: how
+/// much to believe L_c of them cannot be judged on held-out rows.
 struct LinearOpinion {
     LinearClassifier classifier;  ///< its class_count is 0 where the stumps alone count
     float ratio = 0;              ///< >= 0
@@ -22,9 +23,10 @@ struct LinearOpinion {
     bool used() const { return classifier.class_count > 0; }
 };
 
-/// Pools the stumps' probabilities (rows x classes) with what the linear classifier says of these rows; nothing changes
-/// if it is not used. `trust`: what the scale is multiplied with. Throws what linear_scores throws.
-void pool(const LinearOpinion& opinion, const FeatureMatrix& features, std::span<float> probabilities, float trust = 1);
+/// Pools the stumps' probabilities (rows x classes) with what the linear classifier says of these rows, but for the
+/// labels in `unjudged`; nothing changes if it is not used. Throws what linear_scores throws.
+void pool(const LinearOpinion& opinion, const FeatureMatrix& features, std::span<const std::uint32_t> unjudged,
+          std::span<float> probabilities);
 
 /// A linear classifier per fold, which never saw the fold, and their mean with that of all rows.
 struct FoldedLinear {

@@ -34,7 +34,7 @@ struct LabelingModel {
     std::vector<CalibratedStumps> unary;
     /// What each stage of the unary cascade is pooled with; stages without an entry are stumps alone.
     std::vector<LinearOpinion> linear;
-    /// Labels whose probabilities are the mean of all stages' (see CascadeOpinion).
+    /// Labels of one fold alone: their probabilities are the mean of all stages' (CascadeOpinion), not pooled.
     std::vector<std::uint32_t> averaged_labels;
     /// The same for boundaries (classes: 0 = same label, 1 = boundary).
     std::vector<CalibratedStumps> pairwise;

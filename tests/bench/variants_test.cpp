@@ -32,7 +32,7 @@ TEST_F(Variants, AllValuesOfAllParametersAreComparedAndTheFastestIsTaken) {
     std::vector<std::string> known;
     const auto comparisons =
         compare_variants(device, kind_named("stump scoring"), 2000, KernelFilter(), k_short, known);
-    ASSERT_EQ(comparisons.size(), 3u);
+    ASSERT_EQ(comparisons.size(), 4u);
     EXPECT_EQ(known, std::vector<std::string>{"learn/stumps.comp"});
     for (const VariantComparison& comparison : comparisons) {
         EXPECT_GE(comparison.milliseconds.size(), 2u) << comparison.parameter;

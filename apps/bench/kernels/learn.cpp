@@ -70,7 +70,7 @@ std::vector<OperationKind> learn_operations() {
              "faces",
              {5'000, 20'000, 100'000},
              {&shaders::learn_stumps_comp},
-             {k_stump_quads, k_stump_storage},
+             {k_stump_quads, k_stump_storage, k_stump_bits},
              prepare_as<Scoring>}};
 }
 

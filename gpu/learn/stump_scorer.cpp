@@ -23,10 +23,10 @@ static_assert(sizeof(GroupedStump) == 16 && sizeof(StumpGroup) == 16);
 static_assert(shared::k_link_softmax == static_cast<std::uint32_t>(Link::softmax) &&
               shared::k_link_sigmoid == static_cast<std::uint32_t>(Link::sigmoid));
 
-// On a CPU every load of a kernel is expensive, so that a stump, once loaded, serves many items; a GPU wants many
-// invocations.
-constexpr std::uint32_t k_quads_on_cpu = 4;
 constexpr std::uint32_t k_float_bits = 32;
+// On a CPU every load of a kernel is expensive, so that a stump, once loaded, serves many items, and a load brings many
+// features; a GPU wants many invocations, and its host no work that was not measured to pay.
+constexpr std::uint32_t k_quads_on_cpu = 4, k_bits_on_cpu = 8;
 
 // A classifier as the kernel wants it.
 struct DeviceStumps {
@@ -37,7 +37,8 @@ struct DeviceStumps {
     std::vector<float> constant;
 };
 
-// The fewest bits, `bits` or more, that all ranks fit into. The highest is left: devices compare signed integers faster.
+// The fewest bits, `bits` or more, that all ranks fit into. The highest is left: devices compare signed integers
+// faster.
 std::uint32_t bits_for(std::span<const FeatureThresholds> columns, std::uint32_t bits) {
     std::size_t most = 0;
     for (const FeatureThresholds& column : columns) most = std::max(most, column.thresholds.size());
@@ -124,7 +125,7 @@ GpuStumpScorer::GpuStumpScorer(Device& device, Profiler* profiler, std::size_t t
     : device_(device),
       quads_(device.tuning().choose(k_stump_quads, device.info().type == DeviceType::cpu ? k_quads_on_cpu : 1)),
       from_storage_(device.tuning().choose(k_stump_storage, 0)),
-      bits_(device.tuning().choose(k_stump_bits, k_float_bits)),
+      bits_(device.tuning().choose(k_stump_bits, device.info().type == DeviceType::cpu ? k_bits_on_cpu : k_float_bits)),
       tile_bytes_(buffer_limit(device.info(), tile_bytes)),
       stream_(device, profiler) {}
 
@@ -136,9 +137,10 @@ struct GpuStumpScorer::Classifier {
     std::size_t feature_bytes(std::size_t rows) const { return rows * grouped.bits / 8; }  // of one column
 };
 
-// An invocation reads whole texels.
+// An invocation reads whole texels: of ranks, which have more items in each, half as many.
 std::uint32_t GpuStumpScorer::quads_of(std::uint32_t bits) const {
-    return std::max(quads_, k_float_bits / bits);
+    if (bits == k_float_bits) return quads_;
+    return std::min(std::max(quads_ / 2, 1u) * (k_float_bits / bits), k_stump_quad_counts.back());
 }
 
 // Rows of the smallest tile: neighboring invocations work side by side.

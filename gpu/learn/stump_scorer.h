@@ -17,7 +17,7 @@
 
 namespace exemplar {
 
-/// Items per invocation, by four.
+/// Items per invocation, by four; of features of fewer bits at least those of a texel.
 inline constexpr std::array<std::uint32_t, 4> k_stump_quad_counts{1, 2, 4, 8};
 inline constexpr TunableParameter k_stump_quads{"learn/stumps.comp", "quads", k_stump_quad_counts};
 /// How features are read: as texels (0) or from a storage buffer (1).

@@ -20,8 +20,8 @@ struct FeatureThresholds {
 /// Of each feature that a stump names, by rising number. Thresholds are numbers.
 std::vector<FeatureThresholds> thresholds_of(std::span<const Stump> stumps);
 
-/// Ranks of values: how many of `thresholds` (distinct, rising) lie below each. All that stumps ask of a value is in it:
-/// value > thresholds[i] holds exactly where rank > i, of NaN nowhere. As many ranks as values; each is at most
+/// Ranks of values: how many of `thresholds` (distinct, rising) lie below each. All that stumps ask of a value is in
+/// it: value > thresholds[i] holds exactly where rank > i, of NaN nowhere. As many ranks as values; each is at most
 /// thresholds.size(), which must fit.
 void rank(std::span<const float> values, std::span<const float> thresholds, std::span<std::uint8_t> ranks);
 void rank(std::span<const float> values, std::span<const float> thresholds, std::span<std::uint16_t> ranks);

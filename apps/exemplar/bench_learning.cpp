@@ -32,7 +32,8 @@ void add_shares(const BoostedStumps& classifier, std::size_t rows, double device
     std::set<std::uint32_t> used;
     for (const Stump& stump : classifier.stumps) used.insert(stump.feature);
     const auto items = static_cast<double>(rows), stumps = static_cast<double>(k_stumps);
-    const double bytes = 4 * items * static_cast<double>(used.size() + k_classes) + 16 * stumps;
+    // A feature is a byte at least, as its rank is.
+    const double bytes = items * static_cast<double>(used.size() + 4 * k_classes) + 16 * stumps;
     // Per stump a comparison, a selection and a sum; per class a maximum, a difference, exp, a sum and a quotient.
     const double operations = items * (3 * stumps + 5 * static_cast<double>(k_classes));
     const double copy = 1e-9 * bytes / device_seconds / ceilings.copy_gb_per_s;

@@ -101,8 +101,8 @@ void print_statistics(const Device& device, const std::vector<Measurement>& meas
 
 void print_comparison(const VariantComparison& comparison) {
     const double as_is = median(comparison.as_is);
-    fmt::print("{} ({}, {}): {}\n    as it is {:.4f} ms", comparison.kernel, comparison.operation, comparison.size,
-               comparison.parameter, as_is);
+    fmt::print("{} ({}, {}): {}{}\n    as it is {:.4f} ms", comparison.kernel, comparison.operation, comparison.size,
+               comparison.parameter, comparison.judged == Judged::by_runs ? ", by whole runs" : "", as_is);
     for (const auto& [value, milliseconds] : comparison.milliseconds)
         fmt::print(", {}: {:.4f} ({:.2f}x){}", value, median(milliseconds), median(milliseconds) / as_is,
                    comparison.chosen == value ? " <- taken" : "");
@@ -223,9 +223,11 @@ void add_bench_shaders_command(CLI::App& bench) {
                      "only kernels, or operations, whose name this regular expression finds")
         ->type_name("REGEX");
     command->add_option("--baseline", options->baseline, "a report of --json to compare with")->type_name("FILE");
-    command->add_flag("--tune", options->tune,
-                      "compare variants of kernels (group sizes, items per invocation, how inputs are read) and keep "
-                      "the fastest for this device");
+    command->add_flag(
+        "--tune", options->tune,
+        "compare variants of kernels (group sizes, items per invocation, how inputs are read and how many bits they "
+        "have) and keep "
+        "the fastest for this device");
     command->add_option("--sizes", options->sizes, "how many items, instead of the usual three sizes")
         ->check(whole_number(64, 4'000'000))
         ->type_name("N");

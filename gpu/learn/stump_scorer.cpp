@@ -1,12 +1,14 @@
 #include "gpu/learn/stump_scorer.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <numeric>
 #include <vector>
 
 #include "embedded/learn_stumps_comp.h"
 #include "host/learn/grouped_stumps.h"
+#include "host/learn/threshold_ranks.h"
 #include "shaders/shared/stumps.h"
 
 namespace exemplar {
@@ -21,36 +23,50 @@ static_assert(sizeof(GroupedStump) == 16 && sizeof(StumpGroup) == 16);
 static_assert(shared::k_link_softmax == static_cast<std::uint32_t>(Link::softmax) &&
               shared::k_link_sigmoid == static_cast<std::uint32_t>(Link::sigmoid));
 
-// On a CPU every load of a kernel is expensive, so that a stump, once loaded, serves many items; a GPU wants many
-// invocations.
-constexpr std::uint32_t k_quads_on_cpu = 4;
+constexpr std::uint32_t k_float_bits = 32;
+// On a CPU every load of a kernel is expensive, so that a stump, once loaded, serves many items, and a load brings many
+// features; a GPU wants many invocations, and its host no work that was not measured to pay.
+constexpr std::uint32_t k_quads_on_cpu = 4, k_bits_on_cpu = 8;
 
 // A classifier as the kernel wants it.
 struct DeviceStumps {
-    std::vector<std::uint32_t> columns;  // features that are used, by rising number
+    std::vector<FeatureThresholds> columns;  // features that are used, by rising number
+    std::uint32_t bits;                      // of a feature
     std::vector<GroupedStump> stumps;
     std::vector<StumpGroup> groups;
     std::vector<float> constant;
 };
 
-std::vector<std::uint32_t> used_features(const BoostedStumps& classifier) {
-    std::vector<std::uint32_t> used;
-    for (const Stump& stump : classifier.stumps) used.push_back(stump.feature);
-    std::ranges::sort(used);
-    used.erase(std::unique(used.begin(), used.end()), used.end());
-    return used;
+// The fewest bits, `bits` or more, that all ranks fit into. The highest is left: devices compare signed integers
+// faster.
+std::uint32_t bits_for(std::span<const FeatureThresholds> columns, std::uint32_t bits) {
+    std::size_t most = 0;
+    for (const FeatureThresholds& column : columns) most = std::max(most, column.thresholds.size());
+    while (bits < k_float_bits && most >> (bits - 1) != 0) bits *= 2;
+    return bits;
 }
 
-DeviceStumps group(const BoostedStumps& classifier) {
+// What the kernel compares with: see GroupedStump.
+std::uint32_t device_threshold(float threshold, const FeatureThresholds& column, std::uint32_t bits) {
+    if (bits == k_float_bits) return std::bit_cast<std::uint32_t>(threshold);
+    return ((column.index_of(threshold) + 1) << (k_float_bits - bits)) - 1;
+}
+
+DeviceStumps group(const BoostedStumps& classifier, std::uint32_t bits) {
     const GroupedStumps grouped(classifier);
-    DeviceStumps result{
-        .columns = used_features(classifier), .stumps = {}, .groups = {}, .constant = classifier.constant()};
+    DeviceStumps result{.columns = thresholds_of(classifier.stumps),
+                        .bits = 0,
+                        .stumps = {},
+                        .groups = {},
+                        .constant = classifier.constant()};
+    result.bits = bits_for(result.columns, bits);
     for (const GroupedStumps::Group& group : grouped.groups)
         result.groups.push_back({group.first, group.end, static_cast<std::uint32_t>(group.classes),
                                  static_cast<std::uint32_t>(group.classes >> 32)});
     for (const Stump& stump : grouped.stumps) {
-        const auto column = std::ranges::lower_bound(result.columns, stump.feature) - result.columns.begin();
-        result.stumps.push_back({static_cast<std::uint32_t>(column), stump.threshold, stump.above, stump.below});
+        const auto column = std::ranges::lower_bound(result.columns, stump.feature, {}, &FeatureThresholds::feature);
+        result.stumps.push_back({static_cast<std::uint32_t>(column - result.columns.begin()),
+                                 device_threshold(stump.threshold, *column, result.bits), stump.above, stump.below});
     }
     return result;
 }
@@ -64,6 +80,17 @@ void copy_finite(std::span<const float> values, std::span<std::byte> memory) {
         const float above = values[i] > -k_largest ? values[i] : -k_largest;
         out[i] = above < k_largest ? above : k_largest;
     }
+}
+
+// Values of a column as the kernel reads them.
+void write_features(std::span<const float> values, const FeatureThresholds& column, std::uint32_t bits,
+                    std::span<std::byte> memory) {
+    if (bits == 8)
+        rank(values, column.thresholds, std::span(reinterpret_cast<std::uint8_t*>(memory.data()), values.size()));
+    else if (bits == 16)
+        rank(values, column.thresholds, std::span(reinterpret_cast<std::uint16_t*>(memory.data()), values.size()));
+    else
+        copy_finite(values, memory);
 }
 
 // Rows of one matrix in a tile.
@@ -98,40 +125,50 @@ GpuStumpScorer::GpuStumpScorer(Device& device, Profiler* profiler, std::size_t t
     : device_(device),
       quads_(device.tuning().choose(k_stump_quads, device.info().type == DeviceType::cpu ? k_quads_on_cpu : 1)),
       from_storage_(device.tuning().choose(k_stump_storage, 0)),
+      bits_(device.tuning().choose(k_stump_bits, device.info().type == DeviceType::cpu ? k_bits_on_cpu : k_float_bits)),
       tile_bytes_(buffer_limit(device.info(), tile_bytes)),
       stream_(device, profiler) {}
-
-// Rows of the smallest tile: neighboring invocations work side by side.
-std::size_t GpuStumpScorer::tile_unit() const {
-    return std::size_t{4} * quads_ * shared::k_stump_neighbors;
-}
-
-// A multiple of tile_unit(), so that neither features nor probabilities pass the limits.
-std::size_t GpuStumpScorer::rows_per_tile(std::size_t rows, std::size_t columns, std::size_t classes) const {
-    const std::size_t unit = tile_unit();
-    const std::size_t feature_bytes = std::min<std::size_t>(tile_bytes_, 16 * device_.info().max_texels);
-    const std::size_t most = std::min(feature_bytes / (std::max<std::size_t>(columns, 1) * sizeof(float)),
-                                      tile_bytes_ / (classes * sizeof(float)));
-    return std::min(std::max(most / unit * unit, unit), (rows + unit - 1) / unit * unit);
-}
-
-const Kernel& GpuStumpScorer::kernel(std::uint32_t classes) {
-    Kernel& kernel = kernels_[classes];
-    if (!kernel)
-        kernel = Kernel(device_, shaders::learn_stumps_comp,
-                        {.push_constants = layout_of<StumpParameters>(),
-                         .elements = {layout_of<shared::vec4>(), layout_of<shared::uvec4>(), layout_of<shared::uvec4>(),
-                                      layout_of<float>(), layout_of<float>(), layout_of<shared::vec4>()},
-                         .constants = {{0, classes}, {1, quads_}, {2, from_storage_}}});
-    return kernel;
-}
 
 struct GpuStumpScorer::Classifier {
     const DeviceStumps& grouped;
     std::uint32_t class_count;
     Link link;
     float scale;
+    std::size_t feature_bytes(std::size_t rows) const { return rows * grouped.bits / 8; }  // of one column
 };
+
+// An invocation reads whole texels: of ranks, which have more items in each, half as many.
+std::uint32_t GpuStumpScorer::quads_of(std::uint32_t bits) const {
+    if (bits == k_float_bits) return quads_;
+    return std::min(std::max(quads_ / 2, 1u) * (k_float_bits / bits), k_stump_quad_counts.back());
+}
+
+// Rows of the smallest tile: neighboring invocations work side by side.
+std::size_t GpuStumpScorer::tile_unit(std::uint32_t bits) const {
+    return std::size_t{4} * quads_of(bits) * shared::k_stump_neighbors;
+}
+
+// A multiple of tile_unit(), so that neither features nor probabilities pass the limits.
+std::size_t GpuStumpScorer::rows_per_tile(const Classifier& classifier, std::size_t rows) const {
+    const std::size_t unit = tile_unit(classifier.grouped.bits);
+    const std::size_t columns = std::max<std::size_t>(classifier.grouped.columns.size(), 1);
+    const std::size_t bytes = std::min<std::size_t>(tile_bytes_, 16 * device_.info().max_texels);
+    const std::size_t most = std::min(8 * bytes / (columns * classifier.grouped.bits),
+                                      tile_bytes_ / (classifier.class_count * sizeof(float)));
+    return std::min(std::max(most / unit * unit, unit), (rows + unit - 1) / unit * unit);
+}
+
+const Kernel& GpuStumpScorer::kernel(std::uint32_t classes, std::uint32_t bits) {
+    Kernel& kernel = kernels_[{classes, bits}];
+    if (!kernel)
+        kernel =
+            Kernel(device_, shaders::learn_stumps_comp,
+                   {.push_constants = layout_of<StumpParameters>(),
+                    .elements = {layout_of<shared::uvec4>(), layout_of<shared::uvec4>(), layout_of<shared::uvec4>(),
+                                 layout_of<float>(), layout_of<float>(), layout_of<shared::uvec4>()},
+                    .constants = {{0, classes}, {1, quads_of(bits)}, {2, from_storage_}, {3, bits}}});
+    return kernel;
+}
 
 void GpuStumpScorer::probabilities_of_all(const BoostedStumps& classifier, Link link, float scale,
                                           std::span<const ScoredMatrix> matrices) {
@@ -140,16 +177,16 @@ void GpuStumpScorer::probabilities_of_all(const BoostedStumps& classifier, Link 
         std::accumulate(matrices.begin(), matrices.end(), std::size_t{0},
                         [](std::size_t sum, const ScoredMatrix& matrix) { return sum + matrix.features->rows; });
     if (rows == 0) return;
-    const DeviceStumps grouped = group(classifier);
-    const std::size_t tile_rows = rows_per_tile(rows, grouped.columns.size(), classifier.class_count);
-    reserve(device_, features_, grouped.columns.size() * tile_rows * sizeof(float));
+    const DeviceStumps grouped = group(classifier, bits_);
+    const Classifier on_device{grouped, classifier.class_count, link, scale};
+    const std::size_t tile_rows = rows_per_tile(on_device, rows);
+    reserve(device_, features_, grouped.columns.size() * on_device.feature_bytes(tile_rows));
     reserve(device_, probabilities_, tile_rows * classifier.class_count * sizeof(float));
     upload<GroupedStump>(stumps_, grouped.stumps);
     upload<StumpGroup>(groups_, grouped.groups);
     upload<float>(constant_, grouped.constant);
     for (std::size_t first = 0; first < rows; first += tile_rows)
-        score_tile({grouped, classifier.class_count, link, scale}, matrices, first, std::min(tile_rows, rows - first),
-                   tile_rows);
+        score_tile(on_device, matrices, first, std::min(tile_rows, rows - first), tile_rows);
 }
 
 // With the work that is recorded next, so that it costs no submission of its own.
@@ -162,24 +199,28 @@ void GpuStumpScorer::upload(Buffer& buffer, const std::vector<T>& values) {
 void GpuStumpScorer::score_tile(const Classifier& classifier, std::span<const ScoredMatrix> matrices, std::size_t first,
                                 std::size_t rows, std::size_t stride) {
     const DeviceStumps& grouped = classifier.grouped;
-    const std::size_t classes = classifier.class_count, column_bytes = stride * sizeof(float);
+    const std::size_t classes = classifier.class_count, column_bytes = classifier.feature_bytes(stride);
     const std::vector<Piece> pieces = pieces_of(matrices, first, rows);
-    for (std::size_t c = 0; c < grouped.columns.size(); ++c)
-        stream_.upload_with(features_, rows * sizeof(float), c * column_bytes, [&](std::span<std::byte> memory) {
-            for (const Piece& piece : pieces)
-                copy_finite(piece.matrix->features->column(grouped.columns[c]).subspan(piece.first, piece.rows),
-                            memory.subspan(piece.place * sizeof(float)));
-        });
-    const std::size_t threads = (rows + tile_unit() - 1) / tile_unit() * shared::k_stump_neighbors;
+    for (std::size_t c = 0; c < grouped.columns.size(); ++c) {
+        const FeatureThresholds& column = grouped.columns[c];
+        stream_.upload_with(
+            features_, classifier.feature_bytes(rows), c * column_bytes, [&](std::span<std::byte> memory) {
+                for (const Piece& piece : pieces)
+                    write_features(piece.matrix->features->column(column.feature).subspan(piece.first, piece.rows),
+                                   column, grouped.bits, memory.subspan(classifier.feature_bytes(piece.place)));
+            });
+    }
+    const std::size_t unit = tile_unit(grouped.bits);
+    const std::size_t threads = (rows + unit - 1) / unit * shared::k_stump_neighbors;
     const StumpParameters parameters{.rows = static_cast<std::uint32_t>(rows),
-                                     .stride = static_cast<std::uint32_t>(stride / 4),
+                                     .stride = static_cast<std::uint32_t>(column_bytes / sizeof(shared::uvec4)),
                                      .threads = static_cast<std::uint32_t>(threads),
                                      .groups = static_cast<std::uint32_t>(grouped.groups.size()),
                                      .link = static_cast<std::uint32_t>(classifier.link),
                                      .scale = classifier.scale};
     const BufferRange features(features_, 0, grouped.columns.size() * column_bytes);
     stream_.dispatch(
-        kernel(classifier.class_count), threads,
+        kernel(classifier.class_count, grouped.bits), threads,
         {features, whole(stumps_, grouped.stumps), whole(groups_, grouped.groups), whole(constant_, grouped.constant),
          BufferRange(probabilities_, 0, stride * classes * sizeof(float)), features},
         parameters);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "gpu/runtime/buffer.h"
@@ -16,16 +17,21 @@
 
 namespace exemplar {
 
-/// Items per invocation, by four.
+/// Items per invocation, by four; of features of fewer bits at least those of a texel.
 inline constexpr std::array<std::uint32_t, 4> k_stump_quad_counts{1, 2, 4, 8};
 inline constexpr TunableParameter k_stump_quads{"learn/stumps.comp", "quads", k_stump_quad_counts};
 /// How features are read: as texels (0) or from a storage buffer (1).
 inline constexpr std::array<std::uint32_t, 2> k_stump_readings{0, 1};
 inline constexpr TunableParameter k_stump_storage{"learn/stumps.comp", "storage", k_stump_readings};
+/// Bits of a feature: 32 of a float; 16 or 8 of its rank among the classifier's thresholds, which the host finds out
+/// when it uploads. Probabilities are the same, bit for bit.
+inline constexpr std::array<std::uint32_t, 3> k_stump_feature_bits{8, 16, 32};
+inline constexpr TunableParameter k_stump_bits{"learn/stumps.comp", "bits", k_stump_feature_bits, Judged::by_runs};
 
-/// Boosted stumps on the device. Only the features that stumps use are uploaded. The rows of all matrices that are
-/// scored together lie side by side, in tiles that fit the device's limits: a submission each. Probabilities agree with
-/// CpuStumpScorer within 1e-5: sums are taken in another order, and exp differs between devices.
+/// Boosted stumps on the device. Only the features that stumps use are uploaded, as floats or as ranks (k_stump_bits).
+/// The rows of all matrices that are scored together lie side by side, in tiles that fit the device's limits: a
+/// submission each. Probabilities agree with CpuStumpScorer within 1e-5: sums are taken in another order, and exp
+/// differs between devices.
 class GpuStumpScorer final : public StumpScorer {
   public:
     /// `tile_bytes` bounds the memory of a tile's features and of its probabilities below the device's own limits.
@@ -41,15 +47,17 @@ class GpuStumpScorer final : public StumpScorer {
                     std::size_t rows, std::size_t stride);
     template <typename T>
     void upload(Buffer& buffer, const std::vector<T>& values);
-    const Kernel& kernel(std::uint32_t classes);
-    std::size_t tile_unit() const;
-    std::size_t rows_per_tile(std::size_t rows, std::size_t columns, std::size_t classes) const;
+    const Kernel& kernel(std::uint32_t classes, std::uint32_t bits);
+    std::uint32_t quads_of(std::uint32_t bits) const;
+    std::size_t tile_unit(std::uint32_t bits) const;
+    std::size_t rows_per_tile(const Classifier& classifier, std::size_t rows) const;
     Device& device_;
     std::uint32_t quads_;  // of items per invocation
     std::uint32_t from_storage_;
+    std::uint32_t bits_;  // of a feature, where a classifier has no more thresholds than these can tell apart
     std::size_t tile_bytes_;
     Stream stream_;
-    std::map<std::uint32_t, Kernel> kernels_;  // by class count
+    std::map<std::pair<std::uint32_t, std::uint32_t>, Kernel> kernels_;  // by class count and bits
     // Kept between calls.
     Buffer stumps_, groups_, constant_, features_, probabilities_;
 };

@@ -13,12 +13,16 @@
 
 namespace exemplar {
 
+/// What a variant is judged by: the time of its kernel, or that of whole runs, where the host's work differs too.
+enum class Judged { by_kernel, by_runs };
+
 /// A number that kernels are compiled with and that changes their speed, not what they compute (but for the order of
 /// sums).
 struct TunableParameter {
     std::string_view kernel;  ///< as "learn/stumps.comp"; the group size, k_group_size, is that of any
     std::string_view name;
     std::span<const std::uint32_t> values;  ///< all that it may be
+    Judged judged = Judged::by_kernel;
 };
 
 /// Invocations per workgroup, of kernels that leave it to the host: their local_size_x is specialization constant

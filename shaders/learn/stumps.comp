@@ -8,26 +8,42 @@
 // by the set of classes that share them: a group is summed once and then added to its classes, so that the cost of a stump
 // does not depend on the number of classes. Loops over classes stay loops: unrolled for many classes, they took a CPU
 // driver longer to compile than to run. Inputs are texels, which a CPU driver fetches six times as fast as storage buffers;
-// features may be read as either (k_from_storage).
+// features may be read as either (k_from_storage). They are floats, or their ranks among the thresholds that the classifier
+// compares them with, of 16 or 8 bits (k_bits): these answer the same, and a texel has two or four times as many.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const uint k_classes = 1;
-layout(constant_id = 1) const uint k_quads = 1;
+layout(constant_id = 1) const uint k_quads = 1;  // a multiple of k_quads_of_texel
 layout(constant_id = 2) const bool k_from_storage = false;
+layout(constant_id = 3) const uint k_bits = 32;
 layout(push_constant) uniform Push { StumpParameters parameters; };
-layout(set = 0, binding = 0) uniform samplerBuffer features;  // columns x stride, four items each
-layout(set = 0, binding = 1) uniform usamplerBuffer stumps;   // GroupedStump; as floats, small integers might be flushed
-layout(set = 0, binding = 2) uniform usamplerBuffer groups;   // StumpGroup
+layout(set = 0, binding = 0) uniform usamplerBuffer features;  // columns x stride, 4, 8 or 16 items each
+layout(set = 0, binding = 1) uniform usamplerBuffer stumps;    // GroupedStump; as floats, small integers might be flushed
+layout(set = 0, binding = 2) uniform usamplerBuffer groups;    // StumpGroup
 layout(set = 0, binding = 3, std430) readonly buffer Constants { float constants[]; };
 layout(set = 0, binding = 4, std430) writeonly buffer Probabilities { float probabilities[]; };
-layout(set = 0, binding = 5, std430) readonly buffer StoredFeatures { vec4 stored_features[]; };  // the same as `features`
+layout(set = 0, binding = 5, std430) readonly buffer StoredFeatures { uvec4 stored_features[]; };  // the same as `features`
 
-vec4 fetch_features(uint index) {
+const uint k_quads_of_texel = 32 / k_bits;
+const uint k_texels = k_quads / k_quads_of_texel;
+
+uvec4 fetch_features(uint index) {
     return k_from_storage ? stored_features[index] : texelFetch(features, int(index));
+}
+
+// Of one of a texel's quads, which items are above the threshold of a stump. That of ranks has all lower bits set, so that
+// what lies below a rank in its word need not be cut off.
+bvec4 is_above(uvec4 texel, uint quad, uint threshold) {
+    if (k_bits == 32) return greaterThan(uintBitsToFloat(texel), vec4(uintBitsToFloat(threshold)));
+    if (k_bits == 16) {
+        const uvec2 words = quad == 0 ? texel.xy : texel.zw;
+        return greaterThan(ivec4(words.x << 16, words.x, words.y << 16, words.y), ivec4(threshold));
+    }
+    return greaterThan(ivec4(texel[quad]) << ivec4(24, 16, 8, 0), ivec4(threshold));
 }
 
 GroupedStump fetch_stump(uint index) {
     const uvec4 s = texelFetch(stumps, int(index));
-    return GroupedStump(s.x, uintBitsToFloat(s.y), uintBitsToFloat(s.z), uintBitsToFloat(s.w));
+    return GroupedStump(s.x, s.y, uintBitsToFloat(s.z), uintBitsToFloat(s.w));
 }
 
 StumpGroup fetch_group(uint index) {
@@ -67,7 +83,7 @@ void main() {
     const uint thread = linear_thread();
     if (thread >= parameters.threads) return;
 
-    const uint quad = (thread / k_stump_neighbors) * k_stump_neighbors * k_quads + thread % k_stump_neighbors;
+    const uint texel = (thread / k_stump_neighbors) * k_stump_neighbors * k_texels + thread % k_stump_neighbors;
     [[dont_unroll]] for (uint c = 0; c < k_classes; ++c)
         for (uint q = 0; q < k_quads; ++q) h[q * k_classes + c] = vec4(constants[c]);
     const uint stride = parameters.stride;
@@ -77,10 +93,12 @@ void main() {
         for (uint q = 0; q < k_quads; ++q) sum[q] = vec4(0.0);
         for (uint s = group.first; s < group.end; ++s) {
             const GroupedStump stump = fetch_stump(s);
-            const uint first = stump.column * stride + quad;
-            for (uint q = 0; q < k_quads; ++q) {
-                const bvec4 above = greaterThan(fetch_features(first + q * k_stump_neighbors), vec4(stump.threshold));
-                sum[q] += mix(vec4(stump.below), vec4(stump.above), above);
+            const uint first = stump.column * stride + texel;
+            for (uint t = 0; t < k_texels; ++t) {
+                const uvec4 fetched = fetch_features(first + t * k_stump_neighbors);
+                for (uint q = 0; q < k_quads_of_texel; ++q)
+                    sum[t * k_quads_of_texel + q] +=
+                        mix(vec4(stump.below), vec4(stump.above), is_above(fetched, q, stump.threshold));
             }
         }
         [[dont_unroll]] for (uint word = 0; word < 2; ++word)
@@ -89,5 +107,6 @@ void main() {
                 for (uint q = 0; q < k_quads; ++q) h[q * k_classes + c] += sum[q];
             }
     }
-    [[dont_unroll]] for (uint q = 0; q < k_quads; ++q) store_quad(quad + q * k_stump_neighbors, q * k_classes);
+    [[dont_unroll]] for (uint q = 0; q < k_quads; ++q)
+        store_quad((texel + q / k_quads_of_texel * k_stump_neighbors) * k_quads_of_texel + q % k_quads_of_texel, q * k_classes);
 }

@@ -1,19 +1,29 @@
-// The sum of what the invocations before this one in its workgroup have, and of all, in `group_total`. Groups are small, so
-// that adding up one by one takes less than the barriers of a tree.
+// The sum of what the invocations before this one in its workgroup have, and of all, in `group_total`: first in rows of eight,
+// then of rows. Groups are small, so that adding up one by one takes less than the barriers of a tree, but loads of shared memory
+// are what it costs on a CPU.
 #ifndef EXEMPLAR_GROUP_SUM_GLSL
 #define EXEMPLAR_GROUP_SUM_GLSL
 
+const uint k_sum_row = 8;
 shared uint group_counts[gl_WorkGroupSize.x];
+shared uint row_counts[gl_WorkGroupSize.x / k_sum_row];
 uint group_total;
 
 uint sum_before(uint count) {
-    group_counts[gl_LocalInvocationID.x] = count;
+    const uint own = gl_LocalInvocationID.x, row = own / k_sum_row, place = own % k_sum_row;
+    group_counts[own] = count;
     barrier();
-    uint before = 0;
+    uint before = 0, of_row = 0;
+    for (uint i = 0; i < k_sum_row; ++i) {
+        if (i == place) before = of_row;
+        of_row += group_counts[row * k_sum_row + i];
+    }
+    if (place == 0) row_counts[row] = of_row;
+    barrier();
     group_total = 0;
-    for (uint i = 0; i < gl_WorkGroupSize.x; ++i) {
-        if (i == gl_LocalInvocationID.x) before = group_total;
-        group_total += group_counts[i];
+    for (uint i = 0; i < gl_WorkGroupSize.x / k_sum_row; ++i) {
+        if (i == row) before += group_total;
+        group_total += row_counts[i];
     }
     return before;
 }

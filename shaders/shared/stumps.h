@@ -6,8 +6,8 @@ SHARED_BEGIN
 
 // One decision stump, without its classes.
 struct GroupedStump {
-    uint column;  // of the uploaded features
-    float threshold;
+    uint column;     // of the uploaded features
+    uint threshold;  // the bits of a float; or its number among the column's thresholds in the highest bits, all others set
     float above;
     float below;
 };
@@ -22,7 +22,7 @@ struct StumpGroup {
 
 struct StumpParameters {
     uint rows;
-    uint stride;   // quads of items from one feature column to the next: at least threads x quads per thread
+    uint stride;   // texels of items from one feature column to the next: at least threads x texels per thread
     uint threads;  // invocations that have work, a multiple of k_stump_neighbors
     uint groups;
     uint link;  // k_link_softmax or k_link_sigmoid
@@ -33,7 +33,7 @@ struct StumpParameters {
 const uint k_link_softmax = 0;
 const uint k_link_sigmoid = 1;
 
-// Invocations that stand side by side read neighboring quads.
+// Invocations that stand side by side read neighboring texels.
 const uint k_stump_neighbors = 8;
 
 #ifdef __cplusplus

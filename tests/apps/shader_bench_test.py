@@ -78,6 +78,13 @@ class ShaderBench(ProgramTest):
         self.bench("--filter", "context_geodesic")
         kept.unlink()
 
+    def test_what_changes_the_hosts_work_is_judged_by_whole_runs(self):
+        text = self.bench("--tune", "--filter", "stumps", "--json", "tuned.json").stdout
+        times_of = {v["parameter"]: v["times_of"] for v in self.report("tuned.json")["variants"]}
+        self.assertEqual(times_of.pop("bits"), "whole runs")
+        self.assertEqual(set(times_of.values()), {"the kernel"})
+        self.assertEqual(text.count("bits, by whole runs"), 1)
+
     def test_wrong_arguments_are_refused(self):
         self.refused("bench", "shaders", "--filter", "[", code=2, says=["'['", "--filter"])
         self.refused("bench", "shaders", "--filter", "nothing like it", code=2, says="--list")

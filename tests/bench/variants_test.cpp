@@ -32,16 +32,32 @@ TEST_F(Variants, AllValuesOfAllParametersAreComparedAndTheFastestIsTaken) {
     std::vector<std::string> known;
     const auto comparisons =
         compare_variants(device, kind_named("stump scoring"), 2000, KernelFilter(), k_short, known);
-    ASSERT_EQ(comparisons.size(), 3u);
+    ASSERT_EQ(comparisons.size(), 4u);
     EXPECT_EQ(known, std::vector<std::string>{"learn/stumps.comp"});
     for (const VariantComparison& comparison : comparisons) {
         EXPECT_GE(comparison.milliseconds.size(), 2u) << comparison.parameter;
         EXPECT_EQ(comparison.as_is.size(), k_short.repeats);
+        // What changes the host's work too is judged by all of it.
+        const bool by_runs = comparison.parameter == "bits";
+        EXPECT_EQ(comparison.judged == Judged::by_runs, by_runs) << comparison.parameter;
+        EXPECT_EQ(to_json(comparison).at("times_of"), by_runs ? "whole runs" : "the kernel");
         EXPECT_EQ(device.tuning().find(comparison.kernel, comparison.parameter), comparison.chosen);
         if (!comparison.chosen) continue;
         for (const auto& [value, milliseconds] : comparison.milliseconds)
             EXPECT_LE(median(comparison.milliseconds.at(*comparison.chosen)), median(milliseconds));
     }
+}
+
+// A whole run takes longer than its kernels, and is not among them.
+TEST_F(Variants, WholeRunsAreTimedBesideTheirKernels) {
+    Profiler profiler;
+    const Operation operation = kind_named("stump scoring").prepare(testing::shared_device(), profiler, 2000);
+    const Timed timed{"scoring", &operation, &profiler};
+    const OperationTimes times = time_in_turns(std::span(&timed, 1), k_short).front();
+    ASSERT_EQ(times.kernels.size(), 1u);
+    ASSERT_EQ(times.runs.size(), k_short.repeats);
+    for (std::size_t i = 0; i < k_short.repeats; ++i)
+        EXPECT_GT(times.runs[i], times.kernels.at("learn/stumps.comp")[i]);
 }
 
 TEST_F(Variants, KnownKernelsAreLeftAlone) {

@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -57,6 +59,19 @@ void expect_parity(StumpScorer& device, const BoostedStumps& classifier, const F
     for (std::size_t i = 0; i < expected.size(); ++i)
         ASSERT_NEAR(actual[i], expected[i], k_tolerance)
             << "item " << i / classifier.class_count << ", class " << i % classifier.class_count;
+}
+
+// A scorer of features of so many bits.
+std::unique_ptr<GpuStumpScorer> scorer_of_bits(std::uint32_t bits, std::uint32_t from_storage = 0,
+                                               std::size_t tile_bytes = std::size_t{1} << 28,
+                                               Profiler* profiler = nullptr) {
+    Device& device = testing::shared_device();
+    const Tuning kept = device.tuning();
+    device.tuning().set("learn/stumps.comp", "bits", bits);
+    device.tuning().set("learn/stumps.comp", "storage", from_storage);
+    auto scorer = std::make_unique<GpuStumpScorer>(device, profiler, tile_bytes);
+    device.tuning() = kept;
+    return scorer;
 }
 
 TEST(StumpParity, OddNumbersOfRows) {
@@ -216,13 +231,85 @@ TEST(StumpParity, ManyMatricesAreOneSubmission) {
 
 TEST(StumpParity, AGroupOverTheLimitIsASubmissionPerTile) {
     Random random(11);
-    Profiler profiler;
-    GpuStumpScorer scorer(testing::shared_device(), &profiler, std::size_t{25} * 4 * 256);
     Group group({100, 156, 256, 1, 254}, 25, 3, random);  // 767 rows
     BoostedStumps classifier = random_stumps(3, 50, 25, random);
     for (std::uint32_t c = 0; c < 25; ++c) classifier.stumps[c].feature = c;  // all are uploaded
-    scorer.probabilities_of_all(classifier, Link::softmax, 1.0f, group.matrices());
-    EXPECT_EQ(profiler.submissions(), 3u);
+    for (const std::uint32_t bits : {8u, 16u, 32u}) {
+        SCOPED_TRACE(bits);
+        Profiler profiler;
+        const auto scorer = scorer_of_bits(bits, 0, std::size_t{25} * bits / 8 * 256, &profiler);
+        scorer->probabilities_of_all(classifier, Link::softmax, 1.0f, group.matrices());
+        EXPECT_EQ(profiler.submissions(), 3u);
+        expect_as_one_by_one(*scorer, classifier, group);
+    }
+}
+
+// Of any number of bits features answer the same, so that sums are those of floats, bit for bit.
+void expect_the_same_of_all_bits(const BoostedStumps& classifier, const FeatureMatrix& features) {
+    std::vector<float> of_floats(features.rows * classifier.class_count);
+    scorer_of_bits(32)->probabilities(classifier, features, Link::softmax, 1.0f, of_floats);
+    for (const std::uint32_t bits : {8u, 16u, 32u})
+        for (const std::uint32_t from_storage : {0u, 1u}) {
+            SCOPED_TRACE(::testing::Message() << bits << " bits, from storage: " << from_storage);
+            const auto scorer = scorer_of_bits(bits, from_storage);
+            std::vector<float> actual(of_floats.size());
+            scorer->probabilities(classifier, features, Link::softmax, 1.0f, actual);
+            EXPECT_EQ(actual, of_floats);
+            expect_parity(*scorer, classifier, features, Link::softmax, 1.0f);
+        }
+}
+
+TEST(StumpPrecision, OddNumbersOfRows) {
+    Random random(14);
+    const BoostedStumps classifier = random_stumps(5, 100, 30, random);
+    for (const std::size_t rows : {0u, 1u, 3u, 15u, 16u, 17u, 127u, 128u, 129u, 1003u}) {
+        SCOPED_TRACE(rows);
+        expect_the_same_of_all_bits(classifier, random_features(rows, 30, random));
+    }
+}
+
+TEST(StumpPrecision, ValuesAtThresholds) {
+    constexpr float k_infinite = std::numeric_limits<float>::infinity(), k_largest = std::numeric_limits<float>::max();
+    Random random(15);
+    BoostedStumps classifier = random_stumps(4, 40, 3, random);
+    classifier.stumps[0].threshold = std::nextafter(k_largest, 0.0f);
+    classifier.stumps[1].threshold = -k_largest;
+    classifier.stumps[2].threshold = -0.0f;
+    FeatureMatrix features;
+    std::vector<float> values{std::numeric_limits<float>::quiet_NaN(), k_infinite, -k_infinite, 0.0f, -0.0f};
+    for (const Stump& stump : classifier.stumps)
+        for (const float towards : {stump.threshold, k_infinite, -k_infinite})
+            values.push_back(std::nextafter(stump.threshold, towards));
+    // Numbers next to zero are zero to some devices.
+    std::erase_if(values, [](float value) { return std::fpclassify(value) == FP_SUBNORMAL; });
+    features.rows = values.size();
+    for (const char* name : {"a", "b", "c"}) std::ranges::copy(values, features.add(name).begin());
+    expect_the_same_of_all_bits(classifier, features);
+}
+
+// `count` thresholds of one feature. All sums are multiples of 1/64 below 2^11, which floats hold exactly.
+BoostedStumps stumps_of_one_feature(std::uint32_t count, Random& random) {
+    BoostedStumps classifier{.class_count = 2, .stumps = {}, .elsewhere = std::vector<float>(std::size_t{2} * count)};
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const auto answer = static_cast<float>(random.index(3)) / 64 - 1.0f / 64;
+        classifier.stumps.push_back({0, static_cast<float>(i), answer, 0, 1 + random.index(2)});
+    }
+    return classifier;
+}
+
+// Where ranks have not enough bits, more are taken.
+TEST(StumpPrecision, AnyNumberOfThresholds) {
+    Random random(16);
+    for (const std::uint32_t count : {1u, 126u, 127u, 128u, 129u, 32'767u, 32'768u}) {
+        SCOPED_TRACE(count);
+        FeatureMatrix features;
+        features.rows = 37;
+        for (float& value : features.add("test"))
+            value = std::round(static_cast<float>(random.uniform(-1, count + 1.0)) * 2) / 2;
+        features.values[0] = static_cast<float>(count);
+        features.values[1] = static_cast<float>(count) - 1;
+        expect_the_same_of_all_bits(stumps_of_one_feature(count, random), features);
+    }
 }
 
 TEST(StumpParity, NothingOfAGroupIsScoredIfOneIsRefused) {

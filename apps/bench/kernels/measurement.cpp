@@ -81,16 +81,16 @@ void compare_and_time(Device& device, const OperationKind& kind, const KernelFil
     if (!measurement.fits()) return;
     const auto copy = prepare_reference(device, shaders::runtime_copy_comp, k_reference_vectors),
                multiply_add = prepare_reference(device, shaders::runtime_multiply_add_comp, k_reference_items);
-    const std::vector<KernelTimes> times =
+    const std::vector<OperationTimes> times =
         time_in_turns(std::vector<Timed>{{"operation", &operation, &profiler},
                                          {"copy", &copy->operation, &copy->profiler},
                                          {"multiply_add", &multiply_add->operation, &multiply_add->profiler}},
                       options);
     for (auto& [kernel, work] : operation.work())
-        if (filter.wants(kind, kernel) && times[0].contains(kernel))
-            measurement.kernels.push_back({kernel, times[0].at(kernel), work});
-    for (const KernelTimes& reference : {times[1], times[2]})
-        measurement.references.insert(reference.begin(), reference.end());
+        if (filter.wants(kind, kernel) && times[0].kernels.contains(kernel))
+            measurement.kernels.push_back({kernel, times[0].kernels.at(kernel), work});
+    for (const OperationTimes& reference : {times[1], times[2]})
+        measurement.references.insert(reference.kernels.begin(), reference.kernels.end());
 }
 
 }  // namespace

@@ -8,9 +8,13 @@
 
 #include "gpu/runtime/errors.h"
 #include "host/core/interrupt.h"
+#include "host/core/stopwatch.h"
 
 namespace exemplar {
 namespace {
+
+// Among a benchmark's counters, the others of which are kernels.
+constexpr std::string_view k_run = "run";
 
 // Google Benchmark takes what it does not take by function from a command line, once.
 void initialize() {
@@ -27,18 +31,19 @@ void initialize() {
 // The runs that are reported, which are not those that only find out how many a repeat takes.
 class Collector final : public benchmark::BenchmarkReporter {
   public:
-    explicit Collector(std::map<std::string, KernelTimes*> times) : times_(std::move(times)) {}
+    explicit Collector(std::map<std::string, OperationTimes*> times) : times_(std::move(times)) {}
     bool ReportContext(const Context&) override { return true; }  // NOLINT: named by Google Benchmark
     void ReportRuns(const std::vector<Run>& runs) override {      // NOLINT
         for (const Run& run : runs) {
             if (run.run_type != Run::RT_Iteration) continue;
-            KernelTimes& times = *times_.at(run.run_name.function_name);
-            for (const auto& [kernel, milliseconds] : run.counters) times[kernel].push_back(milliseconds.value);
+            OperationTimes& times = *times_.at(run.run_name.function_name);
+            for (const auto& [name, milliseconds] : run.counters)
+                (name == k_run ? times.runs : times.kernels[name]).push_back(milliseconds.value);
         }
     }
 
   private:
-    std::map<std::string, KernelTimes*> times_;
+    std::map<std::string, OperationTimes*> times_;
 };
 
 void time_one(benchmark::State& state, const Timed& timed) {
@@ -46,7 +51,9 @@ void time_one(benchmark::State& state, const Timed& timed) {
     for (auto _ : state) {
         check_interrupt();
         timed.profiler->reset();
+        const Stopwatch watch;
         timed.operation->run();
+        sums[std::string(k_run)] += 1e3 * watch.wall();
         double all = 0;
         for (const auto& [kernel, entry] : timed.profiler->entries()) {
             sums[kernel] += entry.milliseconds;
@@ -54,7 +61,7 @@ void time_one(benchmark::State& state, const Timed& timed) {
         }
         state.SetIterationTime(1e-3 * all);
     }
-    for (const auto& [kernel, sum] : sums) state.counters[kernel] = sum / static_cast<double>(state.iterations());
+    for (const auto& [name, sum] : sums) state.counters[name] = sum / static_cast<double>(state.iterations());
 }
 
 void require_timestamps(const Timed& timed) {
@@ -67,10 +74,10 @@ void require_timestamps(const Timed& timed) {
 
 }  // namespace
 
-std::vector<KernelTimes> time_in_turns(std::span<const Timed> timed, const TimingOptions& options) {
+std::vector<OperationTimes> time_in_turns(std::span<const Timed> timed, const TimingOptions& options) {
     initialize();
-    std::vector<KernelTimes> times(timed.size());
-    std::map<std::string, KernelTimes*> by_name;
+    std::vector<OperationTimes> times(timed.size());
+    std::map<std::string, OperationTimes*> by_name;
     for (std::size_t i = 0; i < timed.size(); ++i) {
         require_timestamps(timed[i]);
         by_name[timed[i].name] = &times[i];

@@ -65,20 +65,23 @@ std::vector<VariantComparison> time_variants(Device& device, const OperationKind
     std::vector<Timed> timed;
     timed.reserve(variants.size());
     for (const auto& variant : variants) timed.push_back({variant->name(), &variant->operation, &variant->profiler});
-    const std::vector<KernelTimes> times = time_in_turns(timed, options);
+    const std::vector<OperationTimes> times = time_in_turns(timed, options);
     std::vector<VariantComparison> comparisons;
     for (const std::string& kernel : kernels) {
-        if (!times[0].contains(kernel)) continue;
+        if (!times[0].kernels.contains(kernel)) continue;
+        const auto times_of = [&](std::size_t variant) {
+            return parameter.judged == Judged::by_runs ? times[variant].runs : times[variant].kernels.at(kernel);
+        };
         VariantComparison& comparison =
             comparisons.emplace_back(VariantComparison{.operation = std::string(kind.name),
                                                        .kernel = kernel,
                                                        .parameter = std::string(parameter.name),
+                                                       .judged = parameter.judged,
                                                        .size = size,
-                                                       .as_is = times[0].at(kernel),
+                                                       .as_is = times_of(0),
                                                        .milliseconds = {},
                                                        .chosen = std::nullopt});
-        for (std::size_t i = 1; i < variants.size(); ++i)
-            comparison.milliseconds[*variants[i]->value] = times[i].at(kernel);
+        for (std::size_t i = 1; i < variants.size(); ++i) comparison.milliseconds[*variants[i]->value] = times_of(i);
     }
     return comparisons;
 }
@@ -134,6 +137,7 @@ nlohmann::ordered_json to_json(const VariantComparison& comparison) {
     nlohmann::ordered_json json = {{"operation", comparison.operation},
                                    {"kernel", comparison.kernel},
                                    {"parameter", comparison.parameter},
+                                   {"times_of", comparison.judged == Judged::by_runs ? "whole runs" : "the kernel"},
                                    {"size", comparison.size},
                                    {"ms_as_it_was", comparison.as_is}};
     json["variants"] = nlohmann::ordered_json::array();

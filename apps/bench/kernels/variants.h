@@ -12,6 +12,7 @@ namespace exemplar {
 /// The variants of a kernel that differ in one parameter.
 struct VariantComparison {
     std::string operation, kernel, parameter;
+    Judged judged = Judged::by_kernel;  ///< what the times are of
     std::size_t size = 0;
     std::vector<double> as_is;                                  ///< milliseconds of each repeat, as it was before
     std::map<std::uint32_t, std::vector<double>> milliseconds;  ///< by value

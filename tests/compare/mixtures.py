@@ -63,7 +63,7 @@ def maximize_expectation(inputs, targets, weights, gate=constant_gate, iteration
         log = log_prior - squares / (2 * variance) - dimensions / 2 * numpy.log(2 * numpy.pi * variance)
         likelihood = logsumexp(log, axis=1)
         posterior = numpy.exp(log - likelihood[:, None])
-        if iteration == iterations or likelihood.mean() - last < 1e-6:
+        if iteration == iterations or likelihood.mean() - last < 1e-5:
             return Fit(weights, posterior, likelihood.mean())
         last = likelihood.mean()
         # What one component alone explains must not make the variance vanish.
@@ -202,8 +202,8 @@ def by_ours(data):
     return found["predicted"], found["rule"]
 
 
-def by_em(data, gate=constant_gate):
-    fit = best_start(data.inputs(), data.direction, data.starts(10), gate=gate)
+def by_em(data, gate=constant_gate, starts=10):
+    fit = best_start(data.inputs(), data.direction, data.starts(starts), gate=gate)
     return data.directions(fit.weights), fit.posterior.argmax(axis=1)
 
 
@@ -228,7 +228,7 @@ def by_clusters(data):
 STROKE_LEARNERS = {
     "mixture, here": by_ours,
     "EM": by_em,
-    "EM, gate by place": lambda data: by_em(data, PlaceGate(data.place)),
+    "EM, gate by place": lambda data: by_em(data, PlaceGate(data.place), starts=3),  # slow
     "clusters, then ridge": by_clusters,
     "one ridge": by_one_ridge,
 }

@@ -182,6 +182,7 @@ def draw(path):
         right.plot(data.test[0, order, 1], values[0, order], color=color, linewidth=0.8, label=f"{name}, 10 irrelevant inputs")
     right.plot(data.test[0, order, 1], data.truth[0, order], color="tab:cyan", linestyle=":", linewidth=2, label="truth")
     right.plot(data.x[0, :, 1], data.y[0], "k.")
+    right.set_ylim(-1.4, 1.5)  # room for the legend
     for axes in (left, right):
         axes.legend(frameon=False)
     figure.savefig(path, metadata={"Date": None} if str(path).endswith(".svg") else None)

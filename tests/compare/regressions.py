@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compares regressions on data whose truth is known (thesis Figs. 2.2 and Sec. 2.4.3).
+"""Compares regressions on data whose truth is known (thesis Fig. 2.2 and Sec. 2.4.3).
 
     tests/compare/regressions.py [--sets 30] [--picture docs/compare_regressions.png]
 
@@ -19,13 +19,19 @@ from sklearn.exceptions import ConvergenceWarning
 from sklearn.linear_model import LassoCV, LinearRegression, RidgeCV
 from sklearn.model_selection import GridSearchCV
 from sklearn.pipeline import make_pipeline
-from sklearn.preprocessing import StandardScaler
+from sklearn.preprocessing import FunctionTransformer, StandardScaler
 from xgboost import XGBRegressor
 
 import programs
 
+POWERS = {1: "x", 2: "x, x²", 10: "x to x¹⁰"}
 OURS = {"least squares, here": "least_squares", "ridge, here": "ridge", "network, here": "network"}
 TEST_ROWS = 200
+
+
+def with_powers(x):
+    """Inputs, their powers as the product takes them, and their logarithms."""
+    return numpy.concatenate([x, x ** 2, 1 / x, 1 / x ** 2, numpy.log(x)], axis=1)
 
 
 def boosted(depth):
@@ -34,11 +40,16 @@ def boosted(depth):
     return GridSearchCV(XGBRegressor(max_depth=depth, learning_rate=0.1, n_jobs=1), search, cv=3, scoring="neg_mean_squared_error")
 
 
+def lasso(least=1e-4):
+    """`least`: of the weights of the penalty that are tried, as a share of the greatest."""
+    return LassoCV(cv=5, eps=least, n_alphas=50, max_iter=5000, random_state=1)
+
+
 def peers():
     return {
         "least squares": LinearRegression(),
         "ridge": make_pipeline(StandardScaler(), RidgeCV(alphas=numpy.logspace(-5, 3, 17))),
-        "lasso": make_pipeline(StandardScaler(), LassoCV(cv=5, eps=1e-4, n_alphas=50, max_iter=5000, random_state=1)),
+        "lasso": make_pipeline(StandardScaler(), lasso()),
         "boosted stumps": boosted(1),
         "boosted trees": boosted(3),
     }
@@ -118,7 +129,7 @@ def curve_errors(sets):
     columns = {}
     for powers, noise, rows in [(1, 0.2, 20), (2, 0.2, 20), (10, 0.2, 20), (10, 0.05, 20), (10, 0.2, 100)]:
         data = curve_sets(sets, rows, noise, powers)
-        columns[f"{powers} powers, noise {noise}, {rows} samples"] = median_errors(data, OURS, peers())
+        columns[f"{POWERS[powers]}, noise {noise}, {rows} samples"] = median_errors(data, OURS, peers())
     return columns
 
 
@@ -131,11 +142,13 @@ def irrelevant_errors(sets):
 
 
 def product_errors(sets):
-    """All peers learn the logarithm, as the product does; of the inputs, or of their logarithms."""
+    """All peers learn the logarithm of the target, as the product does."""
     columns = {}
     for irrelevant, noise, rows in [(3, 0.1, 200), (30, 0.1, 200), (30, 0.4, 200), (30, 0.1, 2000)]:
         data = product_sets(sets, rows, noise, irrelevant)
         others = {name: Logarithm(model) for name, model in peers().items()}
+        others["lasso of powers and logarithms"] = Logarithm(
+            make_pipeline(FunctionTransformer(with_powers), StandardScaler(), lasso(1e-2)))
         columns[f"{irrelevant} irrelevant, noise {noise}, {rows} samples"] = median_errors(
             data, {"product, here": "product"}, others)
     return columns
@@ -154,10 +167,9 @@ def draw(path):
     from matplotlib import pyplot
     pyplot.rcParams.update({"font.size": 8, "svg.hashsalt": "exemplar"})
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(9, 3.2), layout="constrained")
-    names = {1: "x", 2: "x, x²", 10: "x to x¹⁰"}
-    for powers, color in zip(names, ["tab:red", "tab:green", "tab:purple"]):
+    for powers, color in zip(POWERS, ["tab:red", "tab:green", "tab:purple"]):
         data = curve_sets(1, 20, 0.2, powers, seed=4)
-        left.plot(data.test[0, :, 0], data.by_ours("least_squares")[0], color=color, label=f"least squares, {names[powers]}")
+        left.plot(data.test[0, :, 0], data.by_ours("least_squares")[0], color=color, label=f"least squares, {POWERS[powers]}")
     left.plot(data.test[0, :, 0], data.by_ours("ridge")[0], color="tab:purple", linestyle="--", label="ridge, x to x¹⁰")
     left.plot(data.test[0, :, 0], data.truth[0], color="tab:cyan", linestyle=":", label="truth")
     left.plot(data.x[0, :, 0], data.y[0], "k.")
@@ -170,6 +182,7 @@ def draw(path):
         right.plot(data.test[0, order, 1], values[0, order], color=color, linewidth=0.8, label=f"{name}, 10 irrelevant inputs")
     right.plot(data.test[0, order, 1], data.truth[0, order], color="tab:cyan", linestyle=":", linewidth=2, label="truth")
     right.plot(data.x[0, :, 1], data.y[0], "k.")
+    right.set_ylim(-1.4, 1.5)  # room for the legend
     for axes in (left, right):
         axes.legend(frameon=False)
     figure.savefig(path, metadata={"Date": None} if str(path).endswith(".svg") else None)

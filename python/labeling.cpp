@@ -92,8 +92,8 @@ LabelingModel train(const std::vector<MeshPointer>& meshes, const TrainOptions& 
 
 ModelPointer train_model(const std::vector<MeshPointer>& meshes, std::uint64_t seed, std::int64_t rounds,
                          std::int64_t patience, std::int64_t stages, std::int64_t bins, std::int64_t rows,
-                         double feature_fraction, double shrinkage, bool linear, std::int64_t samples,
-                         bool orientation, const fs::path& cache, const std::string& device) {
+                         double feature_fraction, double shrinkage, bool linear, std::int64_t samples, bool orientation,
+                         const fs::path& cache, const std::string& device) {
     constexpr std::int64_t k_any = std::numeric_limits<std::int64_t>::max();
     require_range("rounds", rounds, std::int64_t{1}, std::int64_t{100'000});
     require_range("patience", patience, std::int64_t{1}, k_any);
@@ -209,8 +209,8 @@ void add_labeling(py::module_& module) {
         py::arg("rounds") = k_usual.rounds, py::arg("patience") = k_usual.patience,
         py::arg("stages") = k_usual.max_stages, py::arg("bins") = k_usual.bins, py::arg("rows") = k_usual.rows_per_mesh,
         py::arg("feature_fraction") = k_usual.feature_fraction, py::arg("shrinkage") = k_usual.shrinkage,
-        py::arg("linear") = k_usual.linear, py::arg("samples") = k_usual.features.samples, py::arg("orientation") = false, py::arg("cache") = "",
-        py::arg("device") = "",
+        py::arg("linear") = k_usual.linear, py::arg("samples") = k_usual.features.samples,
+        py::arg("orientation") = false, py::arg("cache") = "", py::arg("device") = "",
         "Learns to label from labeled meshes (see Mesh.with_labels() and read_labeled()): labels of equal names are\n"
         "one label, and faces with -1 teach nothing. The options are those of `exemplar label train`: `rounds` of\n"
         "boosting for each classifier (1 to 100,000), `patience` (rounds without gain that end boundary classifiers),\n"

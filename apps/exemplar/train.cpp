@@ -78,9 +78,10 @@ void add_training_options(CLI::App& command, TrainOptions& options, std::filesys
     command.add_option("--shrinkage", options.shrinkage, "what each stump's response is multiplied with")
         ->capture_default_str()
         ->check(CLI::Range(0.01, 1.0));
-    command.add_flag("--linear,!--no-linear", options.linear,
-                     "pool the boosted stumps of faces with a linear classifier where that is better on held-out meshes "
-                     "(the usual); --no-linear has stumps alone");
+    command.add_flag_callback(
+        "--no-linear", [&options] { options.linear = false; },
+        "boosted stumps alone, not pooled with linear classifiers where that is better on held-out "
+        "meshes");
     command
         .add_option("--samples", options.features.samples, "faces that stand for the surface in distance statistics")
         ->capture_default_str()

@@ -21,7 +21,9 @@ constexpr std::array<float, 7> k_ratios{0, 0.5F, 1, 2, 4, 8, 16};
 constexpr float k_least_probability = 1e-6F;
 constexpr std::array<Link, 1> k_links{Link::softmax};
 
-float log_of(float probability) { return std::log(std::max(probability, k_least_probability)); }
+float log_of(float probability) {
+    return std::log(std::max(probability, k_least_probability));
+}
 
 /// Every so many of the rows that at most k_most_rows are left.
 std::vector<std::uint32_t> some_of(std::span<const std::uint32_t> rows) {
@@ -45,8 +47,7 @@ HeldOut hold_out(const LinearRows& data, std::span<const float> stumps, std::spa
         for (const std::uint32_t row : rows) {
             held.label.push_back(data.label[row]);
             held.weight.push_back(judged[row]);
-            for (const float p : stumps.subspan(row * data.classes, data.classes))
-                held.log_stumps.push_back(log_of(p));
+            for (const float p : stumps.subspan(row * data.classes, data.classes)) held.log_stumps.push_back(log_of(p));
         }
     return held;
 }

@@ -13,8 +13,8 @@ namespace exemplar {
 /// What a linear classifier adds to the probabilities of boosted stumps. Stumps tell labels apart by thresholds of
 /// single features and lose small parts that only many features together show; a linear classifier finds those, and
 /// knows no thresholds. The two are pooled by their logarithms: P_c is proportional to
-/// exp(scale * (log P_stumps,c + ratio * L_c)). Labels that training saw in one fold alone keep what the stumps say: how
-/// much to believe L_c of them cannot be judged on held-out rows.
+/// exp(scale * (log P_stumps,c + ratio * L_c)). Labels that training saw in one fold alone keep what the stumps say:
+/// how much to believe L_c of them cannot be judged on held-out rows.
 struct LinearOpinion {
     LinearClassifier classifier;  ///< its class_count is 0 where the stumps alone count
     float ratio = 0;              ///< >= 0
@@ -32,15 +32,15 @@ void pool(const LinearOpinion& opinion, const FeatureMatrix& features, std::span
 struct FoldedLinear {
     LinearOpinion mean;
     std::vector<LinearOpinion> without_fold;
-    double ridge = 0;          ///< see LinearTraining::solve
+    double ridge = 0;            ///< see LinearTraining::solve
     double loss = 0, error = 0;  ///< of held-out rows, see calibrate
 };
 
-/// Fits linear classifiers, and chooses their ridge and how they are pooled by the log loss of held-out rows (at most some
-/// ten thousand of `data`, evenly chosen); none if pooling does not lower that loss, or no two labels can be judged.
-/// `stumps`: probabilities of every row of data.features from the stumps that never saw it, rows x classes. `judged`: the
-/// weight of each row in the loss. `silent[fold]`: that fold's classifier has no say in the mean, as it does not know
-/// all labels.
+/// Fits linear classifiers, and chooses their ridge and how they are pooled by the log loss of held-out rows (at most
+/// some ten thousand of `data`, evenly chosen); none if pooling does not lower that loss, or no two labels can be
+/// judged. `stumps`: probabilities of every row of data.features from the stumps that never saw it, rows x classes.
+/// `judged`: the weight of each row in the loss. `silent[fold]`: that fold's classifier has no say in the mean, as it
+/// does not know all labels.
 std::optional<FoldedLinear> fit_linear(const LinearRows& data, std::span<const float> stumps,
                                        std::span<const float> judged, const std::vector<bool>& silent);
 

@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* k_kind = "exemplar mesh labeling";
-constexpr std::size_t k_most_stages = 64;     ///< bounds against absurd files
+constexpr std::size_t k_most_stages = 64;  ///< bounds against absurd files
 constexpr float k_largest_score = 1e30F;
 
 Json describe(const LabelingModel& model) {
@@ -126,8 +126,8 @@ LinearOpinion get_linear(const TensorFile& file, const std::string& name, std::s
     linear.weight = file.get<float>(name + ".weight", {features, classes});
     linear.constant = file.get<float>(name + ".constant", {classes});
     const auto ratio_scale = file.get<float>(name + ".ratio_scale", {2});
-    for (const auto* values : {&std::as_const(linear.mean), &std::as_const(linear.inverse), &std::as_const(linear.weight),
-                               &std::as_const(linear.constant), &ratio_scale})
+    for (const auto* values : {&std::as_const(linear.mean), &std::as_const(linear.inverse),
+                               &std::as_const(linear.weight), &std::as_const(linear.constant), &ratio_scale})
         require_finite(file, name, *values);
     opinion.ratio = ratio_scale[0], opinion.scale = ratio_scale[1];
     if (!(opinion.ratio >= 0) || !(opinion.scale > 0)) inconsistent(file, name + ".ratio_scale is negative");

@@ -204,8 +204,8 @@ PerMesh train_unary(const LabeledCorpus& corpus, std::vector<MeshFeatures>& feat
         backend.context.accumulate(features[m].context, probabilities, classes,
                                    context_columns(features[m].unary, model.unary_names.size(), context));
     };
-    return train_cascade(std::move(cascade), options, backend.scorer, model.unary, model.linear,
-                         &model.averaged_labels, report);
+    return train_cascade(std::move(cascade), options, backend.scorer, model.unary, model.linear, &model.averaged_labels,
+                         report);
 }
 
 /// What the boundary classifiers learn from: per mesh and edge 0 = same label, 1 = boundary, -1 = unknown, and a weight
@@ -276,7 +276,8 @@ PerMesh train_pairwise(const LabeledCorpus& corpus, std::vector<MeshFeatures>& f
             context_columns(features[m].pairwise, model.pairwise_names.size(), edge_context_names()));
     };
     std::vector<LinearOpinion> none;
-    PerMesh boundary = train_cascade(std::move(cascade), options, backend.scorer, model.pairwise, none, nullptr, report);
+    PerMesh boundary =
+        train_cascade(std::move(cascade), options, backend.scorer, model.pairwise, none, nullptr, report);
     for (std::vector<float>& probabilities : boundary) probabilities = boundary_column(probabilities);
     return boundary;
 }

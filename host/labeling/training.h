@@ -54,10 +54,10 @@ struct TrainReport {
 /// mesh gets from the classifier that never saw it feed the contextual features of the next stage, the choice of the
 /// number of stages, the link between score and probability, and the CRF's parameters; their log loss chooses the
 /// number of rounds of the boundary classifiers, and whether and how the classifiers of faces are pooled with linear
-/// ones (LinearOpinion), which the thesis does not have. The final classifiers are the mean of those of the folds and one
-/// trained on all meshes. With 2 to 4 meshes there are as many folds as meshes; a single mesh is cut into patches of
-/// faces that serve as folds. What is said of labels that one fold has alone cannot be validated, nor is there context
-/// to learn from: for these the mean of all stages counts.
+/// ones (LinearOpinion), which the thesis does not have. The final classifiers are the mean of those of the folds and
+/// one trained on all meshes. With 2 to 4 meshes there are as many folds as meshes; a single mesh is cut into patches
+/// of faces that serve as folds. What is said of labels that one fold has alone cannot be validated, nor is there
+/// context to learn from: for these the mean of all stages counts.
 ///
 /// Throws DataError if there is no mesh, no labeled face, or more than k_max_classes labels.
 LabelingModel train_labeling(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features,

@@ -71,12 +71,14 @@ void score(const LinearClassifier& classifier, const FeatureMatrix& features, st
 }  // namespace
 
 void linear_scores(const LinearClassifier& classifier, const FeatureMatrix& features, std::span<float> out) {
-    score(classifier, features, features.rows, [](std::size_t i) { return i; }, out);
+    score(
+        classifier, features, features.rows, [](std::size_t i) { return i; }, out);
 }
 
 void linear_scores(const LinearClassifier& classifier, const FeatureMatrix& features,
                    std::span<const std::uint32_t> rows, std::span<float> out) {
-    score(classifier, features, rows.size(), [&](std::size_t i) { return rows[i]; }, out);
+    score(
+        classifier, features, rows.size(), [&](std::size_t i) { return rows[i]; }, out);
 }
 
 LinearTraining::LinearTraining(const LinearRows& data) : classes_(data.classes) {
@@ -117,8 +119,8 @@ Eigen::MatrixXd LinearTraining::products_of(const LinearRows& data, std::span<co
             const std::uint32_t f = used_[static_cast<std::size_t>(u)];
             const std::span<const float> column = data.features.column(f);
             for (Eigen::Index k = 0; k < part.cols(); ++k)
-                part(u, k) = double{standardized(column[chunk[static_cast<std::size_t>(k)]], standard_.mean[f],
-                                                 standard_.inverse[f])};
+                part(u, k) = double{
+                    standardized(column[chunk[static_cast<std::size_t>(k)]], standard_.mean[f], standard_.inverse[f])};
         }
         for (Eigen::Index k = 0; k < part.cols(); ++k)
             part.col(k) *= std::sqrt(double{data.weight[chunk[static_cast<std::size_t>(k)]]} / total);
@@ -146,8 +148,7 @@ LinearClassifier LinearTraining::solve(double ridge, std::size_t without_fold) c
     const Eigen::RowVectorXd target = sums.row(inputs).tail(classes) / total;
     Eigen::MatrixXd gram = sums.topLeftCorner(inputs, inputs) - total * mean * mean.transpose();
     gram.diagonal().array() += ridge * total;
-    const Eigen::MatrixXd weight =
-        gram.llt().solve(sums.topRightCorner(inputs, classes) - total * mean * target);
+    const Eigen::MatrixXd weight = gram.llt().solve(sums.topRightCorner(inputs, classes) - total * mean * target);
     for (Eigen::Index u = 0; u < inputs; ++u)
         for (Eigen::Index c = 0; c < classes; ++c)
             result.weight[used_[static_cast<std::size_t>(u)] * classes_ + static_cast<std::size_t>(c)] =

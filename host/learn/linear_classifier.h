@@ -40,9 +40,9 @@ struct LinearRows {
     std::size_t classes, fold_count;
 };
 
-/// Ridge regression (thesis Eq. 2.19) as a discriminant function (Sec. 2.3.1): the target is 1 where a row has the label
-/// and 0 elsewhere. Fits all rows or all but those of one fold; the rows are read once, as their sums of products per
-/// fold serve any ridge.
+/// Ridge regression (thesis Eq. 2.19) as a discriminant function (Sec. 2.3.1): the target is 1 where a row has the
+/// label and 0 elsewhere. Fits all rows or all but those of one fold; the rows are read once, as their sums of products
+/// per fold serve any ridge.
 class LinearTraining {
   public:
     /// Means and deviations are those of all rows, weighted; features that do not vary are left out. Throws UsageError

@@ -142,13 +142,25 @@ TEST(LabelingModelFile, InconsistentContentIsRefused) {
             f.add("unary.0.threshold_above_below", {1, 3}, std::vector<float>{0, NAN, 0});
         },
         [](File& f) { f.tensors.erase("linear.1.mean"); },
-        [](File& f) { f.add("linear.1.constant", {3}, std::vector<float>{0, 0, 0}); },
+        [](File& f) {
+            f.add("linear.1.constant", {3}, std::vector<float>{0, 0, 0});
+        },
         [](File& f) { f.add("linear.1.mean", {72}, std::vector<float>(72, NAN)); },
-        [](File& f) { f.add("linear.1.weight", {72, 2}, std::vector<float>(144, 1e30F)); },
-        [](File& f) { f.add("linear.1.ratio_scale", {2}, std::vector<float>{1, 0}); },
-        [](File& f) { f.add("linear.1.ratio_scale", {2}, std::vector<float>{-1, 1}); },
-        [](File& f) { f.add("linear.1.ratio_scale", {2}, std::vector<float>{1e38F, 1e38F}); },
-        [](File& f) { f.add("linear.0.weight", {72, 2}, std::vector<float>(144, 1)); },
+        [](File& f) {
+            f.add("linear.1.weight", {72, 2}, std::vector<float>(144, 1e30F));
+        },
+        [](File& f) {
+            f.add("linear.1.ratio_scale", {2}, std::vector<float>{1, 0});
+        },
+        [](File& f) {
+            f.add("linear.1.ratio_scale", {2}, std::vector<float>{-1, 1});
+        },
+        [](File& f) {
+            f.add("linear.1.ratio_scale", {2}, std::vector<float>{1e38F, 1e38F});
+        },
+        [](File& f) {
+            f.add("linear.0.weight", {72, 2}, std::vector<float>(144, 1));
+        },
         [](File& f) { f.add("unary.0.classes", {1}, std::vector<std::uint64_t>{8}); },
         [](File& f) { replace(f.metadata["model"], "\"kappa\":", "\"kappa\":-"); },
         [](File& f) { replace(f.metadata["model"], "\"samples\":", "\"samples\":-"); },

@@ -70,8 +70,8 @@ Eigen::VectorXd by_hand(const Data& data, const LinearClassifier& standard, doub
     for (std::size_t r = 0; r < rows.size(); ++r) {
         x(r, 0) = 1;
         for (std::size_t f = 0; f < k_inputs; ++f)
-            x(r, f + 1) = std::clamp(
-                (data.features.column(f)[rows[r]] - standard.mean[f]) * standard.inverse[f], -5.0F, 5.0F);
+            x(r, f + 1) =
+                std::clamp((data.features.column(f)[rows[r]] - standard.mean[f]) * standard.inverse[f], -5.0F, 5.0F);
         y[r] = data.label[rows[r]] == label;
         w[r] = data.weight[rows[r]];
     }
@@ -104,7 +104,8 @@ TEST(LinearClassifier, TellsLabelsApartThatSumsOfFeaturesTell) {
 TEST(LinearClassifier, TargetsAddUpToOneInEveryRow) {
     const Data data;
     const std::vector<float> scores = scores_of(LinearTraining(data.all()).solve(1e-3), data.features);
-    for (std::size_t i = 0; i < k_rows; ++i) EXPECT_NEAR(scores[3 * i] + scores[3 * i + 1] + scores[3 * i + 2], 1, 1e-4);
+    for (std::size_t i = 0; i < k_rows; ++i)
+        EXPECT_NEAR(scores[3 * i] + scores[3 * i + 1] + scores[3 * i + 2], 1, 1e-4);
 }
 
 TEST(LinearClassifier, UnitsMakeNoDifference) {

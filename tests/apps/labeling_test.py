@@ -53,6 +53,17 @@ class Train(WithModel):
             shutil.copy(ply.with_name(f"{ply.stem}_labels.txt"), beside)
         self.assertEqual(self.train("within", "from_ply"), self.train("beside", "from_text"))
 
+    def test_stumps_may_stay_alone(self):
+        pooled = self.train("cups", "pooled", "--json", "pooled.json")
+        alone = self.train("cups", "alone", "--no-linear", "--json", "alone.json")
+        self.assertIn(b"linear.0.weight", pooled)
+        self.assertNotIn(b"linear.0.weight", alone)
+        stages = {name: json.loads((self.folder / f"{name}.json").read_text())["classifiers"] for name in ("pooled", "alone")}
+        self.assertLess(stages["pooled"][0]["validation_loss"], stages["pooled"][0]["stumps_loss"])
+        for stage in stages["alone"]:
+            self.assertEqual(stage["validation_loss"], stage["stumps_loss"])
+        self.call("label", "apply", "alone", self.cup, "--out", "by_stumps")
+
     def test_one_mesh_is_enough_and_one_label_is_not(self):
         self.train(self.cup, "one")
         single = self.folder / "single"

@@ -226,8 +226,7 @@ void add_bench_shaders_command(CLI::App& bench) {
     command->add_flag(
         "--tune", options->tune,
         "compare variants of kernels (group sizes, items per invocation, how inputs are read and how many bits they "
-        "have) and keep "
-        "the fastest for this device");
+        "have) and keep the fastest for this device");
     command->add_option("--sizes", options->sizes, "how many items, instead of the usual three sizes")
         ->check(whole_number(64, 4'000'000))
         ->type_name("N");

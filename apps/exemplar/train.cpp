@@ -80,8 +80,7 @@ void add_training_options(CLI::App& command, TrainOptions& options, std::filesys
         ->check(CLI::Range(0.01, 1.0));
     command.add_flag_callback(
         "--no-linear", [&options] { options.linear = false; },
-        "boosted stumps alone, not pooled with linear classifiers where that is better on held-out "
-        "meshes");
+        "boosted stumps alone, not pooled with linear classifiers where that is better on held-out meshes");
     command
         .add_option("--samples", options.features.samples, "faces that stand for the surface in distance statistics")
         ->capture_default_str()

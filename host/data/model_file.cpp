@@ -19,7 +19,7 @@ void require_finite(const TensorFile& file, const std::string& name, const std::
         if (!std::isfinite(value)) inconsistent(file, name + " holds a value that is not finite");
 }
 
-int require_version(const TensorFile& file, const std::string& key, int oldest, int newest, const std::string& mend) {
+void require_version(const TensorFile& file, const std::string& key, int oldest, int newest, const std::string& mend) {
     int version = 0;
     try {
         version = std::stoi(file.meta(key));
@@ -30,7 +30,6 @@ int require_version(const TensorFile& file, const std::string& key, int oldest, 
         throw ModelError(fmt::format("{}: {} is {}, this program knows {}; {}", file.path, key, version,
                                      oldest < newest ? fmt::format("{} to {}", oldest, newest) : std::to_string(newest),
                                      version > newest ? "use a newer Exemplar" : mend));
-    return version;
 }
 
 void add_classifier(TensorFile& file, const std::string& name, const CalibratedStumps& classifier) {

@@ -14,8 +14,8 @@ namespace exemplar {
 /// Throws ModelError if one of the values is not finite.
 void require_finite(const TensorFile& file, const std::string& name, const std::vector<float>& values);
 /// Throws ModelError unless the metadata of that key is a version this program knows, `oldest` to `newest`; `mend` says
-/// what to do with an older file. Returns it.
-int require_version(const TensorFile& file, const std::string& key, int oldest, int newest, const std::string& mend);
+/// what to do with an older file.
+void require_version(const TensorFile& file, const std::string& key, int oldest, int newest, const std::string& mend);
 /// The same where one version is known.
 inline void require_version(const TensorFile& file, const std::string& key, int known, const std::string& mend) {
     require_version(file, key, known, known, mend);

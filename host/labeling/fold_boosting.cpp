@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 #include "host/core/errors.h"
@@ -18,8 +17,9 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_judged_rounds = 10;  // after the first ten, held-out rows are judged every so many rounds
-constexpr std::size_t k_blind_rounds = 50;   // where nothing can be held out
+constexpr std::size_t k_judged_rounds = 10;   // after the first ten, held-out rows are judged every so many rounds
+constexpr std::size_t k_linear_rows = 32768;  // most that a linear classifier looks at: neighboring faces are alike
+constexpr std::size_t k_blind_rounds = 50;    // where nothing can be held out
 /// Share of the scale that scores keep where the classifier has learned from the very items: it is too sure of them.
 constexpr float k_seen_scale = 0.5F;
 
@@ -212,7 +212,8 @@ RoundChoice choose_rounds(const Pool& pool, FoldBoosters& boosters, const FoldBo
         const Calibration now = scores.judge(usable);
         choice.curve.push_back({round, now.loss, now.error});
         if (options.patience == 0 || choice.rounds == 0 || now.loss < choice.calibration.loss)
-            choice.rounds = round, choice.calibration = now, choice.scores = scores.scores();
+            choice.rounds = round, choice.calibration = now;
+        if (options.linear && choice.rounds == round) choice.scores = scores.scores();
         if (options.patience > 0 && round >= choice.rounds + options.patience) break;
     }
     if (std::isnan(choice.calibration.loss))  // nothing could be held out: stay cautious
@@ -227,8 +228,9 @@ std::optional<FoldedLinear> fit_beside(const Pool& pool, const RoundChoice& choi
     if (std::isnan(choice.calibration.loss)) return std::nullopt;
     std::vector<float> stumps = choice.scores;
     scores_to_probabilities(stumps, options.classes, choice.calibration.link, choice.calibration.scale);
-    std::vector<std::uint32_t> rows(pool.label.size());
-    std::iota(rows.begin(), rows.end(), 0U);
+    const std::size_t step = std::max<std::size_t>(1, (pool.label.size() + k_linear_rows - 1) / k_linear_rows);
+    std::vector<std::uint32_t> rows;
+    for (std::size_t row = 0; row < pool.label.size(); row += step) rows.push_back(static_cast<std::uint32_t>(row));
     std::vector<bool> silent;
     for (std::size_t fold = 0; fold < options.folds; ++fold) silent.push_back(!labels.of_fold_alone(fold).empty());
     return fit_linear({pool.features, rows, pool.label, pool.weight, pool.fold, options.classes, options.folds}, stumps,
@@ -304,7 +306,10 @@ FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const
     result.loss = result.stumps_loss = choice.calibration.loss, result.error = choice.calibration.error;
     result.curve = std::move(choice.curve);
     const auto linear = options.linear ? fit_beside(pool, choice, labels, options) : std::nullopt;
-    if (linear) result.linear = linear->mean, result.loss = linear->loss, result.error = linear->error;
+    if (linear) {
+        result.linear = linear->mean;
+        result.loss = linear->loss, result.error = linear->error, result.stumps_loss = linear->stumps_loss;
+    }
     result.out_of_fold = score_out_of_fold(meshes, of_fold, result.classifier, linear, result.of_one_fold, labels,
                                            options.classes, scorer);
     return result;

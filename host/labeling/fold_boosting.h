@@ -53,7 +53,7 @@ struct FoldBoostingResult {
     std::vector<HeldOutPoint> curve;         ///< up to where the search for the number of rounds ended
     double loss = 0;                         ///< weighted log loss of held-out items; NaN if nothing could be held out
     double error = 0;                        ///< weighted share of wrong labels; likewise
-    double stumps_loss = 0;                  ///< the loss of the stumps alone
+    double stumps_loss = 0;                  ///< the loss of the stumps alone, on the same items
 };
 
 /// Boosts one classifier per fold and one on everything (see train_labeling). The log loss of the held-out items, after

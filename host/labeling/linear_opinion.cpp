@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
@@ -14,23 +13,14 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_most_rows = 32768;
 constexpr std::array<double, 4> k_ridges{1e-4, 1e-3, 1e-2, 1e-1};
-constexpr std::array<float, 7> k_ratios{0, 0.5F, 1, 2, 4, 8, 16};
+constexpr std::array<float, 6> k_ratios{0.5F, 1, 2, 4, 8, 16};
 /// Probabilities of stumps are no less in their logarithm; a label that a fold never saw has none.
 constexpr float k_least_probability = 1e-6F;
 constexpr std::array<Link, 1> k_links{Link::softmax};
 
 float log_of(float probability) {
     return std::log(std::max(probability, k_least_probability));
-}
-
-/// Every so many of the rows that at most k_most_rows are left.
-std::vector<std::uint32_t> some_of(std::span<const std::uint32_t> rows) {
-    const std::size_t step = std::max<std::size_t>(1, (rows.size() + k_most_rows - 1) / k_most_rows);
-    std::vector<std::uint32_t> some;
-    for (std::size_t i = 0; i < rows.size(); i += step) some.push_back(rows[i]);
-    return some;
 }
 
 /// The held-out rows of all folds one after the other, and what is known of them.
@@ -82,7 +72,7 @@ std::vector<LinearClassifier> solve_without_folds(const LinearTraining& training
     return classifiers;
 }
 
-/// The best way found to pool, and the loss of the stumps alone beside it.
+/// The best way found to pool; ratio 0: stumps alone.
 struct Choice {
     double ridge = 0;
     float ratio = 0;
@@ -90,9 +80,9 @@ struct Choice {
     std::vector<LinearClassifier> without_fold;
 };
 
-Choice choose(const LinearRows& data, const HeldOut& held, const LinearTraining& training) {
-    Choice best;
-    best.calibration.loss = std::numeric_limits<double>::infinity();
+Choice choose(const LinearRows& data, const HeldOut& held, const LinearTraining& training,
+              const Calibration& stumps_alone) {
+    Choice best{0, 0, stumps_alone, {}};
     std::vector<float> pooled(held.log_stumps.size());
     for (const double ridge : k_ridges) {
         check_interrupt();
@@ -122,17 +112,16 @@ void pool(const LinearOpinion& opinion, const FeatureMatrix& features, std::span
     take_classes(unjudged, classes, stumps, probabilities);
 }
 
-std::optional<FoldedLinear> fit_linear(const LinearRows& all, std::span<const float> stumps,
+std::optional<FoldedLinear> fit_linear(const LinearRows& data, std::span<const float> stumps,
                                        std::span<const float> judged, const std::vector<bool>& silent) {
-    const std::vector<std::uint32_t> rows = some_of(all.rows);
-    const LinearRows data{all.features, rows, all.label, all.weight, all.fold, all.classes, all.fold_count};
     const HeldOut held = hold_out(data, stumps, judged);
     if (!tells_labels_apart(held)) return std::nullopt;
     const LinearTraining training(data);
-    const Choice choice = choose(data, held, training);
+    const Calibration alone = calibrate(held.log_stumps, held.label, held.weight, data.classes, k_links);
+    const Choice choice = choose(data, held, training, alone);
     if (choice.ratio == 0) return std::nullopt;
 
-    FoldedLinear result{{}, {}, choice.ridge, choice.calibration.loss, choice.calibration.error};
+    FoldedLinear result{{}, {}, choice.ridge, choice.calibration.loss, choice.calibration.error, alone.loss};
     std::vector<LinearClassifier> heard{training.solve(choice.ridge)};
     for (std::size_t fold = 0; fold < choice.without_fold.size(); ++fold) {
         result.without_fold.push_back({choice.without_fold[fold], choice.ratio, choice.calibration.scale});

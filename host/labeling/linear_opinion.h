@@ -34,13 +34,13 @@ struct FoldedLinear {
     std::vector<LinearOpinion> without_fold;
     double ridge = 0;            ///< see LinearTraining::solve
     double loss = 0, error = 0;  ///< of held-out rows, see calibrate
+    double stumps_loss = 0;      ///< the loss of the stumps alone on the same rows
 };
 
-/// Fits linear classifiers, and chooses their ridge and how they are pooled by the log loss of held-out rows (at most
-/// some ten thousand of `data`, evenly chosen); none if pooling does not lower that loss, or no two labels can be
-/// judged. `stumps`: probabilities of every row of data.features from the stumps that never saw it, rows x classes.
-/// `judged`: the weight of each row in the loss. `silent[fold]`: that fold's classifier has no say in the mean, as it
-/// does not know all labels.
+/// Fits linear classifiers, and chooses their ridge and how they are pooled by the log loss of held-out rows; none if
+/// pooling does not lower that loss, or no two labels can be judged. `stumps`: probabilities of every row of
+/// data.features from the stumps that never saw it, rows x classes. `judged`: the weight of each row in the loss.
+/// `silent[fold]`: that fold's classifier has no say in the mean, as it does not know all labels.
 std::optional<FoldedLinear> fit_linear(const LinearRows& data, std::span<const float> stumps,
                                        std::span<const float> judged, const std::vector<bool>& silent);
 

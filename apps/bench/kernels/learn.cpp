@@ -1,5 +1,5 @@
-// Boosted stumps on random features: 1200 stumps on 330 columns, 8 classes, the size of a trained
-// classifier of faces.
+// Boosted stumps on random features: 1200 stumps on 330 columns, 8 classes, the size of a trained classifier of
+// faces.
 
 #include <array>
 #include <cstdint>

@@ -33,9 +33,13 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
+    constexpr std::size_t k_longest = 255;  // of the names of files; nobody mistypes more
+    if (word.size() > k_longest) return {};
     std::string best;
     std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
     for (const std::string& candidate : candidates) {
+        const std::size_t more = std::max(word.size(), candidate.size()) - std::min(word.size(), candidate.size());
+        if (more >= best_distance) continue;  // at least so many letters differ
         const std::size_t distance = edit_distance(word, candidate);
         if (distance < best_distance) {
             best_distance = distance;

@@ -7,7 +7,7 @@
 
 namespace exemplar {
 
-/// The candidate nearest to `word` by edit distance (Damerau-Levenshtein), if near enough to be meant; else empty.
+/// The candidate nearest to `word` (at most 255 characters) by edit distance, if near enough to be meant; else empty.
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
 /// " (did you mean 'X'?)" or an empty string.
 std::string suggestion(std::string_view word, std::span<const std::string> candidates);

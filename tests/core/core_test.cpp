@@ -123,6 +123,13 @@ TEST(Text, SuggestsTheNearestWord) {
     EXPECT_EQ(suggestion("anything", {}), "");
 }
 
+TEST(Text, SuggestsNothingForAHugeWordAndTakesNoMemoryForIt) {
+    const std::string huge(std::size_t{1} << 24, 'x');  // comparing all letters with each other would take petabytes
+    const std::vector<std::string> words{huge, "x"};
+    EXPECT_EQ(nearest_word(huge, words), "");
+    EXPECT_EQ(nearest_word("xx", words), "x");
+}
+
 TEST(Text, TellsUtf8FromOtherEncodings) {
     for (const char* good :
          {"", "leg", "Fl\xc3\xbcgel", "\xe2\x82\xac", "\xf0\x9f\xa6\xb5", "\xed\x9f\xbf", "\xf4\x8f\xbf\xbf"})

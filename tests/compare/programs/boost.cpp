@@ -2,9 +2,9 @@
 //   compare_boost IN OUT
 // IN, a safetensors file: x (features x rows), label (rows, I32), weight (rows), fold (rows, U8: which one holds the
 // row out), test (features x rows), and in its metadata classes, folds (1: a single classifier, as in the thesis,
-// instead of the mean of those of the folds), rounds, shrinkage, feature_fraction and threads. OUT: probability (test
-// rows x classes), with folds also held_out (rows x classes), and in its metadata the CPU seconds train_seconds and
-// score_seconds.
+// instead of the mean of those of the folds), linear (1: pooled with a linear classifier; needs folds), rounds, shrinkage,
+// feature_fraction and threads. OUT: probability (test rows x classes), with folds also held_out (rows x classes), and
+// in its metadata the CPU seconds train_seconds and score_seconds.
 
 #include <fmt/format.h>
 
@@ -53,6 +53,7 @@ FoldBoostingOptions boosting_options(const TensorFile& file, const Rows& rows) {
     options.folds = std::stoul(file.meta("folds"));
     options.rounds = std::stoul(file.meta("rounds"));
     options.patience = 0;
+    options.linear = file.meta("linear") == "1";
     options.shrinkage = std::stod(file.meta("shrinkage"));
     options.feature_fraction = std::stod(file.meta("feature_fraction"));
     return options;
@@ -80,10 +81,13 @@ void boost(const char* in, const char* out) {
 
     const Stopwatch training;
     CalibratedStumps classifier;
+    LinearOpinion linear;
+    std::vector<std::uint32_t> unjudged;
     if (options.folds > 1) {
         const BoostingItems items{&rows.features, rows.label, rows.weight, rows.fold};
         FoldBoostingResult found = boost_with_folds(std::span(&items, 1), options, scorer, [] {});
         classifier = std::move(found.classifier);
+        linear = std::move(found.linear), unjudged = std::move(found.of_one_fold);
         result.add("held_out", {rows.label.size(), options.classes}, found.out_of_fold.front());
     } else {
         classifier = single_classifier(rows, options);
@@ -93,6 +97,7 @@ void boost(const char* in, const char* out) {
     const Stopwatch scoring;
     std::vector<float> probability(test.rows * options.classes);
     scorer.probabilities(classifier.stumps, test, classifier.link, classifier.scale, probability);
+    pool(linear, test, unjudged, probability);
     result.metadata["score_seconds"] = fmt::format("{:.6f}", scoring.cpu());
     result.add("probability", {test.rows, options.classes}, probability);
     write_safetensors(out, result);

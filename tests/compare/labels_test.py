@@ -12,7 +12,7 @@ import warnings
 
 import programs
 
-LEARNERS = ("JointBoost", "JointBoost, single", "decision tree", "linear SVM", "XGBoost")
+LEARNERS = ("JointBoost", "JointBoost, pooled", "JointBoost, single", "decision tree", "linear SVM", "XGBoost")
 ROWS = 300
 
 
@@ -58,6 +58,10 @@ class LabelsTest(unittest.TestCase):
         best = min(self.errors[name]["surface"] for name in labels.PEERS if name in LEARNERS)
         self.assertLess(self.errors["JointBoost"]["surface"], best + 2)
         self.assertLess(self.errors["JointBoost"]["surface"], 0.8 * self.errors["decision tree"]["surface"])
+
+    def test_pooling_labels_more_of_what_is_held_out(self):
+        held_out = {name: self.results[name].parameters["held out, surface"] for name in ("JointBoost", "JointBoost, pooled")}
+        self.assertLess(held_out["JointBoost, pooled"], held_out["JointBoost"])
 
     def test_probabilities_of_jointboost_tell_more_than_shares_of_labels(self):
         shares = numpy.bincount(self.category.y, self.category.area)

@@ -2,9 +2,9 @@
 //   compare_boost IN OUT
 // IN, a safetensors file: x (features x rows), label (rows, I32), weight (rows), fold (rows, U8: which one holds the
 // row out), test (features x rows), and in its metadata classes, folds (1: a single classifier, as in the thesis,
-// instead of the mean of those of the folds), linear (1: pooled with a linear classifier; needs folds), rounds, shrinkage,
-// feature_fraction and threads. OUT: probability (test rows x classes), with folds also held_out (rows x classes), and
-// in its metadata the CPU seconds train_seconds and score_seconds.
+// instead of the mean of those of the folds), linear (1: pooled with a linear classifier; needs folds), rounds,
+// shrinkage, feature_fraction and threads. OUT: probability (test rows x classes), with folds also held_out (rows x
+// classes), and in its metadata the CPU seconds train_seconds and score_seconds.
 
 #include <fmt/format.h>
 

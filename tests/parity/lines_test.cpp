@@ -71,8 +71,8 @@ void expect_same_lines(const Scene& scene, const std::vector<LineType>& types, c
             std::abs(segment.first_strength - same->second.first_strength) > 2e-3f * scale)
             ++off;
     }
-    // On the smaller surfaces there are so few that one in two hundred is hardly one: SwiftShader has two off where
-    // there are less than 400.
+    // On the smaller surfaces there are so few that one in two hundred is hardly one, and a point on an edge belongs to
+    // the segments of two faces: SwiftShader has one such point off, by 0.0032 of its edge, of 254 apparent ridges.
     const std::size_t allowed = std::max<std::size_t>(wanted.size() / 200, sees_few_texels() ? 2 : 0);
     EXPECT_LE(missing, allowed);
     EXPECT_LE(off, allowed);

@@ -117,11 +117,12 @@ std::size_t histogram_bytes(std::size_t columns, std::size_t classes, std::size_
     return columns * classes * faces * sizeof(float);
 }
 
-// The largest number of samples of a part so that the prefix sums of one class block pass no limit. One less than whole
-// blocks: the prefix sums, one more than samples, then are.
+// The largest number of samples of a part so that the prefix sums of one class block pass no limit, nor the loops of an
+// invocation, which looks at each. One less than whole blocks: the prefix sums, one more than samples, then are.
 std::size_t samples_per_part(const DeviceInfo& info, std::size_t limit) {
     const std::size_t prefixes = std::min<std::size_t>(limit / sizeof(vec4), info.max_texels);
-    return std::max<std::size_t>(prefixes / k_context_axes / k_block, 1) * k_block - 1;
+    const std::size_t samples = std::min<std::size_t>(prefixes / k_context_axes, k_most_iterations);
+    return std::max<std::size_t>(samples / k_block, 1) * k_block - 1;
 }
 
 // Of faces, so that neither the ranges nor the positions nor the histograms of one class block pass the limits.

@@ -28,14 +28,53 @@ constexpr std::uint32_t k_float_bits = 32;
 // features; a GPU wants many invocations, and its host no work that was not measured to pay.
 constexpr std::uint32_t k_quads_on_cpu = 4, k_bits_on_cpu = 8;
 
+// Groups of stumps [first, end).
+struct GroupRange {
+    std::uint32_t first, end;
+};
+
 // A classifier as the kernel wants it.
 struct DeviceStumps {
     std::vector<FeatureThresholds> columns;  // features that are used, by rising number
     std::uint32_t bits;                      // of a feature
     std::vector<GroupedStump> stumps;
     std::vector<StumpGroup> groups;
+    std::vector<GroupRange> parts;  // of the groups: a dispatch each
     std::vector<float> constant;
 };
+
+// Iterations of the kernel's loops for a group: its own, two words of classes, its classes and its stumps.
+std::uint32_t iterations_of(const StumpGroup& group) {
+    return 3 + static_cast<std::uint32_t>(std::popcount(group.classes_low) + std::popcount(group.classes_high)) +
+           group.end - group.first;
+}
+
+// A group in several that are small enough for a dispatch.
+void add_group(StumpGroup group, std::vector<StumpGroup>& groups) {
+    constexpr std::uint32_t k_most = k_most_iterations / 2;
+    const std::uint32_t end = group.end;
+    for (; end - group.first > k_most; group.first += k_most) {
+        group.end = group.first + k_most;
+        groups.push_back(group);
+    }
+    group.end = end;
+    groups.push_back(group);
+}
+
+std::vector<GroupRange> parts_of(std::span<const StumpGroup> groups) {
+    std::vector<GroupRange> parts{{0, 0}};
+    std::uint32_t iterations = 0;
+    for (const StumpGroup& group : groups) {
+        const std::uint32_t more = iterations_of(group);
+        if (iterations + more > k_most_iterations) {
+            parts.push_back({parts.back().end, parts.back().end});
+            iterations = 0;
+        }
+        iterations += more;
+        ++parts.back().end;
+    }
+    return parts;
+}
 
 // The fewest bits, `bits` or more, that all ranks fit into. The highest is left: devices compare signed integers
 // faster.
@@ -58,11 +97,14 @@ DeviceStumps group(const BoostedStumps& classifier, std::uint32_t bits) {
                         .bits = 0,
                         .stumps = {},
                         .groups = {},
+                        .parts = {},
                         .constant = classifier.constant()};
     result.bits = bits_for(result.columns, bits);
     for (const GroupedStumps::Group& group : grouped.groups)
-        result.groups.push_back({group.first, group.end, static_cast<std::uint32_t>(group.classes),
-                                 static_cast<std::uint32_t>(group.classes >> 32)});
+        add_group({group.first, group.end, static_cast<std::uint32_t>(group.classes),
+                   static_cast<std::uint32_t>(group.classes >> 32)},
+                  result.groups);
+    result.parts = parts_of(result.groups);
     for (const Stump& stump : grouped.stumps) {
         const auto column = std::ranges::lower_bound(result.columns, stump.feature, {}, &FeatureThresholds::feature);
         result.stumps.push_back({static_cast<std::uint32_t>(column - result.columns.begin()),
@@ -158,15 +200,15 @@ std::size_t GpuStumpScorer::rows_per_tile(const Classifier& classifier, std::siz
     return std::min(std::max(most / unit * unit, unit), (rows + unit - 1) / unit * unit);
 }
 
-const Kernel& GpuStumpScorer::kernel(std::uint32_t classes, std::uint32_t bits) {
-    Kernel& kernel = kernels_[{classes, bits}];
+const Kernel& GpuStumpScorer::kernel(std::uint32_t classes, std::uint32_t bits, bool in_parts) {
+    Kernel& kernel = kernels_[{classes, bits, in_parts}];
     if (!kernel)
-        kernel =
-            Kernel(device_, shaders::learn_stumps_comp,
-                   {.push_constants = layout_of<StumpParameters>(),
-                    .elements = {layout_of<shared::uvec4>(), layout_of<shared::uvec4>(), layout_of<shared::uvec4>(),
-                                 layout_of<float>(), layout_of<float>(), layout_of<shared::uvec4>()},
-                    .constants = {{0, classes}, {1, quads_of(bits)}, {2, from_storage_}, {3, bits}}});
+        kernel = Kernel(
+            device_, shaders::learn_stumps_comp,
+            {.push_constants = layout_of<StumpParameters>(),
+             .elements = {layout_of<shared::uvec4>(), layout_of<shared::uvec4>(), layout_of<shared::uvec4>(),
+                          layout_of<float>(), layout_of<float>(), layout_of<shared::uvec4>()},
+             .constants = {{0, classes}, {1, quads_of(bits)}, {2, from_storage_}, {3, bits}, {4, in_parts ? 1U : 0U}}});
     return kernel;
 }
 
@@ -212,18 +254,22 @@ void GpuStumpScorer::score_tile(const Classifier& classifier, std::span<const Sc
     }
     const std::size_t unit = tile_unit(grouped.bits);
     const std::size_t threads = (rows + unit - 1) / unit * shared::k_stump_neighbors;
-    const StumpParameters parameters{.rows = static_cast<std::uint32_t>(rows),
-                                     .stride = static_cast<std::uint32_t>(column_bytes / sizeof(shared::uvec4)),
-                                     .threads = static_cast<std::uint32_t>(threads),
-                                     .groups = static_cast<std::uint32_t>(grouped.groups.size()),
-                                     .link = static_cast<std::uint32_t>(classifier.link),
-                                     .scale = classifier.scale};
     const BufferRange features(features_, 0, grouped.columns.size() * column_bytes);
-    stream_.dispatch(
-        kernel(classifier.class_count, grouped.bits), threads,
-        {features, whole(stumps_, grouped.stumps), whole(groups_, grouped.groups), whole(constant_, grouped.constant),
-         BufferRange(probabilities_, 0, stride * classes * sizeof(float)), features},
-        parameters);
+    for (const GroupRange& part : grouped.parts) {
+        const StumpParameters parameters{.rows = static_cast<std::uint32_t>(rows),
+                                         .stride = static_cast<std::uint32_t>(column_bytes / sizeof(shared::uvec4)),
+                                         .threads = static_cast<std::uint32_t>(threads),
+                                         .first_group = part.first,
+                                         .end_group = part.end,
+                                         .groups = static_cast<std::uint32_t>(grouped.groups.size()),
+                                         .link = static_cast<std::uint32_t>(classifier.link),
+                                         .scale = classifier.scale};
+        stream_.dispatch(kernel(classifier.class_count, grouped.bits, grouped.parts.size() > 1), threads,
+                         {features, whole(stumps_, grouped.stumps), whole(groups_, grouped.groups),
+                          whole(constant_, grouped.constant),
+                          BufferRange(probabilities_, 0, stride * classes * sizeof(float)), features},
+                         parameters);
+    }
     std::vector<HostPart> parts;
     parts.reserve(pieces.size());
     for (const Piece& piece : pieces)

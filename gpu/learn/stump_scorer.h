@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <span>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "gpu/runtime/buffer.h"
@@ -30,8 +30,8 @@ inline constexpr TunableParameter k_stump_bits{"learn/stumps.comp", "bits", k_st
 
 /// Boosted stumps on the device. Only the features that stumps use are uploaded, as floats or as ranks (k_stump_bits).
 /// The rows of all matrices that are scored together lie side by side, in tiles that fit the device's limits: a
-/// submission each. Probabilities agree with CpuStumpScorer within 1e-5: sums are taken in another order, and exp
-/// differs between devices.
+/// submission each. Long classifiers take several dispatches (k_most_iterations). Probabilities agree with
+/// CpuStumpScorer within 1e-5: sums are taken in another order, and exp differs between devices.
 class GpuStumpScorer final : public StumpScorer {
   public:
     /// `tile_bytes` bounds the memory of a tile's features and of its probabilities below the device's own limits.
@@ -47,7 +47,7 @@ class GpuStumpScorer final : public StumpScorer {
                     std::size_t rows, std::size_t stride);
     template <typename T>
     void upload(Buffer& buffer, const std::vector<T>& values);
-    const Kernel& kernel(std::uint32_t classes, std::uint32_t bits);
+    const Kernel& kernel(std::uint32_t classes, std::uint32_t bits, bool in_parts);
     std::uint32_t quads_of(std::uint32_t bits) const;
     std::size_t tile_unit(std::uint32_t bits) const;
     std::size_t rows_per_tile(const Classifier& classifier, std::size_t rows) const;
@@ -57,7 +57,7 @@ class GpuStumpScorer final : public StumpScorer {
     std::uint32_t bits_;  // of a feature, where a classifier has no more thresholds than these can tell apart
     std::size_t tile_bytes_;
     Stream stream_;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, Kernel> kernels_;  // by class count and bits
+    std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, Kernel> kernels_;  // by class count, bits, parts
     // Kept between calls.
     Buffer stumps_, groups_, constant_, features_, probabilities_;
 };

@@ -63,6 +63,10 @@ struct DeviceReport {
 /// several fit into the device's memory.
 std::uint64_t buffer_limit(const DeviceInfo& info, std::uint64_t wanted);
 
+/// The most iterations of all of its loops together that an invocation may be given. Mesa's llvmpipe ends all loops of
+/// an invocation after 65,535, without a word.
+inline constexpr std::uint32_t k_most_iterations = 32'768;
+
 /// All Vulkan devices of this machine, unusable ones too; empty if there is no Vulkan loader or driver.
 std::vector<DeviceInfo> list_devices();
 

@@ -15,12 +15,14 @@ layout(constant_id = 0) const uint k_classes = 1;
 layout(constant_id = 1) const uint k_quads = 1;  // a multiple of k_quads_of_texel
 layout(constant_id = 2) const bool k_from_storage = false;
 layout(constant_id = 3) const uint k_bits = 32;
+// Several dispatches add a part of the groups each; until the last, H is kept in `probabilities`.
+layout(constant_id = 4) const bool k_in_parts = false;
 layout(push_constant) uniform Push { StumpParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer features;  // columns x stride, 4, 8 or 16 items each
 layout(set = 0, binding = 1) uniform usamplerBuffer stumps;    // GroupedStump; as floats, small integers might be flushed
 layout(set = 0, binding = 2) uniform usamplerBuffer groups;    // StumpGroup
 layout(set = 0, binding = 3, std430) readonly buffer Constants { float constants[]; };
-layout(set = 0, binding = 4, std430) writeonly buffer Probabilities { float probabilities[]; };
+layout(set = 0, binding = 4, std430) buffer Probabilities { float probabilities[]; };
 layout(set = 0, binding = 5, std430) readonly buffer StoredFeatures { uvec4 stored_features[]; };  // the same as `features`
 
 const uint k_quads_of_texel = 32 / k_bits;
@@ -60,6 +62,21 @@ vec4 log_weight(vec4 scaled) {
 // H of an invocation's quads, quads x classes.
 vec4 h[k_quads * k_classes];
 
+// How many of a quad's items there are.
+uint items_of(uint quad) { return 4 * quad < parameters.rows ? min(4u, parameters.rows - 4 * quad) : 0; }
+
+// H of one quad, from h[first] on, as the dispatch before has left it; and for the next.
+void take_up_quad(uint quad, uint first) {
+    const uint items = items_of(quad);
+    [[dont_unroll]] for (uint c = 0; c < k_classes; ++c)
+        [[dont_unroll]] for (uint item = 0; item < items; ++item) h[first + c][item] = probabilities[(4 * quad + item) * k_classes + c];
+}
+void leave_quad(uint quad, uint first) {
+    const uint items = items_of(quad);
+    [[dont_unroll]] for (uint c = 0; c < k_classes; ++c)
+        [[dont_unroll]] for (uint item = 0; item < items; ++item) probabilities[(4 * quad + item) * k_classes + c] = h[first + c][item];
+}
+
 // Turns H of one quad, from h[first] on, into probabilities and stores them, item-major.
 void store_quad(uint quad, uint first) {
     vec4 largest = vec4(-3.4e38);
@@ -72,11 +89,16 @@ void store_quad(uint quad, uint first) {
         h[first + c] = exp(h[first + c] - largest);
         total += h[first + c];
     }
-    const uint items = 4 * quad < parameters.rows ? min(4u, parameters.rows - 4 * quad) : 0;
+    const uint items = items_of(quad);
     [[dont_unroll]] for (uint c = 0; c < k_classes; ++c) {
         const vec4 probability = h[first + c] / total;
         [[dont_unroll]] for (uint item = 0; item < items; ++item) probabilities[(4 * quad + item) * k_classes + c] = probability[item];
     }
+}
+
+// Of an invocation's quads in the order of h.
+uint quad_of(uint texel, uint q) {
+    return (texel + q / k_quads_of_texel * k_stump_neighbors) * k_quads_of_texel + q % k_quads_of_texel;
 }
 
 void main() {
@@ -86,8 +108,10 @@ void main() {
     const uint texel = (thread / k_stump_neighbors) * k_stump_neighbors * k_texels + thread % k_stump_neighbors;
     [[dont_unroll]] for (uint c = 0; c < k_classes; ++c)
         for (uint q = 0; q < k_quads; ++q) h[q * k_classes + c] = vec4(constants[c]);
+    if (k_in_parts && parameters.first_group > 0)
+        [[dont_unroll]] for (uint q = 0; q < k_quads; ++q) take_up_quad(quad_of(texel, q), q * k_classes);
     const uint stride = parameters.stride;
-    for (uint g = 0; g < parameters.groups; ++g) {
+    for (uint g = parameters.first_group; g < parameters.end_group; ++g) {
         const StumpGroup group = fetch_group(g);
         vec4 sum[k_quads];
         for (uint q = 0; q < k_quads; ++q) sum[q] = vec4(0.0);
@@ -107,6 +131,8 @@ void main() {
                 for (uint q = 0; q < k_quads; ++q) h[q * k_classes + c] += sum[q];
             }
     }
-    [[dont_unroll]] for (uint q = 0; q < k_quads; ++q)
-        store_quad((texel + q / k_quads_of_texel * k_stump_neighbors) * k_quads_of_texel + q % k_quads_of_texel, q * k_classes);
+    if (k_in_parts && parameters.end_group < parameters.groups)
+        [[dont_unroll]] for (uint q = 0; q < k_quads; ++q) leave_quad(quad_of(texel, q), q * k_classes);
+    else
+        [[dont_unroll]] for (uint q = 0; q < k_quads; ++q) store_quad(quad_of(texel, q), q * k_classes);
 }

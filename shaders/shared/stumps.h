@@ -24,8 +24,10 @@ struct StumpParameters {
     uint rows;
     uint stride;   // texels of items from one feature column to the next: at least threads x texels per thread
     uint threads;  // invocations that have work, a multiple of k_stump_neighbors
-    uint groups;
-    uint link;  // k_link_softmax or k_link_sigmoid
+    uint first_group;  // of those that this dispatch adds
+    uint end_group;
+    uint groups;  // of all dispatches
+    uint link;    // k_link_softmax or k_link_sigmoid
     float scale;
 };
 
@@ -39,7 +41,7 @@ const uint k_stump_neighbors = 8;
 #ifdef __cplusplus
 EXEMPLAR_LAYOUT(GroupedStump, column, threshold, above, below)
 EXEMPLAR_LAYOUT(StumpGroup, first, end, classes_low, classes_high)
-EXEMPLAR_LAYOUT(StumpParameters, rows, stride, threads, groups, link, scale)
+EXEMPLAR_LAYOUT(StumpParameters, rows, stride, threads, first_group, end_group, groups, link, scale)
 #endif
 
 SHARED_END

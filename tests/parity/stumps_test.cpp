@@ -102,6 +102,16 @@ TEST(StumpParity, TheMostClasses) {
     expect_parity(scorer, random_stumps(64, 60, 20, random), features, Link::softmax, 2.0f);
 }
 
+// A group of stumps runs through all of its classes, so that few stumps of many classes take many iterations as well.
+TEST(StumpParity, MoreSetsOfClassesThanADispatchTakes) {
+    GpuStumpScorer scorer(testing::shared_device());
+    Random random(17);
+    const FeatureMatrix features = random_features(70, 20, random);
+    for (const std::size_t count : {900u, 5000u})
+        for (const Link link : {Link::softmax, Link::sigmoid})
+            expect_parity(scorer, random_stumps(60, count, 20, random), features, link, 0.5f);
+}
+
 TEST(StumpParity, ClassifiersOfAnyLength) {
     GpuStumpScorer scorer(testing::shared_device());
     Random random(3);
@@ -297,10 +307,10 @@ BoostedStumps stumps_of_one_feature(std::uint32_t count, Random& random) {
     return classifier;
 }
 
-// Where ranks have not enough bits, more are taken.
+// Where ranks have not enough bits, more are taken; and several dispatches where a driver would leave loops early.
 TEST(StumpPrecision, AnyNumberOfThresholds) {
     Random random(16);
-    for (const std::uint32_t count : {1u, 126u, 127u, 128u, 129u, 32'767u, 32'768u}) {
+    for (const std::uint32_t count : {1u, 126u, 127u, 128u, 129u, 32'767u, 32'768u, 65'535u, 65'536u, 200'000u}) {
         SCOPED_TRACE(count);
         FeatureMatrix features;
         features.rows = 37;

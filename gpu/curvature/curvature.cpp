@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -11,6 +12,7 @@
 #include "embedded/curvature_smooth_forms_comp.h"
 #include "gpu/curvature/near_vertices.h"
 #include "host/core/errors.h"
+#include "host/core/memory_budget.h"
 
 namespace exemplar {
 namespace {
@@ -66,8 +68,10 @@ GpuCurvature::Diffusion::Diffusion(const GpuSurface& surface, double width, bool
       forms(surface.device(), shaders::curvature_smooth_forms_comp,
             gathering_interface<DiffusionParameters>(5, false)) {
     const DeviceInfo& info = surface.device().info();
+    // A device may claim more than the machine has; lists of near vertices are kept a few times while they are made.
+    const std::size_t most_bytes = std::min<std::size_t>(info.max_allocation, usable_memory() / 16);
     const NearVertices rows = build_near_vertices(surface.rest(), k_smoothing_reach * std::sqrt(squared_radius(width)),
-                                                  info.max_allocation / sizeof(uvec4));
+                                                  most_bytes / sizeof(uvec4));
     near_begin = Buffer::of<std::uint32_t>(surface.device(), rows.begin);
     near = Buffer::of<uvec4>(surface.device(), rows.texels);
     const double scaled = width * static_cast<double>(surface.scale());

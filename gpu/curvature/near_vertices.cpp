@@ -74,10 +74,10 @@ NearVertices build_near_vertices(const TriangleMesh& mesh, double radius, std::s
             const auto vertex = static_cast<std::uint32_t>(v);
             lengths[v] = append_row(vertex, flood.around(vertex), chunks[v / k_chunk]);
             if ((total += lengths[v]) > most_texels)
-                throw UsageError(
-                    fmt::format("smoothing over {:.3g} mesh units reaches too many of {} vertices for this device (the "
-                                "limit is {} texels); smooth less, or simplify the mesh",
-                                radius, count, most_texels));
+                throw UsageError(fmt::format(
+                    "smoothing over {:.3g} mesh units reaches too many of {} vertices for the memory there is "
+                    "({} texels of four); smooth less, or simplify the mesh",
+                    radius, count, most_texels));
         }
     });
     NearVertices near;

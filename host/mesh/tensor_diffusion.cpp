@@ -1,9 +1,13 @@
 #include "host/mesh/tensor_diffusion.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
+#include "host/core/errors.h"
 #include "host/core/parallel.h"
 
 namespace exemplar {
@@ -52,19 +56,29 @@ void add_turned(FormDerivative& sum, const FormDerivative& s, float weight, Turn
 
 }  // namespace
 
-TensorDiffusion::TensorDiffusion(const VertexNeighbors& neighbors)
-    : neighbors_(&neighbors), chunks_((neighbors.vertex_count() + k_chunk - 1) / k_chunk) {}
+TensorDiffusion::TensorDiffusion(const VertexNeighbors& neighbors, std::size_t most_bytes)
+    : neighbors_(&neighbors),
+      most_entries_(most_bytes / sizeof(Entry)),
+      chunks_((neighbors.vertex_count() + k_chunk - 1) / k_chunk) {}
 
 void TensorDiffusion::prepare(std::span<const Vec3> vertices, const std::vector<TangentFrame>& frames,
                               const std::vector<float>& areas, double width) {
+    std::atomic<std::size_t> total = 0;
     parallel_for(chunks_.size(), [&](std::size_t c) {
         Workspace& workspace = workspaces_.local();
         workspace.visited.resize(vertices.size(), 0);
         Chunk& chunk = chunks_[c];
         chunk.entries.clear();
         chunk.end.clear();
-        for (std::size_t v = c * k_chunk; v < std::min((c + 1) * k_chunk, vertices.size()); ++v)
+        for (std::size_t v = c * k_chunk; v < std::min((c + 1) * k_chunk, vertices.size()); ++v) {
+            const std::size_t before = chunk.entries.size();
             add_kernel(static_cast<std::uint32_t>(v), vertices, frames, areas, width, chunk, workspace);
+            if ((total += chunk.entries.size() - before) > most_entries_)
+                throw UsageError(fmt::format(
+                    "smoothing over {:.3g} mesh units reaches too many of {} vertices for the memory there is; smooth "
+                    "less, or simplify the mesh",
+                    width, vertices.size()));
+        }
     });
 }
 

@@ -2,10 +2,12 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "host/core/memory_budget.h"
 #include "host/mesh/mesh.h"
 #include "host/mesh/tangent_tensors.h"
 #include "host/mesh/vertex_neighbors.h"
@@ -22,9 +24,12 @@ namespace exemplar {
 /// the mean of what there is, without a condition to impose.
 class TensorDiffusion {
   public:
-    explicit TensorDiffusion(const VertexNeighbors& neighbors);
+    /// `most_bytes`: of all kernels together.
+    explicit TensorDiffusion(const VertexNeighbors& neighbors, std::size_t most_bytes = usable_memory() / 4);
 
-    /// Builds the kernel of each vertex. `width` is its standard deviation in mesh units; positive and finite.
+    /// Builds the kernel of each vertex. `width` is its standard deviation in mesh units; positive and finite. Throws
+    /// UsageError if the kernels take more memory than they may: where a mesh has edges much longer than the usual, as
+    /// around the tip of a cone, each may hold a large part of the surface.
     void prepare(std::span<const Vec3> vertices, const std::vector<TangentFrame>& frames,
                  const std::vector<float>& areas, double width);
     void apply(std::vector<Form>& forms);
@@ -51,6 +56,7 @@ class TensorDiffusion {
                     const std::vector<float>& areas, double width, Chunk& chunk, Workspace& workspace) const;
 
     const VertexNeighbors* neighbors_;
+    std::size_t most_entries_;
     std::vector<Chunk> chunks_;
     tbb::enumerable_thread_specific<Workspace> workspaces_;
     std::vector<Form> form_scratch_;

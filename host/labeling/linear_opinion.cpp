@@ -23,6 +23,12 @@ float log_of(float probability) {
     return std::log(std::max(probability, k_least_probability));
 }
 
+/// L is fitted to targets of 0 and 1: what lies beyond says no more, and of a mesh unlike those of training, whose
+/// features no longer go together as they did, it may lie far beyond.
+void hold_to_targets(std::span<float> linear) {
+    for (float& value : linear) value = std::clamp(value, 0.0F, 1.0F);
+}
+
 /// The held-out rows of all folds one after the other, and what is known of them.
 struct HeldOut {
     std::vector<std::vector<std::uint32_t>> of_fold;
@@ -63,6 +69,7 @@ std::vector<float> held_out_scores(const LinearRows& data, const HeldOut& held,
         linear_scores(without_fold[fold], data.features, held.of_fold[fold], std::span(scores).subspan(first, size));
         first += size;
     }
+    hold_to_targets(scores);
     return scores;
 }
 
@@ -106,6 +113,7 @@ void pool(const LinearOpinion& opinion, const FeatureMatrix& features, std::span
     const std::size_t classes = opinion.classifier.class_count;
     std::vector<float> linear(probabilities.size());
     linear_scores(opinion.classifier, features, linear);
+    hold_to_targets(linear);
     for (std::size_t i = 0; i < linear.size(); ++i)
         probabilities[i] = log_of(probabilities[i]) + opinion.ratio * linear[i];
     scores_to_probabilities(probabilities, classes, Link::softmax, opinion.scale);

@@ -13,8 +13,9 @@ namespace exemplar {
 /// What a linear classifier adds to the probabilities of boosted stumps. Stumps tell labels apart by thresholds of
 /// single features and lose small parts that only many features together show; a linear classifier finds those, and
 /// knows no thresholds. The two are pooled by their logarithms: P_c is proportional to
-/// exp(scale * (log P_stumps,c + ratio * L_c)). Labels that training saw in one fold alone keep what the stumps say:
-/// how much to believe L_c of them cannot be judged on held-out rows.
+/// exp(scale * (log P_stumps,c + ratio * min(max(L_c, 0), 1))): L_c is fitted to 0 and 1, and on a mesh unlike those of
+/// training it may lie far beyond. Labels that training saw in one fold alone keep what the stumps say: how much to
+/// believe L_c of them cannot be judged on held-out rows.
 struct LinearOpinion {
     LinearClassifier classifier;  ///< its class_count is 0 where the stumps alone count
     float ratio = 0;              ///< >= 0

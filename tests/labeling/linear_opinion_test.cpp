@@ -136,6 +136,23 @@ TEST(LinearOpinion, NotUsedItChangesNothing) {
     EXPECT_EQ(pooled, stumps);
 }
 
+// Features of a mesh unlike those of training may no longer go together: L of a whole mesh was 1.5 for one label and
+// -0.7 for another, and a person all torso.
+TEST(LinearOpinion, BeyondItsTargetsALinearClassifierSaysNoMore) {
+    FeatureMatrix features;
+    features.rows = 3;
+    const std::vector<float> values{0, 1, 4};
+    std::ranges::copy(values, features.add("a.0").begin());
+    LinearOpinion opinion;
+    opinion.classifier = {2, {0}, {1}, {1, -1}, {0, 1}};  // L is 0 and 1; 1 and 0; 4 and -3
+    opinion.ratio = 3;
+    std::vector<float> probabilities{0.5F, 0.5F, 0.5F, 0.5F, 0.5F, 0.5F};
+    pool(opinion, features, {}, probabilities);
+    const float sure = 1 / (1 + std::exp(-3.0F));
+    const std::vector<float> expected{1 - sure, sure, sure, 1 - sure, sure, 1 - sure};
+    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(probabilities[i], expected[i], 1e-6F) << i;
+}
+
 TEST(LinearOpinion, LabelsThatCannotBeJudgedKeepWhatStumpsSay) {
     const Data data;
     const std::vector<float> stumps = data.stumps(0.7F);

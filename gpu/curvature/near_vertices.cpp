@@ -76,7 +76,7 @@ NearVertices build_near_vertices(const TriangleMesh& mesh, double radius, std::s
             if ((total += lengths[v]) > most_texels)
                 throw UsageError(fmt::format(
                     "smoothing over {:.3g} mesh units reaches too many of {} vertices for the memory there is "
-                    "({} texels of four); smooth less, or simplify the mesh",
+                    "({} texels of four); smooth less (--smoothing 0: not at all), or simplify the mesh",
                     radius, count, most_texels));
         }
     });

@@ -9,6 +9,7 @@
 
 #include "gpu/curvature/texels.h"
 #include "gpu/curvature/vertex_rings.h"
+#include "gpu/runtime/errors.h"
 #include "host/core/errors.h"
 
 namespace exemplar {
@@ -32,6 +33,19 @@ std::vector<shared::uvec4> corners_of(const TriangleMesh& mesh) {
     return corners;
 }
 
+// Kernels go around a vertex in one loop.
+void check_rings(const VertexRings& rings) {
+    for (std::size_t v = 0; v < rings.begin.size(); ++v) {
+        const std::size_t end = v + 1 < rings.begin.size() ? rings.begin[v + 1] : rings.texels.size();
+        const std::size_t corners = 4 * (end - rings.begin[v]);
+        if (corners > k_most_iterations)
+            throw DeviceLimitError(fmt::format("vertex {} has some {} faces around it, and kernels go around {} at "
+                                               "most; simplify the mesh",
+                                               v, corners, k_most_iterations),
+                                   corners, k_most_iterations);
+    }
+}
+
 }  // namespace
 
 GpuSurface::GpuSurface(Device& device, TriangleMesh rest)
@@ -41,6 +55,7 @@ GpuSurface::GpuSurface(Device& device, TriangleMesh rest)
       face_count_(static_cast<std::uint32_t>(rest_.face_count())),
       scale_(1.0f) {
     const VertexRings rings = build_vertex_rings(rest_);
+    check_rings(rings);
     check_texels(device, std::max<std::size_t>(rings.texels.size(), face_count_), "the faces of a surface");
     scale_ = edge_scale(rest_);
     faces_ = Buffer::of<shared::uvec4>(device, corners_of(rest_));

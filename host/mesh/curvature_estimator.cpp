@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "host/core/errors.h"
+#include "host/core/memory_budget.h"
 #include "host/core/parallel.h"
 #include "host/mesh/face_fit.h"
 #include "host/mesh/tensor_diffusion.h"
@@ -59,7 +60,7 @@ struct Surroundings {
     std::vector<float> lengths;
 
     Surroundings(std::span<const Face> faces, std::size_t vertex_count)
-        : neighbors(build_vertex_neighbors(faces, vertex_count)), diffusion(neighbors) {
+        : neighbors(build_vertex_neighbors(faces, vertex_count)), diffusion(neighbors, usable_memory() / 4) {
         lengths.reserve(neighbors.vertex.size() / 2);
     }
     double median_edge_length(std::span<const Vec3> vertices);

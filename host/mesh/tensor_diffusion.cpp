@@ -73,10 +73,11 @@ void TensorDiffusion::prepare(std::span<const Vec3> vertices, const std::vector<
         for (std::size_t v = c * k_chunk; v < std::min((c + 1) * k_chunk, vertices.size()); ++v) {
             const std::size_t before = chunk.entries.size();
             add_kernel(static_cast<std::uint32_t>(v), vertices, frames, areas, width, chunk, workspace);
-            if ((total += chunk.entries.size() - before) > most_entries_)
+            const std::size_t more = chunk.entries.size() - before;
+            if (total.fetch_add(more, std::memory_order_relaxed) + more > most_entries_)
                 throw UsageError(fmt::format(
                     "smoothing over {:.3g} mesh units reaches too many of {} vertices for the memory there is; smooth "
-                    "less, or simplify the mesh",
+                    "less (--smoothing 0: not at all), or simplify the mesh",
                     width, vertices.size()));
         }
     });

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "host/core/memory_budget.h"
 #include "host/mesh/mesh.h"
 #include "host/mesh/tangent_tensors.h"
 #include "host/mesh/vertex_neighbors.h"
@@ -25,7 +24,7 @@ namespace exemplar {
 class TensorDiffusion {
   public:
     /// `most_bytes`: of all kernels together.
-    explicit TensorDiffusion(const VertexNeighbors& neighbors, std::size_t most_bytes = usable_memory() / 4);
+    TensorDiffusion(const VertexNeighbors& neighbors, std::size_t most_bytes);
 
     /// Builds the kernel of each vertex. `width` is its standard deviation in mesh units; positive and finite. Throws
     /// UsageError if the kernels take more memory than they may: where a mesh has edges much longer than the usual, as

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <vector>
@@ -139,6 +140,27 @@ TEST(NormalParity, OddNumbersOfVerticesAndFaces) {
         SCOPED_TRACE(vertices);
         expect_parity(strip(vertices));
     }
+}
+
+// A fan of `faces` faces around the first vertex.
+TriangleMesh fan(std::uint32_t faces) {
+    TriangleMesh mesh;
+    mesh.vertices.push_back({0, 0, 1});
+    for (std::uint32_t i = 0; i <= faces; ++i) {
+        const double angle = 3.0 * i / faces;
+        mesh.vertices.push_back({static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle)), 0});
+        if (i > 0) mesh.faces.push_back({0, i, i + 1});
+    }
+    return mesh;
+}
+
+// Sums of so many shares are off by a rounding each, at most. More faces than a kernel can go around are refused.
+TEST(NormalParity, AVertexOfManyFaces) {
+    constexpr std::uint32_t k_faces = 30'000;
+    const TriangleMesh most = fan(k_faces);
+    const Vec3 normal = testing::xyz(device_normals(most)[0]), expected = vertex_normals(most)[0];
+    EXPECT_LE((normal - expected).norm(), k_faces * std::numeric_limits<float>::epsilon() / 2);
+    EXPECT_THROW(GpuSurface(shared_device(), fan(40'000)), DeviceLimitError);
 }
 
 TEST(NormalParity, ClosedAndBoundedSurfaces) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gpu/learn/stump_scorer.h"
+#include "gpu/runtime/errors.h"
 #include "host/core/errors.h"
 #include "host/core/random.h"
 #include "host/learn/boosted_stumps.h"
@@ -323,7 +324,8 @@ TEST(StumpPrecision, AnyNumberOfThresholds) {
             expect_the_same_of_all_bits(classifier, features);
         } else {  // a texel a stump: refused, naming the limit
             std::vector<float> out(features.rows * classifier.class_count);
-            EXPECT_ANY_THROW(scorer_of_bits(32)->probabilities(classifier, features, Link::softmax, 1.0f, out));
+            EXPECT_THROW(scorer_of_bits(32)->probabilities(classifier, features, Link::softmax, 1.0f, out),
+                         DeviceLimitError);
         }
     }
 }

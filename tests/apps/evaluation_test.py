@@ -48,7 +48,8 @@ class Evaluate(WithModel):
         return right, total
 
     def test_confusion_and_chosen_features_of_a_category(self):
-        printed = self.evaluate("summary", "--json", "s.json").stdout
+        printed = self.call("label", "evaluate", "--train", "cups", "--test", self.mistaken_cups(), "--out", "summary", "--json",
+                            "s.json", *QUICK).stdout
         report = self.json("s.json")
         category = report["categories"][0]
         meshes = category["splits"][0]["meshes"]
@@ -56,6 +57,7 @@ class Evaluate(WithModel):
         for i, share in enumerate(category["confusion"]):
             self.assertAlmostEqual(share, sum(mesh["confusion"][i] for mesh in meshes) / len(meshes))
         areas = [pair["area_share"] for pair in category["confused"]]
+        self.assertGreater(len(areas), 0)
         self.assertEqual(sorted(areas, reverse=True), areas)
         for pair in category["confused"]:
             t, p = category["names"].index(pair["truth"]), category["names"].index(pair["predicted"])

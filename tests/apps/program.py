@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -69,6 +70,17 @@ class WithModel(ProgramTest):
 
     def json(self, name):
         return json.loads((self.folder / name).read_text())
+
+    def mistaken_cups(self):
+        """The cups again, whose true labels call every tenth face of one part the other: whatever labels them is wrong in some."""
+        folder = self.folder / "mistaken"
+        shutil.copytree(self.folder / "cups", folder, dirs_exist_ok=True)
+        for path in folder.glob("*_labels.txt"):
+            (one, faces), (other, others) = read_labels(path).items()
+            kept = [face for i, face in enumerate(faces) if i % 10]
+            path.write_text("".join(f"{name}\n{' '.join(map(str, numbers))}\n"
+                                    for name, numbers in ((one, kept), (other, others + faces[::10]))))
+        return folder
 
 
 def write_off(path, vertices, faces):

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
@@ -39,9 +40,17 @@ Json to_json(const CatalogShape& shape) {
             {"category", to_text(shape.category)}};
 }
 
+/// The library would turn what is no whole number (1e300, true) into one.
+std::int64_t whole_number(const Json& json) {
+    constexpr std::uint64_t most = std::numeric_limits<std::int64_t>::max();
+    if (!json.is_number_integer() || (json.is_number_unsigned() && json.get<std::uint64_t>() > most))
+        throw DataError("has another value where a whole number should be; write the shards again");
+    return json.get<std::int64_t>();
+}
+
 /// A number that is not below 0; what is none of a file's own size is found out when it is read.
 std::int64_t count_from(const Json& json) {
-    return std::max<std::int64_t>(json.get<std::int64_t>(), 0);
+    return std::max<std::int64_t>(whole_number(json), 0);
 }
 
 BatchPlan plan_from(const Json& json) {
@@ -56,7 +65,7 @@ BatchPlan plan_from(const Json& json) {
 
 CatalogShape shape_from(const Json& json) {
     CatalogShape shape;
-    shape.id = json.at("id").get<std::int64_t>();
+    shape.id = whole_number(json.at("id"));
     shape.path = to_bytes(json.at("path").get<std::string>());
     shape.name = to_bytes(json.at("name").get<std::string>());
     shape.bytes = count_from(json.at("bytes"));

@@ -42,8 +42,8 @@ Json to_json(const CatalogShape& shape) {
 
 /// The library would turn what is no whole number (1e300, true) into one.
 std::int64_t whole_number(const Json& json) {
-    constexpr std::uint64_t most = std::numeric_limits<std::int64_t>::max();
-    if (!json.is_number_integer() || (json.is_number_unsigned() && json.get<std::uint64_t>() > most))
+    constexpr std::uint64_t k_most = std::numeric_limits<std::int64_t>::max();
+    if (!json.is_number_integer() || (json.is_number_unsigned() && json.get<std::uint64_t>() > k_most))
         throw DataError("has another value where a whole number should be; write the shards again");
     return json.get<std::int64_t>();
 }

@@ -14,6 +14,7 @@ namespace {
 constexpr double k_least_share = 0.04;
 constexpr float k_apart = 1;               // |u - v|^2 of directions that differ by 30 degrees: strokes that cross do
 constexpr double k_least_variance = 1e-3;  // of |u - f|^2: about a degree
+constexpr float k_gate_radius = 2;         // in spacings
 
 /// An expert and what is thought of it: the columns of gamma and beta.
 struct Expert {
@@ -33,7 +34,11 @@ struct Expert {
 class Mixture {
   public:
     Mixture(const OrientationSamples& samples, const MixtureOptions& options, const std::function<void()>& progress)
-        : samples_(samples), options_(options), progress_(progress), neighbors_(sample_neighbors(samples, 1)) {
+        : samples_(samples),
+          options_(options),
+          progress_(progress),
+          neighbors_(sample_neighbors(samples, 1)),
+          gate_neighbors_(sample_neighbors(samples, k_gate_radius)) {
         const OrientationClusters clusters = grow_clusters(samples, options.most_clusters, options.seed);
         held_out_ = held_out_rectangles(samples.x, samples.y, clusters.cluster, options.held_out, options.seed + 1);
         experts_.resize(clusters.count);
@@ -170,18 +175,29 @@ class Mixture {
         variance_ = std::max(variance_, k_least_variance);
     }
 
-    /// Eqs. 4.10, 4.11; returns the mean error under the new labels.
+    /// How likely a sample is an expert's from those around it alone: the mean of their gamma, and pi_c as if it were
+    /// that of one more.
+    double gate(const std::vector<float>& gamma, double share, std::size_t i) const {
+        double sum = share;
+        for (const std::uint32_t near : gate_neighbors_.of(i)) sum += static_cast<double>(gamma[near]);
+        return sum / static_cast<double>(1 + gate_neighbors_.of(i).size());
+    }
+
+    /// Eqs. 4.10, 4.11, with a gate by place for pi_c; returns the mean error under the new labels.
     double update_labels() {
+        std::vector<std::vector<float>> before;
+        for (const Expert& e : experts_) before.push_back(e.gamma);
         std::vector<double> mean(samples_.size());
         parallel_for(
             samples_.size(),
             [&](std::size_t i) {
                 double sum = 0, least = 4;
                 for (const Expert& e : experts_) least = std::min(least, static_cast<double>(e.error[i]));
-                for (Expert& e : experts_) {
+                for (std::size_t c = 0; c < experts_.size(); ++c) {
+                    Expert& e = experts_[c];
                     // Relative to the least error, so that the sum cannot vanish.
                     const double above = static_cast<double>(e.error[i]) - least;
-                    e.gamma[i] = static_cast<float>(e.share * std::exp(-above / (2 * variance_)));
+                    e.gamma[i] = static_cast<float>(gate(before[c], e.share, i) * std::exp(-above / (2 * variance_)));
                     sum += static_cast<double>(e.gamma[i]);
                     if (e.cross) e.beta[i] = samples_.level[i] == 1 ? 1.0f : first_part(e, i);
                 }
@@ -347,7 +363,7 @@ class Mixture {
     const OrientationSamples& samples_;
     const MixtureOptions& options_;
     const std::function<void()>& progress_;
-    SampleNeighbors neighbors_;
+    SampleNeighbors neighbors_, gate_neighbors_;
     std::vector<std::uint8_t> held_out_;
     std::vector<Expert> experts_;
     double variance_ = 0.1;  // s

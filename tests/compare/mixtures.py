@@ -293,13 +293,13 @@ def draw(path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--sets", type=int, default=10, help="data sets per setting; of directions, which take longer, a third")
+    parser.add_argument("--sets", type=int, default=10, help="data sets per setting")
     parser.add_argument("--picture", metavar="FILE", help="also draw a data set of each truth")
     options = parser.parse_args()
     if options.picture:
         draw(options.picture)
     print_columns("parabolas", parabola_errors(options.sets))
-    print_columns("directions: off / right rule, %", stroke_errors(max(options.sets // 3, 1)))
+    print_columns("directions: off / right rule, %", stroke_errors(options.sets))
 
 
 if __name__ == "__main__":

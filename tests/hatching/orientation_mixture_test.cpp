@@ -17,15 +17,15 @@ namespace {
 constexpr int k_width = 240, k_height = 160, k_samples = 6000;
 constexpr double k_degree = std::numbers::pi / 180;
 
-/// Smooth fields of a picture: each turns by up to 40 degrees, in its own way, over it.
+/// Smooth fields of a picture: each turns by up to 40 degrees, or so many times that, in its own way, over it.
 class SmoothFields {
   public:
-    explicit SmoothFields(std::uint64_t seed) {
+    explicit SmoothFields(std::uint64_t seed, double times = 1) {
         Random random(seed);
         for (auto& [angle, along_x, along_y, wave] : fields_) {
             angle = random.uniform(0, std::numbers::pi);
-            along_x = random.uniform(-0.5, 0.5) / k_width;
-            along_y = random.uniform(-0.5, 0.5) / k_height;
+            along_x = times * random.uniform(-0.5, 0.5) / k_width;
+            along_y = times * random.uniform(-0.5, 0.5) / k_height;
             wave = random.uniform(0, 0.3);
         }
     }
@@ -73,6 +73,32 @@ Drawing two_regions(double noise, std::uint64_t seed) {
     return drawing;
 }
 
+/// Rule 0 hatches the left, rule 1 the right; both turn so much that their directions meet at places of the border.
+Drawing two_turning_regions(double noise, std::uint64_t seed) {
+    const SmoothFields fields(seed, 3);
+    Drawing drawing;
+    drawing.rules.resize(2);
+    drawing.rules[0].function[0].terms = {{2, 1.0f}};
+    drawing.rules[1].function[0].terms = {{9, 0.7f}, {20, 0.3f}};
+    Random random(seed + 1);
+    constexpr std::size_t k_few = 1500;
+    drawing.samples.fields = OrientationFields(k_few);
+    for (std::size_t i = 0; i < k_few; ++i) {
+        const auto x = static_cast<std::uint16_t>(random.index(k_width)),
+                   y = static_cast<std::uint16_t>(random.index(k_height));
+        for (std::size_t k = 0; k < k_orientation_fields; ++k) drawing.samples.fields.field(k)[i] = fields.at(k, x, y);
+        const std::uint32_t region = x < k_width / 2 ? 0 : 1;
+        const float angle = angle_of(drawing.rules[region].function[0].evaluate(drawing.samples.fields, i));
+        drawing.samples.x.push_back(x);
+        drawing.samples.y.push_back(y);
+        drawing.samples.direction.push_back(doubled_angle(angle + static_cast<float>(noise * random.normal())));
+        drawing.samples.level.push_back(1);
+        drawing.samples.spacing.push_back(8);
+        drawing.region.push_back(region);
+    }
+    return drawing;
+}
+
 /// Mean difference of directions, in degrees, over the samples of a region, or its cross-hatched ones.
 double mean_error(const OrientationFunction& learned, const OrientationFunction& truth, const Drawing& drawing,
                   std::uint32_t region, bool only_crossed = false) {
@@ -111,6 +137,21 @@ TEST(OrientationMixture, FindsTwoRulesAndWhereTheyHold) {
         EXPECT_GT(mixture.error, 0.009);
         EXPECT_LT(mixture.error, 0.018);
     }
+}
+
+// Without a gate by place, half of one region goes to the other's rule on most of these, and six in ten are right.
+TEST(OrientationMixture, TellsRegionsApartWhoseDirectionsMeet) {
+    std::size_t right = 0, all = 0;
+    for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u}) {
+        const Drawing drawing = two_turning_regions(10 * k_degree, seed);
+        const OrientationMixture mixture = learn_mixture(drawing.samples);
+        EXPECT_LE(mixture.rules.size(), 3U) << "of picture " << seed;
+        std::vector<std::array<std::size_t, 2>> samples_of(mixture.rules.size());  // by region
+        for (std::size_t i = 0; i < drawing.region.size(); ++i) ++samples_of[mixture.segment[i]][drawing.region[i]];
+        for (const auto& regions : samples_of) right += std::max(regions[0], regions[1]);
+        all += drawing.region.size();
+    }
+    EXPECT_GE(static_cast<double>(right), 0.93 * static_cast<double>(all));
 }
 
 // One rule that turns by more than clusters do is one rule.

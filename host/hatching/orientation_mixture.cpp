@@ -54,12 +54,22 @@ class Mixture {
     }
 
     OrientationMixture run() {
-        converge();
-        while (merge_best_pair()) converge();
+        // By place, as regions whose directions meet at a border would else take parts of each other. But a region may
+        // then keep a rule of its own only because its samples lie together: without place fewer rules may do.
+        converge_and_merge();
+        const std::vector<Expert> told_by_place = experts_;
+        by_place_ = false;
+        converge_and_merge();
+        if (experts_.size() == told_by_place.size()) experts_ = told_by_place;
         return result();
     }
 
   private:
+    void converge_and_merge() {
+        converge();
+        while (merge_best_pair()) converge();
+    }
+
     void converge() {
         double last = -1;
         for (std::size_t iteration = 0; iteration < options_.iterations; ++iteration) {
@@ -175,15 +185,15 @@ class Mixture {
         variance_ = std::max(variance_, k_least_variance);
     }
 
-    /// How likely a sample is an expert's from those around it alone: the mean of their gamma, and pi_c as if it were
-    /// that of one more.
+    /// In place of pi_c, how likely a sample is an expert's from those around it: the mean of their gamma, and pi_c as
+    /// if it were that of one more.
     double gate(const std::vector<float>& gamma, double share, std::size_t i) const {
         double sum = share;
         for (const std::uint32_t near : gate_neighbors_.of(i)) sum += static_cast<double>(gamma[near]);
         return sum / static_cast<double>(1 + gate_neighbors_.of(i).size());
     }
 
-    /// Eqs. 4.10, 4.11, with a gate by place for pi_c; returns the mean error under the new labels.
+    /// Eqs. 4.10, 4.11; returns the mean error under the new labels.
     double update_labels() {
         std::vector<std::vector<float>> before;
         for (const Expert& e : experts_) before.push_back(e.gamma);
@@ -195,9 +205,10 @@ class Mixture {
                 for (const Expert& e : experts_) least = std::min(least, static_cast<double>(e.error[i]));
                 for (std::size_t c = 0; c < experts_.size(); ++c) {
                     Expert& e = experts_[c];
+                    const double prior = by_place_ ? gate(before[c], e.share, i) : e.share;
                     // Relative to the least error, so that the sum cannot vanish.
                     const double above = static_cast<double>(e.error[i]) - least;
-                    e.gamma[i] = static_cast<float>(gate(before[c], e.share, i) * std::exp(-above / (2 * variance_)));
+                    e.gamma[i] = static_cast<float>(prior * std::exp(-above / (2 * variance_)));
                     sum += static_cast<double>(e.gamma[i]);
                     if (e.cross) e.beta[i] = samples_.level[i] == 1 ? 1.0f : first_part(e, i);
                 }
@@ -367,6 +378,7 @@ class Mixture {
     std::vector<std::uint8_t> held_out_;
     std::vector<Expert> experts_;
     double variance_ = 0.1;  // s
+    bool by_place_ = true;
 };
 
 }  // namespace

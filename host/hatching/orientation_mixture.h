@@ -41,8 +41,8 @@ struct OrientationMixture {
 /// of about one direction, while a rule may turn with the surface. A segment has a second direction if more than 10% of
 /// it is cross-hatched, whatever it began as. Also, where the drawing has single strokes (level 1), only the first
 /// direction of a segment counts in Eq. 4.12, and the medians of errors are of samples of the same level and, where
-/// strokes cross, of each direction on its own. In place of pi_c in Eq. 4.10 is a gate by place (Sec. 2.2.5), the mean
-/// of gamma within two spacings: regions whose directions meet at a border would else take parts of each other. No
+/// strokes cross, of each direction on its own. A gate by place (Sec. 2.2.5) stands for pi_c in Eq. 4.10: the mean of
+/// gamma within two spacings; but where fewer segments are left if all goes on without it, those are the result. No
 /// samples give no rules. Deterministic. Throws Interrupted at Ctrl-C.
 OrientationMixture learn_mixture(
     const OrientationSamples& samples, const MixtureOptions& options = {},

@@ -28,7 +28,9 @@ if(EXEMPLAR_SANITIZE OR EXEMPLAR_FUZZERS)
   target_link_options(exemplar_options INTERFACE ${exemplar_sanitizers})
 endif()
 if(EXEMPLAR_FUZZERS)
-  target_compile_options(exemplar_options INTERFACE $<BUILD_INTERFACE:-fsanitize=fuzzer-no-link>)
+  target_compile_options(
+    exemplar_options INTERFACE
+    "$<BUILD_INTERFACE:-fsanitize=fuzzer-no-link;-fsanitize-coverage-ignorelist=${PROJECT_SOURCE_DIR}/tests/fuzz/libraries.ignore>")
 endif()
 
 # exemplar_library(NAME DIR DEPENDENCY...): the static library exemplar_NAME of all sources in DIR. Those of host/ and gpu/ are

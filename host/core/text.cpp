@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <numeric>
 
 namespace exemplar {
 namespace {
@@ -15,19 +16,21 @@ char lower(char c) {
 
 /// Optimal string alignment distance, ignoring case: insertions, deletions, substitutions, swaps of neighbors.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-    for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
-    for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = j;
+    std::vector<std::size_t> two_before(b.size() + 1), before(b.size() + 1), now(b.size() + 1);  // rows
+    std::iota(now.begin(), now.end(), std::size_t{0});
     for (std::size_t i = 1; i <= a.size(); ++i) {
+        two_before.swap(before);
+        before.swap(now);
+        now[0] = i;
         for (std::size_t j = 1; j <= b.size(); ++j) {
             const std::size_t cost = lower(a[i - 1]) == lower(b[j - 1]) ? 0 : 1;
-            d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + cost});
+            now[j] = std::min({before[j] + 1, now[j - 1] + 1, before[j - 1] + cost});
             const bool swapped =
                 i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]);
-            if (swapped) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+            if (swapped) now[j] = std::min(now[j], two_before[j - 2] + 1);
         }
     }
-    return d[a.size()][b.size()];
+    return now[b.size()];
 }
 
 }  // namespace

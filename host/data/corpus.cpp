@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <climits>
 #include <map>
 #include <set>
 #include <sstream>
@@ -51,6 +52,9 @@ std::vector<fs::path> meshes_of_list(const fs::path& list, MissingMeshes missing
         line.erase(comment_begin(line));
         line.erase(line.find_last_not_of(" \t\r") + 1);
         if (line.empty()) continue;
+        if (line.size() >= PATH_MAX)  // before it is taken apart, which takes a hundred bytes a letter
+            throw DataError(fmt::format("{}:{}: no such mesh: {} (names of files have less than {} bytes)",
+                                        list.string(), number, mesh_io::printable(line, 200), PATH_MAX));
         fs::path path = line;
         if (path.is_relative() && !is_there(path)) path = list.parent_path() / path;
         if (missing == MissingMeshes::refused && !is_there(path))

@@ -57,6 +57,7 @@ class Mixture {
         // By place, as regions whose directions meet at a border would else take parts of each other. But a region may
         // then keep a rule of its own only because its samples lie together: without place fewer rules may do.
         converge_and_merge();
+        if (experts_.size() == 1) return result();
         const std::vector<Expert> told_by_place = experts_;
         by_place_ = false;
         converge_and_merge();

@@ -123,6 +123,26 @@ TEST(Text, SuggestsTheNearestWord) {
     EXPECT_EQ(suggestion("anything", {}), "");
 }
 
+TEST(Text, CountsSwapsOfNeighborsAsOneMistake) {
+    const std::vector<std::string> words{"abcdef", "badcxx"};
+    EXPECT_EQ(nearest_word("badcfe", words), "badcxx") << "two letters differ; three swaps away from the other";
+    EXPECT_EQ(nearest_word("abdcef", words), "abcdef") << "one swap";
+    EXPECT_EQ(nearest_word("bcadef", std::vector<std::string>{"abcdef"}), "abcdef") << "one letter gone, one more";
+    EXPECT_EQ(nearest_word("fedcba", std::vector<std::string>{"abcdef"}), "");
+}
+
+TEST(Files, SuggestsTheNearestFileThatIsThere) {
+    const TemporaryFolder folder;
+    for (const char* name : {"chair.off", "table.off"}) write_file_atomically(folder / name, [](std::ostream&) {});
+    fs::create_symlink("nowhere.off", folder / "chair1.off");
+    fs::create_symlink("table.off", folder / "tabla.off");
+    const auto meant = [&](const char* name) { return " (did you mean '" + (folder / name).string() + "'?)"; };
+    EXPECT_EQ(suggest_file(folder / "chair12.off"), meant("chair.off")) << "the nearer one is a link to nothing";
+    EXPECT_EQ(suggest_file(folder / "tablaa.off"), meant("tabla.off"));
+    EXPECT_EQ(suggest_file(folder / "chiar.off/"), meant("chair.off")) << "ends in a slash";
+    EXPECT_EQ(suggest_file(folder / "none/chair.off"), "");
+}
+
 TEST(Text, SuggestsNothingForAHugeWordAndTakesNoMemoryForIt) {
     const std::string huge(std::size_t{1} << 24, 'x');  // comparing all letters with each other would take petabytes
     const std::vector<std::string> words{huge, "x"};

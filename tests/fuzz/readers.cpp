@@ -263,12 +263,14 @@ bool reads_safetensors(std::string_view content) {
 }
 
 /// Makes a model of another day's features one of today's, so that the corpus outlives them. Whether that was needed
-/// and done. What says that it is of today is not read once more: that is most files, and reading is most of the time.
+/// and done. What says that it is of today, or not of which day, is not read once more: that is most files, and reading
+/// is most of the time.
 bool made_for_today(const fs::path& path, std::string_view content, const std::map<std::string, int>& versions) {
     const auto says = [&](const auto& version) {
         return content.find(fmt::format(R"("{}":"{}")", version.first, version.second)) != content.npos;
     };
-    if (std::ranges::all_of(versions, says)) return false;
+    const auto tells = [&](const auto& version) { return content.find(version.first) != content.npos; };
+    if (std::ranges::all_of(versions, says) || !std::ranges::all_of(versions, tells)) return false;
     try {
         TensorFile file = read_safetensors(path);
         for (const auto& [key, version] : versions) file.metadata[key] = std::to_string(version);

@@ -160,7 +160,7 @@ std::string suggest_file(const fs::path& path) {
     std::vector<std::string> names;
     std::error_code error;
     const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-    if (!fs::is_directory(folder, error)) return {};
+    if (!fs::is_directory(folder, error)) return {};  // before the iterator copies a path that may be long
     for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
         if (std::error_code gone; !it->is_symlink(gone) || fs::exists(it->path(), gone))
             names.push_back(it->path().filename().string());

@@ -5,7 +5,7 @@ string(REGEX REPLACE "(..)(..)(..)(..)" "0x\\4\\3\\2\\1," words "${hex}")
 string(REGEX REPLACE "(0x........,0x........,0x........,0x........,0x........,0x........,0x........,0x........,)" "    \\1\n" words "${words}")
 file(WRITE ${folder}/${symbol}.h "#pragma once
 
-#include \"gpu/runtime/shader.h\"
+#include \"gpu/runtime/kernels/shader.h\"
 
 namespace exemplar::shaders {
 extern const Shader ${symbol};

@@ -39,10 +39,10 @@ if(EXEMPLAR_FUZZERS)
     "$<BUILD_INTERFACE:-fsanitize=fuzzer-no-link;-fsanitize-coverage-ignorelist=${exemplar_ignored_copy}>")
 endif()
 
-# exemplar_library(NAME DIR DEPENDENCY...): the static library exemplar_NAME of all sources in DIR. Those of host/ and gpu/ are
-# noted for cmake/install.cmake.
+# exemplar_library(NAME DIR DEPENDENCY...): the static library exemplar_NAME of all sources in DIR and its folders. Those of
+# host/ and gpu/ are noted for cmake/install.cmake.
 function(exemplar_library name dir)
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${dir}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${dir}/*.cpp)
   add_library(exemplar_${name} STATIC ${sources})
   target_link_libraries(exemplar_${name} PUBLIC exemplar_options ${ARGN})
   string(REGEX REPLACE "/.*" "" part ${dir})
@@ -52,7 +52,8 @@ endfunction()
 # exemplar_test(NAME LABEL DIR DEPENDENCY...): one GoogleTest program of all sources in tests/DIR;
 # each of its tests is a ctest entry with that label. Tests of a suite named Slow* get the label slow instead.
 function(exemplar_test name label dir)
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${dir}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${dir}/*.cpp)
+  list(FILTER sources EXCLUDE REGEX "/(programs|support)/")
   add_executable(test_${name} ${sources})
   target_link_libraries(test_${name} PRIVATE exemplar_options ${ARGN} GTest::gmock GTest::gtest GTest::gtest_main)
   gtest_discover_tests(test_${name} TEST_PREFIX ${name}. TEST_FILTER "-Slow*" DISCOVERY_TIMEOUT 60

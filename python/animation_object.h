@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/animation/animation.h"
-#include "host/curvature/samples.h"
+#include "host/curvature/state/samples.h"
 #include "host/mesh/mesh.h"
 
 namespace exemplar::python {

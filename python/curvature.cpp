@@ -1,6 +1,6 @@
 // Curvature: measured on a mesh, and learned from an animation.
 
-#include "host/mesh/curvature.h"
+#include "host/mesh/curvature/curvature.h"
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
@@ -11,10 +11,10 @@
 #include <optional>
 
 #include "host/core/text.h"
-#include "host/curvature/evaluation.h"
-#include "host/curvature/training.h"
-#include "host/mesh/curvature_estimator.h"
-#include "host/mesh/validate.h"
+#include "host/curvature/model/evaluation.h"
+#include "host/curvature/learning/training.h"
+#include "host/mesh/curvature/curvature_estimator.h"
+#include "host/mesh/editing/validate.h"
 #include "python/animation_object.h"
 #include "python/arrays.h"
 #include "python/bindings.h"

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "host/mesh/curvature.h"
+#include "host/mesh/curvature/curvature.h"
 
 namespace exemplar::python {
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "gpu/runtime/device_info.h"
+#include "gpu/runtime/device/device_info.h"
 #include "python/bindings.h"
 #include "python/long_work.h"
 

@@ -1,6 +1,6 @@
 // Features of faces and edges, as arrays.
 
-#include "host/labeling/features.h"
+#include "host/labeling/features/features.h"
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
@@ -10,8 +10,8 @@
 #include <map>
 #include <numeric>
 
-#include "host/labeling/mesh_labeling.h"
-#include "host/mesh/validate.h"
+#include "host/labeling/inference/mesh_labeling.h"
+#include "host/mesh/editing/validate.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/long_work.h"

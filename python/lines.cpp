@@ -1,6 +1,6 @@
 // Line drawings of meshes: as SVG, and as arrays of points.
 
-#include "host/lines/lines.h"
+#include "host/lines/extraction/lines.h"
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
@@ -12,13 +12,13 @@
 #include <optional>
 
 #include "host/core/text.h"
-#include "host/lines/drawable_surface.h"
+#include "host/lines/extraction/drawable_surface.h"
 #include "host/lines/drawing.h"
 #include "host/lines/drawing_svg.h"
-#include "host/lines/style.h"
-#include "host/lines/view_point.h"
-#include "host/mesh/loose_vertices.h"
-#include "host/mesh/validate.h"
+#include "host/lines/strokes/style.h"
+#include "host/lines/strokes/view_point.h"
+#include "host/mesh/editing/loose_vertices.h"
+#include "host/mesh/editing/validate.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/curvature_object.h"

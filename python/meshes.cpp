@@ -10,9 +10,9 @@
 
 #include "host/core/text.h"
 #include "host/data/corpus.h"
-#include "host/mesh/io.h"
-#include "host/mesh/simplify.h"
-#include "host/mesh/validate.h"
+#include "host/mesh/io/io.h"
+#include "host/mesh/editing/simplify.h"
+#include "host/mesh/editing/validate.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/long_work.h"

@@ -4,8 +4,8 @@
 
 #include "host/core/parallel.h"
 #include "host/core/progress.h"
-#include "host/hatching/surface_cache.h"
-#include "host/labeling/feature_cache.h"
+#include "host/hatching/features/surface_cache.h"
+#include "host/labeling/features/feature_cache.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include "host/synth/animations.h"
-#include "host/synth/shapes.h"
+#include "host/synth/animations/animations.h"
+#include "host/synth/shapes/shapes.h"
 #include "python/animation_object.h"
 #include "python/arrays.h"
 #include "python/bindings.h"

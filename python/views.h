@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "host/lines/lines.h"
-#include "host/lines/view_point.h"
+#include "host/lines/extraction/lines.h"
+#include "host/lines/strokes/view_point.h"
 
 namespace exemplar::python {
 

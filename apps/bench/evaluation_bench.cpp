@@ -13,7 +13,7 @@
 
 #include "host/animation/read_animation.h"
 #include "host/core/parallel.h"
-#include "host/curvature/evaluation.h"
+#include "host/curvature/model/evaluation.h"
 
 namespace exemplar {
 namespace {

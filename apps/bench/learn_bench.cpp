@@ -8,9 +8,9 @@
 #include "host/core/random.h"
 #include "host/core/stopwatch.h"
 #include "host/graphcut/alpha_expansion.h"
-#include "host/learn/boosted_stumps.h"
-#include "host/learn/jointboost.h"
-#include "host/learn/quantize.h"
+#include "host/learn/boosting/boosted_stumps.h"
+#include "host/learn/boosting/jointboost.h"
+#include "host/learn/boosting/quantize.h"
 
 namespace exemplar {
 namespace {

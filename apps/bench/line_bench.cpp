@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "apps/exemplar/drawn_animation.h"
-#include "apps/exemplar/frames_view.h"
+#include "apps/exemplar/lines/drawn_animation.h"
+#include "apps/exemplar/lines/frames_view.h"
 #include "gpu/imaging/picture.h"
-#include "gpu/runtime/device.h"
+#include "gpu/runtime/device/device.h"
 #include "host/animation/read_animation.h"
 #include "host/core/errors.h"
 #include "host/core/freed_memory.h"
 #include "host/core/stopwatch.h"
-#include "host/curvature/samples.h"
+#include "host/curvature/state/samples.h"
 #include "host/imaging/png.h"
 
 namespace exemplar {

@@ -6,12 +6,12 @@
 
 #include "host/core/parallel.h"
 #include "host/core/random.h"
-#include "host/mesh/axes.h"
-#include "host/mesh/curvature.h"
-#include "host/mesh/curvature_estimator.h"
-#include "host/mesh/geodesics.h"
+#include "host/mesh/queries/axes.h"
+#include "host/mesh/curvature/curvature.h"
+#include "host/mesh/curvature/curvature_estimator.h"
+#include "host/mesh/queries/geodesics.h"
 #include "host/mesh/mesh.h"
-#include "host/mesh/rays.h"
+#include "host/mesh/queries/rays.h"
 #include "host/mesh/topology.h"
 
 // The geometric groundwork of the features, on one thread, on a bumpy torus. Items are faces (vertices for curvature,

@@ -5,7 +5,7 @@
 
 #include "apps/exemplar/commands.h"
 #include "host/animation/animation.h"
-#include "host/curvature/samples.h"
+#include "host/curvature/state/samples.h"
 
 namespace exemplar {
 

@@ -16,7 +16,7 @@
 #include "host/core/files.h"
 #include "host/data/cache_bound.h"
 #include "host/data/corpus.h"
-#include "host/labeling/mesh_labeling.h"
+#include "host/labeling/inference/mesh_labeling.h"
 
 namespace exemplar {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "host/core/errors.h"
 #include "host/data/corpus.h"
-#include "host/labeling/model.h"
-#include "host/mesh/io.h"
+#include "host/labeling/inference/model.h"
+#include "host/mesh/io/io.h"
 
 namespace exemplar {
 

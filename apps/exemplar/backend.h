@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "host/labeling/labeler.h"
+#include "host/labeling/inference/labeler.h"
 
 namespace exemplar {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "apps/exemplar/commands.h"
-#include "gpu/runtime/device_info.h"
-#include "gpu/runtime/errors.h"
+#include "gpu/runtime/device/device_info.h"
+#include "gpu/runtime/device/errors.h"
 
 namespace exemplar {
 namespace {

@@ -7,9 +7,9 @@
 #include "host/core/errors.h"
 #include "host/core/stopwatch.h"
 #include "host/data/npy.h"
-#include "host/labeling/features.h"
-#include "host/labeling/mesh_labeling.h"
-#include "host/mesh/io.h"
+#include "host/labeling/features/features.h"
+#include "host/labeling/inference/mesh_labeling.h"
+#include "host/mesh/io/io.h"
 
 namespace exemplar {
 namespace {

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "host/core/errors.h"
-#include "host/mesh/io.h"
-#include "host/mesh/point_tree.h"
-#include "host/mesh/simplify.h"
-#include "host/mesh/weld.h"
+#include "host/mesh/io/io.h"
+#include "host/mesh/queries/point_tree.h"
+#include "host/mesh/editing/simplify.h"
+#include "host/mesh/editing/weld.h"
 
 namespace exemplar {
 namespace {

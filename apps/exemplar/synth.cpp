@@ -12,9 +12,9 @@
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
 #include "host/core/text.h"
-#include "host/mesh/io.h"
-#include "host/synth/animations.h"
-#include "host/synth/shapes.h"
+#include "host/mesh/io/io.h"
+#include "host/synth/animations/animations.h"
+#include "host/synth/shapes/shapes.h"
 
 namespace exemplar {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "apps/help/help_pages.h"
 #include "apps/help/offered_words.h"
-#include "apps/viewer/hatched_still.h"
+#include "apps/viewer/scene/hatched_still.h"
 #include "apps/viewer/options.h"
 #include "host/core/errors.h"
 #include "host/core/freed_memory.h"

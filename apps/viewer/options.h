@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "apps/viewer/view_settings.h"
-#include "apps/viewer/viewer_state.h"
+#include "apps/viewer/scene/view_settings.h"
+#include "apps/viewer/window/viewer_state.h"
 
 namespace exemplar {
 

@@ -8,7 +8,7 @@
 #include "gpu/imaging/gbuffer_renderer.h"
 #include "gpu/imaging/image_derivatives.h"
 #include "gpu/learn/stump_scorer.h"
-#include "gpu/runtime/device.h"
+#include "gpu/runtime/device/device.h"
 #include "host/hatching/view_hatching.h"
 
 namespace exemplar {

@@ -6,7 +6,7 @@
 #include "embedded/hatching_orientations_comp.h"
 #include "embedded/hatching_property_comp.h"
 #include "host/core/parallel.h"
-#include "host/hatching/powers.h"
+#include "host/hatching/features/powers.h"
 #include "shaders/shared/hatching_features.h"
 
 namespace exemplar {

@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "gpu/runtime/buffer.h"
-#include "gpu/runtime/device.h"
-#include "gpu/runtime/kernel.h"
-#include "gpu/runtime/profiler.h"
-#include "gpu/runtime/stream.h"
-#include "host/hatching/style_prediction.h"
+#include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/device/device.h"
+#include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/profiler.h"
+#include "gpu/runtime/record/stream.h"
+#include "host/hatching/style/style_prediction.h"
 
 namespace exemplar {
 

@@ -10,7 +10,7 @@
 #include <span>
 #include <string_view>
 
-#include "gpu/runtime/buffer.h"
+#include "gpu/runtime/record/buffer.h"
 
 namespace exemplar {
 

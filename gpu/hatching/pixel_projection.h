@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "gpu/hatching/kept_buffers.h"
-#include "gpu/runtime/buffer.h"
-#include "gpu/runtime/device.h"
-#include "gpu/runtime/kernel.h"
-#include "gpu/runtime/profiler.h"
-#include "gpu/runtime/stream.h"
-#include "host/hatching/pixel_projection.h"
+#include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/device/device.h"
+#include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/profiler.h"
+#include "gpu/runtime/record/stream.h"
+#include "host/hatching/features/pixel_projection.h"
 #include "shaders/shared/hatching_features.h"
 
 namespace exemplar {

@@ -10,9 +10,9 @@
 #include "embedded/hatching_settle_comp.h"
 #include "embedded/hatching_trace_comp.h"
 #include "host/core/interrupt.h"
-#include "host/hatching/kept_strokes.h"
-#include "host/hatching/occlusion_barriers.h"
-#include "host/hatching/stroke_front.h"
+#include "host/hatching/placement/kept_strokes.h"
+#include "host/hatching/fields/occlusion_barriers.h"
+#include "host/hatching/placement/stroke_front.h"
 
 namespace exemplar {
 namespace {

@@ -5,13 +5,13 @@
 #include <span>
 #include <vector>
 
-#include "gpu/runtime/buffer.h"
-#include "gpu/runtime/device.h"
-#include "gpu/runtime/kernel.h"
-#include "gpu/runtime/profiler.h"
-#include "gpu/runtime/stream.h"
-#include "host/hatching/placement_grid.h"
-#include "host/hatching/streamlines.h"
+#include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/device/device.h"
+#include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/profiler.h"
+#include "gpu/runtime/record/stream.h"
+#include "host/hatching/placement/placement_grid.h"
+#include "host/hatching/placement/streamlines.h"
 #include "shaders/shared/hatching.h"
 
 namespace exemplar {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "gpu/runtime/device.h"
-#include "gpu/runtime/errors.h"
+#include "gpu/runtime/device/device.h"
+#include "gpu/runtime/device/errors.h"
 
 namespace exemplar {
 namespace {

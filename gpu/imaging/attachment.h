@@ -2,7 +2,7 @@
 
 #include <volk.h>
 
-#include "gpu/runtime/unique_handle.h"
+#include "gpu/runtime/device/unique_handle.h"
 
 namespace exemplar {
 

@@ -5,10 +5,10 @@
 #include <array>
 
 #include "gpu/imaging/attachment.h"
-#include "gpu/runtime/buffer.h"
-#include "gpu/runtime/device.h"
-#include "gpu/runtime/pass.h"
-#include "gpu/runtime/stream.h"
+#include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/device/device.h"
+#include "gpu/runtime/record/pass.h"
+#include "gpu/runtime/record/stream.h"
 #include "host/imaging/image.h"
 
 namespace exemplar {

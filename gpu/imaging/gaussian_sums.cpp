@@ -5,7 +5,7 @@
 
 #include "embedded/imaging_mask_sums_comp.h"
 #include "embedded/imaging_weighted_sums_comp.h"
-#include "gpu/runtime/threads.h"
+#include "gpu/runtime/kernels/threads.h"
 #include "shaders/shared/image_filters.h"
 
 namespace exemplar {

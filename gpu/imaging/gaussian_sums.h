@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <span>
 
-#include "gpu/runtime/buffer.h"
-#include "gpu/runtime/device.h"
-#include "gpu/runtime/kernel.h"
-#include "gpu/runtime/stream.h"
+#include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/device/device.h"
+#include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/stream.h"
 #include "host/imaging/gaussian.h"
 
 namespace exemplar {

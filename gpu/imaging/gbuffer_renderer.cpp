@@ -9,7 +9,7 @@
 #include "embedded/imaging_gbuffer_points_comp.h"
 #include "embedded/imaging_gbuffer_vert.h"
 #include "gpu/imaging/picture.h"
-#include "gpu/runtime/errors.h"
+#include "gpu/runtime/device/errors.h"
 #include "shaders/shared/gbuffer.h"
 
 namespace exemplar {

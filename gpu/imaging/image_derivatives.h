@@ -7,11 +7,11 @@
 #include <span>
 
 #include "gpu/imaging/gaussian_sums.h"
-#include "gpu/runtime/buffer.h"
-#include "gpu/runtime/device.h"
-#include "gpu/runtime/kernel.h"
-#include "gpu/runtime/profiler.h"
-#include "gpu/runtime/stream.h"
+#include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/device/device.h"
+#include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/profiler.h"
+#include "gpu/runtime/record/stream.h"
 #include "host/imaging/image.h"
 #include "host/imaging/image_derivatives.h"
 

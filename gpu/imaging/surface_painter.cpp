@@ -8,7 +8,7 @@
 #include "embedded/imaging_unlit_frag.h"
 #include "embedded/imaging_unlit_vert.h"
 #include "gpu/imaging/picture.h"
-#include "gpu/runtime/device.h"
+#include "gpu/runtime/device/device.h"
 
 namespace exemplar {
 namespace {

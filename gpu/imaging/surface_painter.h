@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <map>
 
-#include "gpu/runtime/buffer.h"
-#include "gpu/runtime/draw_pipeline.h"
-#include "gpu/runtime/pass.h"
+#include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/kernels/draw_pipeline.h"
+#include "gpu/runtime/record/pass.h"
 #include "host/imaging/camera.h"
 #include "host/mesh/labels.h"
 #include "shaders/shared/paint.h"

@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "gpu/runtime/buffer.h"
-#include "gpu/runtime/device.h"
-#include "gpu/runtime/kernel.h"
-#include "gpu/runtime/profiler.h"
-#include "gpu/runtime/stream.h"
-#include "host/labeling/context.h"
+#include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/device/device.h"
+#include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/profiler.h"
+#include "gpu/runtime/record/stream.h"
+#include "host/labeling/features/context.h"
 
 namespace exemplar {
 

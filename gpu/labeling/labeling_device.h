@@ -5,9 +5,9 @@
 
 #include "gpu/labeling/context_histograms.h"
 #include "gpu/learn/stump_scorer.h"
-#include "gpu/runtime/device.h"
-#include "host/labeling/fast_context.h"
-#include "host/labeling/labeler.h"
+#include "gpu/runtime/device/device.h"
+#include "host/labeling/features/fast_context.h"
+#include "host/labeling/inference/labeler.h"
 
 namespace exemplar {
 

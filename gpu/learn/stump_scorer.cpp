@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "embedded/learn_stumps_comp.h"
-#include "host/learn/grouped_stumps.h"
-#include "host/learn/threshold_ranks.h"
+#include "host/learn/boosting/grouped_stumps.h"
+#include "host/learn/boosting/threshold_ranks.h"
 #include "shaders/shared/stumps.h"
 
 namespace exemplar {

@@ -7,13 +7,13 @@
 #include <tuple>
 #include <vector>
 
-#include "gpu/runtime/buffer.h"
-#include "gpu/runtime/device.h"
-#include "gpu/runtime/kernel.h"
-#include "gpu/runtime/profiler.h"
-#include "gpu/runtime/stream.h"
-#include "gpu/runtime/tuning.h"
-#include "host/learn/boosted_stumps.h"
+#include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/device/device.h"
+#include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/profiler.h"
+#include "gpu/runtime/record/stream.h"
+#include "gpu/runtime/device/tuning.h"
+#include "host/learn/boosting/boosted_stumps.h"
 
 namespace exemplar {
 

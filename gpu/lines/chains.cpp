@@ -9,7 +9,7 @@
 #include "embedded/lines_points_comp.h"
 #include "embedded/lines_rank_comp.h"
 #include "embedded/lines_scan_comp.h"
-#include "gpu/curvature/texels.h"
+#include "gpu/curvature/surface/texels.h"
 #include "gpu/imaging/picture.h"
 #include "shaders/shared/lines.h"
 

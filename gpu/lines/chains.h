@@ -2,9 +2,9 @@
 
 #include "gpu/lines/extraction.h"
 #include "gpu/lines/line_surface.h"
-#include "gpu/runtime/buffer.h"
-#include "gpu/runtime/kernel.h"
-#include "gpu/runtime/stream.h"
+#include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/stream.h"
 #include "host/imaging/camera.h"
 
 namespace exemplar {

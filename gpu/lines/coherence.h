@@ -2,10 +2,10 @@
 
 #include "gpu/lines/chains.h"
 #include "gpu/lines/strokes.h"
-#include "gpu/runtime/buffer.h"
-#include "gpu/runtime/kernel.h"
-#include "gpu/runtime/stream.h"
-#include "host/lines/coherence.h"
+#include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/stream.h"
+#include "host/lines/strokes/coherence.h"
 #include "shaders/shared/coherence.h"
 
 namespace exemplar {

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "host/lines/stroke_textures.h"
+#include "host/lines/strokes/stroke_textures.h"
 
 namespace exemplar {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gpu/lines/line_renderer.h"
-#include "host/lines/style.h"
+#include "host/lines/strokes/style.h"
 
 namespace exemplar {
 

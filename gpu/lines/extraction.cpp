@@ -13,7 +13,7 @@
 #include "embedded/lines_scan_comp.h"
 #include "embedded/lines_segments_comp.h"
 #include "embedded/lines_view_curvature_comp.h"
-#include "gpu/curvature/texels.h"
+#include "gpu/curvature/surface/texels.h"
 #include "host/core/errors.h"
 #include "shaders/shared/lines.h"
 

@@ -7,9 +7,9 @@
 #include <map>
 
 #include "gpu/lines/line_surface.h"
-#include "gpu/runtime/buffer.h"
-#include "gpu/runtime/kernel.h"
-#include "gpu/runtime/stream.h"
+#include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/stream.h"
 #include "shaders/shared/lines.h"
 
 namespace exemplar {

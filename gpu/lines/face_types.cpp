@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "gpu/runtime/errors.h"
+#include "gpu/runtime/device/errors.h"
 
 namespace exemplar {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "gpu/lines/extraction.h"
-#include "host/lines/face_types.h"
+#include "host/lines/extraction/face_types.h"
 
 namespace exemplar {
 

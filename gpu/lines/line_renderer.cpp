@@ -6,7 +6,7 @@
 
 #include "embedded/lines_stroke_frag.h"
 #include "embedded/lines_stroke_vert.h"
-#include "gpu/curvature/texels.h"
+#include "gpu/curvature/surface/texels.h"
 #include "gpu/imaging/picture.h"
 #include "host/core/errors.h"
 

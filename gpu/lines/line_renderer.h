@@ -13,8 +13,8 @@
 #include "gpu/lines/coherence.h"
 #include "gpu/lines/extraction.h"
 #include "gpu/lines/strokes.h"
-#include "gpu/runtime/draw_pipeline.h"
-#include "gpu/runtime/stream.h"
+#include "gpu/runtime/kernels/draw_pipeline.h"
+#include "gpu/runtime/record/stream.h"
 #include "host/imaging/image.h"
 #include "host/mesh/labels.h"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "gpu/curvature/texels.h"
+#include "gpu/curvature/surface/texels.h"
 #include "host/mesh/topology.h"
 #include "shaders/shared/lines.h"
 

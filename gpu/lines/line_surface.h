@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <span>
 
-#include "gpu/curvature/curved_surface.h"
-#include "gpu/curvature/surface.h"
-#include "gpu/runtime/buffer.h"
-#include "host/lines/lines.h"
+#include "gpu/curvature/surface/curved_surface.h"
+#include "gpu/curvature/surface/surface.h"
+#include "gpu/runtime/record/buffer.h"
+#include "host/lines/extraction/lines.h"
 
 namespace exemplar {
 

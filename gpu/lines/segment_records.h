@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "host/lines/lines.h"
+#include "host/lines/extraction/lines.h"
 #include "shaders/shared/lines.h"
 
 namespace exemplar {

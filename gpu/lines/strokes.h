@@ -4,10 +4,10 @@
 #include <span>
 
 #include "gpu/lines/chains.h"
-#include "gpu/runtime/buffer.h"
-#include "gpu/runtime/kernel.h"
-#include "gpu/runtime/stream.h"
-#include "host/lines/strokes.h"
+#include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/stream.h"
+#include "host/lines/strokes/strokes.h"
 #include "shaders/shared/lines.h"
 
 namespace exemplar {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "gpu/runtime/commands.h"
-#include "gpu/runtime/unique_handle.h"
+#include "gpu/runtime/device/commands.h"
+#include "gpu/runtime/device/unique_handle.h"
 
 namespace exemplar {
 

@@ -8,8 +8,8 @@
 
 #include "embedded/window_interface_frag.h"
 #include "embedded/window_interface_vert.h"
-#include "gpu/runtime/device.h"
-#include "gpu/runtime/errors.h"
+#include "gpu/runtime/device/device.h"
+#include "gpu/runtime/device/errors.h"
 
 namespace exemplar {
 namespace {

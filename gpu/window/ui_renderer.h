@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "gpu/runtime/buffer.h"
-#include "gpu/runtime/draw_pipeline.h"
-#include "gpu/runtime/stream.h"
+#include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/kernels/draw_pipeline.h"
+#include "gpu/runtime/record/stream.h"
 #include "shaders/shared/window.h"
 
 struct ImDrawData;

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "host/animation/gltf_nodes.h"
-#include "host/mesh/io_text.h"
+#include "host/mesh/io/io_text.h"
 
 namespace exemplar::animation_io {
 namespace {

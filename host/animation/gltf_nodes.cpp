@@ -5,7 +5,7 @@
 
 #include <Eigen/SVD>
 
-#include "host/mesh/io_text.h"
+#include "host/mesh/io/io_text.h"
 
 namespace exemplar::animation_io {
 namespace {

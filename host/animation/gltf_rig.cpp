@@ -10,7 +10,7 @@
 
 #include "host/animation/check_animation.h"
 #include "host/animation/gltf_nodes.h"
-#include "host/mesh/io_text.h"
+#include "host/mesh/io/io_text.h"
 
 namespace exemplar::animation_io {
 namespace {

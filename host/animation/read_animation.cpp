@@ -8,7 +8,7 @@
 #include "host/animation/read_formats.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
-#include "host/mesh/io_text.h"
+#include "host/mesh/io/io_text.h"
 
 namespace exemplar {
 namespace {

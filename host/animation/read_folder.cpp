@@ -8,8 +8,8 @@
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
 #include "host/core/text.h"
-#include "host/mesh/io.h"
-#include "host/mesh/io_text.h"
+#include "host/mesh/io/io.h"
+#include "host/mesh/io/io_text.h"
 
 namespace exemplar::animation_io {
 namespace {

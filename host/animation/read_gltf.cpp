@@ -8,7 +8,7 @@
 #include "host/animation/gltf_rig.h"
 #include "host/animation/read_formats.h"
 #include "host/animation/weld_rig.h"
-#include "host/mesh/io_gltf_file.h"
+#include "host/mesh/io/io_gltf_file.h"
 
 namespace exemplar::animation_io {
 namespace {

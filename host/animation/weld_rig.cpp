@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "host/mesh/weld.h"
+#include "host/mesh/editing/weld.h"
 
 namespace exemplar::animation_io {
 namespace {

@@ -10,8 +10,8 @@
 #include "host/animation/write_animation.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
-#include "host/mesh/io_gltf_file.h"
-#include "host/mesh/io_write_text.h"
+#include "host/mesh/io/io_gltf_file.h"
+#include "host/mesh/io/io_write_text.h"
 
 namespace exemplar {
 namespace {

@@ -6,8 +6,8 @@
 #include "host/animation/write_animation.h"
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
-#include "host/mesh/io.h"
-#include "host/mesh/io_text.h"
+#include "host/mesh/io/io.h"
+#include "host/mesh/io/io_text.h"
 
 namespace exemplar {
 namespace {

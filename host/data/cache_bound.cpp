@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "host/core/errors.h"
-#include "host/mesh/io_text.h"
+#include "host/mesh/io/io_text.h"
 
 namespace exemplar {
 namespace {

@@ -12,8 +12,8 @@
 #include "host/core/files.h"
 #include "host/core/parallel.h"
 #include "host/core/text.h"
-#include "host/mesh/io_text.h"
-#include "host/mesh/validate.h"
+#include "host/mesh/io/io_text.h"
+#include "host/mesh/editing/validate.h"
 
 namespace exemplar {
 namespace {

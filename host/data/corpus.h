@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "host/mesh/io.h"
+#include "host/mesh/io/io.h"
 #include "host/mesh/labels.h"
 #include "host/mesh/mesh.h"
 

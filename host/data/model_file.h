@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "host/data/safetensors.h"
-#include "host/learn/boosted_stumps.h"
+#include "host/learn/boosting/boosted_stumps.h"
 
 /// What the model files of all systems have in common.
 namespace exemplar {

@@ -9,7 +9,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
-#include "host/mesh/io_text.h"
+#include "host/mesh/io/io_text.h"
 
 namespace exemplar {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/hatching/ink.h"
-#include "host/lines/stroke_raster.h"
+#include "host/hatching/fields/ink.h"
+#include "host/lines/strokes/stroke_raster.h"
 #include "host/mesh/labels.h"
 
 namespace exemplar {

@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "host/hatching/hatch_stroke.h"
-#include "host/hatching/hatching_fields.h"
+#include "host/hatching/fields/hatch_stroke.h"
+#include "host/hatching/fields/hatching_fields.h"
 #include "host/imaging/image.h"
 #include "host/lines/drawing.h"
 #include "host/lines/drawing_svg.h"
-#include "host/lines/strokes.h"
+#include "host/lines/strokes/strokes.h"
 
 namespace exemplar {
 

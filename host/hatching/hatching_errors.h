@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "host/hatching/drawing_properties.h"
-#include "host/hatching/hatching_fields.h"
+#include "host/hatching/measurement/drawing_properties.h"
+#include "host/hatching/fields/hatching_fields.h"
 
 namespace exemplar {
 

@@ -4,10 +4,10 @@
 #include <algorithm>
 
 #include "host/core/stopwatch.h"
-#include "host/hatching/line_directions.h"
-#include "host/hatching/occlusion_barriers.h"
-#include "host/hatching/stroke_relaxation.h"
-#include "host/hatching/tone_matching.h"
+#include "host/hatching/features/line_directions.h"
+#include "host/hatching/fields/occlusion_barriers.h"
+#include "host/hatching/refinement/stroke_relaxation.h"
+#include "host/hatching/refinement/tone_matching.h"
 
 namespace exemplar {
 

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "host/hatching/hatching_drawing.h"
-#include "host/hatching/hatching_style.h"
-#include "host/hatching/image_tools.h"
-#include "host/hatching/pixel_features.h"
-#include "host/hatching/streamlines.h"
-#include "host/hatching/style_prediction.h"
+#include "host/hatching/style/hatching_style.h"
+#include "host/hatching/features/image_tools.h"
+#include "host/hatching/features/pixel_features.h"
+#include "host/hatching/placement/streamlines.h"
+#include "host/hatching/style/style_prediction.h"
 
 namespace exemplar {
 

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "host/lines/lines.h"
-#include "host/lines/strokes.h"
-#include "host/lines/style.h"
-#include "host/lines/visibility.h"
+#include "host/lines/extraction/lines.h"
+#include "host/lines/strokes/strokes.h"
+#include "host/lines/strokes/style.h"
+#include "host/lines/strokes/visibility.h"
 
 namespace exemplar {
 

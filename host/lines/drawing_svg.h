@@ -6,7 +6,7 @@
 #include <string>
 
 #include "host/lines/drawing.h"
-#include "host/lines/style.h"
+#include "host/lines/strokes/style.h"
 
 namespace exemplar {
 

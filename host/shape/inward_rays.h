@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "host/learn/feature_matrix.h"
-#include "host/mesh/rays.h"
+#include "host/mesh/queries/rays.h"
 #include "host/shape/prepared_mesh.h"
 
 namespace exemplar {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "host/core/parallel.h"
-#include "host/mesh/validate.h"
+#include "host/mesh/editing/validate.h"
 #include "host/shape/percentile.h"
 
 namespace exemplar {

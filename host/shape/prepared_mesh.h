@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/mesh/geodesics.h"
+#include "host/mesh/queries/geodesics.h"
 #include "host/mesh/mesh.h"
 #include "host/mesh/topology.h"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/learn/feature_matrix.h"
-#include "host/mesh/rays.h"
+#include "host/mesh/queries/rays.h"
 #include "host/shape/inward_rays.h"
 #include "host/shape/neighborhoods.h"
 #include "host/shape/prepared_mesh.h"

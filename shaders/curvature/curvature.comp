@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/lib/face_fit.glsl"
-#include "shaders/lib/surface.glsl"
+#include "shaders/curvature/face_fit.glsl"
+#include "shaders/curvature/surface.glsl"
 
 // Principal curvatures and directions (exemplar::estimate_curvature), one vertex per invocation. Each fits the faces around
 // it anew: three times the arithmetic of a pass over faces, but nothing of a face is written or read, and two passes are

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/lib/face_fit.glsl"
-#include "shaders/lib/surface.glsl"
+#include "shaders/curvature/face_fit.glsl"
+#include "shaders/curvature/surface.glsl"
 
 // Derivatives of curvature in the principal frames, from the forms at the corners of the faces around each vertex; as
 // curvature.comp. Per vertex of six faces 4 + 32 bytes of topology and 48 of its position and principal frame are read and

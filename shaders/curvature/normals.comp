@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/lib/face_fit.glsl"
-#include "shaders/lib/surface.glsl"
+#include "shaders/curvature/face_fit.glsl"
+#include "shaders/curvature/surface.glsl"
 
 // Vertex normals, weighted as in Max 1999 (exemplar::vertex_normals), and areas, one vertex per invocation. Per vertex of six faces
 // 4 + 32 bytes of topology and 16 of its position are read and 16 written, each once; the positions of its seven ring

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
 #include "shaders/lib/dispatch.glsl"
-#include "shaders/lib/tangent.glsl"
+#include "shaders/curvature/tangent.glsl"
 #include "shaders/shared/curvature.h"
 
 // Curvature from its components (exemplar::reproject_curvature), k_quads x 4 vertices of a tile per invocation. Reads each

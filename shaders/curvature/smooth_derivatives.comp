@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/lib/diffusion.glsl"
+#include "shaders/curvature/diffusion.glsl"
 
 // Diffuses derivatives of curvature and turns them to the principal frames, one vertex per invocation. Per vertex of n near
 // ones 4 + 4 n bytes of topology and 64 of its position, normal, area, derivative and principal direction are read and 16

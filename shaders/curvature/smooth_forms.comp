@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/lib/diffusion.glsl"
+#include "shaders/curvature/diffusion.glsl"
 
 // Diffuses second fundamental forms and turns to their principal frames, one vertex per invocation. Per vertex of n near ones
 // 4 + 4 n bytes of topology and 48 of its position, normal, area and form are read and 32 written, each once; what the n need

@@ -4,7 +4,7 @@
 #include "shaders/shared/hatching.h"
 
 // Claims pixels for the strokes that are tried in a round; when that is done for all, another dispatch looks whose claims
-// were not the least (host/hatching/stroke_claims.cpp). One or more workgroups per stroke: some 40 pixels per point of its way,
+// were not the least (host/hatching/placement/stroke_claims.cpp). One or more workgroups per stroke: some 40 pixels per point of its way,
 // 4 bytes each. The result is the same whatever the order in which pixels are claimed.
 layout(local_size_x = k_hatch_group) in;
 layout(constant_id = 0) const bool k_looks = false;
@@ -13,7 +13,7 @@ layout(set = 0, binding = 0) uniform usamplerBuffer grid;
 layout(set = 0, binding = 1, std430) readonly buffer Ways { ivec2 ways[]; };
 layout(set = 0, binding = 2, std430) buffer Trials { TrialRecord trials[]; };
 layout(set = 0, binding = 3, std430) buffer Claims { uint claims[]; };
-#include "shaders/lib/candidate.glsl"
+#include "shaders/hatching/candidate.glsl"
 
 const int k_half_diagonal = 2897;  // of a pixel, rounded up
 

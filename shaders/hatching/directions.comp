@@ -3,7 +3,7 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/hatching_features.h"
 
-// Directions of fields on a surface as the picture shows them at points of faces (host/hatching/pixel_projection.cpp), one
+// Directions of fields on a surface as the picture shows them at points of faces (host/hatching/features/pixel_projection.cpp), one
 // point per invocation. Reads 112 bytes, and 48 per field; writes 8 per field.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { DirectionParameters parameters; };

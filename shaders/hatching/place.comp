@@ -13,7 +13,7 @@ layout(set = 0, binding = 1, std430) readonly buffer Ways { ivec2 ways[]; };
 layout(set = 0, binding = 2, std430) readonly buffer Trials { TrialRecord trials[]; };
 layout(set = 0, binding = 3, std430) writeonly buffer StrokePoints { ivec2 stroke_points[]; };
 layout(set = 0, binding = 4, std430) buffer Near { uint near[]; };
-#include "shaders/lib/candidate.glsl"
+#include "shaders/hatching/candidate.glsl"
 
 void note(ivec2 point, int reach, uint first) {
     const int most = (reach >> parameters.near_shift) * (reach >> parameters.near_shift);

@@ -4,7 +4,7 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/hatching_features.h"
 
-// Columns of a slab at points of faces (host/hatching/pixel_projection.cpp): of four points per invocation, so that a corner
+// Columns of a slab at points of faces (host/hatching/features/pixel_projection.cpp): of four points per invocation, so that a corner
 // that is fetched serves four columns, and what is written, four points. Reads 192 bytes and writes 64 per quad of columns.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { ProjectionParameters parameters; };

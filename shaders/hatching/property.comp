@@ -10,7 +10,7 @@ layout(set = 0, binding = 0) uniform usamplerBuffer terms;      // PropertyTerm,
 layout(set = 0, binding = 1) uniform samplerBuffer features;    // columns x stride, four rows each
 layout(set = 0, binding = 2, std430) writeonly buffer Values { vec4 values[]; };    // quads
 
-// host/hatching/powers.h
+// host/hatching/features/powers.h
 vec4 power_of(vec4 x, uint power) {
     if (power == 0u) return x;
     if (power == 1u) return x * x;

@@ -3,7 +3,7 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/hatching.h"
 
-// Looks for the next place of seed lists that a stroke may begin at, from where each was left on (host/hatching/stroke_front.cpp).
+// Looks for the next place of seed lists that a stroke may begin at, from where each was left on (host/hatching/placement/stroke_front.cpp).
 // One list per invocation: reads some 15 texels per place.
 layout(local_size_x = k_hatch_group) in;
 layout(push_constant) uniform Push { PlacementParameters parameters; };
@@ -13,7 +13,7 @@ layout(set = 0, binding = 2) uniform usamplerBuffer stroke_points;
 layout(set = 0, binding = 3, std430) buffer Lists { SeedListRecord lists[]; };
 layout(set = 0, binding = 4, std430) writeonly buffer Trials { TrialRecord trials[]; };
 layout(set = 0, binding = 5, std430) readonly buffer Counts { PlacementCounts counts; };
-#include "shaders/lib/stroke_seeds.glsl"
+#include "shaders/hatching/stroke_seeds.glsl"
 
 void main() {
     const uint i = linear_thread();

@@ -3,7 +3,7 @@
 #include "shaders/shared/hatching.h"
 
 // Ends a round: gives the strokes that have won their places, takes the lists that are used up out of the front, adds those of
-// the new strokes, and says what is tried next (host/hatching/streamlines.cpp). A single workgroup: reads and writes some 50
+// the new strokes, and says what is tried next (host/hatching/placement/streamlines.cpp). A single workgroup: reads and writes some 50
 // bytes for each trial and each list of the front.
 layout(local_size_x = k_settle_group) in;
 layout(push_constant) uniform Push { PlacementParameters parameters; };

@@ -3,7 +3,7 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/hatching.h"
 
-// Follows the strokes of a round from their seeds (host/hatching/stroke_tracing.cpp). One stroke per invocation: reads some
+// Follows the strokes of a round from their seeds (host/hatching/placement/stroke_tracing.cpp). One stroke per invocation: reads some
 // twenty texels per pixel of its way, and writes 8 bytes.
 layout(local_size_x = k_hatch_group) in;
 layout(push_constant) uniform Push { PlacementParameters parameters; };
@@ -13,7 +13,7 @@ layout(set = 0, binding = 2, std430) buffer Lists { SeedListRecord lists[]; };
 layout(set = 0, binding = 3, std430) buffer Trials { TrialRecord trials[]; };
 layout(set = 0, binding = 4, std430) buffer Ways { ivec2 ways[]; };
 layout(set = 0, binding = 5, std430) buffer Counts { PlacementCounts counts; };
-#include "shaders/lib/stroke_tracing.glsl"
+#include "shaders/hatching/stroke_tracing.glsl"
 
 // What place i of the round's list claims pixels with (StrokeClaims::claim_of).
 uint claim_of(uint i, uint shortness) {

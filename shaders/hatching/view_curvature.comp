@@ -5,7 +5,7 @@
 #include "shaders/lib/view_curvature.glsl"
 #include "shaders/shared/hatching_features.h"
 
-// What depends on surface and view at one scale (host/hatching/hatching_view.cpp), and its magnitudes, in their lanes of a
+// What depends on surface and view at one scale (host/hatching/features/hatching_view.cpp), and its magnitudes, in their lanes of a
 // slab: one vertex per invocation. Reads 80 bytes and writes 4 per lane.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { ViewCurvatureParameters parameters; };
@@ -13,7 +13,7 @@ layout(set = 0, binding = 0) uniform samplerBuffer states;                      
 layout(set = 0, binding = 1, std430) writeonly buffer Slab { float slab[]; };   // vertices x k_slab_lanes
 
 // Derivative of radial curvature along w's projection, times the sine between w and the normal
-// (host/lines/view_curvature.cpp); uv is not shorter than its square root tells.
+// (host/lines/extraction/view_curvature.cpp); uv is not shorter than its square root tells.
 float radial_derivative(vec2 k, vec4 d, vec2 uv, float squared_sine, float cosine) {
     const float third = uv.x * uv.x * (uv.x * d.x + 3.0 * uv.y * d.y) + uv.y * uv.y * (3.0 * uv.x * d.z + uv.y * d.w);
     const float torsion = (k.y - k.x) * uv.x * uv.y / squared_sine;

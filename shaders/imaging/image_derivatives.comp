@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "shaders/lib/image_box.glsl"
+#include "shaders/imaging/image_box.glsl"
 
 // Values, gradients and curvatures of up to four images (exemplar::ImageDerivatives) from Gaussian-weighted sums over the
 // pixels of the mask: of images, and of the mask itself. Offsets are per sigma.

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/eye.glsl"
-#include "shaders/lib/light.glsl"
+#include "shaders/imaging/light.glsl"
 #include "shaders/shared/render.h"
 
 // Hemisphere light and headlight on a two-sided surface, in linear color (exemplar::RenderOptions has the formula).

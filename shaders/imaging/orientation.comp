@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "shaders/lib/image_box.glsl"
+#include "shaders/imaging/image_box.glsl"
 
 // Coherence (cos 2a, sin 2a) of smoothed structure tensors.
 layout(local_size_x = 64, local_size_x_id = 100) in;

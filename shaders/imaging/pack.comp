@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "shaders/lib/image_box.glsl"
+#include "shaders/imaging/image_box.glsl"
 
 // Up to four images side by side in the box, zero outside of the mask.
 layout(local_size_x = 64, local_size_x_id = 100) in;

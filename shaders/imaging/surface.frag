@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/eye.glsl"
-#include "shaders/lib/light.glsl"
+#include "shaders/imaging/light.glsl"
 #include "shaders/lib/srgb.glsl"
 #include "shaders/shared/paint.h"
 

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/lib/painted_surface.glsl"
+#include "shaders/imaging/painted_surface.glsl"
 
 // Vertices with what paint and light need of them; both are constants, and what they do without is not read.
 layout(constant_id = 0) const uint k_paint = 0;

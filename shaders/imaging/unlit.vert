@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/lib/painted_surface.glsl"
+#include "shaders/imaging/painted_surface.glsl"
 
 // Plain paint without light, the surface of most drawings: a CPU driver takes time for every output that is declared.
 void main() {

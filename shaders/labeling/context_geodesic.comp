@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
-#include "shaders/lib/context_bins.glsl"
+#include "shaders/labeling/context_bins.glsl"
 #include "shaders/shared/context.h"
 
 // Contextual histograms over geodesic distance (thesis Eq. A.1): k_faces faces (x) and one block of four classes (y) per

@@ -1,5 +1,5 @@
 // View-dependent curvature (Judd et al. 2007): how much the normal turns over a step on the screen
-// (host/lines/apparent_ridges.cpp).
+// (host/lines/extraction/apparent_ridges.cpp).
 #ifndef EXEMPLAR_VIEW_CURVATURE_GLSL
 #define EXEMPLAR_VIEW_CURVATURE_GLSL
 

@@ -4,7 +4,7 @@
 #include "shaders/shared/curvature.h"
 #include "shaders/shared/lines.h"
 
-// The field of apparent ridges (host/lines/apparent_ridges.cpp): how view-dependent curvature grows along its direction, from
+// The field of apparent ridges (host/lines/extraction/apparent_ridges.cpp): how view-dependent curvature grows along its direction, from
 // the faces that this leads into, one vertex per invocation. Per vertex of six faces 4 + 32 bytes of topology and 64 of
 // its own are read and 32 written; what the ring reads comes from caches.
 layout(local_size_x = 64, local_size_x_id = 100) in;

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/lib/line_buffers.glsl"
+#include "shaders/lines/line_buffers.glsl"
 
 // How many segments each face has, so that the next kernel knows where to write them in the order of the faces, whatever the
 // order in which they are found. One face per invocation: reads 16 bytes and those of its corners' fields (48 a family, from
@@ -12,7 +12,7 @@ uint found = 0;
 void emit(uint family, uint first_place, uint second_place, vec3 first_end, vec3 second_end, vec2 strength) {
     ++found;
 }
-#include "shaders/lib/face_lines.glsl"
+#include "shaders/lines/face_lines.glsl"
 #include "shaders/lib/group_sum.glsl"
 
 void main() {

@@ -4,7 +4,7 @@
 #include "shaders/lib/eye.glsl"
 #include "shaders/shared/lines.h"
 
-// What decides at the vertices about lines in the faces around them (host/lines/line_fields.cpp), one vertex per invocation,
+// What decides at the vertices about lines in the faces around them (host/lines/extraction/line_fields.cpp), one vertex per invocation,
 // but for apparent ridges. Reads 80 bytes, without curvature 32; writes 16 for each family, and 16 more for its direction.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const uint k_families = 0;

@@ -3,7 +3,7 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/lines.h"
 
-// Where segments end in the picture, and which others continue them there (host/lines/chains.cpp). One segment per
+// Where segments end in the picture, and which others continue them there (host/lines/strokes/chains.cpp). One segment per
 // invocation: reads 32 bytes and, from caches, its face, that face's neighbors and their segments; writes 32 + 8.
 layout(local_size_x = k_count_group) in;
 layout(push_constant) uniform Push { LinkParameters parameters; };
@@ -18,9 +18,9 @@ layout(set = 0, binding = 7) uniform usamplerBuffer segments;
 layout(set = 0, binding = 8, std430) readonly buffer Counts { LineCounts counts; };
 layout(set = 0, binding = 9, std430) writeonly buffer Ends { vec4 picture_ends[]; };  // pixels, depth, view depth; two a segment
 layout(set = 0, binding = 10, std430) writeonly buffer Links { uvec2 links[]; };
-#include "shaders/lib/face_segments.glsl"
-#include "shaders/lib/in_picture.glsl"
-#include "shaders/lib/segments.glsl"
+#include "shaders/lines/face_segments.glsl"
+#include "shaders/lines/in_picture.glsl"
+#include "shaders/lines/segments.glsl"
 
 uint link_across(LineSegmentRecord segment, uint side) {
     const uint across = texelFetch(neighbors, int(segment.face))[side];

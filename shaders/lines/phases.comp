@@ -4,7 +4,7 @@
 #include "shaders/shared/coherence.h"
 
 // Where the texture lies at each point of a chain: mostly where the pieces around it have it, a little where the whole chain
-// has it, so that what length a chain gains or loses evens out in time (host/lines/coherence.cpp). One point per invocation:
+// has it, so that what length a chain gains or loses evens out in time (host/lines/strokes/coherence.cpp). One point per invocation:
 // reads its chain's votes and, from caches, 16 bytes of each point around it; writes 8.
 layout(local_size_x = k_count_group) in;
 layout(push_constant) uniform Push { FollowParameters parameters; };

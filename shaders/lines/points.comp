@@ -13,7 +13,7 @@ layout(set = 0, binding = 3) uniform usamplerBuffer segments;
 layout(set = 0, binding = 4) uniform samplerBuffer picture_ends;
 layout(set = 0, binding = 5, std430) readonly buffer Counts { LineCounts counts; };
 layout(set = 0, binding = 6, std430) writeonly buffer Points { LinePoint points[]; };
-#include "shaders/lib/segments.glsl"
+#include "shaders/lines/segments.glsl"
 
 void main() {
     const uint index = linear_thread();

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/lib/line_buffers.glsl"
+#include "shaders/lines/line_buffers.glsl"
 
 // Writes the segments of each face at their place. One face per invocation: reads 4 bytes, of faces with lines what
 // count.comp reads, and writes 32 a segment.
@@ -16,7 +16,7 @@ void emit(uint family, uint first_place, uint second_place, vec3 first_end, vec3
             strength.y, vec4(first_end.yz, second_end.yz));
     ++next_segment;
 }
-#include "shaders/lib/face_lines.glsl"
+#include "shaders/lines/face_lines.glsl"
 
 void main() {
     this_face = linear_thread();

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/dispatch.glsl"
-#include "shaders/lib/texture_phase.glsl"
+#include "shaders/lines/texture_phase.glsl"
 #include "shaders/shared/coherence.h"
 
 // Leaves behind what the next frame needs to know of the lines of this one, and adds up how much they flicker. One point per

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "shaders/lib/texture_phase.glsl"
+#include "shaders/lines/texture_phase.glsl"
 #include "shaders/shared/lines.h"
 
 // A quad from each point of a chain to the next, as wide as the stroke and a pixel more to each side for soft edges. Those

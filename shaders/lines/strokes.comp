@@ -3,7 +3,7 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/lines.h"
 
-// How points are drawn (host/lines/strokes.cpp): where, the normal across the stroke, its width, tapered towards the ends of
+// How points are drawn (host/lines/strokes/strokes.cpp): where, the normal across the stroke, its width, tapered towards the ends of
 // what is visible, and its opacity. One point per invocation: reads its segment, its face's corners and the points around
 // it, all from caches, and writes 32.
 layout(local_size_x = k_count_group) in;
@@ -18,8 +18,8 @@ layout(set = 0, binding = 6) uniform samplerBuffer second;
 layout(set = 0, binding = 7, std430) readonly buffer Counts { LineCounts counts; };
 layout(set = 0, binding = 8, std430) readonly buffer Looks { StrokeLook looks[]; };  // per family
 layout(set = 0, binding = 9, std430) writeonly buffer Strokes { vec4 strokes[]; };   // place, width, opacity; normal
-#include "shaders/lib/segments.glsl"
-#include "shaders/lib/stroke_points.glsl"
+#include "shaders/lines/segments.glsl"
+#include "shaders/lines/stroke_points.glsl"
 
 const uint k_most_taper_points = 64;
 

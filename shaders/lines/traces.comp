@@ -15,8 +15,8 @@ layout(set = 0, binding = 4, std430) readonly buffer Counts { LineCounts counts;
 layout(set = 0, binding = 5, std430) writeonly buffer Ends { vec4 ends[]; };  // pixels, texture, share drawn or -1; two each
 layout(set = 0, binding = 6, std430) writeonly buffer Votes { ChainVotes votes[]; };
 layout(set = 0, binding = 7, std430) writeonly buffer Flicker { FlickerSums flicker; };
-#include "shaders/lib/in_picture.glsl"
-#include "shaders/lib/segments.glsl"
+#include "shaders/lines/in_picture.glsl"
+#include "shaders/lines/segments.glsl"
 
 void main() {
     const uint index = linear_thread();

@@ -17,8 +17,8 @@ layout(set = 0, binding = 5) uniform samplerBuffer first;
 layout(set = 0, binding = 6) uniform samplerBuffer second;
 layout(set = 0, binding = 7, std430) readonly buffer Counts { LineCounts counts; };
 layout(set = 0, binding = 8, std430) writeonly buffer Visible { uvec2 visible[]; };
-#include "shaders/lib/segments.glsl"
-#include "shaders/lib/stroke_points.glsl"
+#include "shaders/lines/segments.glsl"
+#include "shaders/lines/stroke_points.glsl"
 
 float view_depth(float depth) {
     return parameters.parallel != 0u ? parameters.near_term + parameters.far_term * depth

@@ -6,7 +6,7 @@
 
 // What was near each piece of a chain in the frame before: the nearest line of its family in its face, or else in the first
 // face that has one on the way straight off the line, to either side. The piece votes for the texture to lie as it did there
-// (host/lines/coherence.cpp). One point per invocation: reads 64 bytes and, from caches, some faces and their lines; writes 32
+// (host/lines/strokes/coherence.cpp). One point per invocation: reads 64 bytes and, from caches, some faces and their lines; writes 32
 // and adds 12 to its chain's votes. The sums are of integers, the same in any order.
 layout(local_size_x = k_count_group) in;
 layout(set = 0, binding = 0) uniform samplerBuffer points;  // LinePoint, two texels each
@@ -26,8 +26,8 @@ layout(set = 0, binding = 11, std430) buffer Votes { ChainVotes votes[]; };
 // period; and its vote: weight times cosine and sine, pixels along the chain, 2 * chain + whether it is for a texture against
 // the chain.
 layout(set = 0, binding = 12, std430) writeonly buffer Matches { vec4 matches[]; };
-#include "shaders/lib/face_segments.glsl"
-#include "shaders/lib/segments.glsl"
+#include "shaders/lines/face_segments.glsl"
+#include "shaders/lines/segments.glsl"
 
 const float k_nowhere = 3e38;
 const float k_pi = 3.14159265358979;

@@ -4,7 +4,7 @@
 
 SHARED_BEGIN
 
-// The placement of strokes in whole numbers; units as host/hatching/fixed_point.h and placement_grid.h have them.
+// The placement of strokes in whole numbers; units as host/hatching/placement/fixed_point.h and placement_grid.h have them.
 const int k_pixel_bits = 12;
 const int k_pixel = 4096;
 const int k_unit_bits = 14;

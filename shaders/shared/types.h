@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-#include "gpu/runtime/layout.h"
+#include "gpu/runtime/kernels/layout.h"
 
 namespace exemplar::shared {
 using uint = std::uint32_t;

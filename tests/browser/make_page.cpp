@@ -9,8 +9,8 @@
 #include <limits>
 #include <list>
 
-#include "host/labeling/report_page.h"
-#include "host/synth/shapes.h"
+#include "apps/report/report_page.h"
+#include "host/synth/shapes/shapes.h"
 
 namespace {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 
 #include "host/core/random.h"
-#include "host/curvature/attributes.h"
-#include "host/mesh/tangent_tensors.h"
+#include "host/curvature/state/attributes.h"
+#include "host/mesh/curvature/tangent_tensors.h"
 
 namespace exemplar {
 namespace {

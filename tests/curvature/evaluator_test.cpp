@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "host/curvature/model.h"
-#include "host/curvature/training.h"
+#include "host/curvature/model/model.h"
+#include "host/curvature/learning/training.h"
 #include "tests/support/bending_tube.h"
 #include "tests/support/resident_bytes.h"
 

@@ -5,8 +5,8 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
-#include "host/curvature/evaluation.h"
-#include "host/curvature/training.h"
+#include "host/curvature/model/evaluation.h"
+#include "host/curvature/learning/training.h"
 #include "host/data/safetensors.h"
 #include "tests/support/bending_tube.h"
 #include "tests/support/shapes.h"

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "host/core/random.h"
-#include "host/curvature/patches.h"
-#include "host/curvature/segments.h"
+#include "host/curvature/state/patches.h"
+#include "host/curvature/state/segments.h"
 #include "host/mesh/topology.h"
 #include "tests/support/shapes.h"
 

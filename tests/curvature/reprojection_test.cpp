@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "host/core/random.h"
-#include "host/curvature/tiling.h"
-#include "host/mesh/tangent_tensors.h"
+#include "host/curvature/model/tiling.h"
+#include "host/mesh/curvature/tangent_tensors.h"
 
 // reproject_curvature() against reproject() with AttributeFrames::decode(). Tensors are compared in space, where frames
 // that are not certain, as those of umbilics, say nothing; both round them to single precision.

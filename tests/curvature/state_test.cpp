@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "host/curvature/influence.h"
-#include "host/curvature/segments.h"
-#include "host/curvature/state.h"
+#include "host/curvature/learning/influence.h"
+#include "host/curvature/state/segments.h"
+#include "host/curvature/state/state.h"
 #include "tests/support/bending_tube.h"
 #include "tests/support/shapes.h"
 

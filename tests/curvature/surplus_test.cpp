@@ -7,7 +7,7 @@
 #include <ostream>
 
 #include "host/core/errors.h"
-#include "host/curvature/training.h"
+#include "host/curvature/learning/training.h"
 #include "host/data/safetensors.h"
 #include "tests/support/bending_tube.h"
 #include "tests/support/shapes.h"

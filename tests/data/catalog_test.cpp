@@ -1,4 +1,4 @@
-#include "host/data/catalog.h"
+#include "host/data/catalog/catalog.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <thread>
 
 #include "host/core/errors.h"
-#include "host/data/catalog_run.h"
-#include "host/data/shape_scan.h"
+#include "host/data/catalog/catalog_run.h"
+#include "host/data/catalog/shape_scan.h"
 #include "tests/support/mesh_files.h"
 
 namespace exemplar {

@@ -7,7 +7,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
-#include "host/mesh/io.h"
+#include "host/mesh/io/io.h"
 #include "tests/support/temporary_folder.h"
 
 namespace exemplar {

@@ -1,4 +1,4 @@
-#include "host/data/run_summary.h"
+#include "host/data/catalog/run_summary.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "host/data/catalog_run.h"
+#include "host/data/catalog/catalog_run.h"
 #include "tests/support/temporary_folder.h"
 
 namespace exemplar {

@@ -1,4 +1,4 @@
-#include "host/data/shape_record.h"
+#include "host/data/catalog/shape_record.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

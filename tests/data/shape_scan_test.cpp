@@ -1,4 +1,4 @@
-#include "host/data/shape_scan.h"
+#include "host/data/catalog/shape_scan.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "host/core/errors.h"
-#include "host/data/worker_folder.h"
+#include "host/data/catalog/worker_folder.h"
 #include "tests/support/mesh_files.h"
 
 namespace exemplar {

@@ -1,7 +1,7 @@
 // What a model of learned curvature promises: whatever its file held, it can be used.
 #include "host/core/errors.h"
 #include "host/core/random.h"
-#include "host/curvature/model.h"
+#include "host/curvature/model/model.h"
 #include "tests/fuzz/promises.h"
 
 namespace exemplar::fuzz {

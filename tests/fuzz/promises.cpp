@@ -5,8 +5,8 @@
 
 #include "host/core/errors.h"
 #include "host/core/text.h"
-#include "host/mesh/io_formats.h"
-#include "host/mesh/validate.h"
+#include "host/mesh/io/io_formats.h"
+#include "host/mesh/editing/validate.h"
 
 namespace exemplar::fuzz {
 namespace {

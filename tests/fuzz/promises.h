@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "host/animation/animation.h"
-#include "host/curvature/model.h"
-#include "host/mesh/io.h"
+#include "host/curvature/model/model.h"
+#include "host/mesh/io/io.h"
 #include "tests/fuzz/allocation.h"
 
 namespace exemplar::fuzz {

@@ -1,4 +1,4 @@
-#include "gpu/runtime/device.h"
+#include "gpu/runtime/device/device.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,9 +13,9 @@
 #include <utility>
 
 #include "embedded/tests_affine_comp.h"
-#include "gpu/runtime/buffer.h"
-#include "gpu/runtime/errors.h"
-#include "gpu/runtime/kernel.h"
+#include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/kernels/kernel.h"
 #include "host/core/files.h"
 #include "shaders/shared/test_kernels.h"
 #include "tests/gpu/support/environment.h"

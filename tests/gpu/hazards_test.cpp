@@ -1,4 +1,4 @@
-#include "gpu/runtime/hazards.h"
+#include "gpu/runtime/record/hazards.h"
 
 #include <gtest/gtest.h>
 

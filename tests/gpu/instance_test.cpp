@@ -1,4 +1,4 @@
-#include "gpu/runtime/instance.h"
+#include "gpu/runtime/device/instance.h"
 
 #include <gtest/gtest.h>
 

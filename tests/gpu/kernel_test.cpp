@@ -1,4 +1,4 @@
-#include "gpu/runtime/kernel.h"
+#include "gpu/runtime/kernels/kernel.h"
 #include "embedded/imaging_unpack_comp.h"
 
 #include <gmock/gmock.h>
@@ -12,8 +12,8 @@
 #include "embedded/tests_gather_comp.h"
 #include "embedded/tests_weigh_comp.h"
 #include "embedded/tests_wrong_set_comp.h"
-#include "gpu/runtime/errors.h"
-#include "gpu/runtime/stream.h"
+#include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/record/stream.h"
 #include "shaders/shared/image_filters.h"
 #include "shaders/shared/test_kernels.h"
 #include "tests/gpu/support/environment.h"

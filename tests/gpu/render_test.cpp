@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gpu/imaging/mesh_renderer.h"
-#include "gpu/runtime/errors.h"
+#include "gpu/runtime/device/errors.h"
 #include "host/core/random.h"
 #include "host/imaging/raster.h"
 #include "tests/gpu/support/environment.h"

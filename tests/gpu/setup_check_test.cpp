@@ -1,4 +1,4 @@
-#include "gpu/runtime/setup_check.h"
+#include "gpu/runtime/measure/setup_check.h"
 
 #include <gtest/gtest.h>
 

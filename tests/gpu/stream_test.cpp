@@ -1,4 +1,4 @@
-#include "gpu/runtime/stream.h"
+#include "gpu/runtime/record/stream.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 #include "embedded/tests_affine_comp.h"
 #include "embedded/tests_weigh_comp.h"
-#include "gpu/runtime/errors.h"
+#include "gpu/runtime/device/errors.h"
 #include "shaders/shared/test_kernels.h"
 #include "tests/gpu/support/environment.h"
 

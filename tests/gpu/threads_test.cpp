@@ -1,4 +1,4 @@
-#include "gpu/runtime/threads.h"
+#include "gpu/runtime/kernels/threads.h"
 
 #include <gtest/gtest.h>
 

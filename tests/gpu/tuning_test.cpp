@@ -1,4 +1,4 @@
-#include "gpu/runtime/tuning.h"
+#include "gpu/runtime/device/tuning.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gpu/learn/stump_scorer.h"
-#include "gpu/runtime/device_info.h"
+#include "gpu/runtime/device/device_info.h"
 #include "host/core/errors.h"
 
 int main() try {

@@ -3,9 +3,9 @@
 #include <cstdio>
 
 #include "host/core/errors.h"
-#include "host/learn/pca.h"
-#include "host/mesh/io.h"
-#include "host/mesh/validate.h"
+#include "host/learn/components/pca.h"
+#include "host/mesh/io/io.h"
+#include "host/mesh/editing/validate.h"
 
 int main(int argc, char** argv) {
     if (argc != 2) return 2;

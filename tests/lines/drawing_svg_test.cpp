@@ -13,7 +13,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
-#include "host/lines/stroke_raster.h"
+#include "host/lines/strokes/stroke_raster.h"
 #include "tests/lines/drawn_scene.h"
 
 namespace exemplar {

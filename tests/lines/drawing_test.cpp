@@ -10,7 +10,7 @@
 
 #include "host/core/errors.h"
 #include "host/imaging/image.h"
-#include "host/lines/split_surface.h"
+#include "host/lines/extraction/split_surface.h"
 #include "tests/lines/drawn_scene.h"
 
 namespace exemplar {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "host/lines/drawing.h"
-#include "tests/lines/measured_surface.h"
+#include "tests/lines/extraction/measured_surface.h"
 #include "tests/support/shapes.h"
 
 namespace exemplar::testing {

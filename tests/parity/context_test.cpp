@@ -9,7 +9,7 @@
 #include "gpu/labeling/context_histograms.h"
 #include "host/core/errors.h"
 #include "host/core/random.h"
-#include "host/labeling/context.h"
+#include "host/labeling/features/context.h"
 #include "tests/gpu/support/environment.h"
 #include "tests/support/random_context.h"
 

@@ -6,13 +6,13 @@
 #include <limits>
 #include <vector>
 
-#include "gpu/curvature/animated_surface.h"
-#include "gpu/curvature/curvature.h"
-#include "gpu/curvature/near_vertices.h"
-#include "gpu/curvature/poser.h"
+#include "gpu/curvature/surface/animated_surface.h"
+#include "gpu/curvature/surface/curvature.h"
+#include "gpu/curvature/surface/near_vertices.h"
+#include "gpu/curvature/surface/poser.h"
 #include "host/core/errors.h"
-#include "host/curvature/samples.h"
-#include "host/mesh/curvature.h"
+#include "host/curvature/state/samples.h"
+#include "host/mesh/curvature/curvature.h"
 #include "tests/gpu/support/environment.h"
 #include "tests/parity/many_frames.h"
 #include "tests/parity/surfaces.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gpu/imaging/gbuffer_renderer.h"
-#include "gpu/runtime/errors.h"
+#include "gpu/runtime/device/errors.h"
 #include "host/core/random.h"
 #include "host/imaging/gbuffer.h"
 #include "tests/gpu/support/environment.h"

@@ -9,8 +9,8 @@
 #include "gpu/hatching/hatching_evaluator.h"
 #include "host/core/errors.h"
 #include "host/core/random.h"
-#include "host/hatching/powers.h"
-#include "host/hatching/style_prediction.h"
+#include "host/hatching/features/powers.h"
+#include "host/hatching/style/style_prediction.h"
 #include "tests/gpu/support/environment.h"
 
 // Rules: sums of up to 8 products round by some 2^-22 of their magnitudes, over the length of the sum. Properties:

@@ -11,7 +11,7 @@
 #include "gpu/hatching/pixel_projection.h"
 #include "host/core/errors.h"
 #include "host/core/random.h"
-#include "host/hatching/pixel_projection.h"
+#include "host/hatching/features/pixel_projection.h"
 #include "tests/gpu/support/environment.h"
 #include "tests/parity/surfaces.h"
 

@@ -9,15 +9,15 @@
 #include <span>
 #include <vector>
 
-#include "gpu/curvature/learned_curvature.h"
-#include "gpu/curvature/local_state.h"
-#include "gpu/curvature/normals.h"
-#include "gpu/curvature/poser.h"
-#include "gpu/runtime/errors.h"
+#include "gpu/curvature/learned/learned_curvature.h"
+#include "gpu/curvature/learned/local_state.h"
+#include "gpu/curvature/surface/normals.h"
+#include "gpu/curvature/surface/poser.h"
+#include "gpu/runtime/device/errors.h"
 #include "host/core/errors.h"
-#include "host/curvature/model_builder.h"
-#include "host/curvature/tiling.h"
-#include "host/curvature/training.h"
+#include "host/curvature/learning/model_builder.h"
+#include "host/curvature/model/tiling.h"
+#include "host/curvature/learning/training.h"
 #include "tests/gpu/support/environment.h"
 #include "tests/parity/many_frames.h"
 #include "tests/parity/random_model.h"

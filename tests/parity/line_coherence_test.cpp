@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "gpu/lines/line_renderer.h"
-#include "host/lines/coherence.h"
-#include "host/lines/strokes.h"
+#include "host/lines/strokes/coherence.h"
+#include "host/lines/strokes/strokes.h"
 #include "tests/parity/line_scene.h"
 
 namespace exemplar {

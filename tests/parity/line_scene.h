@@ -10,10 +10,10 @@
 #include "gpu/lines/chains.h"
 #include "gpu/lines/extraction.h"
 #include "gpu/lines/segment_records.h"
-#include "host/lines/chains.h"
+#include "host/lines/strokes/chains.h"
 #include "shaders/shared/lines.h"
 #include "tests/gpu/support/environment.h"
-#include "tests/lines/measured_surface.h"
+#include "tests/lines/extraction/measured_surface.h"
 #include "tests/parity/surfaces.h"
 
 /// Surfaces, and the lines that the device finds on them, for the parity tests of lines.

@@ -10,10 +10,10 @@
 
 #include "gpu/lines/device_style.h"
 #include "gpu/lines/line_renderer.h"
-#include "host/lines/stroke_raster.h"
-#include "host/lines/stroke_textures.h"
-#include "host/lines/strokes.h"
-#include "host/lines/visibility.h"
+#include "host/lines/strokes/stroke_raster.h"
+#include "host/lines/strokes/stroke_textures.h"
+#include "host/lines/strokes/strokes.h"
+#include "host/lines/strokes/visibility.h"
 #include "tests/parity/line_scene.h"
 
 namespace exemplar {

@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
-#include "gpu/curvature/normals.h"
-#include "gpu/curvature/vertex_rings.h"
-#include "gpu/runtime/errors.h"
+#include "gpu/curvature/surface/normals.h"
+#include "gpu/curvature/surface/vertex_rings.h"
+#include "gpu/runtime/device/errors.h"
 #include "host/core/errors.h"
 #include "tests/gpu/support/environment.h"
 #include "tests/parity/surfaces.h"

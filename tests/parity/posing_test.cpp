@@ -4,7 +4,7 @@
 #include <cstring>
 #include <vector>
 
-#include "gpu/curvature/poser.h"
+#include "gpu/curvature/surface/poser.h"
 #include "host/core/errors.h"
 #include "host/core/random.h"
 #include "tests/gpu/support/environment.h"

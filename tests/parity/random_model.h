@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "host/core/random.h"
-#include "host/curvature/model.h"
-#include "host/curvature/model_builder.h"
-#include "host/curvature/tiling.h"
+#include "host/curvature/model/model.h"
+#include "host/curvature/learning/model_builder.h"
+#include "host/curvature/model/tiling.h"
 #include "tests/parity/surfaces.h"
 
 namespace exemplar::testing {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "gpu/hatching/stroke_placer.h"
-#include "gpu/runtime/errors.h"
+#include "gpu/runtime/device/errors.h"
 #include "host/core/errors.h"
-#include "host/hatching/occlusion_barriers.h"
+#include "host/hatching/fields/occlusion_barriers.h"
 #include "tests/gpu/support/environment.h"
 #include "tests/support/hatching_scenes.h"
 

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "gpu/learn/stump_scorer.h"
-#include "gpu/runtime/errors.h"
+#include "gpu/runtime/device/errors.h"
 #include "host/core/errors.h"
 #include "host/core/random.h"
-#include "host/learn/boosted_stumps.h"
+#include "host/learn/boosting/boosted_stumps.h"
 #include "tests/gpu/support/environment.h"
 
 // The device sums the stumps of each set of classes apart, so sums round differently; H stays below about 30 here,

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "gpu/runtime/buffer.h"
+#include "gpu/runtime/record/buffer.h"
 #include "host/animation/animation.h"
 #include "host/core/random.h"
 #include "shaders/shared/types.h"

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-#include "host/mesh/curvature.h"
+#include "host/mesh/curvature/curvature.h"
 #include "tests/parity/surfaces.h"
 
 /// Curvature of the device, compared in space.

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "gpu/curvature/tile_layout.h"
-#include "gpu/runtime/errors.h"
+#include "gpu/curvature/learned/tile_layout.h"
+#include "gpu/runtime/device/errors.h"
 #include "host/core/errors.h"
 #include "tests/parity/random_model.h"
 

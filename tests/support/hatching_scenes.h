@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "host/core/random.h"
-#include "host/hatching/hatching_fields.h"
+#include "host/hatching/fields/hatching_fields.h"
 
 namespace exemplar::testing {
 

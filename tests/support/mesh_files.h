@@ -13,7 +13,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
-#include "host/mesh/io.h"
+#include "host/mesh/io/io.h"
 #include "tests/support/temporary_folder.h"
 
 /// Files and file contents for the tests of readers and writers.

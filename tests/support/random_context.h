@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "host/core/random.h"
-#include "host/labeling/context.h"
+#include "host/labeling/features/context.h"
 
 // Random input of contextual histograms, and what their implementations are held to.
 namespace exemplar::testing {

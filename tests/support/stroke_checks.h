@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "host/hatching/hatching_fields.h"
-#include "host/hatching/streamlines.h"
+#include "host/hatching/fields/hatching_fields.h"
+#include "host/hatching/placement/streamlines.h"
 
 namespace exemplar::testing {
 

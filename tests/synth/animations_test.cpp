@@ -1,4 +1,4 @@
-#include "host/synth/animations.h"
+#include "host/synth/animations/animations.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

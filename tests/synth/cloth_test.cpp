@@ -1,4 +1,4 @@
-#include "host/synth/cloth.h"
+#include "host/synth/animations/cloth.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "host/mesh/curvature.h"
+#include "host/mesh/curvature/curvature.h"
 #include "host/mesh/topology.h"
-#include "host/synth/cloth_scenes.h"
+#include "host/synth/animations/cloth_scenes.h"
 
 namespace exemplar {
 namespace {

@@ -1,5 +1,5 @@
 // Every damage does what it says, on a generated shape and on meshes of almost nothing.
-#include "host/synth/damage.h"
+#include "host/synth/damage/damage.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@
 
 #include "host/core/errors.h"
 #include "host/mesh/topology.h"
-#include "host/mesh/validate.h"
-#include "host/synth/shapes.h"
+#include "host/mesh/editing/validate.h"
+#include "host/synth/shapes/shapes.h"
 #include "tests/support/shapes.h"
 
 namespace exemplar {

@@ -1,4 +1,4 @@
-#include "host/synth/face.h"
+#include "host/synth/animations/face.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "host/mesh/curvature.h"
+#include "host/mesh/curvature/curvature.h"
 #include "host/mesh/topology.h"
 
 namespace exemplar {

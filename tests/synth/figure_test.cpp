@@ -1,4 +1,4 @@
-#include "host/synth/figure.h"
+#include "host/synth/animations/figure.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "host/synth/shapes.h"
+#include "host/synth/shapes/shapes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

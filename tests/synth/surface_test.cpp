@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "host/core/random.h"
-#include "host/synth/field.h"
-#include "host/synth/part_labels.h"
-#include "host/synth/polygonize.h"
-#include "host/synth/primitives.h"
-#include "host/synth/remesh.h"
-#include "host/synth/sculptor.h"
+#include "host/synth/modeling/field.h"
+#include "host/synth/modeling/part_labels.h"
+#include "host/synth/modeling/polygonize.h"
+#include "host/synth/modeling/primitives.h"
+#include "host/synth/modeling/remesh.h"
+#include "host/synth/modeling/sculptor.h"
 
 namespace exemplar {
 namespace {

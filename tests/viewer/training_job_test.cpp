@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "host/core/errors.h"
-#include "host/synth/animations.h"
+#include "host/synth/animations/animations.h"
 
 namespace exemplar {
 namespace {

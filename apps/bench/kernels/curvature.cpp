@@ -1,6 +1,6 @@
 // Posing an animated surface, its normals, and its curvature estimated anew.
 
-#include "gpu/curvature/curvature.h"
+#include "gpu/curvature/surface/curvature.h"
 #include "apps/bench/kernels/surfaces.h"
 #include "embedded/curvature_curvature_comp.h"
 #include "embedded/curvature_derivative_comp.h"
@@ -8,8 +8,8 @@
 #include "embedded/curvature_pose_comp.h"
 #include "embedded/curvature_smooth_derivatives_comp.h"
 #include "embedded/curvature_smooth_forms_comp.h"
-#include "gpu/curvature/normals.h"
-#include "gpu/curvature/poser.h"
+#include "gpu/curvature/surface/normals.h"
+#include "gpu/curvature/surface/poser.h"
 
 namespace exemplar {
 namespace {

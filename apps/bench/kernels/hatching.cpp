@@ -19,10 +19,10 @@
 #include "gpu/hatching/hatching_evaluator.h"
 #include "gpu/hatching/pixel_projection.h"
 #include "gpu/hatching/stroke_placer.h"
-#include "host/hatching/hatching_fields.h"
-#include "host/hatching/powers.h"
-#include "host/hatching/streamlines.h"
-#include "host/mesh/curvature_estimator.h"
+#include "host/hatching/fields/hatching_fields.h"
+#include "host/hatching/features/powers.h"
+#include "host/hatching/placement/streamlines.h"
+#include "host/mesh/curvature/curvature_estimator.h"
 
 namespace exemplar {
 namespace {

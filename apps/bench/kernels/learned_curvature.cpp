@@ -9,10 +9,10 @@
 #include "embedded/curvature_local_state_comp.h"
 #include "embedded/curvature_patch_rotations_comp.h"
 #include "embedded/curvature_reproject_comp.h"
-#include "gpu/curvature/learned_curvature.h"
-#include "host/curvature/model_builder.h"
-#include "host/curvature/patches.h"
-#include "host/curvature/tiling.h"
+#include "gpu/curvature/learned/learned_curvature.h"
+#include "host/curvature/learning/model_builder.h"
+#include "host/curvature/state/patches.h"
+#include "host/curvature/model/tiling.h"
 
 namespace exemplar {
 namespace {

@@ -26,11 +26,11 @@
 #include "embedded/lines_votes_comp.h"
 #include "gpu/lines/line_renderer.h"
 #include "gpu/lines/segment_records.h"
-#include "host/lines/chains.h"
-#include "host/lines/coherence.h"
-#include "host/lines/face_neighbors.h"
-#include "host/lines/strokes.h"
-#include "host/mesh/curvature_estimator.h"
+#include "host/lines/strokes/chains.h"
+#include "host/lines/strokes/coherence.h"
+#include "host/lines/extraction/face_neighbors.h"
+#include "host/lines/strokes/strokes.h"
+#include "host/mesh/curvature/curvature_estimator.h"
 
 namespace exemplar {
 namespace {

@@ -9,7 +9,7 @@
 #include "apps/bench/kernels/statistics.h"
 #include "embedded/runtime_copy_comp.h"
 #include "embedded/runtime_multiply_add_comp.h"
-#include "gpu/runtime/errors.h"
+#include "gpu/runtime/device/errors.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
 

@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
-#include "gpu/runtime/device.h"
-#include "gpu/runtime/profiler.h"
-#include "gpu/runtime/shader.h"
-#include "gpu/runtime/tuning.h"
+#include "gpu/runtime/device/device.h"
+#include "gpu/runtime/record/profiler.h"
+#include "gpu/runtime/kernels/shader.h"
+#include "gpu/runtime/device/tuning.h"
 
 namespace exemplar {
 

@@ -5,9 +5,9 @@
 #include "apps/bench/kernels/operation.h"
 #include "embedded/runtime_copy_comp.h"
 #include "embedded/runtime_multiply_add_comp.h"
-#include "gpu/runtime/buffer.h"
-#include "gpu/runtime/kernel.h"
-#include "gpu/runtime/stream.h"
+#include "gpu/runtime/record/buffer.h"
+#include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/stream.h"
 #include "shaders/shared/ceilings.h"
 
 namespace exemplar {

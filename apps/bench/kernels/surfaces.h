@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "apps/bench/kernels/operation.h"
-#include "gpu/runtime/buffer.h"
+#include "gpu/runtime/record/buffer.h"
 #include "host/animation/animation.h"
 #include "host/core/random.h"
-#include "host/mesh/curvature.h"
+#include "host/mesh/curvature/curvature.h"
 #include "shaders/shared/types.h"
 
 /// The animated surface that kernels are measured on, and how what they leave on the device is compared.

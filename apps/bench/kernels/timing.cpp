@@ -6,7 +6,7 @@
 #include <array>
 #include <string>
 
-#include "gpu/runtime/errors.h"
+#include "gpu/runtime/device/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/stopwatch.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "apps/bench/kernels/statistics.h"
-#include "gpu/runtime/reflection.h"
+#include "gpu/runtime/kernels/reflection.h"
 #include "host/core/errors.h"
 
 namespace exemplar {

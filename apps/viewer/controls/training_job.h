@@ -6,8 +6,8 @@
 
 #include "apps/viewer/controls/background_job.h"
 #include "host/animation/animation.h"
-#include "host/curvature/model.h"
-#include "host/curvature/training.h"
+#include "host/curvature/model/model.h"
+#include "host/curvature/learning/training.h"
 
 namespace exemplar {
 

@@ -16,8 +16,8 @@
 #include "host/core/parallel.h"
 #include "host/core/stopwatch.h"
 #include "host/data/safetensors.h"
-#include "host/labeling/fold_boosting.h"
-#include "host/learn/jointboost.h"
+#include "host/labeling/training/fold_boosting.h"
+#include "host/learn/boosting/jointboost.h"
 
 namespace exemplar {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "host/core/errors.h"
 #include "host/data/safetensors.h"
-#include "host/learn/fast_ica.h"
-#include "host/learn/pca.h"
+#include "host/learn/components/fast_ica.h"
+#include "host/learn/components/pca.h"
 
 namespace exemplar {
 namespace {

@@ -16,9 +16,9 @@
 #include "host/core/errors.h"
 #include "host/data/npy.h"
 #include "host/data/safetensors.h"
-#include "host/labeling/mesh_labeling.h"
-#include "host/labeling/model.h"
-#include "host/mesh/io.h"
+#include "host/labeling/inference/mesh_labeling.h"
+#include "host/labeling/inference/model.h"
+#include "host/mesh/io/io.h"
 
 namespace exemplar {
 namespace {

@@ -15,10 +15,10 @@
 
 #include "host/core/errors.h"
 #include "host/data/safetensors.h"
-#include "host/hatching/powers.h"
-#include "host/hatching/property_model.h"
-#include "host/learn/least_squares.h"
-#include "host/learn/neural_net.h"
+#include "host/hatching/features/powers.h"
+#include "host/hatching/style/property_model.h"
+#include "host/learn/regression/least_squares.h"
+#include "host/learn/regression/neural_net.h"
 
 namespace exemplar {
 namespace {

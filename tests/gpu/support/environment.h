@@ -1,6 +1,6 @@
 #pragma once
 
-#include "gpu/runtime/device.h"
+#include "gpu/runtime/device/device.h"
 
 namespace exemplar::testing {
 

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "host/core/errors.h"
-#include "host/learn/fast_ica.h"
+#include "host/learn/components/fast_ica.h"
 
 namespace exemplar {
 namespace {

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "apps/exemplar/backend.h"
+#include "apps/exemplar/batch/batch_work.h"
+
+namespace exemplar {
+
+/// What a program has done of a batch run.
+struct BatchResult {
+    BatchCounts counts;
+    std::vector<StageLoad> stages;
+    double wall = 0, cpu = 0;  ///< seconds
+};
+
+/// Labels what there is to do, with progress. Throws Interrupted at Ctrl-C, and what else ends the work.
+BatchResult run_work(BatchWork& work, const BatchWriter& writer, const BatchModels& models, DeviceBackend& backend,
+                     const BatchOptions& options);
+
+void print_result(const BatchResult& result);
+nlohmann::json describe(const BatchResult& result);
+
+}  // namespace exemplar

@@ -1,0 +1,60 @@
+// The rows of `exemplar bench` about line drawings: what a frame costs from its pose to its image on the device.
+
+#include <fmt/format.h>
+
+#include "apps/exemplar/bench/bench_rows.h"
+#include "apps/exemplar/lines/drawn_animation.h"
+#include "apps/exemplar/lines/frames_view.h"
+#include "gpu/lines/extraction.h"
+#include "host/core/freed_memory.h"
+
+namespace exemplar {
+namespace {
+
+constexpr int k_width = 1280, k_height = 720;
+
+LinePicture picture_of(const BenchCharacter& character) {
+    LinePicture picture;
+    picture.view = view_of_frames(character.unseen, character.unseen_frames, k_width, k_height);
+    const LineType types[] = {LineType::contours, LineType::suggestive_contours};
+    picture.families = line_families(types);
+    picture.thresholds = family_thresholds({});
+    picture.looks = plain_looks({}, {});
+    return picture;
+}
+
+}  // namespace
+
+void bench_lines(BenchContext& context, const std::function<void(const BenchRow&)>& row) {
+    keep_freed_memory();
+    const BenchCharacter& character = context.character();
+    const CurvatureModel& model = context.curvature_model();
+    Device device({.name = context.device_name()});
+    DrawnAnimation drawn(device, character.unseen, model.truth);
+    drawn.set_model(model);
+    const LinePicture picture = picture_of(character);
+    Stream stream(device);
+    const auto draw_all = [&](CurvatureSource from) {
+        for (const FrameRef& frame : character.unseen_frames) {
+            drawn.record(stream, frame, from);
+            drawn.renderer().record(stream, drawn.moment(), picture);
+            stream.finish();
+        }
+    };
+    for (const CurvatureSource from : {CurvatureSource::learned, CurvatureSource::estimated}) {
+        draw_all(from);  // once without a clock: drivers compile at the first dispatch
+        Cost cost = measure(3 * context.runs(), [&] { draw_all(from); });
+        const auto frames = static_cast<double>(character.unseen_frames.size());
+        for (double* seconds : {&cost.wall, &cost.cpu}) *seconds /= frames;
+        row({.name = "lines",
+             .what = fmt::format("two types, {}, pose to image, 20k vertices, {} x {}, {}",
+                                 from == CurvatureSource::learned ? "learned curvature" : "estimated with diffusion",
+                                 k_width, k_height, device.info().name),
+             .goal = "24 frames a second",
+             .cost = cost,
+             .remarks = {fmt::format("{:.1f} frames a second", 1 / cost.wall)},
+             .numbers = {{"frames_per_second", 1 / cost.wall}}});
+    }
+}
+
+}  // namespace exemplar

@@ -1,0 +1,176 @@
+#include "apps/exemplar/curvature/curvature_options.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "apps/exemplar/arguments.h"
+#include "host/core/text.h"
+#include "host/mesh/io/io_text.h"
+
+namespace exemplar {
+namespace {
+
+const std::map<std::string, RobustEstimator>& robust_names() {
+    static const std::map<std::string, RobustEstimator> names{{"none", RobustEstimator::none},
+                                                              {"cauchy", RobustEstimator::cauchy},
+                                                              {"geman-mcclure", RobustEstimator::geman_mcclure}};
+    return names;
+}
+
+Learner learner_of(const std::string& name) {
+    for (const Learner learner : {Learner::additive, Learner::averaged, Learner::network, Learner::local})
+        if (name == name_of(learner)) return learner;
+    return Learner::global;
+}
+
+/// What training hardly shows another motion of a rig hardly shows either, but another fold of a cloth may.
+double suitable_sparsity(AnimationKind kind) {
+    return kind == AnimationKind::sequence ? 0 : CurvatureTraining{}.dropped_variance;
+}
+
+}  // namespace
+
+void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
+    command.add_option("--fps", arguments.frames_per_second, "frames a second that clips of glTF files are sampled at")
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 1000.0));
+    command
+        .add_option("--smoothing", arguments.smoothing,
+                    "width of the diffusion of measured curvature, in median edge lengths; 0 is none")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 20.0));
+    command.add_option("--robust", arguments.robust, "estimator for noisy meshes: none, cauchy or geman-mcclure")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"none", "cauchy", "geman-mcclure"}));
+    command
+        .add_option("--learner", arguments.learner,
+                    "local, additive (rigs), or averaged, network, global (as in the thesis)")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"additive", "averaged", "network", "global", "local"}));
+    command
+        .add_option("--attributes", arguments.attributes,
+                    "tensor: seven numbers that stay smooth; principal: the thesis' eight")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"tensor", "principal"}));
+    command.add_option("--bases", arguments.bases, "ica or pca")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"ica", "pca"}));
+    command.add_option("--variance", arguments.variance, "share of the variance that bases keep")
+        ->capture_default_str()
+        ->check(CLI::Range(0.01, 1.0));
+    command
+        .add_option("--sparsity", arguments.dropped_variance,
+                    "share of what the bases explain that is left out to make the model smaller; default: 0.001, or 0 "
+                    "for mesh sequences")
+        ->check(CLI::Range(0.0, 0.5));
+    command
+        .add_option(
+            "--augment", arguments.augmented_poses,
+            "rigs: poses to learn from beside the frames, in which joints or shapes of different frames are mixed")
+        ->capture_default_str()
+        ->check(whole_number(0, 100000));
+    command
+        .add_option("--patch", arguments.patch_vertices,
+                    "vertices of the patches whose shapes are told apart, at most; 0 takes the whole surface")
+        ->capture_default_str()
+        ->check(whole_number(0));
+    command.add_option("--patch-inputs", arguments.patch_inputs, "most numbers that describe a patch")
+        ->capture_default_str()
+        ->check(whole_number(1, 1000));
+    command
+        .add_option("--state-variance", arguments.state_variance,
+                    "mesh sequences: share of the variance of the dihedral angles that these numbers keep")
+        ->capture_default_str()
+        ->check(CLI::Range(0.01, 1.0));
+    command.add_option("--seed", arguments.seed, "seed of all random choices; equal seeds give equal model files")
+        ->capture_default_str()
+        ->check(whole_number(0));
+}
+
+CurvatureTraining training_of(const CurvatureArguments& arguments, AnimationKind kind) {
+    CurvatureTraining training;
+    training.attributes = arguments.attributes == "principal" ? AttributeSet::principal : AttributeSet::tensor;
+    training.learner = learner_of(arguments.learner);
+    training.independent = arguments.bases == "ica";
+    training.variance = arguments.variance;
+    training.dropped_variance = arguments.dropped_variance.value_or(suitable_sparsity(kind));
+    training.truth.smoothing = arguments.smoothing;
+    training.truth.robust = robust_names().at(arguments.robust);
+    training.seed = arguments.seed;
+    training.augmented_poses = arguments.augmented_poses;
+    training.sequence.patch_vertices = arguments.patch_vertices;
+    training.sequence.most_inputs = arguments.patch_inputs;
+    training.sequence.share = arguments.state_variance;
+    training.sequence.seed = arguments.seed;
+    return training;
+}
+
+std::map<std::string, std::string> words_of(const CurvatureArguments& arguments, AnimationKind kind) {
+    const CurvatureTraining training = training_of(arguments, kind);
+    return {{"smoothing", fmt::format("{}", arguments.smoothing)},
+            {"robust", arguments.robust},
+            {"learner", std::string(name_of(training.learner))},
+            {"attributes", arguments.attributes},
+            {"bases", arguments.bases},
+            {"variance", fmt::format("{}", arguments.variance)},
+            {"sparsity", fmt::format("{}", training.dropped_variance)},
+            {"augment", std::to_string(arguments.augmented_poses)},
+            {"patch", std::to_string(arguments.patch_vertices)},
+            {"patch-inputs", std::to_string(arguments.patch_inputs)},
+            {"state-variance", fmt::format("{}", arguments.state_variance)},
+            {"fps", fmt::format("{}", arguments.frames_per_second)},
+            {"seed", std::to_string(arguments.seed)}};
+}
+
+nlohmann::json describe_training(const CurvatureTrainingReport& report) {
+    return {{"poses", report.poses},
+            {"vertices", report.vertices},
+            {"varying_vertices", report.varying_vertices},
+            {"segments", report.segments},
+            {"controls", report.controls},
+            {"inputs", report.inputs},
+            {"components", report.components},
+            {"controls_per_vertex", {{"possible", report.possible_controls}, {"kept", report.kept_controls}}},
+            {"tile_bytes", report.model_bytes},
+            {"seconds",
+             {{"truth", report.seconds_truth}, {"influence", report.seconds_influence}, {"fit", report.seconds_fit}}}};
+}
+
+nlohmann::json describe_evaluation(const CurvatureEvaluation& evaluation) {
+    nlohmann::json attributes = nlohmann::json::object(), lines = nlohmann::json::object();
+    for (const AttributeError& error : evaluation.attributes)
+        attributes[error.name] = {{"rms", error.rms},
+                                  {"percentile_95", error.percentile_95},
+                                  {"zero_order_rms", error.zero_order_rms},
+                                  {"zero_order_percentile_95", error.zero_order_percentile_95},
+                                  {"truth_rms", error.truth_rms}};
+    for (const LineError& error : evaluation.lines)
+        lines[std::string(name_of(error.type))] = {{"faces_with_line", error.truth},
+                                                   {"misclassified", error.misclassified},
+                                                   {"zero_order_misclassified", error.zero_order}};
+    return {{"frames", evaluation.frames},
+            {"attributes", attributes},
+            {"lines", lines},
+            {"farthest_pose", evaluation.farthest_pose},
+            {"farthest_control", evaluation.farthest_control},
+            {"far_frames", evaluation.far_frames}};
+}
+
+void print_evaluation(const CurvatureEvaluation& evaluation) {
+    fmt::print("{:<24}{:>12}{:>12}{:>14}{:>14}\n", "faces with a line, %", "truth", "wrong", "zero order", "ratio");
+    for (const LineError& line : evaluation.lines)
+        fmt::print("{:<24}{:>12.2f}{:>12.2f}{:>14.2f}{:>14.2f}\n", name_of(line.type), 100 * line.truth,
+                   100 * line.misclassified, 100 * line.zero_order,
+                   line.zero_order > 0 ? line.misclassified / line.zero_order : 0.0);
+    fmt::print("{:<24}{:>12}{:>12}{:>14}{:>14}\n", "error", "RMS", "95 %", "zero order", "truth's RMS");
+    for (const AttributeError& error : evaluation.attributes)
+        fmt::print("{:<24}{:>12.4g}{:>12.4g}{:>14.4g}{:>14.4g}\n", error.name, error.rms, error.percentile_95,
+                   error.zero_order_rms, error.truth_rms);
+    fmt::print(
+        "{}; the farthest pose is {:.2f} times as far from the mean as any in training ('{}'); beyond {:.1f}: {}\n",
+        counted(evaluation.frames, "frame"), evaluation.farthest_pose,
+        mesh_io::printable(evaluation.farthest_control, 100), k_far_pose, counted(evaluation.far_frames, "frame"));
+}
+
+}  // namespace exemplar

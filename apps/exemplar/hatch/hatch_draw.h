@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/exemplar/animation_arguments.h"
+#include "apps/exemplar/commands.h"
+#include "apps/exemplar/hatch/hatch_scene.h"
+#include "apps/exemplar/lines/lines_job.h"
+#include "host/hatching/view_hatching.h"
+
+namespace exemplar {
+
+/// What 'exemplar hatch draw' is asked to draw.
+struct HatchDrawJob {
+    std::filesystem::path style, out, properties;
+    LinesOutput output = LinesOutput::svg;
+    HatchSceneArguments scene;
+    CommonOptions common;
+    std::vector<std::string> curves{"contours"};
+    float taper = 6, scale = 1;
+    bool no_tone = false, outlines = false;
+    std::uint64_t seed = 1;
+    // Of animations:
+    FrameArguments frames;
+    double frames_per_second = 30;
+    double turn = 0;  ///< degrees from a frame to the next
+    bool fresh = false, remeasure = false;
+
+    HatchingOptions options() const {
+        HatchingOptions options;
+        options.strokes.seed = seed;
+        options.matches_tone = !no_tone;
+        return options;
+    }
+    /// Throws UsageError for a word that is no type of lines.
+    std::vector<LineType> curve_types() const;
+    /// Whether frames are asked for, not a still of a mesh.
+    bool has_frames() const {
+        return std::filesystem::is_directory(scene.mesh) || output == LinesOutput::video ||
+               output == LinesOutput::folder || !frames.range.empty() || !frames.clips.empty() || frames.most > 0 ||
+               turn != 0;
+    }
+};
+
+/// Writes a drawing as .svg or .png.
+void write_hatched_drawing(const HatchDrawJob& job, const HatchedDrawing& drawing, const DrawingStyle& look);
+/// Draws frames of an animation, or of a mesh that turns, and writes them: strokes stay on the surface.
+void write_hatched_frames(const HatchDrawJob& job);
+
+}  // namespace exemplar

@@ -1,0 +1,310 @@
+// exemplar hatch evaluate: styles whose rule is known, learned from one drawing and tested on other views and meshes.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "apps/exemplar/arguments.h"
+#include "apps/exemplar/hatch/hatch_reading.h"
+#include "apps/exemplar/hatch/hatch_scene.h"
+#include "apps/help/offered_words.h"
+#include "host/core/errors.h"
+#include "host/core/progress.h"
+#include "host/core/random.h"
+#include "host/core/stopwatch.h"
+#include "host/data/npy.h"
+#include "host/hatching/hatching_errors.h"
+#include "host/hatching/fields/occlusion_barriers.h"
+#include "host/hatching/refinement/stroke_relaxation.h"
+#include "host/hatching/refinement/stroke_statistics.h"
+#include "host/hatching/style/style_learning.h"
+#include "host/hatching/refinement/tone_matching.h"
+#include "host/synth/hatching/hatched_drawing.h"
+
+namespace exemplar {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct EvaluateArguments {
+    std::vector<std::string> styles;
+    std::vector<fs::path> meshes;
+    std::string size = "1000x1000";
+    fs::path peers;
+    std::uint64_t seed = 1;
+    CommonOptions common;
+};
+
+/// The training view first.
+constexpr std::array<const char*, 4> k_views{"three-quarter", "front", "side", "three-quarter-back"};
+
+HatchSceneArguments scene_of(const EvaluateArguments& arguments, const fs::path& mesh, const char* view) {
+    HatchSceneArguments scene;
+    scene.mesh = mesh;
+    scene.camera.view = view;
+    scene.camera.size = arguments.size;
+    return scene;
+}
+
+/// The same rule for the whole drawing, without segments: what boosting finds among some features.
+OrientationFunction one_rule(PixelFeatures& pixels, const DrawingProperties& drawing, bool curvature_only,
+                             std::uint64_t seed) {
+    std::vector<std::uint32_t> rows;
+    Random random(seed);
+    for (std::uint32_t row = 0; row < pixels.size(); ++row) {
+        const std::uint32_t p = pixels.pixels().pixel[row];
+        if (drawing.center[p] && !drawing.crossing[p] && drawing.level[p] == 1 && random.uniform() < 0.5)
+            rows.push_back(row);
+    }
+    OrientationFields fields = pixels.orientations(rows);
+    constexpr std::size_t k_curvature_fields = 6;  // k_max and k_min at three scales
+    for (std::size_t k = k_curvature_fields; curvature_only && k < k_orientation_fields; ++k)
+        std::ranges::fill(fields.field(k), DoubledAngle{});
+    std::vector<DoubledAngle> target;
+    target.reserve(rows.size());
+    for (const std::uint32_t row : rows)
+        target.push_back(doubled_angle(drawing.orientation[pixels.pixels().pixel[row]]));
+    const std::vector<float> weight(rows.size(), 1.0f);
+    std::vector<std::uint8_t> held(rows.size());
+    for (auto& value : held) value = random.uniform() < 0.25 ? 1 : 0;
+    return learn_orientation({fields, target, weight, held}).function;
+}
+
+/// Median error of a rule, in degrees.
+double rule_error(const OrientationFunction& function, PixelFeatures& pixels, const HatchingFields& truth) {
+    const OrientationFields fields = pixels.orientations({});
+    std::vector<float> errors;
+    for (std::size_t row = 0; row < pixels.size(); ++row) {
+        const std::uint32_t p = pixels.pixels().pixel[row];
+        if (truth.level[p] == 0) continue;
+        errors.push_back(orientation_difference(angle_of(function.evaluate(fields, row)), truth.orientation[0][p]) *
+                         57.29578f);
+    }
+    return median_of_values(std::move(errors));
+}
+
+/// The level and the properties of rows.
+FeatureMatrix targets_of(const HatchingFields& fields, PixelFeatures& pixels, std::span<const std::uint32_t> rows) {
+    FeatureMatrix targets;
+    targets.rows = rows.size();
+    const auto pixel = [&](std::size_t i) { return pixels.pixels().pixel[rows[i]]; };
+    const std::span<float> levels = targets.add("level");
+    for (std::size_t i = 0; i < rows.size(); ++i) levels[i] = fields.level[pixel(i)];
+    for (std::size_t k = 0; k < k_stroke_properties; ++k) {
+        const auto property = static_cast<StrokeProperty>(k);
+        const std::span<float> column = targets.add(name_of(property));
+        for (std::size_t i = 0; i < rows.size(); ++i) column[i] = property_of(fields, property)[pixel(i)];
+    }
+    return targets;
+}
+
+/// Some rows of features, with targets that were measured or are true and, where there are some, those that were
+/// learned, as arrays for other programs.
+void export_rows(const fs::path& folder, const std::string& name, PixelFeatures& pixels, const HatchingFields& targets,
+                 const HatchingFields* learned, std::size_t most, std::uint64_t seed) {
+    fs::create_directories(folder);
+    std::vector<std::uint32_t> rows(pixels.size());
+    std::iota(rows.begin(), rows.end(), 0U);
+    Random(seed).shuffle(rows);
+    rows.resize(std::min(rows.size(), most));
+    std::vector<std::uint32_t> all(k_pixel_features);
+    std::iota(all.begin(), all.end(), 0U);
+    write_npy(folder / (name + "_x.npy"), pixels.scalars(all, rows));
+    write_npy(folder / (name + "_y.npy"), targets_of(targets, pixels, rows));
+    if (learned) write_npy(folder / (name + "_learned.npy"), targets_of(*learned, pixels, rows));
+}
+
+/// The truth in the place of a drawing's targets, where the drawing was measured.
+HatchingFields measured_fields(const DrawingProperties& drawing) {
+    HatchingFields fields(drawing.width, drawing.height);
+    fields.level = drawing.level;
+    for (std::size_t k = 0; k < k_stroke_properties; ++k)
+        property_of(fields, static_cast<StrokeProperty>(k)) = drawing.property[k];
+    return fields;
+}
+
+nlohmann::json row_of(const HatchingErrors& e) {
+    return {{"orientation_degrees", e.orientation},
+            {"level_accuracy", e.level_accuracy},
+            {"majority_level", e.majority_level},
+            {"thickness", e.property[0]},
+            {"intensity", e.property[1]},
+            {"spacing", e.property[2]},
+            {"length", e.property[3]},
+            {"pixels", e.pixels}};
+}
+
+class StyleEvaluation {
+  public:
+    StyleEvaluation(const EvaluateArguments& arguments, std::string style, Progress& progress)
+        : arguments_(arguments), name_(std::move(style)), progress_(progress) {}
+
+    nlohmann::json run() {
+        train();
+        for (std::size_t v = 0; v < k_views.size(); ++v) test(arguments_.meshes[0], k_views[v], v == 0);
+        for (std::size_t m = 1; m < arguments_.meshes.size(); ++m) test(arguments_.meshes[m], k_views[0], false);
+        result_["style"] = name_;
+        result_["in_words"] = describe_hatching_style(style_);
+        return result_;
+    }
+
+  private:
+    void train() {
+        HatchScene scene(scene_of(arguments_, arguments_.meshes[0], k_views[0]), arguments_.common.device, true);
+        const RuledDrawing drawn = draw_by_rule(name_, scene.pixels(), scene.placer(), arguments_.seed);
+        const HatchingFields& truth = drawn.truth.fields;
+        Stopwatch watch;
+        Image mask(truth.width, truth.height, 1);
+        for (const std::uint32_t pixel : scene.pixels().pixels().pixel) mask.data[pixel] = 1;
+        // Eight bits, as in a file.
+        FloatImage darkness(truth.width, truth.height, 1);
+        for (std::size_t i = 0; i < drawn.ink.size(); ++i) darkness.data[i] = std::round(255 * drawn.ink[i]) / 255;
+        const DrawingProperties drawing = drawing_properties(measure_strokes(darkness, mask));
+        result_["measured"] = measured_errors(drawing, truth);
+        result_["measured"]["level_accuracy"] =
+            compare_hatching(measured_fields(drawing), truth, scene.pixels().pixels().pixel).level_accuracy;
+        StyleLearningOptions options;
+        options.seed = options.mixture.seed = arguments_.seed;
+        StyleReport report;
+        style_ = learn_hatching_style(scene.pixels(), drawing, scene.scorer(), options, report);
+        result_["training_seconds"] = watch.wall();
+        global_ = one_rule(scene.pixels(), drawing, false, arguments_.seed);
+        curvature_ = one_rule(scene.pixels(), drawing, true, arguments_.seed);
+        if (!arguments_.peers.empty())
+            export_rows(arguments_.peers, name_ + "_train", scene.pixels(), measured_fields(drawing), nullptr, 16000,
+                        1);
+        progress_.advance(1, name_ + " learned");
+    }
+
+    /// What was measured of the drawing beside the rule, on center lines.
+    static nlohmann::json measured_errors(const DrawingProperties& drawing, const HatchingFields& truth) {
+        std::array<std::vector<float>, k_stroke_properties> ratios;
+        std::vector<float> angles;
+        for (std::uint32_t p = 0; p < truth.size(); ++p) {
+            if (!drawing.center[p] || truth.level[p] == 0) continue;
+            float difference = orientation_difference(drawing.orientation[p], truth.orientation[0][p]);
+            if (truth.level[p] == 2)
+                difference =
+                    std::min(difference, orientation_difference(drawing.orientation[p], truth.orientation[1][p]));
+            if (!drawing.crossing[p]) angles.push_back(difference * 57.29578f);
+            for (std::size_t k = 0; k < k_stroke_properties; ++k)
+                ratios[k].push_back(
+                    std::abs(drawing.property[k][p] / property_of(truth, static_cast<StrokeProperty>(k))[p] - 1));
+        }
+        nlohmann::json out = {{"orientation_degrees", median_of_values(std::move(angles))}};
+        for (std::size_t k = 0; k < k_stroke_properties; ++k)
+            out[name_of(static_cast<StrokeProperty>(k))] = median_of_values(std::move(ratios[k]));
+        return out;
+    }
+
+    void test(const fs::path& mesh, const char* view, bool training_view) {
+        HatchScene scene(scene_of(arguments_, mesh, view), arguments_.common.device, true);
+        PixelFeatures& pixels = scene.pixels();
+        const HatchingFields truth = hatching_by_rule(name_, pixels).fields;
+        const HatchingPrediction predicted = predict_hatching(style_, pixels, scene.scorer(), scene.evaluator());
+        nlohmann::json row = row_of(compare_hatching(predicted.fields, truth, pixels.pixels().pixel));
+        row["mesh"] = mesh.stem().string();
+        row["view"] = view;
+        row["kind"] = training_view ? "training view" : mesh == arguments_.meshes[0] ? "other view" : "other mesh";
+        row["global_rule_degrees"] = rule_error(global_, pixels, truth);
+        row["curvature_only_degrees"] = rule_error(curvature_, pixels, truth);
+        const auto barriers = occlusion_barriers(pixels.gbuffer().depth, truth.width, truth.height);
+        std::vector<HatchStroke> strokes = place_evenly(scene.placer(), predicted.fields, barriers, {});
+        match_tone(strokes, predicted.fields);
+        row["drawn_spacing"] = measure_spacing(strokes, predicted.fields).median_error;
+        row["drawn_tone"] = measure_tone(strokes, predicted.fields).median_error;
+        if (!arguments_.peers.empty())
+            export_rows(arguments_.peers, fmt::format("{}_test_{}_{}", name_, mesh.stem().string(), view), pixels,
+                        truth, &predicted.fields, 10000, 2);
+        result_["rows"].push_back(row);
+        progress_.advance(1, fmt::format("{} on {}, {}", name_, mesh.stem().string(), view));
+    }
+
+    const EvaluateArguments& arguments_;
+    std::string name_;
+    Progress& progress_;
+    HatchingStyle style_;
+    OrientationFunction global_, curvature_;
+    nlohmann::json result_;
+};
+
+std::string percent(const nlohmann::json& row, const char* key) {
+    return fmt::format("{:.1f}%", 100 * row[key].get<double>());
+}
+
+void print_result(const nlohmann::json& result) {
+    fmt::print("{}: learned in {:.0f} s\n{}", result["style"].get<std::string>(),
+               result["training_seconds"].get<double>(), result["in_words"].get<std::string>());
+    fmt::print("{:>34} {:>7} {:>7} {:>9} {:>6} {:>9} {:>9} {:>8} {:>6} {:>13} {:>6}\n", "", "degrees", "global",
+               "curvature", "level", "thickness", "intensity", "spacing", "length", "drawn spacing", "tone");
+    const nlohmann::json& read = result["measured"];
+    fmt::print("{:>34} {:7.1f} {:>17} {:>6} {:>9} {:>9} {:>8} {:>6}\n", "as read from the drawing",
+               read["orientation_degrees"].get<double>(), "", percent(read, "level_accuracy"),
+               percent(read, "thickness"), percent(read, "intensity"), percent(read, "spacing"),
+               percent(read, "length"));
+    for (const nlohmann::json& row : result["rows"]) {
+        fmt::print("{:>34} {:7.1f} {:7.1f} {:9.1f} {:>6} {:>9} {:>9} {:>8} {:>6} {:>13} {:>6}\n",
+                   row["mesh"].get<std::string>() + ", " + row["view"].get<std::string>(),
+                   row["orientation_degrees"].get<double>(), row["global_rule_degrees"].get<double>(),
+                   row["curvature_only_degrees"].get<double>(), percent(row, "level_accuracy"),
+                   percent(row, "thickness"), percent(row, "intensity"), percent(row, "spacing"),
+                   percent(row, "length"), percent(row, "drawn_spacing"), percent(row, "drawn_tone"));
+    }
+}
+
+void run_evaluate(EvaluateArguments arguments) {
+    const auto limits = apply_common_options(arguments.common);
+    if (arguments.styles.empty()) arguments.styles.assign(hatching_rule_names().begin(), hatching_rule_names().end());
+    for (const std::string& style : arguments.styles) {
+        if (std::ranges::find(hatching_rule_names(), style) == hatching_rule_names().end())
+            throw UsageError(fmt::format("--styles '{}' is not built in; there are {}", style,
+                                         fmt::join(hatching_rule_names(), ", ")));
+    }
+    require_distinct_names(arguments.meshes);
+    for (const fs::path& mesh : arguments.meshes) require_hatch_scene(scene_of(arguments, mesh, k_views[0]));
+    if (!arguments.peers.empty()) require_output_folder(arguments.peers);
+    Progress progress("evaluating", arguments.styles.size() * (k_views.size() + arguments.meshes.size()));
+    nlohmann::json results = nlohmann::json::array();
+    for (const std::string& style : arguments.styles)
+        results.push_back(StyleEvaluation(arguments, style, progress).run());
+    progress.finish();
+    if (!arguments.common.quiet) {
+        for (const nlohmann::json& result : results) print_result(result);
+    }
+    write_report(arguments.common, results);
+}
+
+}  // namespace
+
+void add_hatch_evaluate_command(CLI::App& hatch) {
+    auto arguments = std::make_shared<EvaluateArguments>();
+    CLI::App* command =
+        hatch.add_subcommand("evaluate", "Learns styles whose rule is known, and tests them on other views and meshes");
+    command->footer(
+        "The first mesh is drawn and learned from, in one view; tested are three other views of it, and the other\n"
+        "meshes. Errors are medians, beside the rule.\n\nExample:\n"
+        "  exemplar hatch evaluate cow.obj spot.obj bunny.off horse.ply --styles contour,parts");
+    command->add_option("MESH", arguments->meshes, "meshes; the first is learned from")->required()->type_name("");
+    command
+        ->add_option("--styles", arguments->styles,
+                     fmt::format("which of {}; default: all", fmt::join(hatching_rule_names(), ", ")))
+        ->type_name("NAME")
+        ->check(offered_words(hatching_rule_names()))
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    command->add_option("--size", arguments->size, "pixels of the drawings")->type_name("WxH")->capture_default_str();
+    command->add_option("--seed", arguments->seed, "of drawing and learning")
+        ->capture_default_str()
+        ->check(whole_number(0));
+    command
+        ->add_option("--export", arguments->peers,
+                     "writes features, truths and what was learned as .npy into this folder")
+        ->type_name("FOLDER");
+    add_device_option(*command, arguments->common);
+    add_common_options(*command, arguments->common);
+    command->callback([arguments] { run_evaluate(*arguments); });
+}
+
+}  // namespace exemplar

@@ -1,0 +1,72 @@
+// exemplar hatch example: a drawing by a known rule.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/exemplar/arguments.h"
+#include "apps/exemplar/hatch/hatch_scene.h"
+#include "apps/help/offered_words.h"
+#include "host/core/errors.h"
+#include "host/core/text.h"
+#include "host/imaging/png.h"
+#include "host/synth/hatching/hatched_drawing.h"
+
+namespace exemplar {
+namespace {
+
+struct ExampleArguments {
+    std::string style;
+    HatchSceneArguments scene;
+    CommonOptions common;
+    std::filesystem::path out;
+    std::uint64_t seed = 1;
+};
+
+void run_example(const ExampleArguments& arguments) {
+    const auto limits = apply_common_options(arguments.common);
+    if (std::ranges::find(hatching_rule_names(), arguments.style) == hatching_rule_names().end())
+        throw UsageError(fmt::format("STYLE '{}' is not built in; there are {}", arguments.style,
+                                     fmt::join(hatching_rule_names(), ", ")));
+    require_hatch_scene(arguments.scene);
+    require_output_picture(arguments.out);
+    require_not_replaced(arguments.out, {arguments.scene.mesh});
+    HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
+    const RuledDrawing drawing = draw_by_rule(arguments.style, scene.pixels(), scene.placer(), arguments.seed);
+    const HatchingView& view = scene.pixels().view();
+    Image image(view.width, view.height, 1);
+    for (std::size_t i = 0; i < drawing.ink.size(); ++i)
+        image.data[i] = static_cast<std::uint8_t>(std::lround(255 * (1 - drawing.ink[i])));
+    write_png(arguments.out, image);
+    if (!arguments.common.quiet)
+        fmt::print("{}: {}\n", arguments.out.string(), counted(drawing.strokes.size(), "stroke"));
+    write_report(arguments.common, {{"style", arguments.style}, {"strokes", drawing.strokes.size()}});
+}
+
+}  // namespace
+
+void add_hatch_example_command(CLI::App& hatch) {
+    auto arguments = std::make_shared<ExampleArguments>();
+    CLI::App* command = hatch.add_subcommand("example", "Draws a view in one of the styles that are built in");
+    command->footer(
+        fmt::format("Styles: {}\n\nExample:\n"
+                    "  exemplar hatch example contour bunny.off --out drawing.png",
+                    fmt::join(hatching_rule_names(), " ")));
+    command->add_option("STYLE", arguments->style, "how it is drawn")
+        ->required()
+        ->check(offered_words(hatching_rule_names()))
+        ->type_name("");
+    command->add_option("MESH", arguments->scene.mesh, "mesh (OFF, OBJ, PLY, STL, glTF)")->required()->type_name("");
+    command->add_option("--out", arguments->out, "the drawing to write (PNG)")->required()->type_name("FILE");
+    command->add_option("--seed", arguments->seed, "of the hand's jitter")
+        ->capture_default_str()
+        ->check(whole_number(0));
+    add_hatch_scene_options(*command, arguments->scene);
+    add_device_option(*command, arguments->common);
+    add_common_options(*command, arguments->common);
+    command->callback([arguments] { run_example(*arguments); });
+}
+
+}  // namespace exemplar

@@ -1,0 +1,81 @@
+#include "apps/exemplar/hatch/hatch_scene.h"
+
+#include <fmt/format.h>
+
+#include "apps/exemplar/arguments.h"
+#include "gpu/hatching/hatching_device.h"
+#include "host/core/errors.h"
+#include "host/mesh/io/io.h"
+#include "host/mesh/editing/loose_vertices.h"
+#include "host/mesh/editing/weld.h"
+
+namespace exemplar {
+
+void add_hatch_scene_options(CLI::App& command, HatchSceneArguments& arguments) {
+    arguments.camera.size = "1000x1000";
+    add_camera_options(command, arguments.camera);
+    command
+        .add_option("--light", arguments.light,
+                    "direction to the light as the eye has it: to the right, up, towards the eye")
+        ->type_name("X,Y,Z")
+        ->capture_default_str();
+    command.add_option("--cache", arguments.cache, "folder that remembers measured surfaces; '' remembers none")
+        ->type_name("FOLDER")
+        ->capture_default_str();
+}
+
+void require_hatch_scene(const HatchSceneArguments& arguments) {
+    require_input(arguments.mesh);
+    require_camera(arguments.camera);
+    if (!(point_of(arguments.light, "--light").norm() > 0))
+        throw UsageError("--light is zero; give a direction as -0.5,0.5,0.7");
+}
+
+HatchingView hatching_view(const HatchSceneArguments& arguments, const TriangleMesh& mesh) {
+    const SizedCamera sized = camera_of(arguments.camera, mesh);
+    return {sized.camera, light_from(sized.camera, point_of(arguments.light, "--light")), sized.width, sized.height};
+}
+
+struct HatchScene::Impl {
+    explicit Impl(const std::string& name) : device({.name = name}) {}
+    HatchingDevice device;
+    HatchingSurface surface;
+    HatchingView view;
+    std::unique_ptr<PixelFeatures> pixels;
+};
+
+HatchScene::HatchScene(const HatchSceneArguments& arguments, const std::string& device, bool quiet)
+    : impl_(std::make_unique<Impl>(device)) {
+    const MeshFile file = read_mesh(arguments.mesh);
+    mesh_warnings(file, arguments.mesh, quiet);
+    impl_->surface = cached_surface(without_loose_vertices(welded(file.mesh)),
+                                    usable_cache(arguments.cache, quiet, "measured surfaces"));
+    impl_->view = hatching_view(arguments, impl_->surface.mesh);
+    impl_->pixels = std::make_unique<PixelFeatures>(impl_->surface, impl_->view, impl_->device.tools().images);
+}
+
+HatchScene::~HatchScene() = default;
+
+const HatchingSurface& HatchScene::surface() const {
+    return impl_->surface;
+}
+PixelFeatures& HatchScene::pixels() {
+    return *impl_->pixels;
+}
+const HatchingTools& HatchScene::tools() const {
+    return impl_->device.tools();
+}
+StumpScorer& HatchScene::scorer() {
+    return tools().scorer;
+}
+HatchingEvaluator& HatchScene::evaluator() {
+    return tools().evaluator;
+}
+StrokePlacer& HatchScene::placer() {
+    return tools().placer;
+}
+const std::string& HatchScene::device_name() const {
+    return impl_->device.device().info().name;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "apps/exemplar/commands.h"
+#include "apps/exemplar/lines/lines_camera.h"
+#include "host/hatching/features/hatching_surface.h"
+#include "host/hatching/features/pixel_features.h"
+#include "host/hatching/features/surface_cache.h"
+#include "host/hatching/view_hatching.h"
+
+namespace exemplar {
+
+/// What 'exemplar hatch' looks at: a mesh, from where, in which light.
+struct HatchSceneArguments {
+    std::filesystem::path mesh;
+    CameraArguments camera;
+    std::string light = "-0.45,0.55,0.7";                    ///< direction to it: x right, y up, z towards the eye
+    std::filesystem::path cache = default_surface_folder();  ///< remembers measured surfaces; empty: nothing does
+};
+void add_hatch_scene_options(CLI::App& command, HatchSceneArguments& arguments);
+/// Checks what can be checked before any work; throws UsageError or DataError.
+void require_hatch_scene(const HatchSceneArguments& arguments);
+/// The view of a mesh.
+HatchingView hatching_view(const HatchSceneArguments& arguments, const TriangleMesh& mesh);
+
+/// A mesh that is looked at, and everything that measures and hatches it: on a device.
+class HatchScene {
+  public:
+    /// Reads the mesh and measures it, or remembers how it was measured; tells what is unusual about it unless `quiet`.
+    HatchScene(const HatchSceneArguments& arguments, const std::string& device, bool quiet);
+    ~HatchScene();
+
+    const HatchingSurface& surface() const;
+    PixelFeatures& pixels();
+    const HatchingTools& tools() const;
+    StumpScorer& scorer();
+    HatchingEvaluator& evaluator();
+    StrokePlacer& placer();
+    const std::string& device_name() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace exemplar

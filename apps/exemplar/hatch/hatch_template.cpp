@@ -1,0 +1,54 @@
+// exemplar hatch template: a view to trace.
+
+#include <fmt/format.h>
+
+#include "apps/exemplar/arguments.h"
+#include "apps/exemplar/hatch/hatch_scene.h"
+#include "host/core/text.h"
+#include "host/hatching/drawing/aligned_drawing.h"
+#include "host/imaging/png.h"
+
+namespace exemplar {
+namespace {
+
+struct TemplateArguments {
+    HatchSceneArguments scene;
+    CommonOptions common;
+    std::filesystem::path out;
+};
+
+void run_template(const TemplateArguments& arguments) {
+    const auto limits = apply_common_options(arguments.common);
+    require_hatch_scene(arguments.scene);
+    require_output_picture(arguments.out);
+    require_not_replaced(arguments.out, {arguments.scene.mesh});
+    HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
+    write_png(arguments.out, drawing_template(scene.pixels()));
+    if (!arguments.common.quiet)
+        fmt::print("{}: trace it with strokes only; then 'exemplar hatch train' with the same mesh, view and size\n",
+                   arguments.out.string());
+    write_report(arguments.common, {{"mesh", arguments.scene.mesh.string()},
+                                    {"width", scene.pixels().view().width},
+                                    {"height", scene.pixels().view().height},
+                                    {"pixels", scene.pixels().size()}});
+}
+
+}  // namespace
+
+void add_hatch_template_command(CLI::App& hatch) {
+    auto arguments = std::make_shared<TemplateArguments>();
+    CLI::App* command = hatch.add_subcommand("template", "Renders a view of a mesh to draw on");
+    command->footer(
+        "Draw the strokes of hatching on a layer above it, or on paper over a print, and leave outlines out; then "
+        "hand\n"
+        "in the strokes alone, as PNG: dark on light, at any resolution.\n\nExample:\n"
+        "  exemplar hatch template bunny.off --view three-quarter --size 1000x1000 --out bunny.png");
+    command->add_option("MESH", arguments->scene.mesh, "mesh (OFF, OBJ, PLY, STL, glTF)")->required()->type_name("");
+    command->add_option("--out", arguments->out, "the picture to write (PNG)")->required()->type_name("FILE");
+    add_hatch_scene_options(*command, arguments->scene);
+    add_device_option(*command, arguments->common);
+    add_common_options(*command, arguments->common);
+    command->callback([arguments] { run_template(*arguments); });
+}
+
+}  // namespace exemplar

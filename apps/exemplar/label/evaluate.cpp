@@ -1,0 +1,281 @@
+// exemplar label evaluate: trains on some labeled meshes, labels others, and reports how well that went.
+
+#include <fmt/format.h>
+#include <stdlib.h>  // mkdtemp
+
+#include <cerrno>
+#include <cstring>
+#include <optional>
+#include <set>
+
+#include "apps/exemplar/arguments.h"
+#include "apps/exemplar/backend.h"
+#include "apps/exemplar/commands.h"
+#include "apps/exemplar/label/evaluation_run.h"
+#include "host/core/errors.h"
+
+namespace exemplar {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct EvaluateCommand {
+    CommonOptions common;
+    std::vector<fs::path> train_sets, test_sets, train_on, test_on;
+    fs::path folder, out, report, humans, labels;
+    fs::path cache = default_feature_folder();
+    std::string protocol;
+    std::optional<std::size_t> splits;
+    bool fresh = false;
+    TrainOptions train;
+};
+
+/// A folder for what nobody asked to keep; removed with all it holds.
+class ScratchFolder {
+  public:
+    ScratchFolder() {
+        std::string name = (fs::temp_directory_path() / "exemplar-XXXXXX").string();
+        if (mkdtemp(name.data()) == nullptr)
+            throw DataError(fmt::format("{}: no folder can be made ({}); give --out", name, std::strerror(errno)));
+        path_ = name;
+    }
+    ~ScratchFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+    const fs::path& path() const { return path_; }
+
+  private:
+    fs::path path_;
+};
+
+/// Training set size of a protocol; 0 for leave-one-out.
+std::size_t protocol_size(const std::string& protocol) {
+    if (protocol == "sb3") return 3;
+    if (protocol == "sb6") return 6;
+    if (protocol == "sb12") return 12;
+    return 0;
+}
+
+/// Labels lie beside a mesh, or in the mesh file itself.
+bool may_be_labeled(const fs::path& file) {
+    const std::string extension = file.extension().string();
+    return file.filename().string().ends_with("_labels.txt") || extension == ".ply" || extension == ".glb";
+}
+
+bool holds(const fs::path& folder, bool (*kind)(const fs::path&)) {
+    return std::any_of(fs::directory_iterator(folder), fs::directory_iterator(),
+                       [&](const fs::directory_entry& entry) { return entry.is_regular_file() && kind(entry.path()); });
+}
+
+/// The folder itself if it holds meshes: folders in it may be what a model made of them. Else the folders in it that
+/// hold meshes with labels, which are elsewhere if `labels` says so.
+std::vector<fs::path> category_folders(const fs::path& folder, const fs::path& labels) {
+    if (folder.empty()) throw UsageError("--protocol needs the folder of a category, or of several");
+    require_input(folder);
+    if (!fs::is_directory(folder)) throw UsageError(fmt::format("{}: is no folder", folder.string()));
+    std::set<fs::path> categories;
+    if (!holds(folder, is_mesh_file))
+        for (const auto& entry : fs::directory_iterator(folder))
+            if (entry.is_directory() && holds(entry.path(), labels.empty() ? may_be_labeled : is_mesh_file))
+                categories.insert(entry.path());
+    if (categories.empty()) categories.insert(folder);
+    return {categories.begin(), categories.end()};
+}
+
+/// An absolute path whose last part is a name.
+fs::path without_trailing_slash(const fs::path& path) {
+    const fs::path absolute = fs::absolute(path).lexically_normal();
+    return absolute.has_filename() ? absolute : absolute.parent_path();
+}
+
+/// The benchmark keeps human segmentations in seg/ beside labeled/, or the user says where they are.
+fs::path human_folder(const EvaluateCommand& options, const fs::path& category) {
+    if (!options.humans.empty()) {
+        require_input(options.humans);
+        return options.humans;
+    }
+    for (const fs::path& candidate : {category.parent_path().parent_path() / "seg", category.parent_path() / "seg"})
+        if (fs::is_directory(candidate)) return candidate;
+    return {};
+}
+
+std::vector<EvaluationTask> protocol_tasks(const EvaluateCommand& options) {
+    std::vector<EvaluationTask> tasks;
+    if (options.protocol == "sb19" && options.splits)
+        throw UsageError("--splits does not apply to sb19, which leaves out each mesh in turn");
+    for (const fs::path& folder : category_folders(options.folder, options.labels)) {
+        const fs::path category = without_trailing_slash(folder);
+        const std::vector<fs::path> meshes = list_meshes(category);
+        require_distinct_names(meshes);
+        const std::size_t size = protocol_size(options.protocol);
+        const std::vector<Split> splits =
+            make_splits(meshes.size(), size ? size : meshes.size() - 1,
+                        size ? options.splits.value_or(1) : meshes.size(), options.train.seed);
+        for (std::size_t k = 0; k < splits.size(); ++k) {
+            EvaluationTask task{category.filename().string(),
+                                fmt::format("{}-{}", options.protocol, k),
+                                {},
+                                {},
+                                human_folder(options, category),
+                                options.labels};
+            for (const std::size_t i : splits[k].train) task.train.push_back(meshes[i]);
+            for (const std::size_t i : splits[k].test) task.test.push_back(meshes[i]);
+            tasks.push_back(std::move(task));
+        }
+    }
+    return tasks;
+}
+
+/// Meshes that were trained on are labeled too well.
+void warn_of_common(const std::vector<fs::path>& train, const std::vector<fs::path>& test) {
+    std::set<fs::path> trained;
+    for (const fs::path& path : train) trained.insert(fs::weakly_canonical(path));
+    for (const fs::path& path : test)
+        if (trained.contains(fs::weakly_canonical(path)))
+            fmt::print(stderr,
+                       "warning: {}: is among the training meshes too; its rates are not those of an unseen mesh\n",
+                       path.string());
+}
+
+/// Mesh sets (folders, lists or mesh files) made one.
+struct MeshUnion {
+    std::string name;                  ///< of the sets, joined by +
+    std::vector<fs::path> meshes;      ///< a mesh that is in several sets once
+    std::vector<std::string> sources;  ///< per mesh the set it is from; empty if there is only one set
+};
+
+MeshUnion merge_sets(const std::vector<fs::path>& sets) {
+    MeshUnion result;
+    std::set<fs::path> known;
+    for (const fs::path& set : sets) {
+        const std::string name = without_trailing_slash(set).stem().string();
+        result.name += (result.name.empty() ? "" : "+") + name;
+        for (const fs::path& mesh : meshes_of_argument(set)) {
+            if (sets.size() > 1 && !known.insert(fs::weakly_canonical(mesh)).second) continue;
+            result.meshes.push_back(mesh);
+            if (sets.size() > 1) result.sources.push_back(name);
+        }
+    }
+    return result;
+}
+
+/// The one task of --train and --test, or of --train-on and --test-on.
+EvaluationTask set_task(const EvaluateCommand& options) {
+    const bool other_category = !options.train_on.empty();
+    MeshUnion train = merge_sets(other_category ? options.train_on : options.train_sets);
+    MeshUnion test = merge_sets(other_category ? options.test_on : options.test_sets);
+    require_distinct_names(test.meshes);
+    if (!options.common.quiet) warn_of_common(train.meshes, test.meshes);
+    EvaluationTask task{other_category ? train.name + "-to-" + test.name : train.name,
+                        other_category ? "category" : "lists",
+                        std::move(train.meshes),
+                        std::move(test.meshes),
+                        {},
+                        options.labels,
+                        std::move(train.sources),
+                        other_category};
+    task.humans = human_folder(options, fs::absolute(task.test.front()).parent_path());
+    return task;
+}
+
+std::vector<EvaluationTask> make_tasks(const EvaluateCommand& options) {
+    if (!options.labels.empty()) require_input(options.labels);
+    if (!options.protocol.empty()) return protocol_tasks(options);
+    if (options.train_on.empty() != options.test_on.empty()) throw UsageError("--train-on and --test-on go together");
+    if (options.train_on.empty() && (options.train_sets.empty() || options.test_sets.empty()))
+        throw UsageError(
+            "give --train SET and --test SET, --train-on SET and --test-on SET, or --protocol sb3|sb6|sb12|sb19 DIR");
+    return {set_task(options)};
+}
+
+std::string protocol_name(const EvaluateCommand& options) {
+    if (!options.protocol.empty()) return options.protocol;
+    return options.train_on.empty() ? "lists" : "category";
+}
+
+void run_evaluate(const EvaluateCommand& options) {
+    const auto limits = apply_common_options(options.common);
+    if (options.out.empty() && options.report.empty())
+        throw UsageError("give --out FOLDER for models, labels and the page, or --report FOLDER for the page alone");
+    for (const fs::path& folder : {options.out, options.report})
+        if (!folder.empty()) require_output_folder(folder);
+    const std::vector<EvaluationTask> tasks = make_tasks(options);
+    std::optional<ScratchFolder> scratch;
+    if (options.out.empty()) scratch.emplace();
+    const fs::path out = scratch ? scratch->path() : options.out;
+    DeviceBackend backend(options.common.device);
+    EvaluationRun run(backend, options.train, usable_cache(options.cache, options.common.quiet), out,
+                      {.quiet = options.common.quiet, .fresh = options.fresh, .report = options.report});
+    const nlohmann::json report = run.evaluate(tasks, protocol_name(options), "Mesh labeling on unseen shapes");
+
+    print_evaluation(report);
+    fmt::print("\nreport: {}\n", ((options.report.empty() ? out : options.report) / "index.html").string());
+    if (!scratch) write_json(out / "report.json", report);
+    write_report(options.common, report);
+}
+
+/// --train and --test, or --train-on and --test-on, and the protocols that take their place.
+void add_mesh_options(CLI::App& command, EvaluateCommand& options) {
+    CLI::Option* train = command.add_option("--train", options.train_sets,
+                                            "training meshes: a folder or list, or several that are merged");
+    CLI::Option* test = command.add_option("--test", options.test_sets, "test meshes: folders or lists");
+    CLI::Option* train_on =
+        command.add_option("--train-on", options.train_on, "training meshes of another category than --test-on");
+    CLI::Option* test_on = command.add_option("--test-on", options.test_on,
+                                              "test meshes of it; rated by the label names that both categories have");
+    for (CLI::Option* option : {train_on, test_on}) option->excludes(train)->excludes(test);
+    CLI::Option* protocol = command.add_option(
+        "--protocol", options.protocol, "train on 3, 6 or 12 random meshes of each category, or on all but one (sb19)");
+    protocol->check(CLI::IsMember({"sb3", "sb6", "sb12", "sb19"}))->type_name("");
+    for (CLI::Option* option : {train, test, train_on, test_on}) {
+        option->type_name("SET");
+        protocol->excludes(option);
+    }
+    command.add_option("DIR", options.folder, "category folder, or folder of category folders, for --protocol")
+        ->needs(protocol)
+        ->type_name("");
+    command.add_option("--splits", options.splits, "random splits per category, one unless given; not for sb19")
+        ->check(whole_number(1, 1000))
+        ->needs(protocol);
+    command
+        .add_option("--humans", options.humans, "folder of human segmentations, NAME/*.seg, to compare segments with")
+        ->type_name("FOLDER");
+    command
+        .add_option("--labels", options.labels,
+                    "folder of NAME_labels.txt to learn and test, in place of those beside the meshes")
+        ->type_name("FOLDER");
+}
+
+}  // namespace
+
+void add_evaluate_command(CLI::App& label) {
+    auto options = std::make_shared<EvaluateCommand>();
+    CLI::App* command =
+        label.add_subcommand("evaluate", "Trains on some labeled meshes, tests on others, reports the accuracy");
+    command->footer(
+        "Interrupted, it goes on where it stopped when called again with the same options and --out.\n\nExamples:\n"
+        "  exemplar label evaluate --train train.txt --test test.txt --out report\n"
+        "  exemplar label evaluate --protocol sb6 psb/labeled/Cup --splits 2 --out report\n"
+        "  exemplar label evaluate --train train.txt --test test.txt --report page     (only the page)\n"
+        "another category than the one learned:\n"
+        "  exemplar label evaluate --train-on psb/labeled/FourLeg --test-on psb/labeled/Human --out report\n"
+        "several categories as one, where equal label names are one label:\n"
+        "  exemplar label evaluate --train human.txt teddy.txt --test more-humans.txt more-teddies.txt --out report\n"
+        "labels of another style for the same meshes:\n"
+        "  exemplar label evaluate --train train.txt --test test.txt --labels three-torsos --out report");
+    add_mesh_options(*command, *options);
+    command->add_option("--out", options->out, "folder for models, labels, scores and, without --report, the page")
+        ->type_name("FOLDER");
+    command->add_option("--report", options->report, "folder for the page; without --out nothing else is kept")
+        ->type_name("FOLDER");
+    command->add_flag("--fresh", options->fresh, "start over instead of going on from what is in --out");
+    add_training_options(*command, options->train, options->cache);
+    add_device_option(*command, options->common);
+    add_common_options(*command, options->common);
+    command->callback([options] { run_evaluate(*options); });
+}
+
+}  // namespace exemplar

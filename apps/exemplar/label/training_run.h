@@ -1,0 +1,34 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "host/labeling/features/feature_cache.h"
+#include "host/labeling/training/training.h"
+
+namespace exemplar {
+
+/// Adds --seed, --rounds and the other options of training to a subcommand.
+void add_training_options(CLI::App& command, TrainOptions& options, std::filesystem::path& cache);
+
+/// Features of all meshes of a corpus, with progress.
+std::vector<MeshFeatures> features_of(const LabeledCorpus& corpus, const FeatureOptions& options,
+                                      const std::filesystem::path& cache);
+
+/// How many stumps of the unary cascade, or of one classifier of it, use each feature family, most used first.
+std::vector<std::pair<std::string, std::size_t>> stumps_per_family(const LabelingModel& model,
+                                                                   std::optional<std::size_t> stage = {});
+/// Names of the features of the first `count` stumps of the first classifier.
+std::vector<std::string> first_features(const LabelingModel& model, std::size_t count);
+
+/// A table of the classifiers and the CRF's parameters.
+void print_training(const LabelingModel& model, const TrainReport& report);
+/// The same for --json; keys are documented in docs/formats.md.
+nlohmann::json describe_training(const LabelingModel& model, const TrainReport& report);
+
+}  // namespace exemplar

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "apps/exemplar/commands.h"
+#include "apps/exemplar/lines/lines_camera.h"
+#include "apps/exemplar/lines/lines_source.h"
+#include "host/lines/drawing_svg.h"
+#include "host/lines/strokes/style.h"
+
+namespace exemplar {
+
+/// What is written: a file, or a folder of pictures.
+enum class LinesOutput { svg, picture, video, folder };
+/// By the end of the name; a name without one is a folder. Throws UsageError for what is not written.
+LinesOutput lines_output_of(const std::filesystem::path& path);
+
+/// What 'exemplar lines' is asked to draw, checked: one function per kind of output takes it.
+struct LinesJob {
+    CommonOptions common;
+    LinesSourceArguments source;
+    CameraArguments camera;
+    std::vector<LineType> types;  ///< in the order in which they are drawn
+    DrawingStyle style;           ///< with the thresholds of the command line
+    std::filesystem::path out;
+    LinesOutput output = LinesOutput::svg;
+    bool compare = false;  ///< pictures show lines of learned curvature beside those of measured
+    SvgOptions svg;
+};
+
+/// The report of a job, to which what is special to an output is added.
+nlohmann::json describe_job(const LinesJob& job, const LinesSource& source, const StrokeView& view);
+
+/// Draws on the host and writes an SVG file, with frames as an animation.
+void write_lines_svg(const LinesJob& job);
+/// Draws on the device and writes a picture, a folder of them or a video.
+void write_lines_pictures(const LinesJob& job);
+
+}  // namespace exemplar

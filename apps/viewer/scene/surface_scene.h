@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "apps/viewer/controls/orbit_camera.h"
+#include "apps/viewer/scene/document.h"
+#include "apps/viewer/scene/scene_view.h"
+#include "apps/viewer/scene/view_settings.h"
+#include "gpu/curvature/surface/animated_surface.h"
+#include "gpu/runtime/record/stream.h"
+#include "host/curvature/model/model.h"
+
+namespace exemplar {
+
+/// What a surface looks like at a moment: a pose of its rig, or vertices of a sequence.
+struct Moment {
+    std::optional<Pose> pose;
+    std::span<const Vec3> vertices{};  ///< empty for rigs
+};
+
+/// The moment of a frame of a document, which must live as long.
+Moment moment_of(const Document& document, std::size_t clip, std::size_t frame);
+/// The vertices at a moment, on the host.
+std::vector<Vec3> vertices_at(const Document& document, const Moment& moment);
+
+/// A document on the device: from moments to vertices, normals and curvature, and from these to pictures, without any
+/// of them coming back.
+class SurfaceScene {
+  public:
+    /// The document must live as long as this. Throws MeshError or DeviceLimitError if the device cannot show it.
+    SurfaceScene(Device& device, const Document& document);
+
+    /// Takes learned curvature from a model, or from none. Throws ModelError if it is of another surface.
+    void set_model(std::shared_ptr<const CurvatureModel> model);
+    bool has_model() const { return model_ != nullptr; }
+
+    /// Records a moment in one view, or in two side by side of learned and estimated curvature.
+    void record(Stream& stream, const Moment& moment, const OrbitCamera& camera, std::span<const VkExtent2D> extents,
+                const ViewSettings& settings);
+    SceneView& view(std::size_t index) { return views_[index]; }
+
+  private:
+    void record_moment(Stream& stream, const Moment& moment, CurvatureSource source);
+    void find_feature_size();
+    const Document& document_;
+    GpuSurface surface_;
+    GpuLineSurface line_surface_;
+    std::shared_ptr<const CurvatureModel> model_;
+    std::optional<GpuAnimatedSurface> animated_;
+    float feature_size_ = 0;       // 0: not yet found
+    std::deque<SceneView> views_;  // as many as have been shown side by side
+};
+
+}  // namespace exemplar

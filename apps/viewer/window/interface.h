@@ -1,0 +1,53 @@
+#pragma once
+
+#include <volk.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/viewer/window/viewer_state.h"
+#include "apps/viewer/window/window.h"
+
+struct ImDrawData;
+struct ImFontAtlas;
+
+namespace exemplar {
+
+/// What panels ask of the program beyond what they change of its state.
+struct InterfaceRequests {
+    std::vector<Action> actions;
+    std::vector<std::filesystem::path> open;
+};
+
+/// Where the surface is shown: in units of the window, and in pixels.
+struct ViewArea {
+    float left = 0, top = 0, width = 1, height = 1;
+    VkRect2D pixels{};
+    ViewSize size() const { return {static_cast<int>(pixels.extent.width), static_cast<int>(pixels.extent.height)}; }
+};
+
+/// The panels of a window and what the mouse does. There is one at a time.
+class Interface {
+  public:
+    explicit Interface(Window& window);
+    ~Interface();
+    Interface(const Interface&) = delete;
+    Interface& operator=(const Interface&) = delete;
+
+    ImFontAtlas& fonts() const;
+    /// Lays out a frame of `pixels`, and lets the mouse move the camera in the area that panels leave free.
+    InterfaceRequests lay_out(ViewerState& state, VkExtent2D pixels);
+    const ViewArea& view() const { return view_; }
+    const ImDrawData& drawing() const;
+
+  private:
+    void find_view(const ViewerState& state, VkExtent2D pixels);
+    void move_camera(ViewerState& state) const;
+    float scale_;
+    std::string path_;  // that is being typed
+    ViewArea view_;
+};
+
+}  // namespace exemplar

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+
+#include "apps/viewer/window/interface.h"
+
+namespace exemplar {
+
+// The panels of a window, drawn with Dear ImGui between the begin and the end of its frame.
+
+/// How much of a window panels take, in its units; none of a window that is too small for them.
+struct PanelSizes {
+    float side = 0;               ///< width, at the left
+    float bottom = 0;             ///< height, beside it
+    float width = 0, height = 0;  ///< of the window
+};
+PanelSizes panel_sizes(const ViewerState& state, float width, float height, float scale);
+
+/// `path` is what is being typed into the field for files.
+void draw_side_panel(ViewerState& state, const PanelSizes& sizes, std::string& path, InterfaceRequests& requests);
+void draw_playback_bar(ViewerState& state, const PanelSizes& sizes, InterfaceRequests& requests);
+void draw_messages(ViewerState& state, const ViewArea& view, float scale);
+/// What each of two pictures side by side shows; what to do while there is nothing to show.
+void draw_view_captions(const ViewerState& state, const ViewArea& view);
+void draw_help(ViewerState& state, const ViewArea& view, float scale);
+
+// Parts of the side panel.
+
+/// A swatch that opens a color picker; "##name" has no label. Returns whether the color was changed.
+bool edit_color(const char* label, Color& color);
+void draw_look(ViewerState& state);
+void draw_lines(ViewerState& state);
+void draw_curvature(ViewerState& state, InterfaceRequests& requests);
+void draw_hatching(ViewerState& state, InterfaceRequests& requests);
+void draw_pose(ViewerState& state);
+void draw_frame_times(ViewerState& state);
+
+}  // namespace exemplar

@@ -1,0 +1,276 @@
+// The window of exemplar-viewer: events in, frames out.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <vector>
+
+#include "apps/viewer/scene/frame_renderer.h"
+#include "apps/viewer/window/interface.h"
+#include "apps/viewer/options.h"
+#include "apps/viewer/window/save_svg.h"
+#include "apps/viewer/window/window.h"
+#include "gpu/runtime/device/errors.h"
+#include "gpu/window/swapchain.h"
+#include "gpu/window/ui_renderer.h"
+#include "host/core/interrupt.h"
+#include "host/imaging/png.h"
+
+namespace exemplar {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr Transition k_image_acquired{
+    VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, VK_ACCESS_2_NONE,
+    VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT};
+constexpr Transition k_scene_copied{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                    VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                    VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT};
+constexpr Transition k_interface_drawn{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
+                                       VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_PIPELINE_STAGE_2_NONE,
+                                       VK_ACCESS_2_NONE};
+
+// Frames that are drawn after something happened: an interface takes more than one to settle.
+constexpr int k_settling_frames = 3;
+
+/// STEM_0.png and so on, with the first number that is free for all of them, in the working folder.
+std::vector<std::filesystem::path> free_names(const std::string& stem, const std::vector<std::string>& extensions) {
+    for (int i = 0;; ++i) {
+        std::vector<std::filesystem::path> names;
+        names.reserve(extensions.size());
+        for (const std::string& extension : extensions) names.emplace_back(fmt::format("{}_{}{}", stem, i, extension));
+        if (std::ranges::none_of(names, [](const auto& name) { return std::filesystem::exists(name); })) return names;
+    }
+}
+
+/// Everything on the device; it ends when the device is lost, and another takes its place.
+class Session {
+  public:
+    Session(Window& window, Interface& interface, const std::string& device)
+        : window_(window),
+          interface_(interface),
+          device_({.name = device, .presentation = window.presentation()}),
+          swapchain_(device_, window.make_surface(device_.instance())),
+          interface_renderer_(device_, swapchain_.format(), interface.fonts()),
+          renderer_(device_) {}
+
+    /// Draws and shows a frame; nothing if the window has no pixels. Returns whether it did.
+    bool draw(ViewerState& state, InterfaceRequests& requests);
+    Image picture() { return renderer_.read(); }
+    Device& device() { return device_; }
+
+  private:
+    void follow(ViewerState& state);
+    void record(const ViewerState& state, const WindowImage& image);
+    Window& window_;
+    Interface& interface_;
+    Device device_;
+    Swapchain swapchain_;
+    UiRenderer interface_renderer_;
+    FrameRenderer renderer_;
+};
+
+// What the device cannot show is told and closed; a lost device is not the document's fault.
+void Session::follow(ViewerState& state) {
+    try {
+        renderer_.follow(state);
+    } catch (const DeviceLostError&) {
+        throw;
+    } catch (const ModelError& error) {
+        state.messages.error(error.what());
+        state.set_model(nullptr, {});
+    } catch (const Error& error) {
+        state.messages.error(error.what());
+        state.close();
+        renderer_.follow(state);
+    }
+}
+
+bool Session::draw(ViewerState& state, InterfaceRequests& requests) {
+    const std::optional<WindowImage> image = swapchain_.acquire(window_.pixels());
+    if (!image) return false;
+    requests = interface_.lay_out(state, image->extent);
+    follow(state);
+    record(state, *image);
+    renderer_.stream().submit(image->order);
+    swapchain_.present(*image);
+    renderer_.finish(state.times);
+    return true;
+}
+
+void Session::record(const ViewerState& state, const WindowImage& image) {
+    Stream& stream = renderer_.stream();
+    renderer_.record(state, interface_.view().size());
+    stream.transition(image.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
+                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, k_image_acquired);
+    renderer_.blit(image.image, interface_.view().pixels);
+    stream.transition(image.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                      VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, k_scene_copied);
+    interface_renderer_.record(stream, interface_.drawing(), image.view, image.extent);
+    stream.transition(image.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                      VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, k_interface_drawn);
+}
+
+/// From the window's events to frames.
+class Viewer {
+  public:
+    explicit Viewer(const ViewerOptions& options)
+        : options_(options), window_(options.size, "Exemplar"), interface_(window_) {
+        state_.show_panels = !options.plain_window;
+        const VkExtent2D pixels = window_.pixels();
+        open_files(state_, options, {static_cast<int>(pixels.width), static_cast<int>(pixels.height)});
+        set_title();
+    }
+
+    /// Stays until the window is closed; a device that is lost is opened again, a few times.
+    void run();
+
+  private:
+    void run_session(Session& session);
+    void wait_for_work();
+    void save(const std::string& extension, const std::function<void(const std::filesystem::path&)>& write);
+    void perform(Action action, Session& session);
+    void start_hatching();
+    void open(const std::filesystem::path& path);
+    void set_title();
+    bool ended() const {
+        return window_.closing() || interrupted() || (options_.frames > 0 && frames_ >= options_.frames);
+    }
+
+    Clock::time_point start_ = Clock::now(), last_ = start_;
+    const ViewerOptions& options_;
+    Window window_;
+    Interface interface_;
+    ViewerState state_;
+    std::size_t frames_ = 0;
+    int restless_ = k_settling_frames;
+    bool fitted_ = false, lost_ = false;
+};
+
+void Viewer::set_title() {
+    window_.set_title(state_.has_document() ? state_.document().animation.name + " - Exemplar" : "Exemplar");
+}
+
+void Viewer::open(const std::filesystem::path& path) {
+    const ViewSize view = interface_.view().size();
+    try {
+        state_.open(path, view);
+    } catch (const Error& error) {
+        state_.messages.error(error.what());
+    }
+    set_title();
+}
+
+// A viewer that shows what stands still takes no processor.
+void Viewer::wait_for_work() {
+    constexpr double k_idle_seconds = 0.5, k_progress_seconds = 0.1;
+    const bool busy = (state_.playback.playing() && state_.playback.frame_count() > 1) || options_.frames > 0;
+    const bool works = state_.training || state_.hatching_job;
+    const bool waits = !busy && restless_ <= 0;
+    const bool event = waits ? window_.wait(works ? k_progress_seconds : k_idle_seconds) : window_.poll();
+    if (event) restless_ = k_settling_frames;
+    if (works || !state_.messages.all().empty()) restless_ = std::max(restless_, 1);
+    --restless_;
+}
+
+// In the working folder, beside what was saved before.
+void Viewer::save(const std::string& extension, const std::function<void(const std::filesystem::path&)>& write) {
+    const std::filesystem::path path = free_names(state_.document().path.stem().string(), {extension})[0];
+    try {
+        write(path);
+        state_.messages.remark(fmt::format("Saved {}", std::filesystem::absolute(path).string()));
+    } catch (const Error& error) {
+        state_.messages.error(error.what());
+    }
+}
+
+void Viewer::start_hatching() {
+    const std::string stem = state_.document().path.stem().string() + "_hatched";
+    try {
+        state_.start_hatching(interface_.view().size(), options_.device, [stem] {
+            return free_names(stem, {".svg", ".png"});
+        });
+    } catch (const Error& error) {
+        state_.messages.error(error.what());
+    }
+}
+
+void Viewer::perform(Action action, Session& session) {
+    restless_ = k_settling_frames;
+    if (action == Action::quit) {
+        window_.close();
+    } else if (action == Action::save_png && state_.has_document()) {
+        save(".png", [&](const std::filesystem::path& path) { write_png(path, session.picture()); });
+    } else if (action == Action::save_svg && state_.has_document()) {
+        save(".svg", [&](const std::filesystem::path& path) { save_svg(path, state_, interface_.view().size()); });
+    } else if (action == Action::save_hatching && state_.has_document()) {
+        start_hatching();
+    } else if (action == Action::save_model && state_.model()) {
+        save(".safetensors", [&](const std::filesystem::path& path) { save_curvature_model(path, *state_.model()); });
+    } else {
+        state_.perform(action, interface_.view().size());
+    }
+}
+
+void Viewer::run_session(Session& session) {
+    while (!ended()) {
+        wait_for_work();
+        const Clock::time_point now = Clock::now();
+        const double seconds = std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+        state_.playback.advance(seconds);
+        state_.messages.advance(seconds);
+        state_.collect_training();
+        state_.collect_hatching();
+        for (const std::filesystem::path& path : window_.take_drops()) open(path);
+        InterfaceRequests requests;
+        if (!session.draw(state_, requests)) {
+            window_.wait(0.1);
+            restless_ = k_settling_frames;  // there is something to draw as soon as it can be shown
+            continue;
+        }
+        if (!options_.quiet && frames_ == 0)
+            fmt::print("first frame after {:.0f} ms on {}\n",
+                       1e3 * std::chrono::duration<double>(Clock::now() - start_).count(),
+                       session.device().info().name);
+        ++frames_;
+        if (options_.losing_frame == frames_ && !std::exchange(lost_, true))
+            throw DeviceLostError("the device was lost, as the command line asked for");
+        for (const std::filesystem::path& path : requests.open) open(path);
+        for (const Action action : requests.actions) perform(action, session);
+        for (const Action action : window_.take_actions()) perform(action, session);
+        // Only now it is known how much of the window panels take.
+        if (!std::exchange(fitted_, true)) state_.fit(interface_.view().size());
+        require_silence(*session.device().validation_log());
+    }
+}
+
+void Viewer::run() {
+    constexpr int k_most_losses = 3;
+    for (int losses = 0; !ended(); ++losses) {
+        std::shared_ptr<const ValidationLog> log;
+        try {
+            Session session(window_, interface_, options_.device);
+            log = session.device().validation_log();
+            run_session(session);
+        } catch (const DeviceLostError& error) {
+            if (losses >= k_most_losses) throw;
+            state_.messages.error(error.what());
+        } catch (const SurfaceLostError& error) {
+            if (losses >= k_most_losses) throw;
+            state_.messages.error(error.what());
+        }
+        if (log) require_silence(*log);
+    }
+    check_interrupt();
+}
+
+}  // namespace
+
+void run_window(const ViewerOptions& options) {
+    Viewer(options).run();
+}
+
+}  // namespace exemplar

@@ -1,0 +1,76 @@
+#include "apps/viewer/window/save_svg.h"
+
+#include <algorithm>
+
+#include "host/core/errors.h"
+#include "host/lines/drawing_svg.h"
+#include "host/mesh/curvature/curvature_estimator.h"
+
+namespace exemplar {
+namespace {
+
+// As the device measures it; see SurfaceScene.
+CurvatureOptions measuring_options(const ViewerState& state) {
+    CurvatureOptions options = state.model() ? state.model()->truth : CurvatureOptions{.smoothing = 1};
+    options.derivatives = true;
+    return options;
+}
+
+VertexCurvature learned_curvature(const ViewerState& state, const Moment& moment, std::span<const Vec3> vertices,
+                                  std::span<const Vec3> normals) {
+    CurvatureEvaluator evaluator(*state.model());
+    return moment.pose ? evaluator.evaluate(state.document().animation.rig, *moment.pose, vertices, normals)
+                       : evaluator.evaluate(vertices, normals);
+}
+
+/// A moment on the host.
+struct SavedMoment {
+    const std::vector<Face>& faces;
+    std::vector<Vec3> vertices;
+    std::vector<FaceNeighbors> neighbors;
+    CurvatureEstimator estimator;
+    VertexCurvature estimated;
+
+    SavedMoment(const ViewerState& state, const Moment& moment)
+        : faces(state.document().animation.rest.faces),
+          vertices(vertices_at(state.document(), moment)),
+          neighbors(build_face_neighbors(faces, vertices.size())),
+          estimator(faces, vertices.size()),
+          estimated(estimator.estimate(vertices, measuring_options(state))) {}
+
+    Drawing draw(const ViewerState& state, const VertexCurvature& curvature, ViewSize size) const {
+        const StrokeView view{
+            .camera = state.camera.camera(size),
+            .width = size.width,
+            .height = size.height,
+            .unit_depth = state.camera.distance(),
+            .feature_size = state.model() ? state.model()->feature_size : feature_size(vertices, curvature)};
+        return draw_lines({faces, vertices, estimator.normals(), curvature, neighbors}, state.settings.shown_lines(),
+                          state.settings.style, view);
+    }
+};
+
+Drawing drawing_of(const ViewerState& state, ViewSize size) {
+    const Moment moment = state.moment();
+    const SavedMoment saved(state, moment);
+    if (!state.model() || state.settings.source == ShownCurvature::estimated)
+        return saved.draw(state, saved.estimated, size);
+    const VertexCurvature learned = learned_curvature(state, moment, saved.vertices, saved.estimator.normals());
+    if (!state.shows_both()) return saved.draw(state, learned, size);
+    const ViewSize left{std::max(size.width / 2, 1), size.height};
+    const ViewSize right{std::max(size.width - left.width, 1), size.height};
+    return side_by_side(saved.draw(state, learned, left), saved.draw(state, saved.estimated, right));
+}
+
+}  // namespace
+
+void save_svg(const std::filesystem::path& path, const ViewerState& state, ViewSize size) {
+    const ViewSettings& settings = state.settings;
+    if (!settings.shows_lines()) throw UsageError("no lines are shown that an SVG file could hold; choose some");
+    DrawingStyle style = settings.style;
+    style.background = settings.background;
+    const Drawing drawing = drawing_of(state, size);
+    write_drawing_svg(path, {&drawing, 1}, style, {.curves = true, .title = state.document().animation.name});
+}
+
+}  // namespace exemplar

@@ -1,0 +1,129 @@
+#include "gpu/curvature/learned/learned_curvature.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "host/core/errors.h"
+
+namespace exemplar {
+namespace {
+
+using shared::vec4;
+
+constexpr std::size_t k_rows_per_segment = 3;
+
+void check_inputs(const CurvatureModel& model) {
+    const std::size_t inputs = model.state.input_count, controls = model.state.controls.size();
+    const auto refuse = [](const std::string& what) {
+        throw ModelError("a curvature model is damaged: " + what + "; train it again");
+    };
+    if (model.regression.input_count != inputs)
+        refuse(fmt::format("it has {} inputs and predicts from {}", inputs, model.regression.input_count));
+    const PoseRange& range = model.range;
+    if (range.mean.size() != static_cast<Eigen::Index>(inputs) ||
+        range.whitening.size() != (model.state.is_local() ? 0 : controls) || range.largest.size() != controls)
+        refuse(fmt::format("its range is not of {} inputs of {} controls", inputs, controls));
+    for (std::size_t c = 0; c < controls; ++c) {
+        const Control& control = model.state.controls[c];
+        const Eigen::Index count = control.input_count;
+        const auto is_square = [&](const Eigen::MatrixXf& m) { return m.rows() == count && m.cols() == count; };
+        if (std::size_t{control.first_input} + control.input_count > inputs ||
+            (!model.state.is_local() && !is_square(range.whitening[c])))
+            refuse(fmt::format("control '{}' has inputs that do not exist", control.name));
+    }
+}
+
+Segments needed_segments(const CurvatureModel& model) {
+    return model.tiles.set == AttributeSet::principal ? model.segments : Segments{};
+}
+
+}  // namespace
+
+GpuLearnedCurvature::GpuLearnedCurvature(Device& device, const CurvatureModel& model,
+                                         const ReprojectionOptions& options)
+    : vertex_count_(model.tiles.vertex_count),
+      reader_(model.state),
+      range_(model.range),
+      segments_(needed_segments(model)),
+      predictor_(device, model.regression),
+      copies_inputs_(model.regression.copies_inputs()),
+      reprojection_(device, model.tiles, model.regression.components.size(), segments_.count(), options),
+      x_(model.state.input_count),
+      rotations_(segments_.count()) {
+    check_inputs(model);
+    for (const Influence& influence : segments_.influences)
+        fewest_bones_ = std::max<std::size_t>(fewest_bones_, influence.bone + 1);
+    for (const std::uint32_t node : reader_.nodes) fewest_controls_ = std::max<std::size_t>(fewest_controls_, node + 1);
+    if (reader_.is_local())
+        local_.emplace(device, model, predictor_.padded_inputs());
+    else
+        state_ = Buffer(
+            device, k_rows_per_segment * sizeof(vec4) * rotations_.size() + sizeof(float) * predictor_.padded_inputs());
+}
+
+void GpuLearnedCurvature::record(Stream& stream, const Rig& rig, const Pose& pose, const Buffer& vertices,
+                                 const Buffer& normals) {
+    if (local_) return record(stream, vertices, normals);
+    if (reader_.kind == AnimationKind::sequence)
+        throw UsageError("curvature learned on a mesh sequence is not that of a pose; give vertices");
+    const bool shapes = reader_.kind == AnimationKind::blend_shapes;
+    if (rig.bones.size() < fewest_bones_ || pose.nodes.size() != rig.nodes.size() ||
+        (shapes ? pose.weights.size() : pose.nodes.size()) < fewest_controls_)
+        throw UsageError(
+            fmt::format("a pose of {} nodes and {} weights of a rig of {} bones is not one the curvature "
+                        "model was learned on, which needs {} bones and {} {}",
+                        pose.nodes.size(), pose.weights.size(), rig.bones.size(), fewest_bones_, fewest_controls_,
+                        shapes ? "weights" : "nodes"));
+    reader_.read_pose(pose, x_);
+    if (segments_.count() != 0) segments_.rotations_of_rig(bone_transforms(rig, pose), rotations_);
+    record_state(stream, vertices, normals);
+}
+
+void GpuLearnedCurvature::check_frame(std::size_t vertices) const {
+    if (reader_.kind != AnimationKind::sequence)
+        throw UsageError("curvature learned on a rig is not that of vertices; give a pose");
+    if (vertices != vertex_count_)
+        throw UsageError(fmt::format("a frame of {} vertices is not of a surface of {}", vertices, vertex_count_));
+}
+
+void GpuLearnedCurvature::record(Stream& stream, std::span<const Vec3> vertices_on_host, const Buffer& vertices,
+                                 const Buffer& normals) {
+    check_frame(vertices_on_host.size());
+    if (local_) return record(stream, vertices, normals);
+    reader_.read_surface(vertices_on_host, {}, {}, x_);
+    if (segments_.count() != 0) segments_.rotations_of_sequence(vertices_on_host, rotations_);
+    record_state(stream, vertices, normals);
+}
+
+void GpuLearnedCurvature::record(Stream& stream, const Buffer& vertices, const Buffer& normals) {
+    check_frame(vertices.bytes() / sizeof(vec4));
+    if (!local_) throw UsageError("the state of this curvature model is read on the host; give the vertices there");
+    if (normals.bytes() != vertices.bytes())
+        throw UsageError(
+            fmt::format("{} vertices cannot have {} normals", vertex_count_, normals.bytes() / sizeof(vec4)));
+    local_->record(stream, vertices, normals);
+    if (!copies_inputs_) predictor_.record(stream, local_->inputs(), 0);
+    reprojection_.record(stream, copies_inputs_ ? local_->inputs() : predictor_.components(),
+                         {.vertices = vertices, .normals = normals, .rotations = local_->rotations()});
+}
+
+void GpuLearnedCurvature::record_state(Stream& stream, const Buffer& vertices, const Buffer& normals) {
+    farthest_ = range_.prepare(reader_, x_);
+    stream.upload_with(state_, state_.bytes(), 0, [&](std::span<std::byte> memory) { write_state(memory); });
+    predictor_.record(stream, state_, k_rows_per_segment * 4 * rotations_.size());
+    reprojection_.record(stream, predictor_.components(),
+                         {.vertices = vertices, .normals = normals, .rotations = state_});
+}
+
+void GpuLearnedCurvature::write_state(std::span<std::byte> memory) const {
+    auto* rows = reinterpret_cast<vec4*>(memory.data());
+    for (const Eigen::Matrix3f& rotation : rotations_)
+        for (Eigen::Index i = 0; i < 3; ++i) *rows++ = {rotation(i, 0), rotation(i, 1), rotation(i, 2), 0.0f};
+    auto* const inputs = reinterpret_cast<float*>(rows);
+    std::fill(std::copy(x_.begin(), x_.end(), inputs), inputs + predictor_.padded_inputs(), 0.0f);
+    inputs[x_.size()] = 1.0f;
+}
+
+}  // namespace exemplar

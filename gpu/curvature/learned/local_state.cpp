@@ -1,0 +1,116 @@
+#include "gpu/curvature/learned/local_state.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "embedded/curvature_local_state_comp.h"
+#include "embedded/curvature_patch_rotations_comp.h"
+#include "gpu/curvature/surface/texels.h"
+#include "host/core/errors.h"
+#include "host/core/half.h"
+#include "shaders/shared/curvature.h"
+
+namespace exemplar {
+namespace {
+
+using shared::LocalInput;
+using shared::LocalInputParameters;
+using shared::PatchParameters;
+using shared::uvec4;
+using shared::vec4;
+
+// The kernel fetches it as one four-component vector.
+static_assert(sizeof(LocalInput) == 16);
+static_assert(shared::k_corner_vertices == Segments::Triangle::k_patch && shared::k_corner_vertices % 4 == 0);
+static_assert(StateReader::k_local_numbers == 4);  // a texel of halves has two vertices
+
+void check(const CurvatureModel& model) {
+    const StateReader& state = model.state;
+    const std::size_t patches = state.controls.size();
+    bool fits = state.local_begin.size() == patches + 1 && model.segments.triangles.size() == patches &&
+                state.unmixing.size() == patches && state.local_mean.size() == patches;
+    for (std::size_t p = 0; fits && p < patches; ++p)
+        fits = state.unmixing[p].rows() == Eigen::Index{state.controls[p].input_count} &&
+               state.unmixing[p].cols() == static_cast<Eigen::Index>(state.local_size(p)) &&
+               state.local_mean[p].size() == static_cast<Eigen::Index>(state.local_size(p));
+    if (!fits) throw ModelError("a curvature model is damaged: its patches contradict each other; train it again");
+}
+
+std::vector<std::uint32_t> corner_vertices(const Segments& segments) {
+    std::vector<std::uint32_t> vertices;
+    for (const Segments::Triangle& triangle : segments.triangles)
+        for (const auto& corner : triangle.patches) vertices.insert(vertices.end(), corner.begin(), corner.end());
+    return vertices;
+}
+
+// A row of a control's map, a texel per two vertices.
+void append_weights(const Eigen::Ref<const Eigen::RowVectorXf>& row, std::vector<uvec4>& texels) {
+    const auto word = [&](Eigen::Index at) {
+        if (at >= row.size()) return std::uint32_t{0};
+        return std::uint32_t{to_half(row[at]).bits} | std::uint32_t{to_half(row[at + 1]).bits} << 16;
+    };
+    for (Eigen::Index at = 0; at < row.size(); at += 2 * StateReader::k_local_numbers)
+        texels.push_back({word(at), word(at + 2), word(at + 4), word(at + 6)});
+}
+
+struct LocalInputs {
+    std::vector<LocalInput> table;
+    std::vector<uvec4> weights;
+    std::vector<float> biases;
+};
+
+LocalInputs gather_inputs(const CurvatureModel& model) {
+    const StateReader& state = model.state;
+    LocalInputs result;
+    for (std::uint32_t p = 0; p < state.controls.size(); ++p) {
+        const Eigen::MatrixXf& map = state.unmixing[p];
+        const std::uint32_t first = state.local_begin[p], count = state.local_begin[p + 1] - first;
+        for (Eigen::Index i = 0; i < map.rows(); ++i) {
+            result.table.push_back({p, first, count, static_cast<std::uint32_t>(result.weights.size())});
+            result.biases.push_back(-map.row(i).dot(state.local_mean[p]) -
+                                    model.range.mean[static_cast<Eigen::Index>(result.biases.size())]);
+            append_weights(map.row(i), result.weights);
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+GpuLocalState::GpuLocalState(Device& device, const CurvatureModel& model, std::size_t padded_inputs)
+    : patch_count_(model.state.controls.size()),
+      input_count_(model.state.input_count),
+      unit_(model.state.local_unit),
+      rotation_kernel_(device, shaders::curvature_patch_rotations_comp,
+                       {.push_constants = layout_of<PatchParameters>(),
+                        .elements = {layout_of<uvec4>(), layout_of<vec4>(), layout_of<vec4>()}}),
+      input_kernel_(
+          device, shaders::curvature_local_state_comp,
+          {.push_constants = layout_of<LocalInputParameters>(),
+           .elements = {layout_of<uvec4>(), layout_of<std::uint32_t>(), layout_of<uvec4>(), layout_of<float>(),
+                        layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<float>()}}) {
+    check(model);
+    const LocalInputs inputs = gather_inputs(model);
+    check_texels(device, std::max({inputs.weights.size(), model.state.local_vertex.size(), 6 * patch_count_}),
+                 "the patches of a curvature model");
+    corners_ = Buffer::of<std::uint32_t>(device, corner_vertices(model.segments));
+    table_ = Buffer::of<LocalInput>(device, inputs.table);
+    members_ = Buffer::of<std::uint32_t>(device, model.state.local_vertex);
+    weights_ = Buffer::of<uvec4>(device, inputs.weights);
+    biases_ = Buffer::of<float>(device, inputs.biases);
+    rotations_ = Buffer(device, 3 * patch_count_ * sizeof(vec4));
+    std::vector<float> padding(padded_inputs, 0.0f);
+    padding[input_count_] = 1.0f;
+    inputs_ = Buffer::of<float>(device, padding);
+}
+
+void GpuLocalState::record(Stream& stream, const Buffer& vertices, const Buffer& normals) {
+    stream.dispatch(rotation_kernel_, patch_count_, {corners_, vertices, rotations_},
+                    PatchParameters{static_cast<std::uint32_t>(patch_count_)});
+    stream.dispatch(input_kernel_, input_count_,
+                    {table_, members_, weights_, biases_, rotations_, vertices, normals, inputs_},
+                    LocalInputParameters{static_cast<std::uint32_t>(input_count_), 1.0f / unit_});
+}
+
+}  // namespace exemplar

@@ -1,0 +1,174 @@
+#include "gpu/runtime/device/device.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+
+#include "gpu/runtime/device/errors.h"
+
+namespace exemplar {
+namespace {
+
+std::string environment(const char* name) {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+}
+
+bool wants_validation() {
+    const std::string value = environment("EXEMPLAR_VALIDATION");
+    return !value.empty() && value != "0";
+}
+
+// Without its tuning a device works as well, only not as fast; `exemplar doctor` says that the file is damaged.
+Tuning kept_tuning(const DeviceInfo& info) {
+    if (environment("EXEMPLAR_TUNING") == "0") return {};
+    try {
+        return Tuning::load(tuning_path(info));
+    } catch (const Error&) {
+        return {};
+    }
+}
+
+}  // namespace
+
+bool has_extension(VkPhysicalDevice device, const char* name) {
+    std::uint32_t count = 0;
+    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+    std::vector<VkExtensionProperties> extensions(count);
+    vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
+    return std::ranges::any_of(extensions,
+                               [&](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
+Device::Device(const DeviceOptions& options)
+    : validating_(wants_validation()),
+      instance_(validating_,
+                options.presentation ? options.presentation->instance_extensions : std::vector<std::string>{}) {
+    const std::vector<DeviceInfo> devices = instance_.devices();
+    const std::size_t index =
+        select_device(devices, options.name.empty() ? environment("EXEMPLAR_DEVICE") : options.name);
+    info_ = devices[index];
+    physical_ = instance_.physical_devices()[index];
+    queue_family_ = find_compute_queue(physical_).value();
+    vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
+    if (options.presentation) require_presentation(*options.presentation);
+    statistics_ = options.statistics && has_executable_statistics(physical_);
+    tuning_ = kept_tuning(info_);
+    create(options.presentation.has_value());
+    vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+    try {
+        pipeline_cache_ = std::make_unique<PipelineCache>(device_, info_);
+    } catch (...) {
+        vkDestroyDevice(device_, nullptr);
+        throw;
+    }
+}
+
+// The queue for compute and drawing is the one that presents; drivers with windows have it so.
+void Device::require_presentation(const PresentationOptions& presentation) const {
+    if (has_extension(physical_, VK_KHR_SWAPCHAIN_EXTENSION_NAME) &&
+        presentation.can_present(instance_.handle(), physical_, queue_family_))
+        return;
+    throw DeviceError(
+        fmt::format("device '{}' cannot show images in a window; choose another with --device", info_.name));
+}
+
+void Device::create(bool presents) {
+    const float priority = 1.0f;
+    const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                        .pNext = nullptr,
+                                        .flags = 0,
+                                        .queueFamilyIndex = queue_family_,
+                                        .queueCount = 1,
+                                        .pQueuePriorities = &priority};
+    auto features13 =
+        empty_structure<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
+    features13.synchronization2 = VK_TRUE;
+    features13.dynamicRendering = VK_TRUE;
+    auto features =
+        empty_structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &features13);
+    auto executables = empty_structure<VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR>(
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR);
+    executables.pipelineExecutableInfo = VK_TRUE;
+    std::vector<const char*> extensions;
+    if (presents) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+    if (statistics_) {
+        extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
+        features13.pNext = &executables;
+    }
+    const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                  .pNext = &features,
+                                  .flags = 0,
+                                  .queueCreateInfoCount = 1,
+                                  .pQueueCreateInfos = &queue,
+                                  .enabledLayerCount = 0,
+                                  .ppEnabledLayerNames = nullptr,
+                                  .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+                                  .ppEnabledExtensionNames = extensions.data(),
+                                  .pEnabledFeatures = nullptr};
+    check(vkCreateDevice(physical_, &info, nullptr, &device_),
+          [&] { return fmt::format("open device '{}'", info_.name); });
+}
+
+Device::~Device() {
+    if (!device_) return;
+    vkDeviceWaitIdle(device_);
+    pipeline_cache_.reset();
+    vkDestroyDevice(device_, nullptr);
+}
+
+std::vector<ExecutableStatistic> Device::statistics_of(const std::string& kernel) const {
+    const std::lock_guard lock(statistics_mutex_);
+    const auto found = statistics_of_kernels_.find(kernel);
+    return found == statistics_of_kernels_.end() ? std::vector<ExecutableStatistic>{} : found->second;
+}
+
+void Device::keep_statistics(const std::string& kernel, std::vector<ExecutableStatistic> statistics) {
+    const std::lock_guard lock(statistics_mutex_);
+    statistics_of_kernels_[kernel] = std::move(statistics);
+}
+
+void Device::submit(VkCommandBuffer commands, VkFence fence, const SubmitOrder& order) {
+    const VkCommandBufferSubmitInfo command_info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                                 .pNext = nullptr,
+                                                 .commandBuffer = commands,
+                                                 .deviceMask = 0};
+    auto wait = empty_structure<VkSemaphoreSubmitInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO), signal = wait;
+    wait.semaphore = order.wait;
+    wait.stageMask = order.wait_stage;
+    signal.semaphore = order.signal;
+    signal.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    auto info = empty_structure<VkSubmitInfo2>(VK_STRUCTURE_TYPE_SUBMIT_INFO_2);
+    info.commandBufferInfoCount = 1;
+    info.pCommandBufferInfos = &command_info;
+    info.waitSemaphoreInfoCount = order.wait ? 1 : 0;
+    info.pWaitSemaphoreInfos = &wait;
+    info.signalSemaphoreInfoCount = order.signal ? 1 : 0;
+    info.pSignalSemaphoreInfos = &signal;
+    const std::lock_guard lock(queue_mutex_);
+    check(vkQueueSubmit2(queue_, 1, &info, fence),
+          [&] { return fmt::format("submit work to device '{}'", info_.name); });
+}
+
+VkResult Device::present(const VkPresentInfoKHR& info) {
+    const std::lock_guard lock(queue_mutex_);
+    return vkQueuePresentKHR(queue_, &info);
+}
+
+void Device::wait_idle() {
+    const std::lock_guard lock(queue_mutex_);
+    check(vkDeviceWaitIdle(device_), [&] { return fmt::format("wait for device '{}'", info_.name); });
+}
+
+std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
+                                  VkMemoryPropertyFlags preferred) const {
+    for (const VkMemoryPropertyFlags wanted : {required | preferred, required})
+        for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
+            if ((allowed >> i & 1) && (memory_properties(i) & wanted) == wanted) return i;
+    throw DeviceError(fmt::format("device '{}' has no memory of the needed kind (Vulkan property flags {:#x})",
+                                  info_.name, required));
+}
+
+}  // namespace exemplar

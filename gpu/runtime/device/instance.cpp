@@ -1,0 +1,145 @@
+#include "gpu/runtime/device/instance.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "gpu/runtime/device/errors.h"
+
+namespace exemplar {
+namespace {
+
+constexpr const char* k_validation_layer = "VK_LAYER_KHRONOS_validation";
+
+void load_loader() {
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    if (volkGetInstanceVersion() == 0 && volkInitialize() != VK_SUCCESS)
+        throw NoDeviceError(
+            "no Vulkan loader found; install libvulkan1 and a driver (mesa-vulkan-drivers has one for any CPU)");
+    if (volkGetInstanceVersion() < VK_API_VERSION_1_3)
+        throw NoDeviceError("the Vulkan loader is older than 1.3; update libvulkan1");
+}
+
+// The loader's functions work for the handles of every instance, so they are loaded once; again, with those of
+// extensions, when the first instance with some is there. An instance without must not unload these.
+void load_functions(VkInstance instance, bool extended) {
+    static std::mutex mutex;
+    static bool has_some = false, has_extended = false;
+    const std::lock_guard lock(mutex);
+    if (has_extended || (has_some && !extended)) return;
+    volkLoadInstance(instance);
+    has_some = true;
+    has_extended = extended;
+}
+
+bool has_layer(const char* name) {
+    std::uint32_t count = 0;
+    vkEnumerateInstanceLayerProperties(&count, nullptr);
+    std::vector<VkLayerProperties> layers(count);
+    vkEnumerateInstanceLayerProperties(&count, layers.data());
+    return std::ranges::any_of(layers, [&](const VkLayerProperties& l) { return std::strcmp(l.layerName, name) == 0; });
+}
+
+VkDebugUtilsMessengerCreateInfoEXT messenger_info(PFN_vkDebugUtilsMessengerCallbackEXT callback, void* user) {
+    return {
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+        .pNext = nullptr,
+        .flags = 0,
+        .messageSeverity =
+            VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
+        .pfnUserCallback = callback,
+        .pUserData = user};
+}
+
+}  // namespace
+
+// Delegates, so that the destructor ends what is there when the rest fails.
+Instance::Instance(bool validation, const std::vector<std::string>& extensions) : Instance() {
+    load_loader();
+    create(validation, extensions);
+}
+
+void Instance::create(bool validation, const std::vector<std::string>& wanted_extensions) {
+    if (validation && !has_layer(k_validation_layer))
+        throw DeviceError(
+            "EXEMPLAR_VALIDATION is set but the validation layer is missing; install vulkan-validationlayers");
+    std::vector<const char*> layers, extensions;
+    if (validation) {
+        layers.push_back(k_validation_layer);
+        extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    }
+    for (const std::string& extension : wanted_extensions) extensions.push_back(extension.c_str());
+    VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(&Instance::collect, log_.get());
+    const VkValidationFeatureEnableEXT enabled = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
+    const VkValidationFeaturesEXT features{.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+                                           .pNext = &messenger,
+                                           .enabledValidationFeatureCount = 1,
+                                           .pEnabledValidationFeatures = &enabled,
+                                           .disabledValidationFeatureCount = 0,
+                                           .pDisabledValidationFeatures = nullptr};
+    const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                        .pNext = nullptr,
+                                        .pApplicationName = "exemplar",
+                                        .applicationVersion = 1,
+                                        .pEngineName = "exemplar",
+                                        .engineVersion = 1,
+                                        .apiVersion = VK_API_VERSION_1_3};
+    const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                                    .pNext = validation ? &features : nullptr,
+                                    .flags = 0,
+                                    .pApplicationInfo = &application,
+                                    .enabledLayerCount = static_cast<std::uint32_t>(layers.size()),
+                                    .ppEnabledLayerNames = layers.data(),
+                                    .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+                                    .ppEnabledExtensionNames = extensions.data()};
+    const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
+    if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
+        throw NoDeviceError("no Vulkan driver found; install one (mesa-vulkan-drivers has one for any CPU)");
+    if (result == VK_ERROR_EXTENSION_NOT_PRESENT)
+        throw DeviceError(fmt::format("no Vulkan driver here knows the extensions {}; update the driver",
+                                      fmt::join(wanted_extensions, ", ")));
+    check(result, "create a Vulkan instance");
+    load_functions(instance_, !wanted_extensions.empty());
+    if (!validation) return;
+    const auto create_messenger = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
+        vkGetInstanceProcAddr(instance_, "vkCreateDebugUtilsMessengerEXT"));
+    if (create_messenger)
+        check(create_messenger(instance_, &messenger, nullptr, &messenger_), "listen to the validation layer");
+}
+
+Instance::~Instance() {
+    if (messenger_) {
+        const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
+            vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
+        destroy(instance_, messenger_, nullptr);
+    }
+    if (instance_) vkDestroyInstance(instance_, nullptr);
+}
+
+VkBool32 Instance::collect(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                           const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
+    static_cast<ValidationLog*>(user)->add(data->pMessage);
+    return VK_FALSE;
+}
+
+std::vector<VkPhysicalDevice> Instance::physical_devices() const {
+    std::uint32_t count = 0;
+    if (vkEnumeratePhysicalDevices(instance_, &count, nullptr) != VK_SUCCESS) return {};
+    std::vector<VkPhysicalDevice> devices(count);
+    const VkResult result = vkEnumeratePhysicalDevices(instance_, &count, devices.data());
+    if (result != VK_INCOMPLETE) check(result, "list the Vulkan devices");
+    devices.resize(count);
+    return devices;
+}
+
+std::vector<DeviceInfo> Instance::devices() const {
+    std::vector<DeviceInfo> infos;
+    for (VkPhysicalDevice device : physical_devices()) infos.push_back(describe(device, infos.size()));
+    return infos;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <volk.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gpu/runtime/device/device_info.h"
+
+namespace exemplar {
+
+/// Warnings and errors of the validation layer; outlives the instance, which may still complain while it ends. Any
+/// thread may use it.
+class ValidationLog {
+  public:
+    void add(std::string message) {
+        const std::lock_guard lock(mutex_);
+        messages_.push_back(std::move(message));
+    }
+    std::vector<std::string> messages() const {
+        const std::lock_guard lock(mutex_);
+        return messages_;
+    }
+
+  private:
+    mutable std::mutex mutex_;
+    std::vector<std::string> messages_;
+};
+
+/// The connection to the Vulkan loader. Collects what the validation layer says.
+class Instance {
+  public:
+    /// `validation` loads VK_LAYER_KHRONOS_validation with synchronization validation. Throws NoDeviceError if there is
+    /// no loader, DeviceError if the layer or one of `extensions` is missing.
+    explicit Instance(bool validation, const std::vector<std::string>& extensions = {});
+    ~Instance();
+    Instance(const Instance&) = delete;
+    Instance& operator=(const Instance&) = delete;
+
+    VkInstance handle() const { return instance_; }
+    std::vector<VkPhysicalDevice> physical_devices() const;
+    std::vector<DeviceInfo> devices() const;
+    const std::shared_ptr<ValidationLog>& validation_log() const { return log_; }
+
+  private:
+    Instance() = default;
+    static VKAPI_ATTR VkBool32 VKAPI_CALL collect(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                                  VkDebugUtilsMessageTypeFlagsEXT,
+                                                  const VkDebugUtilsMessengerCallbackDataEXT* data, void* user);
+    void create(bool validation, const std::vector<std::string>& wanted_extensions);
+    VkInstance instance_ = VK_NULL_HANDLE;
+    VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    std::shared_ptr<ValidationLog> log_ = std::make_shared<ValidationLog>();
+};
+
+std::vector<VkQueueFamilyProperties> queue_families(VkPhysicalDevice device);
+
+/// The queue family Exemplar uses: compute, and graphics too where one family has both.
+std::optional<std::uint32_t> find_compute_queue(VkPhysicalDevice device);
+
+}  // namespace exemplar

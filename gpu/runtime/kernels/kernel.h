@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include "gpu/runtime/kernels/program.h"
+
+namespace exemplar {
+
+class Device;
+
+using KernelInterface = ProgramInterface;
+
+/// A compute pipeline. The descriptor layout, which bindings are read or written and the local size come from the
+/// SPIR-V itself: mark buffers `readonly` or `writeonly` in GLSL, and barriers follow. Streams keep it alive until they
+/// are done.
+class Kernel {
+  public:
+    Kernel() = default;
+    /// Throws ShaderError if the shader and `interface` disagree, DeviceLimitError if it needs more than the device
+    /// allows.
+    Kernel(Device& device, const Shader& shader, const KernelInterface& interface = {});
+    Kernel(Kernel&&) = default;
+    Kernel& operator=(Kernel&&) = default;
+    Kernel(const Kernel&) = delete;
+    Kernel& operator=(const Kernel&) = delete;
+
+    explicit operator bool() const { return program_ != nullptr; }
+    std::string_view name() const { return program_->name; }
+    const Reflection& reflection() const { return program_->reflection; }
+    /// Invocations per workgroup and axis, after specialization.
+    std::array<std::uint32_t, 3> local_size() const { return program_->reflection.local_size; }
+
+    const std::shared_ptr<const Program>& program() const { return program_; }
+
+  private:
+    std::shared_ptr<const Program> program_;
+};
+
+}  // namespace exemplar

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <volk.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <type_traits>
+
+#include "gpu/runtime/device/unique_handle.h"
+
+namespace exemplar {
+
+class Device;
+
+/// Where a buffer lives.
+enum class BufferMemory {
+    device,    ///< fastest for kernels; mapped too where device and host share cached memory
+    upload,    ///< host memory for writing by the host and reading by the device once
+    readback,  ///< cached host memory for reading what the device wrote
+};
+
+/// A storage, texel and index buffer. Streams that use a buffer keep its memory alive until they are done.
+/// Contents are undefined until written. Movable, not copyable; a default-constructed buffer has no memory.
+class Buffer {
+  public:
+    Buffer() = default;
+    /// Throws DeviceLimitError if the device cannot allocate that much at once, DeviceMemoryError if memory is used up.
+    Buffer(Device& device, std::size_t bytes, BufferMemory memory = BufferMemory::device);
+    Buffer(Buffer&&) = default;
+    Buffer& operator=(Buffer&&) = default;
+    Buffer(const Buffer&) = delete;
+    Buffer& operator=(const Buffer&) = delete;
+
+    /// A device buffer holding `values`.
+    template <typename T>
+    static Buffer of(Device& device, std::span<const T> values) {
+        Buffer buffer(device, values.size_bytes());
+        buffer.upload(values);
+        return buffer;
+    }
+
+    std::size_t bytes() const { return bytes_; }
+    VkBuffer handle() const { return resource_ ? resource_->buffer.get() : VK_NULL_HANDLE; }
+    explicit operator bool() const { return resource_ != nullptr; }
+
+    /// Writes `values` at byte `offset`, after all submitted work that uses the buffer is done; returns when they are
+    /// there. Work that is recorded but not submitted sees them too.
+    template <typename T>
+    void upload(std::span<const T> values, std::size_t offset = 0) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        write(std::as_bytes(values), offset);
+    }
+    /// Reads `values.size()` values from byte `offset`, after all submitted work that uses the buffer is done.
+    template <typename T>
+    void download(std::span<T> values, std::size_t offset = 0) const {
+        static_assert(std::is_trivially_copyable_v<T>);
+        read(std::as_writable_bytes(values), offset);
+    }
+    void write(std::span<const std::byte> data, std::size_t offset);
+    void read(std::span<std::byte> data, std::size_t offset) const;
+
+    /// The Vulkan objects behind a buffer.
+    struct Resource {
+        Resource(Device& owner, std::size_t capacity, BufferMemory memory);
+        Resource(const Resource&) = delete;
+        Resource& operator=(const Resource&) = delete;
+        Device& device;
+        UniqueMemory allocation;  // ends after the buffer in it
+        UniqueBuffer buffer;
+        std::byte* mapped = nullptr;             ///< null if the host cannot see the memory
+        std::atomic<std::uint32_t> streams = 0;  ///< streams that have recorded a use and are not done
+    };
+    const std::shared_ptr<Resource>& resource() const { return resource_; }
+
+  private:
+    void check_range(std::size_t offset, std::size_t size) const;
+    std::shared_ptr<Resource> resource_;
+    std::size_t bytes_ = 0;
+};
+
+/// Replaces the buffer by a new one unless it has `bytes` bytes; only then its contents survive.
+void reserve(Device& device, Buffer& buffer, std::size_t bytes);
+
+/// A part of a buffer, as a kernel's binding sees it.
+struct BufferRange {
+    BufferRange(const Buffer& whole)
+        : buffer(&whole), offset(0), bytes(whole.bytes()) {}  // NOLINT: a buffer is its whole range
+    /// `first` is a multiple of DeviceInfo::storage_alignment, or of texel_alignment where it is bound as texels.
+    BufferRange(const Buffer& part_of, std::size_t first, std::size_t size)
+        : buffer(&part_of), offset(first), bytes(size) {}
+    const Buffer* buffer;
+    std::size_t offset;  ///< bytes
+    std::size_t bytes;
+};
+
+}  // namespace exemplar

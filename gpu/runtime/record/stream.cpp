@@ -1,0 +1,385 @@
+#include "gpu/runtime/record/stream.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "gpu/runtime/device/device.h"
+#include "gpu/runtime/device/errors.h"
+
+namespace exemplar {
+namespace {
+
+constexpr std::size_t k_staging_block = std::size_t{4} << 20;
+constexpr std::size_t k_staging_alignment = 16;
+
+Access access_of(const ReflectedBinding& binding, const BufferRange& range, VkPipelineStageFlags2 stage) {
+    return {.buffer = range.buffer->handle(),
+            .stage = stage,
+            .reads = binding.type == BindingType::texels ? VK_ACCESS_2_SHADER_SAMPLED_READ_BIT
+                     : binding.reads                     ? VK_ACCESS_2_SHADER_STORAGE_READ_BIT
+                                                         : VK_ACCESS_2_NONE,
+            .writes = binding.writes ? VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT : VK_ACCESS_2_NONE};
+}
+
+Access copy_read(const Buffer& buffer) {
+    return {.buffer = buffer.handle(),
+            .stage = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+            .reads = VK_ACCESS_2_TRANSFER_READ_BIT};
+}
+
+Access copy_write(const Buffer& buffer) {
+    return {.buffer = buffer.handle(),
+            .stage = VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+            .writes = VK_ACCESS_2_TRANSFER_WRITE_BIT};
+}
+
+Access indirect_read(const Buffer& buffer) {
+    return {.buffer = buffer.handle(),
+            .stage = VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+            .reads = VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT};
+}
+
+Access index_read(const Buffer& buffer) {
+    return {
+        .buffer = buffer.handle(), .stage = VK_PIPELINE_STAGE_2_INDEX_INPUT_BIT, .reads = VK_ACCESS_2_INDEX_READ_BIT};
+}
+
+void check_push(const Program& program, std::span<const std::byte> push) {
+    if (push.size() != program.reflection.push_bytes)
+        throw ShaderError(fmt::format("{} takes {} bytes of push constants, not {}", program.name,
+                                      program.reflection.push_bytes, push.size()));
+}
+
+void begin_rendering(VkCommandBuffer commands, const PassTarget& target) {
+    const auto attachment = [](VkImageView view, VkImageLayout layout, bool clears) {
+        auto info = empty_structure<VkRenderingAttachmentInfo>(VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO);
+        info.imageView = view;
+        info.imageLayout = layout;
+        info.loadOp = clears ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
+        info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+        return info;
+    };
+    auto color = attachment(target.color, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, target.clear_color.has_value());
+    if (target.clear_color) std::ranges::copy(*target.clear_color, color.clearValue.color.float32);
+    auto depth = attachment(target.depth, VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, target.clear_depth.has_value());
+    if (target.clear_depth) depth.clearValue.depthStencil = {*target.clear_depth, 0};
+    auto rendering = empty_structure<VkRenderingInfo>(VK_STRUCTURE_TYPE_RENDERING_INFO);
+    rendering.renderArea = {{0, 0}, target.extent};
+    rendering.layerCount = 1;
+    rendering.colorAttachmentCount = target.color ? 1 : 0;
+    rendering.pColorAttachments = &color;
+    rendering.pDepthAttachment = target.depth ? &depth : nullptr;
+    vkCmdBeginRendering(commands, &rendering);
+    const VkViewport viewport{0, 0, static_cast<float>(target.extent.width), static_cast<float>(target.extent.height),
+                              0, 1};
+    vkCmdSetViewport(commands, 0, 1, &viewport);
+}
+
+void record_draw(VkCommandBuffer commands, const Draw& draw, VkExtent2D extent) {
+    const VkRect2D scissor = draw.scissor.value_or(VkRect2D{{0, 0}, extent});
+    vkCmdSetScissor(commands, 0, 1, &scissor);
+    if (draw.indirect)
+        vkCmdDrawIndirect(commands, draw.indirect->handle(), draw.indirect_offset, 1, sizeof(VkDrawIndirectCommand));
+    else if (draw.vertices > 0 && draw.indices) {
+        vkCmdBindIndexBuffer(commands, draw.indices->handle(), 0, VK_INDEX_TYPE_UINT32);
+        vkCmdDrawIndexed(commands, draw.vertices, 1, draw.first_vertex, 0, 0);
+    } else if (draw.vertices > 0)
+        vkCmdDraw(commands, draw.vertices, 1, draw.first_vertex, 0);
+}
+
+void check_bytes(const Buffer& buffer, std::size_t offset, std::size_t bytes) {
+    if (!buffer) throw DeviceError("a copy needs a buffer that has memory");
+    if (offset > buffer.bytes() || bytes > buffer.bytes() - offset)
+        throw DeviceError(
+            fmt::format("bytes {} to {} are outside a buffer of {} bytes", offset, offset + bytes, buffer.bytes()));
+}
+
+}  // namespace
+
+Stream::Stream(Device& device, Profiler* profiler)
+    : device_(device), descriptors_(device), timestamps_(device, profiler), commands_(device) {}
+
+Stream::~Stream() {
+    try {
+        commands_.wait();
+    } catch (const DeviceError&) {
+        // A lost device has nothing under way.
+    }
+    release();
+}
+
+void Stream::begin() {
+    if (commands_.state() == Commands::State::idle) barriers_.clear();
+    commands_.begin();
+}
+
+void Stream::use(const Buffer& buffer) {
+    if (buffers_.insert(buffer.resource()).second) ++buffer.resource()->streams;
+}
+
+void Stream::order(std::span<const Access> accesses) {
+    const std::vector<Barrier> barriers = hazards_.before(accesses);
+    if (barriers.empty()) return;
+    std::vector<VkBufferMemoryBarrier2> infos;
+    infos.reserve(barriers.size());
+    for (const Barrier& barrier : barriers)
+        infos.push_back({.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2,
+                         .pNext = nullptr,
+                         .srcStageMask = barrier.source_stage,
+                         .srcAccessMask = barrier.source_access,
+                         .dstStageMask = barrier.target_stage,
+                         .dstAccessMask = barrier.target_access,
+                         .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                         .buffer = barrier.buffer,
+                         .offset = 0,
+                         .size = VK_WHOLE_SIZE});
+    auto dependency = empty_structure<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
+    dependency.bufferMemoryBarrierCount = static_cast<std::uint32_t>(infos.size());
+    dependency.pBufferMemoryBarriers = infos.data();
+    vkCmdPipelineBarrier2(commands_.handle(), &dependency);
+    barriers_.insert(barriers_.end(), barriers.begin(), barriers.end());
+}
+
+// All of a dispatch but the dispatch itself; `accesses` are those beside its bindings.
+void Stream::prepare(const Kernel& kernel, std::span<const BufferRange> ranges, std::span<const std::byte> push,
+                     std::vector<Access> accesses) {
+    const Program& program = *kernel.program();
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+        accesses.push_back(
+            access_of(program.reflection.bindings[i], ranges[i], VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT));
+        use(*ranges[i].buffer);
+    }
+    programs_.insert(kernel.program());
+    order(accesses);
+    vkCmdBindPipeline(commands_.handle(), VK_PIPELINE_BIND_POINT_COMPUTE, program.pipeline.get());
+    descriptors_.bind(commands_.handle(), program, ranges);
+    if (!push.empty())
+        vkCmdPushConstants(commands_.handle(), program.layout.get(), program.stages, 0,
+                           static_cast<std::uint32_t>(push.size()), push.data());
+    timestamps_.start(commands_.handle(), program.name);
+}
+
+void Stream::dispatch_bytes(const Kernel& kernel, Threads threads, std::span<const BufferRange> ranges,
+                            std::span<const std::byte> push) {
+    check_push(*kernel.program(), push);
+    descriptors_.check_bindings(*kernel.program(), ranges);
+    if (threads.x == 0 || threads.y == 0 || threads.z == 0) return;
+    const std::array<std::uint32_t, 3> groups = workgroups(kernel, threads, device_.info());
+    begin();
+    prepare(kernel, ranges, push, {});
+    vkCmdDispatch(commands_.handle(), groups[0], groups[1], groups[2]);
+    timestamps_.stop(commands_.handle(), VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+}
+
+void Stream::dispatch_indirect_bytes(const Kernel& kernel, const Buffer& arguments, std::size_t offset,
+                                     std::span<const BufferRange> ranges, std::span<const std::byte> push) {
+    check_push(*kernel.program(), push);
+    descriptors_.check_bindings(*kernel.program(), ranges);
+    check_bytes(arguments, offset, sizeof(VkDispatchIndirectCommand));
+    begin();
+    use(arguments);
+    prepare(kernel, ranges, push, {indirect_read(arguments)});
+    vkCmdDispatchIndirect(commands_.handle(), arguments.handle(), offset);
+    timestamps_.stop(commands_.handle(), VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+}
+
+void Stream::render(const Pass& pass) {
+    constexpr VkPipelineStageFlags2 k_shaders =
+        VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+    std::vector<Access> accesses;
+    begin();
+    for (const Pass::Item& item : pass.items()) {
+        check_push(*item.program, item.push);
+        descriptors_.check_bindings(*item.program, item.bindings);
+        for (std::size_t i = 0; i < item.bindings.size(); ++i) {
+            accesses.push_back(access_of(item.program->reflection.bindings[i], item.bindings[i], k_shaders));
+            use(*item.bindings[i].buffer);
+        }
+        programs_.insert(item.program);
+        if (item.draw.indices) {
+            check_bytes(*item.draw.indices, std::size_t{4} * item.draw.first_vertex,
+                        std::size_t{4} * item.draw.vertices);
+            accesses.push_back(index_read(*item.draw.indices));
+            use(*item.draw.indices);
+        }
+        if (item.draw.indirect) {
+            check_bytes(*item.draw.indirect, item.draw.indirect_offset, sizeof(VkDrawIndirectCommand));
+            accesses.push_back(indirect_read(*item.draw.indirect));
+            use(*item.draw.indirect);
+        }
+    }
+    // Within a pass nothing can wait.
+    order(accesses);
+    timestamps_.start(commands_.handle(), pass.name());
+    begin_rendering(commands_.handle(), pass.target());
+    for (const Pass::Item& item : pass.items()) {
+        const Program& program = *item.program;
+        vkCmdBindPipeline(commands_.handle(), VK_PIPELINE_BIND_POINT_GRAPHICS, program.pipeline.get());
+        descriptors_.bind(commands_.handle(), program, item.bindings);
+        if (!item.push.empty())
+            vkCmdPushConstants(commands_.handle(), program.layout.get(), program.stages, 0,
+                               static_cast<std::uint32_t>(item.push.size()), item.push.data());
+        record_draw(commands_.handle(), item.draw, pass.target().extent);
+    }
+    vkCmdEndRendering(commands_.handle());
+    timestamps_.stop(commands_.handle(), VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT);
+}
+
+void Stream::transition(VkImage image, VkImageAspectFlags aspect, VkImageLayout from, VkImageLayout to,
+                        const Transition& transition) {
+    begin();
+    change_layout(commands_.handle(), image, aspect, from, to, transition);
+}
+
+void Stream::copy_image(VkImage image, VkImageAspectFlags aspect, VkExtent2D extent, std::size_t texel_bytes,
+                        const Buffer& target) {
+    check_bytes(target, 0, std::size_t{extent.width} * extent.height * texel_bytes);
+    begin();
+    use(target);
+    order(std::array{copy_write(target)});
+    VkBufferImageCopy region{};
+    region.imageSubresource = {aspect, 0, 0, 1};
+    region.imageExtent = {extent.width, extent.height, 1};
+    vkCmdCopyImageToBuffer(commands_.handle(), image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target.handle(), 1,
+                           &region);
+}
+
+void Stream::blit(VkImage source, VkExtent2D extent, VkImage target, VkRect2D part) {
+    begin();
+    const auto corner = [](std::int64_t x, std::int64_t y, std::int32_t z) {
+        return VkOffset3D{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), z};
+    };
+    VkImageBlit region{};
+    region.srcSubresource = region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    region.srcOffsets[1] = corner(extent.width, extent.height, 1);
+    region.dstOffsets[0] = corner(part.offset.x, part.offset.y, 0);
+    region.dstOffsets[1] =
+        corner(std::int64_t{part.offset.x} + part.extent.width, std::int64_t{part.offset.y} + part.extent.height, 1);
+    const bool scales = extent.width != part.extent.width || extent.height != part.extent.height;
+    vkCmdBlitImage(commands_.handle(), source, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target,
+                   VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, scales ? VK_FILTER_LINEAR : VK_FILTER_NEAREST);
+}
+
+std::pair<Stream::Staging*, std::size_t> Stream::stage(std::vector<Staging>& blocks, std::size_t bytes,
+                                                       BufferMemory memory) {
+    const std::size_t padded = (bytes + k_staging_alignment - 1) / k_staging_alignment * k_staging_alignment;
+    auto block = std::ranges::find_if(blocks, [&](const Staging& b) { return b.buffer.bytes() - b.used >= padded; });
+    if (block == blocks.end())
+        block = blocks.insert(block, {Buffer(device_, std::max(k_staging_block, padded), memory)});
+    const std::size_t offset = block->used;
+    block->used += padded;
+    return {&*block, offset};
+}
+
+Stream::UploadPlace Stream::begin_upload(const Buffer& target, std::size_t offset, std::size_t bytes) {
+    check_bytes(target, offset, bytes);
+    if (bytes == 0) return {{}, nullptr, 0};
+    // Nobody uses the target yet, so that the host may write it where it lies.
+    if (target.resource()->mapped && target.resource()->streams == 0)
+        return {{target.resource()->mapped + offset, bytes}, nullptr, 0};
+    begin();
+    const auto [block, first] = stage(uploads_, bytes, BufferMemory::upload);
+    return {{block->buffer.resource()->mapped + first, bytes}, block, first};
+}
+
+void Stream::end_upload(const UploadPlace& place, Buffer& target, std::size_t offset) {
+    if (place.staging) copy(place.staging->buffer, place.offset, target, offset, place.memory.size());
+}
+
+void Stream::upload_bytes(Buffer& target, std::span<const std::byte> data, std::size_t offset) {
+    upload_with(target, data.size(), offset,
+                [&](std::span<std::byte> memory) { std::ranges::copy(data, memory.begin()); });
+}
+
+void Stream::download_bytes(const Buffer& source, std::span<std::byte> data, std::size_t offset) {
+    check_bytes(source, offset, data.size());
+    if (data.empty()) return;
+    begin();
+    const auto [block, begin_byte] = stage(readbacks_, data.size(), BufferMemory::readback);
+    copy(source, offset, block->buffer, begin_byte, data.size());
+    downloads_.push_back({block->buffer.resource()->mapped + begin_byte, data});
+}
+
+void Stream::copy(const Buffer& source, std::size_t source_offset, const Buffer& target, std::size_t target_offset,
+                  std::size_t bytes) {
+    check_bytes(source, source_offset, bytes);
+    check_bytes(target, target_offset, bytes);
+    if (bytes == 0) return;
+    const bool apart = source_offset + bytes <= target_offset || target_offset + bytes <= source_offset;
+    if (source.handle() == target.handle() && !apart)
+        throw DeviceError(fmt::format("a copy of {} bytes from byte {} to byte {} of one buffer overlaps itself", bytes,
+                                      source_offset, target_offset));
+    begin();
+    use(source);
+    use(target);
+    order(std::array{copy_read(source), copy_write(target)});
+    const VkBufferCopy region{source_offset, target_offset, bytes};
+    vkCmdCopyBuffer(commands_.handle(), source.handle(), target.handle(), 1, &region);
+}
+
+void Stream::fill(const Buffer& target, std::uint32_t word) {
+    check_bytes(target, 0, target.bytes());
+    begin();
+    use(target);
+    order(std::array{copy_write(target)});
+    vkCmdFillBuffer(commands_.handle(), target.handle(), 0, VK_WHOLE_SIZE, word);
+}
+
+void Stream::submit(const SubmitOrder& order) {
+    begin();
+    try {
+        commands_.submit(order);
+    } catch (const DeviceError&) {
+        release();
+        throw;
+    }
+}
+
+void Stream::wait() {
+    if (commands_.state() != Commands::State::submitted) return;
+    commands_.wait();
+    for (const Download& download : downloads_)
+        std::memcpy(download.target.data(), download.source, download.target.size());
+    timestamps_.collect();
+    release();
+}
+
+void Stream::finish() {
+    submit();
+    wait();
+}
+
+void Stream::fetch(const Buffer& source, std::span<const HostPart> parts) {
+    std::vector<BufferPart> of_source;
+    of_source.reserve(parts.size());
+    for (const HostPart& part : parts) of_source.push_back({&source, part.offset, part.target});
+    fetch(of_source);
+}
+
+void Stream::fetch(std::span<const BufferPart> parts) {
+    const auto mapped = [](const BufferPart& part) { return *part.source && part.source->resource()->mapped; };
+    for (const BufferPart& part : parts)
+        if (!mapped(part)) download_bytes(*part.source, part.target, part.offset);
+    finish();
+    for (const BufferPart& part : parts)
+        if (mapped(part)) part.source->read(part.target, part.offset);
+}
+
+// Lets go of everything that finished work used.
+void Stream::release() {
+    for (const std::shared_ptr<Buffer::Resource>& buffer : buffers_) --buffer->streams;
+    buffers_.clear();
+    programs_.clear();
+    downloads_.clear();
+    timestamps_.clear();
+    descriptors_.reset();
+    hazards_.reset();
+    for (Staging& block : uploads_) block.used = 0;
+    for (Staging& block : readbacks_) block.used = 0;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,118 @@
+#include "host/curvature/state/attributes.h"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+
+namespace exemplar {
+
+namespace {
+
+constexpr std::array<std::string_view, 8> k_principal_names{"k1",   "k2",   "e1 first", "e1 second",
+                                                            "C111", "C112", "C122",     "C222"};
+constexpr std::array<std::string_view, 7> k_tensor_names{"II11", "II12", "II22", "C111", "C112", "C122", "C222"};
+
+/// The two coordinates of e1 that are kept: all but the one that the normal is longest along, which follows from e1
+/// being orthogonal to the normal and would be the least certain to be left out.
+struct KeptAxes {
+    int first, second, dropped;
+};
+KeptAxes kept_axes(const Vec3& normal) {
+    int dropped;
+    normal.cwiseAbs().maxCoeff(&dropped);
+    return dropped == 0 ? KeptAxes{1, 2, 0} : dropped == 1 ? KeptAxes{0, 2, 1} : KeptAxes{0, 1, 2};
+}
+
+/// The turn of the principal frame against the tangent frame with first axis `tangent`.
+Turn turn_between(const Vec3& tangent, const Vec3& normal, const Vec3& e1) {
+    return {tangent.dot(e1), normal.cross(tangent).dot(e1)};
+}
+
+}  // namespace
+
+std::size_t attribute_count(AttributeSet set) {
+    return set == AttributeSet::principal ? k_principal_names.size() : k_tensor_names.size();
+}
+
+std::string_view attribute_name(AttributeSet set, std::size_t attribute) {
+    return set == AttributeSet::principal ? k_principal_names.at(attribute) : k_tensor_names.at(attribute);
+}
+
+bool is_derivative(AttributeSet set, std::size_t attribute) {
+    return attribute + 4 >= attribute_count(set);
+}
+
+Vec3 edge_tangent(const Vec3& edge, const Vec3& normal) {
+    const Vec3 flat = edge - normal * normal.dot(edge);
+    const float squared = flat.squaredNorm();
+    return squared > k_least_flat * edge.squaredNorm() ? Vec3(flat / std::sqrt(squared)) : any_frame(normal).tangent;
+}
+
+void AttributeFrames::encode(const VertexCurvature& curvature, const PosedSurface& surface,
+                             std::span<float> attributes) const {
+    const std::size_t count = vertex_count();
+    const auto out = [&](std::size_t attribute, std::size_t v) -> float& { return attributes[attribute * count + v]; };
+    for (std::size_t v = 0; v < count; ++v) {
+        if (set == AttributeSet::principal) {
+            const Vec3 e1 = surface.rotations[segment[v]].transpose() * curvature.e1[v];
+            const float sign = e1.dot(reference_direction[v]) < 0 ? -1.0f : 1.0f;
+            const KeptAxes axes = kept_axes(reference_normal[v]);
+            out(0, v) = curvature.k1[v];
+            out(1, v) = curvature.k2[v];
+            out(2, v) = sign * e1[axes.first];
+            out(3, v) = sign * e1[axes.second];
+            for (std::size_t k = 0; k < 4; ++k) out(4 + k, v) = sign * curvature.derivative[v][k];
+            continue;
+        }
+        const Vec3& normal = surface.normals[v];
+        const Vec3 tangent = edge_tangent(surface.vertices[neighbor[v]] - surface.vertices[v], normal);
+        const Turn back = turn_between(tangent, normal, curvature.e1[v]).inverse();
+        const Form form = turned(Form{curvature.k1[v], 0.0f, curvature.k2[v]}, back);
+        const FormDerivative derivative = turned(curvature.derivative[v], back);
+        for (std::size_t k = 0; k < 3; ++k) out(k, v) = form[k];
+        for (std::size_t k = 0; k < 4; ++k) out(3 + k, v) = derivative[k];
+    }
+}
+
+void AttributeFrames::decode(std::span<const float> attributes, const PosedSurface& surface,
+                             VertexCurvature& curvature) const {
+    const std::size_t count = vertex_count();
+    const auto in = [&](std::size_t attribute, std::size_t v) { return attributes[attribute * count + v]; };
+    curvature.k1.resize(count);
+    curvature.k2.resize(count);
+    curvature.e1.resize(count);
+    curvature.e2.resize(count);
+    curvature.derivative.resize(count);
+    for (std::size_t v = 0; v < count; ++v) {
+        if (set == AttributeSet::principal) {
+            curvature.k1[v] = std::max(in(0, v), in(1, v));
+            curvature.k2[v] = std::min(in(0, v), in(1, v));
+            curvature.e1[v] = completed_direction(in(2, v), in(3, v), v, surface);
+            for (std::size_t k = 0; k < 4; ++k) curvature.derivative[v][k] = in(4 + k, v);
+        } else {
+            const Vec3& normal = surface.normals[v];
+            const Vec3 tangent = edge_tangent(surface.vertices[neighbor[v]] - surface.vertices[v], normal);
+            const Turn turn = principal_turn({in(0, v), in(1, v), in(2, v)}, curvature.k1[v], curvature.k2[v]);
+            curvature.e1[v] = turn.cosine * tangent + turn.sine * normal.cross(tangent);
+            curvature.derivative[v] = turned(FormDerivative{in(3, v), in(4, v), in(5, v), in(6, v)}, turn);
+        }
+        curvature.e2[v] = surface.normals[v].cross(curvature.e1[v]);
+    }
+}
+
+Vec3 AttributeFrames::completed_direction(float first, float second, std::size_t v, const PosedSurface& surface) const {
+    const Eigen::Matrix3f& rotation = surface.rotations[segment[v]];
+    const Vec3 normal = rotation.transpose() * surface.normals[v];
+    const KeptAxes axes = kept_axes(reference_normal[v]);
+    Vec3 e1;
+    e1[axes.first] = first;
+    e1[axes.second] = second;
+    const float along = normal[axes.dropped];
+    const float divisor = along >= 0 ? std::max(along, k_least_divisor) : std::min(along, -k_least_divisor);
+    e1[axes.dropped] = -(normal[axes.first] * first + normal[axes.second] * second) / divisor;
+    e1 -= normal * normal.dot(e1);
+    const float length = e1.norm();
+    return rotation * (length > 1e-6f ? Vec3(e1 / length) : any_frame(normal).tangent);
+}
+
+}  // namespace exemplar

@@ -1,0 +1,305 @@
+#include "host/curvature/state/state.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "host/core/parallel.h"
+#include "host/curvature/state/patches.h"
+#include "host/learn/components/fast_ica.h"
+#include "host/mesh/topology.h"
+
+namespace exemplar {
+
+namespace {
+
+using Eigen::Quaternionf;
+
+/// A joint that turns less than this (radians, about a degree) does not move the surface to speak of.
+constexpr float k_least_turn = 0.02f;
+constexpr float k_least_weight = 1e-3f;
+
+/// The mean of rotations: the main axis of their quaternions as points of four dimensions.
+Quaternionf mean_rotation(std::span<const Pose* const> poses, std::size_t node) {
+    Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
+    for (const Pose* pose : poses) {
+        const Eigen::Vector4d q = pose->nodes[node].rotation.coeffs().cast<double>();
+        sum += q * q.transpose();
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(sum);
+    Quaternionf mean;
+    mean.coeffs() = solver.eigenvectors().col(3).cast<float>();
+    return mean.normalized();
+}
+
+Vec3 vector_part(const Quaternionf& reference, const Quaternionf& rotation) {
+    const Quaternionf relative = reference.conjugate() * rotation;
+    return relative.w() < 0 ? Vec3(-relative.vec()) : Vec3(relative.vec());
+}
+
+void add_control(StateReader& reader, const std::string& name, std::uint32_t inputs) {
+    reader.controls.push_back({name, static_cast<std::uint32_t>(reader.input_count), inputs});
+    reader.input_count += inputs;
+}
+
+/// The nodes whose rotation can bend the surface: bones and what lies between them.
+std::vector<bool> nodes_above_bones(const Rig& rig) {
+    std::vector<bool> used(rig.nodes.size(), false);
+    for (const Bone& bone : rig.bones)
+        for (std::uint32_t node = bone.node; node != k_none && !used[node]; node = rig.nodes[node].parent)
+            used[node] = true;
+    return used;
+}
+
+void add_joints(const Rig& rig, std::span<const Pose* const> poses, StateReader& reader) {
+    const std::vector<bool> used = nodes_above_bones(rig);
+    for (std::uint32_t node = 0; node < rig.nodes.size(); ++node) {
+        if (!used[node]) continue;
+        const Quaternionf reference = mean_rotation(poses, node);
+        const bool turns = std::any_of(poses.begin(), poses.end(), [&](const Pose* pose) {
+            return 2 * vector_part(reference, pose->nodes[node].rotation).norm() > k_least_turn;
+        });
+        if (!turns) continue;
+        add_control(reader, rig.nodes[node].name, 3);
+        reader.nodes.push_back(node);
+        reader.reference.push_back(reference);
+    }
+}
+
+void add_targets(const Rig& rig, std::span<const Pose* const> poses, StateReader& reader) {
+    for (std::uint32_t target = 0; target < rig.targets.size(); ++target) {
+        const float first = poses.front()->weights[target];
+        const bool changes = std::any_of(poses.begin(), poses.end(), [&](const Pose* pose) {
+            return std::abs(pose->weights[target] - first) > k_least_weight;
+        });
+        if (!changes) continue;
+        add_control(reader, rig.targets[target].name, 1);
+        reader.nodes.push_back(target);
+    }
+}
+
+std::vector<StateReader::Hinge> all_hinges(const TriangleMesh& mesh) {
+    const Topology topology = build_topology(mesh);
+    std::vector<StateReader::Hinge> hinges;
+    for (const Edge& edge : topology.edges) {
+        if (edge.is_boundary()) continue;
+        StateReader::Hinge hinge{edge.vertex[0], edge.vertex[1], k_none, k_none};
+        for (std::size_t side = 0; side < 2; ++side) {
+            const Face& face = mesh.faces[edge.face[side]];
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::uint32_t from = face[i], to = face[(i + 1) % 3], third = face[(i + 2) % 3];
+                if (from == hinge.a && to == hinge.b) hinge.left = third;
+                if (from == hinge.b && to == hinge.a) hinge.right = third;
+            }
+        }
+        if (hinge.left != k_none && hinge.right != k_none) hinges.push_back(hinge);
+    }
+    return hinges;
+}
+
+/// For each patch the hinges that have a vertex in it, at most so many.
+std::vector<std::vector<StateReader::Hinge>> hinges_of_patches(const std::vector<StateReader::Hinge>& all,
+                                                               const std::vector<std::uint32_t>& patch_of_vertex,
+                                                               std::size_t most) {
+    const std::uint32_t count = 1 + *std::max_element(patch_of_vertex.begin(), patch_of_vertex.end());
+    std::vector<std::vector<StateReader::Hinge>> patches(count);
+    for (const StateReader::Hinge& hinge : all) {
+        std::array<std::uint32_t, 4> near{patch_of_vertex[hinge.a], patch_of_vertex[hinge.b],
+                                          patch_of_vertex[hinge.left], patch_of_vertex[hinge.right]};
+        std::sort(near.begin(), near.end());
+        const auto end = std::unique(near.begin(), near.end());
+        for (auto patch = near.begin(); patch != end; ++patch) patches[*patch].push_back(hinge);
+    }
+    for (auto& hinges : patches) {
+        if (hinges.size() <= most) continue;
+        std::vector<StateReader::Hinge> taken;
+        for (std::size_t h = 0; h < most; ++h) taken.push_back(hinges[h * hinges.size() / most]);
+        hinges = std::move(taken);
+    }
+    return patches;
+}
+
+/// frames x hinges
+Eigen::MatrixXf angles_of(const std::vector<StateReader::Hinge>& hinges, std::span<const std::vector<Vec3>> frames) {
+    Eigen::MatrixXf angles(static_cast<Eigen::Index>(frames.size()), static_cast<Eigen::Index>(hinges.size()));
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        for (std::size_t h = 0; h < hinges.size(); ++h)
+            angles(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(h)) = bend(hinges[h], frames[i]);
+    return angles;
+}
+
+/// Makes the inputs of a control uncorrelated and of unit variance. centered: poses x inputs.
+Eigen::MatrixXf whitening_of(const Eigen::MatrixXd& centered) {
+    const Eigen::MatrixXd covariance = centered.transpose() * centered / static_cast<double>(centered.rows());
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
+    // A direction that hardly varied in training still has some slack: a hundredth of the largest variance.
+    const double floor = std::max(1e-2 * solver.eigenvalues().maxCoeff(), 1e-8);
+    const Eigen::VectorXd scale = solver.eigenvalues().cwiseMax(floor).cwiseSqrt().cwiseInverse();
+    return (scale.asDiagonal() * solver.eigenvectors().transpose()).cast<float>();
+}
+
+}  // namespace
+
+float bend(const StateReader::Hinge& hinge, std::span<const Vec3> vertices) {
+    const Vec3 &a = vertices[hinge.a], &b = vertices[hinge.b];
+    const Vec3 edge = b - a, left = edge.cross(vertices[hinge.left] - a),
+               right = (vertices[hinge.right] - a).cross(edge);
+    const float sine = left.cross(right).dot(edge), cosine = left.dot(right) * edge.norm();
+    return std::atan2(sine, cosine);
+}
+
+void StateReader::read_pose(const Pose& pose, std::span<float> x) const {
+    for (std::size_t c = 0; c < controls.size(); ++c) {
+        const std::uint32_t first = controls[c].first_input;
+        if (kind == AnimationKind::blend_shapes) {
+            x[first] = pose.weights[nodes[c]];
+            continue;
+        }
+        const Vec3 part = vector_part(reference[c], pose.nodes[nodes[c]].rotation);
+        for (int i = 0; i < 3; ++i) x[first + i] = part[i];
+    }
+}
+
+void StateReader::read_local(std::size_t control, std::span<const Vec3> vertices, std::span<const Vec3> normals,
+                             const Eigen::Matrix3f& rotation, std::span<float> shape) const {
+    const std::span<const std::uint32_t> members(local_vertex.data() + local_begin[control],
+                                                 local_begin[control + 1] - local_begin[control]);
+    Vec3 center = Vec3::Zero();
+    for (const std::uint32_t v : members) center += vertices[v];
+    center /= static_cast<float>(std::max<std::size_t>(members.size(), 1));
+    const Vec3 up = rotation.col(2) / local_unit;
+    float* out = shape.data();
+    for (const std::uint32_t v : members) {
+        Eigen::Map<Vec3>(out).noalias() = rotation.transpose() * normals[v];
+        out[3] = up.dot(vertices[v] - center);
+        out += k_local_numbers;
+    }
+}
+
+void StateReader::read_surface(std::span<const Vec3> vertices, std::span<const Vec3> normals,
+                               std::span<const Eigen::Matrix3f> rotations, std::span<float> x) const {
+    if (!is_local()) return read_hinges(vertices, x);
+    std::size_t largest = 0;
+    for (std::size_t c = 0; c < controls.size(); ++c) largest = std::max(largest, local_size(c));
+    Eigen::VectorXf room(static_cast<Eigen::Index>(largest));
+    for (std::size_t c = 0; c < controls.size(); ++c) {
+        auto shape = room.head(static_cast<Eigen::Index>(local_size(c)));
+        read_local(c, vertices, normals, rotations[c], {shape.data(), local_size(c)});
+        shape -= local_mean[c];
+        Eigen::Map<Eigen::VectorXf>(x.data() + controls[c].first_input, controls[c].input_count).noalias() =
+            unmixing[c] * shape;
+    }
+}
+
+void StateReader::read_hinges(std::span<const Vec3> vertices, std::span<float> x) const {
+    Eigen::VectorXf angles;
+    for (std::size_t c = 0; c < controls.size(); ++c) {
+        const std::uint32_t first = hinge_begin[c], count = hinge_begin[c + 1] - first;
+        angles.resize(count);
+        for (std::uint32_t h = 0; h < count; ++h) angles[h] = bend(hinges[first + h], vertices);
+        Eigen::Map<Eigen::VectorXf>(x.data() + controls[c].first_input, controls[c].input_count).noalias() =
+            unmixing[c] * (angles - mean_angles.segment(first, count));
+    }
+}
+
+StateReader make_rig_state(const Animation& animation, std::span<const Pose* const> poses) {
+    StateReader reader;
+    reader.kind = animation.kind;
+    if (animation.kind == AnimationKind::blend_shapes)
+        add_targets(animation.rig, poses, reader);
+    else
+        add_joints(animation.rig, poses, reader);
+    return reader;
+}
+
+StateReader make_sequence_state(const TriangleMesh& rest, std::span<const std::vector<Vec3>> frames,
+                                const SequenceStateOptions& options) {
+    StateReader reader;
+    reader.kind = AnimationKind::sequence;
+    reader.control_of_vertex = surface_patches(rest, options.patch_vertices);
+    const std::vector<std::vector<StateReader::Hinge>> hinges =
+        hinges_of_patches(all_hinges(rest), reader.control_of_vertex, options.most_hinges);
+    const bool is_whole = hinges.size() == 1;
+    std::vector<Ica> components(hinges.size());
+    parallel_for(hinges.size(), [&](std::size_t patch) {
+        if (hinges[patch].empty()) return;
+        components[patch] = fit_ica(
+            angles_of(hinges[patch], frames),
+            {.share = options.share, .most = is_whole ? k_unlimited : options.most_inputs, .seed = options.seed});
+    });
+    reader.hinge_begin.push_back(0);
+    for (std::size_t patch = 0; patch < hinges.size(); ++patch) {
+        reader.hinges.insert(reader.hinges.end(), hinges[patch].begin(), hinges[patch].end());
+        reader.hinge_begin.push_back(static_cast<std::uint32_t>(reader.hinges.size()));
+        reader.mean_angles.conservativeResize(static_cast<Eigen::Index>(reader.hinges.size()));
+        reader.mean_angles.tail(static_cast<Eigen::Index>(hinges[patch].size())) = components[patch].mean;
+        reader.unmixing.push_back(components[patch].unmixing);
+        add_control(reader, is_whole ? "surface" : "patch " + std::to_string(patch),
+                    static_cast<std::uint32_t>(components[patch].unmixing.rows()));
+    }
+    return reader;
+}
+
+PoseRange make_pose_range(const StateReader& reader, const Eigen::Ref<const Eigen::MatrixXf>& states,
+                          std::size_t real) {
+    PoseRange range;
+    const std::size_t averaged = std::min(real, static_cast<std::size_t>(states.rows()));
+    range.mean = states.topRows(static_cast<Eigen::Index>(averaged)).colwise().mean();
+    const Eigen::MatrixXf centered = states.rowwise() - range.mean.transpose();
+    for (const Control& control : reader.controls) {
+        if (control.input_count == 0) {  // a patch that does not bend
+            if (!reader.is_local()) range.whitening.emplace_back(0, 0);
+            range.largest.push_back(1);
+            continue;
+        }
+        Eigen::MatrixXf white = centered.middleCols(control.first_input, control.input_count);
+        if (!reader.is_local()) {
+            range.whitening.push_back(whitening_of(white.cast<double>()));
+            white *= range.whitening.back().transpose();
+        }
+        range.largest.push_back(std::max(white.rowwise().norm().maxCoeff(), 1e-6f));
+    }
+    return range;
+}
+
+float PoseRange::distance(const Control& control, std::size_t index, std::span<const float> x) const {
+    const Eigen::Map<const Eigen::VectorXf> here(x.data() + control.first_input, control.input_count);
+    const auto middle = mean.segment(control.first_input, control.input_count);
+    if (whitening.empty()) return (here - middle).norm() / largest[index];
+    // Many controls are small, and none of those should ask for memory.
+    constexpr int k_small = 32;
+    if (control.input_count > k_small) return (whitening[index] * (here - middle)).norm() / largest[index];
+    using Small = Eigen::Matrix<float, Eigen::Dynamic, 1, Eigen::ColMajor, k_small, 1>;
+    const Small offset = here - middle;
+    const Small white = whitening[index].lazyProduct(offset);
+    return white.norm() / largest[index];
+}
+
+PoseRange::Farthest PoseRange::farthest(const StateReader& reader, std::span<const float> x) const {
+    Farthest result;
+    for (std::size_t c = 0; c < reader.controls.size(); ++c)
+        if (const float d = distance(reader.controls[c], c, x); d > result.distance) result = {c, d};
+    return result;
+}
+
+PoseRange::Farthest PoseRange::bound(const StateReader& reader, std::span<float> x) const {
+    Farthest result;
+    for (std::size_t c = 0; c < reader.controls.size(); ++c) {
+        const Control& control = reader.controls[c];
+        const float d = distance(control, c, x);
+        if (d > result.distance) result = {c, d};
+        if (!(d > 1)) continue;
+        const auto middle = mean.segment(control.first_input, control.input_count);
+        Eigen::Map<Eigen::VectorXf> here(x.data() + control.first_input, control.input_count);
+        here = middle + (here - middle) / d;
+    }
+    return result;
+}
+
+PoseRange::Farthest PoseRange::prepare(const StateReader& reader, std::span<float> x) const {
+    const Farthest result = reader.is_local() ? farthest(reader, x) : bound(reader, x);
+    Eigen::Map<Eigen::VectorXf>(x.data(), mean.size()) -= mean;
+    return result;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "host/hatching/drawing/drawing_alignment.h"
+#include "host/hatching/features/pixel_features.h"
+#include "host/hatching/measurement/stroke_measurements.h"
+#include "host/imaging/image.h"
+
+namespace exemplar {
+
+/// A drawing of a view: how it lies over the view, and its strokes where they lie there.
+struct AlignedDrawing {
+    DrawingAlignment alignment;
+    StrokeMeasurements strokes;
+};
+/// Aligns a drawing (dark on light; of any resolution) with the view that `pixels` are of, and measures its strokes.
+/// Throws DataError if it is blank or does not fit the view.
+AlignedDrawing align_and_measure(const Image& drawing, const PixelFeatures& pixels);
+
+/// The shaded view on white, light enough to draw on: one channel.
+Image drawing_template(PixelFeatures& pixels);
+
+}  // namespace exemplar

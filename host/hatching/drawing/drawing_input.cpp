@@ -1,0 +1,163 @@
+#include "host/hatching/drawing/drawing_input.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "host/core/errors.h"
+#include "host/core/parallel.h"
+
+namespace exemplar {
+namespace {
+
+constexpr std::size_t k_samples = 60000;  ///< pixels that the paper is fitted to
+constexpr int k_fits = 12;                ///< rounds of fitting and leaving out what is no paper
+constexpr float k_least_noise = 0.006f;   ///< of paper: one and a half steps of 8 bits
+constexpr float k_darkest_paper = 0.25f;  ///< gray below which nothing counts as paper
+constexpr float k_least_contrast = 0.1f;  ///< darkness from which a pixel is ink
+constexpr float k_most_ink = 0.85f;       ///< share of the image
+constexpr double k_least_ink = 4;         ///< pixels
+
+using Terms = Eigen::Matrix<double, 6, 1>;
+
+FloatImage gray_over_white(const Image& drawing) {
+    FloatImage gray(drawing.width, drawing.height, 1);
+    const std::size_t channels = static_cast<std::size_t>(drawing.channels);
+    parallel_for(
+        gray.data.size(),
+        [&](std::size_t i) {
+            const std::uint8_t* p = drawing.data.data() + i * channels;
+            const auto luma = [&] { return (0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2]) / 255; };
+            if (channels == 1)
+                gray.data[i] = static_cast<float>(p[0]) / 255;
+            else if (channels == 3)
+                gray.data[i] = luma();
+            else
+                gray.data[i] = 1 + (luma() - 1) * static_cast<float>(p[3]) / 255;
+        },
+        4096);
+    return gray;
+}
+
+Terms terms_at(std::size_t i, const FloatImage& gray) {
+    const std::size_t width = static_cast<std::size_t>(gray.width);
+    const std::size_t row = i / width, column = i % width;
+    const double x = 2 * (static_cast<double>(column) + 0.5) / gray.width - 1;
+    const double y = 2 * (static_cast<double>(row) + 0.5) / gray.height - 1;
+    return (Terms() << 1, x, y, x * x, x * y, y * y).finished();
+}
+
+/// Pixels spread over the image, with their gray.
+struct PaperSamples {
+    std::vector<Terms> terms;
+    std::vector<float> gray;
+};
+
+PaperSamples sample(const FloatImage& gray) {
+    // A stride prime to most periods, lest all samples fall on the strokes of one regular hatching.
+    const std::size_t stride = gray.data.size() > k_samples ? (gray.data.size() / k_samples) | 1u : 1;
+    PaperSamples samples;
+    for (std::size_t i = 0; i < gray.data.size(); i += stride) {
+        samples.terms.push_back(terms_at(i, gray));
+        samples.gray.push_back(gray.data[i]);
+    }
+    return samples;
+}
+
+float percentile(std::vector<float> values, double share) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+/// The paper's level as a function of Terms, and its noise (standard deviation).
+struct Paper {
+    Terms level = Terms::Zero();
+    float noise = k_least_noise;
+};
+
+/// Noise from the samples lighter than the paper: only the darker side has strokes.
+float noise_above(const PaperSamples& samples, const Terms& level, float band) {
+    std::vector<float> above;
+    for (std::size_t i = 0; i < samples.gray.size(); ++i) {
+        const float rest = samples.gray[i] - static_cast<float>(level.dot(samples.terms[i]));
+        if (rest >= 0 && rest < band) above.push_back(rest);
+    }
+    return above.empty() ? k_least_noise : std::max(k_least_noise, 1.4826f * percentile(std::move(above), 0.5));
+}
+
+/// Least squares over the samples within `band` of the level before.
+Terms fit_level(const PaperSamples& samples, const Terms& before, float band) {
+    Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
+    Terms right = Terms::Zero();
+    for (std::size_t i = 0; i < samples.gray.size(); ++i) {
+        const Terms& t = samples.terms[i];
+        if (std::abs(samples.gray[i] - static_cast<float>(before.dot(t))) > band) continue;
+        normal += t * t.transpose();
+        right += t * static_cast<double>(samples.gray[i]);
+    }
+    // A little weight on what was before keeps tiny images, and corners without paper, from extrapolating.
+    const double hold = 1e-3 * (1 + normal(0, 0));
+    normal.diagonal().array() += hold;
+    right += hold * before;
+    return normal.ldlt().solve(right);
+}
+
+Paper estimate_paper(const FloatImage& gray) {
+    const PaperSamples samples = sample(gray);
+    Paper paper;
+    paper.level[0] = static_cast<double>(percentile(samples.gray, 0.9));
+    float band = 0.2f;
+    for (int round = 0; round < k_fits; ++round) {
+        paper.level = fit_level(samples, paper.level, band);
+        paper.noise = noise_above(samples, paper.level, band);
+        band = std::max(3 * paper.noise, 0.7f * band);
+    }
+    paper.level = fit_level(samples, paper.level, 3 * paper.noise);
+    return paper;
+}
+
+void check_ink(const FloatImage& darkness, float noise) {
+    const float least = std::max(k_least_contrast, 6 * noise);
+    const auto inked = static_cast<double>(
+        std::count_if(darkness.data.begin(), darkness.data.end(), [&](float d) { return d > least; }));
+    if (inked < k_least_ink)
+        throw DataError(
+            fmt::format("the drawing is blank: nothing on its {} x {} pixels is darker than the paper; give "
+                        "an image with dark strokes",
+                        darkness.width, darkness.height));
+    if (inked > k_most_ink * static_cast<double>(darkness.data.size()))
+        throw DataError(
+            fmt::format("{:.0f}% of the drawing is dark, so there is no paper to see strokes on; give dark "
+                        "strokes on light paper, not a negative",
+                        100 * inked / static_cast<double>(darkness.data.size())));
+}
+
+}  // namespace
+
+FloatImage drawing_darkness(const Image& drawing) {
+    if (drawing.channels != 1 && drawing.channels != 3 && drawing.channels != 4)
+        throw UsageError(fmt::format("a drawing of {} channels; give gray, RGB or RGBA", drawing.channels));
+    if (drawing.width <= 0 || drawing.height <= 0) throw UsageError("the drawing has no pixels");
+    FloatImage darkness = gray_over_white(drawing);
+    const Paper paper = estimate_paper(darkness);
+    if (paper.level[0] < k_darkest_paper)
+        throw DataError(
+            "the drawing is dark all over, so there is no paper to see strokes on; give dark strokes on "
+            "light paper, not a negative");
+    parallel_for(
+        darkness.data.size(),
+        [&](std::size_t i) {
+            const float level = std::max(k_darkest_paper, static_cast<float>(paper.level.dot(terms_at(i, darkness))));
+            darkness.data[i] = 1 - darkness.data[i] / level;
+        },
+        4096);
+    check_ink(darkness, paper.noise);
+    return darkness;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,16 @@
+#pragma once
+
+#include "host/hatching/features/pixel_projection.h"
+#include "host/imaging/gbuffer.h"
+#include "host/imaging/image_derivatives.h"
+
+namespace exemplar {
+
+/// What measures pictures: on the host, or on a device.
+struct ImageTools {
+    GBufferRenderer& gbuffers;
+    ImageFilters& filters;
+    PixelProjection& projection;
+};
+
+}  // namespace exemplar

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace exemplar {
+
+/// Orientation features of thesis App. B.3: this many fields, and the same turned by 90 degrees.
+constexpr std::size_t k_orientation_fields = 35;
+constexpr std::size_t k_orientation_features = 2 * k_orientation_fields;
+
+/// A direction without sign as a vector of doubled angle, (cos 2 theta, sin 2 theta) (thesis Eq. 4.6): unit, or zero
+/// where there is no direction. Turning the direction by 90 degrees negates it.
+using DoubledAngle = std::array<float, 2>;
+
+inline DoubledAngle operator*(float factor, const DoubledAngle& v) {
+    return {factor * v[0], factor * v[1]};
+}
+inline float squared_distance(const DoubledAngle& a, const DoubledAngle& b) {
+    const float x = a[0] - b[0], y = a[1] - b[1];
+    return x * x + y * y;
+}
+/// Unit, or zero if it is shorter than 1e-6.
+DoubledAngle normalized(const DoubledAngle& v);
+/// Of an angle in radians.
+DoubledAngle doubled_angle(float angle);
+/// The angle in [0, pi).
+float angle_of(const DoubledAngle& v);
+
+/// Orientation features of some items (pixels).
+struct OrientationFields {
+    std::size_t rows = 0;
+    std::vector<DoubledAngle> values;  ///< k_orientation_fields x rows
+
+    explicit OrientationFields(std::size_t count = 0) : rows(count), values(k_orientation_fields * count) {}
+    std::span<DoubledAngle> field(std::size_t k) { return {values.data() + k * rows, rows}; }
+    std::span<const DoubledAngle> field(std::size_t k) const { return {values.data() + k * rows, rows}; }
+    /// Feature k < k_orientation_features of item i.
+    DoubledAngle feature(std::size_t k, std::size_t i) const {
+        if (k < k_orientation_fields) return values[k * rows + i];
+        return -1.0f * values[(k - k_orientation_fields) * rows + i];
+    }
+};
+
+}  // namespace exemplar

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "host/hatching/features/hatching_surface.h"
+#include "host/hatching/features/hatching_view.h"
+#include "host/hatching/features/image_tools.h"
+#include "host/hatching/features/orientation_fields.h"
+#include "host/learn/feature_matrix.h"
+
+namespace exemplar {
+
+/// Scalar features of a pixel (thesis App. B.2), without their powers (see powers.h).
+constexpr std::size_t k_curvature_features = k_view_curvature_columns, k_descriptor_features = 110,
+                      k_image_features = 53, k_line_features = 48;
+constexpr std::size_t k_pixel_features =
+    k_curvature_features + k_descriptor_features + k_image_features + k_line_features;  // 301
+
+/// Their names, in order; e.g. "curvature.mean@0.01", "image.L.N@2", "lines.ridges>0.01@5".
+const std::vector<std::string>& pixel_feature_names();
+/// Names of the k_orientation_features, as in the legend of thesis Fig. 4.3; e.g. "k_max,1", "perp k_max,1".
+const std::vector<std::string>& orientation_feature_names();
+
+/// What is known of each pixel of a view that shows the surface. What nobody asks for is not computed.
+class PixelFeatures {
+  public:
+    /// Keeps references to all three. Throws DataError if the view does not show the surface.
+    PixelFeatures(const HatchingSurface& surface, const HatchingView& view, ImageTools& tools);
+    PixelFeatures(const HatchingSurface& surface, HatchingView&& view, ImageTools& tools) = delete;
+    ~PixelFeatures();
+
+    const HatchingSurface& surface() const { return surface_; }
+    const HatchingView& view() const { return view_; }
+    const GBuffer& gbuffer() const { return gbuffer_; }
+    const CoveredPixels& pixels() const { return pixels_; }
+    std::size_t size() const { return pixels_.pixel.size(); }
+
+    /// The scalar features `which` of pixels_.pixel[rows[i]]; no rows: of all pixels.
+    FeatureMatrix scalars(std::span<const std::uint32_t> which, std::span<const std::uint32_t> rows);
+    /// All orientation features of those pixels. Where an image has no gradient, its direction is as around there.
+    OrientationFields orientations(std::span<const std::uint32_t> rows);
+
+  private:
+    struct Parts;
+    FacePoints points(std::span<const std::uint32_t> rows) const;
+    const ImageStack& shading();
+    const ImageDerivatives& derivatives(std::size_t sigma);
+    const ImageStack& line_drawings(std::size_t kind);
+    std::span<const float> line_image(std::size_t line, std::size_t sigma);
+    std::vector<DoubledAngle> gradient_directions(std::span<const float> x, std::span<const float> y) const;
+    void picture_column(std::size_t feature, std::span<const std::uint32_t> rows, std::span<float> out);
+    const HatchingSurface& surface_;
+    const HatchingView& view_;
+    ImageTools& tools_;
+    GBuffer gbuffer_;
+    CoveredPixels pixels_;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace exemplar

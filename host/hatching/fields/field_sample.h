@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "host/hatching/fields/hatching_fields.h"
+#include "host/mesh/mesh.h"
+
+namespace exemplar {
+
+/// The value of a target, one of the images of `fields`, at a point (pixels): bilinear between those of the four pixels
+/// around it that are hatched; 0 if none is.
+float sample_hatched(const HatchingFields& fields, const std::vector<float>& values, const Vec2& at);
+
+}  // namespace exemplar

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host/hatching/measurement/stroke_map.h"
+#include "host/hatching/tracing/traced_strokes.h"
+
+namespace exemplar {
+
+/// The points of strokes by the square cell of the image they lie in, to find those near a place.
+class PointCells {
+  public:
+    PointCells(std::span<const TracedStroke> strokes, float cell_size);
+
+    int column(float x) const { return static_cast<int>((x - low_.x()) / size_); }
+    int row(float y) const { return static_cast<int>((y - low_.y()) / size_); }
+    int columns() const { return columns_; }
+    int rows() const { return rows_; }
+    float cell_size() const { return size_; }
+    /// The points of a cell by stroke and point; none if there is no such cell.
+    std::span<const PointId> cell(int column, int row) const;
+
+  private:
+    float size_;
+    Vec2 low_ = Vec2::Zero();
+    int columns_ = 0, rows_ = 0;
+    std::vector<std::uint32_t> start_;
+    std::vector<PointId> points_;
+};
+
+}  // namespace exemplar

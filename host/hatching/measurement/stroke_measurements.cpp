@@ -1,0 +1,154 @@
+#include "host/hatching/measurement/stroke_measurements.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "host/core/errors.h"
+#include "host/core/parallel.h"
+#include "host/hatching/tracing/drawing_filters.h"
+#include "host/hatching/measurement/hatching_levels.h"
+#include "host/hatching/tracing/ink_mask.h"
+#include "host/hatching/measurement/stroke_map.h"
+#include "host/hatching/measurement/stroke_properties.h"
+#include "host/hatching/tracing/traced_drawing.h"
+#include "host/hatching/tracing/traced_strokes.h"
+
+namespace exemplar {
+namespace {
+
+constexpr float k_least_crossing_angle = std::numbers::pi_v<float> / 12;
+constexpr float k_paper_distance = 3;  ///< pixels from ink from which there is nothing but paper
+constexpr std::size_t k_least_paper = 100;
+constexpr float k_spacings_per_thickness = 20, k_least_largest_spacing = 24;
+constexpr float k_soft_edge = 1.5f;  ///< pixels that a stroke's pixels may lie beyond its width
+
+void check(const FloatImage& darkness, const Image& mask) {
+    if (darkness.channels != 1 || mask.channels != 1)
+        throw UsageError(fmt::format("strokes are measured in images of one channel; the drawing has {}, the mask {}",
+                                     darkness.channels, mask.channels));
+    if (darkness.width != mask.width || darkness.height != mask.height)
+        throw UsageError(
+            fmt::format("a drawing of {} x {} pixels and a mask of {} x {}: warp the drawing into the view",
+                        darkness.width, darkness.height, mask.width, mask.height));
+}
+
+/// Mean darkness of what is far from ink: not quite zero in a noisy scan.
+float paper_darkness(const FloatImage& darkness, const PixelMask& ink) {
+    const std::vector<std::int32_t> nearest = nearest_sites(darkness.width, darkness.height, ink.data);
+    double sum = 0;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+        if (nearest[i] == k_no_site ||
+            pixel_distance(static_cast<std::int32_t>(i), nearest[i], darkness.width) < k_paper_distance)
+            continue;
+        sum += darkness.data[i];
+        ++count;
+    }
+    return count < k_least_paper ? 0 : static_cast<float>(sum / static_cast<double>(count));
+}
+
+template <typename Value>
+float median_of(std::span<const TracedStroke> strokes, Value value) {
+    std::vector<float> values;
+    for (const TracedStroke& stroke : strokes)
+        for (const TracedPoint& point : stroke.points)
+            if (value(point) > 0) values.push_back(value(point));
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Gives each pixel of ink in the mask what was measured at the nearest point.
+void spread(const PixelMask& ink, const Image& mask, const PixelMask& crossing, std::span<const TracedStroke> strokes,
+            const StrokeMap& map, StrokeMeasurements& m) {
+    parallel_for(
+        static_cast<std::size_t>(m.height),
+        [&](std::size_t row) {
+            for (int x = 0; x < m.width; ++x) {
+                const int y = static_cast<int>(row);
+                const std::size_t i = row * static_cast<std::size_t>(m.width) + static_cast<std::size_t>(x);
+                if (!ink.data[i] || !mask.data[i]) continue;
+                const PointId id = map.nearest(x, y);
+                const TracedPoint& point = strokes[id.stroke].points[id.point];
+                if (map.distance(x, y) > 0.5f * point.thickness + k_soft_edge) continue;
+                m.stroke[i] = 1;
+                m.stroke_id[i] = id.stroke;
+                m.intensity[i] = point.intensity;
+                m.thickness[i] = point.thickness;
+                m.orientation[i] = point.orientation;
+                m.spacing[i] = point.spacing;
+                m.length[i] = point.length;
+                m.intersection[i] = crossing.data[i];
+            }
+        },
+        16);
+}
+
+void mark_ends(std::span<const TracedStroke> strokes, const StrokeMap& map, const Image& mask, StrokeMeasurements& m) {
+    for (const TracedStroke& stroke : strokes) {
+        if (stroke.closed) continue;
+        for (const TracedPoint& end : {stroke.points.front(), stroke.points.back()}) {
+            const auto [x, y] = map.pixel_of(end);
+            if (mask.pixel(x, y)[0]) m.boundary[static_cast<std::size_t>(y) * m.width + x] = 1;
+        }
+    }
+}
+
+StrokeMeasurements empty_measurements(int width, int height) {
+    StrokeMeasurements m;
+    m.width = width, m.height = height;
+    for (auto* image : {&m.stroke, &m.skeleton, &m.intersection, &m.level, &m.boundary}) image->resize(m.size());
+    for (auto* image : {&m.intensity, &m.thickness, &m.orientation, &m.spacing, &m.length}) image->resize(m.size());
+    m.stroke_id.assign(m.size(), -1);
+    return m;
+}
+
+/// Everything about single points of strokes, before smoothing. Returns the crossings.
+std::vector<StrokeCrossing> measure_points(const FloatImage& darkness, const PixelMask& ink,
+                                           const MeasuringOptions& options, std::vector<TracedStroke>& strokes,
+                                           StrokeMeasurements& m) {
+    std::vector<StrokeCrossing> crossings = find_crossings(strokes, m.width, m.height, k_least_crossing_angle);
+    const PixelMask crossing = crossing_pixels(crossings, m.width, m.height);
+    mark_crossings(crossing, strokes);
+    const StrokeMap map(strokes, m.width, m.height);
+    const float paper = paper_darkness(darkness, ink);
+    measure_orientations(darkness, map, crossing, strokes);
+    m.softness = estimate_softness(darkness, paper, map, crossing, strokes);
+    measure_profiles(darkness, paper, m.softness, map, crossing, strokes);
+    measure_lengths(darkness, strokes);
+    m.median_thickness = median_of(strokes, [](const TracedPoint& p) { return p.thickness; });
+    const float largest = options.largest_spacing > 0
+                              ? options.largest_spacing
+                              : std::max(k_least_largest_spacing, k_spacings_per_thickness * m.median_thickness);
+    measure_spacings(crossings, options.similar, largest, strokes);
+    m.median_spacing = median_of(strokes, [](const TracedPoint& p) { return p.spacing; });
+    return crossings;
+}
+
+}  // namespace
+
+StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask, const MeasuringOptions& options) {
+    check(darkness, mask);
+    StrokeMeasurements m = empty_measurements(darkness.width, darkness.height);
+    if (m.size() == 0) return m;
+    TracedDrawing drawing = trace_drawing(darkness, mask, options.faintest);
+    std::vector<TracedStroke>& strokes = drawing.strokes;
+    if (strokes.empty()) return m;
+    const std::vector<StrokeCrossing> crossings = measure_points(darkness, drawing.ink, options, strokes, m);
+    m.intersections = confirmed_intersections(crossings, darkness, drawing.skeleton, strokes);
+    m.level = hatching_levels(strokes, m.intersections, mask, options.most_intersections_of_single, m.median_spacing);
+    m.boundary = level_boundaries(m.level, mask);
+    if (options.smoothing > 0 && m.median_spacing > 0)
+        smooth_properties(options.smoothing * m.median_spacing, 0.5f * options.similar, strokes);
+    const StrokeMap map(strokes, m.width, m.height);
+    spread(drawing.ink, mask, crossing_pixels(crossings, m.width, m.height), strokes, map, m);
+    mark_ends(strokes, map, mask, m);
+    for (std::size_t i = 0; i < m.size(); ++i) m.skeleton[i] = drawing.skeleton.data[i] && m.stroke[i];
+    return m;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,304 @@
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "host/core/parallel.h"
+#include "host/hatching/measurement/along_stroke.h"
+#include "host/hatching/measurement/stroke_properties.h"
+
+namespace exemplar {
+namespace {
+
+constexpr float k_reach_along = 4;   ///< pixels before and behind a point whose profile it has
+constexpr float k_paper_beside = 2;  ///< pixels of paper on either side that a profile takes in
+constexpr std::size_t k_least_inside = 4, k_least_outside = 3;  ///< samples in the stroke, and on either side
+constexpr float k_narrowest = 1;         ///< pixels: what is narrower looks like a lighter stroke of this width
+constexpr float k_narrowest_fit = 0.4f;  ///< pixels: keeps the fit from dividing by nothing
+constexpr int k_steps = 8;
+constexpr float k_noise = 0.03f;        ///< of darkness: weighs samples against what is likely
+constexpr float k_likely_turn = 0.1f;   ///< radians by which a point's orientation may be wrong
+constexpr float k_likely_bend = 0.02f;  ///< 1 / pixels: half the curvature of an arc of radius 25
+constexpr float k_longest_bridge = 8;   ///< widths over which a center line is taken for straight
+constexpr std::size_t k_softness_points = 400;
+constexpr float k_better = 0.98f;  ///< of the misfit of sharp edges, for softness to be believed
+constexpr std::array<float, 10> k_softnesses{0, 0.25f, 0.4f, 0.55f, 0.7f, 0.85f, 1, 1.25f, 1.5f, 2};
+
+/// A straight edge as pixels see it: how much of a pixel at a distance the inked side covers, blurred.
+class SoftEdge {
+  public:
+    explicit SoftEdge(float softness) : reach_(0.5f + 4 * softness) {
+        const std::size_t count = 2 * static_cast<std::size_t>(std::ceil(reach_ * k_per_pixel)) + 2;
+        for (std::size_t i = 0; i < count; ++i)
+            table_.push_back(exact(static_cast<double>(i) / k_per_pixel - reach_, softness));
+    }
+
+    struct Value {
+        float cover = 0, slope = 0;
+    };
+    /// At a distance inside (positive) or outside (negative) of the edge.
+    Value at(float distance) const {
+        const float place = (distance + reach_) * k_per_pixel;
+        if (place <= 0) return {0, 0};
+        const auto i = static_cast<std::size_t>(place);
+        if (i + 1 >= table_.size()) return {1, 0};
+        const float share = place - static_cast<float>(i);
+        return {std::lerp(table_[i].cover, table_[i + 1].cover, share),
+                std::lerp(table_[i].slope, table_[i + 1].slope, share)};
+    }
+
+  private:
+    static constexpr float k_per_pixel = 32;
+
+    static Value exact(double x, double softness) {
+        if (softness < 0.02)
+            return {static_cast<float>(std::clamp(x + 0.5, 0.0, 1.0)), std::abs(x) < 0.5 ? 1.0f : 0.0f};
+        const auto below = [](double t) { return 0.5 * std::erfc(-t / std::numbers::sqrt2); };
+        const auto integral = [&](double t) {
+            return t * below(t) + std::exp(-0.5 * t * t) / std::sqrt(2 * std::numbers::pi);
+        };
+        const double right = (x + 0.5) / softness, left = (x - 0.5) / softness;
+        return {static_cast<float>(softness * (integral(right) - integral(left))),
+                static_cast<float>(below(right) - below(left))};
+    }
+
+    float reach_;
+    std::vector<Value> table_;
+};
+
+/// A pixel as seen from a point of a stroke: along it, across it (to its right), and its darkness over the paper's.
+struct Sample {
+    float along, across, darkness;
+};
+
+/// The drawing, and whose pixels are whose.
+struct Surroundings {
+    const FloatImage& darkness;
+    float paper;
+    const StrokeMap& map;
+    const PixelMask& crossing_pixels;
+};
+
+void collect(const Surroundings& around, const TracedPoint& point, PointId id, float width,
+             std::vector<Sample>& samples) {
+    const float reach_across = 0.5f * width + k_paper_beside;
+    const int reach = static_cast<int>(std::ceil(std::hypot(k_reach_along, reach_across)));
+    const Vec2 along(std::cos(point.orientation), std::sin(point.orientation)), across(-along.y(), along.x());
+    const auto [cx, cy] = around.map.pixel_of(point);
+    samples.clear();
+    for (int y = std::max(0, cy - reach); y <= std::min(around.darkness.height - 1, cy + reach); ++y)
+        for (int x = std::max(0, cx - reach); x <= std::min(around.darkness.width - 1, cx + reach); ++x) {
+            const Vec2 way = center_of({x, y}) - point.center;
+            const Sample sample{along.dot(way), across.dot(way), around.darkness.pixel(x, y)[0] - around.paper};
+            if (std::abs(sample.along) > k_reach_along || std::abs(sample.across) > reach_across ||
+                around.crossing_pixels.pixel(x, y)[0])
+                continue;
+            const PointId nearest = around.map.nearest(x, y);
+            if (nearest.stroke == id.stroke && std::abs(nearest.point - id.point) <= 2 * reach)
+                samples.push_back(sample);
+        }
+}
+
+bool enough(std::span<const Sample> samples, float width) {
+    std::size_t inside = 0, left = 0, right = 0;
+    for (const Sample& s : samples) {
+        inside += std::abs(s.across) < 0.5f * width;
+        left += s.across < -0.5f * width - 0.3f;
+        right += s.across > 0.5f * width + 0.3f;
+    }
+    return inside >= k_least_inside && left >= k_least_outside && right >= k_least_outside;
+}
+
+/// What a stroke is near one of its points. Its center line is offset + turn * along + bend * along^2 across.
+struct Profile {
+    float ink = 0;  ///< darkness times width
+    float width = 0, offset = 0, turn = 0, bend = 0;
+    float misfit = 0;  ///< root of the mean squared difference
+
+    float darkness() const { return ink / width; }
+};
+
+using Parameters = Eigen::Matrix<float, 5, 1>;
+
+/// How dark a sample would be, and how that changes with (ink, width, offset, turn, bend).
+float predict(const Profile& p, const Sample& s, const SoftEdge& edge, Parameters& change) {
+    const float across = s.across - (p.offset + s.along * (p.turn + s.along * p.bend));
+    const SoftEdge::Value right = edge.at(0.5f * p.width - across), left = edge.at(-0.5f * p.width - across);
+    const float shape = right.cover - left.cover, dark = p.darkness();
+    const float shift = dark * (right.slope - left.slope);
+    change << shape / p.width, dark * (0.5f * (right.slope + left.slope) - shape / p.width), shift, shift * s.along,
+        shift * s.along * s.along;
+    return dark * shape;
+}
+
+/// One step of Gauss and Newton; returns how far it went in pixels.
+float improve(std::span<const Sample> samples, const SoftEdge& edge, Profile& p) {
+    Eigen::Matrix<float, 5, 5> normal = Eigen::Matrix<float, 5, 5>::Zero();
+    Parameters right = Parameters::Zero(), change;
+    for (const Sample& s : samples) {
+        const float rest = s.darkness - predict(p, s, edge, change);
+        normal += change * change.transpose();
+        right += rest * change;
+    }
+    const auto likely = [](float size) { return k_noise * k_noise / (size * size); };
+    const Parameters prior(1e-4f, 1e-4f, likely(0.5f * p.width), likely(k_likely_turn), likely(k_likely_bend));
+    normal.diagonal() += prior;
+    right -= Parameters(0, 0, prior[2] * p.offset, prior[3] * p.turn, prior[4] * p.bend);
+    Parameters step = normal.ldlt().solve(right);
+    if (!step.allFinite()) return 0;
+    const float most = 0.5f * p.width, size = std::max(std::abs(step[1]), std::abs(step[2]));
+    if (size > most) step *= most / size;
+    p.ink = std::max(p.ink + step[0], 1e-3f);
+    p.width = std::max(p.width + step[1], k_narrowest_fit);
+    p.offset += step[2], p.turn += step[3], p.bend += step[4];
+    return std::min(size, most);
+}
+
+Profile fit(std::span<const Sample> samples, const SoftEdge& edge, float width) {
+    Profile profile;
+    profile.width = std::max(width, k_narrowest);
+    float darkest = 0;
+    for (const Sample& s : samples) darkest = std::max(darkest, s.darkness);
+    profile.ink = darkest * profile.width;
+    for (int step = 0; step < k_steps; ++step)
+        if (improve(samples, edge, profile) < 0.01f) break;
+    Parameters change;
+    float sum = 0;
+    for (const Sample& s : samples) sum += std::pow(s.darkness - predict(profile, s, edge, change), 2.0f);
+    profile.misfit = std::sqrt(sum / static_cast<float>(samples.size()));
+    return profile;
+}
+
+/// Takes over a profile if it is one of a stroke that is about as wide as its mask, and there.
+bool accept(const Profile& profile, float paper, const TracedStroke& stroke, TracedPoint& point) {
+    if (profile.width > 2 * stroke.width + 2 || std::abs(profile.offset) > 0.5f * stroke.width + 1) return false;
+    const float ink = profile.ink;
+    point.thickness = std::max(profile.width, k_narrowest);
+    point.intensity = ink / point.thickness + paper;
+    if (point.intensity > 1) point.intensity = 1, point.thickness = ink / (1 - paper);
+    const Vec2 across(-std::sin(point.orientation), std::cos(point.orientation));
+    point.center += profile.offset * across;
+    return true;
+}
+
+/// Thickness, intensity and, at crossings, center where they were not measured, from the nearest points of the stroke
+/// where they were. Returns whether there are any.
+bool fill_along(TracedStroke& stroke) {
+    const auto longest = static_cast<std::size_t>(k_longest_bridge * std::max(stroke.width, 1.0f));
+    std::vector<bool> measured;
+    for (const TracedPoint& point : stroke.points) measured.push_back(point.profiled);
+    between_measured(measured, [&](std::size_t i, const BetweenMeasured& b) {
+        const TracedPoint &before = stroke.points[b.before], &behind = stroke.points[b.behind];
+        stroke.points[i].thickness = std::lerp(before.thickness, behind.thickness, b.share);
+        stroke.points[i].intensity = std::lerp(before.intensity, behind.intensity, b.share);
+        if (stroke.points[i].at_crossing && b.before != b.behind && b.behind - b.before <= longest)
+            stroke.points[i].center = before.center + b.share * (behind.center - before.center);
+    });
+    return std::find(measured.begin(), measured.end(), true) != measured.end();
+}
+
+float median_of(std::vector<float>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Strokes so crowded that no profile could be measured are as strokes of the drawing are; if all are, as their masks.
+void fill_others(const FloatImage& darkness, const StrokeMap& map, const std::vector<std::uint8_t>& filled,
+                 std::span<TracedStroke> strokes) {
+    std::vector<float> thickness, intensity;
+    for (const TracedStroke& stroke : strokes)
+        for (const TracedPoint& point : stroke.points)
+            if (point.profiled) thickness.push_back(point.thickness), intensity.push_back(point.intensity);
+    const bool any = !thickness.empty();
+    const float usual_thickness = any ? median_of(thickness) : 0, usual_intensity = any ? median_of(intensity) : 0;
+    for (std::size_t s = 0; s < strokes.size(); ++s) {
+        if (filled[s]) continue;
+        for (TracedPoint& point : strokes[s].points) {
+            const auto [x, y] = map.pixel_of(point);
+            point.thickness = any ? usual_thickness : std::max(strokes[s].width, k_narrowest);
+            point.intensity = any ? usual_intensity : std::clamp(darkness.pixel(x, y)[0], 1.0f / 255, 1.0f);
+        }
+    }
+}
+
+/// Every so many points, such that there are about as many as are needed.
+std::vector<PointId> spread_points(std::span<const TracedStroke> strokes) {
+    std::vector<PointId> all, some;
+    for (std::size_t s = 0; s < strokes.size(); ++s)
+        for (std::size_t p = 0; p < strokes[s].points.size(); ++p)
+            if (!strokes[s].points[p].at_crossing)
+                all.push_back({static_cast<std::int32_t>(s), static_cast<std::int32_t>(p)});
+    const std::size_t stride = std::max<std::size_t>(1, all.size() / k_softness_points);
+    for (std::size_t i = stride / 2; i < all.size(); i += stride) some.push_back(all[i]);
+    return some;
+}
+
+/// Mean misfit of profiles under a softness.
+double misfit_of(const std::vector<std::vector<Sample>>& profiles, std::span<const float> widths, float softness) {
+    const SoftEdge edge(softness);
+    std::vector<float> misfits(profiles.size(), 0);
+    parallel_for(
+        profiles.size(), [&](std::size_t i) { misfits[i] = fit(profiles[i], edge, widths[i]).misfit; }, 8);
+    return median_of(misfits);
+}
+
+/// The lowest point of the parabola through three.
+float lowest(const std::array<float, 3>& x, const std::array<double, 3>& y) {
+    const double a = (y[1] - y[0]) / (x[1] - x[0]), b = (y[2] - y[1]) / (x[2] - x[1]);
+    const double curvature = (b - a) / (x[2] - x[0]);
+    return curvature > 0 ? static_cast<float>(0.5 * (x[0] + x[1] - a / curvature)) : x[1];
+}
+
+}  // namespace
+
+float estimate_softness(const FloatImage& darkness, float paper, const StrokeMap& map, const PixelMask& crossing_pixels,
+                        std::span<const TracedStroke> strokes) {
+    std::vector<std::vector<Sample>> profiles;
+    std::vector<float> widths;
+    std::vector<Sample> samples;
+    for (const PointId id : spread_points(strokes)) {
+        const TracedStroke& stroke = strokes[id.stroke];
+        collect({darkness, paper, map, crossing_pixels}, stroke.points[id.point], id, stroke.width, samples);
+        if (!enough(samples, stroke.width)) continue;
+        profiles.push_back(samples);
+        widths.push_back(stroke.width);
+    }
+    if (profiles.empty()) return 0;
+    std::array<double, k_softnesses.size()> misfit{};
+    for (std::size_t i = 0; i < misfit.size(); ++i) misfit[i] = misfit_of(profiles, widths, k_softnesses[i]);
+    const auto best = static_cast<std::size_t>(std::min_element(misfit.begin(), misfit.end()) - misfit.begin());
+    if (best == 0 || !(misfit[best] <= k_better * misfit[0])) return 0;
+    if (best + 1 == misfit.size()) return k_softnesses[best];
+    return lowest({k_softnesses[best - 1], k_softnesses[best], k_softnesses[best + 1]},
+                  {misfit[best - 1], misfit[best], misfit[best + 1]});
+}
+
+void measure_profiles(const FloatImage& darkness, float paper, float softness, const StrokeMap& map,
+                      const PixelMask& crossing_pixels, std::span<TracedStroke> strokes) {
+    const SoftEdge edge(softness);
+    const Surroundings around{darkness, paper, map, crossing_pixels};
+    std::vector<std::uint8_t> filled(strokes.size(), 0);
+    parallel_for(
+        strokes.size(),
+        [&](std::size_t s) {
+            TracedStroke& stroke = strokes[s];
+            std::vector<Sample> samples;
+            for (std::size_t i = 0; i < stroke.points.size(); ++i) {
+                TracedPoint& point = stroke.points[i];
+                if (point.at_crossing) continue;
+                collect(around, point, {static_cast<std::int32_t>(s), static_cast<std::int32_t>(i)}, stroke.width,
+                        samples);
+                if (enough(samples, stroke.width))
+                    point.profiled = accept(fit(samples, edge, stroke.width), paper, stroke, point);
+            }
+            filled[s] = fill_along(stroke);
+            orient_along(stroke);
+        },
+        8);
+    fill_others(darkness, map, filled, strokes);
+}
+
+}  // namespace exemplar

@@ -1,0 +1,169 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "host/core/parallel.h"
+#include "host/hatching/measurement/along_stroke.h"
+#include "host/hatching/fields/hatching_fields.h"
+#include "host/hatching/measurement/point_cells.h"
+#include "host/hatching/measurement/stroke_properties.h"
+
+namespace exemplar {
+namespace {
+
+constexpr float k_cell = 8;               ///< pixels
+constexpr float k_farthest_side = 1.75f;  ///< of the nearer side's distance, for both sides to be neighbors
+constexpr float k_farthest_mutual = 2;    ///< of the neighbor's own spacing
+constexpr std::int32_t k_line_side = 3;   ///< points before and behind another that its line is measured at
+constexpr float k_around = 4;             ///< how much longer the way along a stroke is to a neighbor that is itself
+
+/// Which strokes cross which.
+class CrossingPairs {
+  public:
+    CrossingPairs(std::span<const StrokeCrossing> crossings, std::size_t strokes) : crossed_(strokes) {
+        for (const StrokeCrossing& c : crossings)
+            for (const std::size_t k : {0u, 1u}) crossed_[c.strokes[k]].push_back(c.strokes[1 - k]);
+        for (std::vector<std::int32_t>& list : crossed_) std::sort(list.begin(), list.end());
+    }
+    bool cross(std::int32_t first, std::int32_t second) const {
+        return std::binary_search(crossed_[first].begin(), crossed_[first].end(), second);
+    }
+
+  private:
+    std::vector<std::vector<std::int32_t>> crossed_;
+};
+
+/// The nearest point of a neighboring stroke on one side.
+struct Neighbor {
+    PointId id;
+    float distance;    ///< to the point
+    float across = 0;  ///< to its line; 0: there is none
+};
+
+/// The neighbors on both sides of a point.
+struct Neighbors {
+    std::array<Neighbor, 2> side;
+    explicit Neighbors(float largest) : side{Neighbor{{}, largest}, Neighbor{{}, largest}} {}
+
+    /// Beyond this distance nothing would change the spacing.
+    float reach() const {
+        const auto [least, most] = std::minmax(side[0].distance, side[1].distance);
+        return std::min(most, 2 * least);
+    }
+    float spacing() const {
+        const auto [least, most] = std::minmax(side[0].across, side[1].across);
+        if (least == 0) return most;
+        return most <= k_farthest_side * least ? 0.5f * (least + most) : least;
+    }
+};
+
+class SpacingSearch {
+  public:
+    SpacingSearch(std::span<const StrokeCrossing> crossings, float similar, float largest,
+                  std::span<const TracedStroke> strokes)
+        : strokes_(strokes),
+          crossing_(crossings, strokes.size()),
+          cells_(strokes, k_cell),
+          similar_(similar),
+          largest_(largest) {}
+
+    Neighbors neighbors_of(PointId id) const {
+        const TracedPoint& point = strokes_[id.stroke].points[id.point];
+        const int column = cells_.column(point.center.x()), row = cells_.row(point.center.y());
+        Neighbors neighbors(largest_);
+        for (int ring = 0; static_cast<float>(ring - 1) * k_cell < neighbors.reach(); ++ring)
+            for (int r = row - ring; r <= row + ring; ++r) {
+                const bool edge = r == row - ring || r == row + ring;
+                for (int c = column - ring; c <= column + ring; c += edge ? 1 : std::max(1, 2 * ring))
+                    for (const PointId other : cells_.cell(c, r)) consider(id, other, neighbors);
+            }
+        return neighbors;
+    }
+
+  private:
+    /// Whether a point may be on a neighboring stroke: not on the own, unless it comes back from afar.
+    bool apart(PointId own, PointId other, float distance) const {
+        if (own.stroke != other.stroke) return true;
+        const auto count = static_cast<std::int32_t>(strokes_[own.stroke].points.size());
+        std::int32_t steps = std::abs(own.point - other.point);
+        if (strokes_[own.stroke].closed) steps = std::min(steps, count - steps);
+        return static_cast<float>(steps) > k_around * distance;
+    }
+
+    /// Distance across a direction, to the right, of the line through the points around another: the nearest of them is
+    /// nearest by chance, too.
+    float across_to(const TracedPoint& point, PointId other, float direction) const {
+        const std::vector<TracedPoint>& line = strokes_[other.stroke].points;
+        const auto last = static_cast<std::int32_t>(line.size()) - 1;
+        const std::int32_t side = std::min({k_line_side, other.point, last - other.point});
+        Vec2 mean = Vec2::Zero();
+        for (std::int32_t i = other.point - side; i <= other.point + side; ++i) mean += line[i].center;
+        const Vec2 way = mean / static_cast<float>(2 * side + 1) - point.center;
+        return way.y() * std::cos(direction) - way.x() * std::sin(direction);
+    }
+
+    void consider(PointId own, PointId other, Neighbors& neighbors) const {
+        const TracedPoint& point = strokes_[own.stroke].points[own.point];
+        const TracedPoint& candidate = strokes_[other.stroke].points[other.point];
+        const Vec2 way = candidate.center - point.center;
+        const float distance = way.norm();
+        if (distance >= std::max(neighbors.side[0].distance, neighbors.side[1].distance)) return;
+        const float turn = std::remainder(candidate.orientation - point.orientation, std::numbers::pi_v<float>);
+        if (std::abs(turn) > similar_ || !apart(own, other, distance)) return;
+        const float across = across_to(point, other, point.orientation + 0.5f * turn);
+        Neighbor& neighbor = neighbors.side[across > 0 ? 1 : 0];
+        if (distance >= neighbor.distance || 2 * across * across < distance * distance) return;
+        if (own.stroke != other.stroke && crossing_.cross(own.stroke, other.stroke)) return;
+        neighbor = {other, distance, std::abs(across)};
+    }
+
+    std::span<const TracedStroke> strokes_;
+    CrossingPairs crossing_;
+    PointCells cells_;
+    float similar_, largest_;
+};
+
+/// Without those that have much nearer neighbors themselves: to them, the stroke is not one of their family.
+Neighbors mutual(Neighbors of, const std::vector<std::vector<Neighbors>>& all) {
+    for (Neighbor& n : of.side)
+        if (n.across > k_farthest_mutual * (n.across > 0 ? all[n.id.stroke][n.id.point].spacing() : 0)) n.across = 0;
+    return of;
+}
+
+/// Where a neighbor ends for less than the spacing, as at a crossing, it goes on as it was.
+void bridge_short_gaps(TracedStroke& stroke) {
+    std::vector<bool> measured;
+    for (const TracedPoint& point : stroke.points) measured.push_back(point.spacing > 0);
+    between_measured(measured, [&](std::size_t i, const BetweenMeasured& b) {
+        const float before = stroke.points[b.before].spacing, behind = stroke.points[b.behind].spacing;
+        const auto gap = [&](std::size_t end) { return static_cast<float>(i > end ? i - end : end - i); };
+        if (gap(b.before) <= before || gap(b.behind) <= behind)
+            stroke.points[i].spacing = std::lerp(before, behind, b.share);
+    });
+}
+
+}  // namespace
+
+void measure_spacings(std::span<const StrokeCrossing> crossings, float similar, float largest,
+                      std::span<TracedStroke> strokes) {
+    const SpacingSearch search(crossings, similar, largest, strokes);
+    std::vector<std::vector<Neighbors>> neighbors(strokes.size());
+    parallel_for(
+        strokes.size(),
+        [&](std::size_t s) {
+            for (std::size_t p = 0; p < strokes[s].points.size(); ++p)
+                neighbors[s].push_back(
+                    search.neighbors_of({static_cast<std::int32_t>(s), static_cast<std::int32_t>(p)}));
+        },
+        8);
+    for (std::size_t s = 0; s < strokes.size(); ++s) {
+        for (std::size_t p = 0; p < neighbors[s].size(); ++p)
+            strokes[s].points[p].spacing = mutual(neighbors[s][p], neighbors).spacing();
+        bridge_short_gaps(strokes[s]);
+    }
+}
+
+}  // namespace exemplar

@@ -1,0 +1,183 @@
+#include "host/hatching/style/hatching_style.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "host/core/errors.h"
+#include "host/data/model_file.h"
+#include "host/hatching/style/pixel_classifier.h"
+#include "host/hatching/features/pixel_features.h"
+#include "host/hatching/features/powers.h"
+
+namespace exemplar {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* k_kind = "exemplar hatching style";
+constexpr int k_format_version = 1;
+constexpr std::size_t k_most_segments = 64;
+constexpr int k_most_stages = 16, k_largest_drawing = 1 << 15;
+
+void add_function(TensorFile& file, const std::string& name, const OrientationFunction& function) {
+    std::vector<std::uint32_t> features;
+    std::vector<float> weights;
+    for (const auto& term : function.terms) {
+        features.push_back(term.feature);
+        weights.push_back(term.weight);
+    }
+    file.add(name + ".feature", {features.size()}, features);
+    file.add(name + ".weight", {weights.size()}, weights);
+}
+
+OrientationFunction get_function(const TensorFile& file, const std::string& name) {
+    const auto features = file.get<std::uint32_t>(name + ".feature", {TensorFile::k_any});
+    const auto weights = file.get<float>(name + ".weight", {features.size()});
+    require_finite(file, name + ".weight", weights);
+    OrientationFunction function;
+    for (std::size_t k = 0; k < features.size(); ++k) {
+        if (features[k] >= k_orientation_features)
+            inconsistent(
+                file, fmt::format("{} uses orientation feature {} of {}", name, features[k], k_orientation_features));
+        function.terms.push_back({features[k], weights[k]});
+    }
+    return function;
+}
+
+void add_property(TensorFile& file, const std::string& name, const PropertyModel& model) {
+    std::vector<std::uint32_t> features;
+    std::vector<float> values;
+    for (const PropertyModel::Term& term : model.terms) {
+        features.push_back(term.feature);
+        values.insert(values.end(), {term.a, term.b, term.exponent, term.low, term.high, term.least});
+    }
+    file.add(name + ".feature", {features.size()}, features);
+    file.add(name + ".a_b_exponent_low_high_least", {features.size(), 6}, values);
+    file.add(name + ".factor", {1}, std::vector<float>{model.factor});
+}
+
+PropertyModel get_property(const TensorFile& file, const std::string& name, std::size_t feature_count) {
+    const auto features = file.get<std::uint32_t>(name + ".feature", {TensorFile::k_any});
+    const auto values = file.get<float>(name + ".a_b_exponent_low_high_least", {features.size(), 6});
+    require_finite(file, name, values);
+    PropertyModel model;
+    model.factor = file.get<float>(name + ".factor", {1})[0];
+    if (!(model.factor > 0) || !std::isfinite(model.factor)) inconsistent(file, name + ".factor is not positive");
+    for (std::size_t k = 0; k < features.size(); ++k) {
+        const float* v = values.data() + 6 * k;
+        if (features[k] >= k_powers * feature_count)
+            inconsistent(file, fmt::format("{} uses feature {} of {}", name, features[k], k_powers * feature_count));
+        if (!(v[5] > 0)) inconsistent(file, name + " has a term without a least value");
+        if (!(v[3] <= v[4])) inconsistent(file, name + " has a term without a range");
+        model.terms.push_back({features[k], v[0], v[1], v[2], v[3], v[4], v[5]});
+    }
+    return model;
+}
+
+Json described(const PixelCrfParameters& cut) {
+    return {{"strength", cut.strength}, {"offset", cut.offset}};
+}
+
+PixelCrfParameters read_cut(const TensorFile& file, const Json& json) {
+    const PixelCrfParameters cut{json.at("strength"), json.at("offset")};
+    if (!(cut.strength >= 0) || !std::isfinite(cut.strength) || !std::isfinite(cut.offset))
+        inconsistent(file, "a weight of its label cuts is out of range");
+    return cut;
+}
+
+/// A number of something, 1 to `most`: read as a double, as not all that JSON calls numbers have an integer's value.
+int read_count(const TensorFile& file, const Json& json, const char* key, int most) {
+    const double count = json.at(key);
+    if (!(count >= 1 && count <= most) || count != std::floor(count))
+        inconsistent(file, fmt::format("'{}' is {}, which is not a whole number from 1 to {}", key, count, most));
+    return static_cast<int>(count);
+}
+
+void read_description(const TensorFile& file, HatchingStyle& style, std::size_t& stages) {
+    const Json json = Json::parse(file.meta("style"));
+    style.name = json.at("name");
+    style.width = read_count(file, json, "width", k_largest_drawing);
+    style.height = read_count(file, json, "height", k_largest_drawing);
+    style.share = json.at("share").get<std::vector<double>>();
+    style.segment_crf = read_cut(file, json.at("segment_cut"));
+    style.level_crf = read_cut(file, json.at("level_cut"));
+    stages = static_cast<std::size_t>(read_count(file, json, "stages", k_most_stages));
+    if (style.share.empty() || style.share.size() > k_most_segments)
+        inconsistent(file, fmt::format("it has {} segments", style.share.size()));
+}
+
+bool is_style(const TensorFile& file) {
+    const auto kind = file.metadata.find("kind");
+    return kind != file.metadata.end() && kind->second == k_kind;
+}
+
+}  // namespace
+
+std::size_t HatchingStyle::feature_count() const {
+    return k_pixel_features + contextual_feature_count(rules.size());
+}
+
+void save_hatching_style(const std::filesystem::path& path, const HatchingStyle& style) {
+    TensorFile file;
+    file.metadata["kind"] = k_kind;
+    file.metadata["format_version"] = std::to_string(k_format_version);
+    file.metadata["feature_version"] = std::to_string(k_hatching_feature_version);
+    const Json description{{"name", style.name},
+                           {"width", style.width},
+                           {"height", style.height},
+                           {"share", style.share},
+                           {"segment_cut", described(style.segment_crf)},
+                           {"level_cut", described(style.level_crf)},
+                           {"stages", style.segments.size()}};
+    // The name of a drawing's file may be no text.
+    file.metadata["style"] = description.dump(-1, ' ', false, Json::error_handler_t::replace);
+    for (std::size_t c = 0; c < style.rules.size(); ++c) {
+        for (std::size_t j = 0; j < k_hatch_layers; ++j)
+            add_function(file, fmt::format("rule.{}.{}", c, j), style.rules[c].function[j]);
+    }
+    for (std::size_t s = 0; s < style.segments.size(); ++s)
+        add_classifier(file, fmt::format("segments.{}", s), style.segments[s]);
+    add_classifier(file, "boundary", style.boundary);
+    add_classifier(file, "levels", style.levels);
+    for (std::size_t p = 0; p < k_stroke_properties; ++p)
+        add_property(file, name_of(static_cast<StrokeProperty>(p)), style.properties[p]);
+    write_safetensors(path, file);
+}
+
+bool is_hatching_style(const std::filesystem::path& path) {
+    return is_style(read_safetensors(path));
+}
+
+HatchingStyle load_hatching_style(const std::filesystem::path& path) {
+    const TensorFile file = read_safetensors(path);
+    if (!is_style(file))
+        throw ModelError(fmt::format("{}: is no hatching style; make one with 'exemplar hatch train'", file.path));
+    require_version(file, "format_version", k_format_version, "train it again");
+    require_version(file, "feature_version", k_hatching_feature_version, "its features have changed: train it again");
+    HatchingStyle style;
+    std::size_t stages = 0;
+    try {
+        read_description(file, style, stages);
+    } catch (const Json::exception&) {
+        inconsistent(file, "its description cannot be read");
+    }
+    const std::size_t labels = style.share.size();
+    style.rules.resize(labels);
+    for (std::size_t c = 0; c < labels; ++c) {
+        for (std::size_t j = 0; j < k_hatch_layers; ++j)
+            style.rules[c].function[j] = get_function(file, fmt::format("rule.{}.{}", c, j));
+    }
+    const std::size_t features = k_powers * style.feature_count();
+    for (std::size_t s = 0; s < stages; ++s)
+        style.segments.push_back(get_classifier(file, fmt::format("segments.{}", s), labels,
+                                                s == 0 ? k_powers * k_pixel_features : features));
+    style.boundary = get_classifier(file, "boundary", 2, k_powers * k_pixel_features);
+    style.levels = get_classifier(file, "levels", 3, features);
+    for (std::size_t p = 0; p < k_stroke_properties; ++p)
+        style.properties[p] = get_property(file, name_of(static_cast<StrokeProperty>(p)), style.feature_count());
+    return style;
+}
+
+}  // namespace exemplar

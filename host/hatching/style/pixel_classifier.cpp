@@ -1,0 +1,193 @@
+#include "host/hatching/style/pixel_classifier.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "host/core/interrupt.h"
+#include "host/core/parallel.h"
+#include "host/hatching/features/expanded_features.h"
+#include "host/learn/boosting/calibration.h"
+#include "host/learn/boosting/jointboost.h"
+
+namespace exemplar {
+namespace {
+
+constexpr std::size_t k_rounds_between = 5;  // looks at the rows held out
+constexpr std::size_t k_patience = 60;       // rounds without gain
+// A drawing's pixels are alike: full steps fit them in a few rounds, and generalize worse.
+constexpr double k_shrinkage = 0.3;
+
+/// Sums of the stumps for the rows held out, brought up to date as stumps are added.
+class HeldOutScores {
+  public:
+    HeldOutScores(const FeatureMatrix& features, std::span<const std::uint32_t> rows, std::size_t classes)
+        : features_(features), rows_(rows), classes_(classes), scores_(rows.size() * classes) {}
+
+    void add(const BoostedStumps& classifier) {
+        for (; seen_ < classifier.stumps.size(); ++seen_) {
+            const Stump& stump = classifier.stumps[seen_];
+            const std::span<const float> column = features_.column(stump.feature);
+            for (std::size_t i = 0; i < rows_.size(); ++i) {
+                const float h = column[rows_[i]] > stump.threshold ? stump.above : stump.below;
+                for (std::size_t c = 0; c < classes_; ++c) {
+                    const bool shares = (stump.classes >> c & 1U) != 0;
+                    scores_[i * classes_ + c] += shares ? h : classifier.elsewhere[seen_ * classes_ + c];
+                }
+            }
+        }
+    }
+    std::span<const float> scores() const { return scores_; }
+
+  private:
+    const FeatureMatrix& features_;
+    std::span<const std::uint32_t> rows_;
+    std::size_t classes_;
+    std::size_t seen_ = 0;
+    std::vector<float> scores_;
+};
+
+std::vector<std::uint32_t> rows_where(std::span<const std::uint8_t> held_out, std::uint8_t value) {
+    std::vector<std::uint32_t> rows;
+    for (std::uint32_t i = 0; i < held_out.size(); ++i) {
+        if (held_out[i] == value) rows.push_back(i);
+    }
+    return rows;
+}
+
+template <typename T>
+std::vector<T> chosen(std::span<const T> values, std::span<const std::uint32_t> rows) {
+    std::vector<T> out;
+    for (const std::uint32_t row : rows) out.push_back(values[row]);
+    return out;
+}
+
+Booster booster_of(const ClassifierTraining& training, const TrainingSet& set) {
+    const BoostOptions options{.shrinkage = k_shrinkage, .seed = training.seed};
+    return training.gentle ? Booster::gentle(set, options) : Booster(set, training.classes, options);
+}
+
+/// So many rounds with all rows: what was held out is a part of the drawing, too.
+BoostedStumps with_all_rows(const ClassifierTraining& training, const QuantizedFeatures& quantized,
+                            std::span<const float> weights, std::size_t rounds, const std::function<void()>& progress) {
+    std::vector<std::uint32_t> rows(training.features.rows);
+    std::iota(rows.begin(), rows.end(), 0U);
+    const TrainingSet set{quantized, training.labels, weights, rows};
+    Booster booster = booster_of(training, set);
+    for (std::size_t round = 0; round < rounds; ++round) {
+        check_interrupt();
+        booster.add_stump();
+        progress();
+    }
+    return booster.classifier();
+}
+
+}  // namespace
+
+LearnedClassifier learn_classifier(const ClassifierTraining& training, const std::function<void()>& progress) {
+    LearnedClassifier best;
+    best.classifier.stumps.class_count = static_cast<std::uint32_t>(training.classes);
+    if (training.classes < 2) return best;
+    const StumpFeatures features = stump_features(training.features);
+    const std::vector<std::uint32_t> rows = rows_where(training.held_out, 0);
+    std::vector<std::uint32_t> judges = rows_where(training.held_out, 1);
+    if (judges.empty()) judges = rows;
+    std::vector<float> weights(training.weights.begin(), training.weights.end());
+    weights.resize(training.features.rows, 1.0f);
+    const QuantizedFeatures quantized = quantize(features.matrix, weights, {});
+    const TrainingSet set{quantized, training.labels, weights, rows};
+    Booster booster = booster_of(training, set);
+
+    const std::vector<std::int32_t> labels = chosen(training.labels, judges);
+    const std::vector<float> judge_weights = chosen(std::span<const float>(weights), judges);
+    constexpr std::array<Link, 1> k_links{Link::softmax};
+    HeldOutScores scores(features.matrix, judges, training.classes);
+    best.loss = std::numeric_limits<double>::infinity();
+    std::size_t best_rounds = 0;
+    for (std::size_t round = 1; round <= training.most_rounds && round <= best_rounds + k_patience; ++round) {
+        check_interrupt();
+        booster.add_stump();
+        progress();
+        if (round % k_rounds_between != 0) continue;
+        scores.add(booster.classifier());
+        const Calibration held = calibrate(scores.scores(), labels, judge_weights, training.classes, k_links);
+        if (!(held.loss < best.loss)) continue;
+        best_rounds = round;
+        best = {{{}, held.link, held.scale}, held.error, held.loss};
+    }
+    best.classifier.stumps = with_all_rows(training, quantized, weights, best_rounds, progress);
+    for (Stump& stump : best.classifier.stumps.stumps) stump.feature = features.expanded[stump.feature];
+    return best;
+}
+
+std::vector<float> classify(const CalibratedStumps& classifier, std::span<const std::uint32_t> which,
+                            const FeatureMatrix& base, StumpScorer& scorer) {
+    const std::size_t classes = classifier.stumps.class_count;
+    std::vector<float> probabilities(base.rows * classes);
+    if (classes < 2) {
+        std::ranges::fill(probabilities, 1.0f);
+        return probabilities;
+    }
+    const CompactStumps compact = compact_stumps(classifier.stumps, which, base);
+    scorer.probabilities(compact.classifier, compact.features, classifier.link, classifier.scale, probabilities);
+    return probabilities;
+}
+
+std::vector<std::string> contextual_feature_names(std::size_t labels) {
+    std::vector<std::string> names;
+    if (contextual_feature_count(labels) == 0) return names;
+    for (std::size_t range = 0; range <= k_context_ranges; ++range) {
+        for (std::size_t c = 0; c < labels; ++c) names.push_back(fmt::format("context.{}.{}", c + 1, range));
+    }
+    return names;
+}
+
+FeatureMatrix contextual_features(const HatchingSurface& surface, const GBuffer& gbuffer, const CoveredPixels& pixels,
+                                  std::span<const float> probabilities, std::size_t labels,
+                                  std::span<const std::uint32_t> rows) {
+    // Pixels add up at the samples nearest to their faces.
+    const std::size_t samples = surface.sample_face.size(), faces = surface.mesh.face_count();
+    std::vector<float> seen(samples), sums(samples * labels);
+    for (std::size_t i = 0; i < pixels.pixel.size(); ++i) {
+        const std::uint32_t s = surface.face_sample[gbuffer.face[pixels.pixel[i]]];
+        seen[s] += 1;
+        for (std::size_t c = 0; c < labels; ++c) sums[s * labels + c] += probabilities[i * labels + c];
+    }
+    const std::size_t columns = k_context_ranges * labels;
+    std::vector<float> at_face(faces * columns);
+    parallel_ranges(faces, 256, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> count(k_context_ranges);
+        for (std::size_t f = begin; f < end; ++f) {
+            std::ranges::fill(count, 0.0f);
+            float* out = at_face.data() + f * columns;
+            for (std::size_t s = 0; s < samples; ++s) {
+                const std::uint8_t range = surface.sample_bin[s * faces + f];
+                if (!(seen[s] > 0) || range >= k_context_ranges) continue;
+                count[range] += seen[s];
+                for (std::size_t c = 0; c < labels; ++c) out[range * labels + c] += sums[s * labels + c];
+            }
+            float total = 0;
+            for (std::size_t k = 0; k < columns; ++k) {
+                out[k] = count[k / labels] > 0 ? out[k] / count[k / labels] : 0.0f;
+                total += out[k];
+            }
+            for (std::size_t k = 0; k < columns && total > 0; ++k) out[k] /= total;
+        }
+    });
+    FeatureMatrix matrix;
+    matrix.rows = rows.empty() ? pixels.pixel.size() : rows.size();
+    for (std::string& name : contextual_feature_names(labels)) {
+        const std::size_t k = matrix.cols();
+        const std::span<float> column = matrix.add(std::move(name));
+        for (std::size_t i = 0; i < column.size(); ++i) {
+            const std::size_t row = rows.empty() ? i : rows[i];
+            column[i] = k < labels ? probabilities[row * labels + k]
+                                   : at_face[gbuffer.face[pixels.pixel[row]] * columns + k - labels];
+        }
+    }
+    return matrix;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,356 @@
+#include "host/hatching/style/style_learning.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "host/core/errors.h"
+#include "host/core/interrupt.h"
+#include "host/core/random.h"
+#include "host/core/stopwatch.h"
+#include "host/hatching/features/expanded_features.h"
+#include "host/hatching/style/pixel_classifier.h"
+#include "host/hatching/features/powers.h"
+
+namespace exemplar {
+namespace {
+
+constexpr std::size_t k_least_samples = 200;
+constexpr double k_held_out = 0.25;
+
+/// A random subset of rows, in their order.
+std::vector<std::uint32_t> sample(std::vector<std::uint32_t> rows, std::size_t most, std::uint64_t seed) {
+    if (rows.size() <= most) return rows;
+    Random random(seed);
+    random.shuffle(rows);
+    rows.resize(most);
+    std::ranges::sort(rows);
+    return rows;
+}
+
+std::vector<std::uint32_t> numbers(std::size_t first, std::size_t end) {
+    std::vector<std::uint32_t> all(end - first);
+    std::iota(all.begin(), all.end(), static_cast<std::uint32_t>(first));
+    return all;
+}
+
+class Learning {
+  public:
+    Learning(PixelFeatures& pixels, const DrawingProperties& drawing, StumpScorer& scorer,
+             const StyleLearningOptions& options, StyleReport& report, const std::function<void(const char*)>& progress)
+        : pixels_(pixels),
+          drawing_(drawing),
+          scorer_(scorer),
+          options_(options),
+          report_(report),
+          progress_(progress) {}
+
+    HatchingStyle run() {
+        style_.width = drawing_.width;
+        style_.height = drawing_.height;
+        learn_rules();
+        done("orientations");
+        learn_segments();
+        done("segments");
+        learn_boundary();
+        done("boundaries");
+        learn_levels();
+        done("levels");
+        learn_cuts();
+        done("label cuts");
+        for (std::size_t p = 0; p < k_stroke_properties; ++p) learn_property_of(static_cast<StrokeProperty>(p));
+        done("properties");
+        return std::move(style_);
+    }
+
+  private:
+    void done(const char* step) {
+        report_.seconds.emplace_back(step, watch_.wall());
+        watch_ = Stopwatch();
+        check_interrupt();
+    }
+
+    std::uint32_t pixel(std::uint32_t row) const { return pixels_.pixels().pixel[row]; }
+
+    /// Rows of covered pixels that pass a test of their pixel.
+    template <typename Test>
+    std::vector<std::uint32_t> rows_where(Test&& test) const {
+        std::vector<std::uint32_t> rows;
+        for (std::uint32_t row = 0; row < pixels_.size(); ++row) {
+            if (test(pixel(row))) rows.push_back(row);
+        }
+        return rows;
+    }
+
+    std::vector<std::uint8_t> held_out(std::span<const std::uint32_t> rows, std::span<const std::int32_t> labels,
+                                       std::uint64_t seed) const {
+        std::vector<std::uint16_t> x, y;
+        std::vector<std::uint32_t> group;
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            x.push_back(static_cast<std::uint16_t>(pixel(rows[i]) % static_cast<std::uint32_t>(drawing_.width)));
+            y.push_back(static_cast<std::uint16_t>(pixel(rows[i]) / static_cast<std::uint32_t>(drawing_.width)));
+            group.push_back(labels.empty() ? 0 : static_cast<std::uint32_t>(labels[i]));
+        }
+        return held_out_rectangles(x, y, group, k_held_out, seed);
+    }
+
+    /// Which quarter of the drawing each row is in: left or right, upper or lower half of the rows.
+    std::vector<std::uint8_t> quarters(std::span<const std::uint32_t> rows) const {
+        const auto width = static_cast<std::uint32_t>(drawing_.width);
+        std::vector<std::uint32_t> x, y;
+        for (const std::uint32_t row : rows) {
+            x.push_back(pixel(row) % width);
+            y.push_back(pixel(row) / width);
+        }
+        const auto middle = [](std::vector<std::uint32_t> values) {
+            const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+            std::ranges::nth_element(values, at);
+            return *at;
+        };
+        const std::uint32_t middle_x = middle(x), middle_y = middle(y);
+        std::vector<std::uint8_t> quarter(rows.size());
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            quarter[i] = static_cast<std::uint8_t>((x[i] < middle_x ? 0 : 1) + (y[i] < middle_y ? 0 : 2));
+        return quarter;
+    }
+
+    void learn_rules() {
+        const std::vector<std::uint32_t> all = rows_where(
+            [&](std::uint32_t p) { return drawing_.center[p] && !drawing_.crossing[p] && drawing_.level[p] > 0; });
+        if (all.size() < k_least_samples)
+            throw DataError(
+                fmt::format("the drawing has strokes on only {} pixels of the object; is it of this view, and aligned?",
+                            all.size()));
+        rule_rows_ = sample(all, options_.orientation_samples, options_.seed);
+        OrientationSamples samples;
+        for (const std::uint32_t row : rule_rows_) {
+            const std::uint32_t p = pixel(row);
+            samples.x.push_back(static_cast<std::uint16_t>(p % static_cast<std::uint32_t>(drawing_.width)));
+            samples.y.push_back(static_cast<std::uint16_t>(p / static_cast<std::uint32_t>(drawing_.width)));
+            samples.direction.push_back(doubled_angle(drawing_.orientation[p]));
+            samples.level.push_back(drawing_.level[p]);
+            samples.spacing.push_back(drawing_.property[static_cast<std::size_t>(StrokeProperty::spacing)][p]);
+        }
+        samples.fields = pixels_.orientations(rule_rows_);
+        OrientationMixture mixture = learn_mixture(samples, options_.mixture, [&] { progress_("orientation rules"); });
+        style_.rules = std::move(mixture.rules);
+        style_.share = std::move(mixture.share);
+        report_.orientation_error = mixture.error;
+        segment_.assign(mixture.segment.begin(), mixture.segment.end());
+    }
+
+    /// Base features of rows; with the contextual features of the last stage if there are any.
+    FeatureMatrix features_of(std::span<const std::uint32_t> rows, bool context) {
+        FeatureMatrix features = pixels_.scalars(numbers(0, k_pixel_features), rows);
+        if (context)
+            features.append(contextual_features(pixels_.surface(), pixels_.gbuffer(), pixels_.pixels(), probabilities_,
+                                                style_.rules.size(), rows));
+        return features;
+    }
+
+    void learn_segments() {
+        std::vector<std::uint32_t> chosen = sample(numbers(0, rule_rows_.size()), options_.samples, options_.seed + 2);
+        std::vector<std::uint32_t> rows;
+        std::vector<std::int32_t> labels;
+        for (const std::uint32_t i : chosen) {
+            rows.push_back(rule_rows_[i]);
+            labels.push_back(segment_[i]);
+        }
+        const std::vector<std::uint8_t> held = held_out(rows, labels, options_.seed + 3);
+        double last_error = 2;
+        for (std::size_t stage = 0; stage < options_.most_stages; ++stage) {
+            const FeatureMatrix features = features_of(rows, stage > 0);
+            const LearnedClassifier learned =
+                learn_classifier({features, labels, {}, held, style_.rules.size(), false, 500, options_.seed + stage},
+                                 [&] { progress_("segments"); });
+            report_.segment_errors.push_back(learned.error);
+            // A stage that is no better ends the cascade, and is not kept.
+            if (learned.error >= last_error) break;
+            last_error = learned.error;
+            style_.segments.push_back(learned.classifier);
+            probabilities_ = view_probabilities(learned.classifier);
+            if (style_.rules.size() < 2) break;
+        }
+    }
+
+    /// Probabilities of all pixels, for contextual features and cuts.
+    std::vector<float> view_probabilities(const CalibratedStumps& classifier) {
+        const std::vector<std::uint32_t> used = used_features(classifier.stumps);
+        std::vector<std::uint32_t> which;
+        for (const std::uint32_t base : used) {
+            if (base < k_pixel_features) which.push_back(base);
+        }
+        const bool contextual = which.size() < used.size();
+        FeatureMatrix features = pixels_.scalars(which, {});
+        if (contextual) {
+            features.append(contextual_features(pixels_.surface(), pixels_.gbuffer(), pixels_.pixels(), probabilities_,
+                                                style_.rules.size(), {}));
+            for (const std::uint32_t k :
+                 numbers(k_pixel_features, k_pixel_features + contextual_feature_count(style_.rules.size())))
+                which.push_back(k);
+        }
+        return classify(classifier, which, features, scorer_);
+    }
+
+    void learn_boundary() {
+        std::vector<std::uint32_t> on = rows_where([&](std::uint32_t p) { return drawing_.boundary[p] != 0; });
+        std::vector<std::uint32_t> off = rows_where([&](std::uint32_t p) { return drawing_.boundary[p] == 0; });
+        style_.boundary.stumps.class_count = 2;
+        if (on.size() < k_least_samples || off.size() < k_least_samples) return;
+        on = sample(std::move(on), options_.samples / 2, options_.seed + 4);
+        off = sample(std::move(off), options_.samples / 2, options_.seed + 5);
+        std::vector<std::uint32_t> rows = on;
+        rows.insert(rows.end(), off.begin(), off.end());
+        std::vector<std::int32_t> labels(on.size(), 1);
+        labels.resize(rows.size(), 0);
+        // As much weight on boundaries as beside them.
+        std::vector<float> weights(on.size(), static_cast<float>(off.size()) / static_cast<float>(on.size()));
+        weights.resize(rows.size(), 1.0f);
+        const std::size_t first = k_pixel_features - k_line_features;
+        const FeatureMatrix features = pixels_.scalars(numbers(first, k_pixel_features), rows);
+        LearnedClassifier learned = learn_classifier(
+            {features, labels, weights, held_out(rows, labels, options_.seed + 6), 2, true, 300, options_.seed + 7},
+            [&] { progress_("boundaries"); });
+        for (Stump& stump : learned.classifier.stumps.stumps)
+            stump.feature += static_cast<std::uint32_t>(k_powers * first);
+        style_.boundary = learned.classifier;
+        report_.boundary_error = learned.error;
+    }
+
+    /// The label cuts of segments and of levels.
+    void learn_cuts() {
+        const std::vector<float> both = view_probabilities(style_.boundary);
+        std::vector<float> boundary(both.size() / 2);
+        for (std::size_t i = 0; i < boundary.size(); ++i) boundary[i] = both[2 * i + 1];
+        PixelCrf crf(pixels_.pixels(), drawing_.width, boundary);
+        if (style_.rules.size() > 1)
+            style_.segment_crf = learn_crf(crf, probabilities_, style_.rules.size(),
+                                           [&](std::span<const std::int32_t> labels) { return segment_error(labels); });
+        style_.level_crf = learn_crf(crf, view_probabilities(style_.levels), 3,
+                                     [&](std::span<const std::int32_t> labels) { return level_error(labels); });
+    }
+
+    /// Eq. 4.16. The sum there grows with every boundary, so that noise would win; its mean over the boundary pixels
+    /// does not. `error`: the share of labels that are not those of the drawing.
+    template <typename Error>
+    PixelCrfParameters learn_crf(PixelCrf& crf, std::span<const float> probabilities, std::size_t classes,
+                                 const Error& error) {
+        struct Trial {
+            PixelCrfParameters parameters;
+            double agreement, error;
+        };
+        std::vector<Trial> trials;
+        for (const float strength : {0.3f, 1.0f, 3.0f}) {
+            for (const float offset : {-0.7f, -1.5f, -3.0f}) {
+                const auto labels = crf.solve(probabilities, classes, {strength, offset});
+                trials.push_back({{strength, offset}, crf.boundary_agreement(labels), error(labels)});
+                progress_("label cuts");
+            }
+        }
+        // Labels must stay what the drawing says; among those that do, boundaries are to be where boundaries are
+        // likely.
+        const double least = std::ranges::min(trials, {}, &Trial::error).error;
+        std::erase_if(trials, [&](const Trial& trial) { return trial.error > least + 0.01; });
+        return std::ranges::max(trials, {}, &Trial::agreement).parameters;
+    }
+
+    double segment_error(std::span<const std::int32_t> labels) const {
+        double wrong = 0;
+        for (std::size_t i = 0; i < rule_rows_.size(); ++i) wrong += labels[rule_rows_[i]] != segment_[i] ? 1 : 0;
+        return wrong / static_cast<double>(rule_rows_.size());
+    }
+
+    double level_error(std::span<const std::int32_t> labels) const {
+        double wrong = 0;
+        for (std::uint32_t row = 0; row < labels.size(); ++row)
+            wrong += labels[row] != drawing_.level[pixel(row)] ? 1 : 0;
+        return wrong / static_cast<double>(labels.size());
+    }
+
+    void learn_levels() {
+        const std::vector<std::uint32_t> rows = sample(numbers(0, pixels_.size()), options_.samples, options_.seed + 8);
+        std::vector<std::int32_t> labels;
+        labels.reserve(rows.size());
+        for (const std::uint32_t row : rows) labels.push_back(drawing_.level[pixel(row)]);
+        const FeatureMatrix features = features_of(rows, true);
+        const LearnedClassifier learned = learn_classifier(
+            {features, labels, {}, held_out(rows, labels, options_.seed + 9), 3, false, 500, options_.seed + 10},
+            [&] { progress_("hatching levels"); });
+        style_.levels = learned.classifier;
+        report_.level_error = learned.error;
+    }
+
+    void learn_property_of(StrokeProperty property) {
+        const auto p = static_cast<std::size_t>(property);
+        const std::vector<float>& values = drawing_.property[p];
+        std::vector<std::uint32_t> rows = rows_where(
+            [&](std::uint32_t at) { return drawing_.center[at] && drawing_.level[at] > 0 && values[at] > 0; });
+        if (property == StrokeProperty::length) rows = rather_uncrossed(std::move(rows));
+        if (rows.size() < k_least_samples)
+            throw DataError(fmt::format("the {} of strokes is known at only {} pixels; the drawing has too few",
+                                        name_of(property), rows.size()));
+        rows = sample(std::move(rows), options_.samples, options_.seed + 11);
+        std::vector<float> target;
+        target.reserve(rows.size());
+        for (const std::uint32_t row : rows) target.push_back(values[pixel(row)]);
+        const FeatureMatrix features = features_of(rows, true);
+        const QuantizedFeatures quantized = quantize(features, {}, {});
+        const LearnedProperty learned =
+            learn_property({features, quantized, target, held_out(rows, {}, options_.seed + 12), quarters(rows)},
+                           [&] { progress_(name_of(property)); });
+        style_.properties[p] = learned.model;
+        if (property == StrokeProperty::length)
+            style_.properties[p].factor *= longest_share(learned.model, features, target);
+        report_.property[p] = std::sqrt(learned.error);
+    }
+
+    /// Those of strokes that cross no other, if there are many: what crosses the gaps between strokes in line makes
+    /// them look like one.
+    std::vector<std::uint32_t> rather_uncrossed(std::vector<std::uint32_t> rows) const {
+        std::vector<std::uint32_t> uncrossed;
+        for (const std::uint32_t row : rows)
+            if (!drawing_.crossed[pixel(row)]) uncrossed.push_back(row);
+        return uncrossed.size() < std::max(k_least_samples, rows.size() / 20) ? rows : uncrossed;
+    }
+
+    /// Strokes are as long as they are meant to be, or as there is room: by how much the longer ones are over the mean.
+    static float longest_share(const PropertyModel& model, const FeatureMatrix& features,
+                               std::span<const float> target) {
+        constexpr double k_quantile = 0.85;
+        std::vector<float> ratio(target.size());
+        for (std::size_t i = 0; i < ratio.size(); ++i)
+            ratio[i] = target[i] / model.evaluate([&](std::uint32_t k) {
+                return power_of(features.column(k / k_powers)[i], k % k_powers);
+            });
+        const auto at = ratio.begin() + static_cast<std::ptrdiff_t>(k_quantile * static_cast<double>(ratio.size() - 1));
+        std::ranges::nth_element(ratio, at);
+        return *at;
+    }
+
+    PixelFeatures& pixels_;
+    const DrawingProperties& drawing_;
+    StumpScorer& scorer_;
+    const StyleLearningOptions& options_;
+    StyleReport& report_;
+    const std::function<void(const char*)>& progress_;
+    HatchingStyle style_;
+    std::vector<std::uint32_t> rule_rows_;  // rows of the strokes that rules are learned from
+    std::vector<std::int32_t> segment_;     // of each of them
+    std::vector<float> probabilities_;      // of segments, of all pixels
+    Stopwatch watch_;
+};
+
+}  // namespace
+
+HatchingStyle learn_hatching_style(PixelFeatures& pixels, const DrawingProperties& drawing, StumpScorer& scorer,
+                                   const StyleLearningOptions& options, StyleReport& report,
+                                   const std::function<void(const char*)>& progress) {
+    if (drawing.width != pixels.view().width || drawing.height != pixels.view().height)
+        throw UsageError(fmt::format("the drawing has {} x {} pixels, the view {} x {}", drawing.width, drawing.height,
+                                     pixels.view().width, pixels.view().height));
+    return Learning(pixels, drawing, scorer, options, report, progress).run();
+}
+
+}  // namespace exemplar

@@ -1,0 +1,61 @@
+#include "host/labeling/category/category_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "host/core/errors.h"
+
+namespace exemplar {
+namespace {
+
+std::vector<float> softmax(std::span<const double> scores, double sharpness) {
+    const double most = std::ranges::max(scores);
+    double sum = 0;
+    for (const double score : scores) sum += std::exp(sharpness * (score - most));
+    std::vector<float> probability;
+    for (const double score : scores)
+        probability.push_back(static_cast<float>(std::exp(sharpness * (score - most)) / sum));
+    return probability;
+}
+
+}  // namespace
+
+std::vector<double> CategoryScores::of(std::span<const float> descriptor) const {
+    const std::size_t count = mean.size();
+    std::vector<double> squashed(count);
+    for (std::size_t k = 0; k < count; ++k)
+        squashed[k] = std::tanh((static_cast<double>(descriptor[k]) - static_cast<double>(mean[k])) *
+                                static_cast<double>(inverse_deviation[k]));
+    std::vector<double> scores(offset.begin(), offset.end());
+    for (std::size_t c = 0; c < scores.size(); ++c)
+        for (std::size_t k = 0; k < count; ++k) scores[c] += static_cast<double>(weights[c * count + k]) * squashed[k];
+    return scores;
+}
+
+double category_evidence(std::span<const double> scores) {
+    std::vector<double> sorted(scores.begin(), scores.end());
+    std::ranges::partial_sort(sorted, sorted.begin() + 2, std::greater<>());
+    return 2 * sorted[0] - sorted[1];
+}
+
+CategoryOpinion recognize(const CategoryModel& model, const ShapeDescriptor& shape) {
+    if (shape.features != model.features || shape.values.size() != model.scores.mean.size())
+        throw UsageError(
+            "a shape's category cannot be recognized by other features than those learned from; compute them with the "
+            "options of the model");
+    const std::vector<double> scores = model.scores.of(shape.values);
+    CategoryOpinion opinion;
+    opinion.probability = softmax(scores, model.sharpness);
+    const double log_odds = model.evidence_slope * category_evidence(scores) + model.evidence_offset;
+    opinion.confidence = static_cast<float>(1 / (1 + std::exp(-log_odds)));
+    if (static_cast<double>(opinion.confidence) >= model.least_confidence)
+        opinion.category = static_cast<std::int32_t>(std::ranges::max_element(scores) - scores.begin());
+    return opinion;
+}
+
+CategoryOpinion recognize(const CategoryModel& model, const MeshFeatures& features) {
+    return recognize(model, compute_shape_descriptor(features));
+}
+
+}  // namespace exemplar

@@ -1,0 +1,55 @@
+#include "host/labeling/category/descriptor_cache.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "host/data/result_cache.h"
+#include "host/labeling/features/feature_cache.h"
+#include "host/labeling/inference/mesh_labeling.h"
+
+namespace exemplar {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+fs::path descriptor_path(const TriangleMesh& mesh, const FeatureOptions& options, const fs::path& folder) {
+    return folder / fmt::format("{}-v{}-s{}{}-shape{}.safetensors", content_hash(mesh), k_feature_version,
+                                options.samples, options.orientation ? "-oriented" : "", k_shape_descriptor_version);
+}
+
+ShapeDescriptor from_file(const TensorFile& file) {
+    ShapeDescriptor shape;
+    shape.features = Json::parse(file.meta("features")).get<std::vector<std::string>>();
+    shape.values = file.get<float>("values", {k_shape_statistics, shape.features.size()});
+    return shape;
+}
+
+TensorFile to_file(const ShapeDescriptor& shape) {
+    TensorFile file;
+    file.metadata["features"] = Json(shape.features).dump();
+    file.add("values", {k_shape_statistics, shape.features.size()}, shape.values);
+    return file;
+}
+
+}  // namespace
+
+ShapeDescriptor cached_shape_descriptor(const TriangleMesh& mesh, const FeatureOptions& options,
+                                        const fs::path& folder) {
+    const TriangleMesh working = working_mesh(mesh).mesh;
+    if (folder.empty()) return compute_shape_descriptor(compute_features(working, options));
+    const fs::path path = descriptor_path(working, options, folder);
+    ShapeDescriptor shape;
+    if (read_cache_entry(path, k_feature_version, [&](const TensorFile& file) { shape = from_file(file); }))
+        return shape;
+    const std::optional<MeshFeatures> known = remembered_features(working, options, folder);
+    shape = compute_shape_descriptor(known ? *known : compute_features(working, options));
+    write_cache_entry(path, k_feature_version, to_file(shape));
+    return shape;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,192 @@
+#include "host/labeling/inference/labeler.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "host/core/errors.h"
+#include "host/core/interrupt.h"
+#include "host/core/stopwatch.h"
+#include "host/labeling/inference/cascade_opinion.h"
+#include "host/labeling/inference/crf.h"
+#include "host/labeling/features/edge_context.h"
+
+namespace exemplar {
+namespace {
+
+void require_features(const FeatureMatrix& matrix, const std::vector<std::string>& names, const char* what) {
+    if (matrix.cols() >= names.size() && std::equal(names.begin(), names.end(), matrix.names.begin())) return;
+    throw ModelError(fmt::format("the model was trained on other {} features ({} instead of {}); train it again", what,
+                                 names.size(), matrix.cols()));
+}
+
+using Meshes = std::span<MeshFeatures* const>;
+/// Probabilities of each mesh.
+using Scores = std::vector<std::vector<float>>;
+
+/// Scores one stage of a cascade for all meshes together; stage 0 must not see contextual columns, which the model
+/// guarantees.
+Scores score(const CalibratedStumps& stage, Meshes meshes, FeatureMatrix MeshFeatures::*matrix, StumpScorer& scorer) {
+    Scores scores;
+    scores.reserve(meshes.size());
+    std::vector<ScoredMatrix> scored;
+    for (const MeshFeatures* mesh : meshes) {
+        const FeatureMatrix& features = mesh->*matrix;
+        scores.emplace_back(features.rows * stage.stumps.class_count);
+        scored.push_back({&features, scores.back()});
+    }
+    scorer.probabilities_of_all(stage.stumps, stage.link, stage.scale, scored);
+    return scores;
+}
+
+/// One stage of the unary cascade, with the linear classifier that it is pooled with.
+Scores score_unary_stage(const LabelingModel& model, std::size_t stage, Meshes meshes, StumpScorer& scorer) {
+    Scores scores = score(model.unary[stage], meshes, &MeshFeatures::unary, scorer);
+    if (stage < model.linear.size())
+        for (std::size_t m = 0; m < meshes.size(); ++m)
+            pool(model.linear[stage], meshes[m]->unary, model.averaged_labels, scores[m]);
+    return scores;
+}
+
+/// Runs the unary cascade, stage by stage.
+Scores score_unary(const LabelingModel& model, Meshes meshes, const LabelingBackend& backend) {
+    for (const MeshFeatures* mesh : meshes) require_features(mesh->unary, model.unary_names, "face");
+    Scores scores = score_unary_stage(model, 0, meshes, backend.scorer);
+    std::vector<CascadeOpinion> opinions(meshes.size(), {model.averaged_labels, model.class_count()});
+    for (std::size_t m = 0; m < meshes.size(); ++m) opinions[m].add_stage(scores[m]);
+    const std::vector<std::string> names = context_names(model.label_names);
+    for (std::size_t stage = 1; stage < model.unary.size(); ++stage) {
+        check_interrupt();
+        std::vector<ContextMesh> contexts;
+        for (std::size_t m = 0; m < meshes.size(); ++m)
+            contexts.push_back(
+                {&meshes[m]->context, scores[m], context_columns(meshes[m]->unary, model.unary_names.size(), names)});
+        backend.context.accumulate_all(contexts, model.class_count());
+        scores = score_unary_stage(model, stage, meshes, backend.scorer);
+        for (std::size_t m = 0; m < meshes.size(); ++m) opinions[m].add_stage(scores[m]);
+    }
+    return scores;
+}
+
+/// P(boundary) of each mesh's edges.
+Scores score_boundary(const LabelingModel& model, Meshes meshes, const LabelingBackend& backend) {
+    Scores boundaries;
+    if (model.pairwise.empty()) {
+        for (const MeshFeatures* mesh : meshes) boundaries.emplace_back(mesh->edges.size(), k_even_odds);
+        return boundaries;
+    }
+    for (const MeshFeatures* mesh : meshes) require_features(mesh->pairwise, model.pairwise_names, "edge");
+    const std::vector<std::string> names = edge_context_names();
+    for (std::size_t stage = 0; stage < model.pairwise.size(); ++stage) {
+        for (std::size_t m = 0; m < boundaries.size(); ++m)  // none before the first stage
+            accumulate_edge_context(*meshes[m], boundaries[m],
+                                    context_columns(meshes[m]->pairwise, model.pairwise_names.size(), names));
+        boundaries = score(model.pairwise[stage], meshes, &MeshFeatures::pairwise, backend.scorer);
+        for (std::vector<float>& boundary : boundaries) boundary = boundary_column(boundary);
+    }
+    return boundaries;
+}
+
+/// Notes for each mesh its share of the seconds that all took, by their numbers of faces.
+void add_seconds(const char* stage, double seconds, std::span<FaceScores> scores) {
+    std::size_t all = 0;
+    for (const FaceScores& mesh : scores) all += mesh.probabilities.size();
+    for (FaceScores& mesh : scores) {
+        const double share =
+            static_cast<double>(mesh.probabilities.size()) / static_cast<double>(std::max<std::size_t>(all, 1));
+        mesh.seconds.emplace_back(stage, seconds * share);
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> edge_context_names() {
+    std::vector<std::string> names;
+    for (std::size_t bin = 0; bin < EdgeNeighborhood::k_bins; ++bin)
+        names.push_back(fmt::format("context.boundary.{}", bin));
+    return names;
+}
+
+std::vector<float> boundary_column(std::span<const float> probabilities) {
+    std::vector<float> boundary(probabilities.size() / 2);
+    for (std::size_t e = 0; e < boundary.size(); ++e) boundary[e] = probabilities[2 * e + 1];
+    return boundary;
+}
+
+std::vector<std::string> context_names(const std::vector<std::string>& label_names) {
+    constexpr std::array<const char*, k_context_measures> k_measures{
+        "geodesic", "principal0", "principal1", "principal2", "symmetry0", "symmetry1", "symmetry2"};
+    std::vector<std::string> names;
+    for (const char* measure : k_measures)
+        for (std::size_t bin = 0; bin < k_context_bins; ++bin)
+            for (const std::string& label : label_names)
+                names.push_back(fmt::format("context.{}.{}.{}", measure, bin, label));
+    return names;
+}
+
+std::span<float> context_columns(FeatureMatrix& matrix, std::size_t base, const std::vector<std::string>& names) {
+    matrix.names.resize(base);
+    matrix.names.insert(matrix.names.end(), names.begin(), names.end());
+    matrix.values.resize(matrix.cols() * matrix.rows);
+    return std::span<float>(matrix.values).subspan(base * matrix.rows, names.size() * matrix.rows);
+}
+
+void drop_context_columns(MeshFeatures& features) {
+    for (FeatureMatrix* matrix : {&features.unary, &features.pairwise}) {
+        const auto is_context = [](const std::string& name) { return name.starts_with("context."); };
+        matrix->names.erase(std::find_if(matrix->names.begin(), matrix->names.end(), is_context), matrix->names.end());
+        matrix->values.resize(matrix->cols() * matrix->rows);
+    }
+}
+
+std::vector<float> unary_probabilities(const LabelingModel& model, MeshFeatures& features,
+                                       const LabelingBackend& backend) {
+    MeshFeatures* const mesh = &features;
+    return std::move(score_unary(model, std::span(&mesh, 1), backend).front());
+}
+
+std::vector<float> boundary_probabilities(const LabelingModel& model, MeshFeatures& features,
+                                          const LabelingBackend& backend) {
+    MeshFeatures* const mesh = &features;
+    return std::move(score_boundary(model, std::span(&mesh, 1), backend).front());
+}
+
+std::vector<FaceScores> score_faces(const LabelingModel& model, std::span<MeshFeatures* const> meshes,
+                                    const LabelingBackend& backend) {
+    std::vector<FaceScores> scores(meshes.size());
+    const Stopwatch watch;
+    Scores unary = score_unary(model, meshes, backend);
+    for (std::size_t m = 0; m < meshes.size(); ++m) scores[m].probabilities = std::move(unary[m]);
+    const double unary_seconds = watch.wall();
+    add_seconds("unary", unary_seconds, scores);
+    Scores boundary = score_boundary(model, meshes, backend);
+    for (std::size_t m = 0; m < meshes.size(); ++m) scores[m].boundary = std::move(boundary[m]);
+    add_seconds("pairwise", watch.wall() - unary_seconds, scores);
+    return scores;
+}
+
+FaceLabeling cut_faces(const LabelingModel& model, const MeshFeatures& features, FaceScores scores) {
+    check_interrupt();
+    const Stopwatch watch;
+    const std::size_t classes = model.class_count();
+    FaceLabeling result;
+    result.probabilities = std::move(scores.probabilities);
+    result.seconds = std::move(scores.seconds);
+    const CrfTerms terms = make_crf_terms(features, result.probabilities, classes, scores.boundary);
+    result.label = solve_crf(features, terms, model.crf);
+    merge_small_components(features, model.crf, model.smallest_component, result.label);
+    result.confidence.reserve(result.label.size());
+    for (std::size_t f = 0; f < result.label.size(); ++f)
+        result.confidence.push_back(result.probabilities[f * classes + result.label[f]]);
+    result.seconds.emplace_back("cut", watch.wall());
+    return result;
+}
+
+FaceLabeling label_faces(const LabelingModel& model, MeshFeatures& features, const LabelingBackend& backend) {
+    MeshFeatures* const mesh = &features;
+    return cut_faces(model, features, std::move(score_faces(model, std::span(&mesh, 1), backend).front()));
+}
+
+}  // namespace exemplar

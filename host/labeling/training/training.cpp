@@ -1,0 +1,382 @@
+#include "host/labeling/training/training.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+#include "host/core/errors.h"
+#include "host/core/progress.h"
+#include "host/core/random.h"
+#include "host/core/stopwatch.h"
+#include "host/data/result_cache.h"
+#include "host/labeling/inference/cascade_opinion.h"
+#include "host/labeling/features/edge_context.h"
+#include "host/labeling/training/fold_boosting.h"
+
+namespace exemplar {
+namespace {
+
+constexpr std::size_t k_most_folds = 5;       ///< one in five held out: the thesis' 4 : 1
+constexpr std::size_t k_patches = 25;         ///< of a single training mesh, dealt to the folds
+constexpr std::size_t k_pairwise_stages = 2;  ///< base features, then with the contextual ones (App. A.2e)
+/// A unary stage may be so much worse than the one before it, out of fold, and still be kept: with few meshes the
+/// classifiers of the folds learn less from the context, which differs from mesh to mesh, than the one that sees all.
+constexpr double k_kept_unary_loss = 1.05, k_kept_pairwise_loss = 1;
+constexpr float k_sliver = 0.02F;  ///< of a label's largest piece in the mesh
+constexpr std::size_t k_none = static_cast<std::size_t>(-1);
+constexpr std::uint64_t k_unary_task = 1000, k_pairwise_task = 2000, k_fold_task = 1;
+
+using PerMesh = std::vector<std::vector<float>>;
+
+void require_trainable(const LabeledCorpus& corpus, std::size_t feature_sets) {
+    if (corpus.meshes.empty()) throw DataError("there are no training meshes");
+    if (feature_sets != corpus.meshes.size()) throw UsageError("features and training meshes differ in number");
+    if (corpus.names.size() < 2)
+        throw DataError("the training meshes have fewer than two labels: there is nothing to learn");
+    if (corpus.names.size() > k_max_classes)
+        throw DataError(fmt::format("the training meshes have {} labels, {} at most are supported", corpus.names.size(),
+                                    k_max_classes));
+}
+
+/// Patch of each face: the nearest of the first samples, counted in faces along the dual graph.
+std::vector<std::uint8_t> patches_as_folds(const MeshFeatures& features, std::size_t folds) {
+    std::vector<std::vector<std::uint32_t>> neighbors(features.face_area.size());
+    for (const auto& [a, b] : features.edges) neighbors[a].push_back(b), neighbors[b].push_back(a);
+    std::vector<std::uint8_t> fold(features.face_area.size(), 0);
+    std::vector<bool> seen(fold.size(), false);
+    std::deque<std::uint32_t> queue;
+    for (std::size_t s = 0; s < std::min(k_patches, features.context.sample_face.size()); ++s) {
+        const std::uint32_t face = features.context.sample_face[s];
+        fold[face] = static_cast<std::uint8_t>(s % folds);
+        seen[face] = true;
+        queue.push_back(face);
+    }
+    while (!queue.empty()) {
+        const std::uint32_t face = queue.front();
+        queue.pop_front();
+        for (const std::uint32_t other : neighbors[face]) {
+            if (seen[other]) continue;
+            seen[other] = true;
+            fold[other] = fold[face];
+            queue.push_back(other);
+        }
+    }
+    return fold;
+}
+
+struct Folds {
+    std::size_t count = 1;
+    std::vector<std::vector<std::uint8_t>> of_face;  ///< per mesh
+};
+
+Folds make_folds(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& features, std::uint64_t seed,
+                 TrainReport& report) {
+    const std::size_t meshes = corpus.meshes.size();
+    Folds folds;
+    if (meshes == 1) {
+        folds.count = std::clamp<std::size_t>(features[0].context.sample_face.size(), 1, k_most_folds);
+        folds.of_face = {patches_as_folds(features[0], folds.count)};
+        report.folds.assign(folds.count, {corpus.meshes[0].name + " (patches)"});
+        return folds;
+    }
+    folds.count = std::min(meshes, k_most_folds);
+    std::vector<std::size_t> order(meshes);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    Random(seed).fork(k_fold_task).shuffle(order);
+    folds.of_face.resize(meshes);
+    report.folds.resize(folds.count);
+    for (std::size_t i = 0; i < meshes; ++i) {
+        const std::size_t fold = i % folds.count;
+        folds.of_face[order[i]].assign(corpus.meshes[order[i]].label.size(), static_cast<std::uint8_t>(fold));
+        report.folds[fold].push_back(corpus.meshes[order[i]].name);
+    }
+    return folds;
+}
+
+/// Scales weights so that every mesh counts the same, however large or finely meshed it is.
+std::vector<float> normalized(std::vector<float> weight) {
+    const double total = std::accumulate(weight.begin(), weight.end(), 0.0);
+    if (total > 0)
+        for (float& w : weight) w = static_cast<float>(w / total);
+    return weight;
+}
+
+/// Weighs each label by the root of its area in place of its area: boosting would give up small parts, and labels that
+/// few meshes have, where many stumps are needed to tell them from the large ones.
+void favor_rare_labels(const LabeledCorpus& corpus, std::vector<std::vector<float>>& weights) {
+    std::vector<double> total(corpus.names.size(), 0);
+    for (std::size_t m = 0; m < weights.size(); ++m)
+        for (std::size_t f = 0; f < weights[m].size(); ++f)
+            if (const std::int32_t label = corpus.meshes[m].label[f]; label >= 0)
+                total[static_cast<std::size_t>(label)] += static_cast<double>(weights[m][f]);
+    for (std::size_t m = 0; m < weights.size(); ++m)
+        for (std::size_t f = 0; f < weights[m].size(); ++f)
+            if (const std::int32_t label = corpus.meshes[m].label[f]; label >= 0 && weights[m][f] > 0)
+                weights[m][f] /= static_cast<float>(std::sqrt(total[static_cast<std::size_t>(label)]));
+}
+
+/// One boosting task over all meshes, with its progress and its row of the report.
+FoldBoostingResult run_stage(const std::string& what, std::span<const BoostingItems> items, FoldBoostingOptions options,
+                             const TrainOptions& train, StumpScorer& scorer, TrainReport& report) {
+    options.rounds = train.rounds, options.bins = train.bins;
+    options.rows_per_mesh = train.rows_per_mesh;
+    options.feature_fraction = train.feature_fraction, options.shrinkage = train.shrinkage;
+    Progress progress("training " + what + " (rounds)", (options.folds + 1) * options.rounds);
+    const Stopwatch watch;
+    FoldBoostingResult result = boost_with_folds(items, options, scorer, [&] { progress.advance(); });
+    progress.finish();
+    report.stages.push_back(
+        {what, result.rounds, result.loss, result.stumps_loss, result.error, true, result.curve, watch.wall()});
+    return result;
+}
+
+/// A cascade to train: classifiers of which each later one also sees what the one before it said about the
+/// surroundings.
+struct Cascade {
+    std::string name;
+    std::size_t most_stages;
+    double kept_loss;          ///< a stage is kept if its loss is below so many times that of the stage before it
+    FoldBoostingOptions task;  ///< its number of features and seed are set per stage
+    std::size_t base_features, context_features;
+    std::vector<BoostingItems> items;  ///< per mesh
+    /// Fills the contextual columns of a mesh from the out-of-fold probabilities (items x classes) of the last stage.
+    std::function<void(std::size_t mesh, std::span<const float> probabilities)> add_context;
+};
+
+/// Trains stage after stage until the out-of-fold loss rises; returns the out-of-fold probabilities of the last kept
+/// one. `averaged`, if any: set to the labels of one fold, for which all stages count (see CascadeOpinion).
+PerMesh train_cascade(Cascade cascade, const TrainOptions& options, StumpScorer& scorer,
+                      std::vector<CalibratedStumps>& classifiers, std::vector<LinearOpinion>& linear,
+                      std::vector<std::uint32_t>* averaged, TrainReport& report) {
+    PerMesh kept;
+    std::vector<CascadeOpinion> opinions;
+    double last_loss = std::numeric_limits<double>::infinity();
+    const std::uint64_t first_seed = cascade.task.seed;
+    for (std::size_t stage = 0; stage < cascade.most_stages; ++stage) {
+        for (std::size_t m = 0; m < kept.size(); ++m) cascade.add_context(m, kept[m]);
+        cascade.task.features = cascade.base_features + (stage > 0 ? cascade.context_features : 0);
+        cascade.task.seed = first_seed + stage;
+        FoldBoostingResult result =
+            run_stage(fmt::format("{} {}", cascade.name, stage), cascade.items, cascade.task, options, scorer, report);
+        if (stage > 0 && !(result.loss < cascade.kept_loss * last_loss)) {
+            report.stages.back().kept = false;
+            break;
+        }
+        last_loss = result.loss;
+        kept = std::move(result.out_of_fold);
+        if (averaged && stage == 0) {
+            *averaged = result.of_one_fold;
+            opinions.assign(kept.size(), CascadeOpinion(*averaged, cascade.task.classes));
+        }
+        for (std::size_t m = 0; m < opinions.size(); ++m) opinions[m].add_stage(kept[m]);
+        classifiers.push_back(std::move(result.classifier));
+        linear.push_back(std::move(result.linear));
+    }
+    return kept;
+}
+
+/// Trains the unary cascade; returns the out-of-fold probabilities of its last kept stage.
+PerMesh train_unary(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features, const Folds& folds,
+                    const TrainOptions& options, const LabelingBackend& backend, LabelingModel& model,
+                    TrainReport& report) {
+    const std::size_t classes = corpus.names.size();
+    const std::vector<std::string> context = context_names(corpus.names);
+    std::vector<std::vector<float>> weights;
+    weights.reserve(features.size());
+    for (const MeshFeatures& mesh : features) weights.push_back(normalized(mesh.face_area));
+    favor_rare_labels(corpus, weights);
+
+    Cascade cascade{"unary", options.max_stages, k_kept_unary_loss, {}, model.unary_names.size(), context.size(), {},
+                    {}};
+    cascade.task.classes = classes;
+    cascade.task.linear = options.linear;
+    cascade.task.patience = 0;  // the error falls on when the loss rises: see docs/labeling.md
+    cascade.task.folds = folds.count;
+    cascade.task.seed = options.seed + k_unary_task;
+    for (std::size_t m = 0; m < features.size(); ++m)
+        cascade.items.push_back({&features[m].unary, corpus.meshes[m].label, weights[m], folds.of_face[m]});
+    cascade.add_context = [&](std::size_t m, std::span<const float> probabilities) {
+        backend.context.accumulate(features[m].context, probabilities, classes,
+                                   context_columns(features[m].unary, model.unary_names.size(), context));
+    };
+    return train_cascade(std::move(cascade), options, backend.scorer, model.unary, model.linear, &model.averaged_labels,
+                         report);
+}
+
+/// What the boundary classifiers learn from: per mesh and edge 0 = same label, 1 = boundary, -1 = unknown, and a weight
+/// that balances the few boundary edges against the many others (thesis Sec. 3.3.1).
+struct EdgeTargets {
+    std::vector<std::vector<std::int32_t>> label;
+    std::vector<std::vector<float>> weight;
+    std::vector<std::vector<std::uint8_t>> fold;
+    bool both = false;  ///< whether there are boundaries and edges that are none
+};
+
+EdgeTargets make_edge_targets(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& features,
+                              const Folds& folds) {
+    EdgeTargets targets;
+    std::array<double, 2> count{0, 0};
+    for (std::size_t m = 0; m < features.size(); ++m) {
+        const std::vector<std::int32_t>& face_label = corpus.meshes[m].label;
+        std::vector<std::int32_t> label;
+        std::vector<std::uint8_t> fold;
+        for (const auto& [a, b] : features[m].edges) {
+            const bool known = face_label[a] >= 0 && face_label[b] >= 0;
+            label.push_back(known ? static_cast<std::int32_t>(face_label[a] != face_label[b]) : -1);
+            fold.push_back(folds.of_face[m][a]);
+            if (known) ++count[label.back()];
+        }
+        targets.label.push_back(std::move(label));
+        targets.fold.push_back(std::move(fold));
+        targets.weight.push_back(normalized(features[m].edge_length));
+    }
+    targets.both = count[0] > 0 && count[1] > 0;
+    const double total = std::max(count[0] + count[1], 1.0);
+    for (std::size_t m = 0; m < features.size(); ++m)
+        for (std::size_t e = 0; e < targets.label[m].size(); ++e)
+            if (const std::int32_t label = targets.label[m][e]; label >= 0)
+                targets.weight[m][e] *= static_cast<float>(count[1 - label] / total);
+    return targets;
+}
+
+/// Trains the boundary classifiers; returns the out-of-fold boundary probability per edge. Where the parts of all
+/// meshes lie in separate pieces there is nothing to learn about boundaries: no classifier, and even odds as in
+/// label_faces.
+PerMesh train_pairwise(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features, const Folds& folds,
+                       const TrainOptions& options, const LabelingBackend& backend, LabelingModel& model,
+                       TrainReport& report) {
+    const EdgeTargets targets = make_edge_targets(corpus, features, folds);
+    if (!targets.both) {
+        PerMesh even;
+        for (const MeshFeatures& mesh : features) even.emplace_back(mesh.edges.size(), k_even_odds);
+        return even;
+    }
+    Cascade cascade{"pairwise",
+                    k_pairwise_stages,
+                    k_kept_pairwise_loss,
+                    {},
+                    model.pairwise_names.size(),
+                    EdgeNeighborhood::k_bins,
+                    {},
+                    {}};
+    cascade.task.binary = true;
+    cascade.task.patience = options.patience;
+    cascade.task.folds = folds.count;
+    cascade.task.seed = options.seed + k_pairwise_task;
+    for (std::size_t m = 0; m < features.size(); ++m)
+        cascade.items.push_back({&features[m].pairwise, targets.label[m], targets.weight[m], targets.fold[m]});
+    cascade.add_context = [&](std::size_t m, std::span<const float> probabilities) {
+        accumulate_edge_context(
+            features[m], boundary_column(probabilities),
+            context_columns(features[m].pairwise, model.pairwise_names.size(), edge_context_names()));
+    };
+    std::vector<LinearOpinion> none;
+    PerMesh boundary =
+        train_cascade(std::move(cascade), options, backend.scorer, model.pairwise, none, nullptr, report);
+    for (std::vector<float>& probabilities : boundary) probabilities = boundary_column(probabilities);
+    return boundary;
+}
+
+/// Area share of the smallest connected piece of each label in one mesh; 0 for labels that do not occur. Slivers of a
+/// label, far smaller than its largest piece, are slips of the annotator: they say nothing about its size.
+std::vector<float> smallest_pieces(const MeshFeatures& features, std::span<const std::int32_t> labels,
+                                   std::size_t classes) {
+    const LabelComponents pieces = label_components(features.edges, features.face_area, labels);
+    std::vector<float> largest(classes, 0), smallest(classes, 0);
+    for (std::size_t p = 0; p < pieces.label.size(); ++p)
+        if (pieces.label[p] >= 0) largest[pieces.label[p]] = std::max(largest[pieces.label[p]], pieces.area_share[p]);
+    for (std::size_t p = 0; p < pieces.label.size(); ++p) {
+        const std::int32_t label = pieces.label[p];
+        if (label < 0 || pieces.area_share[p] < k_sliver * largest[label]) continue;
+        if (smallest[label] == 0 || pieces.area_share[p] < smallest[label]) smallest[label] = pieces.area_share[p];
+    }
+    return smallest;
+}
+
+/// Per label the smallest over all meshes but `left_out`.
+std::vector<float> smallest_of_others(const PerMesh& of_mesh, std::size_t left_out) {
+    std::vector<float> smallest(of_mesh.front().size(), 0);
+    for (std::size_t m = 0; m < of_mesh.size(); ++m)
+        for (std::size_t c = 0; c < smallest.size() && m != left_out; ++c)
+            if (of_mesh[m][c] > 0 && (smallest[c] == 0 || of_mesh[m][c] < smallest[c])) smallest[c] = of_mesh[m][c];
+    return smallest;
+}
+
+std::vector<bool> touching_labels(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& features) {
+    const std::size_t classes = corpus.names.size();
+    std::vector<bool> touching(classes * classes, false);
+    for (std::size_t m = 0; m < features.size(); ++m)
+        for (const auto& [a, b] : features[m].edges) {
+            const std::int32_t x = corpus.meshes[m].label[a], y = corpus.meshes[m].label[b];
+            if (x >= 0 && y >= 0 && x != y) touching[x * classes + y] = touching[y * classes + x] = true;
+        }
+    return touching;
+}
+
+/// The labels that out-of-fold probabilities can be judged by: -1 where no other fold has a face of that label.
+std::vector<std::vector<std::int32_t>> learnable_labels(const LabeledCorpus& corpus, const Folds& folds) {
+    const std::size_t classes = corpus.names.size();
+    std::vector<std::vector<bool>> occurs(classes, std::vector<bool>(folds.count, false));  // per label and fold
+    for (std::size_t m = 0; m < corpus.meshes.size(); ++m)
+        for (std::size_t f = 0; f < folds.of_face[m].size(); ++f)
+            if (const std::int32_t label = corpus.meshes[m].label[f]; label >= 0)
+                occurs[static_cast<std::size_t>(label)][folds.of_face[m][f]] = true;
+    std::vector<std::vector<std::int32_t>> learnable;
+    for (std::size_t m = 0; m < corpus.meshes.size(); ++m) {
+        learnable.push_back(corpus.meshes[m].label);
+        for (std::int32_t& label : learnable.back())
+            if (label >= 0 && std::ranges::count(occurs[static_cast<std::size_t>(label)], true) < 2) label = -1;
+    }
+    return learnable;
+}
+
+void train_crf(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& features, const Folds& folds,
+               const PerMesh& probabilities, const PerMesh& boundary, LabelingModel& model, TrainReport& report) {
+    const std::size_t classes = corpus.names.size();
+    PerMesh smallest;
+    for (std::size_t m = 0; m < features.size(); ++m)
+        smallest.push_back(smallest_pieces(features[m], corpus.meshes[m].label, classes));
+    model.smallest_component = smallest_of_others(smallest, k_none);
+
+    const std::vector<std::vector<std::int32_t>> truth = learnable_labels(corpus, folds);
+    std::vector<CrfExample> examples;
+    for (std::size_t m = 0; m < features.size(); ++m)
+        examples.push_back({&features[m], make_crf_terms(features[m], probabilities[m], classes, boundary[m]), truth[m],
+                            smallest_of_others(smallest, features.size() > 1 ? m : k_none)});
+    const std::vector<bool> touching = touching_labels(corpus, features);
+    Progress progress("searching CRF parameters", crf_search_evaluations(classes, touching));
+    const Stopwatch watch;
+    model.crf = learn_crf(
+        examples, classes, touching, [&] { progress.advance(); }, report.crf);
+    report.crf_seconds = watch.wall();
+}
+
+}  // namespace
+
+LabelingModel train_labeling(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features,
+                             const TrainOptions& options, const LabelingBackend& backend, TrainReport& report) {
+    require_trainable(corpus, features.size());
+    report = {};
+    for (MeshFeatures& mesh : features) drop_context_columns(mesh);
+    LabelingModel model;
+    model.label_names = corpus.names;
+    for (std::size_t c = 0; c < corpus.names.size(); ++c) model.label_colors.push_back(label_color(c));
+    model.feature_options = options.features;
+    model.unary_names = features.front().unary.names;
+    model.pairwise_names = features.front().pairwise.names;
+    model.seed = options.seed;
+    for (const LabeledMesh& mesh : corpus.meshes) model.provenance.push_back(mesh.name + " " + content_hash(mesh.mesh));
+
+    const Folds folds = make_folds(corpus, features, options.seed, report);
+    const PerMesh probabilities = train_unary(corpus, features, folds, options, backend, model, report);
+    const PerMesh boundary = train_pairwise(corpus, features, folds, options, backend, model, report);
+    train_crf(corpus, features, folds, probabilities, boundary, model, report);
+    return model;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host/learn/boosting/boosting_rows.h"
+#include "host/learn/boosting/boosting_weights.h"
+#include "host/learn/boosting/subset_search.h"
+
+namespace exemplar {
+
+/// Rows whose weights are to be added up: all rows in their order, or chosen ones with copies of their weights.
+struct WeightedRows {
+    std::span<const std::uint32_t> row;  ///< row of each entry; empty: entry i is row i
+    std::span<const float> weights;      ///< panels x entries x width
+    std::span<const RowChunk> chunks;    ///< runs of entries
+};
+
+/// The rows of one side of a split, with copies of their weights.
+class RowSelection {
+  public:
+    /// Of the two sides of `split` the one with fewer rows.
+    RowSelection(const BoostingRows& rows, const SplitCandidate& split);
+
+    bool is_above() const { return above_; }
+    WeightedRows view() const { return {row_, weights_, chunks_}; }
+
+  private:
+    bool above_ = false;
+    std::vector<std::uint32_t> row_;
+    AlignedFloats weights_;
+    std::vector<RowChunk> chunks_;
+};
+
+/// Histograms of the weights for a few features: per bin and lane the sums over the rows whose own lane it is and over
+/// the others.
+class SplitHistograms {
+  public:
+    static constexpr std::size_t k_features = 16;  ///< at most; their bins are read while the weights are in cache
+
+    SplitHistograms(const BoostingRows& rows, const QuantizedFeatures& features, std::span<const std::uint32_t> list);
+
+    void clear();
+    /// Adds the weights of `added`, times the factors.
+    void add(const WeightedRows& added, const LaneFactors& factors);
+    /// Follows a change of weights: `large` are the factors of most rows, `small` those of `few`, which have their new
+    /// weights. With N the new sum of the few, the old sum H becomes (H - N / small) large + N.
+    void follow(const WeightedRows& few, const LaneFactors& small, const LaneFactors& large);
+
+    std::span<const std::uint32_t> features() const { return list_; }
+    /// The sums of the splits of feature number `index` of the list, for these lanes.
+    void split_sums(std::size_t index, std::span<const std::uint32_t> candidates, SplitSums& out) const;
+
+  private:
+    static constexpr std::size_t k_together = 4;  // features that share the first-level cache and hide latencies
+
+    /// Sums of four features: panels x four x bins x width.
+    struct Group {
+        std::size_t bins = 0;  ///< most bins of the four
+        AlignedDoubles own, other;
+    };
+
+    /// The last group repeats the last feature; what that adds up is not read.
+    std::uint32_t feature(std::size_t group, std::size_t slot) const;
+    template <int width>
+    void add_chunk(const WeightedRows& added, const RowChunk& chunk, std::size_t panel, const LaneFactors& factors,
+                   AlignedFloats& partial);
+    template <int width>
+    static void flush(const RowChunk& chunk, std::size_t panel, const LaneFactors& factors, AlignedFloats& partial,
+                      Group& totals);
+    void scale(const LaneFactors& factors);
+    void forget_rounding();
+
+    const BoostingRows* rows_;
+    const QuantizedFeatures* features_;
+    std::vector<std::uint32_t> list_;
+    std::vector<Group> groups_;
+    std::size_t most_bins_ = 0;
+};
+
+}  // namespace exemplar

@@ -1,0 +1,63 @@
+#include "host/learn/boosting/threshold_ranks.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+namespace exemplar {
+namespace {
+
+constexpr std::size_t k_block = 512;  // values ranked together: these and their ranks stay in the first-level cache
+// Up to as many thresholds, comparing with each, many values at once, is faster than searching.
+constexpr std::size_t k_most_compared = 128;
+
+template <typename Rank>
+void rank_block(std::span<const float> values, std::span<const float> thresholds, std::span<Rank> ranks) {
+    if (thresholds.size() > k_most_compared) {
+        for (std::size_t i = 0; i < values.size(); ++i)
+            ranks[i] = static_cast<Rank>(std::ranges::lower_bound(thresholds, values[i]) - thresholds.begin());
+        return;
+    }
+    std::ranges::fill(ranks, Rank{0});
+    for (const float threshold : thresholds)
+        for (std::size_t i = 0; i < values.size(); ++i) ranks[i] += values[i] > threshold ? 1 : 0;
+}
+
+// Ranks may go to memory that is slow to read: each is written once.
+template <typename Rank>
+void rank_all(std::span<const float> values, std::span<const float> thresholds, std::span<Rank> ranks) {
+    std::array<Rank, k_block> block;
+    for (std::size_t begin = 0; begin < values.size(); begin += k_block) {
+        const std::size_t count = std::min(k_block, values.size() - begin);
+        rank_block(values.subspan(begin, count), thresholds, std::span(block).first(count));
+        std::copy_n(block.begin(), count, ranks.begin() + static_cast<std::ptrdiff_t>(begin));
+    }
+}
+
+}  // namespace
+
+std::uint32_t FeatureThresholds::index_of(float threshold) const {
+    return static_cast<std::uint32_t>(std::ranges::lower_bound(thresholds, threshold) - thresholds.begin());
+}
+
+std::vector<FeatureThresholds> thresholds_of(std::span<const Stump> stumps) {
+    std::map<std::uint32_t, std::vector<float>> of_feature;
+    for (const Stump& stump : stumps) of_feature[stump.feature].push_back(stump.threshold);
+    std::vector<FeatureThresholds> result;
+    for (auto& [feature, thresholds] : of_feature) {
+        std::ranges::sort(thresholds);
+        thresholds.erase(std::unique(thresholds.begin(), thresholds.end()), thresholds.end());
+        result.push_back({feature, std::move(thresholds)});
+    }
+    return result;
+}
+
+void rank(std::span<const float> values, std::span<const float> thresholds, std::span<std::uint8_t> ranks) {
+    rank_all(values, thresholds, ranks);
+}
+
+void rank(std::span<const float> values, std::span<const float> thresholds, std::span<std::uint16_t> ranks) {
+    rank_all(values, thresholds, ranks);
+}
+
+}  // namespace exemplar

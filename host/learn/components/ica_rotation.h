@@ -1,0 +1,20 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "host/learn/components/fast_ica.h"
+
+namespace exemplar {
+
+/// Where the fixed-point iteration of FastICA ended.
+struct IcaRotation {
+    Eigen::MatrixXd rows;  ///< D x D orthogonal: component d of a white sample w is rows.row(d) * w
+    bool converged = true;
+    int iterations = 0;
+};
+
+/// The rotation that makes the components of `white` (samples x D, second moments = the identity) least Gaussian:
+/// FastICA's fixed-point iteration by the contrast, scheme, seed, iterations and tolerance of the options.
+IcaRotation find_rotation(const Eigen::MatrixXd& white, const IcaOptions& options);
+
+}  // namespace exemplar

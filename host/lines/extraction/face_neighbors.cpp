@@ -1,0 +1,63 @@
+#include "host/lines/extraction/face_neighbors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "host/core/errors.h"
+
+namespace exemplar {
+
+namespace {
+
+/// A side of a face: its edge's vertices in order, and its code (4 * face + side).
+struct Side {
+    std::uint32_t high, code;
+    bool operator<(const Side& other) const { return high != other.high ? high < other.high : code < other.code; }
+};
+
+void check(std::span<const Face> faces, std::size_t vertex_count) {
+    if (faces.size() >= k_last_neighbor / 4)
+        throw MeshError(fmt::format("{} faces are more than lines can be found on; simplify the mesh", faces.size()));
+    for (std::size_t f = 0; f < faces.size(); ++f)
+        for (const std::uint32_t v : faces[f])
+            if (v >= vertex_count)
+                throw MeshError(fmt::format("face {} names vertex {}, but there are {}", f, v, vertex_count));
+}
+
+}  // namespace
+
+std::vector<FaceNeighbors> build_face_neighbors(std::span<const Face> faces, std::size_t vertex_count) {
+    check(faces, vertex_count);
+    // All sides in rows by the lower vertex of their edge.
+    std::vector<std::uint32_t> begin(vertex_count + 1, 0);
+    const auto for_each_side = [&](auto&& use) {
+        for (std::uint32_t f = 0; f < faces.size(); ++f)
+            for (std::uint32_t i = 0; i < 3; ++i) {
+                const auto [low, high] = std::minmax(faces[f][i], faces[f][(i + 1) % 3]);
+                if (low != high) use(low, Side{high, 4 * f + i});
+            }
+    };
+    for_each_side([&](std::uint32_t low, const Side&) { ++begin[low + 1]; });
+    for (std::size_t v = 0; v < vertex_count; ++v) begin[v + 1] += begin[v];
+    std::vector<Side> sides(begin.back());
+    std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+    for_each_side([&](std::uint32_t low, const Side& side) { sides[next[low]++] = side; });
+
+    std::vector<FaceNeighbors> neighbors(faces.size(), {k_blocked_side, k_blocked_side, k_blocked_side});
+    const auto set = [&](const Side& side, std::uint32_t to) { neighbors[side.code / 4][side.code % 4] = to; };
+    for (std::size_t v = 0; v < vertex_count; ++v) {
+        std::sort(sides.begin() + begin[v], sides.begin() + begin[v + 1]);
+        for (std::uint32_t first = begin[v], last = first; first < begin[v + 1]; first = last) {
+            while (last < begin[v + 1] && sides[last].high == sides[first].high) ++last;
+            if (last - first == 1) set(sides[first], k_no_neighbor);
+            if (last - first > 2) set(sides[first], k_many_neighbors);
+            if (last - first != 2) continue;
+            set(sides[first], sides[first + 1].code);
+            set(sides[first + 1], sides[first].code);
+        }
+    }
+    return neighbors;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,259 @@
+#include "host/lines/extraction/lines.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "host/core/errors.h"
+#include "host/core/parallel.h"
+#include "host/lines/extraction/line_fields.h"
+
+namespace exemplar {
+
+namespace {
+
+constexpr std::size_t k_grain = 4096;  // faces that one thread takes at a time
+
+using Barycentric = std::array<float, 3>;
+using Corners = std::array<const LineField*, 3>;
+
+/// The segments of one face.
+struct FaceLines {
+    std::array<LineSegment, 3> segments;
+    std::size_t count = 0;
+};
+
+/// The point at t on the way from corner `edge` to the next.
+Barycentric on_edge(std::size_t edge, float t) {
+    Barycentric point{};
+    point[edge] = 1 - t;
+    point[(edge + 1) % 3] = t;
+    return point;
+}
+
+float interpolated(const Corners& corners, float LineField::*member, const Barycentric& at) {
+    return at[0] * corners[0]->*member + at[1] * corners[1]->*member + at[2] * corners[2]->*member;
+}
+
+/// Cuts from the interval [from, to] the part where the function that runs from `first` (at 0) to `last` (at 1) is not
+/// positive.
+void clip(float first, float last, float& from, float& to) {
+    if (first > 0 && last > 0) return;
+    if (!(first > 0) && !(last > 0)) {
+        to = from;
+        return;
+    }
+    const float zero = first / (first - last);
+    if (first > 0)
+        to = std::min(to, zero);
+    else
+        from = std::max(from, zero);
+}
+
+/// A point of a face with its place in it.
+struct PlacedPoint {
+    Barycentric at;
+    SegmentEnd place;
+};
+
+/// Adds the part of the segment that faces the eye and passes its test, if any.
+void add_segment(const Corners& corners, const PlacedPoint& first, const PlacedPoint& second, FaceLines& lines) {
+    const Barycentric &a = first.at, &b = second.at;
+    float from = 0, to = 1;
+    for (float LineField::*const member : {&LineField::front, &LineField::margin})
+        clip(interpolated(corners, member, a), interpolated(corners, member, b), from, to);
+    if (!(from < to)) return;
+    LineSegment& segment = lines.segments[lines.count++];
+    segment.places = {from > 0 ? k_inside_face : first.place, to < 1 ? k_inside_face : second.place};
+    for (std::size_t i = 0; i < 3; ++i) {
+        segment.ends[0][i] = a[i] + from * (b[i] - a[i]);
+        segment.ends[1][i] = a[i] + to * (b[i] - a[i]);
+    }
+    for (std::size_t end : {0, 1})
+        segment.strength[end] = interpolated(corners, &LineField::strength, segment.ends[end]);
+}
+
+/// The zero set of `value` in a face.
+void add_zero_set(const Corners& corners, FaceLines& lines) {
+    std::array<float, 3> value;
+    std::array<Vec3, 3> axis;
+    for (std::size_t i = 0; i < 3; ++i) {
+        axis[i] = corners[i]->direction;
+        value[i] = corners[i]->value;
+        if (i == 0 || !(axis[0].dot(axis[i]) < 0)) continue;
+        axis[i] = -axis[i];
+        value[i] = -value[i];
+    }
+    if (axis[1].dot(axis[2]) < 0) return;  // around an umbilic no choice of signs is continuous
+    // Nor may the sign of the first axis matter, which decides where zeros at vertices count.
+    const auto by_size = [](float a, float b) { return std::abs(a) < std::abs(b); };
+    if (axis[0] != Vec3::Zero() && *std::max_element(value.begin(), value.end(), by_size) < 0)
+        for (float& v : value) v = -v;
+    // Around the face, values turn positive on one side and negative on another, or on none.
+    std::optional<PlacedPoint> falls, rises;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const float a = value[i], b = value[(i + 1) % 3];
+        if ((a > 0) == (b > 0)) continue;
+        (a > 0 ? falls : rises) = PlacedPoint{on_edge(i, a / (a - b)), static_cast<SegmentEnd>(i)};
+    }
+    if (falls && rises) add_segment(corners, *falls, *rises, lines);
+}
+
+/// The maxima along `direction` in a face (Ohtake et al. 2004): on an edge, where the directions at its ends are
+/// opposed, and point to each other rather than away.
+void add_extrema(const Corners& corners, const std::array<Vec3, 3>& points, FaceLines& lines) {
+    std::array<PlacedPoint, 3> ends;
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (!(corners[i]->value > 0)) return;
+        const std::size_t j = (i + 1) % 3;
+        const Vec3 &a = corners[i]->direction, &b = corners[j]->direction;
+        if (!(a.dot(b) < 0 && (a - b).dot(points[j] - points[i]) > 0)) continue;
+        const float at_a = a.norm(), at_b = b.norm();
+        ends[found++] = {on_edge(i, at_a / (at_a + at_b)), static_cast<SegmentEnd>(i)};
+    }
+    constexpr PlacedPoint k_center{{1.0f / 3, 1.0f / 3, 1.0f / 3}, k_inside_face};
+    if (found == 2) add_segment(corners, ends[0], ends[1], lines);
+    if (found == 3)
+        for (const PlacedPoint& end : ends) add_segment(corners, end, k_center, lines);
+}
+
+/// Normal of a face, as long as twice its area.
+Vec3 face_cross(const LineSurface& surface, std::size_t face) {
+    const auto& [a, b, c] = surface.faces[face];
+    const Vec3& origin = surface.vertices[a];
+    return (surface.vertices[b] - origin).cross(surface.vertices[c] - origin);
+}
+
+/// Between the normals of two faces; zero if one of them has none, where the mesh is to blame and not the surface.
+float angle_between(const LineSurface& surface, std::size_t f, std::size_t g) {
+    const Vec3 a = face_cross(surface, f), b = face_cross(surface, g);
+    if (!(a.squaredNorm() > 0) || !(b.squaredNorm() > 0)) return 0;
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// The sides of face `f` that are creases, or boundaries.
+void add_edges(const LineSurface& surface, std::size_t f, LineType type, float crease_angle, FaceLines& lines) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t across = surface.neighbors[f][i];
+        float strength = 1;
+        if (type == LineType::boundaries) {
+            if (across != k_no_neighbor) continue;
+        } else if (across == k_many_neighbors) {
+            strength = std::numbers::pi_v<float>;
+        } else {
+            if (across > k_last_neighbor || across / 4 < f) continue;
+            strength = angle_between(surface, f, across / 4);
+            if (!(strength > crease_angle)) continue;
+        }
+        LineSegment& segment = lines.segments[lines.count++];
+        for (std::size_t end : {0, 1}) {
+            const std::size_t corner = (i + end) % 3;
+            segment.ends[end] = on_edge(corner, 0);
+            segment.places[end] = static_cast<SegmentEnd>(k_at_corner + corner);
+            segment.strength[end] = strength;
+        }
+    }
+}
+
+bool is_extremum(LineType type) {
+    return type == LineType::ridges || type == LineType::valleys || type == LineType::apparent_ridges;
+}
+
+/// One field per family of lines: principal highlights have two.
+std::vector<std::vector<LineField>> fields_of(const LineSurface& surface, LineType type, const LineOptions& options) {
+    switch (type) {
+        case LineType::contours:
+            return {contour_field(surface, options)};
+        case LineType::suggestive_contours:
+        case LineType::suggestive_highlights:
+            return {radial_curvature_field(surface, type, options)};
+        case LineType::ridges:
+        case LineType::valleys:
+            return {crest_field(surface, type, options)};
+        case LineType::apparent_ridges:
+            return {apparent_ridge_field(surface, options)};
+        case LineType::principal_highlights:
+            return {principal_highlight_field(surface, 0, options), principal_highlight_field(surface, 1, options)};
+        case LineType::creases:
+        case LineType::boundaries:
+            break;  // of no field
+    }
+    return {};
+}
+
+void check(const LineSurface& surface, LineType type, const LineOptions& options) {
+    const std::size_t count = surface.vertices.size();
+    const VertexCurvature& c = surface.curvature;
+    const auto expect = [&](std::size_t have, const char* what) {
+        if (have != count)
+            throw UsageError(fmt::format("{} {} for {} vertices: compute them for the same mesh", have, what, count));
+    };
+    if (type == LineType::creases || type == LineType::boundaries) {
+        if (surface.neighbors.size() != surface.faces.size())
+            throw UsageError(fmt::format("neighbors of {} faces for {}: compute them for the same mesh",
+                                         surface.neighbors.size(), surface.faces.size()));
+        return;
+    }
+    expect(surface.normals.size(), "normals");
+    if (!needs_curvature(type)) return;
+    for (const std::size_t have : {c.k1.size(), c.k2.size(), c.e1.size(), c.e2.size()}) expect(have, "curvatures");
+    expect(c.derivative.size(), "derivatives of curvature");
+    if (!(options.feature_size > 0 && std::isfinite(options.feature_size)))
+        throw UsageError(fmt::format("a feature size of {}: give a positive length", options.feature_size));
+}
+
+/// Calls use(f, lines of face f) for all faces, on all cores.
+template <typename Use>
+void for_each_face(const LineSurface& surface, LineType type, const LineOptions& options, Use&& use) {
+    check(surface, type, options);
+    const std::vector<std::vector<LineField>> fields = fields_of(surface, type, options);
+    const bool extremum = is_extremum(type);
+    parallel_for(
+        surface.faces.size(),
+        [&](std::size_t f) {
+            const auto& [a, b, c] = surface.faces[f];
+            FaceLines lines;
+            if (fields.empty()) add_edges(surface, f, type, options.thresholds.crease_angle, lines);
+            for (std::size_t family = 0; family < fields.size(); ++family) {
+                const std::vector<LineField>& field = fields[family];
+                const Corners corners = {&field[a], &field[b], &field[c]};
+                const std::size_t before = lines.count;
+                if (extremum)
+                    add_extrema(corners, {surface.vertices[a], surface.vertices[b], surface.vertices[c]}, lines);
+                else
+                    add_zero_set(corners, lines);
+                for (std::size_t i = before; i < lines.count; ++i)
+                    lines.segments[i].family = static_cast<std::uint8_t>(family);
+            }
+            use(f, lines);
+        },
+        k_grain);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> classify_faces(const LineSurface& surface, LineType type, const LineOptions& options) {
+    std::vector<std::uint8_t> carries(surface.faces.size(), 0);
+    for_each_face(surface, type, options,
+                  [&](std::size_t f, const FaceLines& lines) { carries[f] = lines.count > 0 ? 1 : 0; });
+    return carries;
+}
+
+std::vector<LineSegment> extract_lines(const LineSurface& surface, LineType type, const LineOptions& options) {
+    std::vector<FaceLines> by_face(surface.faces.size());
+    for_each_face(surface, type, options, [&](std::size_t f, const FaceLines& lines) { by_face[f] = lines; });
+    std::vector<LineSegment> segments;
+    for (std::size_t f = 0; f < by_face.size(); ++f)
+        for (std::size_t i = 0; i < by_face[f].count; ++i) {
+            segments.push_back(by_face[f].segments[i]);
+            segments.back().face = static_cast<std::uint32_t>(f);
+        }
+    return segments;
+}
+
+}  // namespace exemplar

@@ -1,0 +1,348 @@
+#include "host/lines/strokes/visibility.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "host/core/disjoint_sets.h"
+#include "host/core/errors.h"
+#include "host/core/parallel.h"
+
+namespace exemplar {
+
+namespace {
+
+constexpr std::size_t k_grain = 64;           // segments that one thread takes at a time
+constexpr float k_near_edges = 3;             // how far faces nearby may be overlooked, in edges of the point's face
+constexpr float k_touching_edges = 1e-3f;     // the same for faces that touch that of the point, of any line
+constexpr float k_precision = 0.05f;          // pixels to which changes of visibility are found
+constexpr std::size_t k_most_samples = 4096;  // of one segment
+constexpr float k_same_pixels = 0.01f;        // apart, two points along a chain are one
+constexpr int k_most_hits = 64;               // that are overlooked on one ray
+
+TriangleMesh mesh_of(const LineSurface& surface) {
+    TriangleMesh mesh;
+    mesh.vertices.assign(surface.vertices.begin(), surface.vertices.end());
+    mesh.faces.assign(surface.faces.begin(), surface.faces.end());
+    return mesh;
+}
+
+const LineSurface& checked(const LineSurface& surface) {
+    if (surface.normals.size() != surface.vertices.size())
+        throw UsageError(fmt::format("{} normals for {} vertices: compute them for the same mesh",
+                                     surface.normals.size(), surface.vertices.size()));
+    return surface;
+}
+
+/// For each face whether no face that it is connected with, across edges, has a free side.
+std::vector<std::uint8_t> closed_components(std::span<const FaceNeighbors> neighbors) {
+    DisjointSets sets(neighbors.size());
+    for (std::uint32_t f = 0; f < neighbors.size(); ++f)
+        for (const std::uint32_t across : neighbors[f])
+            if (across <= k_last_neighbor) sets.join(f, across / 4);
+    std::vector<std::uint8_t> closed_set(neighbors.size(), 1), closed(neighbors.size());
+    for (std::uint32_t f = 0; f < neighbors.size(); ++f)
+        for (const std::uint32_t across : neighbors[f])
+            if (across == k_no_neighbor) closed_set[sets.find(f)] = 0;
+    for (std::uint32_t f = 0; f < neighbors.size(); ++f) closed[f] = closed_set[sets.find(f)];
+    return closed;
+}
+
+}  // namespace
+
+LineVisibility::LineVisibility(const LineSurface& surface)
+    : surface_(checked(surface)), rays_(mesh_of(surface)), vertex_begin_(surface.vertices.size() + 1, 0) {
+    closed_ = surface.neighbors.size() == surface.faces.size()
+                  ? closed_components(surface.neighbors)
+                  : closed_components(build_face_neighbors(surface.faces, surface.vertices.size()));
+    for (const Face& face : surface.faces)
+        for (const std::uint32_t v : face) ++vertex_begin_[v + 1];
+    for (std::size_t v = 1; v < vertex_begin_.size(); ++v) vertex_begin_[v] += vertex_begin_[v - 1];
+    vertex_faces_.resize(3 * surface.faces.size());
+    std::vector<std::uint32_t> next = vertex_begin_;
+    for (std::uint32_t f = 0; f < surface.faces.size(); ++f)
+        for (const std::uint32_t v : surface.faces[f]) vertex_faces_[next[v]++] = f;
+    float largest = 0;
+    for (const Vec3& p : surface.vertices) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+    rounding_ = 8 * std::numeric_limits<float>::epsilon() * largest;
+}
+
+bool LineVisibility::touch(std::uint32_t face, std::uint32_t other) const {
+    for (const std::uint32_t a : surface_.faces[face])
+        for (const std::uint32_t b : surface_.faces[other])
+            if (a == b) return true;
+    return false;
+}
+
+bool LineVisibility::are_near(std::uint32_t face, std::uint32_t other) const {
+    for (const std::uint32_t v : surface_.faces[other])
+        for (const std::uint32_t between : faces_at(v))
+            if (touch(face, between)) return true;
+    return false;
+}
+
+/// The points of one segment, tested against the eye of one camera.
+class LineVisibility::Query {
+  public:
+    Query(const LineVisibility& scene, LineType type, const LineSegment& segment, const Camera& camera,
+          const Eigen::Matrix4f& matrix, int width, int height, const VisibilityOptions& options)
+        : scene_(scene),
+          segment_(segment),
+          camera_(camera),
+          matrix_(matrix),
+          face_(scene.surface_.faces[segment.face]) {
+        room_ = {1 + 2 * options.margin / static_cast<float>(width),
+                 1 + 2 * options.margin / static_cast<float>(height)};
+        const auto corner = [&](std::size_t i) -> const Vec3& { return scene.surface_.vertices[face_[i]]; };
+        cross_ = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+        for (std::size_t i = 0; i < 3; ++i) longest_ = std::max(longest_, (corner((i + 1) % 3) - corner(i)).norm());
+        edge_ = type == LineType::creases || type == LineType::boundaries;
+        contour_bends_away_ = type == LineType::contours && bends_away();
+        contour_ = type == LineType::contours;
+    }
+
+    /// The point at t on the way from the first end to the second.
+    Vec3 point(float t) const {
+        Vec3 p = Vec3::Zero();
+        for (std::size_t i = 0; i < 3; ++i) p += weight(i, t) * scene_.surface_.vertices[face_[i]];
+        return p;
+    }
+    bool visible(float t) const {
+        const Vec3 p = point(t);
+        const Eigen::Vector4f clip = matrix_ * p.homogeneous();
+        const float w = clip.w();
+        if (!(w > 0 && clip.z() >= 0 && clip.z() <= w)) return false;
+        if (std::abs(clip.x()) > w * room_.x() || std::abs(clip.y()) > w * room_.y()) return false;
+        return !hidden(p, t);
+    }
+
+  private:
+    float weight(std::size_t corner, float t) const {
+        const float a = segment_.ends[0][corner], b = segment_.ends[1][corner];
+        return a + t * (b - a);
+    }
+    /// Whether the surface bends away from the ray at a contour, which then passes in front of it: radial curvature is
+    /// positive. Measured curvature says so more steadily than the normals of one face do.
+    bool bends_away() const {
+        const VertexCurvature& c = scene_.surface_.curvature;
+        if (c.k1.size() != scene_.surface_.vertices.size()) return grows_to_eye();
+        float bend = 0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::uint32_t v = face_[i];
+            const Vec3 to_eye = camera_.to_eye(scene_.surface_.vertices[v]);
+            const float along_1 = c.e1[v].dot(to_eye), along_2 = c.e2[v].dot(to_eye);
+            bend += weight(i, 0.5f) * (c.k1[v] * along_1 * along_1 + c.k2[v] * along_2 * along_2);
+        }
+        return bend > 0;
+    }
+    /// The same without curvature: n.w, which is linear in the face, grows towards the eye.
+    bool grows_to_eye() const {
+        // Its gradient, times the squared length of the cross product, which is positive.
+        Vec3 gradient = Vec3::Zero();
+        const auto& surface = scene_.surface_;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Vec3 &a = surface.vertices[face_[(i + 1) % 3]], &b = surface.vertices[face_[(i + 2) % 3]];
+            const Vec3& p = surface.vertices[face_[i]];
+            gradient += surface.normals[face_[i]].dot(camera_.to_eye(p)) * cross_.cross(b - a);
+        }
+        return gradient.dot(camera_.to_eye(point(0.5f))) > 0;
+    }
+    /// Whether faces nearby may lie in front of the point without hiding it; see visible_parts.
+    bool overlooks_near_faces(const Vec3& to_eye, float t) const {
+        if (edge_) return false;
+        if (contour_) return contour_bends_away_ || !scene_.closed_[segment_.face];
+        float cosine = 0;
+        for (std::size_t i = 0; i < 3; ++i) cosine += weight(i, t) * scene_.surface_.normals[face_[i]].dot(to_eye);
+        return cosine > 0 && !(cross_.dot(to_eye) > 0);
+    }
+    bool hidden(const Vec3& p, float t) const {
+        const Vec3 to_eye = camera_.to_eye(p);
+        const bool overlooks = overlooks_near_faces(to_eye, t);
+        // What is nearer to the eye than the near plane is not in the picture.
+        const float to_near_plane = depth_from_near(p) / std::max(1e-6f, to_eye.dot(backward()));
+        float near = scene_.rounding_;
+        for (int hits = 0; hits < k_most_hits; ++hits) {
+            const auto hit = scene_.rays_.first_hit(p, to_eye, near);
+            if (!hit || hit->distance > to_near_plane) return false;
+            if (!is_overlooked(*hit, overlooks)) return true;
+            near = hit->distance + std::max(scene_.rounding_, hit->distance * 1e-6f);
+        }
+        return true;
+    }
+    bool is_overlooked(const RayScene::Hit& hit, bool overlooks) const {
+        if (hit.face == segment_.face) return true;
+        if (hit.distance > k_near_edges * longest_) return false;
+        if (hit.distance <= k_touching_edges * longest_ && scene_.touch(segment_.face, hit.face)) return true;
+        return overlooks && scene_.are_near(segment_.face, hit.face);
+    }
+    Vec3 backward() const { return camera_.view.block<1, 3>(2, 0).transpose(); }
+    /// From the near plane to the point, along the camera's axis.
+    float depth_from_near(const Vec3& p) const {
+        const Eigen::Matrix4f& projection = camera_.projection;
+        return -backward().dot(p) - camera_.view(2, 3) - projection(2, 3) / projection(2, 2);
+    }
+
+    const LineVisibility& scene_;
+    const LineSegment& segment_;
+    const Camera& camera_;
+    const Eigen::Matrix4f& matrix_;
+    const Face& face_;
+    Vec2 room_;
+    Vec3 cross_;
+    float longest_ = 0;
+    bool edge_ = false, contour_ = false, contour_bends_away_ = false;
+};
+
+namespace {
+
+VisiblePart turned(const VisiblePart& part, bool reversed) {
+    return reversed ? VisiblePart{1 - part.to, 1 - part.from} : part;
+}
+
+VisibleParts joined(const std::vector<std::vector<VisiblePart>>& parts) {
+    VisibleParts result;
+    for (const std::vector<VisiblePart>& of_segment : parts) {
+        result.parts.insert(result.parts.end(), of_segment.begin(), of_segment.end());
+        result.begin.push_back(static_cast<std::uint32_t>(result.parts.size()));
+    }
+    return result;
+}
+
+/// What is visible along a chain, in pixels from its start, with short gaps closed.
+std::vector<VisiblePart> spans_without_gaps(const Chain& chain, float most_pixels, const VisibleParts& visible) {
+    std::vector<VisiblePart> spans;
+    float start = 0;
+    for (const ChainLink& link : chain.links) {
+        const float length = visible.pixels[link.segment];
+        const std::span<const VisiblePart> own = visible.of(link.segment);
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            const VisiblePart part = turned(own[link.reversed ? own.size() - 1 - i : i], link.reversed);
+            const float from = start + part.from * length, to = start + part.to * length;
+            if (!spans.empty() && from - spans.back().to <= most_pixels)
+                spans.back().to = to;
+            else
+                spans.push_back({from, to});
+        }
+        start += length;
+    }
+    if (chain.closed && !spans.empty() && start - spans.back().to + spans.front().from <= most_pixels) {
+        spans.front().from = 0;
+        spans.back().to = start;
+    }
+    return spans;
+}
+
+/// The parts of a chain's segments that lie in the spans.
+void cut_to_segments(const Chain& chain, std::span<const float> pixels, const std::vector<VisiblePart>& spans,
+                     std::vector<std::vector<VisiblePart>>& parts) {
+    float start = 0;
+    std::size_t first = 0;
+    for (const ChainLink& link : chain.links) {
+        const float length = pixels[link.segment], end = start + length;
+        while (first < spans.size() && spans[first].to < start) ++first;
+        std::vector<VisiblePart> cut;
+        if (!(length > 0)) {  // a point, which should not break a span
+            if (first < spans.size() && spans[first].from <= start) parts[link.segment] = {{0, 1}};
+            continue;
+        }
+        for (std::size_t i = first; i < spans.size() && spans[i].from < end; ++i) {
+            // Ends of spans that are ends of segments must stay that, however pixels are rounded.
+            const float from = spans[i].from - k_same_pixels < start ? 0 : (spans[i].from - start) / length;
+            const float to = spans[i].to + k_same_pixels > end ? 1 : (spans[i].to - start) / length;
+            const VisiblePart part{std::min(from, 1.0f), std::max(to, 0.0f)};
+            if (part.from < part.to) cut.push_back(turned(part, link.reversed));
+        }
+        if (link.reversed) std::reverse(cut.begin(), cut.end());
+        parts[link.segment] = std::move(cut);
+        start = end;
+    }
+}
+
+/// Where between a and b, visible at exactly one of them, visibility changes.
+template <typename Visible>
+float change_between(float a, float b, bool visible_at_a, float precision, const Visible& visible) {
+    while (b - a > precision) {
+        const float middle = 0.5f * (a + b);
+        if (!(middle > a && middle < b)) break;
+        (visible(middle) == visible_at_a ? a : b) = middle;
+    }
+    return 0.5f * (a + b);
+}
+
+/// The visible parts of a segment of so many pixels.
+template <typename Visible>
+void add_parts(float pixels, float spacing, const Visible& visible, std::vector<VisiblePart>& parts) {
+    const float wanted = std::ceil(std::min(pixels / spacing, static_cast<float>(k_most_samples)));
+    const std::size_t count = std::max<std::size_t>(1, static_cast<std::size_t>(wanted));
+    const float step = 1 / static_cast<float>(count), precision = k_precision / std::max(pixels, k_precision);
+    bool before = visible(0.5f * step);
+    if (before) parts.push_back({0, 1});
+    for (std::size_t i = 1; i < count; ++i) {
+        const float t = (static_cast<float>(i) + 0.5f) * step;
+        const bool now = visible(t);
+        if (now == before) continue;
+        const float change = change_between(t - step, t, before, precision, visible);
+        if (now)
+            parts.push_back({change, 1});
+        else
+            parts.back().to = change;
+        before = now;
+    }
+}
+
+}  // namespace
+
+VisibleParts LineVisibility::visible_parts(LineType type, std::span<const LineSegment> segments, const Camera& camera,
+                                           int width, int height, const VisibilityOptions& options) const {
+    if (!(options.spacing > 0 && options.margin >= 0) || width <= 0 || height <= 0)
+        throw UsageError(fmt::format("a picture of {} x {} pixels, tested every {} pixels: give positive numbers",
+                                     width, height, options.spacing));
+    for (std::size_t s = 0; s < segments.size(); ++s)
+        if (segments[s].face >= surface_.faces.size())
+            throw UsageError(fmt::format("segment {} names face {}, but there are {}: extract the lines of this mesh",
+                                         s, segments[s].face, surface_.faces.size()));
+    const Eigen::Matrix4f matrix = camera.view_projection();
+    const Vec2 half_size(0.5f * static_cast<float>(width), 0.5f * static_cast<float>(height));
+    std::vector<std::vector<VisiblePart>> parts(segments.size());
+    std::vector<float> lengths(segments.size(), 0);
+    parallel_for(
+        segments.size(),
+        [&](std::size_t s) {
+            const Query query(*this, type, segments[s], camera, matrix, width, height, options);
+            const Eigen::Vector4f a = matrix * query.point(0).homogeneous(), b = matrix * query.point(1).homogeneous();
+            float pixels = std::numeric_limits<float>::max();  // of what passes the eye
+            if (a.w() > 0 && b.w() > 0)
+                pixels = (a.head<2>() / a.w() - b.head<2>() / b.w()).cwiseProduct(half_size).norm();
+            if (!std::isfinite(pixels)) pixels = 0;
+            if (pixels < std::numeric_limits<float>::max()) lengths[s] = pixels;
+            add_parts(
+                pixels, options.spacing, [&](float t) { return query.visible(t); }, parts[s]);
+        },
+        k_grain);
+    VisibleParts result = joined(parts);
+    result.pixels = std::move(lengths);
+    return result;
+}
+
+void close_gaps(std::span<const Chain> chains, float most_pixels, VisibleParts& visible) {
+    const std::size_t count = visible.segment_count();
+    if (visible.pixels.size() != count)
+        throw UsageError(
+            fmt::format("lengths of {} segments for the visible parts of {}", visible.pixels.size(), count));
+    std::vector<std::vector<VisiblePart>> parts(count);
+    for (std::size_t s = 0; s < count; ++s) parts[s].assign(visible.of(s).begin(), visible.of(s).end());
+    for (const Chain& chain : chains) {
+        for (const ChainLink& link : chain.links)
+            if (link.segment >= count)
+                throw UsageError(fmt::format("a chain names segment {}, but there are {}", link.segment, count));
+        cut_to_segments(chain, visible.pixels, spans_without_gaps(chain, most_pixels, visible), parts);
+    }
+    std::vector<float> pixels = std::move(visible.pixels);
+    visible = joined(parts);
+    visible.pixels = std::move(pixels);
+}
+
+}  // namespace exemplar

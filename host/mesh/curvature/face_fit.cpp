@@ -1,0 +1,97 @@
+#include "host/mesh/curvature/face_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "host/mesh/curvature/tensor_equations.h"
+
+namespace exemplar {
+
+namespace {
+
+template <std::size_t N>
+std::array<float, N> rounded(const std::array<double, N>& values) {
+    std::array<float, N> result;
+    for (std::size_t i = 0; i < N; ++i) result[i] = static_cast<float>(values[i]);
+    return result;
+}
+
+/// The part of a triangle that is nearest to each corner (Meyer et al. 2003), from its squared edge lengths; where an
+/// angle is obtuse the Voronoi cells are cut off at the opposite edge.
+std::array<float, 3> voronoi_areas(const std::array<double, 3>& squared_length, double area) {
+    const auto& l = squared_length;
+    std::array<double, 3> result;
+    const double sum = l[0] + l[1] + l[2];
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+        if (2 * l[i] >= sum) {
+            // Beside an obtuse angle at corner i a corner keeps a right triangle over half its edge to i:
+            // an eighth of that edge's squared length times the tangent of its own angle.
+            result[j] = l[k] * area / (2 * (sum - 2 * l[j]));
+            result[k] = l[j] * area / (2 * (sum - 2 * l[k]));
+            result[i] = area - result[j] - result[k];
+            return rounded(result);
+        }
+    }
+    const double scale = 1 / (32 * area);
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+        result[i] = (l[j] * (sum - 2 * l[j]) + l[k] * (sum - 2 * l[k])) * scale;
+    }
+    return rounded(result);
+}
+
+}  // namespace
+
+void measure_face(const std::array<Vec3, 3>& corners, FaceFit& fit) {
+    // In double: the products of float coordinates then neither cancel nor underflow.
+    const Vec3d p0 = corners[0].cast<double>(), p1 = corners[1].cast<double>(), p2 = corners[2].cast<double>();
+    const Vec3d e0 = p2 - p1, e1 = p0 - p2, e2 = p1 - p0;
+    const Vec3d n = e0.cross(e1);
+    const std::array<double, 3> squared = {e0.squaredNorm(), e1.squaredNorm(), e2.squaredNorm()};
+    const double longest = std::max({squared[0], squared[1], squared[2]});
+    const double twice_area = n.norm();
+    fit.normal = Vec3d::Zero();
+    fit.normal_weight = fit.corner_area = {};
+    // |n| is sine times the two edge lengths, so sine over lengths is |n| over the squares of both: over all three
+    // squares but that of the opposite edge, which is left as the corner's weight, in units of the longest. Between
+    // edges of which one is zero, fused products leave n a little above it.
+    if (squared[0] > 0 && squared[1] > 0 && squared[2] > 0) {
+        fit.normal = n / ((squared[0] / longest) * squared[1] * squared[2]);
+        for (std::size_t i = 0; i < 3; ++i) fit.normal_weight[i] = static_cast<float>(squared[i] / longest);
+    }
+    // Thinner slivers are rounding noise, and the differences of squares in voronoi_areas would vanish.
+    fit.valid = twice_area > 1e-7 * longest;
+    if (!fit.valid) return;
+
+    fit.corner_area = voronoi_areas(squared, 0.5 * twice_area);
+    const double length = std::sqrt(squared[0]), inverse = 1 / length;
+    const double along = e0.dot(e1) * inverse, height = twice_area * inverse;
+    fit.edge[0] = Vec2(static_cast<float>(length), 0.0f);
+    fit.edge[1] = Vec2(static_cast<float>(along), static_cast<float>(height));
+    fit.edge[2] = Vec2(static_cast<float>(-length - along), static_cast<float>(-height));
+    fit.frame.tangent = (e0 * inverse).cast<float>();
+    fit.frame.normal = (n / twice_area).cast<float>();
+    fit.frame.bitangent = fit.frame.normal.cross(fit.frame.tangent);
+}
+
+Form fit_form(const FaceFit& fit, const std::array<Vec3, 3>& normals) {
+    TensorEquations<3> equations;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 change = normals[(i + 2) % 3] - normals[(i + 1) % 3];
+        equations.add(fit.edge[i].x(), fit.edge[i].y(),
+                      {fit.frame.tangent.dot(change), fit.frame.bitangent.dot(change)});
+    }
+    return rounded(equations.solve());
+}
+
+FormDerivative fit_derivative(const FaceFit& fit, const std::array<Form, 3>& forms) {
+    TensorEquations<4> equations;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Form &to = forms[(i + 2) % 3], &from = forms[(i + 1) % 3];
+        equations.add(fit.edge[i].x(), fit.edge[i].y(), {to[0] - from[0], to[1] - from[1], to[2] - from[2]});
+    }
+    return rounded(equations.solve());
+}
+
+}  // namespace exemplar

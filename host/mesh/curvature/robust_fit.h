@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host/mesh/mesh.h"
+#include "host/mesh/curvature/tangent_tensors.h"
+#include "host/mesh/vertex_neighbors.h"
+
+namespace exemplar {
+
+/// What limits the pull of outliers on least-squares fits (thesis Sec. 2.2.1, Eq. 2.7 and 2.8).
+enum class RobustEstimator { none, cauchy, geman_mcclure };
+
+/// Fits of tensors in vertex frames by M-estimation (after Kalogerakis et al. 2007): at each vertex, to the changes
+/// along all edges between the vertices of its first two rings, by iteratively reweighted least squares. It starts from
+/// plain least squares; the scale of the residuals comes from their median absolute deviation.
+class RobustFits {
+  public:
+    explicit RobustFits(const VertexNeighbors& neighbors);
+
+    /// Second fundamental forms from the change of the normals. A vertex whose edges do not span its tangent plane
+    /// keeps the form it has.
+    void fit(std::span<const Vec3> vertices, const std::vector<TangentFrame>& frames, RobustEstimator estimator,
+             std::vector<Form>& forms) const;
+    /// Their derivatives from the change of the forms; a vertex without a fit keeps the one it has.
+    void fit(std::span<const Vec3> vertices, const std::vector<TangentFrame>& frames, RobustEstimator estimator,
+             const std::vector<Form>& forms, std::vector<FormDerivative>& derivatives) const;
+
+  private:
+    /// Compressed rows: the vertices of two rings around each, itself the first, and the edges between them as places
+    /// in that row.
+    std::vector<std::size_t> begin_, edge_begin_;
+    std::vector<std::uint32_t> vertex_;
+    std::vector<std::array<std::uint32_t, 2>> edge_;
+
+    template <std::size_t N, typename ValueAt, typename Result>
+    void fit_all(std::span<const Vec3> vertices, const std::vector<TangentFrame>& frames, RobustEstimator estimator,
+                 ValueAt&& value_at, std::vector<Result>& results) const;
+};
+
+}  // namespace exemplar

@@ -1,0 +1,88 @@
+#include "host/mesh/io/io.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "host/core/errors.h"
+#include "host/core/files.h"
+#include "host/core/text.h"
+#include "host/mesh/io/io_formats.h"
+#include "host/mesh/io/io_gltf_file.h"
+#include "host/mesh/io/io_text.h"
+
+namespace exemplar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 6> k_extensions{".off", ".obj", ".ply", ".stl", ".gltf", ".glb"};
+
+std::string read_content(const fs::path& path) {
+    try {
+        std::string content = read_file(path);
+        if (mesh_io::trimmed(content).empty())
+            throw MeshError(path.string() + ": the file is empty; save or copy the mesh again");
+        return content;
+    } catch (const DataError& error) {
+        throw MeshError(error.what());
+    } catch (const fs::filesystem_error& error) {
+        throw MeshError(fmt::format("{}: cannot be read: {}", path.string(), error.code().message()));
+    }
+}
+
+/// The extension that the first bytes call for; empty where they tell nothing.
+std::string_view extension_of_content(std::string_view content) {
+    if (content.starts_with("glTF")) return ".glb";
+    if (content.starts_with("ply\n") || content.starts_with("ply\r")) return ".ply";
+    if (content.starts_with("OFF") || content.starts_with("COFF") || content.starts_with("NOFF")) return ".off";
+    if (mesh_io::trimmed(content.substr(0, 64)).starts_with('{')) return ".gltf";
+    return {};
+}
+
+/// Throws if the file begins like one of another format; its own reader says more about any other trouble.
+void check_extension(std::string_view extension, std::string_view content, const std::string& name) {
+    const std::string_view found = extension_of_content(content);
+    const auto is_gltf = [](std::string_view e) { return e == ".glb" || e == ".gltf"; };
+    if (found.empty() || found == extension || (is_gltf(found) && is_gltf(extension))) return;
+    mesh_io::fail(name, fmt::format("begins like a {} file; rename it to end in {}", found.substr(1), found));
+}
+
+MeshFile read_content_as(std::string_view extension, std::string_view content, const fs::path& path) {
+    const std::string name = path.string();
+    check_extension(extension, content, name);
+    if (extension == ".off") return mesh_io::read_off(content, name);
+    if (extension == ".obj") return mesh_io::read_obj(content, name);
+    if (extension == ".ply") return mesh_io::read_ply(content, name);
+    if (extension == ".stl") return mesh_io::read_stl(content, name);
+    return mesh_io::read_gltf(content, name, path.parent_path());
+}
+
+}  // namespace
+
+std::span<const std::string_view> mesh_extensions() {
+    return k_extensions;
+}
+
+MeshFile read_mesh(const fs::path& path) {
+    const std::string extension = mesh_io::lower_case(path.extension().string());
+    if (std::ranges::find(k_extensions, extension) == k_extensions.end()) {
+        const std::vector<std::string> known(k_extensions.begin(), k_extensions.end());
+        mesh_io::fail(path.string(), fmt::format("'{}' is not a mesh format Exemplar reads; use one of {}{}", extension,
+                                                 fmt::join(known, " "), suggestion(extension, known)));
+    }
+    const std::string content = read_content(path);
+    return read_content_as(extension, content, path);
+}
+
+std::uint64_t bytes_beside(const fs::path& path) {
+    if (mesh_io::lower_case(path.extension().string()) != ".gltf") return 0;
+    try {
+        return mesh_io::gltf_bytes_beside(read_content(path), path.string());
+    } catch (const std::exception&) {  // told by read_mesh
+        return 0;
+    }
+}
+
+}  // namespace exemplar

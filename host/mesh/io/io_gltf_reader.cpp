@@ -1,0 +1,238 @@
+#include "host/mesh/io/io_gltf_reader.h"
+
+#include <fmt/format.h>
+#include <tiny_gltf.h>
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include "host/mesh/io/io_text.h"
+
+namespace exemplar::mesh_io {
+namespace {
+
+/// Copies of a mesh cost a file a few bytes each; this bounds what they may grow to.
+constexpr std::uint64_t k_free_elements = 300'000, k_elements_per_byte = 2;
+
+int gltf_type(int components) {
+    switch (components) {
+        case 1:
+            return TINYGLTF_TYPE_SCALAR;
+        case 3:
+            return TINYGLTF_TYPE_VEC3;
+        case 4:
+            return TINYGLTF_TYPE_VEC4;
+        default:
+            return TINYGLTF_TYPE_MAT4;
+    }
+}
+
+/// Little-endian unsigned integers of `size` bytes.
+std::vector<std::uint32_t> unpacked(const std::vector<unsigned char>& bytes, std::size_t size) {
+    std::vector<std::uint32_t> values(bytes.size() / size, 0);
+    for (std::size_t i = 0; i < bytes.size(); ++i) values[i / size] |= std::uint32_t{bytes[i]} << (8 * (i % size));
+    return values;
+}
+
+/// Integers of type T as the fractions that they stand for.
+template <typename T>
+std::vector<float> fractions(const std::vector<unsigned char>& bytes) {
+    std::vector<float> values(bytes.size() / sizeof(T));
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        T value;
+        std::memcpy(&value, bytes.data() + i * sizeof(T), sizeof(T));
+        values[i] = std::max(static_cast<float>(value) / static_cast<float>(std::numeric_limits<T>::max()), -1.0f);
+    }
+    return values;
+}
+
+}  // namespace
+
+GltfReader::GltfReader(const tinygltf::Model& model, const std::string& name) : model_(model), name_(name) {
+    for (const tinygltf::Buffer& buffer : model.buffers) bytes_ += buffer.data.size();
+    elements_left_ = k_free_elements + k_elements_per_byte * bytes_;
+    if (!model.asset.version.starts_with("2."))
+        fail("glTF of version " + quote(model.asset.version) + " is not supported, only 2");
+}
+
+void GltfReader::fail(const std::string& message) const {
+    mesh_io::fail(name_, message);
+}
+
+void GltfReader::fail_item(const char* what, int index, std::size_t size) const {
+    fail(fmt::format("{} {} is named, but there are {}", what, index, size));
+}
+
+std::vector<int> GltfReader::root_nodes() const {
+    if (!model_.scenes.empty()) return item(model_.scenes, std::max(model_.defaultScene, 0), "scene").nodes;
+    std::vector<bool> is_child(model_.nodes.size(), false);
+    for (const tinygltf::Node& node : model_.nodes)
+        for (int child : node.children)
+            if (child >= 0 && static_cast<std::size_t>(child) < is_child.size())
+                is_child[static_cast<std::size_t>(child)] = true;
+    std::vector<int> roots;
+    for (std::size_t i = 0; i < is_child.size(); ++i)
+        if (!is_child[i]) roots.push_back(static_cast<int>(i));
+    return roots;
+}
+
+void GltfReader::check_transform(const tinygltf::Node& node, int index) const {
+    const auto check = [&](const std::vector<double>& values, std::size_t size, const char* what) {
+        if (!values.empty() && values.size() != size)
+            fail(fmt::format("node {} has a {} of {} numbers instead of {}", index, what, values.size(), size));
+    };
+    check(node.matrix, 16, "matrix");
+    check(node.translation, 3, "translation");
+    check(node.rotation, 4, "rotation");
+    check(node.scale, 3, "scale");
+}
+
+/// `count` elements of accessor `index` from a buffer view, one right after the other; checked to lie within the
+/// view and its buffer.
+GltfReader::Bytes GltfReader::view_elements(int index, int view_index, std::size_t offset, std::size_t count,
+                                            std::size_t size) const {
+    const tinygltf::BufferView& view = item(model_.bufferViews, view_index, "buffer view");
+    const tinygltf::Buffer& buffer = item(model_.buffers, view.buffer, "buffer");
+    const std::size_t stride = view.byteStride ? view.byteStride : size;
+    const bool view_fits =
+        view.byteOffset <= buffer.data.size() && view.byteLength <= buffer.data.size() - view.byteOffset;
+    if (!view_fits) fail(fmt::format("buffer view {} reaches past the end of its buffer", view_index));
+    const bool fits = offset <= view.byteLength && count > 0 && count - 1 <= (view.byteLength - offset) / stride &&
+                      size <= view.byteLength - offset - (count - 1) * stride;
+    if (!fits) fail(fmt::format("the {} elements of accessor {} are not within its buffer view", count, index));
+    Bytes elements(count * size);
+    const unsigned char* const first = buffer.data.data() + view.byteOffset + offset;
+    for (std::size_t i = 0; i < count; ++i) std::memcpy(elements.data() + i * size, first + i * stride, size);
+    return elements;
+}
+
+/// The elements of an accessor, one right after the other, with those that its sparse part replaces.
+GltfReader::Bytes GltfReader::accessor_elements(int index, int components, std::size_t size) {
+    const tinygltf::Accessor& accessor = item(model_.accessors, index, "accessor");
+    if (accessor.type != gltf_type(components)) fail(fmt::format("accessor {} has the wrong type for its use", index));
+    if (accessor.count > elements_left_)
+        fail(
+            fmt::format("the {} elements of accessor {} are far more than the file holds; its count is wrong, or "
+                        "the scene repeats its meshes: merge or remove copies",
+                        accessor.count, index));
+    elements_left_ -= accessor.count;
+    Bytes elements;
+    if (accessor.bufferView >= 0)
+        elements = view_elements(index, accessor.bufferView, accessor.byteOffset, accessor.count, size);
+    else if (accessor.sparse.isSparse && accessor.count <= bytes_)
+        elements.resize(accessor.count * size, 0);
+    else
+        fail(fmt::format("accessor {} has neither a buffer view nor sparse values for its elements", index));
+    if (accessor.sparse.isSparse) replace_sparse(index, size, elements);
+    return elements;
+}
+
+void GltfReader::replace_sparse(int index, std::size_t size, Bytes& elements) const {
+    const tinygltf::Accessor& accessor = item(model_.accessors, index, "accessor");
+    const auto& [count, is_sparse, indices, values] = accessor.sparse;
+    if (count < 0 || indices.byteOffset < 0 || values.byteOffset < 0)
+        fail(fmt::format("the sparse part of accessor {} has a negative count or offset", index));
+    if (count == 0) return;
+    const auto number = static_cast<std::size_t>(count);
+    const std::size_t index_size = index_bytes(indices.componentType, index);
+    const std::vector<std::uint32_t> places = unpacked(
+        view_elements(index, indices.bufferView, static_cast<std::size_t>(indices.byteOffset), number, index_size),
+        index_size);
+    const Bytes replacements =
+        view_elements(index, values.bufferView, static_cast<std::size_t>(values.byteOffset), number, size);
+    for (std::size_t i = 0; i < number; ++i) {
+        if (places[i] >= accessor.count)
+            fail(fmt::format("the sparse part of accessor {} names element {}, but there are {}", index, places[i],
+                             accessor.count));
+        std::memcpy(elements.data() + places[i] * size, replacements.data() + i * size, size);
+    }
+}
+
+std::size_t GltfReader::index_bytes(int component_type, int index) const {
+    switch (component_type) {
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return 1;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return 2;
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+            return 4;
+        default:
+            fail(fmt::format("accessor {} holds indices that are no unsigned integers", index));
+    }
+}
+
+std::vector<std::uint32_t> GltfReader::integers(int accessor, int components) {
+    const std::size_t size = index_bytes(item(model_.accessors, accessor, "accessor").componentType, accessor);
+    return unpacked(accessor_elements(accessor, components, size * static_cast<std::size_t>(components)), size);
+}
+
+std::vector<float> GltfReader::numbers(int accessor, int components) {
+    const tinygltf::Accessor& source = item(model_.accessors, accessor, "accessor");
+    const auto elements = [&](std::size_t size) {
+        return accessor_elements(accessor, components, size * static_cast<std::size_t>(components));
+    };
+    if (source.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT && !source.normalized)
+        fail(fmt::format("accessor {} holds numbers that are neither floats nor normalized", accessor));
+    switch (source.componentType) {
+        case TINYGLTF_COMPONENT_TYPE_FLOAT: {
+            const Bytes bytes = elements(sizeof(float));
+            std::vector<float> values(bytes.size() / sizeof(float));
+            if (!bytes.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
+            return values;
+        }
+        case TINYGLTF_COMPONENT_TYPE_BYTE:
+            return fractions<std::int8_t>(elements(1));
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+            return fractions<std::uint8_t>(elements(1));
+        case TINYGLTF_COMPONENT_TYPE_SHORT:
+            return fractions<std::int16_t>(elements(2));
+        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+            return fractions<std::uint16_t>(elements(2));
+        default:
+            fail(fmt::format("accessor {} holds numbers of a type that cannot be normalized", accessor));
+    }
+}
+
+std::vector<Vec3> GltfReader::positions(int accessor) {
+    if (item(model_.accessors, accessor, "accessor").componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
+        fail(fmt::format("accessor {} holds positions that are no floats, which is not supported", accessor));
+    const Bytes bytes = accessor_elements(accessor, 3, sizeof(Vec3));
+    std::vector<Vec3> positions(bytes.size() / sizeof(Vec3));
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        std::memcpy(positions[i].data(), bytes.data() + i * sizeof(Vec3), sizeof(Vec3));
+    return positions;
+}
+
+bool GltfReader::has_triangles(const tinygltf::Primitive& primitive) {
+    return primitive.mode >= TINYGLTF_MODE_TRIANGLES && primitive.mode <= TINYGLTF_MODE_TRIANGLE_FAN;
+}
+
+/// Strips alternate in orientation.
+std::vector<Face> GltfReader::triangles(const tinygltf::Primitive& primitive, std::size_t vertex_count) {
+    std::vector<std::uint32_t> corners;
+    if (primitive.indices >= 0) {
+        corners = integers(primitive.indices, 1);
+        for (std::uint32_t corner : corners)
+            if (corner >= vertex_count)
+                fail(fmt::format("accessor {} names vertex {}, but there are {}", primitive.indices, corner,
+                                 vertex_count));
+    } else {
+        for (std::size_t i = 0; i < vertex_count; ++i) corners.push_back(static_cast<std::uint32_t>(i));
+    }
+    const bool separate = primitive.mode == TINYGLTF_MODE_TRIANGLES,
+               strip = primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP;
+    if (separate && corners.size() % 3) fail(fmt::format("{} corners do not make whole triangles", corners.size()));
+    std::vector<Face> faces;
+    faces.reserve(separate ? corners.size() / 3 : corners.size());
+    for (std::size_t i = 0; i + 2 < corners.size(); i += separate ? 3 : 1) {
+        Face face{corners[i], corners[i + 1], corners[i + 2]};
+        if (strip && (face[0] == face[1] || face[1] == face[2] || face[2] == face[0])) continue;
+        if (strip && i % 2) std::swap(face[1], face[2]);
+        if (!separate && !strip) face = {corners[i + 1], corners[i + 2], corners[0]};
+        faces.push_back(face);
+    }
+    return faces;
+}
+
+}  // namespace exemplar::mesh_io

@@ -1,0 +1,129 @@
+// STL: unconnected triangles as text or binary; corners at the same position become one vertex.
+#include <fmt/format.h>
+
+#include <array>
+#include <cstring>
+
+#include "host/mesh/io/io_formats.h"
+#include "host/mesh/io/io_polygons.h"
+#include "host/mesh/io/io_text.h"
+#include "host/mesh/editing/weld.h"
+
+namespace exemplar::mesh_io {
+namespace {
+
+constexpr std::size_t k_header_bytes = 80, k_count_end = 84, k_triangle_bytes = 50;
+
+std::uint32_t triangle_count_field(std::string_view content) {
+    std::array<unsigned char, 4> b;
+    std::memcpy(b.data(), content.data() + k_header_bytes, b.size());
+    return b[0] | std::uint32_t{b[1]} << 8 | std::uint32_t{b[2]} << 16 | std::uint32_t{b[3]} << 24;
+}
+
+/// Binary files may begin with "solid" too, so the size that the count field calls for goes first; with another size,
+/// a zero byte tells that the file is no text.
+bool is_binary(std::string_view content) {
+    const bool has_count = content.size() >= k_count_end;
+    if (has_count && content.size() == k_count_end + k_triangle_bytes * std::uint64_t{triangle_count_field(content)})
+        return true;
+    const std::string_view start = content.substr(0, 512);
+    return !lower_case(trimmed(start)).starts_with("solid") || start.find('\0') != std::string_view::npos;
+}
+
+/// Reads the triangles of text files; lines are as `vertex 1 0 0`, in any case.
+class AsciiStl {
+  public:
+    AsciiStl(std::string_view content, const std::string& name) : cursor_(content, name) {}
+
+    void read(PolygonList& polygons) {
+        cursor_.need_line("solid");
+        expect("solid");
+        while (cursor_.next_line()) {
+            const std::string keyword = lower_case(cursor_.word());
+            if (keyword == "facet")
+                read_facet(polygons);
+            else if (keyword == "endsolid")
+                ended_ = true;
+            else if (keyword == "solid")
+                ended_ = false;
+            else
+                cursor_.fail(fmt::format("facet or endsolid is expected, not {}", quote(keyword)));
+        }
+        if (!ended_) cursor_.fail("the file ends without endsolid; it is cut off");
+    }
+
+  private:
+    void expect(std::string_view keyword) {
+        const std::string_view word = cursor_.word();
+        if (lower_case(word) != keyword) cursor_.fail(fmt::format("{} is expected, not {}", keyword, quote(word)));
+    }
+    void read_facet(PolygonList& polygons) {
+        cursor_.need_line("outer loop");
+        expect("outer");
+        expect("loop");
+        std::array<std::uint32_t, 3> corners;
+        for (std::uint32_t& corner : corners) {
+            cursor_.need_line("a vertex");
+            expect("vertex");
+            const float x = cursor_.number("the x of a vertex"), y = cursor_.number("the y of a vertex");
+            corner = welder_.add({x, y, cursor_.number("the z of a vertex")}, polygons.vertices);
+        }
+        cursor_.need_line("endloop");
+        expect("endloop");
+        cursor_.need_line("endfacet");
+        expect("endfacet");
+        polygons.add(corners);
+    }
+    TextCursor cursor_;
+    VertexWelder welder_;
+    bool ended_ = false;
+};
+
+float little_endian_float(const char* bytes) {
+    float value;
+    std::memcpy(&value, bytes, sizeof(value));
+    return value;
+}
+
+void read_binary(std::string_view content, const std::string& name, PolygonList& polygons,
+                 std::vector<std::string>& warnings) {
+    if (content.size() < k_count_end)
+        fail(name, fmt::format("byte {}: an STL file begins with the word solid or has at least {} bytes",
+                               content.size(), k_count_end));
+    const std::uint64_t count = triangle_count_field(content), end = k_count_end + k_triangle_bytes * count;
+    if (end > content.size())
+        fail(name, fmt::format("byte {}: {} triangles need {} bytes, but the file has {}; it is cut off or no STL file",
+                               k_header_bytes, count, end, content.size()));
+    if (count == 0 && end < content.size())
+        fail(name, fmt::format("byte {}: a count of 0 triangles in a file of {} bytes; it is damaged or no STL file",
+                               k_header_bytes, content.size()));
+    if (end < content.size())
+        warnings.push_back(fmt::format("{} bytes after the last triangle were left out", content.size() - end));
+    VertexWelder welder;
+    polygons.reserve_polygons(count);
+    for (std::uint64_t t = 0; t < count; ++t) {
+        const char* const triangle = content.data() + k_count_end + k_triangle_bytes * t + 12;  // behind the normal
+        std::array<std::uint32_t, 3> corners;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const char* const p = triangle + 12 * i;
+            corners[i] = welder.add({little_endian_float(p), little_endian_float(p + 4), little_endian_float(p + 8)},
+                                    polygons.vertices);
+        }
+        polygons.add(corners);
+    }
+}
+
+}  // namespace
+
+MeshFile read_stl(std::string_view content, const std::string& name) {
+    MeshFile file;
+    PolygonList polygons;
+    if (is_binary(content))
+        read_binary(content, name, polygons, file.warnings);
+    else
+        AsciiStl(content, name).read(polygons);
+    file.mesh = std::move(polygons).triangulate(file.warnings);
+    return file;
+}
+
+}  // namespace exemplar::mesh_io

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host/mesh/queries/distance_queue.h"
+#include "host/mesh/mesh.h"
+#include "host/mesh/topology.h"
+
+namespace exemplar {
+
+/// The dual graph of a mesh: a node per face, an arc to each neighbor across an edge whose length is
+/// center -> edge midpoint -> center. Shortest paths on it approximate geodesic distances (thesis App. A.1i).
+struct DualGraph {
+    struct Arc {
+        std::uint32_t face;
+        float length;
+    };
+    std::vector<std::uint32_t> begin;  ///< F + 1 offsets into arcs
+    std::vector<Arc> arcs;
+    std::size_t face_count() const { return begin.size() - 1; }
+};
+DualGraph build_dual_graph(const TriangleMesh& mesh, const Topology& topology);
+
+/// Reusable workspace for shortest paths from one face; not thread-safe: one per thread.
+class GeodesicSearch {
+  public:
+    struct Reached {
+        std::uint32_t face;
+        float distance;
+    };
+    explicit GeodesicSearch(const DualGraph& graph);
+    /// All faces within `radius` of `source` (the source included), in order of increasing distance.
+    /// Costs only what it reaches. The span is valid until the next call.
+    std::span<const Reached> within(std::uint32_t source, float radius);
+    /// Distance from `source` to every face; infinity in other components. out.size() == face count.
+    void distances(std::uint32_t source, std::span<float> out);
+
+  private:
+    const DualGraph* graph_;
+    DistanceQueue queue_;
+    std::vector<float> distance_;  ///< infinity everywhere between calls
+    std::vector<Reached> reached_;
+};
+
+/// Distances from each source to each face: sources x F, row-major, computed in parallel.
+std::vector<float> distances_from_sources(const DualGraph& graph, std::span<const std::uint32_t> sources);
+
+/// A subset of faces that stands for the whole surface in sums over all faces.
+struct FaceSamples {
+    std::vector<std::uint32_t> face;  ///< S distinct faces
+    std::vector<float> area_share;    ///< S; the share of the surface nearest to each sample; sums to 1
+};
+/// Farthest-point samples under geodesic distance (started at the face farthest from the area centroid, so the result
+/// does not depend on face order), each weighted by the area of its geodesic Voronoi cell. Every component gets a
+/// sample, or, with fewer samples than components, the largest do and the others are left out of the shares. A
+/// component without area has a share of 0. With count
+/// >= F every face is its own sample, in order, and sums are exact. Faces count equally if all areas are zero.
+FaceSamples sample_faces(const TriangleMesh& mesh, const DualGraph& graph, std::size_t count);
+
+}  // namespace exemplar

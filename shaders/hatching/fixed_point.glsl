@@ -1,0 +1,44 @@
+// Whole numbers for positions and directions (host/hatching/placement/fixed_point.h): results are the same on every device. Here and in
+// what builds on it choices are made by selecting, not by branching: CPU drivers run both sides of a branch anyway, and some
+// take very long to compile many of them within a loop.
+#ifndef EXEMPLAR_FIXED_POINT_GLSL
+#define EXEMPLAR_FIXED_POINT_GLSL
+#include "shaders/shared/hatching.h"
+
+int dot_of(ivec2 a, ivec2 b) {
+    return a.x * b.x + a.y * b.y;
+}
+int cross_of(ivec2 a, ivec2 b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+// The root of a float is near on every device; the rest is exact.
+uint floor_sqrt(uint n) {
+    uint root = uint(sqrt(float(n)));
+    root -= uint(root * root > n);
+    return root + uint((root + 1u) * (root + 1u) <= n);
+}
+
+// a / b rounded to nearest, halves away from zero.
+ivec2 rounded_quotient(ivec2 a, uint b) {
+    return sign(a) * ivec2((uvec2(abs(a)) + b / 2u) / b);
+}
+
+// The unit vector along a vector, times k_unit; zero for none.
+ivec2 direction_of(ivec2 way) {
+    const uint size = floor_sqrt(uint(way.x * way.x) + uint(way.y * way.y));
+    return rounded_quotient(way * k_unit, max(size, 1u));
+}
+
+ivec2 moved(ivec2 from, ivec2 way, int size) {
+    return from + ((way * size + k_unit / 2) >> k_unit_bits);
+}
+
+// The finalizer of MurmurHash3 (Appleby, public domain).
+uint scatter(uint word) {
+    word = (word ^ (word >> 16)) * 0x85ebca6bu;
+    word = (word ^ (word >> 13)) * 0xc2b2ae35u;
+    return word ^ (word >> 16);
+}
+
+#endif

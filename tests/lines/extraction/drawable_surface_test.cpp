@@ -1,0 +1,59 @@
+#include "host/lines/extraction/drawable_surface.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "host/core/errors.h"
+#include "tests/support/shapes.h"
+
+namespace exemplar {
+namespace {
+
+TEST(DrawableMeshes, AreTurnedOutward) {
+    TriangleMesh mesh = shapes::box(1, 1, 1, 2);
+    EXPECT_FALSE(drawable_mesh(mesh, "box").turned);
+    const TriangleMesh outward = mesh;
+    for (Face& face : mesh.faces) std::swap(face[1], face[2]);
+    const DrawableMesh drawable = drawable_mesh(mesh, "box");
+    EXPECT_TRUE(drawable.turned);
+    EXPECT_EQ(drawable.mesh.faces, outward.faces);
+    EXPECT_THROW(drawable_mesh({}, "nothing"), MeshError);
+}
+
+TEST(DrawableMeshes, HaveOneVertexPerPlace) {
+    TriangleMesh mesh = shapes::box(1, 1, 1, 2);
+    const std::size_t places = mesh.vertex_count();
+    mesh.vertices.push_back(mesh.vertices[mesh.faces[0][0]]);
+    mesh.faces[0][0] = static_cast<std::uint32_t>(places);
+    EXPECT_EQ(drawable_mesh(mesh, "box").mesh.vertex_count(), places);
+}
+
+TEST(DrawableSurfaces, AreCutOpenAlongTheirCreases) {
+    const TriangleMesh mesh = shapes::box(1, 1, 1, 3);
+    DrawableSurface cut(mesh.faces, mesh.vertices, {1, false, 0.7f});
+    cut.measure(mesh.vertices);
+    ASSERT_NE(cut.edges(), nullptr);
+    EXPECT_EQ(cut.edges()->vertices.size(), mesh.vertex_count());
+    EXPECT_EQ(cut.surface().vertices.size(), 6 * 16);
+    for (const Vec3& normal : cut.surface().normals) EXPECT_NEAR(normal.cwiseAbs().maxCoeff(), 1, 1e-5);
+
+    DrawableSurface whole(mesh.faces, mesh.vertices, {1, false, {}});
+    whole.measure(mesh.vertices);
+    EXPECT_EQ(whole.edges(), nullptr);
+    EXPECT_EQ(whole.surface().vertices.size(), mesh.vertex_count());
+}
+
+TEST(DrawableSurfaces, AreSmoothedByTheSameWidthAsTheyGrow) {
+    const TriangleMesh mesh = shapes::icosphere(3, 1);
+    DrawableSurface surface(mesh.faces, mesh.vertices, {1, true, {}});
+    surface.measure(mesh.vertices);
+    EXPECT_NEAR(surface.surface().curvature.k1[0], 1, 0.05);
+    const TriangleMesh grown = shapes::scaled(mesh, 2);
+    surface.measure(grown.vertices);
+    EXPECT_NEAR(surface.surface().curvature.k1[0], 0.5, 0.025);
+    EXPECT_EQ(surface.surface().vertices.data(), grown.vertices.data());
+}
+
+}  // namespace
+}  // namespace exemplar

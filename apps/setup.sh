@@ -46,7 +46,7 @@ exemplar_build() {
     cmake --build "$exemplar_build" --target "${@:-all}"
 }
 
-# Vulkan's software driver wants a private folder for its sockets: one of the user's that all runs share.
+# Vulkan's software driver needs a private folder for its sockets; all runs share one of the user's.
 if [ -z "${XDG_RUNTIME_DIR:-}" ]; then
     XDG_RUNTIME_DIR=${TMPDIR:-/tmp}/exemplar-$(id -u)
     mkdir -m 700 "$XDG_RUNTIME_DIR" 2>/dev/null || [ -O "$XDG_RUNTIME_DIR" ] || XDG_RUNTIME_DIR=$(mktemp -d)

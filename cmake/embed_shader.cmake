@@ -14,8 +14,8 @@ extern const Shader ${symbol};
 file(WRITE ${folder}/${symbol}.cpp "#include \"embedded/${symbol}.h\"
 
 namespace exemplar::shaders {
-static constexpr std::uint32_t words[] = {
+static constexpr std::uint32_t ${symbol}_words[] = {
 ${words}};
-extern const Shader ${symbol}{\"${name}\", words};
+extern const Shader ${symbol}{\"${name}\", ${symbol}_words};
 }
 ")

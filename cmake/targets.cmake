@@ -2,7 +2,9 @@
 
 add_library(exemplar_options INTERFACE)
 target_include_directories(exemplar_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
-set(exemplar_warnings -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>)
+# In a batch (see exemplar_unity), GCC takes the sources for headers, whose unnamed namespaces it warns of.
+set(exemplar_warnings -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+                      $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi> $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 target_compile_options(exemplar_options INTERFACE "$<BUILD_INTERFACE:${exemplar_warnings}>")
 target_link_libraries(exemplar_options INTERFACE Threads::Threads)
 
@@ -39,25 +41,38 @@ if(EXEMPLAR_FUZZERS)
     "$<BUILD_INTERFACE:-fsanitize=fuzzer-no-link;-fsanitize-coverage-ignorelist=${exemplar_ignored_copy}>")
 endif()
 
+# exemplar_unity(TARGET): compiles the sources of TARGET several at a time. Most of the time to compile a source goes into the
+# headers of libraries, which a batch reads once (docs/building.md). EXEMPLAR_UNITY=OFF compiles each source alone.
+function(exemplar_unity target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${EXEMPLAR_UNITY} UNITY_BUILD_BATCH_SIZE ${EXEMPLAR_UNITY_BATCH})
+endfunction()
+
 # exemplar_library(NAME DIR DEPENDENCY...): the static library exemplar_NAME of all sources in DIR and its folders. Those of
 # host/ and gpu/ are noted for cmake/install.cmake.
 function(exemplar_library name dir)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${dir}/*.cpp)
   add_library(exemplar_${name} STATIC ${sources})
+  exemplar_unity(exemplar_${name})
   target_link_libraries(exemplar_${name} PUBLIC exemplar_options ${ARGN})
   string(REGEX REPLACE "/.*" "" part ${dir})
   set_property(GLOBAL APPEND PROPERTY exemplar_libraries_of_${part} exemplar_${name})
 endfunction()
 
-# exemplar_test(NAME LABEL DIR DEPENDENCY...): one GoogleTest program of all sources in tests/DIR;
-# each of its tests is a ctest entry with that label. Tests of a suite named Slow* get the label slow instead.
+# exemplar_test(NAME LABEL DIR DEPENDENCY...): one GoogleTest program of all sources in tests/DIR; each of its suites is a ctest
+# entry with that label (see list_tests.cmake). Suites named Slow* get the label slow instead.
 function(exemplar_test name label dir)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${dir}/*.cpp)
   list(FILTER sources EXCLUDE REGEX "/(programs|support)/")
   add_executable(test_${name} ${sources})
+  exemplar_unity(test_${name})
   target_link_libraries(test_${name} PRIVATE exemplar_options ${ARGN} GTest::gmock GTest::gtest GTest::gtest_main)
-  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. TEST_FILTER "-Slow*" DISCOVERY_TIMEOUT 60
-                       WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} PROPERTIES LABELS ${label} TIMEOUT 300)
-  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. TEST_FILTER "Slow*" DISCOVERY_TIMEOUT 60 TEST_LIST ${name}_slow
-                       WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} PROPERTIES LABELS slow TIMEOUT 900)
+  set(list ${CMAKE_CURRENT_BINARY_DIR}/test_${name}.cmake)
+  add_custom_command(
+    TARGET test_${name} POST_BUILD
+    COMMAND ${CMAKE_COMMAND} -D program=$<TARGET_FILE:test_${name}> -D name=${name} -D label=${label} -D folder=${PROJECT_SOURCE_DIR}
+            -D list=${list} -P ${PROJECT_SOURCE_DIR}/cmake/list_tests.cmake
+    BYPRODUCTS ${list} VERBATIM)
+  file(CONFIGURE OUTPUT test_${name}_include.cmake @ONLY CONTENT
+       "if(EXISTS \"@list@\")\n  include(\"@list@\")\nelse()\n  add_test(test_@name@_NOT_BUILT test_@name@_NOT_BUILT)\nendif()\n")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${CMAKE_CURRENT_BINARY_DIR}/test_${name}_include.cmake)
 endfunction()

@@ -11,17 +11,17 @@
 
 namespace exemplar::python {
 
-/// An animation as Python has it: never changed, with the frames of all clips one after the other.
+/// An animation in Python. It never changes; the frames of all clips are numbered one after the other.
 struct AnimationObject {
     explicit AnimationObject(Animation of) : animation(std::move(of)) {
         if (animation.frame_count() > 0) frames = select_frames(animation, {});
     }
     const Animation animation;
-    std::vector<FrameRef> frames;  ///< all of them
+    std::vector<FrameRef> frames;  ///< of all clips
 };
 using AnimationPointer = std::shared_ptr<AnimationObject>;
 
-/// A frame by its number; throws UsageError if there is none.
+/// Returns the frame of that number; throws UsageError if there is none.
 FrameRef frame_of(const AnimationObject& animation, std::int64_t frame);
 
 }  // namespace exemplar::python

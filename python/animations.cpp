@@ -19,14 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-AnimationPointer read(const fs::path& path, double frames_per_second) {
+AnimationPointer read_animation_file(const fs::path& path, double frames_per_second) {
     require_range("frames_per_second", frames_per_second, 0.1, 1000);
     return std::make_shared<AnimationObject>(
         long_result([&] { return read_animation(path, {.frames_per_second = frames_per_second}); }));
 }
 
 /// The positions of all frames (t x n x 3), one list a frame.
-std::vector<std::vector<Vec3>> frames_of(const py::object& given) {
+std::vector<std::vector<Vec3>> frames_of_array(const py::object& given) {
     const py::array positions = numbers(given, "frames", "fiu", {-1, -1, 3});
     if (positions.ndim() != 3 || positions.shape(0) == 0) throw UsageError("frames: there is none; give one or more");
     std::vector<std::vector<Vec3>> frames;
@@ -35,13 +35,13 @@ std::vector<std::vector<Vec3>> frames_of(const py::object& given) {
     return frames;
 }
 
-AnimationPointer from_arrays(const py::object& frames, const py::object& faces, double frames_per_second,
-                             std::string name) {
+AnimationPointer animation_from_arrays(const py::object& frames, const py::object& faces, double frames_per_second,
+                                       std::string name) {
     require_range("frames_per_second", frames_per_second, 0.1, 1000);
     Clip clip;
     clip.name = name;
     clip.frames_per_second = frames_per_second;
-    clip.frames = frames_of(frames);
+    clip.frames = frames_of_array(frames);
     Animation animation;
     animation.name = std::move(name);
     animation.rest.vertices = clip.frames.front();
@@ -65,7 +65,7 @@ MeshPointer mesh_at(const AnimationObject& self, std::int64_t frame) {
     return make_mesh(std::move(mesh), fmt::format("{}, frame {}", self.animation.name, frame));
 }
 
-void write(const AnimationObject& self, const fs::path& path) {
+void write_animation_file(const AnimationObject& self, const fs::path& path) {
     run_long([&] {
         if (path.extension() == ".glb")
             write_gltf_animation(path, self.animation);
@@ -96,7 +96,7 @@ void add_animations(py::module_& module) {
         "A surface that deforms: the same faces, other positions in each frame. It never changes. The frames of all\n"
         "clips are numbered from 0, one clip after the other.")
         .def(
-            py::init(&from_arrays), py::arg("frames"), py::arg("faces"), py::kw_only(),
+            py::init(&animation_from_arrays), py::arg("frames"), py::arg("faces"), py::kw_only(),
             py::arg("frames_per_second") = 30.0, py::arg("name") = "animation",
             "Makes an animation of the positions in each frame (t x n x 3 numbers) and triangles (m x 3 whole numbers\n"
             "from 0 to n - 1). Raises UsageError for other shapes or vertices that are not there, MeshError if a\n"
@@ -123,7 +123,7 @@ void add_animations(py::module_& module) {
             [](const AnimationObject& self, std::int64_t frame) { return own_view(vertices_at(self, frame)); },
             py::arg("frame"), "Positions in a frame (n x 3 float32). Raises UsageError if there is no such frame.")
         .def("mesh", &mesh_at, py::arg("frame"), "The surface in a frame. Raises UsageError if there is no such frame.")
-        .def("write", &write, py::arg("path"),
+        .def("write", &write_animation_file, py::arg("path"),
              "Writes a skeleton or blend shapes as .glb; anything as a folder of .ply files, one a frame.")
         .def("__repr__", [](const AnimationObject& self) {
             return fmt::format("<exemplar.Animation '{}': {}, {}, {}>", without_controls(self.animation.name),
@@ -132,7 +132,7 @@ void add_animations(py::module_& module) {
                                counted(self.frames.size(), "frame"));
         });
     module.def(
-        "read_animation", &read, py::arg("path"), py::kw_only(), py::arg("frames_per_second") = 30.0,
+        "read_animation", &read_animation_file, py::arg("path"), py::kw_only(), py::arg("frames_per_second") = 30.0,
         "Reads an animation: a glTF file with a skin or morph targets, a folder with a mesh a frame, or a folder of\n"
         "blend shapes. Clips of glTF files are sampled at frames_per_second (0.1 to 1000). Raises MeshError.");
 }

@@ -25,7 +25,7 @@ bool fits(const py::array& array, const std::vector<py::ssize_t>& shape) {
     return true;
 }
 
-/// The numbers of an array as others, row by row.
+/// Converts the numbers of an array to another type, row by row.
 template <typename T>
 py::array_t<T, py::array::c_style | py::array::forcecast> converted(const py::array& array, const std::string& name) {
     auto result = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(array);
@@ -33,7 +33,7 @@ py::array_t<T, py::array::c_style | py::array::forcecast> converted(const py::ar
     return result;
 }
 
-/// Whole numbers (rows x width) of which each must be from `least` to below `end`; `what` says so of one that is not.
+/// Converts to whole numbers (rows x width) from `least` to below `end`; `what` completes the message for others.
 template <typename Out>
 std::vector<Out> whole_numbers(const py::array& array, const std::string& name, std::int64_t least, std::int64_t end,
                                const std::string& what) {

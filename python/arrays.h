@@ -15,15 +15,15 @@ namespace exemplar::python {
 
 namespace py = pybind11;
 
-// Arrays that go out are views of the library's memory, without a copy: they keep what they show alive, and cannot be
-// written, as several objects may share it. Arrays that come in are checked and copied.
+// Returned arrays are views of the library's memory, without a copy. They keep that memory alive, and are read-only,
+// as several objects may share it. Arrays passed in are checked and copied.
 
-/// A Python object that keeps `owner` alive: the base of views.
+/// Returns a Python object that keeps `owner` alive: the base object of views.
 py::capsule keeper(std::shared_ptr<const void> owner);
-/// Takes the right to write from an array.
+/// Makes an array read-only.
 py::array read_only(py::array array);
 
-/// A read-only view of numbers that `owner` keeps; without strides (in bytes), row by row.
+/// Returns a read-only view of numbers that `owner` keeps alive. Strides are in bytes; none: row by row.
 template <typename T>
 py::array view(std::shared_ptr<const void> owner, const T* data, std::vector<py::ssize_t> shape,
                std::vector<py::ssize_t> strides = {}) {
@@ -31,7 +31,7 @@ py::array view(std::shared_ptr<const void> owner, const T* data, std::vector<py:
     return read_only(py::array_t<T>(std::move(shape), std::move(strides), data, keeper(std::move(owner))));
 }
 
-/// Views of lists of numbers (n), of vectors (n x 3) and of tuples (n x N).
+/// Return views of lists of numbers (n), of vectors (n x 3) and of tuples (n x N).
 template <typename T>
 py::array list_view(std::shared_ptr<const void> owner, const std::vector<T>& list) {
     return view(std::move(owner), list.data(), {static_cast<py::ssize_t>(list.size())});
@@ -46,31 +46,32 @@ py::array list_view(std::shared_ptr<const void> owner, const std::vector<std::ar
     return view(std::move(owner), reinterpret_cast<const T*>(list.data()),
                 {static_cast<py::ssize_t>(list.size()), static_cast<py::ssize_t>(N)});
 }
-/// A view of a list that nothing else owns.
+/// Returns a view that owns its list.
 template <typename List>
 py::array own_view(List list) {
     const auto owner = std::make_shared<const List>(std::move(list));
     return list_view(owner, *owner);
 }
 
-/// What was given as an array of numbers of some `kinds` ("iu": whole numbers, "fiu": any real ones) and dimensions, of
-/// which -1 is any size. Throws TypeError for other values, UsageError for another shape, both with `name`.
+/// Converts an argument to an array of numbers of the `kinds` ("iu": whole numbers, "fiu": any real ones) and of
+/// that shape, in which -1 is any size. Throws TypeError for other values, UsageError for another shape, both with
+/// `name`.
 py::array numbers(const py::object& given, const std::string& name, const std::string& kinds,
                   const std::vector<py::ssize_t>& shape);
 
-/// Points (n x 3).
+/// Converts an argument to points (n x 3).
 std::vector<Vec3> points_of(const py::object& given, const std::string& name);
-/// Triangles (m x 3), whose vertices must be there.
+/// Converts an argument to triangles (m x 3) of existing vertices.
 std::vector<Face> faces_of(const py::object& given, const std::string& name, std::size_t vertex_count);
-/// One whole number from -1 to below `names` for each of `count` faces.
+/// Converts an argument to labels: for each of `count` faces a whole number from -1 to below `names`.
 std::vector<std::int32_t> labels_of(const py::object& given, const std::string& name, std::size_t count,
                                     std::size_t names);
-/// A list of numbers.
+/// Converts an argument to a list of `count` numbers.
 std::vector<float> floats_of(const py::object& given, const std::string& name, std::size_t count);
-/// A single vector.
+/// Converts an argument to a vector.
 Vec3 vector_of(const py::object& given, const std::string& name);
 
-/// Text for Python. Names of files may be in any encoding; what is not UTF-8 becomes U+FFFD.
+/// Converts text for Python. Names of files may be in any encoding; bytes that are not UTF-8 become U+FFFD.
 py::str text(const std::string& bytes);
 py::list texts(const std::vector<std::string>& list);
 

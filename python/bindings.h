@@ -4,7 +4,7 @@
 
 namespace exemplar::python {
 
-// What the module offers, a function per subject: each adds its classes and functions to the module.
+// One function per subject; each adds its classes and functions to the module.
 
 void add_errors(pybind11::module_& module);
 void add_settings(pybind11::module_& module);

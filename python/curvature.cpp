@@ -11,8 +11,8 @@
 #include <optional>
 
 #include "host/core/text.h"
-#include "host/curvature/model/evaluation.h"
 #include "host/curvature/learning/training.h"
+#include "host/curvature/model/evaluation.h"
 #include "host/mesh/curvature/curvature_estimator.h"
 #include "host/mesh/editing/validate.h"
 #include "python/animation_object.h"
@@ -27,9 +27,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using ModelPointer = std::shared_ptr<CurvatureModel>;
+using CurvatureModelPointer = std::shared_ptr<CurvatureModel>;
 
-/// The place of a word in a list; UsageError with the nearest if it is not there.
+/// Returns the index of a word in a list; throws UsageError with the nearest word if it is not there.
 std::size_t place_of(const std::string& word, const std::string& argument, const std::vector<std::string>& words) {
     const auto at = std::ranges::find(words, word);
     if (at == words.end())
@@ -59,24 +59,25 @@ CurvaturePointer measured(const MeshObject& mesh, bool derivatives, double smoot
         require_usable(*mesh.mesh, mesh.name);
         CurvatureEstimator estimator(mesh.mesh->faces, mesh.mesh->vertex_count());
         CurvatureOptions possible = options;
-        // A mesh whose vertices are all at one place has no width to smooth by.
+        // A mesh whose vertices are all at one point has no length scale for smoothing.
         if (!(estimator.median_edge_length(mesh.mesh->vertices) > 0)) possible.smoothing = 0;
         return estimator.estimate(mesh.mesh->vertices, possible);
     }));
 }
 
 /// The frames to learn from; none: all.
-std::vector<FrameRef> frames_of(const AnimationObject& animation,
-                                const std::optional<std::vector<std::int64_t>>& chosen) {
+std::vector<FrameRef> chosen_frames(const AnimationObject& animation,
+                                    const std::optional<std::vector<std::int64_t>>& chosen) {
     if (!chosen) return animation.frames;
     std::vector<FrameRef> frames;
     for (const std::int64_t frame : *chosen) frames.push_back(frame_of(animation, frame));
     return frames;
 }
 
-ModelPointer train(const AnimationObject& animation, const std::optional<std::vector<std::int64_t>>& chosen,
-                   std::uint64_t seed, double smoothing, const std::string& robust, const std::string& learner,
-                   double variance) {
+CurvatureModelPointer train_curvature(const AnimationObject& animation,
+                                      const std::optional<std::vector<std::int64_t>>& chosen, std::uint64_t seed,
+                                      double smoothing, const std::string& robust, const std::string& learner,
+                                      double variance) {
     require_range("smoothing", smoothing, 0, 20);
     require_range("variance", variance, 0.01, 1);
     CurvatureTraining training;
@@ -85,9 +86,9 @@ ModelPointer train(const AnimationObject& animation, const std::optional<std::ve
     training.truth.robust = robust_of(robust);
     training.learner = learner_of(learner);
     training.variance = variance;
-    // As the command line has it: another fold of a cloth may show what training hardly does.
+    // As on the command line: components that are small in training may be large in other folds of cloth.
     if (animation.animation.kind == AnimationKind::sequence) training.dropped_variance = 0;
-    const std::vector<FrameRef> frames = frames_of(animation, chosen);
+    const std::vector<FrameRef> frames = chosen_frames(animation, chosen);
     return std::make_shared<CurvatureModel>(long_result([&] {
         CurvatureTrainingReport report;
         CurvatureModel model = train_curvature(animation.animation, frames, training, report);
@@ -103,7 +104,7 @@ CurvaturePointer predicted(const CurvatureModel& model, const AnimationObject& o
     const FrameRef ref = frame_of(object, frame);
     return std::make_shared<VertexCurvature>(long_result([&] {
         const Animation& animation = object.animation;
-        require_fit(model, animation);
+        require_compatible(model, animation);
         const Clip& clip = animation.clips[ref.clip];
         TriangleMesh posed = animation.rest;
         posed.vertices = frame_vertices(animation, clip, ref.frame);
@@ -114,12 +115,12 @@ CurvaturePointer predicted(const CurvatureModel& model, const AnimationObject& o
     }));
 }
 
-/// Measured as the model's truth was.
+/// Measures curvature as for the model's training.
 CurvaturePointer measured_as_truth(const CurvatureModel& model, const AnimationObject& object, std::int64_t frame) {
     const FrameRef ref = frame_of(object, frame);
     return std::make_shared<VertexCurvature>(long_result([&] {
-        require_fit(model, object.animation);
-        return MomentReader(object.animation, model.segments, model.truth).read(ref).curvature;
+        require_compatible(model, object.animation);
+        return SnapshotReader(object.animation, model.segments, model.truth).read(ref).curvature;
     }));
 }
 
@@ -152,8 +153,8 @@ void add_values(py::module_& module) {
         });
 }
 
-void add_model(py::module_& module) {
-    py::class_<CurvatureModel, ModelPointer>(
+void add_curvature_model(py::module_& module) {
+    py::class_<CurvatureModel, CurvatureModelPointer>(
         module, "CurvatureModel", "Predicts the curvature of one animated surface in any pose: see train_curvature().")
         .def_static(
             "load",
@@ -186,7 +187,7 @@ void add_model(py::module_& module) {
 
 void add_curvature(py::module_& module) {
     add_values(module);
-    add_model(module);
+    add_curvature_model(module);
     module.def(
         "curvature", &measured, py::arg("mesh"), py::kw_only(), py::arg("derivatives") = true,
         py::arg("smoothing") = 0.0, py::arg("robust") = "none",
@@ -196,7 +197,7 @@ void add_curvature(py::module_& module) {
         "empty or not finite.");
     constexpr CurvatureTraining k_usual;
     module.def(
-        "train_curvature", &train, py::arg("animation"), py::kw_only(), py::arg("frames") = py::none(),
+        "train_curvature", &train_curvature, py::arg("animation"), py::kw_only(), py::arg("frames") = py::none(),
         py::arg("seed") = k_usual.seed, py::arg("smoothing") = k_usual.truth.smoothing, py::arg("robust") = "none",
         py::arg("learner") = std::string(name_of(k_usual.learner)), py::arg("variance") = k_usual.variance,
         "Learns how the curvature of a surface follows from its pose. `frames`: numbers of the frames to learn from\n"

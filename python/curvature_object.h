@@ -6,7 +6,7 @@
 
 namespace exemplar::python {
 
-/// Curvature as Python has it: measured or learned.
+/// Curvature in Python: measured or learned.
 using CurvaturePointer = std::shared_ptr<VertexCurvature>;
 
 }  // namespace exemplar::python

@@ -23,7 +23,7 @@ std::vector<DeviceInfo> devices() {
     });
 }
 
-std::string representation(const DeviceInfo& info) {
+std::string device_representation(const DeviceInfo& info) {
     return fmt::format("<exemplar.DeviceInfo {}: {} ({}){}>", info.index, info.name, to_string(info.type),
                        info.unusable.empty() ? "" : ", cannot be used");
 }
@@ -43,7 +43,7 @@ void add_devices(py::module_& module) {
         .def_readonly("api_version", &DeviceInfo::api_version, "Of Vulkan, as \"1.3.230\".")
         .def_readonly("memory", &DeviceInfo::memory, "Bytes of its largest memory of its own.")
         .def_readonly("unusable", &DeviceInfo::unusable, "Why Exemplar cannot use it; empty if it can.")
-        .def("__repr__", &representation);
+        .def("__repr__", &device_representation);
     module.def("devices", &devices,
                "The Vulkan devices of this machine, the best first: what is used where no device is named, unless the\n"
                "environment's EXEMPLAR_DEVICE names another. Empty if there is no Vulkan driver.");

@@ -39,7 +39,7 @@ void raise(const CppError& error) {
     PyErr_SetObject(python_class<CppError>, text(error.what()).ptr());
 }
 
-/// From the derived errors to those they derive from, as catch clauses are tried in their order.
+/// Catches derived errors before their bases, as catch clauses are tried in order.
 void translate(std::exception_ptr error) {
     try {
         if (error) std::rethrow_exception(error);

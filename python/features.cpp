@@ -23,7 +23,7 @@ namespace {
 struct FeaturesObject {
     WorkingFeatures working;
     std::string mesh;        ///< its name
-    FeatureMatrix per_face;  ///< of a simplified mesh: the rows of all original faces, once they were asked for
+    FeatureMatrix per_face;  ///< of a simplified mesh: the rows of all original faces, made at first use
 
     const MeshFeatures& features() const { return working.features; }
     bool simplified() const { return features().unary.rows != working.face_of.size(); }
@@ -31,19 +31,19 @@ struct FeaturesObject {
     void require_edges() const {
         if (simplified())
             throw UsageError(fmt::format("{}: has {} faces; features of edges take {} at most: simplify it first", mesh,
-                                         working.face_of.size(), k_most_working_faces));
+                                         working.face_of.size(), k_max_working_faces));
     }
 };
 using FeaturesPointer = std::shared_ptr<FeaturesObject>;
 
-/// Feature by feature in memory, face by face to the eye: the columns of the array are contiguous.
+/// Returns a view of faces x features; its columns are contiguous in memory.
 py::array matrix_view(const std::shared_ptr<const void>& owner, const FeatureMatrix& matrix) {
     const auto rows = static_cast<py::ssize_t>(matrix.rows), columns = static_cast<py::ssize_t>(matrix.cols());
     return view(owner, matrix.values.data(), {rows, columns},
                 {static_cast<py::ssize_t>(sizeof(float)), rows * static_cast<py::ssize_t>(sizeof(float))});
 }
 
-/// The rows of a matrix that stand for each of the original faces.
+/// Returns a row for each original face: that of its simplified face.
 FeatureMatrix gathered(const FeatureMatrix& matrix, const std::vector<std::uint32_t>& face_of) {
     FeatureMatrix result{face_of.size(), matrix.names, {}};
     result.values.reserve(matrix.cols() * face_of.size());
@@ -62,7 +62,7 @@ py::array face_values(const FeaturesPointer& self) {
 
 FeaturesPointer features(const MeshObject& mesh, std::int64_t samples, bool orientation,
                          const std::filesystem::path& cache) {
-    require_range("samples", samples, std::int64_t{1}, static_cast<std::int64_t>(k_most_samples));
+    require_range("samples", samples, std::int64_t{1}, static_cast<std::int64_t>(k_max_samples));
     const FeatureOptions options{static_cast<std::size_t>(samples), orientation};
     auto result = std::make_shared<FeaturesObject>();
     result->mesh = mesh.name;

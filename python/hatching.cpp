@@ -13,10 +13,10 @@
 #include "gpu/hatching/hatching_device.h"
 #include "host/core/text.h"
 #include "host/hatching/drawing/aligned_drawing.h"
+#include "host/hatching/features/surface_cache.h"
 #include "host/hatching/hatching_drawing.h"
 #include "host/hatching/style/hatching_style.h"
 #include "host/hatching/style/style_learning.h"
-#include "host/hatching/features/surface_cache.h"
 #include "host/hatching/view_hatching.h"
 #include "host/imaging/png.h"
 #include "host/mesh/editing/loose_vertices.h"
@@ -132,7 +132,7 @@ py::array example(Scene& scene, const std::string& rule, std::uint64_t seed) {
     }));
 }
 
-StylePointer train(Scene& scene, const py::object& drawing, std::uint64_t seed) {
+StylePointer train_hatching(Scene& scene, const py::object& drawing, std::uint64_t seed) {
     const bool is_file = py::isinstance<py::str>(drawing) || py::hasattr(drawing, "__fspath__");
     const fs::path path = is_file ? drawing.cast<fs::path>() : fs::path();
     const Image given = is_file ? Image() : image_of(drawing, "drawing");
@@ -148,8 +148,8 @@ StylePointer train(Scene& scene, const py::object& drawing, std::uint64_t seed) 
     }));
 }
 
-HatchedPointer draw(Scene& scene, const HatchingStyle& style, const std::vector<std::string>& curves, double taper,
-                    bool tone, std::uint64_t seed) {
+HatchedPointer draw_hatching(Scene& scene, const HatchingStyle& style, const std::vector<std::string>& curves,
+                             double taper, bool tone, std::uint64_t seed) {
     require_range("taper", taper, 0, 1000);
     const std::vector<LineType> types = line_types_of(curves);
     HatchingOptions options;
@@ -196,7 +196,7 @@ void write_svg_file(const Hatched& self, const fs::path& path, bool outlines) {
     run_long([&] { write_hatching_svg(path, self.drawing, self.look, options); });
 }
 
-void write(const Hatched& self, const fs::path& path, bool outlines, double scale) {
+void write_hatching(const Hatched& self, const fs::path& path, bool outlines, double scale) {
     if (path.extension() == ".svg") return write_svg_file(self, path, outlines);
     if (path.extension() != ".png")
         throw UsageError(path.string() + ": is not written; give a name that ends in .svg or .png");
@@ -204,7 +204,7 @@ void write(const Hatched& self, const fs::path& path, bool outlines, double scal
     run_long([&] { write_png(path, image); });
 }
 
-std::string svg(const Hatched& self, bool outlines) {
+std::string hatching_svg(const Hatched& self, bool outlines) {
     return written_text([&](const fs::path& path) { write_svg_file(self, path, outlines); });
 }
 
@@ -251,16 +251,17 @@ void add_hatched(py::module_& module) {
                 return of_strokes<float>(self, [](const HatchStroke& stroke) { return stroke.darkness; });
             },
             "Of each stroke (float32) how dark it is, from 0 to 1.")
-        .def("svg", &svg, py::kw_only(), py::arg("outlines") = false,
+        .def("svg", &hatching_svg, py::kw_only(), py::arg("outlines") = false,
              "The drawing as the text of an SVG file. `outlines`: filled shapes of varying width, not center lines.")
         .def(
             "image", [](const Hatched& self, double scale) { return image_view(picture(self, scale)); }, py::kw_only(),
             py::arg("scale") = 1.0,
             "The drawing as a picture (height x width, or height x width x 3, uint8), `scale` times as large (0.1 to "
             "16).")
-        .def("write", &write, py::arg("path"), py::kw_only(), py::arg("outlines") = false, py::arg("scale") = 1.0,
+        .def("write", &write_hatching, py::arg("path"), py::kw_only(), py::arg("outlines") = false,
+             py::arg("scale") = 1.0,
              "Writes the drawing as an .svg or .png file. Raises DataError if it cannot be written.")
-        .def("_repr_svg_", [](const Hatched& self) { return svg(self, false); })
+        .def("_repr_svg_", [](const Hatched& self) { return hatching_svg(self, false); })
         .def("__repr__", [](const Hatched& self) {
             return fmt::format("<exemplar.HatchedDrawing {} x {}: {}>", self.drawing.width, self.drawing.height,
                                counted(self.drawing.strokes.size(), "stroke"));
@@ -292,14 +293,15 @@ void add_scene(py::module_& module) {
             "The shaded view (height x width uint8), light enough to draw on: trace it with strokes only.")
         .def("example", &example, py::arg("rule"), py::arg("seed") = 1,
              "The view drawn by a rule of hatching_rules() (height x width uint8), as if by hand. Raises UsageError.")
-        .def("train", &train, py::arg("drawing"), py::kw_only(), py::arg("seed") = 1,
+        .def("train", &train_hatching, py::arg("drawing"), py::kw_only(), py::arg("seed") = 1,
              "Learns a style from a drawing of this view: strokes only, dark on light, of any resolution: a PNG file "
              "or an\n"
              "array (height x width, or with 3 or 4 channels, uint8). Equal seeds give equal styles. Raises DataError "
              "if the\n"
              "drawing is blank or does not fit the view.")
-        .def("draw", &draw, py::arg("style"), py::kw_only(), py::arg("curves") = std::vector<std::string>{"contours"},
-             py::arg("taper") = 6.0, py::arg("tone") = true, py::arg("seed") = 1,
+        .def("draw", &draw_hatching, py::arg("style"), py::kw_only(),
+             py::arg("curves") = std::vector<std::string>{"contours"}, py::arg("taper") = 6.0, py::arg("tone") = true,
+             py::arg("seed") = 1,
              "Hatches the view in a style. `curves`: types of lines drawn with it, see line_types(). `taper`: pixels "
              "over\n"
              "which strokes end in a point (0 to 1000). `tone`: whether the thickness is matched to the tone. `seed` "

@@ -75,8 +75,8 @@ LabeledCorpus corpus_of(const std::vector<MeshPointer>& meshes) {
     return working_corpus(std::move(corpus));
 }
 
-LabelingModel train(const std::vector<MeshPointer>& meshes, const TrainOptions& options, const fs::path& cache,
-                    const std::string& device) {
+LabelingModel train_labeling(const std::vector<MeshPointer>& meshes, const TrainOptions& options, const fs::path& cache,
+                             const std::string& device) {
     LabelingDevice backend({.name = device});
     const LabeledCorpus corpus = corpus_of(meshes);
     std::vector<MeshFeatures> features;
@@ -102,7 +102,7 @@ ModelPointer train_model(const std::vector<MeshPointer>& meshes, std::uint64_t s
     require_range("rows", rows, std::int64_t{0}, k_any);
     require_range("feature_fraction", feature_fraction, 0.001, 1);
     require_range("shrinkage", shrinkage, 0.01, 1);
-    require_range("samples", samples, std::int64_t{1}, static_cast<std::int64_t>(k_most_samples));
+    require_range("samples", samples, std::int64_t{1}, static_cast<std::int64_t>(k_max_samples));
     require_labels(meshes);
     const TrainOptions options{.seed = seed,
                                .rounds = static_cast<std::size_t>(rounds),
@@ -114,7 +114,7 @@ ModelPointer train_model(const std::vector<MeshPointer>& meshes, std::uint64_t s
                                .shrinkage = shrinkage,
                                .linear = linear,
                                .features = {static_cast<std::size_t>(samples), orientation}};
-    return std::make_shared<LabelingModel>(long_result([&] { return train(meshes, options, cache, device); }));
+    return std::make_shared<LabelingModel>(long_result([&] { return train_labeling(meshes, options, cache, device); }));
 }
 
 LabelingPointer label(const LabelingModel& model, const MeshObject& mesh, bool keep_small, const fs::path& cache,
@@ -165,7 +165,7 @@ void add_labels(py::module_& module) {
         });
 }
 
-void add_model(py::module_& module) {
+void add_labeling_model(py::module_& module) {
     py::class_<LabelingModel, ModelPointer>(module, "LabelingModel",
                                             "A model that labels the parts of meshes: see train_labeling().")
         .def_static(
@@ -202,7 +202,7 @@ void add_model(py::module_& module) {
 
 void add_labeling(py::module_& module) {
     add_labels(module);
-    add_model(module);
+    add_labeling_model(module);
     constexpr TrainOptions k_usual;
     module.def(
         "train_labeling", &train_model, py::arg("meshes"), py::kw_only(), py::arg("seed") = k_usual.seed,

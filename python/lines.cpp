@@ -12,9 +12,9 @@
 #include <optional>
 
 #include "host/core/text.h"
-#include "host/lines/extraction/drawable_surface.h"
 #include "host/lines/drawing.h"
 #include "host/lines/drawing_svg.h"
+#include "host/lines/extraction/drawable_surface.h"
 #include "host/lines/strokes/style.h"
 #include "host/lines/strokes/view_point.h"
 #include "host/mesh/editing/loose_vertices.h"
@@ -91,11 +91,11 @@ void set_thresholds(DrawingStyle& style, const std::map<std::string, float>& thr
         }
 }
 
-LineDrawingPointer draw(const MeshObject& mesh, const std::vector<std::string>& types, const std::string& style,
-                        const std::string& view, const py::object& eye, const py::object& target, const py::object& up,
-                        double field_of_view, std::pair<std::int64_t, std::int64_t> size,
-                        const std::map<std::string, float>& thresholds, double smoothing,
-                        const CurvaturePointer& curvature, std::optional<float> wanted_feature_size) {
+LineDrawingPointer draw_lines(const MeshObject& mesh, const std::vector<std::string>& types, const std::string& style,
+                              const std::string& view, const py::object& eye, const py::object& target,
+                              const py::object& up, double field_of_view, std::pair<std::int64_t, std::int64_t> size,
+                              const std::map<std::string, float>& thresholds, double smoothing,
+                              const CurvaturePointer& curvature, std::optional<float> wanted_feature_size) {
     require_range("smoothing", smoothing, 0, 100);
     if (wanted_feature_size) require_range("feature_size", *wanted_feature_size, 1e-30, 1e30);
     LinesJob job{line_types_of(types), load_style(style), view_point_of({view, eye, target, up, field_of_view, size}),
@@ -134,14 +134,15 @@ SvgOptions svg_options(const LineDrawing& self, bool outlines, bool curves, bool
     return options;
 }
 
-void write(const LineDrawing& self, const fs::path& path, bool outlines, bool curves, bool background,
-           double tolerance) {
+void write_lines(const LineDrawing& self, const fs::path& path, bool outlines, bool curves, bool background,
+                 double tolerance) {
     const SvgOptions options = svg_options(self, outlines, curves, background, tolerance);
     run_long([&] { write_drawing_svg(path, std::span(&self.drawing, 1), self.style, options); });
 }
 
-std::string svg(const LineDrawing& self, bool outlines, bool curves, bool background, double tolerance) {
-    return written_text([&](const fs::path& path) { write(self, path, outlines, curves, background, tolerance); });
+std::string lines_svg(const LineDrawing& self, bool outlines, bool curves, bool background, double tolerance) {
+    return written_text(
+        [&](const fs::path& path) { write_lines(self, path, outlines, curves, background, tolerance); });
 }
 
 using DrawingClass = py::class_<LineDrawing, LineDrawingPointer>;
@@ -152,13 +153,13 @@ void add_svg(DrawingClass& drawing) {
                     py::arg("background") = true, py::arg("tolerance") = 0.1, doc);
     };
     with_options(
-        "svg", &svg,
+        "svg", &lines_svg,
         "The drawing as the text of an SVG file, with a layer for each type of lines. `outlines`: filled shapes of\n"
         "varying width, not center lines with a stroke width. `curves`: center lines that stay smooth enlarged.\n"
         "`background`: of the style, if it has one. `tolerance`: pixels that simplified paths may be off (0 to 100).");
-    with_options("write", &write, "Writes the drawing as an SVG file; options as of svg(). Raises DataError.",
+    with_options("write", &write_lines, "Writes the drawing as an SVG file; options as of svg(). Raises DataError.",
                  py::arg("path"));
-    drawing.def("_repr_svg_", [](const LineDrawing& self) { return svg(self, false, false, true, 0.1); });
+    drawing.def("_repr_svg_", [](const LineDrawing& self) { return lines_svg(self, false, false, true, 0.1); });
 }
 
 }  // namespace
@@ -221,7 +222,7 @@ void add_lines(py::module_& module) {
         "so that lines do not flicker. Raises UsageError for an argument that is not allowed, DataError for a style "
         "that\n"
         "is none, MeshError for a mesh that cannot be used.";
-    module.def("draw_lines", &draw, py::arg("mesh"), py::kw_only(),
+    module.def("draw_lines", &draw_lines, py::arg("mesh"), py::kw_only(),
                py::arg("types") = std::vector<std::string>{"contours", "suggestive_contours", "boundaries"},
                py::arg("style") = "ink", py::arg("view") = usual.view, py::arg("eye") = py::none(),
                py::arg("target") = py::none(), py::arg("up") = py::make_tuple(0, 1, 0),

@@ -16,8 +16,8 @@ namespace py = pybind11;
 
 constexpr std::chrono::milliseconds k_between_looks{50};
 
-/// Waits for work on another thread, and cancels it once a signal handler of Python raises an exception: that one is
-/// returned. Python runs its handlers on its main thread only; on others nothing cancels.
+/// Waits for work on another thread. If a signal handler of Python raises an exception, cancels the work and returns
+/// the exception. Python runs handlers only on its main thread; on other threads nothing cancels.
 std::optional<py::error_already_set> wait_for(const std::future<void>& done, std::atomic<bool>& canceled) {
     std::optional<py::error_already_set> raised;
     const py::gil_scoped_release release;

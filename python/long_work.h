@@ -7,12 +7,12 @@
 
 namespace exemplar::python {
 
-/// Does work that may take long without holding Python's lock, so that other threads of Python go on, and looks for
-/// signals meanwhile: after Ctrl-C the work ends early and KeyboardInterrupt is raised. Rethrows what the work throws.
-/// To be called with the lock held; the work may not touch Python objects.
+/// Runs long work without holding Python's lock, so that other Python threads continue. Checks for signals
+/// meanwhile: Ctrl-C ends the work early and raises KeyboardInterrupt. Rethrows what the work throws. Must be called
+/// with the lock held; the work must not touch Python objects.
 void run_long(const std::function<void()>& work);
 
-/// The same of work that has a result.
+/// The same for work with a result.
 template <typename Work>
 auto long_result(Work&& work) {
     std::optional<std::invoke_result_t<Work>> result;

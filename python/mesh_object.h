@@ -13,8 +13,7 @@
 
 namespace exemplar::python {
 
-/// A mesh as Python has it. It never changes once it is made, so any number of threads may work on it, and arrays may
-/// show it.
+/// A mesh in Python. It never changes, so any number of threads may use it, and arrays may be views of it.
 struct MeshObject {
     std::shared_ptr<const TriangleMesh> mesh;
     std::string name = "mesh";                             ///< in messages: the file's, if it is from one
@@ -27,7 +26,7 @@ using MeshPointer = std::shared_ptr<MeshObject>;
 /// A mesh without labels.
 MeshPointer make_mesh(TriangleMesh mesh, std::string name, std::vector<std::string> warnings = {});
 
-/// Does work on a mesh: MeshError is thrown with the mesh's name in front.
+/// Returns the result of `work` on a mesh. Puts the mesh's name in front of the message of a MeshError.
 template <typename Work>
 auto named(const MeshObject& mesh, Work&& work) {
     try {

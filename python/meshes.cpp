@@ -10,9 +10,9 @@
 
 #include "host/core/text.h"
 #include "host/data/corpus.h"
-#include "host/mesh/io/io.h"
 #include "host/mesh/editing/simplify.h"
 #include "host/mesh/editing/validate.h"
+#include "host/mesh/io/io.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/long_work.h"
@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Labels of source faces, handed to their triangles.
+/// Converts labels from source faces to their triangles.
 std::shared_ptr<const FaceLabels> triangle_labels(const TriangleMesh& mesh, const FaceLabels& source) {
     auto labels = std::make_shared<FaceLabels>();
     labels->names = source.names;
@@ -32,7 +32,7 @@ std::shared_ptr<const FaceLabels> triangle_labels(const TriangleMesh& mesh, cons
     return labels;
 }
 
-/// Labels of triangles, as the writers want them: of source faces.
+/// Converts labels from triangles to source faces, for the writers.
 FaceLabels source_labels(const MeshObject& object) {
     if (!object.labels) throw UsageError(object.name + ": has no labels; give it some by with_labels()");
     return {object.labels->names, to_source_faces(*object.mesh, object.labels->label)};
@@ -54,7 +54,7 @@ std::shared_ptr<const std::vector<float>> triangle_confidence(const TriangleMesh
     return confidence;
 }
 
-MeshPointer from_arrays(const py::object& vertices, const py::object& faces, std::string name) {
+MeshPointer mesh_from_arrays(const py::object& vertices, const py::object& faces, std::string name) {
     TriangleMesh mesh;
     mesh.vertices = points_of(vertices, "vertices");
     mesh.faces = faces_of(faces, "faces", mesh.vertices.size());
@@ -62,7 +62,7 @@ MeshPointer from_arrays(const py::object& vertices, const py::object& faces, std
     return make_mesh(std::move(mesh), std::move(name));
 }
 
-MeshPointer read(const fs::path& path) {
+MeshPointer read_mesh_file(const fs::path& path) {
     return long_result([&] {
         MeshFile file = read_mesh(path);
         MeshPointer object = make_mesh(std::move(file.mesh), path.string(), std::move(file.warnings));
@@ -92,7 +92,7 @@ std::vector<MeshPointer> read_labeled(const std::variant<fs::path, std::vector<f
     });
 }
 
-void write(const MeshObject& object, const fs::path& path) {
+void write_mesh_file(const MeshObject& object, const fs::path& path) {
     std::string extension = path.extension().string();
     std::ranges::transform(extension, extension.begin(),
                            [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -115,7 +115,7 @@ void write(const MeshObject& object, const fs::path& path) {
     run_long(writer);
 }
 
-/// The same surface with labels, and how sure they are.
+/// Returns the same surface with labels and their confidence.
 MeshPointer with_labels(const MeshObject& object, const py::object& labels, std::vector<std::string> names,
                         const py::object& confidence) {
     auto result = std::make_shared<MeshObject>(object);
@@ -128,7 +128,7 @@ MeshPointer with_labels(const MeshObject& object, const py::object& labels, std:
     return result;
 }
 
-/// About so many faces, and for each face of the mesh the one that stands for it.
+/// Returns a simplified mesh of about `faces` faces, and for each original face its simplified face.
 py::tuple simplified(const MeshObject& object, std::int64_t faces) {
     require_range("faces", faces, std::int64_t{4}, std::int64_t{1} << 30);
     SimplifiedMesh simple = long_result([&] {
@@ -140,7 +140,7 @@ py::tuple simplified(const MeshObject& object, std::int64_t faces) {
     return py::make_tuple(make_mesh(std::move(simple.mesh), object.name), own_view(std::move(simple.face_of)));
 }
 
-py::str representation(const MeshObject& object) {
+py::str mesh_representation(const MeshObject& object) {
     return text(fmt::format("<exemplar.Mesh '{}': {}, {}{}>", without_controls(object.name),
                             counted(object.mesh->vertex_count(), "vertex", "vertices"),
                             counted(object.mesh->face_count(), "face"),
@@ -262,7 +262,7 @@ void add_mesh(py::module_& module) {
         "views (copy them to change them, and make another mesh of them), and any number of threads may use\n"
         "it at once.");
     mesh.def(
-        py::init(&from_arrays), py::arg("vertices"), py::arg("faces"), py::arg("name") = "mesh",
+        py::init(&mesh_from_arrays), py::arg("vertices"), py::arg("faces"), py::arg("name") = "mesh",
         "Makes a mesh of positions (n x 3 numbers) and triangles (m x 3 whole numbers from 0 to n - 1,\n"
         "counter-clockwise seen from outside); both are copied. `name` is what messages call it. Raises TypeError\n"
         "for other values, UsageError for another shape or a vertex that is not there.");
@@ -273,7 +273,7 @@ void add_mesh(py::module_& module) {
              "and\n"
              "maybe how sure it is (m numbers). The surface is shared, not copied.")
         .def(
-            "write", &write, py::arg("path"),
+            "write", &write_mesh_file, py::arg("path"),
             "Writes an .off, .obj, .ply or .glb file; the last two with labels and colors, .ply also with confidence.\n"
             "Replaces a file only when the new one is complete. Raises DataError if it cannot be written.")
         .def(
@@ -284,7 +284,7 @@ void add_mesh(py::module_& module) {
             py::arg("path"),
             "Writes the labels as text: a line with a name, a line with the 1-based numbers of its faces, and so on.\n"
             "Raises DataError if a face has no label, UsageError if the mesh has no labels.")
-        .def("__repr__", &representation);
+        .def("__repr__", &mesh_representation);
 }
 
 }  // namespace
@@ -301,7 +301,7 @@ void add_meshes(py::module_& module) {
     add_report(module);
     add_mesh(module);
     module.def(
-        "read_mesh", &read, py::arg("path"),
+        "read_mesh", &read_mesh_file, py::arg("path"),
         "Reads a mesh file: OFF, OBJ, PLY, STL or glTF 2.0, by its extension. Polygons are cut into triangles. A\n"
         "PLY with a `label` for each face comes with labels. Raises MeshError with file and line or byte.");
     module.def(

@@ -54,8 +54,8 @@ ViewPoint view_point_of(const ViewArguments& arguments) {
     if (!(point.up.norm() > 0)) throw UsageError("up: is zero; give a direction as (0, 1, 0)");
     require_range("field_of_view", arguments.field_of_view, 0, 170);
     point.field_of_view = arguments.field_of_view;
-    require_range("size", arguments.size.first, std::int64_t{1}, std::int64_t{k_most_picture_size});
-    require_range("size", arguments.size.second, std::int64_t{1}, std::int64_t{k_most_picture_size});
+    require_range("size", arguments.size.first, std::int64_t{1}, std::int64_t{k_max_picture_size});
+    require_range("size", arguments.size.second, std::int64_t{1}, std::int64_t{k_max_picture_size});
     point.width = static_cast<int>(arguments.size.first);
     point.height = static_cast<int>(arguments.size.second);
     return point;
@@ -73,7 +73,7 @@ std::vector<LineType> line_types_of(const std::vector<std::string>& words) {
     names.emplace_back("all");
     std::vector<LineType> wanted, types;
     for (const std::string& word : words) {
-        const std::optional<LineType> type = line_type_meant(word);
+        const std::optional<LineType> type = line_type_from_prefix(word);
         if (!type && word != "all")
             throw UsageError(fmt::format("'{}' is no type of lines{}; the types are {}", word, suggestion(word, names),
                                          fmt::join(names, ", ")));

@@ -13,24 +13,24 @@
 
 namespace exemplar::python {
 
-// What line drawings and hatchings have in common.
+// Code that line drawings and hatchings share.
 
-/// Where a drawing is seen from, as Python gives it.
+/// Arguments of the camera in Python.
 struct ViewArguments {
     std::string view;
     pybind11::object eye, target, up;
     double field_of_view;
     std::pair<std::int64_t, std::int64_t> size;
 };
-/// Throws UsageError naming the argument that is not right.
+/// Converts the arguments; throws UsageError naming a wrong one.
 ViewPoint view_point_of(const ViewArguments& arguments);
 
 /// The names of all types of lines.
 std::vector<std::string> line_type_names();
-/// Types of lines by their names; throws UsageError for a word that is none.
+/// Returns the line types of that name, or all for "all", in drawing order; throws UsageError for an unknown name.
 std::vector<LineType> line_types_of(const std::vector<std::string>& words);
 
-/// The text that a function writes to a file of the given name.
+/// Returns the text that a function writes to the file whose path it is given.
 std::string written_text(const std::function<void(const std::filesystem::path&)>& write);
 
 constexpr const char* k_view_doc =

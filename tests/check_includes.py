@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""Checks the direction of includes by reading the include lines: apps, python -> gpu -> host, and inside host the layers below.
+"""Checks the direction of includes by reading the include lines, and that folders stay small enough to be walked through.
 
-Prints one line per violation and exits with 1 if there is any; first makes sure that violations would be found.
+Directions: apps, python -> gpu -> host; between the subjects of host and of gpu as below; inside a subject that has rooms, a
+room includes those listed before it. A folder has at most 30 files. Prints one line per violation and exits with 1 if there
+is any; first makes sure that violations would be found.
 """
 import pathlib
 import re
@@ -32,7 +34,39 @@ GPU = {
     'hatching': {'runtime', 'imaging', 'learn'},
     'window': {'runtime', 'imaging'},
 }
+# The rooms of a subject, each may include those before it. '' stands for the files that lie in the subject's own folder.
+ROOMS = {
+    'host/curvature': ['state', 'model', 'learning'],
+    'host/data': ['', 'catalog'],
+    'host/hatching': ['fields', 'features', 'tracing', 'measurement', 'drawing', 'style', 'placement', 'refinement', 'animation', ''],
+    'host/labeling': ['features', 'inference', 'training', 'evaluation', 'category', 'batch'],
+    'host/learn': ['', 'regression', 'components', 'boosting'],
+    'host/lines': ['extraction', 'strokes', ''],
+    'host/mesh': ['', 'queries', 'editing', 'curvature', 'io'],
+    'host/synth': ['modeling', 'shapes', 'animations', 'damage', 'hatching'],
+    'gpu/curvature': ['surface', 'learned', ''],
+    'gpu/runtime': ['device', 'kernels', 'record', 'measure'],
+    'apps/bench': ['kernels', ''],
+    'apps/exemplar': ['', 'label', 'category', 'catalog', 'batch', 'curvature', 'lines', 'hatch', 'bench', 'demo'],
+    'apps/viewer': ['controls', 'scene', 'window', ''],
+}
+FOLDERS = ('apps', 'cmake', 'docs', 'gpu', 'host', 'python', 'shaders', 'tests')
+MOST_FILES = 30
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]')
+
+
+def room_violation(file, included):
+    """The same between rooms of one subject."""
+    subject = '/'.join(file[:2])
+    if subject not in ROOMS or included[:2] != file[:2]:
+        return None
+    own, other = (parts[2] if len(parts) > 3 else '' for parts in (file, included))
+    order = ROOMS[subject]
+    if own not in order or other not in order:
+        return f'tests/check_includes.py does not list the room {subject}/{own if own not in order else other}'
+    if order.index(other) > order.index(own):
+        return f'{subject}/{own or "."} is not above {subject}/{other or "."}'
+    return None
 
 
 def violation(file, included):
@@ -50,7 +84,20 @@ def violation(file, included):
             return f'gpu/{file[1]} is not above gpu/{included[1]}'
     if {top, target} == {'apps', 'python'}:
         return 'programs and bindings share libraries, not each other'
-    return None
+    return room_violation(file, included)
+
+
+def crowded(root):
+    """One line for each folder with too many files; examples of damaged files are counted by nobody."""
+    found = []
+    for top in FOLDERS:
+        for folder in [root / top, *sorted((root / top).rglob('*'))]:
+            if not folder.is_dir() or '__pycache__' in folder.parts or 'corpus' in folder.parts:
+                continue
+            count = sum(path.is_file() for path in folder.iterdir())
+            if count > MOST_FILES:
+                found.append(f'{folder.relative_to(root)}: {count} files; at most {MOST_FILES}: divide it into rooms')
+    return found
 
 
 def check(root):
@@ -80,10 +127,15 @@ def self_test():
     assert not violation(('gpu', 'learn', 'a.h'), ('host', 'learn', 'b.h'))
     assert not violation(('python', 'a.cpp'), ('gpu', 'learn', 'b.h'))
     assert not violation(('host', 'mesh', 'a.h'), ('vector',))
+    assert violation(('host', 'mesh', 'queries', 'a.h'), ('host', 'mesh', 'io', 'io.h'))
+    assert violation(('host', 'mesh', 'mesh.h'), ('host', 'mesh', 'io', 'io.h'))
+    assert violation(('host', 'mesh', 'unknown', 'a.h'), ('host', 'mesh', 'mesh.h'))
+    assert not violation(('host', 'mesh', 'io', 'a.h'), ('host', 'mesh', 'mesh.h'))
 
 
 if __name__ == '__main__':
     self_test()
-    violations = check(pathlib.Path(__file__).resolve().parent.parent)
+    root = pathlib.Path(__file__).resolve().parent.parent
+    violations = check(root) + crowded(root)
     print('\n'.join(violations) or 'includes point the right way')
     sys.exit(1 if violations else 0)

@@ -1,5 +1,5 @@
-// bench_evaluation MODEL ANIMATION: what curvature costs per frame on one thread, learned and estimated anew, in
-// milliseconds of CPU: medians over rounds that take both in turns on the same frames.
+// bench_evaluation MODEL ANIMATION: cost of curvature per frame on one thread, learned and estimated anew, in
+// milliseconds of CPU: medians over rounds that measure both in turns on the same frames.
 
 #include <fmt/format.h>
 
@@ -13,6 +13,7 @@
 
 #include "host/animation/read_animation.h"
 #include "host/core/parallel.h"
+#include "host/core/statistics.h"
 #include "host/curvature/model/evaluation.h"
 
 namespace exemplar {
@@ -34,12 +35,7 @@ class Medians {
         call();
         samples_[name].push_back(thread_milliseconds() - begin);
     }
-    double of(const std::string& name) {
-        std::vector<double>& samples = samples_.at(name);
-        const auto middle = samples.begin() + static_cast<std::ptrdiff_t>(samples.size() / 2);
-        std::nth_element(samples.begin(), middle, samples.end());
-        return *middle;
-    }
+    double of(const std::string& name) { return upper_median(samples_.at(name)); }
     bool has(const std::string& name) const { return samples_.contains(name); }
 
   private:
@@ -48,11 +44,11 @@ class Medians {
 
 struct Frame {
     const Pose* pose;  // none of a mesh sequence
-    SurfaceMoment moment;
+    SurfaceSnapshot snapshot;
 };
 
 std::vector<Frame> read_frames(const Animation& animation, const CurvatureModel& model) {
-    MomentReader reader(animation, model.segments, model.truth);
+    SnapshotReader reader(animation, model.segments, model.truth);
     std::vector<Frame> frames;
     for (const FrameRef& at : select_frames(animation, {.clips = {}, .most = k_frames})) {
         const bool posed = animation.kind != AnimationKind::sequence;
@@ -61,17 +57,17 @@ std::vector<Frame> read_frames(const Animation& animation, const CurvatureModel&
     return frames;
 }
 
-// Pose, or local shape, to inputs.
+// Computes inputs from a pose or from local shape.
 class InputParts {
   public:
     explicit InputParts(const CurvatureModel& model) : model_(model) {
         if (model.state.is_local()) local_.emplace(model.state);
     }
     void time(const Frame& frame, std::span<float> x, Medians& medians) {
-        const SurfaceMoment& moment = frame.moment;
+        const SurfaceSnapshot& snapshot = frame.snapshot;
         if (local_) {
-            medians.time("rotations", [&] { model_.segments.rotations_of_sequence(moment.vertices, rotations_); });
-            medians.time("shape", [&] { local_->read(moment.vertices, moment.normals, rotations_, x); });
+            medians.time("rotations", [&] { model_.segments.rotations_of_sequence(snapshot.vertices, rotations_); });
+            medians.time("shape", [&] { local_->read(snapshot.vertices, snapshot.normals, rotations_, x); });
         } else if (frame.pose) {
             medians.time("pose", [&] { model_.state.read_pose(*frame.pose, x); });
         }
@@ -84,17 +80,17 @@ class InputParts {
     std::vector<Eigen::Matrix3f> rotations_;
 };
 
-// The parts of a frame, each with warm caches: to inputs, inputs to components, components to curvature.
+// Times the parts of a frame, each with warm caches: inputs, components from inputs, curvature from components.
 void time_parts(const CurvatureModel& model, const Frame& frame, std::span<const float> components, Medians& medians) {
     std::vector<float> x(model.state.input_count), features(model.regression.feature_count()),
         z(model.regression.components.size());
     VertexCurvature curvature;
-    const PosedSurface surface = frame.moment.surface();
+    const PosedSurface surface = frame.snapshot.surface();
     InputParts inputs(model);
     reproject_curvature(model.tiles, components, surface, curvature);
     for (std::size_t round = 0; round < k_rounds; ++round) {
         inputs.time(frame, x, medians);
-        if (!model.regression.copies_inputs())
+        if (!model.regression.is_identity())
             medians.time("components", [&] { model.regression.evaluate(x, features, z); });
         medians.time("reprojection", [&] { reproject_curvature(model.tiles, components, surface, curvature); });
     }
@@ -108,15 +104,15 @@ Medians time_frames(const CurvatureModel& model, const Animation& animation) {
     Medians medians;
     const auto learn = [&](const Frame& f) {
         if (f.pose)
-            evaluator.evaluate(animation.rig, *f.pose, f.moment.vertices, f.moment.normals);
+            evaluator.evaluate(animation.rig, *f.pose, f.snapshot.vertices, f.snapshot.normals);
         else
-            evaluator.evaluate(f.moment.vertices, f.moment.normals);
+            evaluator.evaluate(f.snapshot.vertices, f.snapshot.normals);
     };
     for (std::size_t round = 0; round < k_rounds; ++round) {
         for (const Frame& f : frames) medians.time("learned", [&] { learn(f); });
-        for (const Frame& f : frames) medians.time("estimated", [&] { estimator.estimate(f.moment.vertices); });
+        for (const Frame& f : frames) medians.time("estimated", [&] { estimator.estimate(f.snapshot.vertices); });
         for (std::size_t i = 0; i < frames.size() && round % 10 == 0; ++i)
-            medians.time("smoothed", [&] { estimator.estimate(frames[i].moment.vertices, smoothed); });
+            medians.time("smoothed", [&] { estimator.estimate(frames[i].snapshot.vertices, smoothed); });
     }
     for (const Frame& f : frames) time_parts(model, f, evaluator.components(), medians);
     return medians;
@@ -125,7 +121,7 @@ Medians time_frames(const CurvatureModel& model, const Animation& animation) {
 void run(const char* model_path, const char* animation_path) {
     const CurvatureModel model = load_curvature_model(model_path);
     const Animation animation = read_animation(animation_path);
-    require_fit(model, animation);
+    require_compatible(model, animation);
     const ThreadLimit one(1);
     Medians medians = time_frames(model, animation);
     fmt::print("{} vertices, {} components, {:.2f} components per tile and attribute, {:.2f} MB of tiles\n",

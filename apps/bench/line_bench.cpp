@@ -1,5 +1,5 @@
-// bench_lines ANIMATION [MODEL [PICTURE.png]]: what a line drawing of a frame costs on the device, from its pose to its
-// image: milliseconds of whole frames by the clock and of processors, medians.
+// bench_lines ANIMATION [MODEL [PICTURE.png]]: cost of a line drawing of a frame on the device, from its pose to its
+// image: median milliseconds of whole frames, wall and CPU time.
 
 #include <fmt/format.h>
 
@@ -16,6 +16,7 @@
 #include "host/animation/read_animation.h"
 #include "host/core/errors.h"
 #include "host/core/freed_memory.h"
+#include "host/core/statistics.h"
 #include "host/core/stopwatch.h"
 #include "host/curvature/state/samples.h"
 #include "host/imaging/png.h"
@@ -36,20 +37,14 @@ LinePicture picture_of(const Animation& animation, const std::vector<FrameRef>& 
     return picture;
 }
 
-/// What is recorded for a frame, one stage more each time.
+/// Stages of a frame; each measurement records one stage more.
 struct Stage {
     const char* name;
     std::function<void(const FrameRef&)> record;
 };
 
-double median(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-/// Milliseconds of a frame: by the clock, and of this process' processors, which other work slows less. Drivers of
-/// software count there, too.
+/// Milliseconds of a frame: wall time, and CPU time of this process, which other work slows less. CPU time includes
+/// drivers that run on the CPU.
 struct FrameTime {
     double wall, cpu;
 };
@@ -64,7 +59,7 @@ FrameTime median_time(Stream& stream, const std::vector<FrameRef>& frames,
         wall.push_back(1e3 * watch.wall());
         cpu.push_back(1e3 * watch.cpu());
     }
-    return {median(wall), median(cpu)};
+    return {upper_median(wall), upper_median(cpu)};
 }
 
 void run(const std::string& path, const std::string& model, const std::string& png) {
@@ -83,24 +78,24 @@ void run(const std::string& path, const std::string& model, const std::string& p
     const auto pose = [&](const FrameRef& at) { drawn.record(stream, at, source); };
     const auto extract = [&](const FrameRef& at) {
         pose(at);
-        lines.record(stream, drawn.moment(), picture.families,
+        lines.record(stream, drawn.snapshot(), picture.families,
                      {.eye = homogeneous_eye(picture.view.camera),
                       .feature_size = picture.view.feature_size,
                       .thresholds = picture.thresholds});
     };
     const auto chain = [&](const FrameRef& at) {
         extract(at);
-        chains.record(stream, drawn.moment().vertices, picture.view.camera, k_width, k_height);
+        chains.record(stream, drawn.snapshot().vertices, picture.view.camera, k_width, k_height);
     };
     const auto draw = [&](const FrameRef& at) {
         pose(at);
-        renderer.record(stream, drawn.moment(), picture);
+        renderer.record(stream, drawn.snapshot(), picture);
     };
     const auto draw_and_download = [&](const FrameRef& at) {
         draw(at);
         renderer.record_download(stream);
     };
-    const auto draw_again = [&](const FrameRef&) { renderer.record(stream, drawn.moment(), picture); };
+    const auto draw_again = [&](const FrameRef&) { renderer.record(stream, drawn.snapshot(), picture); };
     const std::vector<Stage> stages = {{"pose, normals, curvature", pose},
                                        {"and segments", extract},
                                        {"and chains", chain},
@@ -113,7 +108,7 @@ void run(const std::string& path, const std::string& model, const std::string& p
         double slip = 0, appeared = 0, stretch = 0;
         for (const FrameRef& at : frames) {
             pose(at);
-            renderer.record(stream, drawn.moment(), with);
+            renderer.record(stream, drawn.snapshot(), with);
             stream.finish();
             if (&at == &frames[0]) continue;
             const LineFlicker flicker = renderer.coherence().flicker();

@@ -6,21 +6,21 @@
 
 #include "host/core/parallel.h"
 #include "host/core/random.h"
-#include "host/mesh/queries/axes.h"
 #include "host/mesh/curvature/curvature.h"
 #include "host/mesh/curvature/curvature_estimator.h"
-#include "host/mesh/queries/geodesics.h"
 #include "host/mesh/mesh.h"
+#include "host/mesh/queries/axes.h"
+#include "host/mesh/queries/geodesics.h"
 #include "host/mesh/queries/rays.h"
 #include "host/mesh/topology.h"
 
-// The geometric groundwork of the features, on one thread, on a bumpy torus. Items are faces (vertices for curvature,
-// reached faces for bounded searches, rays for rays), so items per second compares between sizes.
+// The geometry operations that features are based on, on one thread, on a bumpy torus. Items are faces (vertices for
+// curvature, reached faces for bounded searches, rays for rays), so items per second can be compared between sizes.
 
 namespace exemplar {
 namespace {
 
-/// A torus of 2 n m faces with bumps that leave it no symmetry; triangles vary in size and shape.
+/// Makes a torus of 2 n m faces with bumps that break all symmetry; triangles vary in size and shape.
 TriangleMesh bumpy_torus(std::uint32_t n, std::uint32_t m) {
     TriangleMesh mesh;
     for (std::uint32_t i = 0; i < n; ++i)

@@ -13,17 +13,17 @@ namespace exemplar {
 struct FrameArguments {
     std::vector<std::string> clips;
     std::string range;     ///< "a:b", either end may be left out
-    std::size_t most = 0;  ///< 0: all
+    std::size_t most = 0;  ///< maximum number of frames; 0: all
 };
 
-/// Adds --clips, --frames and --poses; `prefix` goes before each name, as in --test-clips.
+/// Adds --clips, --frames and --poses. `prefix` goes before each name, as in --test-clips.
 void add_frame_options(CLI::App& command, FrameArguments& arguments, const std::string& prefix,
                        const std::string& what);
-/// Throws UsageError if the range is none.
+/// Parses the arguments; throws UsageError for a bad range.
 FrameSelection selection_of(const FrameArguments& arguments);
 
-/// read_animation, with its warnings printed unless `quiet`. Blend shapes without a clip get one of random expressions,
-/// drawn from `seed`.
+/// Reads an animation and prints its warnings unless `quiet`. Blend shapes without a clip get one of random
+/// expressions, drawn from `seed`.
 Animation animation_of_argument(const std::filesystem::path& path, double frames_per_second, std::uint64_t seed,
                                 bool quiet);
 

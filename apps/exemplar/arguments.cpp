@@ -61,7 +61,7 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
 }
 
 void require_input(const fs::path& path) {
-    std::error_code ignored;  // names that the system refuses are names of nothing
+    std::error_code ignored;  // for names that the system refuses there is no file
     if (fs::exists(path, ignored)) return;
     throw DataError(fmt::format("{}: no such file or folder{}", path.string(), suggest_file(path)));
 }

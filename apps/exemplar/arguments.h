@@ -14,22 +14,22 @@
 
 namespace exemplar {
 
-// What the user typed, checked before any long work: a wrong name should not cost the minutes of a training.
+// Checks of arguments before any long work, so that a wrong name does not cost the minutes of a training.
 
-/// A check for options: a whole number from `least` to `most`.
+/// Returns a check for options: a whole number from `least` to `most`.
 CLI::Validator whole_number(std::uint64_t least, std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
-/// Throws DataError if nothing is at `path`, with the nearest name in its folder.
+/// Throws DataError, with the nearest name in the folder, if there is nothing at `path`.
 void require_input(const std::filesystem::path& path);
-/// The meshes of a folder, a list or a mesh file (see list_meshes). Throws DataError if it is none of them.
+/// Returns the meshes of a folder, a list or a mesh file (see list_meshes). Throws DataError if it is none of these.
 std::vector<std::filesystem::path> meshes_of_argument(const std::filesystem::path& source,
                                                       MissingMeshes missing = MissingMeshes::refused);
-/// The same of several sources; a mesh that is in more than one comes once.
+/// The same for several sources; a mesh that is in more than one is listed once.
 std::vector<std::filesystem::path> meshes_of_arguments(const std::vector<std::filesystem::path>& sources);
-/// What is unusual about a mesh read from `path`, a line each, and how it is worked around; printed unless `quiet`.
-/// Throws MeshError if it cannot be labeled.
+/// Returns a line for each defect of a mesh read from `path` and its workaround; prints them unless `quiet`. Throws
+/// MeshError if the mesh cannot be labeled.
 std::vector<std::string> mesh_warnings(const MeshFile& file, const std::filesystem::path& path, bool quiet);
-/// Calls `work`, which works on a mesh read from `path`. Throws MeshError that begins with it.
+/// Returns the result of `work` on a mesh read from `path`. Puts `path` in front of the message of a MeshError.
 template <typename Work>
 auto of_file(const std::filesystem::path& path, Work&& work) {
     try {
@@ -38,7 +38,7 @@ auto of_file(const std::filesystem::path& path, Work&& work) {
         throw MeshError(path.string() + ": " + error.what());
     }
 }
-/// load_model for a file that may be anything; throws ModelError saying what makes a model.
+/// Loads a model; throws ModelError, which tells how to make a model, if the file is none.
 LabelingModel model_of_argument(const std::filesystem::path& path);
 /// Throws UsageError if a file, or a folder of files, cannot be written at `path`. An empty path is no output.
 void require_output_file(const std::filesystem::path& path);
@@ -47,13 +47,12 @@ void require_output_folder(const std::filesystem::path& path);
 void require_output_picture(const std::filesystem::path& path);
 /// Throws UsageError if writing `out` would replace one of the files that are read.
 void require_not_replaced(const std::filesystem::path& out, const std::vector<std::filesystem::path>& inputs);
-/// The folder that remembers features, or what else it is to remember; empty, with a warning, where it cannot be
-/// written. Empty, too, if nothing is to be remembered, and throws UsageError for a wrong bound (see cache_bound).
+/// Returns the cache folder for features, or for `what`. Empty if caching is off, or if the folder cannot be written
+/// (with a warning, unless `quiet`). Throws UsageError for a wrong bound (see cache_bound).
 std::filesystem::path usable_cache(const std::filesystem::path& cache, bool quiet, const char* what = "features");
-/// Results beside a mesh could replace the labels, or the mesh, that they were made from: throws UsageError if a mesh
-/// lies in the folder `out`.
+/// Throws UsageError if a mesh lies in the folder `out`, as results there could replace the mesh or its labels.
 void require_other_folder(const std::filesystem::path& out, const std::vector<std::filesystem::path>& meshes);
-/// Results are named after the mesh: throws UsageError naming two meshes that would write the same files.
+/// Throws UsageError, naming two meshes, if their results, which are named after the mesh, would be the same files.
 void require_distinct_names(const std::vector<std::filesystem::path>& meshes);
 
 }  // namespace exemplar

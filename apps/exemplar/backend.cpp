@@ -12,7 +12,7 @@ namespace {
 
 constexpr int k_picture_size = 1024;  // pixels a side
 
-// From the front, the right and above: the three sides that tell most of an upright shape.
+// From the front, the right and above, which shows most of an upright shape.
 const Vec3 k_oblique_view{0.6f, 0.5f, 1.0f};
 
 }  // namespace
@@ -20,7 +20,7 @@ const Vec3 k_oblique_view{0.6f, 0.5f, 1.0f};
 struct DeviceBackend::Impl {
     explicit Impl(const std::string& name) : device({.name = name}) {}
     LabelingDevice device;
-    std::optional<MeshRenderer> renderer;  // made by the first picture: a device that only computes labels too
+    std::optional<MeshRenderer> renderer;  // made at the first picture, as a device that only computes can label too
 };
 
 DeviceBackend::DeviceBackend(const std::string& device) : impl_(std::make_unique<Impl>(device)) {}
@@ -30,8 +30,8 @@ LabelingBackend DeviceBackend::labeling() {
     return impl_->device.labeling();
 }
 
-const std::string& DeviceBackend::labels_on() const {
-    return impl_->device.labels_on();
+const std::string& DeviceBackend::labeling_device_name() const {
+    return impl_->device.labeling_device_name();
 }
 
 const std::string& DeviceBackend::device_name() const {

@@ -22,13 +22,13 @@ void add_device_option(CLI::App& command, CommonOptions& options);
 void add_common_options(CLI::App& command, CommonOptions& options);
 /// Adds --memory, in GB; 0 leaves it to the program.
 void add_memory_option(CLI::App& command, double& gigabytes);
-/// That in bytes; 0 if it was not given.
+/// Returns the value of --memory in bytes; 0 if it was not given.
 std::size_t memory_of_option(double gigabytes);
 /// Puts --threads and --quiet into effect; called first by every subcommand. The result holds the thread limit.
 std::shared_ptr<void> apply_common_options(const CommonOptions& options);
-/// Writes a JSON file whole; text that is not UTF-8 is replaced, not refused.
+/// Writes a JSON file atomically; replaces text that is not UTF-8.
 void write_json(const std::filesystem::path& path, const nlohmann::json& json);
-/// Writes a report where --json asks for it.
+/// Writes a report to the file of --json, if there is one.
 void write_report(const CommonOptions& options, const nlohmann::json& report);
 
 // One function per file of the same name: adds the subcommand, whose callback does the work and throws Error.

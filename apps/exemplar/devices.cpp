@@ -19,11 +19,11 @@ struct DevicesOptions {
     bool no_measure = false;
 };
 
-constexpr std::size_t k_columns = 12;
-using Row = std::array<std::string, k_columns>;
+constexpr std::size_t k_device_columns = 12;
+using DeviceRow = std::array<std::string, k_device_columns>;
 
-const Row k_header{"",       "#",           "name",      "type",     "driver",     "Vulkan",
-                   "memory", "max storage", "workgroup", "subgroup", "copy, GB/s", "FMA, GFLOP/s"};
+const DeviceRow k_header{"",       "#",           "name",      "type",     "driver",     "Vulkan",
+                         "memory", "max storage", "workgroup", "subgroup", "copy, GB/s", "FMA, GFLOP/s"};
 constexpr std::size_t k_first_number = 6;  // from here on columns are aligned to the right
 
 std::string wanted_device(const DevicesOptions& options) {
@@ -46,7 +46,7 @@ DeviceReport make_report(const DeviceInfo& info, const DevicesOptions& options, 
     return {.info = info};
 }
 
-Row table_row(const DeviceReport& report, bool chosen) {
+DeviceRow table_row(const DeviceReport& report, bool chosen) {
     const DeviceInfo& info = report.info;
     const auto rate = [&](double Ceilings::*member) {
         return report.ceilings ? fmt::format("{:.1f}", *report.ceilings.*member) : "-";
@@ -65,13 +65,13 @@ Row table_row(const DeviceReport& report, bool chosen) {
             rate(&Ceilings::fma_gflop_per_s)};
 }
 
-void print_table(const std::vector<Row>& rows) {
-    std::array<std::size_t, k_columns> widths{};
-    for (const Row& row : rows)
-        for (std::size_t c = 0; c < k_columns; ++c) widths[c] = std::max(widths[c], row[c].size());
-    for (const Row& row : rows) {
+void print_table(const std::vector<DeviceRow>& rows) {
+    std::array<std::size_t, k_device_columns> widths{};
+    for (const DeviceRow& row : rows)
+        for (std::size_t c = 0; c < k_device_columns; ++c) widths[c] = std::max(widths[c], row[c].size());
+    for (const DeviceRow& row : rows) {
         std::string line;
-        for (std::size_t c = 0; c < k_columns; ++c)
+        for (std::size_t c = 0; c < k_device_columns; ++c)
             line += c < k_first_number ? fmt::format("{:<{}}  ", row[c], widths[c])
                                        : fmt::format("{:>{}}  ", row[c], widths[c]);
         fmt::print("{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
@@ -85,7 +85,7 @@ void run_devices(const DevicesOptions& options) {
     const bool choice = std::ranges::any_of(devices, [](const DeviceInfo& info) { return info.unusable.empty(); });
     const std::size_t chosen = choice ? select_device(devices, wanted_device(options)) : devices.size();
 
-    std::vector<Row> rows{k_header};
+    std::vector<DeviceRow> rows{k_header};
     std::vector<std::string> remarks;
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     std::ranges::stable_sort(devices, is_better);  // the order in which they would be chosen

@@ -14,7 +14,7 @@ namespace {
 
 using Level = Finding::Level;
 
-/// Whether the kernels that everything begins with give on the device what they give on the host.
+/// Checks that the basic kernels give the same results on the device and on the host.
 std::vector<Finding> check_kernels(const std::string& device_name) {
     constexpr std::size_t k_items = 1000;
     std::vector<Finding> findings;

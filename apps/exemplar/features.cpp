@@ -21,14 +21,14 @@ struct FeaturesOptions {
     FeatureOptions features;
 };
 
-/// Of a large mesh each face has the features of the face that stands for it; edges have no such counterpart.
+/// Large meshes are simplified. A face has the features of its simplified face; edges have no such counterpart.
 void announce_simplification(const FeaturesOptions& options, std::size_t faces) {
     if (options.pairwise)
         throw UsageError(fmt::format("{}: has {} faces; features of edges take {} at most: simplify it first",
-                                     options.mesh.string(), faces, k_most_working_faces));
+                                     options.mesh.string(), faces, k_max_working_faces));
     if (!options.common.quiet)
         fmt::print(stderr, "note: {}: {} faces are simplified to about {}; each gets the features of the nearest\n",
-                   options.mesh.string(), faces, k_most_working_faces);
+                   options.mesh.string(), faces, k_max_working_faces);
 }
 
 void run_features(const FeaturesOptions& options) {
@@ -39,7 +39,7 @@ void run_features(const FeaturesOptions& options) {
     const MeshFile file = read_mesh(options.mesh);
     const std::vector<std::string> warnings = mesh_warnings(file, options.mesh, options.common.quiet);
     const Stopwatch watch;
-    const bool large = file.mesh.face_count() > k_most_working_faces;
+    const bool large = file.mesh.face_count() > k_max_working_faces;
     if (large) announce_simplification(options, file.mesh.face_count());
     const SimplifiedMesh working = of_file(options.mesh, [&] { return working_mesh(file.mesh); });
     const MeshFeatures features = compute_features(working.mesh, options.features);
@@ -78,7 +78,7 @@ void add_features_command(CLI::App& app) {
     command
         ->add_option("--samples", options->features.samples, "faces that stand for the surface in distance statistics")
         ->capture_default_str()
-        ->check(whole_number(1, k_most_samples));
+        ->check(whole_number(1, k_max_samples));
     command->add_flag("--orientation", options->features.orientation,
                       "add coordinates, for shapes that share an orientation");
     add_common_options(*command, options->common);

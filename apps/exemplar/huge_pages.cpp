@@ -1,6 +1,6 @@
-// Large blocks lie on huge pages. Features of a mesh are a hundred megabytes; with pages of 4 KiB a third of the time
-// of labeling a mesh whose features are known went into having the kernel map them one by one. Systems commonly hand
-// out huge pages only where a program asks for them, so the program's allocation functions do.
+// Allocates large blocks on huge pages. Features of a mesh take a hundred megabytes; with pages of 4 KiB, mapping
+// them took a third of the time of labeling a mesh with cached features. Systems commonly give huge pages only to
+// programs that ask for them, so the allocation functions below do.
 
 #include <sys/mman.h>
 
@@ -24,7 +24,7 @@ void* allocate(std::size_t bytes) {
 
 }  // namespace
 
-// All other forms of new and delete, but those with an alignment, call these.
+// All other forms of new and delete, except those with an alignment, call these.
 void* operator new(std::size_t bytes) {
     for (;;) {
         if (void* block = allocate(bytes)) return block;

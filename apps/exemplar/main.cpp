@@ -47,7 +47,7 @@ std::string command_path(const CLI::App& app) {
     return app.get_parent() ? command_path(*app.get_parent()) + " " + app.get_name() : app.get_name();
 }
 
-/// What no option or subcommand explains, named with the nearest word that would; empty if all is known.
+/// Returns a message on the first unknown argument, with the nearest known word; empty if all are known.
 std::string unknown_argument(const CLI::App& app) {
     std::vector<std::string> unknown = app.remaining(true);
     if (unknown.empty()) return {};

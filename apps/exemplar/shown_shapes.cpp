@@ -5,24 +5,25 @@
 #include <utility>
 
 #include "host/core/errors.h"
-#include "host/mesh/io/io.h"
-#include "host/mesh/queries/point_tree.h"
 #include "host/mesh/editing/simplify.h"
 #include "host/mesh/editing/weld.h"
+#include "host/mesh/io/io.h"
+#include "host/mesh/queries/point_tree.h"
 
 namespace exemplar {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Of a file; one of two million faces has less. What is larger is not what the catalog told of.
+/// Maximum size of a file; one of two million faces is smaller. A larger file is not the one that the catalog
+/// describes.
 constexpr std::uintmax_t k_most_bytes = 64 << 20;
 
 bool is_finite(const TriangleMesh& mesh) {
     return std::ranges::all_of(mesh.vertices, [](const Vec3& vertex) { return vertex.allFinite(); });
 }
 
-/// Labels and confidences of the file's faces, handed to triangles; nothing if one has none.
+/// Converts labels and confidences from the file's faces to triangles; returns nothing if a face has none.
 std::optional<ShownShape> per_triangle(MeshFile file) {
     if (!file.labels || file.confidence.empty() || !is_finite(file.mesh)) return {};
     ShownShape shape{std::move(file.mesh), {std::move(file.labels->names), {}}, {}};
@@ -36,7 +37,7 @@ std::optional<ShownShape> per_triangle(MeshFile file) {
     return shape;
 }
 
-/// What is known of the simplified faces, summed over the faces they stand for.
+/// Sums over the original faces that each simplified face replaces.
 struct Votes {
     std::vector<double> area, sure;  ///< per face; confidence times area
     std::vector<double> label;       ///< per face and label, area
@@ -48,7 +49,7 @@ Votes collect_votes(const ShownShape& shape, const SimplifiedMesh& simple) {
     const std::vector<float> areas = face_areas(shape.mesh);
     for (std::size_t f = 0; f < areas.size(); ++f) {
         const std::size_t to = simple.face_of[f];
-        const double weight = areas[f] + 1e-30;  // what has no area is still something
+        const double weight = areas[f] + 1e-30;  // faces without area count too
         votes.area[to] += weight;
         votes.sure[to] += weight * static_cast<double>(shape.confidence[f]);
         votes.label[to * classes + static_cast<std::size_t>(shape.labels.label[f])] += weight;
@@ -56,9 +57,9 @@ Votes collect_votes(const ShownShape& shape, const SimplifiedMesh& simple) {
     return votes;
 }
 
-/// A face that stands for none takes after the nearest face of the original.
-ShownShape simplified(const ShownShape& shape, std::size_t most_faces) {
-    SimplifiedMesh simple = simplify_mesh(welded(shape.mesh), most_faces);
+/// Simplifies a shape. A simplified face that replaces no original face copies the nearest one.
+ShownShape simplified(const ShownShape& shape, std::size_t max_faces) {
+    SimplifiedMesh simple = simplify_mesh(welded(shape.mesh), max_faces);
     const Votes votes = collect_votes(shape, simple);
     const auto classes = static_cast<std::ptrdiff_t>(shape.labels.names.size());
     const PointTree originals(face_centers(shape.mesh));
@@ -79,14 +80,14 @@ ShownShape simplified(const ShownShape& shape, std::size_t most_faces) {
 
 }  // namespace
 
-std::optional<ShownShape> read_shown_shape(const fs::path& path, std::size_t most_faces) {
+std::optional<ShownShape> read_shown_shape(const fs::path& path, std::size_t max_faces) {
     std::error_code unreadable;
     if (!fs::is_regular_file(path, unreadable) || fs::file_size(path, unreadable) > k_most_bytes) return {};
     try {
         std::optional<ShownShape> shape = per_triangle(read_mesh(path));
-        if (shape && shape->mesh.face_count() > most_faces) shape = simplified(*shape, most_faces);
+        if (shape && shape->mesh.face_count() > max_faces) shape = simplified(*shape, max_faces);
         // A soup of separate pieces may keep more faces than that.
-        if (shape && shape->mesh.face_count() > 2 * most_faces) return {};
+        if (shape && shape->mesh.face_count() > 2 * max_faces) return {};
         return shape;
     } catch (const MeshError&) {
         return {};

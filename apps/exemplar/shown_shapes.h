@@ -11,16 +11,16 @@
 
 namespace exemplar {
 
-/// A labeled shape as a page shows it.
+/// A labeled shape for the report page.
 struct ShownShape {
     TriangleMesh mesh;
     FaceLabels labels;              ///< per triangle of `mesh`
-    std::vector<float> confidence;  ///< the same, in [0, 1]
+    std::vector<float> confidence;  ///< per triangle, in [0, 1]
 };
 
-/// Reads back what a batch has written (NAME.ply) and, if it has more than `most_faces` triangles, simplifies it to
-/// about so many: a face takes the label that has the most area among those it stands for, and their mean confidence.
-/// Nothing if the file is not there, is no such file, or cannot be simplified.
-std::optional<ShownShape> read_shown_shape(const std::filesystem::path& path, std::size_t most_faces);
+/// Reads a labeled mesh that a batch wrote (NAME.ply). If it has more than `max_faces` triangles, simplifies it to
+/// about so many: each gets the label of largest area among the faces that it replaces, and their mean confidence.
+/// Returns nothing if the file is missing, is not such a file, or cannot be simplified.
+std::optional<ShownShape> read_shown_shape(const std::filesystem::path& path, std::size_t max_faces);
 
 }  // namespace exemplar

@@ -47,7 +47,7 @@ void require_kind(const std::string& kind) {
         fmt::format("unknown kind '{}'{}; the kinds are {}", kind, suggestion(kind, names), fmt::join(names, ", ")));
 }
 
-/// Options of shapes say nothing about animations, and the other way round.
+/// Throws UsageError for options of shapes given for animations, or the reverse.
 void require_fitting_options(const CLI::App& command, const std::string& kind) {
     const bool is_animation = is_one_of(synth_animation_kinds(), kind);
     const auto refuse = [&](const char* option) {
@@ -129,7 +129,7 @@ void add_synth_command(CLI::App& app) {
                     fmt::join(synth_kinds(), " "), fmt::join(synth_animation_kinds(), " ")));
     command->add_option("KIND", options->kind, "what to generate")
         ->required()
-        ->check(offered_words(all_kinds()))
+        ->check(completion_words(all_kinds()))
         ->type_name("");
     command->add_option("--count", options->count, "how many")->capture_default_str()->check(whole_number(1));
     command->add_option("--seed", options->seed, "seed of the first shape or motion; the next ones count up")

@@ -33,7 +33,7 @@ Video::Video(const fs::path& path, int width, int height, double frames_per_seco
     : path_(path), part_(path.parent_path() / (".part-" + std::to_string(getpid()) + path.filename().string())) {
     require_ffmpeg(path);
     if (path.has_parent_path()) fs::create_directories(path.parent_path());
-    // If it ends early, writing to it is to fail, not to end this program.
+    // If ffmpeg ends early, writing to it must fail rather than end this program.
     std::signal(SIGPIPE, SIG_IGN);
     // Most players want even sizes.
     const std::string command = fmt::format(

@@ -10,12 +10,13 @@ namespace exemplar {
 /// Throws UsageError if there is no ffmpeg to make a video at `path`.
 void require_ffmpeg(const std::filesystem::path& path);
 
-/// A video that ffmpeg, a program that must be installed, makes of frames; beside its place until it is whole.
+/// Makes a video of frames with ffmpeg, a program that must be installed. Writes a temporary file until it is
+/// complete.
 class Video {
   public:
-    /// Of frames of that size. Throws as require_ffmpeg, DataError if it cannot be started.
+    /// Starts a video of that frame size. Throws as require_ffmpeg, DataError if ffmpeg cannot be started.
     Video(const std::filesystem::path& path, int width, int height, double frames_per_second);
-    /// Removes what was not finished.
+    /// Removes an unfinished video.
     ~Video();
     Video(const Video&) = delete;
     Video& operator=(const Video&) = delete;

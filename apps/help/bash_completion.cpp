@@ -9,8 +9,8 @@
 namespace exemplar {
 namespace {
 
-/// A pattern of bash that is this text.
-std::string in_quotes(std::string_view text) {
+/// Returns a bash pattern that matches exactly this text.
+std::string bash_quoted(std::string_view text) {
     return fmt::format("'{}'", text);
 }
 
@@ -21,7 +21,7 @@ std::vector<std::string> option_patterns(const CommandHelp& program, Chosen&& ch
     for (const CommandHelp* command : all_commands(program))
         for (const ArgumentHelp& option : command->options)
             for (const std::string& name : option.names)
-                if (chosen(option)) patterns.push_back(in_quotes(command->path + " " + name));
+                if (chosen(option)) patterns.push_back(bash_quoted(command->path + " " + name));
     return patterns;
 }
 
@@ -29,12 +29,12 @@ std::string case_line(const std::vector<std::string>& patterns, std::string_view
     return patterns.empty() ? "" : fmt::format("        {}) {} ;;\n", fmt::join(patterns, "|"), action);
 }
 
-/// Goes along the words of the command line: `command` becomes the subcommand, `option` the last option before the
-/// cursor.
+/// Returns code that scans the words of the command line: sets `command` to the subcommand, `option` to the last
+/// option before the cursor.
 std::string finding_of_command(const CommandHelp& program) {
     std::vector<std::string> patterns;
     for (const CommandHelp* command : all_commands(program))
-        if (command != &program) patterns.push_back(in_quotes(command->path));
+        if (command != &program) patterns.push_back(bash_quoted(command->path));
     return fmt::format(
                "    local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD - 1]}}\n"
                "    local command={} option= words= kind= comma= i\n"
@@ -59,7 +59,7 @@ std::string finding_of_option(const CommandHelp& program) {
 }
 
 std::string words_of_option(const CommandHelp& command, const ArgumentHelp& option) {
-    return case_line({in_quotes(command.path + " " + option.names.back())},
+    return case_line({bash_quoted(command.path + " " + option.names.back())},
                      fmt::format("kind={} words='{}'{}", option.completion == Completion::files ? "files" : "words",
                                  fmt::join(option.words, " "), option.comma ? " comma=," : ""));
 }
@@ -96,7 +96,7 @@ std::string arguments_of_commands(const CommandHelp& program) {
         text += fmt::format(
             "        {})\n            case $current in\n                -*) kind=words words='{}' ;;\n"
             "                *) kind={} words='{}' ;;\n            esac ;;\n",
-            in_quotes(command->path), fmt::join(options, " "), files ? "files" : "words", fmt::join(words, " "));
+            bash_quoted(command->path), fmt::join(options, " "), files ? "files" : "words", fmt::join(words, " "));
     }
     return text + "    esac\n";
 }

@@ -39,7 +39,7 @@ bool is_set_of_words(const std::string& description) {
     return description.starts_with('{') && description.ends_with('}');
 }
 
-/// The value's own name: CLI11 gives it with the descriptions of all checks behind it.
+/// Returns the name of a value without the descriptions of checks that CLI11 appends.
 std::string value_name(CLI::Option& option) {
     std::string checks;
     for (const CLI::Validator* validator : validators_of(option)) {
@@ -100,13 +100,13 @@ CommandHelp describe(CLI::App& app, const std::string& path) {
 
 }  // namespace
 
-CLI::Validator offered_words(const std::vector<std::string>& words) {
+CLI::Validator completion_words(const std::vector<std::string>& words) {
     const auto accept = [](const std::string&) { return std::string(); };
     return {accept, "", std::string(k_offered) + fmt::format("{}", fmt::join(words, ","))};
 }
 
-CLI::Validator offered_words(std::span<const std::string_view> words) {
-    return offered_words(std::vector<std::string>(words.begin(), words.end()));
+CLI::Validator completion_words(std::span<const std::string_view> words) {
+    return completion_words(std::vector<std::string>(words.begin(), words.end()));
 }
 
 std::vector<std::string> words_of(CLI::Option& option) {

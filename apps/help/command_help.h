@@ -7,14 +7,14 @@
 
 namespace exemplar {
 
-/// What a shell offers in the place of a value.
+/// What a shell's completion offers for a value.
 enum class Completion { nothing, words, files, folders };
 
 /// An option or a positional argument, as it was defined.
 struct ArgumentHelp {
-    std::vector<std::string> names;  ///< "-h", "--help"; of a positional what stands for it, "MESH"
+    std::vector<std::string> names;  ///< "-h", "--help"; of a positional its placeholder, "MESH"
     std::string description;
-    std::string value;          ///< what stands for the value, "FOLDER"; empty if there is none
+    std::string value;          ///< placeholder of the value, "FOLDER"; empty if there is none
     std::string range;          ///< "from 1 to 64", or empty
     std::string default_value;  ///< empty if there is none
     std::vector<std::string> words;
@@ -34,13 +34,13 @@ struct CommandHelp {
     std::string name() const { return path.substr(path.rfind(' ') + 1); }
 };
 
-/// Reads the definitions of a program; what is hidden from its --help is left out.
+/// Reads the definitions of a program, without those that its --help hides.
 CommandHelp describe_command(CLI::App& app);
 
-/// The command, those below it, and so on: a command before its own.
+/// Returns the command and all its subcommands, each before its own subcommands.
 std::vector<const CommandHelp*> all_commands(const CommandHelp& command);
 
-/// `path` with `separator` in the place of blanks, and all other characters that are neither letters nor digits.
+/// Returns `path` with `separator` instead of every character that is neither a letter nor a digit.
 std::string joined_path(std::string_view path, char separator);
 
 }  // namespace exemplar

@@ -6,9 +6,9 @@
 
 namespace exemplar {
 
-/// Adds the hidden option --help-pages FOLDER, by which the build makes man pages (FOLDER/man1) and completion
-/// (FOLDER/bash, FOLDER/zsh, FOLDER/fish) of what is defined in `app`, which has a name. The pages are of today, or of
-/// the environment's SOURCE_DATE_EPOCH.
+/// Adds the hidden option --help-pages FOLDER, with which the build writes man pages (FOLDER/man1) and completion
+/// scripts (FOLDER/bash, FOLDER/zsh, FOLDER/fish) for `app`, which must have a name. Pages are dated today, or
+/// SOURCE_DATE_EPOCH of the environment.
 void add_help_pages_option(CLI::App& app, const std::string& version);
 
 }  // namespace exemplar

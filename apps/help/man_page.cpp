@@ -11,8 +11,8 @@
 namespace exemplar {
 namespace {
 
-/// Text whose characters all stand for themselves: hyphens can be copied into a shell, quotes are straight.
-std::string escaped(std::string_view text) {
+/// Escapes a text, so that hyphens can be copied into a shell and quotes stay straight.
+std::string escaped_roff(std::string_view text) {
     std::string out;
     for (const char c : text) {
         switch (c) {
@@ -42,13 +42,13 @@ std::string escaped(std::string_view text) {
 }
 
 std::string bold(std::string_view text) {
-    return "\\fB" + escaped(text) + "\\fR";
+    return "\\fB" + escaped_roff(text) + "\\fR";
 }
 std::string italic(std::string_view text) {
-    return "\\fI" + escaped(text) + "\\fR";
+    return "\\fI" + escaped_roff(text) + "\\fR";
 }
 
-std::vector<std::string> lines_of(std::string_view text) {
+std::vector<std::string> text_lines(std::string_view text) {
     std::vector<std::string> lines;
     while (!text.empty()) {
         const std::size_t end = std::min(text.find('\n'), text.size());
@@ -58,12 +58,12 @@ std::vector<std::string> lines_of(std::string_view text) {
     return lines;
 }
 
-/// A line of the file. One that began with a dot or a quote would be a request.
+/// Returns a line of the file; escapes a leading dot or quote, which would be a request.
 std::string line_of(std::string_view roff) {
     return (roff.starts_with('.') || roff.starts_with('\'') ? "\\&" : "") + std::string(roff) + "\n";
 }
 
-/// Roff that is filled when it is shown, in lines of the file that editors and checkers like.
+/// Wraps roff text to short lines for editors and checkers; it is filled again when shown.
 std::string wrapped(std::string_view roff) {
     constexpr std::size_t k_width = 76;
     std::string out, line;
@@ -86,14 +86,14 @@ struct Footer {
 };
 Footer split_footer(std::string_view footer) {
     Footer parts;
-    const std::vector<std::string> lines = lines_of(footer);
+    const std::vector<std::string> lines = text_lines(footer);
     const auto heading = std::ranges::find_if(lines, [](const auto& l) { return l == "Example:" || l == "Examples:"; });
     parts.text.assign(lines.begin(), heading);
     if (heading != lines.end()) parts.examples.assign(std::next(heading), lines.end());
     return parts;
 }
 
-/// Lines of a footer: what was broken for its width flows again; what was meant as a line, or indented, stays one.
+/// Joins lines of a footer that were broken only for their width; keeps short and indented lines.
 std::string flowing(const std::vector<std::string>& lines) {
     constexpr std::size_t k_broken_for_width = 85;
     std::string out = lines.empty() ? "" : ".PP\n";
@@ -101,11 +101,11 @@ std::string flowing(const std::vector<std::string>& lines) {
     for (const std::string& line : lines) {
         if (line.empty()) continue;
         if (line.starts_with(' ')) {
-            out += ".nf\n" + line_of(escaped(line)) + ".fi\n";
+            out += ".nf\n" + line_of(escaped_roff(line)) + ".fi\n";
             continue;
         }
         if (!in_line && out != ".PP\n") out += ".br\n";
-        out += wrapped(escaped(line));
+        out += wrapped(escaped_roff(line));
         in_line = line.size() >= k_broken_for_width && !line.ends_with('.');
     }
     return out;
@@ -130,7 +130,7 @@ std::string heading_of(const ArgumentHelp& argument, bool positional) {
     return text;
 }
 
-/// Whether the description tells all words by itself.
+/// Returns whether the description already names all words.
 bool names_all_words(const ArgumentHelp& argument) {
     return std::ranges::all_of(
         argument.words, [&](const std::string& word) { return argument.description.find(word) != std::string::npos; });
@@ -149,7 +149,7 @@ std::string paragraph_of(const ArgumentHelp& argument, bool positional) {
     if (!argument.default_value.empty()) remarks.push_back("default: " + without_brackets(argument.default_value));
     std::string text = argument.description;
     if (!remarks.empty()) text += fmt::format(" ({})", fmt::join(remarks, "; "));
-    return ".TP\n" + line_of(heading_of(argument, positional)) + wrapped(escaped(text));
+    return ".TP\n" + line_of(heading_of(argument, positional)) + wrapped(escaped_roff(text));
 }
 
 std::string section(std::string_view title, const std::vector<ArgumentHelp>& arguments, bool positional) {
@@ -163,7 +163,7 @@ std::string subcommand_section(const CommandHelp& command) {
     if (command.subcommands.empty()) return {};
     std::string out = ".SH COMMANDS\n";
     for (const CommandHelp& below : command.subcommands)
-        out += ".TP\n" + line_of(bold(man_page_name(below)) + "(1)") + wrapped(escaped(below.description));
+        out += ".TP\n" + line_of(bold(man_page_name(below)) + "(1)") + wrapped(escaped_roff(below.description));
     return out;
 }
 
@@ -171,7 +171,7 @@ std::string example_section(const std::vector<std::string>& lines) {
     if (lines.empty()) return {};
     std::string out = ".SH EXAMPLES\n.EX\n";
     for (const std::string& line : lines)
-        if (!line.empty()) out += line_of(escaped(line));
+        if (!line.empty()) out += line_of(escaped_roff(line));
     return out + ".EE\n";
 }
 
@@ -200,10 +200,10 @@ std::string man_page(const CommandHelp& command, std::string_view release, std::
     const Footer footer = split_footer(command.footer);
     std::string description = command.description;
     if (description.ends_with('.')) description.pop_back();
-    return fmt::format(".TH {} 1 {} \"{}\" \"Exemplar\"\n", escaped(title), date, escaped(release)) + ".SH NAME\n" +
-           line_of(escaped(name) + " \\- " + escaped(description)) + ".SH SYNOPSIS\n" + wrapped(synopsis(command)) +
-           ".SH DESCRIPTION\n" + wrapped(escaped(description + ".")) + flowing(footer.text) +
-           section("ARGUMENTS", command.positionals, true) + subcommand_section(command) +
+    return fmt::format(".TH {} 1 {} \"{}\" \"Exemplar\"\n", escaped_roff(title), date, escaped_roff(release)) +
+           ".SH NAME\n" + line_of(escaped_roff(name) + " \\- " + escaped_roff(description)) + ".SH SYNOPSIS\n" +
+           wrapped(synopsis(command)) + ".SH DESCRIPTION\n" + wrapped(escaped_roff(description + ".")) +
+           flowing(footer.text) + section("ARGUMENTS", command.positionals, true) + subcommand_section(command) +
            section("OPTIONS", command.options, false) + example_section(footer.examples) + see_also(command);
 }
 

@@ -7,8 +7,7 @@
 
 namespace exemplar {
 
-/// The page of one command, in the man macros of roff. `release` is the program's name and version, `date` as in
-/// 2026-01-31.
+/// Returns the man page of one command, in roff. `release` is the program's name and version, `date` as 2026-01-31.
 std::string man_page(const CommandHelp& command, std::string_view release, std::string_view date);
 
 /// "exemplar-label-train"

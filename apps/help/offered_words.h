@@ -8,12 +8,12 @@
 
 namespace exemplar {
 
-/// Words that an option takes, for the completion of shells. Nothing is refused here: what reads the option does that,
-/// and suggests the nearest.
-CLI::Validator offered_words(const std::vector<std::string>& words);
-CLI::Validator offered_words(std::span<const std::string_view> words);
+/// Names the words of an option for the completion of shells. Rejects no others: the reader of the option does that,
+/// and suggests the nearest word.
+CLI::Validator completion_words(const std::vector<std::string>& words);
+CLI::Validator completion_words(std::span<const std::string_view> words);
 
-/// The words given to offered_words or to CLI::IsMember, in their order; empty if an option has neither.
+/// Returns the words given to completion_words or to CLI::IsMember, in order; empty if an option has neither.
 std::vector<std::string> words_of(CLI::Option& option);
 
 }  // namespace exemplar

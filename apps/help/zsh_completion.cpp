@@ -7,7 +7,7 @@ namespace exemplar {
 namespace {
 
 /// Text inside of a specification of _arguments, which colons and brackets divide, in single quotes.
-std::string escaped(std::string_view text) {
+std::string escaped_zsh(std::string_view text) {
     std::string out;
     for (const char c : text) {
         if (c == '\'') {
@@ -47,8 +47,8 @@ std::string option_lines(const CommandHelp& command) {
             const bool has_value = !option.value.empty();
             // A star: it may be given again. An equal sign: the value may follow one.
             text += fmt::format("        '{}{}{}[{}]{}'\n", option.many || option.comma ? "*" : "", name,
-                                has_value && name.starts_with("--") ? "=" : "", escaped(option.description),
-                                has_value ? fmt::format(":{}:{}", escaped(option.value), action_of(option)) : "");
+                                has_value && name.starts_with("--") ? "=" : "", escaped_zsh(option.description),
+                                has_value ? fmt::format(":{}:{}", escaped_zsh(option.value), action_of(option)) : "");
         }
     return text;
 }
@@ -58,7 +58,7 @@ std::string positional_lines(const CommandHelp& command) {
     for (std::size_t i = 0; i < command.positionals.size(); ++i) {
         const ArgumentHelp& argument = command.positionals[i];
         text += fmt::format("        '{}:{}:{}'\n", argument.many ? "*" : std::to_string(i + 1),
-                            escaped(argument.names.front()), action_of(argument));
+                            escaped_zsh(argument.names.front()), action_of(argument));
     }
     return text;
 }
@@ -72,11 +72,11 @@ std::string leaf_function(const CommandHelp& command) {
                        function_name(command), option_lines(command), positional_lines(command));
 }
 
-/// A command that only leads to others: the first word says which, and that one completes the rest.
+/// Returns the function of a command with subcommands: the first word selects one, which completes the rest.
 std::string branch_function(const CommandHelp& command) {
     std::string descriptions, calls;
     for (const CommandHelp& below : command.subcommands) {
-        descriptions += fmt::format("            '{}:{}'\n", below.name(), escaped(below.description));
+        descriptions += fmt::format("            '{}:{}'\n", below.name(), escaped_zsh(below.description));
         calls += fmt::format("            {}) {} ;;\n", below.name(), function_name(below));
     }
     return fmt::format(

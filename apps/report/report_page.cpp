@@ -337,7 +337,7 @@ void write_data(std::ostream& out, const std::string& title, std::span<const Rep
     out << "<script type=\"application/json\" id=\"report\">" << script_json(page) << "</script>\n";
 }
 
-/// As an image it plays, but can run nothing and is a document of its own.
+/// Embeds the drawing as an image: it may be animated, but cannot run scripts or mix with the page.
 void write_drawing(std::ostream& out, const ReportDrawing& drawing) {
     out << "<section class=\"wide drawing\">\n<h2>" << escaped_html(drawing.title) << "</h2>\n<p class=\"soft\">"
         << escaped_html(drawing.text) << "</p>\n<figure>\n<img alt=\"" << escaped_html(drawing.title)

@@ -59,10 +59,10 @@ struct ReportMesh {
     double recognition_rate = 0;          ///< share of the area labeled right, in [0, 1]; NaN if unknown
 };
 
-/// A table of texts, shown below all others; columns of numbers are set right.
+/// A table of texts, shown below all others; columns of numbers are aligned right.
 struct ReportTable {
     std::string title, note;
-    std::vector<std::string> columns;            ///< their heads
+    std::vector<std::string> columns;            ///< headings
     std::vector<std::vector<std::string>> rows;  ///< a text per column each
 };
 
@@ -92,22 +92,20 @@ struct ReportData {
 /// A drawing below the groups.
 struct ReportDrawing {
     std::string title, text;            ///< plain text
-    std::string svg;                    ///< a whole file; it may play, but has no scripts and refers to nothing else
-    std::vector<std::string> captions;  ///< of equally wide parts of it, from the left
+    std::string svg;                    ///< a whole file; may be animated; no scripts, no external references
+    std::vector<std::string> captions;  ///< of equally wide parts, from the left
 };
 
-/// Writes one HTML file that shows the groups: a table that compares them, turnable views of every labeled mesh
-/// (predicted labels, ground truth, errors, confidence; the first three also side by side), confusion table, scores of
-/// all tested meshes, validation curves, chosen features and timings. The file needs nothing else: no network, no
-/// server, no other file; it opens from file:// in any browser with WebGL (without, the tables remain).
-///
-/// Meshes are packed for display, not for exchange: positions are rounded to 1 / 65535 of the bounding box of the
-/// mesh, confidences to 1 / 255. A mesh of F triangles and V vertices costs (6 V + 9 F) * 4 / 3 bytes; 15 F instead
-/// of 9 F beyond 65536 vertices. The file is written atomically; equal arguments give equal bytes.
+/// Writes one self-contained HTML file on the groups: a table that compares them, turnable views of labeled meshes
+/// (predicted labels, ground truth, errors, confidence; the first three also side by side), confusion, scores,
+/// curves, features and timings. It opens from file:// in any browser with WebGL; without WebGL the tables remain.
+/// Positions are rounded to 1 / 65535 of the mesh's bounding box, confidences to 1 / 255. F triangles and V vertices
+/// cost (6 V + 9 F) * 4 / 3 bytes; 15 F instead of 9 F beyond 65536 vertices. Written atomically; equal arguments
+/// give equal bytes.
 ///
 /// Throws UsageError naming the mesh or table if a label index or confidence is out of range, a size does not match,
-/// a coordinate is not finite, the rounds of a curve do not ascend, or there is no group; DataError if the file cannot
-/// be written.
+/// a coordinate is not finite, the rounds of a curve do not ascend, or there is no group; DataError if it cannot
+/// write.
 void write_report_page(const std::filesystem::path& path, const std::string& title, std::span<const ReportData> groups,
                        std::span<const ReportDrawing> drawings = {});
 

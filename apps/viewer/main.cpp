@@ -11,7 +11,7 @@
 #include "apps/help/help_pages.h"
 #include "apps/help/offered_words.h"
 #include "apps/viewer/scene/hatched_still.h"
-#include "apps/viewer/options.h"
+#include "apps/viewer/scene/options.h"
 #include "host/core/errors.h"
 #include "host/core/freed_memory.h"
 #include "host/core/progress.h"
@@ -24,10 +24,11 @@ namespace {
 template <typename T>
 using Names = std::map<std::string, T>;
 
-const Names<SurfacePaint> k_paints{{"plain", SurfacePaint::plain},         {"labels", SurfacePaint::faces},
-                                   {"mean", SurfacePaint::mean_curvature}, {"gauss", SurfacePaint::gaussian_curvature},
-                                   {"k1", SurfacePaint::first_curvature},  {"k2", SurfacePaint::second_curvature},
-                                   {"normals", SurfacePaint::normals}};
+const Names<SurfacePaint> k_paint_choices{
+    {"plain", SurfacePaint::plain},         {"labels", SurfacePaint::faces},
+    {"mean", SurfacePaint::mean_curvature}, {"gauss", SurfacePaint::gaussian_curvature},
+    {"k1", SurfacePaint::first_curvature},  {"k2", SurfacePaint::second_curvature},
+    {"normals", SurfacePaint::normals}};
 const Names<SurfaceLight> k_lights{{"smooth", SurfaceLight::smooth},
                                    {"flat", SurfaceLight::flat},
                                    {"steps", SurfaceLight::steps},
@@ -56,7 +57,7 @@ std::vector<LineType> parse_lines(const std::vector<std::string>& words) {
     std::vector<LineType> types;
     const std::vector<std::string> names = line_words();
     for (const std::string& word : words) {
-        const std::optional<LineType> type = word == "none" ? std::nullopt : line_type_meant(word);
+        const std::optional<LineType> type = word == "none" ? std::nullopt : line_type_from_prefix(word);
         if (!type && word != "none")
             throw UsageError(fmt::format("there are no lines '{}'{}", word, suggestion(word, names)));
         if (type) types.push_back(*type);
@@ -94,12 +95,12 @@ void add_options(CLI::App& app, ViewerOptions& options, std::string& size) {
            "lines to draw, as in contours,suggestive_contours (the default); none for no lines")
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(offered_words(line_words()))
+        ->check(completion_words(line_words()))
         ->type_name("TYPE");
     app.add_option("--style", options.style, "style of the drawing: a built-in name or a file")
-        ->check(offered_words(builtin_style_names()))
+        ->check(completion_words(builtin_style_names()))
         ->type_name("NAME|FILE");
-    add_choice(app, "--paint", options.paint, "colors: labels, curvature (mean, gauss, k1, k2), ...", k_paints);
+    add_choice(app, "--paint", options.paint, "colors: labels, curvature (mean, gauss, k1, k2), ...", k_paint_choices);
     add_choice(app, "--light", options.light, "shading", k_lights);
     add_choice(app, "--curvature", options.source, "curvature that is shown", k_sources);
     add_choice(app, "--side", options.side, "side to look from", k_sides);

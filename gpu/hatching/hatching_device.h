@@ -13,7 +13,7 @@
 
 namespace exemplar {
 
-/// A device, and everything that hatches pictures on it. One thread at a time may use it.
+/// A device and everything that hatches pictures on it. Only one thread at a time may use it.
 class HatchingDevice {
   public:
     explicit HatchingDevice(const DeviceOptions& options = {})

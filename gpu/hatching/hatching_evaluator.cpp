@@ -23,7 +23,7 @@ using Word = std::uint32_t;
 // Kernels fetch them as texels.
 static_assert(sizeof(RuleTerm) == sizeof(uvec4) && sizeof(PropertyTerm) == 2 * sizeof(uvec4));
 
-/// Numbers that are used, by rising number, and the place of each.
+/// The numbers in use, in ascending order, and the position of each.
 struct Used {
     std::vector<Word> numbers;
     void sort() {
@@ -35,7 +35,7 @@ struct Used {
     }
 };
 
-/// Rules as the kernel wants them.
+/// Rules in the layout of the kernel.
 struct Rules {
     Used fields;
     std::vector<Word> begin{0};
@@ -50,7 +50,7 @@ Rules rules_of(std::span<const OrientationFunction> functions) {
     }
     rules.fields.sort();
     for (const OrientationFunction& function : functions) {
-        // What is turned by 90 degrees is the field with the other sign.
+        // A field turned by 90 degrees is the negated field.
         for (const auto& term : function.terms)
             rules.terms.push_back({rules.fields.place(term.feature % k_fields),
                                    term.feature < k_fields ? term.weight : -term.weight, 0, 0});
@@ -74,7 +74,7 @@ std::vector<PropertyTerm> terms_of(const PropertyModel& model, const Used& used)
     return terms;
 }
 
-/// Shaders may take NaN and infinity for what never occurs, and squares must not become infinite.
+/// Copies values without NaN and infinity (D15 in docs/portability.md), and bounded so that squares are finite.
 void copy_bounded(std::span<const float> values, std::span<std::byte> memory) {
     auto* const out = reinterpret_cast<float*>(memory.data());
     parallel_for(
@@ -100,7 +100,7 @@ GpuHatchingEvaluator::GpuHatchingEvaluator(Device& device, Profiler* profiler, s
                 {.push_constants = layout_of<PropertyParameters>(),
                  .elements = {layout_of<uvec4>(), layout_of<vec4>(), layout_of<vec4>()}}) {}
 
-/// Rows of a tile, a multiple of 4, of which kernels see so many bytes each, and a texel.
+/// Returns the rows of a tile, a multiple of 4. Kernels access `row_bytes` and one texel per row.
 std::size_t GpuHatchingEvaluator::tile_rows(std::size_t rows, std::size_t row_bytes) const {
     const std::size_t most = std::min<std::size_t>(tile_bytes_ / row_bytes, device_.info().max_texels);
     return std::max<std::size_t>(std::min(most, rows + 3) / 4 * 4, 4);

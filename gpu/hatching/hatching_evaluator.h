@@ -5,22 +5,22 @@
 #include <span>
 #include <vector>
 
-#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/record/profiler.h"
 #include "gpu/runtime/record/stream.h"
 #include "host/hatching/style/style_prediction.h"
 
 namespace exemplar {
 
-/// Evaluates a style's rules and properties on the device, in tiles of rows that fit its limits; only the fields and
-/// features that they use are uploaded. Agrees with CpuHatchingEvaluator up to what floats round and exp and log
-/// differ between devices: directions within 1e-5 where a rule's fields do not cancel out, properties within 1e-4 of
-/// their value. Reruns on one device give the same bytes. One thread at a time may use it.
+/// Evaluates a style's rules and properties on the device, in tiles of rows that fit its limits. Uploads only the
+/// fields and features in use. Agrees with CpuHatchingEvaluator up to the rounding of floats, exp and log:
+/// directions within 1e-5 unless a rule's fields cancel out, properties within 1e-4 of their value. Repeated runs on
+/// one device give the same bytes. Only one thread at a time may use it.
 class GpuHatchingEvaluator final : public HatchingEvaluator {
   public:
-    /// `tile_bytes` bounds the memory of a tile's fields or features below the device's own limits.
+    /// `tile_bytes` limits the memory of a tile's fields or features; the device's own limits apply, too.
     explicit GpuHatchingEvaluator(Device& device, Profiler* profiler = nullptr,
                                   std::size_t tile_bytes = std::size_t{256} << 20);
     std::vector<DoubledAngle> orientations(std::span<const OrientationFunction> functions,

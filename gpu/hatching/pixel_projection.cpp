@@ -32,7 +32,8 @@ static_assert(shared::k_curvature_values == k_curvature_functions && k_scale_col
 
 constexpr std::size_t k_block = 1024;  // vertices that are packed at once
 
-/// Points whose slab of columns a kernel can see; columns may begin at any texel of four.
+/// Returns the number of points of a tile, a multiple of 4 (a texel of a column), so that its columns fit the limits
+/// of a kernel.
 std::size_t tile_limit(const DeviceInfo& info, std::size_t points) {
     const std::size_t texels = info.max_texels, bytes = buffer_limit(info, points * k_slab_lanes * sizeof(float));
     return std::max<std::size_t>(std::min({points, texels / 2, bytes / (k_slab_lanes * sizeof(float))}) / 4 * 4, 4);
@@ -43,7 +44,7 @@ std::span<const std::byte> bytes_of(const std::vector<T>& values) {
     return std::as_bytes(std::span(values));
 }
 
-/// Calls use(columns) for as many of the columns as a slab has lanes, then for the next.
+/// Calls use(columns) for every group of at most k_slab_lanes columns.
 template <typename Use>
 void for_each_slab(std::span<const std::uint32_t> which, Use&& use) {
     for (std::size_t first = 0; first < which.size(); first += k_slab_lanes)
@@ -58,7 +59,7 @@ vec4 matrix_row(const Eigen::Matrix4f& matrix, int row) {
     return {matrix(row, 0), matrix(row, 1), matrix(row, 2), matrix(row, 3)};
 }
 
-/// A buffer of `rows` x `columns` texels, written in parallel: texels of row i by write(i, texels).
+/// Returns a buffer of `rows` x `columns` texels, filled in parallel: write(i, texels) writes those of row i.
 template <typename Write>
 Buffer packed(Device& device, Stream& stream, std::size_t rows, std::size_t columns, Write&& write) {
     Buffer buffer(device, rows * columns * sizeof(vec4));
@@ -132,7 +133,7 @@ void GpuPixelProjection::project(const TriangleMesh& mesh, const FacePoints& poi
         const std::size_t column_bytes = tile.stride * sizeof(float);
         reserve(device_, columns_, std::min<std::size_t>(k_slab_lanes, (columns + 3) / 4 * 4) * column_bytes);
         for (std::size_t s = 0; s < slabs.size(); ++s) {
-            std::vector<HostPart> parts;
+            std::vector<HostReadback> parts;
             for (std::size_t k = s * k_slab_lanes; k < std::min(columns, (s + 1) * k_slab_lanes); ++k)
                 parts.push_back({parts.size() * column_bytes,
                                  std::as_writable_bytes(out.subspan(k * points.size() + tile.first, tile.count))});
@@ -174,7 +175,7 @@ void GpuPixelProjection::directions(const TriangleMesh& mesh, const HatchingView
             const Shared slab = directions_slab(some);
             stream_.dispatch(directions_, tile.count, {*on_faces, faces_, barycentrics_, *on_vertices, *slab, doubled_},
                              parameters);
-            std::vector<HostPart> parts;
+            std::vector<HostReadback> parts;
             for (std::size_t k = 0; k < some.size(); ++k)
                 parts.push_back({k * field_bytes, std::as_writable_bytes(out.subspan(
                                                       (first + k) * points.size() + tile.first, tile.count))});
@@ -183,7 +184,7 @@ void GpuPixelProjection::directions(const TriangleMesh& mesh, const HatchingView
     });
 }
 
-/// Calls use(tile) for all points, a tile of which is on the device.
+/// Uploads the points tile by tile, and calls use(tile) for each.
 template <typename Use>
 void GpuPixelProjection::for_each_tile(const FacePoints& points, Use&& use) {
     for (std::size_t first = 0; first < points.size(); first += tile_points_) {
@@ -194,7 +195,7 @@ void GpuPixelProjection::for_each_tile(const FacePoints& points, Use&& use) {
     }
 }
 
-/// Points that fill up the last four are of the first face.
+/// Points that pad a tile to a multiple of four lie on face 0.
 void GpuPixelProjection::upload_points(const FacePoints& points, const Tile& tile) {
     reserve(device_, faces_, tile.stride * sizeof(Word));
     reserve(device_, barycentrics_, 2 * tile.stride * sizeof(float));
@@ -277,7 +278,7 @@ GpuPixelProjection::Shared GpuPixelProjection::curvature_states(const HatchingSu
     });
 }
 
-/// Computed when the recorded work runs.
+/// Records the computation of the slab; its contents are valid when that work has run.
 GpuPixelProjection::Shared GpuPixelProjection::curvature_slab(const Buffer& states, const HatchingSurface& surface,
                                                               const HatchingView& view,
                                                               std::span<const std::uint32_t> which) {
@@ -304,7 +305,8 @@ GpuPixelProjection::Shared GpuPixelProjection::curvature_slab(const Buffer& stat
     return slab;
 }
 
-/// In parts that a kernel can see; they begin at multiples of 64 vertices, which satisfies every device's alignment.
+/// Dispatches parts of a size that a kernel can access. They begin at multiples of 64 vertices, which satisfies
+/// every device's alignment.
 void GpuPixelProjection::record_curvature(const Buffer& states, const Buffer& slab, std::size_t vertices,
                                           const ViewCurvatureParameters& parameters) {
     constexpr std::size_t k_state = shared::k_curvature_texels * sizeof(vec4), k_row = k_slab_lanes * sizeof(float);
@@ -321,8 +323,8 @@ void GpuPixelProjection::record_curvature(const Buffer& states, const Buffer& sl
     }
 }
 
-// On a CPU every load of a kernel is expensive, and there is little else here: the kernels take twice as long as the
-// reference on the same cores, before what they load is laid out for them.
+// On the host if the device is a CPU (D6 in docs/portability.md): there the kernels take twice as long as the
+// reference on the same cores, even without the time to lay out their input.
 std::unique_ptr<PixelProjection> projection_for(Device& device) {
     if (device.info().type == DeviceType::cpu) return std::make_unique<CpuPixelProjection>();
     return std::make_unique<GpuPixelProjection>(device);

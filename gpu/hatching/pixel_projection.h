@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "gpu/hatching/kept_buffers.h"
-#include "gpu/runtime/record/buffer.h"
+#include "gpu/hatching/buffer_cache.h"
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/record/profiler.h"
 #include "gpu/runtime/record/stream.h"
 #include "host/hatching/features/pixel_projection.h"
@@ -17,20 +17,20 @@
 
 namespace exemplar {
 
-/// Takes what is known of vertices to points of faces on the device. What belongs to a mesh stays there from view to
-/// view. Agrees with CpuPixelProjection up to what floats round: scalars within 1e-6 of the largest value at the
-/// corners; directions within 1e-5 where those at the corners do not cancel out. Reruns on one device give the same
-/// bytes. One thread at a time may use it.
+/// Interpolates data of vertices at points of faces on the device. Data of a mesh stay there from view to view.
+/// Agrees with CpuPixelProjection up to the rounding of floats: scalars within 1e-6 of the largest value at the
+/// corners, directions within 1e-5 unless those at the corners cancel out. Repeated runs on one device give the same
+/// bytes. Only one thread at a time may use it.
 class GpuPixelProjection final : public PixelProjection {
   public:
-    /// `tile_points` is the largest number of points that are projected at once, `kept_bytes` the memory for what
-    /// stays; both are bounded by the device's limits.
+    /// `tile_points` is the maximum number of points projected at once, `kept_bytes` the size of the cache for data
+    /// of meshes. The device's limits apply, too.
     explicit GpuPixelProjection(Device& device, Profiler* profiler = nullptr,
                                 std::size_t tile_points = std::size_t{1} << 20,
                                 std::size_t kept_bytes = std::size_t{256} << 20);
 
-    /// All throw DeviceLimitError, too, if the mesh has more faces or more than an eighth as many vertices as a kernel
-    /// of the device can see texels.
+    /// All three also throw DeviceLimitError if the mesh has more faces than the number of texels that a kernel can
+    /// access, or more vertices than an eighth of that number.
     void scalars(const TriangleMesh& mesh, const FacePoints& points, const FeatureMatrix& values,
                  std::span<const std::uint32_t> which, std::span<float> out) override;
     void curvature(const HatchingSurface& surface, const HatchingView& view, const FacePoints& points,
@@ -62,11 +62,11 @@ class GpuPixelProjection final : public PixelProjection {
     std::size_t tile_points_;
     Stream stream_;
     Kernel project_, directions_, view_curvature_;
-    KeptBuffers kept_;
+    BufferCache kept_;
     Buffer faces_, barycentrics_, columns_, doubled_;  // of a tile
 };
 
-/// The projection that is fastest with a device: the reference itself where the device is the host's processor.
+/// Returns the fastest projection for a device: CpuPixelProjection if the device is the host's processor.
 std::unique_ptr<PixelProjection> projection_for(Device& device);
 
 }  // namespace exemplar

@@ -5,13 +5,13 @@
 #include <numeric>
 
 #include "embedded/hatching_claim_comp.h"
+#include "embedded/hatching_end_round_comp.h"
 #include "embedded/hatching_place_comp.h"
 #include "embedded/hatching_seed_comp.h"
-#include "embedded/hatching_settle_comp.h"
 #include "embedded/hatching_trace_comp.h"
 #include "host/core/interrupt.h"
-#include "host/hatching/placement/kept_strokes.h"
 #include "host/hatching/fields/occlusion_barriers.h"
+#include "host/hatching/placement/clipped_strokes.h"
 #include "host/hatching/placement/stroke_front.h"
 
 namespace exemplar {
@@ -19,7 +19,7 @@ namespace {
 
 using shared::PlacementCounts;
 using shared::PlacementParameters;
-using shared::SeedListRecord;
+using shared::SeedQueueRecord;
 using shared::StrokeRecord;
 using shared::TrialRecord;
 using shared::uvec4;
@@ -27,8 +27,8 @@ using shared::uvec4;
 static_assert(shared::k_pixel_bits == k_pixel_bits && shared::k_pixel == k_pixel && shared::k_unit == k_unit &&
               shared::k_unit_bits == k_unit_bits && shared::k_share_bits == k_share_bits &&
               shared::k_spacing_bits == k_spacing_bits && shared::k_length_bits == k_length_bits &&
-              shared::k_step == k_step && shared::k_least_steps == k_least_steps &&
-              shared::k_most_places == k_most_places && shared::k_right_barrier == k_barrier_right &&
+              shared::k_step == k_step && shared::k_min_steps == k_min_steps &&
+              shared::k_max_seeds_per_round == k_max_seeds_per_round && shared::k_right_barrier == k_barrier_right &&
               shared::k_lower_barrier == k_barrier_below);
 static_assert(shared::k_part_source == static_cast<std::uint32_t>(SeedSource::part) &&
               shared::k_left_side_source == static_cast<std::uint32_t>(SeedSource::left_side) &&
@@ -38,11 +38,12 @@ static_assert(shared::k_part_source == static_cast<std::uint32_t>(SeedSource::pa
               shared::k_block_source == static_cast<std::uint32_t>(SeedSource::block));
 static_assert(sizeof(PlacementTexel) == sizeof(uvec4) && sizeof(FinePoint) == 2 * sizeof(std::uint32_t));
 
-/// Rounds between two looks at what they left; a divisor of the rounds that claims count down.
+/// Rounds per batch, after which the host reads the counters; a divisor of the number of rounds that claims count
+/// down.
 constexpr std::uint32_t k_batch = 16, k_claim_rounds = 4096;
 static_assert(k_claim_rounds % k_batch == 0);
 
-SeedListRecord record_of(const SeedList& list) {
+SeedQueueRecord record_of(const SeedQueue& list) {
     return {static_cast<std::uint32_t>(list.source) | list.layer << shared::k_layer_shift, list.first, list.second,
             list.next};
 }
@@ -58,9 +59,9 @@ PlacementParameters parameters_of(const PlacementGrid& grid) {
             .seed = rules.seed,
             .test_share = rules.test_share,
             .hole_share = rules.hole_share,
-            .least_share = rules.least_share,
+            .min_length_share = rules.min_length_share,
             .jitter = rules.jitter,
-            .least_turn_cosine = rules.least_turn_cosine,
+            .min_turn_cosine = rules.min_turn_cosine,
             .near_shift = rules.near_shift,
             .room = rules.room,
             .candidates = rules.candidates,
@@ -72,7 +73,7 @@ PlacementParameters parameters_of(const PlacementGrid& grid) {
             .list_room = 0};
 }
 
-/// How many points strokes will about have, and how many strokes there will be (rooms grow where that is too few).
+/// Estimates the numbers of points and strokes; buffers grow if these are too low.
 struct Estimate {
     double points = 4096, strokes = 1024;
     explicit Estimate(const PlacementGrid& grid) {
@@ -81,12 +82,12 @@ struct Estimate {
                 if (!texel.hatched(layer)) continue;
                 const double points_here = static_cast<double>(1 << k_spacing_bits) / texel.spacing();
                 points += points_here;
-                strokes += 2 * points_here / std::max(texel.length() >> k_length_bits, k_least_steps);
+                strokes += 2 * points_here / std::max(texel.length() >> k_length_bits, k_min_steps);
             }
     }
 };
 
-/// Doubles the room for items of a buffer; they stay.
+/// Doubles the capacity of a buffer and keeps its contents.
 void double_room(Device& device, Stream& stream, Buffer& buffer, std::uint32_t& room, std::size_t item) {
     room *= 2;
     Buffer larger(device, room * item);
@@ -100,16 +101,18 @@ void double_room(Device& device, Stream& stream, Buffer& buffer, std::uint32_t& 
 GpuStrokePlacer::GpuStrokePlacer(Device& device, Profiler* profiler) : device_(device), stream_(device, profiler) {
     const StructLayout word = layout_of<std::uint32_t>(), four = layout_of<uvec4>(), point = layout_of<FinePoint>(),
                        parameters = layout_of<PlacementParameters>(), trial = layout_of<TrialRecord>(),
-                       list = layout_of<SeedListRecord>();
+                       list = layout_of<SeedQueueRecord>();
     seed_ = Kernel(device, shaders::hatching_seed_comp,
                    {.push_constants = parameters, .elements = {four, word, word, list, trial}});
     trace_ = Kernel(device, shaders::hatching_trace_comp,
                     {.push_constants = parameters, .elements = {four, word, list, trial, point}});
     claim_ = Kernel(device, shaders::hatching_claim_comp,
                     {.push_constants = parameters, .elements = {four, point, trial, word}, .constants = {{0, 0}}});
-    contest_ = Kernel(device, shaders::hatching_claim_comp,
-                      {.push_constants = parameters, .elements = {four, point, trial, word}, .constants = {{0, 1}}});
-    settle_ = Kernel(device, shaders::hatching_settle_comp, {.push_constants = parameters, .elements = {list, trial}});
+    check_claims_ =
+        Kernel(device, shaders::hatching_claim_comp,
+               {.push_constants = parameters, .elements = {four, point, trial, word}, .constants = {{0, 1}}});
+    end_round_ =
+        Kernel(device, shaders::hatching_end_round_comp, {.push_constants = parameters, .elements = {list, trial}});
     place_ = Kernel(device, shaders::hatching_place_comp,
                     {.push_constants = parameters, .elements = {four, point, trial, point, word}});
     count_buffer_ = Buffer(device, sizeof(PlacementCounts));
@@ -120,7 +123,7 @@ std::vector<HatchStroke> GpuStrokePlacer::place(const HatchingFields& fields, st
     const PlacementGrid grid = make_placement_grid(fields, barriers, options);
     if (grid.size() == 0) return {};
     Clearance clearance(grid);
-    const std::vector<FineStroke> first = keep_strokes(grid, kept, options, clearance);
+    const std::vector<FineStroke> first = clip_strokes(grid, kept, options, clearance);
     upload(grid, first, clearance.words());
     place_all();
     return finished_strokes(download(), fields);
@@ -145,16 +148,16 @@ void GpuStrokePlacer::upload(const PlacementGrid& grid, std::span<const FineStro
     stream_.upload<PlacementCounts>(count_buffer_, std::span(&counts_, 1));
 }
 
-/// The lists of holes, then the front: as the reference begins. Sets what is counted.
+/// Uploads the lists of holes, then the front, in the order of the reference. Sets the counters.
 void GpuStrokePlacer::upload_lists(const PlacementGrid& grid, std::span<const FineStroke> kept) {
-    std::vector<SeedListRecord> lists;
-    for (const SeedList& list : block_seeds(grid)) lists.push_back(record_of(list));
+    std::vector<SeedQueueRecord> lists;
+    for (const SeedQueue& list : block_seeds(grid)) lists.push_back(record_of(list));
     parameters_.blocks = static_cast<std::uint32_t>(lists.size());
-    for (const SeedList& list : first_seeds(grid, kept)) lists.push_back(record_of(list));
+    for (const SeedQueue& list : first_seeds(grid, kept)) lists.push_back(record_of(list));
     std::uint32_t points = 0;
     for (const FineStroke& stroke : kept) {
         const auto count = static_cast<std::uint32_t>(stroke.points.size());
-        for (const SeedList& list : stroke_seeds(stroke.layer, points, count)) lists.push_back(record_of(list));
+        for (const SeedQueue& list : stroke_seeds(stroke.layer, points, count)) lists.push_back(record_of(list));
         points += count;
     }
     const auto front = static_cast<std::uint32_t>(lists.size()) - parameters_.blocks;
@@ -178,8 +181,8 @@ void GpuStrokePlacer::upload_lists(const PlacementGrid& grid, std::span<const Fi
     parameters_.stroke_room = rooms(strokes_, estimate.strokes, kept.size(), sizeof(StrokeRecord));
     parameters_.point_room = rooms(points_, estimate.points, points, sizeof(FinePoint));
     parameters_.list_room =
-        rooms(lists_, parameters_.blocks + 4 * estimate.strokes, lists.size(), sizeof(SeedListRecord));
-    stream_.upload<SeedListRecord>(lists_, lists);
+        rooms(lists_, parameters_.blocks + 4 * estimate.strokes, lists.size(), sizeof(SeedQueueRecord));
+    stream_.upload<SeedQueueRecord>(lists_, lists);
 }
 
 void GpuStrokePlacer::upload_kept(std::span<const FineStroke> kept) {
@@ -204,14 +207,16 @@ void GpuStrokePlacer::record_round(std::uint32_t rounds_left) {
     stream_.dispatch_indirect(trace_, count_buffer_, k_trials, {grid_, near_, lists_, trials_, ways_, count_buffer_},
                               parameters_);
     stream_.dispatch_indirect(claim_, count_buffer_, k_candidates, {grid_, ways_, trials_, claims_}, parameters_);
-    stream_.dispatch_indirect(contest_, count_buffer_, k_candidates, {grid_, ways_, trials_, claims_}, parameters_);
+    stream_.dispatch_indirect(check_claims_, count_buffer_, k_candidates, {grid_, ways_, trials_, claims_},
+                              parameters_);
     record_end();
 }
 
-/// Settles who has won, and places those strokes.
+/// Records the end of a round: finds the winners and places them.
 void GpuStrokePlacer::record_end() {
     constexpr std::size_t k_placed = offsetof(PlacementCounts, place_groups);
-    stream_.dispatch(settle_, Threads(shared::k_settle_group), {lists_, trials_, count_buffer_, strokes_}, parameters_);
+    stream_.dispatch(end_round_, Threads(shared::k_end_round_group), {lists_, trials_, count_buffer_, strokes_},
+                     parameters_);
     stream_.dispatch_indirect(place_, count_buffer_, k_placed, {grid_, ways_, trials_, points_, near_}, parameters_);
 }
 
@@ -222,21 +227,21 @@ void GpuStrokePlacer::place_all() {
         for (std::uint32_t i = 0; i < k_batch; ++i) record_round(k_claim_rounds - 1 - round - i);
         stream_.fetch(count_buffer_, std::span(&counts_, 1));
         while (counts_.full) {
-            double_rooms();
+            grow_buffers();
             record_end();
             stream_.fetch(count_buffer_, std::span(&counts_, 1));
         }
     }
 }
 
-/// Gives strokes twice the room that they had too little of, and lets the end of the round be done again.
-void GpuStrokePlacer::double_rooms() {
+/// Doubles the buffers that were too small, and prepares the end of the round to be repeated.
+void GpuStrokePlacer::grow_buffers() {
     const auto enlarge = [&](std::uint32_t what, Buffer& buffer, std::uint32_t& room, std::size_t item) {
         if (counts_.full & what) double_room(device_, stream_, buffer, room, item);
     };
     enlarge(shared::k_full_strokes, strokes_, parameters_.stroke_room, sizeof(StrokeRecord));
     enlarge(shared::k_full_points, points_, parameters_.point_room, sizeof(FinePoint));
-    enlarge(shared::k_full_lists, lists_, parameters_.list_room, sizeof(SeedListRecord));
+    enlarge(shared::k_full_lists, lists_, parameters_.list_room, sizeof(SeedQueueRecord));
     counts_.full = 0;
     counts_.candidate_groups[0] = counts_.held_groups;
     stream_.upload<PlacementCounts>(count_buffer_, std::span(&counts_, 1));

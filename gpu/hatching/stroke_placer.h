@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/record/profiler.h"
 #include "gpu/runtime/record/stream.h"
 #include "host/hatching/placement/placement_grid.h"
@@ -16,13 +16,13 @@
 
 namespace exemplar {
 
-/// Places strokes on the device, round by round as the reference does: the very same ones. Rounds are recorded in
-/// batches, between which the host reads a few numbers; strokes are downloaded at the end.
+/// Places strokes on the device in the same rounds as the reference, with identical results. Rounds are recorded in
+/// batches, between which the host reads a few counters; strokes are downloaded at the end.
 class GpuStrokePlacer final : public StrokePlacer {
   public:
     explicit GpuStrokePlacer(Device& device, Profiler* profiler = nullptr);
     using StrokePlacer::place;
-    /// Throws DeviceLimitError, too, for pictures over the device's limits: of texels there are two per pixel.
+    /// Also throws DeviceLimitError for pictures over the device's limits; a picture takes two texels per pixel.
     std::vector<HatchStroke> place(const HatchingFields& fields, std::span<const std::uint8_t> barriers,
                                    const StrokeOptions& options, std::span<const HatchStroke> kept) override;
 
@@ -33,15 +33,15 @@ class GpuStrokePlacer final : public StrokePlacer {
     void record_round(std::uint32_t rounds_left);
     void record_end();
     void place_all();
-    void double_rooms();
+    void grow_buffers();
     std::vector<FineStroke> download();
 
     Device& device_;
     Stream stream_;
-    Kernel seed_, trace_, claim_, contest_, settle_, place_;
+    Kernel seed_, trace_, claim_, check_claims_, end_round_, place_;
     shared::PlacementParameters parameters_{};
     shared::PlacementCounts counts_{};
-    Buffer grid_, near_, claims_, lists_, trials_, ways_, points_, strokes_, count_buffer_;  // kept between calls
+    Buffer grid_, near_, claims_, lists_, trials_, ways_, points_, strokes_, count_buffer_;  // reused by later calls
 };
 
 }  // namespace exemplar

@@ -8,24 +8,25 @@ namespace exemplar {
 
 class Device;
 
-/// An image that is drawn into, with its memory and its view.
+/// An image that can be drawn into, with its memory and its view.
 class Attachment {
   public:
     Attachment() = default;
-    /// Throws DeviceLimitError if it is larger than the device's images can be, DeviceError if memory is used up.
+    /// Throws DeviceLimitError if the extent is larger than the device's images can be, DeviceError if memory is
+    /// exhausted.
     Attachment(Device& device, VkFormat format, VkExtent2D extent, VkImageUsageFlags usage, VkImageAspectFlags aspect);
 
     VkImage image() const { return image_.get(); }
     VkImageView view() const { return view_.get(); }
 
   private:
-    // The view ends before the image, the image before its memory.
+    // The view is destroyed before the image, the image before its memory.
     UniqueMemory memory_;
     UniqueImage image_;
     UniqueImageView view_;
 };
 
-/// 32-bit float depth where it can be drawn into, else 24 bits: Vulkan promises one of them.
+/// Returns 32-bit float depth if it can be drawn into, else 24 bits: Vulkan guarantees one of them.
 VkFormat depth_format(const Device& device);
 
 }  // namespace exemplar

@@ -17,7 +17,7 @@ constexpr VkPipelineStageFlags2 k_depth_tests =
 constexpr VkAccessFlags2 k_depth_use =
     VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_READ_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT;
 constexpr VkAccessFlags2 k_color_use = VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT | VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
-// The copies of the picture before are done with it.
+// Waits for the copies of the previous picture.
 constexpr Transition k_color_begins{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_NONE,
                                     VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT, k_color_use};
 constexpr Transition k_color_goes_on{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT,
@@ -50,7 +50,7 @@ void Canvas::resize(VkExtent2D extent) {
     if (extent.width == 0 || extent.height == 0)
         throw UsageError(fmt::format("an empty picture ({} x {})", extent.width, extent.height));
     if (extent.width == extent_.width && extent.height == extent_.height) return;
-    extent_ = {};  // until all of it is there
+    extent_ = {};  // until everything has been allocated
     color_ =
         Attachment(device_, color_format_, extent,
                    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT, VK_IMAGE_ASPECT_COLOR_BIT);
@@ -68,7 +68,7 @@ void Canvas::begin(Stream& stream) const {
                       VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL, k_depth_begins);
 }
 
-void Canvas::go_on(Stream& stream) const {
+void Canvas::separate_passes(Stream& stream) const {
     stream.transition(color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                       VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, k_color_goes_on);
 }

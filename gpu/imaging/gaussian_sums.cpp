@@ -15,8 +15,7 @@ using shared::SumParameters;
 using shared::vec4;
 
 constexpr std::size_t k_quad = 4;
-// A pixel that an invocation loads serves all pixels it computes: on a CPU loads are what takes the time, while a GPU
-// wants many invocations.
+// Number of pixels per invocation; each loaded pixel is used for all of them. D6 in docs/portability.md.
 constexpr std::uint32_t k_outputs_on_cpu = 8, k_outputs_on_gpu = 4;
 
 std::uint32_t chosen_outputs(const Device& device, const TunableParameter& parameter) {
@@ -28,14 +27,14 @@ std::size_t quads_of(const GaussianKernel& kernel) {
     return (kernel.weights.size() + k_quad - 1) / k_quad;
 }
 
-// Four at a time, the last filled up with zeros.
+// Returns the weights in groups of four, the last filled up with zeros.
 std::vector<float> padded_weights(const GaussianKernel& kernel) {
     std::vector<float> weights(k_quad * quads_of(kernel), 0.0f);
     std::ranges::transform(kernel.weights, weights.begin(), [](double w) { return static_cast<float>(w); });
     return weights;
 }
 
-SumParameters parameters_of(const GaussianKernel& kernel, GaussianSums::Axis axis, GaussianSums::Size size) {
+SumParameters sum_parameters(const GaussianKernel& kernel, GaussianSums::Axis axis, GaussianSums::Size size) {
     const bool along_x = axis == GaussianSums::Axis::x;
     return {.pixels = along_x ? size.width : size.height,
             .lines = along_x ? size.height : size.width,
@@ -73,8 +72,8 @@ GaussianSums::GaussianSums(Device& device)
 
 void GaussianSums::record(Stream& stream, const GpuGaussian& gaussian, Axis axis, Size size, const Buffer& in,
                           std::span<const Buffer* const> out) {
-    const SumParameters parameters = parameters_of(gaussian.kernel, axis, size);
-    // What a kernel of fewer planes does not write must be bound nevertheless.
+    const SumParameters parameters = sum_parameters(gaussian.kernel, axis, size);
+    // Planes that a kernel does not write must be bound nevertheless.
     const auto plane = [&](std::size_t k) -> const Buffer& { return *out[std::min(k, out.size() - 1)]; };
     stream.dispatch(by_count_.at(out.size() - 1), threads_of(parameters, outputs_),
                     {in, gaussian.weights, plane(0), plane(1), plane(2), plane(3)}, parameters);
@@ -82,7 +81,7 @@ void GaussianSums::record(Stream& stream, const GpuGaussian& gaussian, Axis axis
 
 void GaussianSums::record_mask(Stream& stream, const GpuGaussian& gaussian, Size size, const Buffer& in,
                                const Buffer& out) {
-    const SumParameters parameters = parameters_of(gaussian.kernel, Axis::x, size);
+    const SumParameters parameters = sum_parameters(gaussian.kernel, Axis::x, size);
     stream.dispatch(mask_, threads_of(parameters, mask_outputs_), {in, gaussian.weights, out}, parameters);
 }
 

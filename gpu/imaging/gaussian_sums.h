@@ -4,29 +4,30 @@
 #include <cstdint>
 #include <span>
 
-#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/record/stream.h"
 #include "host/imaging/gaussian.h"
 
 namespace exemplar {
 
-/// Pixels per invocation.
+/// Variants of the number of pixels per invocation.
 inline constexpr std::array<std::uint32_t, 4> k_outputs_per_invocation{2, 4, 8, 16};
 inline constexpr TunableParameter k_sum_outputs{"imaging/weighted_sums.comp", "outputs", k_outputs_per_invocation};
 inline constexpr TunableParameter k_mask_outputs{"imaging/mask_sums.comp", "outputs", k_outputs_per_invocation};
 
-/// A Gaussian with its weights on the device.
+/// A Gaussian with its weights in a device buffer.
 struct GpuGaussian {
     GaussianKernel kernel;
     Buffer weights;
 
-    /// Throws UsageError as gaussian_kernel.
+    /// Throws UsageError as gaussian_kernel does.
     GpuGaussian(Device& device, float sigma);
 };
 
-/// Gaussian-weighted sums along one axis of images of four lanes, the vec4s of planes: the steps of separable filters.
+/// Computes Gaussian-weighted sums along one axis, the steps of separable filters. Images have four lanes: a vec4
+/// per pixel (a plane).
 class GaussianSums {
   public:
     enum class Axis { x, y };
@@ -36,16 +37,16 @@ class GaussianSums {
 
     explicit GaussianSums(Device& device);
 
-    /// Records out[k](x, y) = sum of w_o (o / sigma)^k in(x + o, y), or in(x, y + o), for as many k as there are planes
-    /// in `out`, 1 to 4. What is outside of the image is zero.
+    /// Records out[k](x, y) = sum of w_o (o / sigma)^k in(x + o, y), or in(x, y + o), for every plane k of `out`, 1
+    /// to 4 of them. Pixels outside of the image are zero.
     void record(Stream& stream, const GpuGaussian& gaussian, Axis axis, Size size, const Buffer& in,
                 std::span<const Buffer* const> out);
-    /// The same along x of one float per pixel: lane k of `out` has the power k.
+    /// Records the same along x for an image of one float per pixel; lane k of `out` has the power k.
     void record_mask(Stream& stream, const GpuGaussian& gaussian, Size size, const Buffer& in, const Buffer& out);
 
   private:
     std::uint32_t outputs_, mask_outputs_;  // pixels per invocation
-    std::array<Kernel, 4> by_count_;        // of planes, from 1 on
+    std::array<Kernel, 4> by_count_;        // by the number of planes, starting with 1
     Kernel mask_;
 };
 

@@ -24,7 +24,7 @@ static_assert(shared::k_gbuffer_no_face == k_no_face);
 
 // One number per pixel; every device can draw into it.
 constexpr VkFormat k_number_format = VK_FORMAT_R32_UINT;
-constexpr std::size_t k_point_bytes = 2 * sizeof(float);  // the most that an output has per pixel
+constexpr std::size_t k_point_bytes = 2 * sizeof(float);  // maximum size of an output per pixel
 
 DrawPipeline face_pipeline(Device& device, VkFormat depth) {
     return {device,
@@ -53,7 +53,8 @@ void check_size(const Device& device, int width, int height) {
             bytes, limit);
 }
 
-// Parts of meshes are measured by their largest vectors of three floats, which have four on the device.
+// Returns the limit for parts of meshes, which is measured in vectors of three floats; on the device these have
+// four.
 std::size_t part_limit(const DeviceInfo& info, std::size_t part_bytes) {
     return std::min<std::size_t>(buffer_limit(info, part_bytes), info.max_texels * sizeof(vec4)) / sizeof(vec4) *
            sizeof(Vec3);
@@ -131,7 +132,7 @@ GpuGBufferRenderer::Part GpuGBufferRenderer::upload(const MeshSurface& surface, 
             .faces = Buffer::of<uvec4>(device_, faces)};
 }
 
-// Calls use(part) for all faces; what it records is done before the next part.
+// Calls use(part) for all parts, and finishes the recorded work before the next part.
 template <typename Use>
 void GpuGBufferRenderer::for_each_part(const MeshSurface& surface, Use&& use) {
     if (whole_.faces) {

@@ -24,11 +24,11 @@ using shared::OrientationParameters;
 using shared::vec4;
 using Axis = GaussianSums::Axis;
 
-static_assert(shared::k_filter_no_face == k_no_face && shared::k_filter_images == k_most_derived_images);
+static_assert(shared::k_filter_no_face == k_no_face && shared::k_filter_images == k_max_derived_images);
 
 using Word = std::uint32_t;
 
-// A kernel whose push constants are Parameters and whose buffers have elements of these types.
+// Makes a kernel whose push constants are Parameters and whose buffers have elements of these types.
 template <typename Parameters, typename... Elements>
 Kernel kernel_of(Device& device, const Shader& shader, std::vector<std::pair<Word, Word>> constants = {}) {
     return {device,
@@ -83,7 +83,7 @@ GpuImages upload(Device& device, const ImageStack& images, std::size_t first, st
     return {images.width, images.height, static_cast<Word>(count), Buffer::of<float>(device, values)};
 }
 
-// Stacks that are one after the other in a buffer.
+// Downloads stack number `place` of a buffer that holds equal stacks one after the other.
 ImageStack download_stack(const Buffer& buffer, int width, int height, std::size_t count, std::size_t place = 0) {
     ImageStack stack(width, height, count);
     buffer.download<float>(stack.values, place * stack.values.size() * sizeof(float));
@@ -138,8 +138,8 @@ ImageDerivatives GpuImageFilters::derivatives(const ImageStack& images, std::spa
 ImageStack GpuImageFilters::blurred(const ImageStack& images, float sigma) {
     ImageStack out(images.width, images.height, images.count);
     GpuImages blurred_images;
-    for (std::size_t first = 0; first < images.count; first += k_most_derived_images) {
-        const std::size_t count = std::min(k_most_derived_images, images.count - first);
+    for (std::size_t first = 0; first < images.count; first += k_max_derived_images) {
+        const std::size_t count = std::min(k_max_derived_images, images.count - first);
         record_blur(stream_, upload(device_, images, first, count), sigma, blurred_images);
         stream_.fetch(blurred_images.values,
                       std::span(out.values).subspan(first * images.pixels(), count * images.pixels()));
@@ -155,7 +155,7 @@ GpuMaskedImages GpuImageFilters::masked(const GpuImages& images, const Buffer& f
                         .box = std::nullopt,
                         .packed = {},
                         .inside = {}};
-    // Left, top, and the ends at the right and below.
+    // Left, top, right and bottom; the latter two are exclusive.
     std::array<Word, 4> bounds{static_cast<Word>(images.width), static_cast<Word>(images.height), 0, 0};
     const Buffer device_bounds = Buffer::of<Word>(device_, bounds);
     stream_.dispatch(box_, Threads(static_cast<Word>(images.height)), {face, device_bounds},
@@ -211,7 +211,7 @@ void GpuImageFilters::record_blur(Stream& stream, const GpuImages& images, float
     reserve(device_, out.values, images.pixels() * images.count * sizeof(float));
     for (std::size_t i = 0; i < 2; ++i) reserve(device_, along_x_[i], plane_bytes(box));
     const Buffer &image = along_x_[0], &half_done = along_x_[1];
-    // There is no mask to read or write.
+    // This variant neither reads nor writes a mask, but buffers must be bound.
     stream.dispatch(pack_, pixels_of(box), {images.values, images.values, image, image}, parameters);
     sums_.record(stream, gaussian, Axis::x, size_of(box), image, std::array{&half_done});
     sums_.record(stream, gaussian, Axis::y, size_of(box), half_done, std::array{&image});
@@ -248,7 +248,7 @@ void GpuImageFilters::derive(Stream& stream, const GaussianKernel& kernel, const
                                           .inverse_sigma = 1 / kernel.sigma,
                                           .unit_xx = static_cast<float>(units.xx),
                                           .unit_xy = static_cast<float>(units.xy),
-                                          .least_spread = k_least_spread};
+                                          .min_spread = k_min_spread};
     const auto& [m00, m10, m01, m20, m11, m02] = image_moments_;
     const auto& [y0, y1, y2, y3] = mask_moments_;
     stream.dispatch(derivatives_, pixels_of(whole(images.width, images.height)),
@@ -257,7 +257,7 @@ void GpuImageFilters::derive(Stream& stream, const GaussianKernel& kernel, const
                     parameters);
 }
 
-// The moments are done with: their planes hold structure tensors, first of pixels, then smoothed.
+// The moments are no longer needed, so their planes hold the structure tensors, first of pixels, then smoothed.
 void GpuImageFilters::orient(Stream& stream, const GpuGaussian& gaussian, const GpuMaskedImages& images,
                              GpuImageDerivatives& out) {
     const ImageParameters image = parameters_of(images);
@@ -268,7 +268,7 @@ void GpuImageFilters::orient(Stream& stream, const GpuGaussian& gaussian, const 
         sums_.record(stream, gaussian, Axis::y, size_of(*images.box), along_x_[0], std::array{plane});
     }
     const OrientationParameters parameters{
-        .image = image, .noise = k_least_gradient * k_least_gradient, .unused0 = 0, .unused1 = 0, .unused2 = 0};
+        .image = image, .noise = k_min_gradient * k_min_gradient, .unused0 = 0, .unused1 = 0, .unused2 = 0};
     stream.dispatch(orientation_, pixels_of(whole(images.width, images.height)),
                     {trace, difference, product, *images.face, out.orientation}, parameters);
 }

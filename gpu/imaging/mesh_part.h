@@ -8,13 +8,13 @@
 
 namespace exemplar {
 
-/// A mesh as it is drawn: with a color per face, and a normal per vertex or per face; or without them.
+/// The data of a mesh to draw: optionally with a color per face, and a normal per vertex or per face.
 struct MeshSurface {
     std::span<const Face> faces;
     std::span<const Vec3> vertices;
     std::span<const Vec3> normals;
     std::span<const Color> colors;
-    bool vertex_normals = false;  ///< there is a normal per vertex
+    bool vertex_normals = false;  ///< normals are per vertex, else per face
 };
 
 /// Some faces of a surface with only the vertices they use.
@@ -27,14 +27,14 @@ struct MeshPart {
     MeshSurface surface(bool vertex_normals) const { return {faces, vertices, normals, colors, vertex_normals}; }
 };
 
-/// Faces [first, first + count) of the surface, in their order.
+/// Returns faces [first, first + count) of the surface, in their order.
 MeshPart cut_part(const MeshSurface& surface, std::size_t first, std::size_t count);
 
-/// The most faces of which no buffer (corners, positions, normals, colors) is over `bytes`, whatever vertices they use;
-/// at least one.
+/// Returns the maximum number of faces for which no buffer (corners, positions, normals, colors) exceeds `bytes`,
+/// whatever vertices they use; at least one.
 std::size_t faces_per_part(std::size_t bytes);
 
-/// Whether no buffer of the whole surface is over `bytes`.
+/// Returns whether no buffer of the whole surface exceeds `bytes`.
 bool fits(const MeshSurface& surface, std::size_t bytes);
 
 }  // namespace exemplar

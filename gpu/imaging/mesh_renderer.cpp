@@ -13,18 +13,19 @@
 
 namespace exemplar {
 
-/// What all tiles of a picture share.
+/// Settings shared by all tiles of a picture.
 struct MeshDraw {
     Eigen::Matrix4f view_projection;
     shared::vec4 eye;
-    int width, height;  // of the picture
+    int width, height;  // size of the picture
     RenderOptions options;
     std::array<float, 4> background;  // linear
 };
 
 namespace {
 
-// Sums of four samples keep more than the eight bits of a pixel, and every device can draw into this format.
+// Holds sums of four samples with more precision than the eight bits of a pixel; every device can draw into this
+// format.
 constexpr VkFormat k_color_format = VK_FORMAT_R16G16B16A16_SFLOAT;
 constexpr std::size_t k_sample_bytes = 8;
 constexpr int k_samples = static_cast<int>(shared::k_render_samples);
@@ -44,14 +45,14 @@ shared::RenderParameters tile_parameters(const MeshDraw& draw, const PictureTile
     return parameters;
 }
 
-// x, y, z of one vector after the other.
+// Returns the coordinates x, y, z of one vector after the other.
 std::span<const float> coordinates(std::span<const Vec3> vectors) {
     static_assert(sizeof(Vec3) == 3 * sizeof(float));
     if (vectors.empty()) return {};
     return {vectors.front().data(), 3 * vectors.size()};
 }
 
-// Corners, positions, normals and colors; see shaders/imaging/mesh.vert.
+// Binds corners, positions, normals and colors; see shaders/imaging/mesh.vert.
 DrawPipeline mesh_pipeline(Device& device, VkFormat depth) {
     return {device,
             shaders::imaging_mesh_vert,
@@ -107,7 +108,8 @@ Image MeshRenderer::render(const TriangleMesh& mesh, std::span<const Color> face
     return image;
 }
 
-// A surface over the limits goes through the same buffers, part by part; depth decides between the parts.
+// Draws a surface that exceeds the limits part by part, through the same buffers; the depth test decides between
+// parts.
 void MeshRenderer::draw_parts(const PictureTile& tile, const MeshDraw& draw, const MeshSurface& surface) {
     const std::size_t faces = surface.faces.size(), step = faces_per_part(part_bytes_);
     std::size_t first = 0;
@@ -131,7 +133,7 @@ void MeshRenderer::reserve_tile(int width, int height) {
     if (width <= tile_width_ && height <= tile_height_) return;
     width = std::max(width, tile_width_);
     height = std::max(height, tile_height_);
-    tile_width_ = tile_height_ = 0;  // until all of it is there
+    tile_width_ = tile_height_ = 0;  // until everything has been allocated
     const VkExtent2D extent = sample_extent(PictureTile{0, 0, width, height});
     canvas_.resize(extent);
     samples_ = Buffer(device_, k_sample_bytes * extent.width * extent.height);
@@ -141,7 +143,7 @@ void MeshRenderer::reserve_tile(int width, int height) {
     tile_height_ = height;
 }
 
-void MeshRenderer::draw_part(const PictureTile& tile, const MeshDraw& draw, Turn turn) {
+void MeshRenderer::draw_part(const PictureTile& tile, const MeshDraw& draw, PartPosition turn) {
     if (turn.first) canvas_.begin(stream_);
     PassTarget target = turn.first ? canvas_.cleared(draw.background) : canvas_.target();
     target.extent = sample_extent(tile);

@@ -19,7 +19,8 @@ void for_each_tile(int width, int height, int size, Use&& use) {
             use(PictureTile{x, y, std::min(size, width - x), std::min(size, height - y)});
 }
 
-/// From a picture's clip space to that of its tile, for a picture of width x height pixels.
+/// Returns the matrix that maps to the tile's clip space, given one that maps to the clip space of a picture of
+/// width x height pixels.
 inline Eigen::Matrix4f tile_matrix(Eigen::Matrix4f matrix, const PictureTile& tile, int width, int height) {
     // Stretches the part [begin, begin + size) of `whole` pixels to the full clip space along one axis.
     const auto zoom = [&](int axis, int begin, int size, int whole) {

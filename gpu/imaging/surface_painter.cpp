@@ -13,7 +13,7 @@
 namespace exemplar {
 namespace {
 
-// What can be painted of a surface.
+// Returns the wanted paint, or plain if the surface lacks its buffers.
 SurfacePaint paint_of(const PaintedSurface& surface, SurfacePaint wanted) {
     const bool possible = wanted == SurfacePaint::faces ? surface.colors != nullptr
                           : paints_curvature(wanted)    ? surface.first && surface.second
@@ -21,18 +21,18 @@ SurfacePaint paint_of(const PaintedSurface& surface, SurfacePaint wanted) {
     return possible ? wanted : SurfacePaint::plain;
 }
 
-// Variants of plain paint without light have shaders of their own.
+// Returns whether a variant is plain paint without light, which has shaders of its own.
 bool is_unlit(const std::array<std::uint32_t, 3>& variant) {
     return variant[0] == shared::k_paint_plain && variant[1] == shared::k_light_none;
 }
 
-shared::PaintParameters parameters_of(const Camera& camera, SurfacePaint paint, const PaintLook& look) {
+shared::PaintParameters paint_parameters(const Camera& camera, SurfacePaint paint, const PaintLook& look) {
     const auto [red, green, blue, opaque] = clear_value(look.plain);
     const bool hides_only = paint == SurfacePaint::plain && look.transparent && look.transparent_plain;
     shared::PaintParameters parameters{.matrix = {},
                                        .eye = homogeneous_eye(camera),
                                        .plain = {red, green, blue, hides_only ? 0 : opaque},
-                                       .curvature_scale = 1 / look.strongest_curvature,
+                                       .curvature_scale = 1 / look.full_color_curvature,
                                        .unused0 = 0,
                                        .unused1 = 0,
                                        .unused2 = 0};
@@ -68,16 +68,16 @@ const DrawPipeline& SurfacePainter::pipeline(const Variant& variant) {
 
 void SurfacePainter::draw(Pass& pass, const PaintedSurface& surface, const Camera& camera, const PaintLook& look) {
     const SurfacePaint paint = paint_of(surface, look.paint);
-    // A vertex has a color per face it is a corner of.
+    // With colors per face, vertices cannot be shared between faces.
     const bool by_corner = paint == SurfacePaint::faces || !surface.indices;
     const Variant variant{static_cast<std::uint32_t>(paint), static_cast<std::uint32_t>(look.light), by_corner};
     const Draw what{.vertices = 3 * surface.face_count, .indices = by_corner ? nullptr : surface.indices};
-    const shared::PaintParameters parameters = parameters_of(camera, paint, look);
+    const shared::PaintParameters parameters = paint_parameters(camera, paint, look);
     if (is_unlit(variant)) {
         pass.draw(pipeline(variant), what, {*surface.vertices, *surface.faces}, parameters);
         return;
     }
-    // What the look does without is not read, but something must be bound.
+    // Buffers that the look does not read must be bound nevertheless.
     const Buffer& colors = surface.colors ? *surface.colors : *surface.faces;
     const Buffer& first = surface.first ? *surface.first : *surface.vertices;
     const Buffer& second = surface.second ? *surface.second : *surface.vertices;

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <map>
 
-#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/kernels/draw_pipeline.h"
+#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/record/pass.h"
 #include "host/imaging/camera.h"
 #include "host/mesh/labels.h"
@@ -26,32 +26,31 @@ enum class SurfacePaint : std::uint32_t {
 };
 
 enum class SurfaceLight : std::uint32_t {
-    smooth = shared::k_light_smooth,  ///< that of RenderOptions, by vertex normals
-    flat = shared::k_light_flat,      ///< the same by the normals of faces
+    smooth = shared::k_light_smooth,  ///< the light of RenderOptions, by vertex normals
+    flat = shared::k_light_flat,      ///< the light of RenderOptions, by face normals
     none = shared::k_light_none,
-    steps = shared::k_light_steps,         ///< from the eye, in three steps, by vertex normals
-    headlight = shared::k_light_headlight  ///< from the eye, by vertex normals: colors stay light
+    steps = shared::k_light_steps,         ///< headlight in three steps, by vertex normals
+    headlight = shared::k_light_headlight  ///< headlight by vertex normals; colors stay light
 };
 
-/// How a surface is painted and lit, and what is behind it. Curvature goes from blue (hollow) over gray to red
-/// (convex).
+/// Paint, light and background of a surface. Curvature goes from blue (concave) over gray to red (convex).
 struct PaintLook {
     SurfacePaint paint = SurfacePaint::plain;
     SurfaceLight light = SurfaceLight::smooth;
     Color plain{214, 212, 206};
-    float strongest_curvature = 1;  ///< has the strongest color; in 1 / mesh units, positive
+    float full_color_curvature = 1;  ///< curvature with the strongest color; in 1 / mesh units, positive
     Color background{255, 255, 255};
     bool transparent = false;        ///< no background
-    bool transparent_plain = false;  ///< nor plain paint, if there is no background: the surface only hides
+    bool transparent_plain = false;  ///< if `transparent`, plain paint is invisible, too: the surface only occludes
 };
 
-/// The buffers of a posed surface, as the kernels of gpu/curvature lay them out. A look that needs what is left out is
-/// drawn plain instead.
+/// The buffers of a posed surface, in the layout of the kernels of gpu/curvature. A look that needs a missing buffer
+/// is drawn plain instead.
 struct PaintedSurface {
     std::uint32_t face_count = 0;
     const Buffer* faces = nullptr;  ///< a uvec4 (a, b, c, 0) per face
-    /// Three uints per face, which vertices are drawn by where the look allows; without them vertex shaders run for
-    /// each corner.
+    /// Three uints per face: an index buffer, used if the look allows. Without it vertex shaders run once per
+    /// corner.
     const Buffer* indices = nullptr;
     const Buffer* vertices = nullptr;
     const Buffer* normals = nullptr;
@@ -60,14 +59,14 @@ struct PaintedSurface {
     const Buffer* second = nullptr;
 };
 
-/// Whether a look needs curvature.
+/// Returns whether a paint needs curvature.
 bool paints_curvature(SurfacePaint paint);
 
-/// What a pass is cleared to before a surface is drawn so: sRGB, multiplied by its alpha.
+/// Returns the clear color of a pass for this look: sRGB, multiplied by its alpha.
 std::array<float, 4> background_of(const PaintLook& look);
 
-/// Draws surfaces that are on the device already, as sRGB multiplied by alpha. Each paint in each light is a pipeline
-/// of its own, made when it is first asked for: CPU drivers run both sides of branches.
+/// Draws surfaces that are already on the device, as sRGB multiplied by alpha. Each combination of paint and light
+/// has a pipeline of its own, made on first use (D2 in docs/portability.md).
 class SurfacePainter {
   public:
     SurfacePainter(Device& device, VkFormat color, VkFormat depth) : device_(device), color_(color), depth_(depth) {}
@@ -75,7 +74,7 @@ class SurfacePainter {
     void draw(Pass& pass, const PaintedSurface& surface, const Camera& camera, const PaintLook& look);
 
   private:
-    /// Values of the specialization constants: paint, light, whether by corner.
+    /// Values of the specialization constants: paint, light, whether vertices are drawn by corner.
     using Variant = std::array<std::uint32_t, 3>;
     const DrawPipeline& pipeline(const Variant& variant);
     Device& device_;

@@ -26,8 +26,7 @@ static_assert(shared::k_context_bins == k_context_bins && shared::k_context_axes
 // A texel's lanes: the inner bin edges of an axis, and the classes of a block.
 static_assert(k_context_bins - 1 == 4 && k_class_block == 4);
 
-// On a CPU every load of a kernel is expensive, so that a sample, once loaded, serves many faces; a GPU wants many
-// invocations.
+// On a CPU each loaded sample is used for many faces: D6 in docs/portability.md.
 constexpr std::uint32_t k_faces_on_cpu = 4;
 
 vec4 to_vec4(const std::array<float, k_context_bins - 1>& edges) {
@@ -59,8 +58,8 @@ std::size_t class_blocks(std::size_t classes) {
     return (classes + k_class_block - 1) / k_class_block;
 }
 
-// Class blocks x samples, padded to whole sample blocks, of classes [first, first + count); the lanes beyond the last
-// class and the samples beyond the last are zero.
+// Returns the masses of classes [first, first + count): class blocks x samples, padded to whole sample blocks. The
+// lanes beyond the last class and the samples beyond the last are zero.
 std::vector<vec4> mass_blocks(const Masses& masses, std::size_t first, std::size_t count) {
     const std::size_t samples = masses.sample_face.size(), row = k_block * sample_blocks(samples);
     std::vector<vec4> blocks(class_blocks(count) * row, vec4{});
@@ -70,7 +69,8 @@ std::vector<vec4> mass_blocks(const Masses& masses, std::size_t first, std::size
     return blocks;
 }
 
-// Axes x class blocks x (samples + 1): sums of the masses in each axis' order, taken in double precision.
+// Returns the prefix sums of the masses in each axis' order, taken in double precision: axes x class blocks x
+// (samples + 1).
 std::vector<vec4> mass_prefixes(const Masses& masses, std::span<const std::vector<std::uint32_t>> orders,
                                 std::size_t first, std::size_t count) {
     const std::size_t samples = masses.sample_face.size(), blocks = class_blocks(count);
@@ -89,16 +89,16 @@ std::vector<vec4> mass_prefixes(const Masses& masses, std::span<const std::vecto
 
 constexpr std::size_t k_pack_faces = 64;
 
-// Four samples' ranges of a face, the first in the lowest byte.
+// Packs the ranges from four samples to a face, the first in the lowest byte.
 std::uint32_t packed(const std::array<std::array<std::uint8_t, k_pack_faces>, k_block>& ranges, std::size_t sample,
                      std::size_t face) {
     return std::uint32_t{ranges[sample][face]} | std::uint32_t{ranges[sample + 1][face]} << 8 |
            std::uint32_t{ranges[sample + 2][face]} << 16 | std::uint32_t{ranges[sample + 3][face]} << 24;
 }
 
-// One block of samples: the ranges of faces seen from 16 samples, the first in the lowest byte of x. What stands in the
-// place of missing samples does not matter: they have no mass. Goes by way of arrays that cannot overlap, which
-// compilers vectorize; device memory is written in whole runs, as it may be slow.
+// Packs the ranges from a block of 16 samples to each face, the first in the lowest byte of x. The bytes of missing
+// samples do not matter, as these have no mass. Works on local arrays, which cannot overlap, so that compilers
+// vectorize; writes device memory in whole runs, as it may be slow.
 void pack_ranges(const ContextGeometry& geometry, Range samples, std::size_t first_face, std::span<uvec4> texels) {
     std::array<std::array<std::uint8_t, k_pack_faces>, k_block> ranges{};
     std::array<uvec4, k_pack_faces> some;
@@ -117,15 +117,17 @@ std::size_t histogram_bytes(std::size_t columns, std::size_t classes, std::size_
     return columns * classes * faces * sizeof(float);
 }
 
-// The largest number of samples of a part so that the prefix sums of one class block pass no limit, nor the loops of an
-// invocation, which looks at each. One less than whole blocks: the prefix sums, one more than samples, then are.
+// Returns the maximum samples of a part: the prefix sums of one class block fit the limits, and so do the iterations
+// of an invocation, which loops over all samples. It is one less than whole blocks, as there is one more prefix sum
+// than samples.
 std::size_t samples_per_part(const DeviceInfo& info, std::size_t limit) {
     const std::size_t prefixes = std::min<std::size_t>(limit / sizeof(vec4), info.max_texels);
-    const std::size_t samples = std::min<std::size_t>(prefixes / k_context_axes, k_most_iterations);
+    const std::size_t samples = std::min<std::size_t>(prefixes / k_context_axes, k_max_iterations);
     return std::max<std::size_t>(samples / k_block, 1) * k_block - 1;
 }
 
-// Of faces, so that neither the ranges nor the positions nor the histograms of one class block pass the limits.
+// Returns the maximum faces of a part for which the ranges, the positions and the histograms of one class block fit
+// the limits.
 std::size_t faces_per_part(const DeviceInfo& info, std::size_t limit, std::size_t samples) {
     const std::size_t blocks = sample_blocks(samples);
     const std::size_t by_bytes =
@@ -135,7 +137,7 @@ std::size_t faces_per_part(const DeviceInfo& info, std::size_t limit, std::size_
     return std::max<std::size_t>(std::min(by_bytes, by_texels), 1);
 }
 
-// Of classes, so that neither the histograms nor the prefix sums pass them.
+// Returns the maximum classes of a part for which the histograms and the prefix sums fit the limits.
 std::size_t classes_per_part(const DeviceInfo& info, std::size_t limit, std::size_t samples, std::size_t faces) {
     const std::size_t prefixes = k_context_axes * (samples + 1);
     const std::size_t blocks = std::min({limit / histogram_bytes(k_columns_per_class, k_class_block, faces),
@@ -148,7 +150,7 @@ void for_each_range(std::size_t count, std::size_t step, Use&& use) {
     for (std::size_t first = 0; first < count; first += step) use(Range{first, std::min(step, count - first)});
 }
 
-// The samples' order along each axis, by rising position.
+// Returns the samples' order along each axis, by rising position.
 std::vector<std::vector<std::uint32_t>> orders_of(const ContextGeometry& geometry,
                                                   std::span<const std::uint32_t> sample_face) {
     std::vector<std::vector<std::uint32_t>> orders(k_context_axes, std::vector<std::uint32_t>(sample_face.size()));
@@ -170,14 +172,14 @@ std::vector<float> sorted_positions(const ContextGeometry& geometry, std::span<c
     return positions;
 }
 
-// One after the other on both sides.
-bool continues(const BufferPart& a, const BufferPart& b) {
+// Returns whether `b` directly follows `a`, both on the device and on the host.
+bool continues(const BufferReadback& a, const BufferReadback& b) {
     return a.source == b.source && a.offset + a.target.size() == b.offset &&
            a.target.data() + a.target.size() == b.target.data();
 }
 
-// Adds a part to those that are fetched, as one with the last where possible.
-void add_fetched(const BufferPart& part, std::vector<BufferPart>& parts) {
+// Adds a part to fetch, merged with the last one if possible.
+void add_fetched(const BufferReadback& part, std::vector<BufferReadback>& parts) {
     if (!parts.empty() && continues(parts.back(), part))
         parts.back().target = {parts.back().target.data(), parts.back().target.size() + part.target.size()};
     else
@@ -214,7 +216,8 @@ void GpuContextHistograms::accumulate_all(std::span<const ContextMesh> meshes, s
     }
 }
 
-// In order of samples: the first ones' histograms are the sums that those of later ones are added to.
+// Parts are in order of samples: the histograms of the first range are written to the output, those of later ranges
+// are added.
 void GpuContextHistograms::add_parts(const ContextMesh& mesh, std::size_t classes, std::vector<Part>& parts) const {
     const DeviceInfo& info = device_.info();
     const std::size_t all_faces = mesh.geometry->faces;
@@ -229,7 +232,7 @@ void GpuContextHistograms::add_parts(const ContextMesh& mesh, std::size_t classe
     });
 }
 
-// How many of the parts, at least one, fit into one submission.
+// Returns how many of the parts, at least one, fit into one submission.
 std::size_t GpuContextHistograms::together(std::span<const Part> parts) const {
     std::size_t count = 0, bytes = 0;
     for (const Part& part : parts) {
@@ -243,7 +246,7 @@ std::size_t GpuContextHistograms::together(std::span<const Part> parts) const {
 }
 
 void GpuContextHistograms::run(std::span<const Part> parts) {
-    // Each slot keeps the largest buffers that it ever needed; those of many large parts would fill the device.
+    // Each slot keeps the largest buffers that it ever needed. After many large parts, these would fill the device.
     if (kept_bytes() > 8 * tile_bytes_) slots_.clear();
     if (slots_.size() < parts.size()) slots_.resize(parts.size());
     for (std::size_t i = 0; i < parts.size(); ++i) reserve_slot(parts[i], slots_[i]);
@@ -334,7 +337,7 @@ void GpuContextHistograms::fetch(std::span<const Part> parts) {
         std::span<const float> added;
     };
     std::vector<Sum> sums;
-    std::vector<BufferPart> fetched;
+    std::vector<BufferReadback> fetched;
     later = 0;
     for (std::size_t i = 0; i < parts.size(); ++i)
         for_each_column(parts[i], [&](std::size_t column, std::span<float> out) {
@@ -355,7 +358,7 @@ void GpuContextHistograms::fetch(std::span<const Part> parts) {
         for (std::size_t f = 0; f < sum.out.size(); ++f) sum.out[f] += sum.added[f];
 }
 
-// Calls use(column, out) for the columns of a part's histograms: bins of all measures x its classes.
+// Calls use(column, out) for the columns of a part's histograms: bins of all measures x classes of the part.
 template <typename Use>
 void GpuContextHistograms::for_each_column(const Part& part, Use&& use) {
     const std::size_t all_faces = part.mesh->geometry->faces;

@@ -6,45 +6,46 @@
 #include <span>
 #include <vector>
 
-#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/record/profiler.h"
 #include "gpu/runtime/record/stream.h"
 #include "host/labeling/features/context.h"
 
 namespace exemplar {
 
-/// What a tile's largest buffer takes at most, unless the device's limits are lower.
+/// Maximum bytes of a tile's largest buffer, unless the device's limits are lower.
 constexpr std::size_t k_context_tile_bytes = std::size_t{256} << 20;
 
 /// Faces per invocation.
 inline constexpr std::array<std::uint32_t, 4> k_faces_per_invocation{1, 2, 4, 8};
 inline constexpr TunableParameter k_context_faces{"labeling/context_geodesic.comp", "faces", k_faces_per_invocation};
 
-/// Contextual label histograms on the device. Meshes are cut to parts that fit the device's limits, and as many parts
+/// Contextual label histograms on the device. Meshes are cut into parts that fit the device's limits; as many parts
 /// as fit together are one submission. Values agree with CpuContextHistograms within 1e-5 of a total mass of 1 with
 /// a thousand samples: both put every sample into the same bin, but the device sums in single precision.
 class GpuContextHistograms final : public ContextHistograms {
   public:
-    /// Some of the faces, samples or classes.
+    /// A range of faces, samples or classes.
     struct Range {
         std::size_t first;
         std::size_t count;
     };
-    /// `tile_bytes` bounds what the parts of a submission take of each kind of buffer, below the device's own limits.
+    /// `tile_bytes` limits the size of each kind of buffer, summed over the parts of a submission, below the
+    /// device's own limits.
     explicit GpuContextHistograms(Device& device, Profiler* profiler = nullptr,
                                   std::size_t tile_bytes = k_context_tile_bytes);
     void accumulate_all(std::span<const ContextMesh> meshes, std::size_t classes) override;
 
   private:
-    // What one pair of dispatches works on.
+    // The work of one pair of dispatches.
     struct Part {
         const ContextMesh* mesh;
         std::size_t all_classes;
         Range samples, faces, classes;
     };
-    // The device's side of a part; kept between calls.
+    // The device buffers of a part, reused between calls.
     struct Slot {
         Buffer ranges;     // blocks of 16 samples x faces x 16 samples, a byte each
         Buffer masses;     // class blocks x samples
@@ -70,7 +71,7 @@ class GpuContextHistograms final : public ContextHistograms {
     Stream stream_;
     Kernel geodesic_kernel_, axes_kernel_;
     std::vector<Slot> slots_;
-    std::vector<float> later_;  // histograms of all but the first samples, on the host
+    std::vector<float> later_;  // histograms of all but the first range of samples, on the host
 };
 
 }  // namespace exemplar

@@ -11,12 +11,12 @@
 
 namespace exemplar {
 
-/// A device, and labeling's operations: by shaders, or by the host's own vector units where the device is a CPU. One
-/// thread at a time may use it.
+/// A Vulkan device and the operations of labeling: compute shaders, or the host's vector units if the device is a
+/// CPU. Only one thread at a time may use it.
 class LabelingDevice {
   public:
     explicit LabelingDevice(const DeviceOptions& options = {}) : device_(options), labels_on_(device_.info().name) {
-        // A device that is this machine's CPU would do by shaders, and copies, what the host does faster itself.
+        // If the device is this machine's CPU, the host is faster: D6 in docs/portability.md.
         if (device_.info().type == DeviceType::cpu) {
             labels_on_ = "the host";
             scorer_ = std::make_unique<CpuStumpScorer>();
@@ -28,8 +28,8 @@ class LabelingDevice {
     }
 
     LabelingBackend labeling() { return {*scorer_, *context_}; }
-    /// What labeling() computes on: the device's name, or "the host".
-    const std::string& labels_on() const { return labels_on_; }
+    /// Returns what labeling() computes on: the device's name, or "the host".
+    const std::string& labeling_device_name() const { return labels_on_; }
     Device& device() { return device_; }
 
   private:

@@ -24,8 +24,8 @@ static_assert(shared::k_link_softmax == static_cast<std::uint32_t>(Link::softmax
               shared::k_link_sigmoid == static_cast<std::uint32_t>(Link::sigmoid));
 
 constexpr std::uint32_t k_float_bits = 32;
-// On a CPU every load of a kernel is expensive, so that a stump, once loaded, serves many items, and a load brings many
-// features; a GPU wants many invocations, and its host no work that was not measured to pay.
+// On a CPU each loaded stump is used for many items, and each load brings many features: D6 in docs/portability.md.
+// For a GPU the host does extra work only if it was measured to pay.
 constexpr std::uint32_t k_quads_on_cpu = 4, k_bits_on_cpu = 8;
 
 // Groups of stumps [first, end).
@@ -33,7 +33,7 @@ struct GroupRange {
     std::uint32_t first, end;
 };
 
-// A classifier as the kernel wants it.
+// A classifier in the kernel's layout.
 struct DeviceStumps {
     std::vector<FeatureThresholds> columns;  // features that are used, by rising number
     std::uint32_t bits;                      // of a feature
@@ -49,9 +49,9 @@ std::uint32_t iterations_of(const StumpGroup& group) {
            group.end - group.first;
 }
 
-// A group in several that are small enough for a dispatch.
+// Splits a group into several that are small enough for a dispatch.
 void add_group(StumpGroup group, std::vector<StumpGroup>& groups) {
-    constexpr std::uint32_t k_most = k_most_iterations / 2;
+    constexpr std::uint32_t k_most = k_max_iterations / 2;
     const std::uint32_t end = group.end;
     for (; end - group.first > k_most; group.first += k_most) {
         group.end = group.first + k_most;
@@ -66,7 +66,7 @@ std::vector<GroupRange> parts_of(std::span<const StumpGroup> groups) {
     std::uint32_t iterations = 0;
     for (const StumpGroup& group : groups) {
         const std::uint32_t more = iterations_of(group);
-        if (iterations + more > k_most_iterations) {
+        if (iterations + more > k_max_iterations) {
             parts.push_back({parts.back().end, parts.back().end});
             iterations = 0;
         }
@@ -76,8 +76,8 @@ std::vector<GroupRange> parts_of(std::span<const StumpGroup> groups) {
     return parts;
 }
 
-// The fewest bits, `bits` or more, that all ranks fit into. The highest is left: devices compare signed integers
-// faster.
+// Returns the smallest number of bits, at least `bits`, that holds all ranks with the highest bit unused: devices
+// compare signed integers faster.
 std::uint32_t bits_for(std::span<const FeatureThresholds> columns, std::uint32_t bits) {
     std::size_t most = 0;
     for (const FeatureThresholds& column : columns) most = std::max(most, column.thresholds.size());
@@ -85,7 +85,7 @@ std::uint32_t bits_for(std::span<const FeatureThresholds> columns, std::uint32_t
     return bits;
 }
 
-// What the kernel compares with: see GroupedStump.
+// Returns a threshold in the kernel's form: see GroupedStump.
 std::uint32_t device_threshold(float threshold, const FeatureThresholds& column, std::uint32_t bits) {
     if (bits == k_float_bits) return std::bit_cast<std::uint32_t>(threshold);
     return ((column.index_of(threshold) + 1) << (k_float_bits - bits)) - 1;
@@ -113,8 +113,8 @@ DeviceStumps group(const BoostedStumps& classifier, std::uint32_t bits) {
     return result;
 }
 
-// Shaders may take NaN and infinity for what never occurs, so none reaches them. The smallest number is above no
-// threshold, as NaN; the largest is above all, as infinity.
+// Copies values, without NaN and infinity (D15 in docs/portability.md). NaN and -infinity become the lowest float,
+// which is above no threshold, and infinity the largest, which is above all.
 void copy_finite(std::span<const float> values, std::span<std::byte> memory) {
     constexpr float k_largest = std::numeric_limits<float>::max();
     auto* out = reinterpret_cast<float*>(memory.data());
@@ -124,7 +124,7 @@ void copy_finite(std::span<const float> values, std::span<std::byte> memory) {
     }
 }
 
-// Values of a column as the kernel reads them.
+// Writes the values of a column in the kernel's form.
 void write_features(std::span<const float> values, const FeatureThresholds& column, std::uint32_t bits,
                     std::span<std::byte> memory) {
     if (bits == 8)
@@ -135,7 +135,7 @@ void write_features(std::span<const float> values, const FeatureThresholds& colu
         copy_finite(values, memory);
 }
 
-// Rows of one matrix in a tile.
+// The rows of one matrix in a tile.
 struct Piece {
     const ScoredMatrix* matrix;
     std::size_t first;  // of the matrix
@@ -143,7 +143,7 @@ struct Piece {
     std::size_t place;  // of the first row in the tile
 };
 
-// Rows [first, first + rows) of all matrices one after the other.
+// Returns rows [first, first + rows) of the concatenated matrices.
 std::vector<Piece> pieces_of(std::span<const ScoredMatrix> matrices, std::size_t first, std::size_t rows) {
     std::vector<Piece> pieces;
     std::size_t begin = 0;
@@ -179,18 +179,20 @@ struct GpuStumpScorer::Classifier {
     std::size_t feature_bytes(std::size_t rows) const { return rows * grouped.bits / 8; }  // of one column
 };
 
-// An invocation reads whole texels: of ranks, which have more items in each, half as many.
+// Returns the quads per invocation. An invocation reads whole texels; with ranks, a texel holds more items, so it
+// reads half as many texels.
 std::uint32_t GpuStumpScorer::quads_of(std::uint32_t bits) const {
     if (bits == k_float_bits) return quads_;
     return std::min(std::max(quads_ / 2, 1u) * (k_float_bits / bits), k_stump_quad_counts.back());
 }
 
-// Rows of the smallest tile: neighboring invocations work side by side.
+// Returns the rows of the smallest tile, that of k_stump_neighbors invocations, which read neighboring texels.
 std::size_t GpuStumpScorer::tile_unit(std::uint32_t bits) const {
     return std::size_t{4} * quads_of(bits) * shared::k_stump_neighbors;
 }
 
-// A multiple of tile_unit(), so that neither features nor probabilities pass the limits.
+// Returns the rows of a tile: a multiple of tile_unit() for which both features and probabilities stay below the
+// limits.
 std::size_t GpuStumpScorer::rows_per_tile(const Classifier& classifier, std::size_t rows) const {
     const std::size_t unit = tile_unit(classifier.grouped.bits);
     const std::size_t columns = std::max<std::size_t>(classifier.grouped.columns.size(), 1);
@@ -231,7 +233,7 @@ void GpuStumpScorer::probabilities_of_all(const BoostedStumps& classifier, Link 
         score_tile(on_device, matrices, first, std::min(tile_rows, rows - first), tile_rows);
 }
 
-// With the work that is recorded next, so that it costs no submission of its own.
+// Uploads with the work that is recorded next, so that it costs no submission of its own.
 template <typename T>
 void GpuStumpScorer::upload(Buffer& buffer, const std::vector<T>& values) {
     reserve(device_, buffer, values.size() * sizeof(T));
@@ -270,7 +272,7 @@ void GpuStumpScorer::score_tile(const Classifier& classifier, std::span<const Sc
                           BufferRange(probabilities_, 0, stride * classes * sizeof(float)), features},
                          parameters);
     }
-    std::vector<HostPart> parts;
+    std::vector<HostReadback> parts;
     parts.reserve(pieces.size());
     for (const Piece& piece : pieces)
         parts.push_back({piece.place * classes * sizeof(float), std::as_writable_bytes(piece.matrix->out.subspan(

@@ -7,34 +7,37 @@
 #include <tuple>
 #include <vector>
 
-#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/device/device.h"
+#include "gpu/runtime/device/tuning.h"
 #include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/record/profiler.h"
 #include "gpu/runtime/record/stream.h"
-#include "gpu/runtime/device/tuning.h"
 #include "host/learn/boosting/boosted_stumps.h"
 
 namespace exemplar {
 
-/// Items per invocation, by four; of features of fewer bits at least those of a texel.
+/// Quads (four items) per invocation; at least those of a texel, which holds more of them with features of fewer
+/// bits.
 inline constexpr std::array<std::uint32_t, 4> k_stump_quad_counts{1, 2, 4, 8};
 inline constexpr TunableParameter k_stump_quads{"learn/stumps.comp", "quads", k_stump_quad_counts};
 /// How features are read: as texels (0) or from a storage buffer (1).
 inline constexpr std::array<std::uint32_t, 2> k_stump_readings{0, 1};
 inline constexpr TunableParameter k_stump_storage{"learn/stumps.comp", "storage", k_stump_readings};
-/// Bits of a feature: 32 of a float; 16 or 8 of its rank among the classifier's thresholds, which the host finds out
-/// when it uploads. Probabilities are the same, bit for bit.
+/// Bits of a feature: 32 for a float, 16 or 8 for its rank among the classifier's thresholds, which the host
+/// computes during the upload. Probabilities are the same, bit for bit.
 inline constexpr std::array<std::uint32_t, 3> k_stump_feature_bits{8, 16, 32};
-inline constexpr TunableParameter k_stump_bits{"learn/stumps.comp", "bits", k_stump_feature_bits, Judged::by_runs};
+inline constexpr TunableParameter k_stump_bits{"learn/stumps.comp", "bits", k_stump_feature_bits,
+                                               TuningMetric::end_to_end};
 
-/// Boosted stumps on the device. Only the features that stumps use are uploaded, as floats or as ranks (k_stump_bits).
-/// The rows of all matrices that are scored together lie side by side, in tiles that fit the device's limits: a
-/// submission each. Long classifiers take several dispatches (k_most_iterations). Probabilities agree with
-/// CpuStumpScorer within 1e-5: sums are taken in another order, and exp differs between devices.
+/// Boosted stumps on the device. Only the features that stumps use are uploaded, as floats or as ranks
+/// (k_stump_bits). The rows of all matrices that are scored together are concatenated and cut into tiles that fit
+/// the device's limits, one submission each. Long classifiers take several dispatches (k_max_iterations).
+/// Probabilities agree with CpuStumpScorer within 1e-5: the order of summation differs, and exp differs between
+/// devices.
 class GpuStumpScorer final : public StumpScorer {
   public:
-    /// `tile_bytes` bounds the memory of a tile's features and of its probabilities below the device's own limits.
+    /// `tile_bytes` limits the size of a tile's features, and of its probabilities, below the device's own limits.
     explicit GpuStumpScorer(Device& device, Profiler* profiler = nullptr,
                             std::size_t tile_bytes = std::size_t{256} << 20);
     void probabilities_of_all(const BoostedStumps& classifier, Link link, float scale,
@@ -52,9 +55,9 @@ class GpuStumpScorer final : public StumpScorer {
     std::size_t tile_unit(std::uint32_t bits) const;
     std::size_t rows_per_tile(const Classifier& classifier, std::size_t rows) const;
     Device& device_;
-    std::uint32_t quads_;  // of items per invocation
+    std::uint32_t quads_;  // of items, per invocation
     std::uint32_t from_storage_;
-    std::uint32_t bits_;  // of a feature, where a classifier has no more thresholds than these can tell apart
+    std::uint32_t bits_;  // minimum bits of a feature; more if a classifier has more thresholds than ranks of these
     std::size_t tile_bytes_;
     Stream stream_;
     std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, Kernel> kernels_;  // by class count, bits, parts

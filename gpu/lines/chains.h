@@ -2,25 +2,27 @@
 
 #include "gpu/lines/extraction.h"
 #include "gpu/lines/line_surface.h"
-#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/record/stream.h"
 #include "host/imaging/camera.h"
 
 namespace exemplar {
 
-/// Joins segments to chains on the device, as chain_segments does, and lays their points out one after the other: by
-/// jumps that double (Wyllie 1979), so that the result does not depend on the device's scheduling.
+/// Joins segments to chains on the device, as chain_segments does, and writes the points of each chain contiguously.
+/// It uses pointer jumping (Wyllie 1979), so the result does not depend on the device's scheduling.
 class GpuChains {
   public:
     /// `lines` must live as long as this.
     explicit GpuChains(GpuLineExtraction& lines);
 
-    /// Chains of the segments that `lines` has found on `vertices`, as seen in a picture of this size. 28 dispatches,
-    /// of which the jumps do nothing once they are as long as there are segments.
+    /// Records the chaining of the segments that `lines` found on `vertices`, in a picture of this size. Up to 27
+    /// dispatches, five and one per doubling of lines().room(), rounded up to an even number; jumps that the number
+    /// of segments does not need do nothing.
     void record(Stream& stream, const Buffer& vertices, const Camera& camera, int width, int height);
 
-    /// shared::LinePoint each, in the order of chains' first segments; their number is in GpuLineExtraction::counts().
+    /// A shared::LinePoint each, in the order of chains' first segments; GpuLineExtraction::counts() has their
+    /// number.
     const Buffer& points() const { return points_; }
     const GpuLineExtraction& lines() const { return lines_; }
 

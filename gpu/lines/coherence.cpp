@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "embedded/lines_phases_comp.h"
-#include "embedded/lines_settle_comp.h"
 #include "embedded/lines_traces_comp.h"
 #include "embedded/lines_votes_comp.h"
+#include "embedded/lines_write_traces_comp.h"
 #include "gpu/imaging/picture.h"
 
 namespace exemplar {
@@ -21,9 +21,9 @@ using shared::uvec4;
 using shared::vec2;
 using shared::vec4;
 
-static_assert(shared::k_most_vote == k_most_vote && shared::k_follow_faces == k_follow_faces &&
+static_assert(shared::k_max_vote == k_max_vote && shared::k_follow_faces == k_follow_faces &&
               shared::k_follow_reach == k_follow_reach && shared::k_follow_points == k_follow_points &&
-              shared::k_calling == k_calling);
+              shared::k_whole_chain_divisor == k_whole_chain_divisor);
 
 FollowParameters follow_parameters(const StrokeView& view, bool keeps) {
     FollowParameters parameters{.matrix = {},
@@ -48,8 +48,8 @@ GpuCoherence::GpuCoherence(const GpuStrokes& strokes) : strokes_(strokes) {
                           {.elements = {four, words, words, words, four, word, word, words, four}});
     phase_kernel_ = Kernel(device, shaders::lines_phases_comp,
                            {.push_constants = layout_of<FollowParameters>(), .elements = {four, four}});
-    settle_kernel_ =
-        Kernel(device, shaders::lines_settle_comp, {.elements = {four, word, four, four, layout_of<float>()}});
+    trace_writing_kernel_ =
+        Kernel(device, shaders::lines_write_traces_comp, {.elements = {four, word, four, four, layout_of<float>()}});
     traces_ = Buffer(device, room * sizeof(vec4));
     previous_traces_ = Buffer(device, room * sizeof(vec4));
     ends_ = Buffer(device, 2 * room * sizeof(vec4));
@@ -78,7 +78,7 @@ void GpuCoherence::record(Stream& stream, const Buffer& vertices, const StrokeVi
     stream.dispatch_indirect(phase_kernel_, counts, k_points, {chains.points(), matches_, counts, votes_, phases_},
                              parameters);
     stream.dispatch_indirect(
-        settle_kernel_, counts, k_points,
+        trace_writing_kernel_, counts, k_points,
         {chains.points(), strokes_.visible(), strokes_.strokes(), matches_, phases_, counts, traces_, flicker_});
 }
 

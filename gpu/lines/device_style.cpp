@@ -9,7 +9,7 @@
 namespace exemplar {
 namespace {
 
-/// Textures that several types share are there once; StrokeLook::texture is one more than where it begins.
+/// Collects textures; those that several types share are stored once. StrokeLook::texture is 1 + first texel.
 class Textures {
   public:
     struct Place {
@@ -31,7 +31,7 @@ class Textures {
     std::vector<std::uint8_t> texels() const { return texels_; }
 
   private:
-    // Images of another size are sampled at the centers of the texels.
+    // Resamples images of other sizes at the centers of the texels.
     void append(const Image& image) {
         for (std::uint32_t y = 0; y < shared::k_texture_height; ++y)
             for (std::uint32_t x = 0; x < shared::k_texture_width; ++x) {

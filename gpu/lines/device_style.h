@@ -9,7 +9,7 @@
 
 namespace exemplar {
 
-/// What of a style the device draws with.
+/// The part of a style that the device draws with.
 struct DeviceStyle {
     FamilyThresholds thresholds{};
     StrokeLooks looks{};
@@ -17,10 +17,10 @@ struct DeviceStyle {
     std::vector<std::uint8_t> textures;  ///< for LineRenderer::set_textures
 };
 
-/// Throws DataError if a texture cannot be read.
+/// Converts a style. Throws DataError if a texture cannot be read.
 DeviceStyle device_style(const DrawingStyle& style);
 
-/// Puts all of it but the textures into a picture of lines of these types.
+/// Sets the families, thresholds, looks and surface of a picture of lines of these types; textures are not set.
 void apply_style(const DeviceStyle& style, std::span<const LineType> types, LinePicture& picture);
 
 }  // namespace exemplar

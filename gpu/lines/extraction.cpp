@@ -42,9 +42,9 @@ FieldParameters field_parameters(const GpuLineOptions& options, std::uint32_t ve
             .unused1 = 0};
 }
 
-void check(const GpuCurvedSurface& moment, std::uint32_t families, const GpuLineOptions& options) {
+void check(const GpuCurvedSurface& snapshot, std::uint32_t families, const GpuLineOptions& options) {
     if (!(families & shared::k_curvature_families)) return;
-    if (!moment.first || !moment.second || !moment.derivative)
+    if (!snapshot.first || !snapshot.second || !snapshot.derivative)
         throw UsageError("these lines need curvature with derivatives; estimate or learn it");
     if (!(options.feature_size > 0 && std::isfinite(options.feature_size)))
         throw UsageError(fmt::format("a feature size of {}: give a positive length", options.feature_size));
@@ -60,10 +60,10 @@ FamilyThresholds family_thresholds(const LineThresholds& thresholds) {
     return result;
 }
 
-GpuLineExtraction::GpuLineExtraction(const GpuLineSurface& surface, std::size_t most_segments)
+GpuLineExtraction::GpuLineExtraction(const GpuLineSurface& surface, std::size_t max_segments)
     : surface_(surface),
-      room_(std::min(
-          {std::max<std::size_t>(surface.surface().face_count(), k_least_room), most_segments, k_most_segments})),
+      room_(
+          std::min({std::max<std::size_t>(surface.surface().face_count(), k_min_room), max_segments, k_most_segments})),
       scan_kernel_(surface.surface().device(), shaders::lines_scan_comp,
                    {.push_constants = layout_of<shared::ScanParameters>(), .constants = {{0, 0}}}) {
     Device& device = surface.surface().device();
@@ -78,7 +78,7 @@ GpuLineExtraction::GpuLineExtraction(const GpuLineSurface& surface, std::size_t 
     counts_ = Buffer::of(device, std::span(&none, 1));
 }
 
-// Kernels know the families, so that what is not wanted takes no time: CPU drivers run both sides of branches.
+// The families are a constant of the kernels, so that others cost nothing: D2 in docs/portability.md.
 GpuLineExtraction::Kernels GpuLineExtraction::make_kernels(std::uint32_t families) const {
     Device& device = surface_.surface().device();
     const StructLayout word = layout_of<std::uint32_t>(), four = layout_of<vec4>(), words = layout_of<uvec4>();
@@ -119,52 +119,53 @@ const GpuLineExtraction::Kernels& GpuLineExtraction::prepare(std::uint32_t famil
     return known->second;
 }
 
-void GpuLineExtraction::record_fields(Stream& stream, const Kernels& kernels, const GpuCurvedSurface& moment,
+void GpuLineExtraction::record_fields(Stream& stream, const Kernels& kernels, const GpuCurvedSurface& snapshot,
                                       std::uint32_t families, const GpuLineOptions& options) {
     const GpuSurface& surface = surface_.surface();
     const std::uint32_t vertices = surface.vertex_count();
     const FieldParameters parameters = field_parameters(options, vertices);
-    // Kernels bind something even where they read nothing.
-    const Buffer &first = moment.first ? *moment.first : moment.vertices,
-                 &second = moment.second ? *moment.second : moment.vertices,
-                 &derivative = moment.derivative ? *moment.derivative : moment.vertices;
+    // All bindings need a buffer, even those that are not read.
+    const Buffer &first = snapshot.first ? *snapshot.first : snapshot.vertices,
+                 &second = snapshot.second ? *snapshot.second : snapshot.vertices,
+                 &derivative = snapshot.derivative ? *snapshot.derivative : snapshot.vertices;
     const std::uint32_t apparent = 1u << shared::k_apparent_ridges;
     if (families & shared::k_field_families & ~apparent)
         stream.dispatch(kernels.fields, vertices,
-                        {moment.vertices, moment.normals, first, second, derivative, fields_, directions_}, parameters);
+                        {snapshot.vertices, snapshot.normals, first, second, derivative, fields_, directions_},
+                        parameters);
     if (!(families & apparent)) return;
-    stream.dispatch(view_kernel_, vertices, {moment.vertices, moment.normals, first, second, views_}, parameters);
+    stream.dispatch(view_kernel_, vertices, {snapshot.vertices, snapshot.normals, first, second, views_}, parameters);
     stream.dispatch(
         kernels.ridges, vertices,
-        {moment.vertices, first, second, views_, surface.ring_begin(), surface.rings(), fields_, directions_},
+        {snapshot.vertices, first, second, views_, surface.ring_begin(), surface.rings(), fields_, directions_},
         parameters);
 }
 
-void GpuLineExtraction::record(Stream& stream, const GpuCurvedSurface& moment, std::uint32_t families,
+void GpuLineExtraction::record(Stream& stream, const GpuCurvedSurface& snapshot, std::uint32_t families,
                                const GpuLineOptions& options) {
-    check(moment, families, options);
+    check(snapshot, families, options);
     const GpuSurface& surface = surface_.surface();
-    surface.check_vertices(moment.vertices);
+    surface.check_vertices(snapshot.vertices);
     const Kernels& kernels = prepare(families);
     std::swap(segments_, old_segments_);
     std::swap(face_counts_, old_face_counts_);
     std::swap(face_groups_, old_face_groups_);
-    record_fields(stream, kernels, moment, families, options);
+    record_fields(stream, kernels, snapshot, families, options);
     const std::uint32_t faces = surface.face_count();
     const FaceLineParameters parameters{.faces = faces,
                                         .vertices = surface.vertex_count(),
                                         .crease_angle = options.thresholds[shared::k_creases],
-                                        .most_segments = static_cast<std::uint32_t>(room_)};
+                                        .max_segments = static_cast<std::uint32_t>(room_)};
     stream.dispatch(
         kernels.count, faces,
-        {moment.vertices, surface.faces(), surface_.neighbors(), fields_, directions_, face_counts_, face_groups_},
+        {snapshot.vertices, surface.faces(), surface_.neighbors(), fields_, directions_, face_counts_, face_groups_},
         parameters);
     stream.dispatch(
         scan_kernel_, 1, {face_groups_, counts_},
         shared::ScanParameters{.groups = static_cast<std::uint32_t>(divide_up(faces, shared::k_count_group)),
                                .most = static_cast<std::uint32_t>(room_)});
     stream.dispatch(kernels.segments, faces,
-                    {moment.vertices, surface.faces(), surface_.neighbors(), fields_, directions_, face_counts_,
+                    {snapshot.vertices, surface.faces(), surface_.neighbors(), fields_, directions_, face_counts_,
                      face_groups_, segments_},
                     parameters);
 }

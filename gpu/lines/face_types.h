@@ -5,8 +5,8 @@
 
 namespace exemplar {
 
-/// The types of lines that each face carries, of segments that were recorded and are finished. Downloads all of them:
-/// it is for comparing and checking. Throws DeviceLimitError if there was no room for some.
+/// Returns the types of lines on each face, after the recorded extraction has finished. Downloads all segments, so
+/// it is for comparisons and tests. Throws DeviceLimitError if segments were dropped for lack of room.
 FaceTypes download_face_types(const GpuLineExtraction& lines);
 
 }  // namespace exemplar

@@ -26,7 +26,7 @@ DrawPipeline stroke_pipeline(Device& device) {
             {.color = Canvas::k_rgba, .blends = true}};
 }
 
-// What vertices are drawn by on every device.
+// Maximum vertex index that every device supports in index buffers.
 constexpr std::uint32_t k_most_indexed = (1u << 24) - 1;
 
 }  // namespace
@@ -71,7 +71,7 @@ void LineRenderer::resize(int width, int height) {
     reserve(device_, depths_, pixels * sizeof(float));
 }
 
-void LineRenderer::draw_surface(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture) {
+void LineRenderer::draw_surface(Stream& stream, const GpuCurvedSurface& snapshot, const LinePicture& picture) {
     canvas_.begin(stream);
     Pass pass("surface", canvas_.cleared(background_of(picture.surface)));
     const GpuSurface& surface = surface_.surface();
@@ -79,17 +79,17 @@ void LineRenderer::draw_surface(Stream& stream, const GpuCurvedSurface& moment, 
                   {.face_count = surface.face_count(),
                    .faces = &surface.faces(),
                    .indices = surface.vertex_count() <= k_most_indexed ? &surface.indices() : nullptr,
-                   .vertices = &moment.vertices,
-                   .normals = &moment.normals,
+                   .vertices = &snapshot.vertices,
+                   .normals = &snapshot.normals,
                    .colors = face_colors_ ? &face_colors_ : nullptr,
-                   .first = moment.first,
-                   .second = moment.second},
+                   .first = snapshot.first,
+                   .second = snapshot.second},
                   picture.view.camera, picture.surface);
     stream.render(pass);
 }
 
 void LineRenderer::draw_strokes(Stream& stream, const LinePicture& picture) {
-    canvas_.go_on(stream);
+    canvas_.separate_passes(stream);
     Pass pass("lines/strokes", {.color = canvas_.color_view(), .extent = canvas_.extent()});
     pass.draw(lines_->pipeline,
               {.indirect = &lines_->extraction.counts(), .indirect_offset = offsetof(LineCounts, draw)},
@@ -101,30 +101,30 @@ void LineRenderer::draw_strokes(Stream& stream, const LinePicture& picture) {
     canvas_.end(stream);
 }
 
-void LineRenderer::record(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture) {
+void LineRenderer::record(Stream& stream, const GpuCurvedSurface& snapshot, const LinePicture& picture) {
     const StrokeView& view = picture.view;
     resize(view.width, view.height);
     transparent_ = picture.surface.transparent;
     if (picture.families == 0) {
-        surface_.surface().check_vertices(moment.vertices);
-        draw_surface(stream, moment, picture);
+        surface_.surface().check_vertices(snapshot.vertices);
+        draw_surface(stream, snapshot, picture);
         canvas_.end(stream);
         return;
     }
     if (!lines_) lines_.emplace(device_, surface_);
     lines_->extraction.record(
-        stream, moment, picture.families,
+        stream, snapshot, picture.families,
         {.eye = homogeneous_eye(view.camera), .feature_size = view.feature_size, .thresholds = picture.thresholds});
-    lines_->chains.record(stream, moment.vertices, view.camera, view.width, view.height);
-    draw_surface(stream, moment, picture);
+    lines_->chains.record(stream, snapshot.vertices, view.camera, view.width, view.height);
+    draw_surface(stream, snapshot, picture);
     canvas_.copy_depth(stream, depths_);
-    lines_->strokes.record(stream, moment, depths_, view, picture.looks);
-    lines_->coherence.record(stream, moment.vertices, view, picture.coherent);
+    lines_->strokes.record(stream, snapshot, depths_, view, picture.looks);
+    lines_->coherence.record(stream, snapshot.vertices, view, picture.coherent);
     draw_strokes(stream, picture);
 }
 
-Image LineRenderer::render(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture) {
-    record(stream, moment, picture);
+Image LineRenderer::render(Stream& stream, const GpuCurvedSurface& snapshot, const LinePicture& picture) {
+    record(stream, snapshot, picture);
     record_download(stream);
     stream.finish();
     return read_image();

@@ -20,51 +20,51 @@
 
 namespace exemplar {
 
-/// What one picture of lines shows.
+/// What one line drawing shows.
 struct LinePicture {
     StrokeView view;
-    std::uint32_t families = 0;  ///< line_families() of the types to draw; without any the surface alone is drawn
+    std::uint32_t families = 0;  ///< line_families() of the types to draw; 0: the surface alone
     FamilyThresholds thresholds{};
     StrokeLooks looks{};
-    bool coherent = true;  ///< textures stay where they were in the picture before
+    bool coherent = true;  ///< textures stay where they were in the previous picture
     PaintLook surface{.light = SurfaceLight::none, .plain = {255, 255, 255}};
 };
 
-/// Draws line drawings of a surface, from buffers of its vertices, normals and curvature to an image, without anything
-/// going back to the host: extraction, chains, the surface with its depths, visibility, strokes.
+/// Renders line drawings of a surface entirely on the device, from buffers of its vertices, normals and curvature to
+/// an image: extraction, chains, the surface with its depths, visibility, strokes.
 class LineRenderer {
   public:
     /// `surface` must live as long as this. Throws DeviceError if the device cannot draw.
     LineRenderer(Device& device, const GpuLineSurface& surface);
 
-    /// One color per face, for SurfacePaint::faces. Throws UsageError for another number.
+    /// Sets one color per face, for SurfacePaint::faces. Throws UsageError for another number.
     void set_face_colors(std::span<const Color> colors);
-    /// Opacities of shared::k_texture_width x k_texture_height, row by row, one texture after the other; StrokeLook
-    /// refers to them. Throws UsageError if they are not whole textures.
+    /// Sets the textures that StrokeLook refers to: opacities of shared::k_texture_width x k_texture_height texels,
+    /// row by row, one texture after the other. Throws UsageError if they are not whole textures.
     void set_textures(std::span<const std::uint8_t> opacities);
 
-    /// Records a picture. Afterwards canvas() has it, 8-bit RGBA, of the size of the picture. Throws DeviceLimitError
-    /// if it has lines and the surface is too large for the device to find some, UsageError as GpuLineExtraction.
-    void record(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture);
+    /// Records a picture into canvas(), 8-bit RGBA, of the size of the view. Throws DeviceLimitError if the surface
+    /// is too large for the device to find lines on, UsageError as GpuLineExtraction does or for an empty picture.
+    void record(Stream& stream, const GpuCurvedSurface& snapshot, const LinePicture& picture);
     Canvas& canvas() { return canvas_; }
 
-    /// Records, runs and downloads a picture: RGB, or RGBA if it is transparent.
-    Image render(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture);
+    /// Records, runs and downloads a picture: RGB, or RGBA if its background is transparent.
+    Image render(Stream& stream, const GpuCurvedSurface& snapshot, const LinePicture& picture);
     /// Records the download of the image; after finish(), read_image() has it.
     void record_download(Stream& stream) { canvas_.record_download(stream); }
     Image read_image() const { return canvas_.read_image(transparent_); }
 
-    /// What there is of lines; only after a picture with some.
+    /// Data of the lines. May only be called after a picture with families.
     const GpuStrokes& strokes() const { return lines_->strokes; }
     const GpuCoherence& coherence() const { return lines_->coherence; }
 
   private:
     void resize(int width, int height);
-    void draw_surface(Stream& stream, const GpuCurvedSurface& moment, const LinePicture& picture);
+    void draw_surface(Stream& stream, const GpuCurvedSurface& snapshot, const LinePicture& picture);
     void draw_strokes(Stream& stream, const LinePicture& picture);
     Device& device_;
     const GpuLineSurface& surface_;
-    /// From the surface to strokes; refers to itself.
+    /// The stages from surface to strokes. Members refer to each other, so it must not move.
     struct Lines {
         GpuLineExtraction extraction;
         GpuChains chains;
@@ -74,7 +74,7 @@ class LineRenderer {
 
         Lines(Device& device, const GpuLineSurface& surface);
     };
-    std::optional<Lines> lines_;  // made for the first picture that has some
+    std::optional<Lines> lines_;  // made for the first picture with families
     Canvas canvas_;
     SurfacePainter painter_;
     bool transparent_ = false;

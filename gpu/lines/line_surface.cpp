@@ -8,8 +8,8 @@
 
 namespace exemplar {
 
-static_assert(k_no_neighbor == shared::k_side_alone && k_many_neighbors == shared::k_side_of_many &&
-              k_last_neighbor == shared::k_last_side);
+static_assert(k_no_neighbor == shared::k_boundary_side && k_nonmanifold_neighbors == shared::k_nonmanifold_side &&
+              k_max_neighbor_code == shared::k_max_side_code);
 static_assert(k_at_corner == shared::k_place_corner && k_inside_face == shared::k_place_inside);
 
 GpuLineSurface::GpuLineSurface(const GpuSurface& surface) : surface_(&surface) {

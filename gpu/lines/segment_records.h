@@ -9,18 +9,18 @@
 
 namespace exemplar {
 
-/// The family that a segment is of (shared::k_contours and so on).
+/// Returns the family of a segment (shared::k_contours and so on).
 inline std::uint32_t family_of(const shared::LineSegmentRecord& segment) {
     return segment.kind & shared::k_kind_family;
 }
 
-/// Segments of one type as extract_lines has them, and their places among the device's.
+/// Segments of one type in the form of extract_lines, and their indices on the device.
 struct ReadSegments {
     std::vector<LineSegment> segments;
     std::vector<std::uint32_t> numbers;
 };
 
-/// Those of GpuLineExtraction::segments() that are of a type.
+/// Returns those of GpuLineExtraction::segments() that are of a type.
 ReadSegments segments_of_type(std::span<const shared::LineSegmentRecord> records, LineType type);
 
 }  // namespace exemplar

@@ -18,8 +18,10 @@ using shared::StrokeParameters;
 using shared::uvec4;
 using shared::vec4;
 
-static_assert(shared::k_least_calm == k_least_calm && shared::k_most_calm == k_most_calm &&
-              shared::k_calm_points == k_calm_points && shared::k_calm_reach == k_calm_reach);
+static_assert(shared::k_min_smoothing_window == k_min_smoothing_window &&
+              shared::k_max_smoothing_window == k_max_smoothing_window &&
+              shared::k_smoothing_window_points == k_smoothing_window_points &&
+              shared::k_smoothing_window_reach == k_smoothing_window_reach);
 
 StrokeParameters stroke_parameters(const StrokeView& view, bool curved, bool closed) {
     const Eigen::Matrix4f& m = view.camera.projection;
@@ -82,7 +84,7 @@ GpuStrokes::GpuStrokes(const GpuChains& chains) : chains_(chains) {
     looks_ = Buffer(device, sizeof(StrokeLooks));
 }
 
-void GpuStrokes::record(Stream& stream, const GpuCurvedSurface& moment, const Buffer& depths, const StrokeView& view,
+void GpuStrokes::record(Stream& stream, const GpuCurvedSurface& snapshot, const Buffer& depths, const StrokeView& view,
                         const StrokeLooks& looks) {
     const std::size_t wanted = std::size_t{4} * static_cast<std::size_t>(view.width) * view.height;
     if (depths.bytes() < wanted)
@@ -92,18 +94,18 @@ void GpuStrokes::record(Stream& stream, const GpuCurvedSurface& moment, const Bu
     const Buffer& counts = lines.counts();
     constexpr std::size_t k_points = offsetof(LineCounts, point_groups);
     stream.upload(looks_, std::span<const StrokeLook>(looks));
-    const bool curved = moment.first && moment.second;
+    const bool curved = snapshot.first && snapshot.second;
     const StrokeParameters parameters = stroke_parameters(view, curved, lines.surface().is_closed());
-    const Buffer &faces = lines.surface().surface().faces(), &first = curved ? *moment.first : moment.vertices,
-                 &second = curved ? *moment.second : moment.vertices;
+    const Buffer &faces = lines.surface().surface().faces(), &first = curved ? *snapshot.first : snapshot.vertices,
+                 &second = curved ? *snapshot.second : snapshot.vertices;
     stream.dispatch_indirect(visibility_kernel_, counts, k_points,
                              {BufferRange(depths, 0, wanted), chains_.points(), lines.segments(), faces,
-                              moment.vertices, first, second, counts, visible_},
+                              snapshot.vertices, first, second, counts, visible_},
                              parameters);
-    stream.dispatch_indirect(
-        stroke_kernel_, counts, k_points,
-        {chains_.points(), visible_, lines.segments(), faces, moment.vertices, first, second, counts, looks_, strokes_},
-        parameters);
+    stream.dispatch_indirect(stroke_kernel_, counts, k_points,
+                             {chains_.points(), visible_, lines.segments(), faces, snapshot.vertices, first, second,
+                              counts, looks_, strokes_},
+                             parameters);
 }
 
 }  // namespace exemplar

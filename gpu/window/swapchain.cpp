@@ -36,7 +36,7 @@ VkSurfaceCapabilitiesKHR capabilities_of(const Device& device, VkSurfaceKHR surf
     return capabilities;
 }
 
-// Some surfaces have a size, others take that of their images.
+// Returns the image size: some surfaces have one, others take that of their images.
 VkExtent2D fitting_extent(const VkSurfaceCapabilitiesKHR& capabilities, VkExtent2D window) {
     if (capabilities.currentExtent.width != UINT32_MAX) return capabilities.currentExtent;
     const VkExtent2D low = capabilities.minImageExtent, high = capabilities.maxImageExtent;
@@ -72,7 +72,7 @@ Swapchain::~Swapchain() {
     vkDestroySurfaceKHR(device_.instance(), surface_, nullptr);
 }
 
-// Pictures hold sRGB values already, so images must not encode them again.
+// Chooses a UNORM format: pictures hold sRGB values already, which must not be encoded again.
 void Swapchain::choose_format() {
     VkBool32 presents = VK_FALSE;
     check(vkGetPhysicalDeviceSurfaceSupportKHR(device_.physical(), device_.queue_family(), surface_, &presents),
@@ -100,13 +100,13 @@ void Swapchain::release() {
     try {
         device_.wait_idle();
     } catch (const DeviceError&) {
-        // A lost device has nothing under way.
+        // A lost device has no work in flight.
     }
     slots_.clear();
     acquired_.clear();
 }
 
-// False if the window has no pixels.
+// Creates the swapchain; returns false if the window has no pixels.
 bool Swapchain::create(VkExtent2D window) {
     if (window.width == 0 || window.height == 0) return false;
     release();
@@ -124,7 +124,7 @@ bool Swapchain::create(VkExtent2D window) {
     info.imageSharingMode = VK_SHARING_MODE_EXCLUSIVE;
     info.preTransform = capabilities.currentTransform;
     info.compositeAlpha = opaque_alpha(capabilities);
-    info.presentMode = VK_PRESENT_MODE_FIFO_KHR;  // every device has it, and it draws no frame that is not seen
+    info.presentMode = VK_PRESENT_MODE_FIFO_KHR;  // every device supports it, and every frame drawn is shown
     info.clipped = VK_TRUE;
     info.oldSwapchain = swapchain_.get();
     UniqueSwapchain next(device_.handle());
@@ -149,7 +149,8 @@ void Swapchain::create_slots() {
 }
 
 std::optional<WindowImage> Swapchain::acquire(VkExtent2D window) {
-    // A window that is being dragged to another size may change again while images are made; then the next frame fits.
+    // While the user resizes the window, its size may change again before the images exist; then the next frame
+    // fits.
     constexpr int k_tries = 3;
     if (window.width != extent_.width || window.height != extent_.height) stale_ = true;
     for (int i = 0; i < k_tries; ++i) {
@@ -163,7 +164,7 @@ std::optional<WindowImage> Swapchain::acquire(VkExtent2D window) {
             continue;
         }
         if (result == VK_SUBOPTIMAL_KHR)
-            stale_ = true;  // to be made anew when this image has been shown
+            stale_ = true;  // to be recreated when this image has been shown
         else
             check(result, "get an image of the window");
         next_acquired_ = (next_acquired_ + 1) % acquired_.size();

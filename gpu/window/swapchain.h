@@ -14,21 +14,22 @@ namespace exemplar {
 
 class Device;
 
-/// An image of a window while it is drawn, in VK_IMAGE_LAYOUT_UNDEFINED. Its contents are undefined.
+/// An image of a window to draw into, in VK_IMAGE_LAYOUT_UNDEFINED. Its contents are undefined.
 struct WindowImage {
     VkImage image = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;
     VkExtent2D extent{};
-    /// What the submission that draws it waits for and tells; stages before copies and color output may run ahead.
+    /// Semaphores that the submission drawing the image waits for and signals; stages before copies and color output
+    /// may start earlier.
     SubmitOrder order;
     std::uint32_t index = 0;
 };
 
-/// The images that a window shows one after the other, of 8-bit colors that are taken as they are. They follow the
+/// The images that a window shows one after the other, with 8-bit colors that are shown unconverted. Follows the
 /// window's size. One thread at a time may use it.
 class Swapchain {
   public:
-    /// Takes over a surface of device.instance(). Throws DeviceError if it has no fitting format.
+    /// Takes ownership of a surface of device.instance(). Throws DeviceError if the surface has no suitable format.
     Swapchain(Device& device, VkSurfaceKHR surface);
     /// Waits for the device.
     ~Swapchain();
@@ -36,18 +37,18 @@ class Swapchain {
     Swapchain& operator=(const Swapchain&) = delete;
 
     VkFormat format() const { return format_.format; }
-    /// The next image to draw; nothing while the window has no pixels. `window` is its size as the window system tells
-    /// it. The submission that drew the last image must have been waited for. Throws SurfaceLostError or
-    /// DeviceLostError.
+    /// Returns the next image to draw; nothing while the window has no pixels. `window` is its size as reported by
+    /// the window system. The submission that drew the previous image must have been waited for. Throws
+    /// SurfaceLostError or DeviceLostError.
     std::optional<WindowImage> acquire(VkExtent2D window);
-    /// Shows the image when the submission with its order is done; it must be in VK_IMAGE_LAYOUT_PRESENT_SRC_KHR.
-    /// Throws as acquire.
+    /// Shows the image once the submission with its order is done. It must be in VK_IMAGE_LAYOUT_PRESENT_SRC_KHR.
+    /// Throws as acquire does.
     void present(const WindowImage& image);
-    /// Gives an image up that was acquired and then not drawn.
+    /// Discards an image that was acquired but not drawn.
     void abandon();
 
   private:
-    // A new semaphore would do for every image, but semaphores may only end when nothing waits for them any more.
+    // Semaphores are kept, since one may only be destroyed when nothing waits for it any more.
     struct Slot {
         VkImage image;
         UniqueImageView view;
@@ -63,7 +64,7 @@ class Swapchain {
     VkExtent2D extent_{};
     UniqueSwapchain swapchain_;
     std::vector<Slot> slots_;
-    std::vector<UniqueSemaphore> acquired_;  // one more than slots
+    std::vector<UniqueSemaphore> acquired_;  // one more than there are slots
     std::size_t next_acquired_ = 0;
     bool stale_ = true;
 };

@@ -14,7 +14,7 @@
 namespace exemplar {
 namespace {
 
-// Of each texel the opacities that are mixed between it and its neighbors; see interface.frag.
+// Returns for each texel the opacities that are mixed between it and its neighbors; see interface.frag.
 std::vector<std::uint32_t> neighborhoods(const unsigned char* alpha, int width, int height) {
     std::vector<std::uint32_t> texels;
     texels.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
@@ -27,12 +27,13 @@ std::vector<std::uint32_t> neighborhoods(const unsigned char* alpha, int width, 
     return texels;
 }
 
-// A buffer that holds `bytes`, with room to grow, so that a growing interface does not make one every frame.
+// Makes sure that a buffer holds `bytes`, with spare room, so that a growing interface does not reallocate every
+// frame.
 void make_room(Device& device, Buffer& buffer, std::size_t bytes) {
     if (buffer.bytes() < bytes) buffer = Buffer(device, std::bit_ceil(std::max<std::size_t>(bytes, 4096)));
 }
 
-// The part of the image that a command may draw to; empty if it is outside.
+// Returns the part of the image that a command may draw to; empty if it is outside.
 VkRect2D scissor_of(const ImVec4& clip, const ImDrawData& interface, VkExtent2D extent) {
     const ImVec2 origin = interface.DisplayPos, scale = interface.FramebufferScale;
     const auto pixel = [](float value, std::uint32_t size) {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/kernels/draw_pipeline.h"
+#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/record/stream.h"
 #include "shaders/shared/window.h"
 
@@ -15,14 +15,14 @@ struct ImFontAtlas;
 
 namespace exemplar {
 
-/// Draws the interface that Dear ImGui has laid out over an image. Of its textures it knows the font atlas alone.
+/// Draws the interface that Dear ImGui has laid out over an image. The font atlas is the only supported texture.
 class UiRenderer {
   public:
-    /// Builds the atlas, whose fonts have been added, and puts it onto the device. `color` is the format of the images
-    /// that are drawn over.
+    /// Builds the atlas from the fonts added to it, and uploads it. `color` is the format of the images that are
+    /// drawn over.
     UiRenderer(Device& device, VkFormat color, ImFontAtlas& fonts);
 
-    /// Draws over `target`, a color attachment of that layout.
+    /// Draws over `target`, which must be in the layout of a color attachment.
     void record(Stream& stream, const ImDrawData& interface, VkImageView target, VkExtent2D extent);
 
   private:
@@ -32,7 +32,7 @@ class UiRenderer {
     DrawPipeline pipeline_;
     shared::InterfaceParameters parameters_{};
     Buffer atlas_, indices_, vertices_;
-    // Kept between frames, so that none of them allocates.
+    // Kept between frames to avoid allocations.
     std::vector<std::uint32_t> index_values_;
     std::vector<shared::InterfaceVertex> vertex_values_;
 };

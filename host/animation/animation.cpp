@@ -46,7 +46,7 @@ std::vector<Affine> node_transforms(const Rig& rig, const Pose& pose) {
     std::vector<Affine> world(rig.nodes.size());
     for (std::size_t i = 0; i < world.size(); ++i) {
         const std::uint32_t parent = rig.nodes[i].parent;
-        world[i] = parent == k_none ? matrix_of(pose.nodes[i]) : world[parent] * matrix_of(pose.nodes[i]);
+        world[i] = parent == k_invalid_index ? matrix_of(pose.nodes[i]) : world[parent] * matrix_of(pose.nodes[i]);
     }
     return world;
 }

@@ -16,7 +16,7 @@ namespace exemplar {
 /// An affine map: a linear part and a translation.
 using Affine = Eigen::Transform<float, 3, Eigen::AffineCompact>;
 
-/// Where a node is relative to its parent: scaled, then rotated, then moved.
+/// Transform of a node relative to its parent: scale, then rotation, then translation.
 struct NodeTransform {
     Vec3 translation = Vec3::Zero();
     Eigen::Quaternionf rotation = Eigen::Quaternionf::Identity();  ///< unit
@@ -25,11 +25,11 @@ struct NodeTransform {
 
 struct RigNode {
     std::string name;
-    std::uint32_t parent = k_none;  ///< smaller than the node's own index; k_none at a root
+    std::uint32_t parent = k_invalid_index;  ///< smaller than the node's own index; k_invalid_index at a root
     NodeTransform rest;
 };
 
-/// What vertices can be bound to: a joint of a skin, or a node that carries a mesh without one.
+/// What vertices are bound to: a joint of a skin, or a node that carries a mesh without a skin.
 struct Bone {
     std::uint32_t node = 0;
     Affine inverse_bind = Affine::Identity();  ///< from the space of the rest mesh to that of the node
@@ -40,21 +40,22 @@ struct Influence {
     float weight = 0;  ///< in (0, 1]; those of a vertex sum to one
 };
 
-/// A blend shape: what full weight adds to the vertices of the rest mesh. Vertices that it does not move are left out.
+/// A blend shape: offsets that are added to the rest vertices at full weight. Vertices that it does not move are
+/// left out.
 struct MorphTarget {
     std::string name;
-    std::vector<std::uint32_t> vertices;  ///< rising
+    std::vector<std::uint32_t> vertices;  ///< in increasing order
     std::vector<Vec3> offsets;            ///< one per entry of `vertices`
     float rest_weight = 0;
 };
 
-/// How a surface follows from a pose: v = sum_b w_b world(b) inverse_bind_b (rest_v + sum_t weight_t offset_tv), linear
+/// How a pose deforms the surface: v = sum_b w_b world(b) inverse_bind_b (rest_v + sum_t weight_t offset_tv), linear
 /// blend skinning after morphing, as glTF 2.0 defines it.
 struct Rig {
     std::vector<RigNode> nodes;  ///< parents before children
     std::vector<Bone> bones;
     /// Compressed rows: the influences on vertex v are influences[influence_begin[v] .. influence_begin[v + 1]), by
-    /// rising bone; at least one each.
+    /// increasing bone; at least one each.
     std::vector<std::uint32_t> influence_begin;
     std::vector<Influence> influences;
     std::vector<MorphTarget> targets;
@@ -64,13 +65,13 @@ struct Rig {
     }
 };
 
-/// The animation parameters of one moment.
+/// The animation parameters of one frame.
 struct Pose {
     std::vector<NodeTransform> nodes;  ///< one per node of the rig
     std::vector<float> weights;        ///< one per morph target
 };
 
-/// A motion, as frames that follow each other at an even rate.
+/// A motion as frames at a constant rate.
 struct Clip {
     std::string name;
     double frames_per_second = 30;
@@ -85,34 +86,35 @@ std::string_view name_of(AnimationKind kind);
 
 /// A deforming surface of constant topology and its motions.
 struct Animation {
-    std::string name;  ///< of the file or folder, for messages
+    std::string name;  ///< file or folder, for messages
     AnimationKind kind = AnimationKind::sequence;
-    /// One vertex per place of the surface. For a rig the positions are those that skinning starts from (the bind
-    /// space), which need not be a pose; for a sequence its rest shape, else its first frame.
+    /// One vertex per place of the surface. For a rig, the positions that skinning starts from (the bind space),
+    /// which need not be a pose; for a sequence, its rest shape, else its first frame.
     TriangleMesh rest;
-    /// For each vertex of the files, in their order, the vertex of `rest` it was welded to.
+    /// For each vertex of the files, in their order, the vertex of `rest` that it was welded to.
     std::vector<std::uint32_t> vertex_of_source;
     Rig rig;  ///< without nodes and bones for a sequence
     std::vector<Clip> clips;
     std::vector<std::string> warnings;  ///< one line each: what was repaired or left out
 
-    std::size_t frame_count() const;  ///< of all clips together
+    std::size_t frame_count() const;  ///< summed over all clips
 };
 
-/// The pose in which every node and weight is at rest.
+/// Returns the pose in which every node and weight is at rest.
 Pose rest_pose(const Rig& rig);
 
-/// World transform of each node (product of the transforms from its root down).
+/// Computes the world transform of each node (product of the transforms from its root down).
 std::vector<Affine> node_transforms(const Rig& rig, const Pose& pose);
-/// What each bone does to the rest mesh: world(node) * inverse_bind. The palette of linear blend skinning.
+/// Computes the transform of the rest mesh by each bone, world(node) * inverse_bind: the palette of linear blend
+/// skinning.
 std::vector<Affine> bone_transforms(const Rig& rig, const Pose& pose);
 
-/// The vertices of `rest` with morph targets added, before skinning.
+/// Adds the morph targets to the vertices of `rest`, before skinning.
 void morph(const Rig& rig, std::span<const Vec3> rest, std::span<const float> weights, std::vector<Vec3>& out);
-/// The posed vertices: morphing, then linear blend skinning; the reference of the device's kernels.
+/// Computes the posed vertices: morphing, then linear blend skinning. The reference for the device's kernels.
 void pose_vertices(const Rig& rig, std::span<const Vec3> rest, const Pose& pose, std::vector<Vec3>& out);
 
-/// Vertex positions of one frame of a clip. Throws UsageError if there is no such frame.
+/// Returns the vertex positions of one frame of a clip. Throws UsageError if there is no such frame.
 std::vector<Vec3> frame_vertices(const Animation& animation, const Clip& clip, std::size_t frame);
 
 }  // namespace exemplar

@@ -22,14 +22,14 @@ double weight_sum(const std::vector<Influence>& row) {
     return sum;
 }
 
-/// Makes weights that sum to `sum` sum to one; sums that are off by rounding stay as they are.
+/// Scales weights that sum to `sum` so that they sum to one; leaves them if only rounding is off.
 void scale_weights(std::vector<Influence>& row, double sum) {
     constexpr double k_same = 1e-6;
     const double scale = std::abs(sum - 1) > k_same ? 1 / sum : 1;
     for (Influence& influence : row) influence.weight = std::min(static_cast<float>(influence.weight * scale), 1.0f);
 }
 
-/// Sorts by bone and adds up the weights of each.
+/// Sorts the row by bone and adds up the weights of each bone.
 void merge_bones(std::vector<Influence>& row) {
     std::ranges::stable_sort(row, {}, &Influence::bone);
     std::size_t kept = 0;
@@ -42,7 +42,7 @@ void merge_bones(std::vector<Influence>& row) {
     row.resize(kept);
 }
 
-/// Drops what is too small to see and makes the rest sum to one; returns what it summed to before.
+/// Drops weights too small to be visible and scales the rest to sum to one; returns the previous sum.
 double normalize_row(std::vector<Influence>& row) {
     constexpr float k_least_weight = 1e-4f;
     std::erase_if(row, [](const Influence& influence) { return influence.weight <= 0; });
@@ -55,14 +55,14 @@ double normalize_row(std::vector<Influence>& row) {
     return before;
 }
 
-/// What does not fit together in a rig, or is not finite.
+/// Checks that the parts of a rig fit together and are finite.
 class RigCheck {
   public:
     explicit RigCheck(const Animation& animation) : animation_(animation), rig_(animation.rig) {}
 
     void check() const {
         for (std::size_t i = 0; i < rig_.nodes.size(); ++i) {
-            if (rig_.nodes[i].parent != k_none && rig_.nodes[i].parent >= i)
+            if (rig_.nodes[i].parent != k_invalid_index && rig_.nodes[i].parent >= i)
                 fail(fmt::format("node {} comes before its parent", i));
             if (!is_finite(rig_.nodes[i].rest))
                 fail(fmt::format("the place of node {} ({}) is not finite", i, quote(rig_.nodes[i].name)));
@@ -132,14 +132,6 @@ void check_rest(Animation& animation) {
     rest.source_face = std::move(kept_source);
 }
 
-bool is_finite(const Pose& pose) {
-    return std::ranges::all_of(pose.nodes, RigCheck::is_finite) &&
-           std::ranges::all_of(pose.weights, [](float weight) { return std::isfinite(weight); });
-}
-bool is_finite(const std::vector<Vec3>& frame) {
-    return std::ranges::all_of(frame, [](const Vec3& p) { return p.allFinite(); });
-}
-
 void check_counts(const Animation& animation, const Clip& clip) {
     const auto fail = [&](const std::string& message) {
         throw MeshError(fmt::format("{}: clip {}: {}", animation.name, quote(clip.name), message));
@@ -161,7 +153,7 @@ void check_counts(const Animation& animation, const Clip& clip) {
                              animation.rest.vertex_count()));
 }
 
-/// "3, 4, 9 and 12 more".
+/// Returns a list like "3, 4, 9 and 12 more".
 std::string listed(const std::vector<std::size_t>& numbers) {
     constexpr std::size_t k_shown = 8;
     const std::vector<std::size_t> shown(
@@ -222,7 +214,7 @@ bool moves(const Animation& animation, const Clip& clip) {
            std::ranges::any_of(clip.frames, [&](const std::vector<Vec3>& frame) { return !same_frame(frame); });
 }
 
-/// Faces whose height is next to nothing of their longest edge, or that are a point.
+/// Returns whether a face is a point or its height is tiny compared with its longest edge.
 std::vector<std::uint32_t> faces_without_area(const std::vector<Face>& faces, const std::vector<Vec3>& vertices) {
     constexpr double k_flat = 1e-6;
     std::vector<std::uint32_t> found;
@@ -235,7 +227,7 @@ std::vector<std::uint32_t> faces_without_area(const std::vector<Face>& faces, co
     return found;
 }
 
-/// Up to 64 frames, spread evenly over all clips; the rest shape if there are none.
+/// Returns up to 64 frames, spread evenly over all clips; the rest shape if there are none.
 std::vector<std::vector<Vec3>> some_frames(const Animation& animation) {
     constexpr std::size_t k_looked_at = 64;
     std::vector<std::pair<const Clip*, std::size_t>> all;
@@ -266,6 +258,15 @@ void warn_of_collapsed_faces(Animation& animation) {
 }
 
 }  // namespace
+
+bool is_finite(const Pose& pose) {
+    return std::ranges::all_of(pose.nodes, RigCheck::is_finite) &&
+           std::ranges::all_of(pose.weights, [](float weight) { return std::isfinite(weight); });
+}
+
+bool is_finite(const std::vector<Vec3>& frame) {
+    return std::ranges::all_of(frame, [](const Vec3& p) { return p.allFinite(); });
+}
 
 void clean_influences(Rig& rig, const std::string& name, std::vector<std::string>& warnings) {
     constexpr double k_visible = 1e-3;

@@ -19,11 +19,11 @@ using mesh_io::GltfReader;
 enum class Path { translation, rotation, scale, weights };
 enum class Interpolation { step, linear, cubic };
 
-/// What one channel does over time. A key of a cubic spline has an in-tangent, a value and an out-tangent.
+/// The keys of one channel. A key of a cubic spline has an in-tangent, a value and an out-tangent.
 struct Track {
     Path path = Path::translation;
     Interpolation interpolation = Interpolation::linear;
-    std::uint32_t target = 0;  ///< node of the rig, or its first morph target
+    std::uint32_t target = 0;  ///< node of the rig, or the first morph target
     std::size_t width = 0;     ///< numbers per value
     std::vector<float> times;
     std::vector<float> values;
@@ -39,7 +39,7 @@ struct Track {
 struct Take {
     std::string name;
     std::vector<Track> tracks;
-    std::size_t merged = 1;  ///< from how many animations
+    std::size_t merged = 1;  ///< number of animations it was merged from
 
     double first() const {
         double time = std::numeric_limits<double>::infinity();
@@ -53,15 +53,16 @@ struct Take {
     }
 };
 
-/// Where a moment lies between two keys.
-struct Place {
+/// The position of a time between two keys.
+struct KeyInterval {
     std::size_t key, next;
-    double share;     ///< of the way from one to the other
-    double duration;  ///< between them, in seconds
+    double share;     ///< fraction of the time between them
+    double duration;  ///< time between them, in seconds
 };
 
-/// Keys within `slack` seconds after `time` count as reached: times are floats, and a step must not come a frame late.
-Place place_of(const std::vector<float>& times, double time, double slack) {
+/// Returns the place of `time`. Keys up to `slack` seconds later count as reached: times are floats, and a step must
+/// not come a frame late.
+KeyInterval key_interval_at(const std::vector<float>& times, double time, double slack) {
     const auto after =
         std::ranges::upper_bound(times, time + slack, {}, [](float t) { return static_cast<double>(t); });
     if (after == times.begin()) return {0, 0, 0, 0};
@@ -71,8 +72,8 @@ Place place_of(const std::vector<float>& times, double time, double slack) {
     return {key, key + 1, (time - times[key]) / duration, duration};
 }
 
-/// The cubic Hermite spline of glTF 2.0, appendix C.
-double spline(const Track& track, const Place& place, std::size_t i) {
+/// Evaluates the cubic Hermite spline of glTF 2.0, appendix C.
+double spline(const Track& track, const KeyInterval& place, std::size_t i) {
     const double s = place.share, s2 = s * s, s3 = s2 * s;
     return (2 * s3 - 3 * s2 + 1) * track.value(place.key)[i] +
            place.duration * (s3 - 2 * s2 + s) * track.out_tangent(place.key)[i] +
@@ -80,14 +81,14 @@ double spline(const Track& track, const Place& place, std::size_t i) {
            place.duration * (s3 - s2) * track.in_tangent(place.next)[i];
 }
 
-float component(const Track& track, const Place& place, std::size_t i) {
+float component(const Track& track, const KeyInterval& place, std::size_t i) {
     const double a = track.value(place.key)[i], b = track.value(place.next)[i];
     if (track.interpolation == Interpolation::step || place.key == place.next) return static_cast<float>(a);
     if (track.interpolation == Interpolation::cubic) return static_cast<float>(spline(track, place, i));
     return static_cast<float>(a + place.share * (b - a));
 }
 
-Eigen::Quaternionf rotation(const Track& track, const Place& place) {
+Eigen::Quaternionf rotation(const Track& track, const KeyInterval& place) {
     const auto unit = [](const float* q) { return unit_quaternion(q[0], q[1], q[2], q[3]); };
     if (track.interpolation == Interpolation::linear && place.key != place.next)
         return unit(track.value(place.key))
@@ -98,7 +99,7 @@ Eigen::Quaternionf rotation(const Track& track, const Place& place) {
 }
 
 void apply(const Track& track, double time, double slack, Pose& pose) {
-    const Place place = place_of(track.times, time, slack);
+    const KeyInterval place = key_interval_at(track.times, time, slack);
     const auto vec3 = [&] {
         return Vec3(component(track, place, 0), component(track, place, 1), component(track, place, 2));
     };
@@ -150,7 +151,7 @@ class ClipReader {
         return takes;
     }
 
-    /// Adds what the channel does to the rig; channels of what the surface does not depend on are passed over.
+    /// Adds a channel to the take; skips channels that the surface does not depend on.
     void read_channel(const tinygltf::Animation& source, const tinygltf::AnimationChannel& channel, Take& take) {
         if (channel.target_node < 0) return;
         gltf_.item(gltf_.model().nodes, channel.target_node, "node");
@@ -161,7 +162,7 @@ class ClipReader {
         track.width = 3;
         if (channel.target_path == "weights") {
             track.path = Path::weights;
-            track.target = targets.count ? targets.begin : k_none;
+            track.target = targets.count ? targets.begin : k_invalid_index;
             track.width = targets.count;
         } else if (channel.target_path == "rotation") {
             track.path = Path::rotation;
@@ -171,7 +172,7 @@ class ClipReader {
         } else if (channel.target_path != "translation") {
             return;
         }
-        if (track.target == k_none) return;
+        if (track.target == k_invalid_index) return;
         read_keys(gltf_.item(source.samplers, channel.sampler, "sampler"), source.name, track);
         take.tracks.push_back(std::move(track));
     }
@@ -198,8 +199,8 @@ class ClipReader {
                              sampler.output, track.values.size()));
     }
 
-    /// Converters of FBX write an animation NODE|TAKE per node; such ones of one take, as long as each other and of
-    /// different nodes, are played together.
+    /// Merges takes. FBX converters write an animation NODE|TAKE per node; those of one take are played together if
+    /// they end at the same time and drive different nodes.
     std::vector<Take> merged(std::vector<Take> takes) {
         std::vector<Take> result;
         for (Take& take : takes) {
@@ -236,7 +237,7 @@ class ClipReader {
     }
 
     Clip sampled(const Take& take) {
-        constexpr double k_rounding = 0.01;  // of a frame, as times are floats
+        constexpr double k_rounding = 0.01;  // in frames, since times are floats
         const double last = take.last();
         const bool one_key = take.first() == last;
         const double frames = one_key ? 1 : std::floor(std::max(last, 0.0) * rate_ + k_rounding) + 1;
@@ -249,7 +250,7 @@ class ClipReader {
         return clip;
     }
 
-    /// Two keys a year apart are cheap to write.
+    /// Throws if the frames need far more memory than the file has: two keys a year apart take few bytes.
     void check_size(const Take& take, double frames) {
         constexpr double k_free_bytes = 16 << 20, k_bytes_per_byte = 1024;
         const Rig& rig = animation_.rig;

@@ -7,10 +7,10 @@
 
 namespace exemplar::animation_io {
 
-/// The clips of a glTF file, sampled at the rate of `options` from time 0 to the last key (one frame if there is one
-/// key), with poses of `animation.rig`. Animations that converters made of one take are merged, those that move nothing
-/// of the rig left out, both with a warning in `animation`. Throws MeshError if keys do not fit, or if frames would
-/// take far more memory than the file.
+/// Reads the clips of a glTF file as poses of `animation.rig`, sampled at the rate of `options` from time 0 to the
+/// last key (one frame if there is one key). Merges animations that converters made of one take, and leaves out
+/// those that move nothing of the rig, both with a warning in `animation`. Throws MeshError if keys do not fit, or
+/// if frames would take far more memory than the file.
 std::vector<Clip> read_gltf_clips(mesh_io::GltfReader& gltf, const GltfLinks& links,
                                   const ReadAnimationOptions& options, Animation& animation);
 

@@ -16,7 +16,7 @@ using mesh_io::GltfReader;
     gltf.fail(fmt::format("node {} has two parents or is its own ancestor", node));
 }
 
-/// Depth first from the roots, children in the file's order.
+/// Returns the nodes depth first from the roots, children in the file's order.
 std::vector<std::uint32_t> depth_first(const GltfReader& gltf, const std::vector<std::uint32_t>& roots) {
     const auto& nodes = gltf.model().nodes;
     std::vector<std::uint32_t> order, stack(roots.rbegin(), roots.rend());
@@ -31,8 +31,8 @@ std::vector<std::uint32_t> depth_first(const GltfReader& gltf, const std::vector
     return order;
 }
 
-/// The rotation and the scales along the axes whose product is nearest to `linear`, which is their product unless it
-/// shears: by polar decomposition.
+/// Decomposes `linear`, by polar decomposition, into the rotation and axis scales whose product is nearest to it;
+/// equal to it unless it shears.
 void decompose(const Eigen::Matrix3d& linear, NodeTransform& transform, double& shear) {
     const Eigen::JacobiSVD<Eigen::Matrix3d> svd(linear, Eigen::ComputeFullU | Eigen::ComputeFullV);
     Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
@@ -49,17 +49,17 @@ void decompose(const Eigen::Matrix3d& linear, NodeTransform& transform, double& 
 GltfTree read_gltf_tree(const GltfReader& gltf) {
     const auto& nodes = gltf.model().nodes;
     GltfTree tree;
-    tree.parent.assign(nodes.size(), k_none);
+    tree.parent.assign(nodes.size(), k_invalid_index);
     for (std::uint32_t i = 0; i < nodes.size(); ++i)
         for (const int child : nodes[i].children) {
             gltf.item(nodes, child, "node");
             std::uint32_t& parent = tree.parent[static_cast<std::size_t>(child)];
-            if (parent != k_none) fail_tree(gltf, static_cast<std::uint32_t>(child));
+            if (parent != k_invalid_index) fail_tree(gltf, static_cast<std::uint32_t>(child));
             parent = i;
         }
     std::vector<std::uint32_t> roots;
     for (std::uint32_t i = 0; i < nodes.size(); ++i)
-        if (tree.parent[i] == k_none) roots.push_back(i);
+        if (tree.parent[i] == k_invalid_index) roots.push_back(i);
     tree.order = depth_first(gltf, roots);
     if (tree.order.size() < nodes.size()) {
         std::vector<bool> reached(nodes.size(), false);
@@ -72,7 +72,7 @@ GltfTree read_gltf_tree(const GltfReader& gltf) {
         tree.in_scene[static_cast<std::size_t>(root)] = true;
     }
     for (const std::uint32_t i : tree.order)
-        if (tree.parent[i] != k_none && tree.in_scene[tree.parent[i]]) tree.in_scene[i] = true;
+        if (tree.parent[i] != k_invalid_index && tree.in_scene[tree.parent[i]]) tree.in_scene[i] = true;
     return tree;
 }
 

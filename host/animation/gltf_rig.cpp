@@ -17,7 +17,7 @@ namespace {
 
 using mesh_io::GltfReader;
 
-/// Exporters leave smaller weights on joints that move nothing.
+/// Exporters leave smaller weights than this on joints that move nothing.
 constexpr float k_used_weight = 1e-3f;
 
 /// Collects the vertices, faces, bones and morph targets of a scene.
@@ -30,7 +30,7 @@ class RigReader {
           mirrors_(mirroring_nodes()),
           animation_(animation) {
         links_.bones_of_skin.resize(model_.skins.size());
-        links_.rig_node.assign(model_.nodes.size(), k_none);
+        links_.rig_node.assign(model_.nodes.size(), k_invalid_index);
         links_.targets.resize(model_.nodes.size());
     }
 
@@ -82,7 +82,8 @@ class RigReader {
                 read_offsets(rig().targets[links_.targets[node].begin + t], offsets->second, first, positions.size());
     }
 
-    /// As many morph targets as the primitive with most of them has; the others stay where they are.
+    /// Adds as many morph targets as the primitive with most of them has; other primitives are not moved by the
+    /// rest.
     void add_targets(std::uint32_t node_index, const tinygltf::Mesh& mesh) {
         std::size_t count = 0;
         for (const tinygltf::Primitive& primitive : mesh.primitives) count = std::max(count, primitive.targets.size());
@@ -124,7 +125,8 @@ class RigReader {
         }
     }
 
-    /// Equal bones of several skins are one. Bones name nodes of the file until keep_nodes.
+    /// Returns the bone with this node and matrix; equal bones of several skins are one. Until keep_nodes, bones
+    /// refer to nodes of the file.
     std::uint32_t bone_of(std::uint32_t node, const Affine& inverse_bind) {
         std::array<float, 12> numbers;
         std::memcpy(numbers.data(), inverse_bind.data(), sizeof(numbers));
@@ -166,7 +168,7 @@ class RigReader {
 
     void end_vertex() { rig().influence_begin.push_back(static_cast<std::uint32_t>(rig().influences.size())); }
 
-    /// Four joints and weights a vertex, of each of the sets _0, _1, ...
+    /// Four joints and weights per vertex, from one of the attribute sets _0, _1, ...
     struct JointSet {
         std::vector<std::uint32_t> joints;
         std::vector<float> weights;
@@ -194,7 +196,7 @@ class RigReader {
             bool is_bound = false;
             for (const JointSet& set : sets)
                 for (std::size_t i = 4 * v; i < 4 * v + 4; ++i) {
-                    if (set.weights[i] == 0) continue;  // of such joints exporters write any number
+                    if (set.weights[i] == 0) continue;  // exporters write any joint number with a zero weight
                     if (set.joints[i] >= bones.size())
                         gltf_.fail(
                             fmt::format("joint {} is named, but skin {} has {}", set.joints[i], skin, bones.size()));
@@ -206,32 +208,32 @@ class RigReader {
         }
     }
 
-    /// Makes the nodes that bones depend on those of the rig.
+    /// Adds the nodes that bones depend on to the rig.
     void keep_nodes() {
         std::vector<bool> needed(model_.nodes.size(), false);
         for (const Bone& bone : rig().bones)
-            for (std::uint32_t node = bone.node; node != k_none && !needed[node]; node = tree_.parent[node])
+            for (std::uint32_t node = bone.node; node != k_invalid_index && !needed[node]; node = tree_.parent[node])
                 needed[node] = true;
         for (const std::uint32_t node : tree_.order) {
             if (!needed[node]) continue;
             links_.rig_node[node] = static_cast<std::uint32_t>(rig().nodes.size());
             const std::uint32_t parent = tree_.parent[node];
             rig().nodes.push_back({.name = model_.nodes[node].name,
-                                   .parent = parent == k_none ? k_none : links_.rig_node[parent],
+                                   .parent = parent == k_invalid_index ? k_invalid_index : links_.rig_node[parent],
                                    .rest = read_gltf_transform(gltf_, static_cast<int>(node), animation_.warnings)});
         }
         for (Bone& bone : rig().bones) bone.node = links_.rig_node[bone.node];
     }
 
-    /// Per node of the file whether its place in the world mirrors, which turns the faces of its mesh around. glTF
-    /// makes no exception of skinned meshes, which else ignore their node.
+    /// Returns for each node of the file whether its world transform mirrors, which reverses the faces of its mesh.
+    /// In glTF this holds for skinned meshes, too, although they otherwise ignore their node.
     std::vector<bool> mirroring_nodes() const {
         std::vector<bool> mirrors(model_.nodes.size(), false);
-        std::vector<std::string> ignored;  // keep_nodes warns of nodes that matter
+        std::vector<std::string> ignored;  // keep_nodes warns of the nodes that matter
         for (const std::uint32_t node : tree_.order) {
             const bool itself = read_gltf_transform(gltf_, static_cast<int>(node), ignored).scale.prod() < 0;
             const std::uint32_t parent = tree_.parent[node];
-            mirrors[node] = itself != (parent != k_none && mirrors[parent]);
+            mirrors[node] = itself != (parent != k_invalid_index && mirrors[parent]);
         }
         return mirrors;
     }

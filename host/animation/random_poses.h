@@ -7,8 +7,8 @@
 
 namespace exemplar {
 
-/// Expressions of a rig with blend shapes that has no clip: in each pose up to four shapes are active, with weights
-/// uniform in (0, 1]; nodes are at rest. Clip "random".
+/// Makes a clip "random" of expressions for a rig with blend shapes but without a clip. In each pose up to four
+/// shapes are active, with weights uniform in (0, 1]; nodes are at rest.
 Clip random_expressions(const Rig& rig, std::size_t poses, std::uint64_t seed);
 
 }  // namespace exemplar

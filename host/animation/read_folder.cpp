@@ -1,8 +1,9 @@
-// Folders with a mesh per frame or per blend shape.
+// Reads folders with a mesh per frame or per blend shape.
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "host/animation/check_animation.h"
 #include "host/animation/read_formats.h"
 #include "host/animation/weld_rig.h"
 #include "host/core/errors.h"
@@ -16,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The meshes of a folder; `first` is that of shape one, which the others are compared with.
+/// The meshes of a folder.
 struct ShapeFiles {
     std::vector<fs::path> frames;  ///< in natural order; the targets of blend shapes
     fs::path rest, neutral;        ///< empty if there is none
@@ -58,8 +59,8 @@ void check_files(const ShapeFiles& files, const fs::path& folder) {
                                         files.frames.front().filename().string(), path.filename().string()));
 }
 
-/// The corners of each polygon of a file in rising order; polygons are cut according to their shape, so that the
-/// triangles of one topology can differ.
+/// Returns the corners of each polygon of a file in increasing order. Polygons are compared instead of triangles
+/// because the cut into triangles depends on the shape.
 std::vector<std::vector<std::uint32_t>> polygons_of(const TriangleMesh& mesh) {
     std::vector<std::vector<std::uint32_t>> polygons(mesh.source_face_count);
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
@@ -73,7 +74,7 @@ std::vector<std::vector<std::uint32_t>> polygons_of(const TriangleMesh& mesh) {
     return polygons;
 }
 
-/// What differs in topology; empty if nothing does.
+/// Describes the difference in topology; empty if there is none.
 std::string difference(const TriangleMesh& first, const TriangleMesh& other) {
     if (first.vertex_count() != other.vertex_count())
         return fmt::format("{} vertices instead of {}", other.vertex_count(), first.vertex_count());
@@ -86,8 +87,8 @@ std::string difference(const TriangleMesh& first, const TriangleMesh& other) {
     return {};
 }
 
-/// Vertex positions of each file, which must have the topology of `first` (of file `first_path`). The first file in
-/// order with a fault is the one complained about.
+/// Reads the vertex positions of each file, which must have the topology of `first` (of file `first_path`). Throws
+/// for the first file, in order, with a fault.
 std::vector<std::vector<Vec3>> read_shapes(const std::vector<fs::path>& paths, const TriangleMesh& first,
                                            const fs::path& first_path) {
     std::vector<std::vector<Vec3>> shapes(paths.size());
@@ -108,11 +109,7 @@ std::vector<std::vector<Vec3>> read_shapes(const std::vector<fs::path>& paths, c
     return shapes;
 }
 
-bool is_finite(const std::vector<Vec3>& shape) {
-    return std::ranges::all_of(shape, [](const Vec3& p) { return p.allFinite(); });
-}
-
-/// Takes mesh and remarks from the file that the others are compared with.
+/// Starts an animation with the mesh and warnings of the file that the others are compared with.
 Animation begin(const fs::path& folder, const fs::path& first) {
     MeshFile file = read_mesh(first);
     Animation animation;
@@ -124,7 +121,7 @@ Animation begin(const fs::path& folder, const fs::path& first) {
     return animation;
 }
 
-/// Welds vertices that no shape parts.
+/// Welds vertices that coincide in all shapes.
 void weld(Animation& animation, std::vector<std::vector<Vec3>>& shapes) {
     std::vector<const std::vector<Vec3>*> all{&animation.rest.vertices};
     for (const std::vector<Vec3>& shape : shapes) all.push_back(&shape);
@@ -134,7 +131,7 @@ void weld(Animation& animation, std::vector<std::vector<Vec3>>& shapes) {
     for (std::vector<Vec3>& shape : shapes) shape = first_of_groups(shape, animation.vertex_of_source);
 }
 
-/// The folder's name, also of "a/b/" and ".".
+/// Returns the folder's name, also for "a/b/" and ".".
 std::string name_of_folder(const fs::path& folder) {
     std::error_code ignored;
     const fs::path full = fs::weakly_canonical(folder, ignored);
@@ -146,7 +143,9 @@ Animation read_sequence(const fs::path& folder, const ShapeFiles& files, const R
     Animation animation = begin(folder, first);
     std::vector<std::vector<Vec3>> frames = read_shapes(files.frames, animation.rest, first);
     if (files.rest.empty())
-        if (const auto whole = std::ranges::find_if(frames, is_finite); whole != frames.end())
+        if (const auto whole =
+                std::ranges::find_if(frames, [](const std::vector<Vec3>& frame) { return is_finite(frame); });
+            whole != frames.end())
             animation.rest.vertices = *whole;
     weld(animation, frames);
     animation.kind = AnimationKind::sequence;
@@ -175,7 +174,7 @@ Animation read_blend_shapes(const fs::path& folder, const ShapeFiles& files) {
     weld(animation, shapes);
     animation.kind = AnimationKind::blend_shapes;
     Rig& rig = animation.rig;
-    rig.nodes = {{.name = name_of_folder(folder), .parent = k_none, .rest = {}}};
+    rig.nodes = {{.name = name_of_folder(folder), .parent = k_invalid_index, .rest = {}}};
     rig.bones = {{}};
     const auto vertex_count = static_cast<std::uint32_t>(animation.rest.vertex_count());
     rig.influences.assign(vertex_count, {0, 1.0f});

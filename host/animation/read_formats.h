@@ -6,14 +6,14 @@
 
 #include "host/animation/read_animation.h"
 
-/// The reader of each kind of animation, before check_animation.
+/// The reader of each kind of animation; check_animation is still to be called.
 namespace exemplar::animation_io {
 
-/// `content` is a whole .gltf or .glb file, `name` its path for messages, `folder` where its buffers are looked for.
+/// Reads a whole .gltf or .glb file. `name` is its path for messages, `folder` where its buffers are looked for.
 Animation read_gltf(std::string_view content, const std::string& name, const std::filesystem::path& folder,
                     const ReadAnimationOptions& options);
 
-/// A mesh sequence, or blend shapes if one of the meshes is called neutral.
+/// Reads a mesh sequence, or blend shapes if one of the meshes is called neutral.
 Animation read_folder(const std::filesystem::path& folder, const ReadAnimationOptions& options);
 
 }  // namespace exemplar::animation_io

@@ -13,7 +13,7 @@
 namespace exemplar::animation_io {
 namespace {
 
-/// Whether two morph targets have the same weight at rest and in every frame.
+/// Returns whether two morph targets have the same weight at rest and in every frame.
 bool weights_agree(const Animation& animation, std::uint32_t a, std::uint32_t b) {
     if (animation.rig.targets[a].rest_weight != animation.rig.targets[b].rest_weight) return false;
     for (const Clip& clip : animation.clips)
@@ -22,8 +22,8 @@ bool weights_agree(const Animation& animation, std::uint32_t a, std::uint32_t b)
     return true;
 }
 
-/// For each morph target the first of its name that always has its weight, else itself. A head that is cut into meshes
-/// (skin, lashes, teeth) has its targets once in each of them.
+/// Returns for each morph target the first one of its name that always has the same weight, else itself. A head that
+/// is cut into meshes (skin, lashes, teeth) has each target once per mesh.
 std::vector<std::uint32_t> equal_targets(const Animation& animation, const GltfLinks& links) {
     std::map<std::string, std::vector<std::uint32_t>> firsts;
     std::vector<std::uint32_t> first(animation.rig.targets.size());
@@ -42,7 +42,7 @@ std::vector<std::uint32_t> equal_targets(const Animation& animation, const GltfL
     return first;
 }
 
-/// Joins what two targets move; vertices of later meshes are later.
+/// Appends the offsets of another target; vertices of later meshes have larger numbers.
 void append(MorphTarget& target, const MorphTarget& more) {
     target.vertices.insert(target.vertices.end(), more.vertices.begin(), more.vertices.end());
     target.offsets.insert(target.offsets.end(), more.offsets.begin(), more.offsets.end());

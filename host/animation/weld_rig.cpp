@@ -14,7 +14,7 @@ struct Offset {
     bool operator==(const Offset&) const = default;
 };
 
-/// Compressed rows: what each vertex is moved by, by rising target.
+/// Compressed rows: the morph offsets of each vertex, by increasing target.
 struct OffsetRows {
     std::vector<std::uint32_t> begin;
     std::vector<Offset> offsets;
@@ -38,12 +38,13 @@ OffsetRows offsets_by_vertex(const Rig& rig, std::size_t vertex_count) {
     return rows;
 }
 
-/// Whether no weight differs by more than a step of eight bits.
+/// Returns whether no weight differs by more than a step of eight bits.
 bool same_influences(std::span<const Influence> a, std::span<const Influence> b) {
     constexpr float k_step = 1.0f / 255 + 1e-6f;
     std::size_t i = 0, j = 0;
     while (i < a.size() || j < b.size()) {
-        const std::uint32_t bone_a = i < a.size() ? a[i].bone : k_none, bone_b = j < b.size() ? b[j].bone : k_none;
+        const std::uint32_t bone_a = i < a.size() ? a[i].bone : k_invalid_index,
+                            bone_b = j < b.size() ? b[j].bone : k_invalid_index;
         const float weight_a = bone_a <= bone_b ? a[i].weight : 0, weight_b = bone_b <= bone_a ? b[j].weight : 0;
         if (std::abs(weight_a - weight_b) > k_step) return false;
         i += bone_a <= bone_b;
@@ -52,7 +53,7 @@ bool same_influences(std::span<const Influence> a, std::span<const Influence> b)
     return true;
 }
 
-/// The group of each vertex, numbered in order of first vertex.
+/// Returns the group of each vertex, numbered in order of first vertex.
 std::vector<std::uint32_t> rig_groups(const Animation& animation) {
     const std::vector<Vec3>& vertices = animation.rest.vertices;
     const OffsetRows rows = offsets_by_vertex(animation.rig, vertices.size());
@@ -88,7 +89,8 @@ void weld_influences(Rig& rig, const std::vector<std::uint32_t>& groups) {
     rig.influences = std::move(influences);
 }
 
-/// Groups rise with their first vertices, and all vertices of a group are moved alike.
+/// Replaces vertices by groups in a target. Groups increase with their first vertices, and all vertices of a group
+/// have the same offset.
 void weld_target(MorphTarget& target, const std::vector<std::uint32_t>& groups) {
     MorphTarget welded{.name = target.name, .vertices = {}, .offsets = {}, .rest_weight = target.rest_weight};
     for (std::size_t i = 0; i < target.vertices.size(); ++i) {

@@ -1,4 +1,4 @@
-// Binary glTF 2.0: a mesh, a skin whose joints are the bones, and an animation per clip with a key per frame.
+// Writes binary glTF 2.0: a mesh, a skin whose joints are the bones, and an animation per clip with a key per frame.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "host/animation/check_animation.h"
 #include "host/animation/gltf_rig.h"
 #include "host/animation/write_animation.h"
 #include "host/core/errors.h"
@@ -16,7 +17,7 @@
 namespace exemplar {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr int k_float = 5126, k_uint16 = 5123, k_uint32 = 5125;
 
@@ -27,7 +28,7 @@ std::vector<float> numbers_of(const Eigen::Quaternionf& q) {
     return {q.x(), q.y(), q.z(), q.w()};
 }
 
-/// Builds document and binary chunk side by side.
+/// Builds the JSON document and the binary chunk together.
 class GltfBuilder {
   public:
     explicit GltfBuilder(const Animation& animation) : animation_(animation), rig_(animation.rig) {
@@ -35,7 +36,7 @@ class GltfBuilder {
         document_["asset"] = {{"version", "2.0"},
                               {"generator", is_skeleton ? std::string_view("Animation written by Exemplar")
                                                         : animation_io::k_blend_shapes_generator}};
-        for (const char* list : {"accessors", "bufferViews"}) document_[list] = Json::array();
+        for (const char* list : {"accessors", "bufferViews"}) document_[list] = OrderedJson::array();
     }
 
     std::string bytes() {
@@ -44,11 +45,11 @@ class GltfBuilder {
         add_mesh();
         for (const Clip& clip : animation_.clips) add_clip(clip);
         document_["buffers"] = {{{"byteLength", binary_.size()}}};
-        return mesh_io::binary_gltf(document_.dump(-1, ' ', false, Json::error_handler_t::replace), binary_);
+        return mesh_io::binary_gltf(document_.dump(-1, ' ', false, OrderedJson::error_handler_t::replace), binary_);
     }
 
   private:
-    /// A view of values that are appended to the binary chunk, aligned to four bytes.
+    /// Appends values to the binary chunk, aligned to four bytes, and returns their buffer view.
     template <typename T>
     std::size_t add_view(const std::vector<T>& values) {
         binary_.resize((binary_.size() + 3) / 4 * 4, '\0');
@@ -59,7 +60,7 @@ class GltfBuilder {
         return document_["bufferViews"].size() - 1;
     }
 
-    std::size_t add_accessor(Json accessor) {
+    std::size_t add_accessor(OrderedJson accessor) {
         document_["accessors"].push_back(std::move(accessor));
         return document_["accessors"].size() - 1;
     }
@@ -72,7 +73,7 @@ class GltfBuilder {
                              {"type", type}});
     }
 
-    /// glTF asks for the bounds of positions and of times.
+    /// Adds bounds to an accessor; glTF requires them for positions and times.
     void add_bounds(std::size_t accessor, const std::vector<float>& values, std::size_t width) {
         std::vector<float> low(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(width)), high = low;
         for (std::size_t i = 0; i < values.size(); ++i) {
@@ -83,21 +84,21 @@ class GltfBuilder {
         document_["accessors"][accessor]["max"] = high;
     }
 
-    static Json node_json(const std::string& name, const NodeTransform& place) {
+    static OrderedJson node_json(const std::string& name, const NodeTransform& place) {
         return {{"name", name},
                 {"translation", numbers_of(place.translation)},
                 {"rotation", numbers_of(place.rotation)},
                 {"scale", numbers_of(place.scale)}};
     }
 
-    /// The nodes of the rig in their order, then what is added for bones, then that of the mesh.
+    /// Adds the nodes of the rig in their order, then those added for bones, then that of the mesh.
     void add_nodes() {
-        Json& nodes = document_["nodes"] = Json::array();
-        Json roots = Json::array();
+        OrderedJson& nodes = document_["nodes"] = OrderedJson::array();
+        OrderedJson roots = OrderedJson::array();
         std::vector<std::vector<std::size_t>> children(rig_.nodes.size());
         for (std::size_t i = 0; i < rig_.nodes.size(); ++i) {
             nodes.push_back(node_json(rig_.nodes[i].name, rig_.nodes[i].rest));
-            if (rig_.nodes[i].parent == k_none)
+            if (rig_.nodes[i].parent == k_invalid_index)
                 roots.push_back(i);
             else
                 children[rig_.nodes[i].parent].push_back(i);
@@ -105,7 +106,7 @@ class GltfBuilder {
         std::vector<bool> is_joint(rig_.nodes.size(), false);
         for (const Bone& bone : rig_.bones) {
             joints_.push_back(bone.node);
-            if (is_joint[bone.node]) {  // a skin names a node once
+            if (is_joint[bone.node]) {  // a skin may name a node only once
                 joints_.back() = nodes.size();
                 children[bone.node].push_back(nodes.size());
                 nodes.push_back({{"name", rig_.nodes[bone.node].name + " (joint)"}});
@@ -137,24 +138,24 @@ class GltfBuilder {
         for (const Vec3& p : animation_.rest.vertices) positions.insert(positions.end(), p.data(), p.data() + 3);
         std::vector<std::uint32_t> corners;
         for (const Face& face : animation_.rest.faces) corners.insert(corners.end(), face.begin(), face.end());
-        Json attributes;
+        OrderedJson attributes;
         const std::size_t position = add_values(positions, k_float, "VEC3", 3);
         add_bounds(position, positions, 3);
         attributes["POSITION"] = position;
         add_influences(attributes);
-        Json primitive{{"attributes", attributes}, {"indices", add_values(corners, k_uint32, "SCALAR", 1)}};
-        Json mesh;
+        OrderedJson primitive{{"attributes", attributes}, {"indices", add_values(corners, k_uint32, "SCALAR", 1)}};
+        OrderedJson mesh;
         for (const MorphTarget& target : rig_.targets) {
             primitive["targets"].push_back({{"POSITION", add_target(target)}});
             mesh["weights"].push_back(target.rest_weight);
             mesh["extras"]["targetNames"].push_back(target.name);
         }
-        mesh["primitives"] = Json::array({primitive});
-        document_["meshes"] = Json::array({mesh});
+        mesh["primitives"] = OrderedJson::array({primitive});
+        document_["meshes"] = OrderedJson::array({mesh});
     }
 
-    /// Sets of four joints and weights, as many as the vertex with most of them needs.
-    void add_influences(Json& attributes) {
+    /// Adds sets of four joints and weights, as many as the vertex with most influences needs.
+    void add_influences(OrderedJson& attributes) {
         const std::size_t vertex_count = animation_.rest.vertex_count();
         std::size_t most = 1;
         for (std::size_t v = 0; v < vertex_count; ++v) most = std::max(most, rig_.influences_of(v).size());
@@ -173,7 +174,8 @@ class GltfBuilder {
         }
     }
 
-    /// A sparse accessor, which cannot be empty: of a target that moves nothing it holds a vertex that stays.
+    /// Adds a sparse accessor. It cannot be empty, so for a target that moves nothing it holds one vertex with
+    /// offset zero.
     std::size_t add_target(const MorphTarget& target) {
         std::vector<std::uint32_t> vertices = target.vertices;
         std::vector<float> offsets;
@@ -195,8 +197,8 @@ class GltfBuilder {
         return accessor;
     }
 
-    /// Adds a channel of one node's numbers over all frames of a clip.
-    void add_channel(Json& clip_json, std::size_t node, const char* path, std::size_t times, const char* type,
+    /// Adds a channel for one property of a node over all frames of a clip.
+    void add_channel(OrderedJson& clip_json, std::size_t node, const char* path, std::size_t times, const char* type,
                      std::size_t width, const std::vector<float>& values) {
         clip_json["channels"].push_back(
             {{"sampler", clip_json["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
@@ -204,14 +206,14 @@ class GltfBuilder {
             {{"input", times}, {"output", add_values(values, k_float, type, width)}, {"interpolation", "LINEAR"}});
     }
 
-    /// Nodes that stay at rest need no channels; but a clip needs one, or it would not have a length.
+    /// Adds a clip. Nodes that stay at rest get no channels, but a clip needs at least one to have a length.
     void add_clip(const Clip& clip) {
         std::vector<float> times;
         for (std::size_t i = 0; i < clip.size(); ++i)
             times.push_back(static_cast<float>(static_cast<double>(i) / clip.frames_per_second));
         const std::size_t input = add_values(times, k_float, "SCALAR", 1);
         add_bounds(input, times, 1);
-        Json json{{"name", clip.name}, {"channels", Json::array()}, {"samplers", Json::array()}};
+        OrderedJson json{{"name", clip.name}, {"channels", OrderedJson::array()}, {"samplers", OrderedJson::array()}};
         for (std::size_t node = 0; node < rig_.nodes.size(); ++node) {
             const auto add = [&](const char* path, const char* type, auto member) {
                 const std::vector<float> rest = numbers_of(rig_.nodes[node].rest.*member);
@@ -238,7 +240,7 @@ class GltfBuilder {
         document_["animations"].push_back(std::move(json));
     }
 
-    void add_weights(Json& json, const Clip& clip, std::size_t input) {
+    void add_weights(OrderedJson& json, const Clip& clip, std::size_t input) {
         if (rig_.targets.empty()) return;
         std::vector<float> values;
         for (const Pose& pose : clip.poses) values.insert(values.end(), pose.weights.begin(), pose.weights.end());
@@ -247,19 +249,11 @@ class GltfBuilder {
 
     const Animation& animation_;
     const Rig& rig_;
-    Json document_;
+    OrderedJson document_;
     std::string binary_;
     std::vector<std::size_t> joints_;
     std::size_t mesh_node_ = 0;
 };
-
-bool is_finite(const Pose& pose) {
-    const auto finite_node = [](const NodeTransform& t) {
-        return t.translation.allFinite() && t.rotation.coeffs().allFinite() && t.scale.allFinite();
-    };
-    return std::ranges::all_of(pose.nodes, finite_node) &&
-           std::ranges::all_of(pose.weights, [](float weight) { return std::isfinite(weight); });
-}
 
 void check_writable(const std::filesystem::path& path, const Animation& animation) {
     const auto fail = [&](const std::string& what) { throw MeshError(path.string() + ": " + what); };

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A clip's name as that of a folder.
+/// Returns a folder name made from a clip's name.
 std::string folder_name(const std::string& clip) {
     std::string name = clip;
     for (char& c : name)

@@ -10,13 +10,13 @@
 
 namespace exemplar {
 
-/// Hands values from some threads to others, in order, and lets the former wait while it is full. Thread-safe.
+/// A first-in, first-out queue between producer and consumer threads. Producers wait while it is full. Thread-safe.
 template <typename T>
 class BoundedQueue {
   public:
     explicit BoundedQueue(std::size_t capacity) : capacity_(capacity) {}
 
-    /// Waits while the queue is full. False, and the value is dropped, if it was abandoned.
+    /// Appends a value; waits while the queue is full. Returns false and drops the value if the queue was abandoned.
     bool push(T value) {
         std::unique_lock lock(mutex_);
         room_.wait(lock, [&] { return values_.size() < capacity_ || abandoned_; });
@@ -26,17 +26,19 @@ class BoundedQueue {
         filled_.notify_one();
         return true;
     }
-    /// Waits for a value; nothing once the queue is closed and empty, or abandoned.
+    /// Removes and returns the first value; waits for one. Returns nothing once the queue is closed and empty, or
+    /// abandoned.
     std::optional<T> pop() {
-        std::vector<T> one = pop_some(1);
+        std::vector<T> one = pop_batch(1);
         return one.empty() ? std::nullopt : std::optional<T>(std::move(one.front()));
     }
-    /// Waits for a value and takes it with up to `most` - 1 that follow without waiting for them; none as pop().
-    std::vector<T> pop_some(std::size_t most) {
+    /// Waits for one value, then removes it and up to `most` - 1 more that are already queued. Returns none where
+    /// pop() returns nothing.
+    std::vector<T> pop_batch(std::size_t max_count) {
         std::unique_lock lock(mutex_);
         filled_.wait(lock, [&] { return !values_.empty() || closed_ || abandoned_; });
         std::vector<T> taken;
-        while (!values_.empty() && taken.size() < most && !abandoned_) {
+        while (!values_.empty() && taken.size() < max_count && !abandoned_) {
             taken.push_back(std::move(values_.front()));
             values_.pop_front();
         }
@@ -44,9 +46,9 @@ class BoundedQueue {
         room_.notify_all();
         return taken;
     }
-    /// No more values will come.
+    /// Declares that no more values will be pushed.
     void close() { end(closed_); }
-    /// Nobody waits any longer, and what is in the queue is dropped.
+    /// Wakes all waiting threads and drops the queued values.
     void abandon() {
         end(abandoned_);
         const std::lock_guard lock(mutex_);

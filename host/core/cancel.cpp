@@ -10,12 +10,12 @@
 namespace exemplar {
 namespace {
 
-// What cancels work: of an arena, or of none.
+// The cancellation flag of an arena's work; null while the arena is idle.
 using Canceled = std::atomic<const std::atomic<bool>*>;
-// What cancels the work that this thread does for an arena.
+// The flag of the arena that this thread works for; null outside of arenas.
 thread_local const Canceled* canceled_here = nullptr;
 
-/// Threads that join the loops of an arena are told what cancels it, and forget it when they leave.
+/// Sets canceled_here in threads that join the loops of an arena, and clears it when they leave.
 class ArenaThreads : public tbb::task_scheduler_observer {
   public:
     ArenaThreads(tbb::task_arena& arena, const Canceled& canceled)
@@ -39,8 +39,8 @@ struct CancelableArena {
     ArenaThreads threads{arena, canceled};
 };
 
-/// The arenas that are not at work. They live as long as the process: what TBB keeps of an observer ends with the last
-/// of its threads that saw it, and that may be on its way when the program ends.
+/// Arenas without work. They are never destroyed: TBB releases an observer only when the last thread that saw it
+/// leaves, which may still happen at program exit.
 struct IdleArenas {
     std::mutex mutex;
     std::vector<std::unique_ptr<CancelableArena>> arenas;
@@ -50,7 +50,7 @@ IdleArenas& idle_arenas() {
     return *idle;
 }
 
-/// An arena for the time of some work.
+/// Borrows an idle arena for the lifetime of this object.
 class BorrowedArena {
   public:
     explicit BorrowedArena(const std::atomic<bool>& canceled) {

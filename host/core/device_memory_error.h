@@ -4,7 +4,8 @@
 
 namespace exemplar {
 
-/// The memory of the device, or of the host for its sake, is used up: less at a time may work.
+/// The memory of the device is exhausted, or host memory that the device needs. Processing less at a time may
+/// succeed.
 class DeviceMemoryError : public DeviceError {
   public:
     using DeviceError::DeviceError;

@@ -8,7 +8,7 @@
 
 namespace exemplar {
 
-/// Items 0 .. count - 1 joined into sets; the smallest member stands for a set.
+/// Union-find over the items 0 .. count - 1. The smallest member of a set represents it.
 class DisjointSets {
   public:
     explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }

@@ -9,10 +9,11 @@
 
 namespace exemplar {
 
-/// Eight numbers side by side, a short vector of the compiler's: operators go lane by lane, `mask ? a : b` selects.
-/// They work on every instruction set and give the same bits; with AVX an operation is one instruction.
+/// Eight floats in one of the compiler's vector types. Operators work lane by lane; `mask ? a : b` selects. Results
+/// have the same bits on every instruction set; with AVX an operation is one instruction.
 using EightFloats [[gnu::vector_size(32)]] = float;
-using EightBits [[gnu::vector_size(32)]] = std::int32_t;  ///< what comparisons give: all bits of a lane or none
+using EightBits [[gnu::vector_size(32)]] = std::int32_t;  ///< result of a comparison: all bits of a lane are set, or
+                                                          ///< none
 using FourFloats [[gnu::vector_size(16)]] = float;
 using TwoFloats [[gnu::vector_size(8)]] = float;
 
@@ -29,7 +30,7 @@ inline EightFloats square_root(EightFloats x) {
 #endif
 }
 
-/// Eight numbers of a byte, one after the other.
+/// Converts eight consecutive signed bytes to floats.
 inline EightFloats eight_from_bytes(const std::int8_t* bytes) {
 #ifdef __AVX2__
     return _mm256_cvtepi32_ps(_mm256_cvtepi8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(bytes))));
@@ -44,7 +45,7 @@ inline EightFloats magnitude(EightFloats x) {
     return reinterpret_cast<EightFloats>(reinterpret_cast<EightBits>(x) & 0x7FFFFFFF);
 }
 
-/// Three numbers, one after the other, and zero.
+/// Loads three consecutive floats; the fourth lane is zero.
 inline FourFloats load_three(const float* numbers) {
 #ifdef __AVX__
     return _mm_maskload_ps(numbers, _mm_setr_epi32(-1, -1, -1, 0));
@@ -68,8 +69,8 @@ inline FourFloats high_half(EightFloats a) {
 struct FourEights {
     EightFloats a, b, c, d;
 };
-/// Four numbers of each of eight items: from a vector for each number to the vectors of items 0 and 4, 1 and 5, 2 and
-/// 6, 3 and 7, and back.
+/// Transposes four values of eight items. The input has one vector per value, with a lane per item; the output has
+/// the four values of items 0 and 4, of 1 and 5, of 2 and 6, and of 3 and 7. The function is its own inverse.
 inline FourEights transposed(const FourEights& m) {
     const EightFloats ab = __builtin_shufflevector(m.a, m.b, 0, 8, 1, 9, 4, 12, 5, 13),
                       cd = __builtin_shufflevector(m.c, m.d, 0, 8, 1, 9, 4, 12, 5, 13),

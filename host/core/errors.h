@@ -5,7 +5,8 @@
 
 namespace exemplar {
 
-/// Base of every error Exemplar throws. The message is one line that names the file or element and the mend.
+/// Base of every error Exemplar throws. The message is one line that names the file or element and says how to fix
+/// it.
 class Error : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
@@ -47,7 +48,7 @@ class UsageError : public Error {
     using Error::Error;
 };
 
-/// The user pressed Ctrl-C; thrown by check_interrupt().
+/// The user pressed Ctrl-C, or the work was canceled; thrown by check_interrupt().
 class Interrupted : public Error {
   public:
     Interrupted() : Error("interrupted") {}

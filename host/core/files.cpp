@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
     throw DataError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(error)));
 }
 
-/// A new empty file of a name that nobody has, not even a link: in a folder that others write to, somebody may have
-/// laid one, and process numbers come again.
+/// Creates an empty file beside `path` under a name that does not exist yet, not even as a link: in a shared folder
+/// somebody may have placed a link there, and process numbers are reused.
 fs::path temporary_beside(const fs::path& path, const fs::path& named) {
     static std::atomic<unsigned> counter{0};
     for (;;) {
@@ -61,14 +61,14 @@ void write_stream(const fs::path& opened, const fs::path& path, const std::funct
     if (!stream) fail(path, errno ? errno : EIO);
 }
 
-/// Terminals, pipes and /dev/null take what is written, but must not be replaced by a file.
+/// Returns whether `path` is written to directly: terminals, pipes and /dev/null must not be replaced by a file.
 bool takes_a_stream(const fs::path& path) {
     std::error_code ignored;
     const fs::file_status status = fs::status(path, ignored);
     return fs::is_character_file(status) || fs::is_fifo(status);
 }
 
-/// Where the file itself lies: the target of a link, so that the link stays.
+/// Returns the target of a link, so that writing keeps the link; else `path`.
 fs::path link_target(const fs::path& path) {
     std::error_code error;
     if (!fs::is_symlink(path, error)) return path;
@@ -76,7 +76,7 @@ fs::path link_target(const fs::path& path) {
     return error ? path : target;
 }
 
-/// Nothing where there is nothing to map: an empty file, a pipe, one that cannot be read.
+/// Maps a file. Returns an empty view if there is nothing to map: an empty file, a pipe, an unreadable file.
 FileView map_file(const fs::path& path) {
     std::error_code ignored;
     if (!fs::is_regular_file(path, ignored)) return {};  // opening a pipe would wait
@@ -110,7 +110,8 @@ void write_file_atomically(const fs::path& path, const std::function<void(std::o
 
 namespace {
 
-/// A file of holes takes no room on a disk, and a pipe may never end.
+/// Throws DataError if so many bytes do not fit in memory: a sparse file takes no space on disk, and a pipe may
+/// never end.
 void require_memory_for(const fs::path& path, std::uintmax_t bytes) {
     constexpr std::uintmax_t k_always_there = 64 << 20;
     if (bytes < k_always_there || bytes <= usable_memory() / 2) return;
@@ -126,7 +127,7 @@ std::string read_file(const fs::path& path) {
     errno = 0;
     std::ifstream stream(path, std::ios::binary);
     if (!stream) throw DataError(fmt::format("{}: cannot be read: {}", path.string(), std::strerror(errno)));
-    // What has no size, or another one by now, such as a pipe, is read to its end piece by piece.
+    // A pipe has no size, and the size of a file may have changed: both are read to the end piece by piece.
     constexpr std::size_t k_piece = 65536;
     const std::uintmax_t size = fs::file_size(path, ignored);
     if (!ignored) require_memory_for(path, size);

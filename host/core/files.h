@@ -15,23 +15,25 @@ namespace exemplar {
 /// naming the path and the system's reason.
 void write_file_atomically(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
-/// The whole content of a file; throws DataError naming the path if it cannot be read.
+/// Returns the whole content of a file; throws DataError naming the path if it cannot be read.
 std::string read_file(const std::filesystem::path& path);
 
-/// The whole content of a file, for as long as the owner lives.
+/// The whole content of a file; valid while `owner` lives.
 struct FileView {
     std::string_view content;
     std::shared_ptr<const void> owner;
 };
 
-/// As read_file, for readers that keep parts of the file.
+/// Reads a file like read_file, for readers that keep references to parts of it.
 FileView hold_file(const std::filesystem::path& path);
 
-/// As hold_file, without a copy where the system can map the file into memory. For files that are replaced and never
-/// rewritten, as write_file_atomically does: a program that loses pages it has mapped is ended by the system.
+/// Reads a file like hold_file, but maps it into memory without a copy where the system can. Only for files that are
+/// replaced and never rewritten in place, as write_file_atomically does: the system kills a program whose mapped
+/// pages vanish.
 FileView view_file(const std::filesystem::path& path);
 
-/// " (did you mean 'FOLDER/NAME'?)" with the name in the folder of `path` that is most like its own; empty if none is.
+/// Returns " (did you mean 'FOLDER/NAME'?)" with the name in the folder of `path` that is most similar to its own;
+/// an empty string if none is similar enough.
 std::string suggest_file(const std::filesystem::path& path);
 
 }  // namespace exemplar

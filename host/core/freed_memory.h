@@ -2,10 +2,10 @@
 
 namespace exemplar {
 
-/// Has the process keep blocks of up to 32 MiB when they are freed, for the next ones (with glibc; else nothing). For
-/// programs that draw many frames, as CPU drivers take memory for all vertices of a draw and give it back, megabytes a
-/// frame; or that label many meshes, each with features of tens of megabytes. Where the system gets it back, it maps
-/// and clears it anew for the next, a page at a time.
+/// Makes glibc keep freed blocks of up to 32 MiB for reuse; does nothing with other C libraries. Otherwise each such
+/// block goes back to the system, which maps and clears it again page by page. For programs that draw many frames
+/// (CPU drivers allocate all vertices of a draw, megabytes per frame) or label many meshes (tens of megabytes of
+/// features each).
 void keep_freed_memory();
 
 }  // namespace exemplar

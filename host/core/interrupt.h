@@ -2,11 +2,12 @@
 
 namespace exemplar {
 
-/// Makes Ctrl-C (SIGINT) and SIGTERM ask for a clean end; a second one ends the process at once.
+/// Makes Ctrl-C (SIGINT) and SIGTERM request a clean end; a second signal ends the process at once.
 void install_interrupt_handler();
-/// Whether an end was asked for.
+/// Returns whether a signal requested the end.
 bool interrupted();
-/// Throws Interrupted if an end was asked for. Long loops call it between items.
+/// Throws Interrupted if a signal requested the end or this thread's work was canceled (see cancel.h). Long loops
+/// call it between items.
 void check_interrupt();
 
 }  // namespace exemplar

@@ -16,8 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The least of the numbers that files of this name hold in a folder and in those on the way to a group in it.
-std::size_t least_on_the_way(fs::path folder, const fs::path& group, const char* name) {
+/// Returns the smallest number in the files `name` of `folder` and of every folder on the path from there to
+/// `group`.
+std::size_t min_along_path(fs::path folder, const fs::path& group, const char* name) {
     std::size_t least = std::numeric_limits<std::size_t>::max();
     const auto look = [&] {
         std::ifstream file(folder / name);
@@ -25,7 +26,7 @@ std::size_t least_on_the_way(fs::path folder, const fs::path& group, const char*
     };
     look();
     for (const fs::path& part : group.relative_path()) {
-        if (part == "..") break;  // a group outside of what is mounted here
+        if (part == "..") break;  // the group is not visible in this mount
         folder /= part;
         look();
     }
@@ -86,8 +87,8 @@ std::size_t usable_memory() {
 }
 
 std::size_t memory_limit(const std::string& groups, const fs::path& root) {
-    std::size_t least = std::min(least_on_the_way(root, {}, "memory.max"),
-                                 least_on_the_way(root / "memory", {}, "memory.limit_in_bytes"));
+    std::size_t least =
+        std::min(min_along_path(root, {}, "memory.max"), min_along_path(root / "memory", {}, "memory.limit_in_bytes"));
     std::istringstream lines(groups);
     for (std::string line; std::getline(lines, line);) {
         // NUMBER:CONTROLLERS:GROUP, where the group may hold colons; version 2 names no controllers
@@ -95,9 +96,9 @@ std::size_t memory_limit(const std::string& groups, const fs::path& root) {
         if (first == std::string::npos || second == std::string::npos) continue;
         const std::string controllers = line.substr(first + 1, second - first - 1);
         const fs::path group = line.substr(second + 1);
-        if (controllers.empty()) least = std::min(least, least_on_the_way(root, group, "memory.max"));
+        if (controllers.empty()) least = std::min(least, min_along_path(root, group, "memory.max"));
         if (names_memory(controllers))
-            least = std::min(least, least_on_the_way(root / "memory", group, "memory.limit_in_bytes"));
+            least = std::min(least, min_along_path(root / "memory", group, "memory.limit_in_bytes"));
     }
     return least;
 }

@@ -8,11 +8,11 @@
 
 namespace exemplar {
 
-/// Bounds the memory of work that is done at the same time: each piece takes a share before it begins, and waits while
-/// the others have too much. Thread-safe.
+/// Bounds the memory of concurrent work: each piece of work takes a share first, and waits while the others hold too
+/// much. Thread-safe.
 class MemoryBudget {
   public:
-    /// A part of the budget, given back when it ends.
+    /// A part of the budget; the destructor gives it back.
     class Share {
       public:
         Share() = default;
@@ -24,7 +24,7 @@ class MemoryBudget {
         Share(const Share&) = delete;
         Share& operator=(const Share&) = delete;
         ~Share();
-        /// Now it is so many bytes; never waits, as waiting while holding might be forever.
+        /// Changes the size of the share. Never waits, since waiting while holding a share could deadlock.
         void resize(std::size_t bytes);
 
       private:
@@ -39,10 +39,10 @@ class MemoryBudget {
     };
 
     explicit MemoryBudget(std::size_t bytes) : bytes_(bytes) {}
-    /// Waits until the share fits. One that is larger than the budget is had while there is no other. Nothing of the
-    /// budget, at once, if it was abandoned.
+    /// Waits until the share fits into the budget. A share larger than the budget is granted once no other is held.
+    /// Returns at once, whatever is held, if the budget was abandoned.
     Share take(std::size_t bytes);
-    /// Nobody waits any longer.
+    /// Ends all waiting, now and later.
     void abandon();
 
   private:
@@ -52,12 +52,14 @@ class MemoryBudget {
     bool abandoned_ = false;
 };
 
-/// Bytes of memory that this process may use: of the machine, or of its control groups if one of them has less.
+/// Returns the bytes of memory that this process may use: those of the machine, or the limit of its control groups
+/// if that is lower.
 std::size_t usable_memory();
 
-/// The least that the control groups of a process, and those around them, leave it, in bytes; the largest number if
-/// none sets a limit. `groups` is the text of /proc/PID/cgroup, `root` where control groups are mounted. Reads
-/// memory.max (version 2) and memory.limit_in_bytes (version 1); groups that cannot be seen from here set none.
+/// Returns the lowest memory limit in bytes of a process's control groups and their ancestors; the largest size_t if
+/// none sets a limit. `groups` is the text of /proc/PID/cgroup, `root` the folder where control groups are mounted.
+/// Reads memory.max (version 2) and memory.limit_in_bytes (version 1); groups that are not visible from here set no
+/// limit.
 std::size_t memory_limit(const std::string& groups, const std::filesystem::path& root);
 
 }  // namespace exemplar

@@ -31,7 +31,7 @@ void parallel_for(std::size_t count, Body&& body, std::size_t grain = 1) {
     });
 }
 
-/// Limits the number of threads that parallel loops use while it lives; 0 means all cores.
+/// Limits the number of threads of parallel loops during its lifetime; 0 means all cores.
 class ThreadLimit {
   public:
     explicit ThreadLimit(std::size_t threads)

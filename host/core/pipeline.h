@@ -18,31 +18,31 @@
 
 namespace exemplar {
 
-/// What a stage of a pipeline did.
-struct StageLoad {
+/// Statistics of one stage of a pipeline.
+struct StageStatistics {
     std::string name;
     std::size_t workers = 0;
-    std::size_t items = 0;   ///< that it worked on
-    std::size_t groups = 0;  ///< calls
-    double busy = 0;         ///< seconds at work, of all workers
-    double load = 0;         ///< share of the time that its workers were at work, in [0, 1]
+    std::size_t items = 0;   ///< processed
+    std::size_t groups = 0;  ///< calls of its work function
+    double busy = 0;         ///< seconds of work, summed over its workers
+    double load = 0;         ///< mean share of the running time that a worker was busy, in [0, 1]
 };
 
-/// Items that run through stages, each with threads of its own, one behind the other: while the last items of one stage
-/// are worked on, the next stage is at work on those before. Between two stages a bounded queue waits, so that no more
-/// items are on their way than that. Items may overtake each other where a stage has several workers.
+/// Passes items through consecutive stages that run concurrently, each with threads of its own. A bounded queue in
+/// front of each stage limits the number of items in flight. Items may overtake each other where a stage has several
+/// workers.
 template <typename Item>
 class Pipeline {
   public:
     struct Stage {
         std::string name;
         std::size_t workers;  ///< at least 1
-        std::size_t group;    ///< items that are worked on in one call at most; those that wait, never waiting for more
-        std::size_t room;     ///< items that may wait for it
+        std::size_t group;    ///< maximum number of items per call; a worker takes those that wait already
+        std::size_t room;     ///< capacity of the queue in front of the stage
         std::function<void(std::span<Item>)> work;
     };
 
-    /// `source` gives the items, called by one thread; nothing ends them.
+    /// `source` returns the next item, or nothing at the end. One thread calls it.
     Pipeline(std::function<std::optional<Item>()> source, std::vector<Stage> stages)
         : source_(std::move(source)), stages_(std::move(stages)) {
         for (const Stage& stage : stages_) {
@@ -52,9 +52,9 @@ class Pipeline {
         running_ = std::vector<std::atomic<std::size_t>>(stages_.size());
     }
 
-    /// Works until the source ends and all its items have left the last stage. What a stage or the source throws ends
-    /// all of them once the calls they are in have returned, and is thrown here: the first such exception.
-    /// `abandoned` is called then, from any thread, to wake those who wait for something else.
+    /// Runs until the source has ended and all items have left the last stage. If the source or a stage throws, all
+    /// stop once their current calls return, and the first exception is rethrown here. In that case `abandoned` is
+    /// called, from any thread, to wake threads that wait for something else.
     void run(const std::function<void()>& abandoned = {}) {
         abandoned_ = abandoned;
         const Stopwatch watch;
@@ -62,13 +62,13 @@ class Pipeline {
             std::vector<std::jthread> threads;
             guard([&] { start(threads); });  // the system may have no more threads
         }
-        for (StageLoad& report : reports_)
+        for (StageStatistics& report : reports_)
             report.load = report.busy / (watch.wall() * static_cast<double>(report.workers));
         if (error_) std::rethrow_exception(error_);
     }
 
-    /// Of the stages, in order, after run().
-    const std::vector<StageLoad>& reports() const { return reports_; }
+    /// Returns the statistics of the stages, in order; valid after run().
+    const std::vector<StageStatistics>& reports() const { return reports_; }
 
   private:
     void start(std::vector<std::jthread>& threads) {
@@ -85,7 +85,7 @@ class Pipeline {
     }
     void run_stage(std::size_t s) {
         for (;;) {
-            std::vector<Item> items = queues_[s]->pop_some(stages_[s].group);
+            std::vector<Item> items = queues_[s]->pop_batch(stages_[s].group);
             if (items.empty()) break;
             const Stopwatch watch;
             stages_[s].work(items);
@@ -118,9 +118,9 @@ class Pipeline {
     std::function<std::optional<Item>()> source_;
     std::vector<Stage> stages_;
     std::function<void()> abandoned_;
-    std::vector<std::unique_ptr<BoundedQueue<Item>>> queues_;  ///< before each stage
-    std::vector<std::atomic<std::size_t>> running_;            ///< workers of each stage that are not done
-    std::vector<StageLoad> reports_;
+    std::vector<std::unique_ptr<BoundedQueue<Item>>> queues_;  ///< in front of each stage
+    std::vector<std::atomic<std::size_t>> running_;            ///< workers of each stage that have not finished
+    std::vector<StageStatistics> reports_;
     std::mutex mutex_;
     std::exception_ptr error_;
 };

@@ -42,7 +42,7 @@ Progress::Progress(std::string what, std::size_t total)
       on_terminal_(isatty(STDERR_FILENO) != 0) {}
 
 Progress::~Progress() {
-    if (!finished_ && done_ < total_) {  // abandoned by an error: leave its line, claim nothing
+    if (!finished_ && done_ < total_) {  // abandoned by an error: keep the line without claiming completion
         if (on_terminal_ && !quiet_output) fmt::print(stderr, "\n");
         finished_ = true;
     }
@@ -82,11 +82,10 @@ void Progress::print(bool last) {
     printed_ = Clock::now();
     if (quiet_output || listener()) return;
     const double elapsed = seconds_since(start_);
-    // Some tasks end early because nothing is left to gain: the last line tells what was done, not what might have
-    // been.
+    // Some tasks end early because nothing is left to improve, so the last line shows the steps done, not the total.
     std::string line = last ? fmt::format("{}: {} in {}", what_, done_, format_seconds(elapsed))
                             : fmt::format("{}: {}/{}", what_, done_, total_);
-    if (!last && done_ > total_ / 100) {  // the first step may include preparations, and tells little
+    if (!last && done_ > total_ / 100) {  // the first steps may include preparations, and are a poor estimate
         const double left =
             elapsed * static_cast<double>(total_ - std::min(done_, total_)) / static_cast<double>(done_);
         line += ", " + format_seconds(left) + " left";

@@ -8,14 +8,14 @@
 
 namespace exemplar {
 
-/// How far a task is.
+/// The progress of a task.
 struct ProgressState {
     std::string what;
     std::size_t done = 0, total = 0;
 };
 
-/// Reports how far a long task is, with the time left, to stderr: one line rewritten in place on a terminal, a line
-/// every few seconds elsewhere. Thread-safe. Silent progress (the default-constructed) costs nothing.
+/// Reports the progress of a long task and the time left to stderr: one line rewritten in place on a terminal, a
+/// line every few seconds elsewhere. Thread-safe. A default-constructed object is silent and costs nothing.
 class Progress {
   public:
     Progress() = default;
@@ -24,13 +24,13 @@ class Progress {
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
-    /// Marks `steps` more as done; `detail` names the current item.
+    /// Adds `steps` to the steps done; `detail` names the current item.
     void advance(std::size_t steps = 1, const std::string& detail = {});
     /// Ends the line; the destructor does it too.
     void finish();
 
-    /// Tells all progress to `listener` instead of stderr; an empty one ends that. It is called from the threads that
-    /// work, one at a time per task, and may throw to end the task.
+    /// Sends all progress to `listener` instead of stderr; an empty one restores stderr. The working threads call
+    /// it, one at a time per task; it may throw to end the task.
     static void set_listener(std::function<void(const ProgressState&)> listener);
 
     /// Turns all progress output off or on (programs set it from --quiet).

@@ -2,8 +2,8 @@
 
 namespace exemplar {
 
-/// All of a program's main(): `run` with an interrupt handler installed, and what it throws as one line on stderr and
-/// an exit code: 1 for errors, 2 for wrong usage, 130 if it was interrupted; else what `run` returns.
+/// Implements a program's main(): installs the interrupt handler, calls `run`, and prints what it throws as one line
+/// on stderr. Returns 1 after an error, 2 after wrong usage, 130 after an interrupt, else the result of `run`.
 int run_program(int (*run)(int argc, char** argv), int argc, char** argv) noexcept;
 
 }  // namespace exemplar

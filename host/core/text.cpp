@@ -36,13 +36,13 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
-    constexpr std::size_t k_longest = 255;  // of the names of files; nobody mistypes more
+    constexpr std::size_t k_longest = 255;  // maximum length of a file name; longer words are no typing errors
     if (word.size() > k_longest) return {};
     std::string best;
     std::size_t best_distance = std::max<std::size_t>(1, word.size() / 3) + 1;
     for (const std::string& candidate : candidates) {
         const std::size_t more = std::max(word.size(), candidate.size()) - std::min(word.size(), candidate.size());
-        if (more >= best_distance) continue;  // at least so many letters differ
+        if (more >= best_distance) continue;  // at least `more` letters differ
         const std::size_t distance = edit_distance(word, candidate);
         if (distance < best_distance) {
             best_distance = distance;
@@ -89,7 +89,7 @@ bool is_utf8(std::string_view text) {
         if (length > text.size() - i) return false;
         for (std::size_t k = 1; k < length; ++k)
             if ((byte(i + k) & 0xc0) != 0x80) return false;
-        // Overlong forms, surrogates, and what lies beyond the last code point show in the second byte.
+        // Overlong forms, surrogates and code points above the last one are recognized by their second byte.
         const bool bad_second =
             length > 2 && ((lead == 0xe0 && byte(i + 1) < 0xa0) || (lead == 0xed && byte(i + 1) > 0x9f) ||
                            (lead == 0xf0 && byte(i + 1) < 0x90) || (lead == 0xf4 && byte(i + 1) > 0x8f));

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float k_default_gigabytes = 20, k_most_gigabytes = 1e9F;
-constexpr std::time_t k_day = 24 * 60 * 60;  ///< longer than any entry is written
+constexpr std::time_t k_day = 24 * 60 * 60;  ///< longer than writing any entry takes
 
 struct Entry {
     fs::path path;
@@ -37,11 +37,12 @@ struct Entry {
 
 struct Listing {
     std::vector<Entry> entries;
-    std::vector<fs::path> left_behind;  ///< by writers that ended before they were done
+    std::vector<fs::path> left_behind;  ///< temporary files of writers that ended before they were done
     std::uint64_t bytes = 0;            ///< of the entries
 };
 
-/// What a result was made from comes first in the name, as 32 hexadecimal digits: files of people are not called so.
+/// Returns whether a name begins with a content hash (32 hexadecimal digits and '-'), unlike any name a person would
+/// give.
 bool begins_with_hash(std::string_view name) {
     constexpr std::size_t k_digits = 32;
     return name.size() > k_digits && name[k_digits] == '-' &&
@@ -72,7 +73,7 @@ Listing list_cache(const fs::path& folder) {
     return listing;
 }
 
-/// Whether it is gone, which others may have seen to.
+/// Removes a file; returns whether it is gone, by this or another process.
 bool remove_file(const fs::path& path) {
     return unlink(path.c_str()) == 0 || errno == ENOENT;
 }
@@ -91,13 +92,13 @@ std::uint64_t cache_bound() {
     return static_cast<std::uint64_t>(1e9 * static_cast<double>(*gigabytes));
 }
 
-void trim_cache(const fs::path& folder, std::uint64_t most_bytes, const fs::path& newest) {
+void trim_cache(const fs::path& folder, std::uint64_t max_bytes, const fs::path& newest) {
     Listing listing = list_cache(folder);
     for (const fs::path& path : listing.left_behind) remove_file(path);
-    if (listing.bytes <= most_bytes) return;
+    if (listing.bytes <= max_bytes) return;
     std::ranges::sort(listing.entries, std::less<>());
     for (const Entry& entry : listing.entries) {
-        if (listing.bytes <= most_bytes / 10 * 9) return;
+        if (listing.bytes <= max_bytes / 10 * 9) return;
         if (entry.path.filename() != newest.filename() && remove_file(entry.path)) listing.bytes -= entry.bytes;
     }
 }

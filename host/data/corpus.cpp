@@ -12,15 +12,15 @@
 #include "host/core/files.h"
 #include "host/core/parallel.h"
 #include "host/core/text.h"
-#include "host/mesh/io/io_text.h"
 #include "host/mesh/editing/validate.h"
+#include "host/mesh/io/io_text.h"
 
 namespace exemplar {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Names that the system refuses, say because they are too long, are names of nothing.
+/// Returns whether a file exists; false for names that the system refuses, for example because they are too long.
 bool is_there(const fs::path& path) {
     std::error_code ignored;
     return fs::exists(path, ignored);
@@ -34,7 +34,8 @@ std::vector<fs::path> meshes_of_folder(const fs::path& folder) {
     return paths;
 }
 
-/// Where the comment of a line begins: at a # that no name could hold, first in the line or after a space.
+/// Returns where the comment of a line begins: at a # that is first in the line or after a space, as no name could
+/// have it.
 std::size_t comment_begin(const std::string& line) {
     for (std::size_t i = 0; i < line.size(); ++i)
         if (line[i] == '#' && (i == 0 || line[i - 1] == ' ' || line[i - 1] == '\t')) return i;
@@ -52,7 +53,7 @@ std::vector<fs::path> meshes_of_list(const fs::path& list, MissingMeshes missing
         line.erase(comment_begin(line));
         line.erase(line.find_last_not_of(" \t\r") + 1);
         if (line.empty()) continue;
-        if (line.size() >= PATH_MAX)  // before it is taken apart, which takes a hundred bytes a letter
+        if (line.size() >= PATH_MAX)  // checked first, since splitting a path takes a hundred bytes per character
             throw DataError(fmt::format("{}:{}: no such mesh: {} (names of files have less than {} bytes)",
                                         list.string(), number, mesh_io::printable(line, 200), PATH_MAX));
         fs::path path = line;
@@ -65,7 +66,7 @@ std::vector<fs::path> meshes_of_list(const fs::path& list, MissingMeshes missing
     return paths;
 }
 
-/// Labels of a mesh file's source faces, wherever they are kept.
+/// Returns the labels of a mesh file's source faces, from wherever they are stored.
 FaceLabels find_labels(const fs::path& path, const MeshFile& file, const fs::path& labels_folder) {
     const fs::path labels = labels_path(path, labels_folder);
     if (is_there(labels)) return read_labels_txt(labels, file.mesh.source_face_count);
@@ -77,7 +78,7 @@ FaceLabels find_labels(const fs::path& path, const MeshFile& file, const fs::pat
                                 path.string(), labels.filename().string()));
 }
 
-/// For each name of `labels` that has faces its index in `names`; a name that is not among them is an error.
+/// Returns for each name of `labels` that has faces its index in `names`; throws for a name that is not among them.
 std::vector<std::int32_t> map_names(const FaceLabels& labels, const std::vector<std::string>& names,
                                     const fs::path& path) {
     std::vector<std::int32_t> index(labels.names.size(), -1);
@@ -169,8 +170,8 @@ LabeledCorpus load_corpus(const std::vector<fs::path>& paths, const std::vector<
 
 namespace {
 
-/// Polygons without a triangle (of fewer than three corners) take the label of the polygon before them in the file,
-/// the first ones that of the one after: the label files of the benchmark cannot leave a face out.
+/// Gives polygons without a triangle (fewer than three corners) the label of the polygon before them in the file,
+/// or, at its beginning, that of the one after: the benchmark's label files cannot leave a face out.
 template <typename Votes>
 void label_cornerless(const std::vector<Votes>& votes, std::vector<std::int32_t>& label) {
     for (std::size_t s = 1; s < label.size(); ++s)

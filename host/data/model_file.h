@@ -9,22 +9,22 @@
 /// What the model files of all systems have in common.
 namespace exemplar {
 
-/// Throws ModelError: the file is damaged, in this way.
+/// Throws ModelError that says how the file is damaged.
 [[noreturn]] void inconsistent(const TensorFile& file, const std::string& what);
 /// Throws ModelError if one of the values is not finite.
 void require_finite(const TensorFile& file, const std::string& name, const std::vector<float>& values);
-/// Throws ModelError unless the metadata of that key is a version this program knows, `oldest` to `newest`; `mend` says
-/// what to do with an older file.
+/// Throws ModelError unless the metadata `key` is a version from `oldest` to `newest`, which this program knows;
+/// `mend` says what to do with an older file.
 void require_version(const TensorFile& file, const std::string& key, int oldest, int newest, const std::string& mend);
-/// The same where one version is known.
+/// Throws likewise unless it is the one known version.
 inline void require_version(const TensorFile& file, const std::string& key, int known, const std::string& mend) {
     require_version(file, key, known, known, mend);
 }
 
 /// Adds a classifier as arrays called NAME.feature, NAME.threshold_above_below, ... (docs/formats.md).
 void add_classifier(TensorFile& file, const std::string& name, const CalibratedStumps& classifier);
-/// Reads it back; throws ModelError if arrays are missing, contradict each other, or name a feature or class that there
-/// is not.
+/// Reads a classifier; throws ModelError if arrays are missing, contradict each other, or name a feature or class
+/// that does not exist.
 CalibratedStumps get_classifier(const TensorFile& file, const std::string& name, std::size_t class_count,
                                 std::size_t feature_count);
 

@@ -15,7 +15,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "write_npy writes the machine's own floats");
 
-/// Magic, version, length and text of the header; padded so that the data begin at a multiple of 64 bytes.
+/// Returns magic, version, length and text of the header, padded so that the data begin at a multiple of 64 bytes.
 std::string npy_header(std::size_t rows, std::size_t cols) {
     constexpr std::size_t k_before_text = 10, k_alignment = 64;
     std::string text = fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}), }}", rows, cols);

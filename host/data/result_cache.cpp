@@ -24,7 +24,7 @@ HashState new_state() {
     return {XXH3_createState(), XXH3_freeState};
 }
 
-/// The checksum of everything but itself, so that a flipped byte in the data is noticed too.
+/// Returns the checksum of everything but itself; it detects even one changed byte of the data.
 std::string checksum(const TensorFile& file) {
     const HashState state = new_state();
     XXH3_64bits_reset(state.get());
@@ -35,7 +35,7 @@ std::string checksum(const TensorFile& file) {
     return fmt::format("{:016x}", XXH3_64bits_digest(state.get()));
 }
 
-/// Makes now the time of the last use. In a folder that others own or nobody may write to, the entry keeps its age.
+/// Sets the time of last use to now. Has no effect in a read-only folder or one that others own.
 void mark_as_used(const fs::path& path) {
     utimensat(AT_FDCWD, path.c_str(), nullptr, 0);
 }
@@ -46,10 +46,10 @@ std::uint64_t bytes_of(const TensorFile& file) {
     return bytes;
 }
 
-/// Whether the folder is looked through after this entry.
-bool is_time_to_trim(const fs::path& path, std::uint64_t bytes, std::uint64_t most_bytes) {
+/// Returns whether to trim the folder after this entry.
+bool is_time_to_trim(const fs::path& path, std::uint64_t bytes, std::uint64_t max_bytes) {
     const std::string name = path.filename().string();
-    return bytes >= most_bytes / 100 || XXH3_64bits(name.data(), name.size()) % 16 == 0;
+    return bytes >= max_bytes / 100 || XXH3_64bits(name.data(), name.size()) % 16 == 0;
 }
 
 }  // namespace
@@ -86,17 +86,17 @@ bool read_cache_entry(const fs::path& path, int version, const std::function<voi
     }
 }
 
-void write_cache_entry(const fs::path& path, int version, TensorFile file, std::uint64_t most_bytes) {
+void write_cache_entry(const fs::path& path, int version, TensorFile file, std::uint64_t max_bytes) {
     const std::uint64_t bytes = bytes_of(file);
-    if (bytes > most_bytes || most_bytes == 0) return;
+    if (bytes > max_bytes || max_bytes == 0) return;
     file.metadata["version"] = std::to_string(version);
     file.metadata["checksum"] = checksum(file);
     try {
         write_safetensors(path, file);
     } catch (const DataError&) {
-        return;  // next time it is computed again
+        return;  // it is computed again next time
     }
-    if (is_time_to_trim(path, bytes, most_bytes)) trim_cache(path.parent_path(), most_bytes, path);
+    if (is_time_to_trim(path, bytes, max_bytes)) trim_cache(path.parent_path(), max_bytes, path);
 }
 
 }  // namespace exemplar

@@ -45,7 +45,7 @@ std::size_t element_size(const std::string& type) {
     return 0;
 }
 
-/// Number of bytes of a tensor; false on overflow.
+/// Computes the number of bytes of a tensor; returns false on overflow.
 bool byte_count(const std::vector<std::size_t>& shape, std::size_t element, std::size_t& bytes) {
     bytes = element;
     for (const std::size_t extent : shape)
@@ -57,7 +57,7 @@ bool byte_count(const std::vector<std::size_t>& shape, std::size_t element, std:
     throw ModelError(fmt::format("{}: damaged file: {}; copy or train it again", path, what));
 }
 
-/// The library would turn what is no size (-1, 1e300, true) into one.
+/// Returns a list of sizes; throws for anything else (-1, 1e300, true), which the library would convert.
 std::vector<std::size_t> sizes_of(const std::string& path, const std::string& name, const Json& values) {
     if (!values.is_array()) damaged(path, mesh_io::quote(name) + " has no list of sizes");
     std::vector<std::size_t> sizes;
@@ -68,7 +68,7 @@ std::vector<std::size_t> sizes_of(const std::string& path, const std::string& na
     return sizes;
 }
 
-/// The array that a header's entry describes; its bytes stay those of `data`.
+/// Returns the array that a header's entry describes; its bytes refer to `data`.
 Tensor parse_tensor(const std::string& path, const std::string& name, const Json& entry, std::string_view data) {
     if (!entry.is_object() || !entry.contains("dtype") || !entry.contains("shape") || !entry.contains("data_offsets"))
         damaged(path, "the entry " + mesh_io::quote(name) + " is incomplete");
@@ -87,7 +87,8 @@ Tensor parse_tensor(const std::string& path, const std::string& name, const Json
     return tensor;
 }
 
-/// Tensors that overlapped could describe more memory than the file is large; bytes of no tensor would be lost.
+/// Throws unless the tensors cover the data without gap or overlap: overlapping ones could describe more memory than
+/// the file has, and bytes of no tensor would be lost.
 void check_tiling(const std::string& path, const Json& header, std::size_t bytes) {
     std::vector<std::pair<std::size_t, std::size_t>> ranges;
     for (const auto& [name, entry] : header.items())
@@ -178,7 +179,7 @@ std::vector<T> TensorFile::get(const std::string& name, const std::vector<std::s
     values.reserve(count + room);
     if (reinterpret_cast<std::uintptr_t>(tensor.bytes.data()) % alignof(T) == 0) {
         const T* first = reinterpret_cast<const T*>(tensor.bytes.data());
-        values.assign(first, first + count);  // once, where resize() would write zeros first
+        values.assign(first, first + count);  // writes the memory once; resize() would first write zeros
     } else if (count > 0) {
         values.resize(count);
         std::memcpy(values.data(), tensor.bytes.data(), tensor.bytes.size());
@@ -214,7 +215,7 @@ void write_safetensors(const std::filesystem::path& path, const TensorFile& file
             {"dtype", tensor.type}, {"shape", tensor.shape}, {"data_offsets", {offset, offset + tensor.bytes.size()}}};
         offset += tensor.bytes.size();
     }
-    // Names of files in the metadata may be in any encoding; JSON is UTF-8, so what is not becomes U+FFFD.
+    // File names in the metadata may have any encoding; bytes that are not UTF-8, which JSON needs, become U+FFFD.
     std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
     text.resize((text.size() + 7) / 8 * 8, ' ');  // keeps the arrays aligned for readers that map the file
     const std::uint64_t size = text.size();

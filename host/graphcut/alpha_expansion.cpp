@@ -46,7 +46,7 @@ double largest_finite(std::span<const double> values) {
     return largest;
 }
 
-/// More than the energies of any two labelings without forbidden pairs differ by.
+/// Returns more than any energy difference between labelings without forbidden pairs.
 double cost_above_all(const LabelingEnergy& energy, std::size_t labels) {
     double range = 1.0;
     for (std::size_t i = 0; i < energy.unary.size(); i += labels) {
@@ -108,13 +108,13 @@ double AlphaExpansion::evaluate(const LabelingEnergy& energy, std::size_t labels
     return sum;
 }
 
-ExpansionResult AlphaExpansion::descend(const ExpansionProblem& problem, std::size_t most_sweeps,
+ExpansionResult AlphaExpansion::descend(const ExpansionProblem& problem, std::size_t max_sweeps,
                                         std::vector<std::int32_t> labeling) {
     LabelExpansion expansion(problem, flow_, std::move(labeling));
     ExpansionResult result;
     result.energies.push_back(expansion.energy());
     std::size_t in_vain = 0;  // labels tried since the last change
-    for (; result.sweeps < most_sweeps && in_vain < problem.labels; ++result.sweeps) {
+    for (; result.sweeps < max_sweeps && in_vain < problem.labels; ++result.sweeps) {
         for (std::size_t alpha = 0; alpha < problem.labels && in_vain < problem.labels; ++alpha) {
             ++in_vain;
             if (!expansion.expand(static_cast<std::int32_t>(alpha))) continue;
@@ -126,7 +126,7 @@ ExpansionResult AlphaExpansion::descend(const ExpansionProblem& problem, std::si
     return result;
 }
 
-ExpansionResult AlphaExpansion::solve(const LabelingEnergy& energy, std::size_t labels, std::size_t most_sweeps,
+ExpansionResult AlphaExpansion::solve(const LabelingEnergy& energy, std::size_t labels, std::size_t max_sweeps,
                                       std::span<const std::int32_t> initial) {
     const std::size_t nodes = flow_.nodes();
     check_energy(energy, nodes, edges_.size(), labels);
@@ -134,21 +134,21 @@ ExpansionResult AlphaExpansion::solve(const LabelingEnergy& energy, std::size_t 
     problem.forbidden_cost = cost_above_all(energy, labels);
     if (!initial.empty()) {
         check_labels(initial, flow_.nodes(), labels);
-        return descend(problem, most_sweeps, {initial.begin(), initial.end()});
+        return descend(problem, max_sweeps, {initial.begin(), initial.end()});
     }
     const auto broken = [&](std::span<const std::int32_t> of) { return std::isinf(evaluate(energy, labels, of)); };
     std::vector<std::int32_t> start = cheapest_labels(energy.unary, labels);
-    // Forbidden pairs become dear by and by: were they forbidden at once, the first label that can would sweep away all
-    // that breaks them, and expansion moves do not come back from there.
+    // The cost of forbidden pairs rises step by step. If they were forbidden at once, the first label that fits
+    // would replace all labels in conflict, and expansion moves do not undo that.
     problem.forbidden_factor = std::max(largest_finite(energy.compatibility), 1e-3);
     for (std::size_t stage = 0; stage < k_forbidding_stages && broken(start); ++stage) {
-        start = descend(problem, most_sweeps, std::move(start)).labels;
+        start = descend(problem, max_sweeps, std::move(start)).labels;
         problem.forbidden_factor *= 4.0;
     }
     problem.forbidden_factor = 0.0;
-    ExpansionResult result = descend(problem, most_sweeps, std::move(start));
+    ExpansionResult result = descend(problem, max_sweeps, std::move(start));
     if (!broken(result.labels)) return result;
-    return descend(problem, most_sweeps, cheapest_single_label(energy.unary, flow_.nodes(), labels));
+    return descend(problem, max_sweeps, cheapest_single_label(energy.unary, flow_.nodes(), labels));
 }
 
 ExpansionResult alpha_expansion(std::span<const float> unary, std::size_t labels,

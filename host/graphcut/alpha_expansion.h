@@ -20,34 +20,34 @@ struct LabelingEnergy {
 
 struct ExpansionResult {
     std::vector<std::int32_t> labels;  ///< one per node
-    /// Of the labeling that the last descent began with and after each accepted move; never rises. A forbidden pair
-    /// counts at a finite cost that exceeds every energy without one.
+    /// Energies at the start of the last descent and after each accepted move; they never rise. A forbidden pair has
+    /// a finite cost, above any energy difference between labelings without one.
     std::vector<double> energies;
     std::size_t sweeps = 0;  ///< passes over the labels
 };
 
-/// Minimizes energies of labelings of one graph by expansion moves (Boykov, Veksler and Zabih, PAMI 2001): for each
-/// label in turn, the best set of nodes that change to it at once is a minimum cut, until no label finds a better one.
-/// If V is a metric, the result's energy is within 2 max V / min V of the lowest (2 for Potts). Where V violates the
-/// triangle inequality, the cost of one of the two one-sided changes of that edge is raised, so that a cut exists; what
-/// it then says a move costs is at least what it costs, so the energy does not rise. Deterministic.
+/// Minimizes energies of labelings of one graph by expansion moves (Boykov, Veksler and Zabih, PAMI 2001). For each
+/// label in turn, a minimum cut finds the best set of nodes that change to it at once, until no label finds a better
+/// one. If V is a metric, the result's energy is at most 2 max V / min V times the lowest (2 for Potts). Where V
+/// violates the triangle inequality, the cost of one of the two one-sided changes of that edge is raised, so that a
+/// cut exists; the cut then never underestimates the cost of a move, so the energy does not rise. Deterministic.
 class AlphaExpansion {
   public:
     /// Throws UsageError for a node out of range.
     AlphaExpansion(std::size_t nodes, std::span<const std::array<std::uint32_t, 2>> edges);
 
-    /// Starts from `initial` (one label per node), or, if that is empty, from each node's cheapest label. If that
-    /// breaks forbidden pairs (V = infinity), their cost first rises by and by from the largest finite V. Without
-    /// `initial` the result has no forbidden pair. Throws UsageError for sizes that do not match, labels out of range,
-    /// or values that are out of range.
-    ExpansionResult solve(const LabelingEnergy& energy, std::size_t labels, std::size_t most_sweeps = 100,
+    /// Starts from `initial` (one label per node), or, if it is empty, from each node's cheapest label. If the
+    /// cheapest labels contain forbidden pairs (V = infinity), their cost first rises step by step from the largest
+    /// finite V. Without `initial` the result has no forbidden pair. Throws UsageError for sizes that do not match,
+    /// or labels or values that are out of range.
+    ExpansionResult solve(const LabelingEnergy& energy, std::size_t labels, std::size_t max_sweeps = 100,
                           std::span<const std::int32_t> initial = {});
 
-    /// The energy of a labeling; infinite if an edge of positive weight joins a forbidden pair.
+    /// Returns the energy of a labeling; infinite if an edge of positive weight joins a forbidden pair.
     double evaluate(const LabelingEnergy& energy, std::size_t labels, std::span<const std::int32_t> labeling) const;
 
   private:
-    ExpansionResult descend(const ExpansionProblem& problem, std::size_t most_sweeps,
+    ExpansionResult descend(const ExpansionProblem& problem, std::size_t max_sweeps,
                             std::vector<std::int32_t> labeling);
 
     std::vector<std::array<std::uint32_t, 2>> edges_;

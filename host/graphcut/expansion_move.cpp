@@ -74,8 +74,8 @@ bool LabelExpansion::has_equal_neighbors(Node node) const {
     return true;
 }
 
-/// Neither node has label alpha. A cut needs that both keeping costs no more than the two one-sided changes together;
-/// where V violates the triangle inequality, one of these is raised.
+/// Returns the costs of an edge between two nodes without label alpha. A cut exists only if `keep` is at most
+/// `takes` + `other_takes`; where V violates the triangle inequality, one of the latter is raised.
 LabelExpansion::PairCosts LabelExpansion::pair_costs(Node node, ArcIndex arc) const {
     const Node neighbor = flow_.head(arc);
     const double weight = weight_of_arc_[arc];
@@ -87,14 +87,14 @@ LabelExpansion::PairCosts LabelExpansion::pair_costs(Node node, ArcIndex arc) co
                     problem_.pair_cost(weight, labels_[node], alpha_)};
     const double lack = costs.keep - costs.takes - costs.other_takes;
     if (lack <= 0.0) return costs;
-    // The change that costs less by the unary terms keeps its true cost: it is the likelier one.
+    // The one-sided change that costs less by the unary terms keeps its true cost, as it is the likelier one.
     const double difference = gain_of_keeping(neighbor) - gain_of_keeping(node);
     const bool raise_other = difference > 0.0 || (difference == 0.0 && neighbor < node);
     (raise_other ? costs.other_takes : costs.takes) += lack;
     return costs;
 }
 
-/// Whether a node might take alpha if its neighbors do; true for nodes where that is not clear at a glance.
+/// Returns whether a node might take alpha if its neighbors do. Returns true where a quick test cannot tell.
 bool LabelExpansion::may_follow(Node node) const {
     if (labels_[node] == alpha_) return false;
     const double factor = problem_.factor(labels_[node], alpha_);
@@ -102,14 +102,14 @@ bool LabelExpansion::may_follow(Node node) const {
     return gain_of_keeping(node) < weight_around_[node] * factor;
 }
 
-/// Whether a node might take alpha alone.
+/// Returns whether a node might take alpha alone.
 bool LabelExpansion::may_lead(Node node) const {
     return is_inner_[node] ? labels_[node] != alpha_ && gain_of_keeping(node) < 0.0 : may_follow(node);
 }
 
-/// A set of nodes that gains by taking alpha now, but not when alpha was last tried, holds or touches a node whose
-/// label changed since. Collects all connected nodes that might follow each other from there on; false if they are too
-/// many for this to be worth it.
+/// Collects the nodes that may gain by taking alpha now, but did not when alpha was last tried. Such a set contains
+/// or touches a node whose label has changed since, so the search starts there and spreads to all connected nodes
+/// that may follow. Returns false if there are too many for this to pay.
 bool LabelExpansion::find_affected() {
     const std::size_t tried = tried_[static_cast<std::size_t>(alpha_)], most = problem_.nodes / 32;
     affected_.clear();
@@ -128,7 +128,7 @@ bool LabelExpansion::find_affected() {
     return affected_.size() <= most;
 }
 
-/// All nodes that may want alpha by themselves, where it has not been tried in vain.
+/// Collects the nodes that may take alpha by themselves; only affected ones, if find_affected succeeds.
 void LabelExpansion::find_leaders() {
     leaders_.clear();
     if (find_affected()) {
@@ -142,7 +142,7 @@ void LabelExpansion::find_leaders() {
     }
 }
 
-/// Source side: keep; sink side: take alpha.
+/// Sets the capacities of a node and its arcs. Source side: keep the label; sink side: take alpha.
 void LabelExpansion::add_to_cut(Node node) {
     const ArcIndex begin = flow_.first_arc(node), end = flow_.first_arc(node + 1);
     double terminal = 0.0;
@@ -167,7 +167,7 @@ void LabelExpansion::add_to_cut(Node node) {
     flow_.set_node(node, terminal);
 }
 
-/// The change of the true energy if the takers take alpha.
+/// Returns the change of the true energy if the takers take alpha.
 double LabelExpansion::cost_of_taking() {
     for (const Node node : takers_) is_marked_[node] = 1;
     double change = 0.0;

@@ -11,15 +11,15 @@
 
 namespace exemplar {
 
-/// An energy (see LabelingEnergy) of a graph, with finite costs in place of infinite V.
+/// An energy (see LabelingEnergy) of a graph, with finite costs instead of infinite V.
 struct ExpansionProblem {
     std::size_t nodes, labels;
     std::span<const std::array<std::uint32_t, 2>> edges;
     std::span<const float> unary;
     std::span<const double> weight;
     std::span<const double> v;
-    double forbidden_cost = 0;    ///< of one edge that breaks a forbidden pair, whatever its weight
-    double forbidden_factor = 0;  ///< if above zero, stands in for an infinite V instead
+    double forbidden_cost = 0;    ///< cost of an edge between forbidden labels, whatever its weight
+    double forbidden_factor = 0;  ///< if above zero, replaces an infinite V instead
 
     double unary_cost(std::size_t node, std::int32_t label) const {
         return static_cast<double>(unary[node * labels + static_cast<std::size_t>(label)]);
@@ -27,7 +27,7 @@ struct ExpansionProblem {
     double factor(std::int32_t a, std::int32_t b) const {
         return v[static_cast<std::size_t>(a) * labels + static_cast<std::size_t>(b)];
     }
-    /// Of an edge of this weight between nodes of these labels.
+    /// Returns the cost of an edge of this weight between nodes of these labels.
     double pair_cost(double weight_of_edge, std::int32_t a, std::int32_t b) const;
     double cost(std::span<const std::int32_t> labeling) const;
 };
@@ -35,10 +35,10 @@ struct ExpansionProblem {
 /// A labeling that expansion moves improve.
 class LabelExpansion {
   public:
-    /// `flow` has the problem's graph.
+    /// `flow` must have the problem's graph.
     LabelExpansion(const ExpansionProblem& problem, MaxFlow& flow, std::vector<std::int32_t> labeling);
 
-    /// Makes the best move to `alpha` if it lowers the energy by more than rounding; returns whether it did.
+    /// Makes the best move to `alpha` if it lowers the energy by more than rounding. Returns whether it did.
     bool expand(std::int32_t alpha);
     double energy() const { return energy_; }
     std::vector<std::int32_t>& labels() { return labels_; }
@@ -46,8 +46,9 @@ class LabelExpansion {
   private:
     using Node = MaxFlow::Node;
     using ArcIndex = MaxFlow::ArcIndex;
-    // What an edge costs in a move, seen from one of its nodes: if both keep their labels, if only this one takes
-    // alpha, or only the other. With x = 1 for taking it is, but for a constant, terminal() x + ... + pull() |x - x'|.
+    // Costs of an edge in a move, seen from one of its nodes: both keep their labels, only this one takes alpha, or
+    // only the other takes it. If both take it, the edge costs nothing. With x = 1 for taking alpha, and ' for the
+    // other node, the cost is, up to a constant, terminal() x + terminal'() x' + pull() |x - x'|.
     struct PairCosts {
         double keep, takes, other_takes;
         double terminal() const { return 0.5 * (takes - keep - other_takes); }
@@ -73,15 +74,15 @@ class LabelExpansion {
     std::vector<std::int32_t> labels_;
     double energy_;
     std::vector<float> unary_;            // labels x nodes
-    std::vector<float> unary_of_label_;   // of each node's present label
+    std::vector<float> unary_of_label_;   // of each node's current label
     std::vector<double> weight_of_arc_;   // one per arc of the flow's graph
     std::vector<double> weight_around_;   // per node: the sum of its arcs' weights
     std::vector<std::uint8_t> is_inner_;  // per node: whether all neighbors have its label
 
-    std::vector<Node> changed_;       // all nodes that took a label, in order
-    std::vector<std::size_t> tried_;  // per label: how many had changed when it was last tried, or k_never
+    std::vector<Node> changed_;       // all nodes that changed their label, in order
+    std::vector<std::size_t> tried_;  // per label: size of changed_ when it was last tried, or k_never
 
-    // The move at hand.
+    // The current move.
     std::int32_t alpha_ = 0;
     std::span<const float> unary_of_alpha_;
     std::vector<Node> affected_, leaders_, takers_;

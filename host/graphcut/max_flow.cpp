@@ -72,7 +72,7 @@ void MaxFlow::set_edge(std::size_t edge, double forward, double backward) {
     arcs_[arcs_[arc].sister].residual = backward;
 }
 
-void MaxFlow::forget() {
+void MaxFlow::start_problem() {
     if (++problem_ == 0) {  // all numbers have been used
         for (Vertex& vertex : vertices_) vertex.problem = 0;
         problem_ = 1;
@@ -84,7 +84,7 @@ void MaxFlow::forget() {
 }
 
 double MaxFlow::solve() {
-    forget();
+    start_problem();
     reach_ = nullptr;
     for (Node i = 0; i < nodes(); ++i) {
         if (vertices_[i].terminal < 0.0) reach(i);
@@ -94,7 +94,7 @@ double MaxFlow::solve() {
 }
 
 void MaxFlow::solve(std::span<const Node> start, const std::function<void(Node)>& reach_node) {
-    forget();
+    start_problem();
     reach_ = &reach_node;
     for (const Node node : start) reach(node);
     run();
@@ -108,7 +108,7 @@ void MaxFlow::run() {
     }
 }
 
-/// Makes a node part of the problem, unless it is; a sink is a root of the tree.
+/// Makes a node part of the problem, if it is not; a node with capacity to the sink becomes a root of the tree.
 void MaxFlow::reach(Node node) {
     Vertex& vertex = vertices_[node];
     if (vertex.problem == problem_) return;
@@ -161,7 +161,7 @@ MaxFlow::ArcIndex MaxFlow::scan(Node node) {
             activate(other);
         } else if (neighbor.stamp > vertex.stamp || neighbor.distance <= vertex.distance) {
             continue;
-        }  // else: this node is a shorter way to the root for one that is in the tree
+        }  // else: this node gives a shorter path to the root to one that is in the tree
         neighbor.parent = to_parent;
         neighbor.stamp = vertex.stamp;
         neighbor.distance = vertex.distance + 1;
@@ -177,7 +177,7 @@ double MaxFlow::bottleneck(ArcIndex meeting) const {
     return std::min(least, -vertices_[node].terminal);
 }
 
-/// Sends what the path carries from the source over the meeting arc and up the tree.
+/// Sends as much flow as the path carries from the source over the meeting arc and up the tree.
 void MaxFlow::augment(ArcIndex meeting) {
     const double flow = bottleneck(meeting);
     flow_ += flow;
@@ -214,7 +214,7 @@ void MaxFlow::adopt_orphans() {
     orphans_.clear();
 }
 
-/// The arc to the neighbor in the tree that is nearest to the root, and k_no_arc if none is connected to it.
+/// Returns the arc to the neighbor in the tree that is nearest to the root; k_no_arc if none is connected to it.
 MaxFlow::ArcIndex MaxFlow::find_parent(Node orphan) {
     ArcIndex best = k_no_arc;
     std::uint32_t least = k_unreachable;

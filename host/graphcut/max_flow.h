@@ -9,12 +9,12 @@
 
 namespace exemplar {
 
-/// Maximum flow and minimum cut between a source and a sink, for graphs that are grids or meshes and have most nodes
-/// tied to a terminal. A search tree grows from the sink and is kept from one augmentation to the next, as in Boykov
-/// and Kolmogorov (PAMI 2004), who grow a second one from the source: where sources are everywhere, one finds them
-/// soon, and what lies far from all that leads to the sink is never looked at. The structure is fixed; capacities are
-/// set anew for each problem, so that a series of problems on one graph allocates nothing. Capacities are finite and
-/// not negative; integers below 2^53 give exact flows.
+/// Maximum flow and minimum cut between a source and a sink, for graphs that are grids or meshes with most nodes
+/// tied to a terminal. A search tree grows from the sink and is kept between augmentations, as in Boykov and
+/// Kolmogorov (PAMI 2004). There is no second tree from the source: source capacity is everywhere, so the sink's
+/// tree soon finds some, and nodes far from all that leads to the sink are never visited. The graph is fixed;
+/// capacities are set anew for each problem, so that a series of problems on one graph allocates nothing. Capacities
+/// are finite and not negative; integers below 2^53 give exact flows.
 class MaxFlow {
   public:
     using Node = std::uint32_t;
@@ -26,10 +26,10 @@ class MaxFlow {
 
     std::size_t nodes() const { return vertices_.size() - 1; }
     std::size_t arcs() const { return arcs_.size(); }
-    /// The arcs that leave a node are neighbors: from first_arc(node) up to first_arc(node + 1).
+    /// The arcs that leave a node are consecutive: from first_arc(node) up to first_arc(node + 1).
     ArcIndex first_arc(std::size_t node) const { return vertices_[node].first; }
     Node head(ArcIndex arc) const { return arcs_[arc].head; }
-    /// The two arcs of an edge, from its first node and from its second; equal if the edge carries nothing.
+    /// Returns the two arcs of an edge, from its first node and from its second; equal if the edge carries nothing.
     std::array<ArcIndex, 2> arcs_of_edge(std::size_t edge) const;
 
     /// Sets all capacities to zero.
@@ -38,16 +38,17 @@ class MaxFlow {
     void add_terminals(std::size_t node, double from_source, double to_sink);
     /// Sets the capacities of an edge: from its first node to its second, and back.
     void set_edge(std::size_t edge, double forward, double backward);
-    /// The value of the maximum flow. Capacities are used up: clear and set them before the next call.
+    /// Returns the value of the maximum flow. Uses up the capacities: clear and set them before the next call.
     double solve();
 
-    /// The same for capacities that are made as the search reaches their nodes. Among `start` are all nodes
-    /// with capacity to the sink. Before any use of a node, `reach` calls set_node for it and set_arc for its arcs.
+    /// Solves with capacities that are set on demand. `start` holds all nodes with capacity to the sink, and may
+    /// hold others. Before a node is first used, `reach` is called for it, and calls set_node for it and set_arc for
+    /// its arcs.
     void solve(std::span<const Node> start, const std::function<void(Node)>& reach);
-    void set_node(Node node, double from_source) { vertices_[node].terminal = from_source; }  ///< < 0: to the sink
+    void set_node(Node node, double from_source) { vertices_[node].terminal = from_source; }  ///< negative: to sink
     void set_arc(ArcIndex arc, double capacity) { arcs_[arc].residual = capacity; }
 
-    /// After solve: whether the node is on the sink's side of the minimum cut with the smallest such side.
+    /// After solve: returns whether the node is on the sink's side of the minimum cut whose sink side is smallest.
     bool on_sink_side(std::size_t node) const {
         return vertices_[node].problem == problem_ && vertices_[node].is_in_tree;
     }
@@ -63,15 +64,15 @@ class MaxFlow {
     struct Vertex {
         double terminal = 0.0;       // residual from the source (> 0) or to the sink (< 0)
         ArcIndex first = 0;          // of its arcs
-        std::uint32_t problem = 0;   // whose capacities it has; what follows is of that problem
+        std::uint32_t problem = 0;   // the problem that its capacities and all that follows belong to
         ArcIndex parent = 0;         // in the sink's tree: the arc from the node to its parent, or a mark
-        std::uint32_t distance = 0;  // arcs to the root, right as of stamp
+        std::uint32_t distance = 0;  // arcs to the root, valid as of stamp
         std::uint32_t stamp = 0;
         bool is_in_tree = false;
         bool is_active = false;
     };
 
-    void forget();
+    void start_problem();
     void run();
     void reach(Node node);
     ArcIndex find_meeting_arc();

@@ -18,13 +18,13 @@ std::vector<float> distances_along(const HatchStroke& stroke) {
     return along;
 }
 
-HatchStroke scaled(HatchStroke stroke, float scale) {
+HatchStroke scaled_stroke(HatchStroke stroke, float scale) {
     for (Vec2& point : stroke.points) point *= scale;
     for (float& width : stroke.widths) width *= scale;
     return stroke;
 }
 
-Stroke scaled(Stroke stroke, float scale) {
+Stroke scaled_stroke(Stroke stroke, float scale) {
     for (StrokePoint& point : stroke.points) {
         point.position *= scale;
         point.width *= scale;
@@ -94,15 +94,15 @@ Image hatching_picture(const HatchedDrawing& drawing, const DrawingStyle& style,
     const int width = std::max(1, static_cast<int>(std::lround(scale * static_cast<float>(drawing.width))));
     const int height = std::max(1, static_cast<int>(std::lround(scale * static_cast<float>(drawing.height))));
     std::vector<HatchStroke> strokes;
-    for (const HatchStroke& stroke : drawing.strokes) strokes.push_back(scaled(stroke, scale));
-    const std::vector<float> ink = drawn_ink(strokes, width, height);
+    for (const HatchStroke& stroke : drawing.strokes) strokes.push_back(scaled_stroke(stroke, scale));
+    const std::vector<float> ink = render_ink(strokes, width, height);
     FloatImage picture(width, height, 3);
     for (std::size_t i = 0; i < ink.size(); ++i) {
         for (std::size_t c = 0; c < 3; ++c) picture.data[3 * i + c] = 1 - ink[i];
     }
     for (const DrawingLayer& layer : drawing.curves.layers) {
         std::vector<Stroke> curves;
-        for (const Stroke& stroke : layer.strokes) curves.push_back(scaled(stroke, scale));
+        for (const Stroke& stroke : layer.strokes) curves.push_back(scaled_stroke(stroke, scale));
         draw_strokes(curves, style.of(layer.type), {}, picture);
     }
     Image image(width, height, 3);

@@ -15,34 +15,37 @@
 
 namespace exemplar {
 
-/// A view hatched: strokes, and feature curves over them.
+/// The hatching of a view: strokes, with feature curves drawn over them.
 struct HatchedDrawing {
     int width = 0, height = 0;  ///< pixels
     std::vector<HatchStroke> strokes;
     Drawing curves;  ///< may be without layers
 };
 
-/// Makes strokes end in a point: a quarter of an ellipse over `taper` pixels at both ends, no longer than a quarter of
-/// the stroke (see stroke_taper).
+/// Tapers the widths of strokes to points at both ends: along a quarter of an ellipse over `taper` pixels (see
+/// stroke_taper), but over no more than a quarter of the stroke.
 void taper_strokes(std::span<HatchStroke> strokes, float taper);
 
-/// The strokes of a layer in the form of line drawings: gray is opacity.
+/// Returns the strokes of a layer as strokes of line drawings; their darkness becomes opacity.
 std::vector<Stroke> layer_strokes(std::span<const HatchStroke> strokes, std::size_t layer);
 
-/// Writes layers "hatching", "cross_hatching", and one for each type of feature curves. Throws as write_drawing_svg.
+/// Writes the layers "hatching" and "cross_hatching", and one layer per type of feature curve. Throws as
+/// write_drawing_svg.
 SvgSummary write_hatching_svg(const std::filesystem::path& path, const HatchedDrawing& drawing,
                               const DrawingStyle& style, const SvgOptions& options = {});
 
-/// The drawing as a gray picture on white, `scale` times as large (a positive number).
+/// Renders the drawing on white as an RGB image, `scale` (positive) times as large.
 Image hatching_picture(const HatchedDrawing& drawing, const DrawingStyle& style, float scale = 1);
 
-/// A picture of a property for inspection: shades of one color from the least value (light) to the largest (dark) of
-/// the pixels where `known` is not zero; white elsewhere. `range`: those two values, the 1st and 99th percentile.
+/// Renders a property for inspection where `known` is not zero: shades of one color, from light (small values) to
+/// dark (large values); white elsewhere. Sets `range` to the values of the lightest and the darkest shade, the 1st
+/// and 99th percentile.
 Image property_picture(std::span<const float> values, std::span<const std::uint8_t> known, int width, int height,
                        std::array<float, 2>& range);
-/// Directions as hues (red along x, then over green), where `known`.
+/// Renders directions (radians) as hues where `known` is not zero: red along x, then green, then blue; white
+/// elsewhere.
 Image orientation_picture(std::span<const float> angles, std::span<const std::uint8_t> known, int width, int height);
-/// Labels as flat colors; those of `none` are white.
+/// Renders labels as flat colors; pixels with the label `none` are white.
 Image label_picture(std::span<const std::uint8_t> labels, std::uint8_t none, int width, int height);
 
 }  // namespace exemplar

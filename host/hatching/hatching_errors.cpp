@@ -6,15 +6,9 @@
 #include <vector>
 
 #include "host/core/errors.h"
+#include "host/core/statistics.h"
 
 namespace exemplar {
-
-double median_of_values(std::vector<float> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return static_cast<double>(*middle);
-}
 
 HatchingErrors compare_hatching(const HatchingFields& fields, const HatchingFields& truth,
                                 std::span<const std::uint32_t> pixels) {
@@ -40,11 +34,12 @@ HatchingErrors compare_hatching(const HatchingFields& fields, const HatchingFiel
             ratios[k].push_back(std::abs(property_of(fields, property)[p] / property_of(truth, property)[p] - 1));
         }
     }
-    errors.orientation = median_of_values(std::move(angles)) * 180 / std::numbers::pi;
+    errors.orientation = static_cast<double>(upper_median(angles)) * 180 / std::numbers::pi;
     const double all = std::max<double>(static_cast<double>(pixels.size()), 1);
     errors.level_accuracy = static_cast<double>(right) / all;
     errors.majority_level = static_cast<double>(std::ranges::max(counts)) / all;
-    for (std::size_t k = 0; k < k_stroke_properties; ++k) errors.property[k] = median_of_values(std::move(ratios[k]));
+    for (std::size_t k = 0; k < k_stroke_properties; ++k)
+        errors.property[k] = static_cast<double>(upper_median(ratios[k]));
     return errors;
 }
 

@@ -20,7 +20,8 @@ ViewHatching hatch_view(const HatchingStyle& style, PixelFeatures& pixels, const
     watch = {};
     const HatchingFields& fields = out.prediction.fields;
     const auto barriers = occlusion_barriers(pixels.gbuffer().depth, fields.width, fields.height);
-    // Strokes that are kept lie where they were even; to move them would make them slip on the surface.
+    // Strokes of the previous frame are evenly spaced already; relaxing them again would make them slip on the
+    // surface.
     out.strokes = kept.empty() ? place_evenly(tools.placer, fields, barriers, options.strokes)
                                : tools.placer.place(fields, barriers, options.strokes, kept);
     if (options.matches_tone) match_tone(out.strokes, fields);

@@ -14,7 +14,7 @@ bool is_parallel(const Eigen::Matrix4f& projection) {
     return projection(3, 3) != 0;
 }
 
-/// Rotation whose rows are right, up and backward for a camera that looks along -backward.
+/// Returns the rotation whose rows are right, up and backward for a camera that looks along -backward.
 Eigen::Matrix3f camera_axes(const Vec3& backward, const Vec3& up) {
     Vec3 right = up.normalized().cross(backward);
     if (right.norm() < 1e-3f) right = (std::abs(backward.z()) < 0.9f ? Vec3::UnitZ() : Vec3::UnitX()).cross(backward);
@@ -84,12 +84,13 @@ Camera fit_camera(const TriangleMesh& mesh, const Vec3& direction, float aspect,
         high = high.cwiseMax(p);
     }
     const Vec3 center = (low + high) / 2;
-    // A mesh of one point gets some room, enough that eye and target differ wherever it lies.
+    // A mesh of one point gets some depth, enough that eye and target differ wherever it lies.
     float depth = (high - low).norm();
     if (!(depth > 1e-5f * center.norm())) depth = center.norm() > 0 ? 1e-5f * center.norm() : 1;
     const float room = 1 - options.margin;
 
-    // The widest ratio of a vertex' offset to the room it has decides the size, or the distance in perspective.
+    // The maximum ratio of a vertex' offset to the room in the image decides the half height, or the distance in
+    // perspective.
     const bool parallel = options.vertical_fov <= 0;
     const float slope = std::tan(options.vertical_fov / 2);
     float half_height = 1e-6f * depth, distance = 0;

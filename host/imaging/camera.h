@@ -15,22 +15,24 @@ struct Camera {
     Eigen::Matrix4f projection = Eigen::Matrix4f::Identity();
 
     Eigen::Matrix4f view_projection() const { return projection * view; }
-    /// The eye in world space.
+    /// Returns the eye in world space.
     Vec3 position() const;
-    /// Unit vector from `point` to the eye: for a parallel projection the same everywhere.
+    /// Returns the unit vector from `point` to the eye; for a parallel projection it is the same everywhere.
     Vec3 to_eye(const Vec3& point) const;
-    /// Pixel coordinates (x right, y down, (0, 0) the image's upper left corner) and depth in [0, 1] of a world point.
+    /// Returns the pixel coordinates (x right, y down, (0, 0) the image's upper left corner) and depth in [0, 1] of
+    /// a world point.
     Vec3 project(const Vec3& point, int width, int height) const;
 };
 
-/// View matrix of an eye that looks at `target`. `up` is the direction that shall point up in the image; where it is
-/// (nearly) the viewing direction, another axis takes its place. Throws UsageError if eye and target coincide.
+/// Returns the view matrix of an eye that looks at `target`. `up` points up in the image; another axis replaces it
+/// if it is (nearly) the viewing direction. Throws UsageError if eye and target coincide.
 Eigen::Matrix4f look_at(const Vec3& eye, const Vec3& target, const Vec3& up = Vec3::UnitY());
 
-/// Perspective projection: full vertical field of view in radians, aspect = width / height, 0 < near < far.
+/// Returns a perspective projection: full vertical field of view in radians, aspect = width / height, 0 < near <
+/// far.
 Eigen::Matrix4f perspective(float vertical_fov, float aspect, float near, float far);
 
-/// Parallel projection of the box |y| <= half_height, |x| <= half_height * aspect, near <= -z <= far.
+/// Returns the parallel projection of the box |y| <= half_height, |x| <= half_height * aspect, near <= -z <= far.
 Eigen::Matrix4f orthographic(float half_height, float aspect, float near, float far);
 
 struct FitOptions {
@@ -38,8 +40,8 @@ struct FitOptions {
     float margin = 0.05f;       ///< free share of the image's half width or half height
     Vec3 up = Vec3::UnitY();
 };
-/// A camera in direction `direction` from the mesh (any length but zero) that shows all of it as large as it fits into
-/// an image of aspect = width / height. Throws MeshError for a mesh without vertices.
+/// Returns a camera in direction `direction` from the mesh (any length but zero) that shows the whole mesh as large
+/// as it fits into an image of aspect = width / height. Throws MeshError for a mesh without vertices.
 Camera fit_camera(const TriangleMesh& mesh, const Vec3& direction, float aspect, const FitOptions& options = {});
 
 }  // namespace exemplar

@@ -19,8 +19,8 @@ double GaussianKernel::moment(int power) const {
 }
 
 GaussianKernel gaussian_kernel(float sigma) {
-    if (!(sigma >= k_least_sigma && sigma <= k_largest_sigma))
-        throw UsageError(fmt::format("a Gaussian of {} pixels; give {} to {}", sigma, k_least_sigma, k_largest_sigma));
+    if (!(sigma >= k_min_sigma && sigma <= k_max_sigma))
+        throw UsageError(fmt::format("a Gaussian of {} pixels; give {} to {}", sigma, k_min_sigma, k_max_sigma));
     GaussianKernel kernel{.sigma = sigma, .radius = static_cast<int>(std::ceil(4 * sigma)), .weights = {}};
     for (int k = -kernel.radius; k <= kernel.radius; ++k)
         kernel.weights.push_back(std::exp(-0.5 * std::pow(k / static_cast<double>(sigma), 2)));

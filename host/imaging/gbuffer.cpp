@@ -19,7 +19,7 @@ double cross(const Vector2d& a, const Vector2d& b) {
     return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Barycentric coordinates moved into the triangle.
+/// Returns the barycentric coordinates moved into the triangle.
 Vector3d inside(const Vector3d& barycentric) {
     const Vector3d positive = barycentric.cwiseMax(0.0);
     return positive / positive.sum();
@@ -34,9 +34,9 @@ class PixelRays {
           width_(width),
           height_(height) {}
 
-    /// Where the ray of pixel (x, y) meets the plane through three points: the points of a ray are where two
-    /// homogeneous functions are zero, (clip.x - ndc.x clip.w) and (clip.y - ndc.y clip.w). They are linear in the
-    /// barycentric coordinates, so that these follow from their values `at` the first corner and along two edges.
+    /// Returns the barycentric coordinates at which the ray of pixel (x, y) meets the plane of the corners. On the
+    /// ray two homogeneous functions are zero, (clip.x - ndc.x clip.w) and (clip.y - ndc.y clip.w). They are linear
+    /// in the barycentric coordinates, which follow from their values `at` the first corner and along two edges.
     Vector3d meet(int x, int y, const std::array<Vector3d, 3>& corner) const {
         const Eigen::Matrix<double, 2, 4> rows = zero_on_ray(x, y);
         const Vector2d at = rows * corner[0].homogeneous();
@@ -48,7 +48,7 @@ class PixelRays {
         return inside({1 - b1 - b2, b1, b2});
     }
 
-    /// Along the camera's axis.
+    /// Returns the depth along the camera's axis.
     double depth(const Vector3d& point) const { return axis_.dot(point.homogeneous()); }
 
   private:

@@ -41,7 +41,7 @@ using Image = BasicImage<std::uint8_t>;
 /// Linear or unitless values, by context.
 using FloatImage = BasicImage<float>;
 
-/// Images of one size and one channel, one after the other, each row by row from the top left.
+/// Images of one size with one channel, stored one after the other, each row by row from the top left.
 struct ImageStack {
     int width = 0, height = 0;
     std::size_t count = 0;

@@ -18,7 +18,7 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-/// The mask inside of its box.
+/// The mask within its bounding box.
 struct Mask {
     PixelBox box;
     Plane inside;  ///< 1 or 0
@@ -37,7 +37,8 @@ Mask mask_of(std::span<const std::uint32_t> face, int width, const PixelBox& box
     return mask;
 }
 
-/// Calls use(x, y, pixel) for the mask's pixels, in parallel: their place in the box and their index in the image.
+/// Calls use(x, y, pixel) for the mask's pixels, in parallel, with their position in the box and their index in the
+/// image.
 template <typename Use>
 void for_each_inside(const Mask& mask, int width, Use&& use) {
     parallel_for(mask.inside.height, [&](std::size_t y) {
@@ -48,7 +49,7 @@ void for_each_inside(const Mask& mask, int width, Use&& use) {
     });
 }
 
-/// An image inside of the mask's box, zero outside of the mask.
+/// Returns an image within the mask's box, zero outside of the mask.
 Plane masked(const Mask& mask, const ImageStack& images, std::size_t image) {
     Plane plane(mask.inside.width, mask.inside.height);
     for_each_inside(mask, images.width, [&](std::size_t x, std::size_t y, std::size_t pixel) {
@@ -57,7 +58,7 @@ Plane masked(const Mask& mask, const ImageStack& images, std::size_t image) {
     return plane;
 }
 
-/// Weights of a Gaussian times powers of the offset, which is in units of sigma.
+/// Returns the weights of a Gaussian times a power of the offset, in units of sigma.
 std::vector<double> weights_of_order(const GaussianKernel& kernel, int order) {
     std::vector<double> weights = kernel.weights;
     for (std::size_t i = 0; i < weights.size(); ++i)
@@ -94,14 +95,14 @@ Means means_at(const MomentPlanes& sums, std::size_t x, std::size_t y, double to
             sums(2, 0, x, y) / total, sums(1, 1, x, y) / total, sums(0, 2, x, y) / total};
 }
 
-/// How the mask's pixels lie around one of them: the means of offsets and their products, and of x and y as `Means`.
-struct Surroundings {
-    double total;  ///< of weights
+/// Moments of the mask around one of its pixels: the means of offsets and their products, and of x and y as `Means`.
+struct MaskMoments {
+    double total;  ///< sum of the weights
     double x, y, xx, xy, yy;
     Means of_x, of_y;
 };
 
-Surroundings surroundings_at(const MomentPlanes& mask, std::size_t x, std::size_t y) {
+MaskMoments mask_moments_at(const MomentPlanes& mask, std::size_t x, std::size_t y) {
     const double total = mask(0, 0, x, y);
     const auto mean = [&](std::size_t i, std::size_t j) { return mask(i, j, x, y) / total; };
     return {.total = total,
@@ -114,24 +115,25 @@ Surroundings surroundings_at(const MomentPlanes& mask, std::size_t x, std::size_
             .of_y = {mean(0, 1), mean(1, 1), mean(0, 2), mean(2, 1), mean(1, 2), mean(0, 3)}};
 }
 
-/// The larger and the smaller eigenvalue of a symmetric matrix.
+/// Returns the larger and the smaller eigenvalue of a symmetric matrix.
 std::array<double, 2> eigenvalues(double xx, double xy, double yy) {
     const double middle = (xx + yy) / 2, reach = std::hypot((xx - yy) / 2, xy);
     return {middle + reach, middle - reach};
 }
 
-/// The inverse of an eigenvalue of the spread; nothing where there is too little spread for a slope.
+/// Returns the inverse of an eigenvalue of the spread; fades to zero if there is too little spread for a slope.
 double inverse(double spread) {
-    return std::pow(spread, 3) / (std::pow(spread, 4) + std::pow(static_cast<double>(k_least_spread), 4));
+    return std::pow(spread, 3) / (std::pow(spread, 4) + std::pow(static_cast<double>(k_min_spread), 4));
 }
 
-/// The slope of the least-squares line, per sigma: the inverse of the spread of offsets, times their covariance with f.
-Vector2d slope(const Means& m, const Surroundings& s) {
+/// Returns the slope of the least-squares line, per sigma: the inverse of the spread of offsets times their
+/// covariance with f.
+Vector2d slope(const Means& m, const MaskMoments& s) {
     const Vector2d covariance{m.fx - m.f * s.x, m.fy - m.f * s.y};
     const double xx = s.xx - s.x * s.x, xy = s.xy - s.x * s.y, yy = s.yy - s.y * s.y;
     const auto [largest, least] = eigenvalues(xx, xy, yy);
     const double first = inverse(largest), second = inverse(std::max(least, 0.0));
-    // With eigenvectors (cos t, sin t) and (-sin t, cos t); turn is the matrix of cos 2t and sin 2t.
+    // The eigenvectors are (cos t, sin t) and (-sin t, cos t); `turn` is the matrix of cos 2t and sin 2t.
     Matrix2d turn;
     turn << (xx - yy) / 2, xy, xy, (yy - xx) / 2;
     const double reach = (largest - least) / 2;
@@ -139,16 +141,16 @@ Vector2d slope(const Means& m, const Surroundings& s) {
     return (first + second) / 2 * covariance + (first - second) / 2 * (turn * covariance);
 }
 
-/// The joint third cumulants (f, x, x), (f, x, y), (f, y, y). Those of Gaussian weights are what weighted means change
-/// by when the pixel moves: the second derivatives of the mean of f, times sigma^4 with offsets in pixels.
-std::array<double, 3> third_cumulants(const Means& m, const Surroundings& s) {
+/// Returns the joint third cumulants (f, x, x), (f, x, y), (f, y, y). Under Gaussian weights they are the second
+/// derivatives of the mean of f with respect to the pixel's position, times sigma^4 with offsets in pixels.
+std::array<double, 3> third_cumulants(const Means& m, const MaskMoments& s) {
     return {m.fxx - 2 * m.fx * s.x - m.f * s.xx + 2 * m.f * s.x * s.x,
             m.fxy - m.fx * s.y - m.fy * s.x - m.f * s.xy + 2 * m.f * s.x * s.y,
             m.fyy - 2 * m.fy * s.y - m.f * s.yy + 2 * m.f * s.y * s.y};
 }
 
-/// xx, xy and yy of the Hessian, per sigma^2.
-std::array<double, 3> hessian(const Means& m, const Surroundings& s, const Vector2d& line, const CumulantUnits& units) {
+/// Returns xx, xy and yy of the Hessian, per sigma^2.
+std::array<double, 3> hessian(const Means& m, const MaskMoments& s, const Vector2d& line, const CumulantUnits& units) {
     const std::array<double, 3> of_f = third_cumulants(m, s), of_x = third_cumulants(s.of_x, s),
                                 of_y = third_cumulants(s.of_y, s);
     std::array<double, 3> h;
@@ -161,7 +163,7 @@ void set(ImageStack& stack, std::size_t image, std::size_t pixel, double value) 
     stack.image(image)[pixel] = static_cast<float>(value);
 }
 
-/// Values, gradients and curvatures of one image; returns the planes of its gradient.
+/// Computes values, gradients and curvatures of one image; returns the planes of its gradient.
 std::array<Plane, 2> derive(const ImageStack& images, std::size_t image, const Mask& mask,
                             const MomentPlanes& mask_moments, const GaussianKernel& kernel, ImageDerivatives& out) {
     const MomentPlanes moments(masked(mask, images, image), kernel, 2);
@@ -170,7 +172,7 @@ std::array<Plane, 2> derive(const ImageStack& images, std::size_t image, const M
     std::array<Plane, 2> gradient{Plane(mask.inside.width, mask.inside.height),
                                   Plane(mask.inside.width, mask.inside.height)};
     for_each_inside(mask, images.width, [&](std::size_t x, std::size_t y, std::size_t pixel) {
-        const Surroundings s = surroundings_at(mask_moments, x, y);
+        const MaskMoments s = mask_moments_at(mask_moments, x, y);
         const Means m = means_at(moments, x, y, s.total);
         const Vector2d line = slope(m, s);
         const auto [xx, xy, yy] = hessian(m, s, line, units);
@@ -185,7 +187,7 @@ std::array<Plane, 2> derive(const ImageStack& images, std::size_t image, const M
     return gradient;
 }
 
-/// The orientation of the structure tensor; its weighted sums serve as well as means.
+/// Computes the orientation of the structure tensor. The total weight cancels, so weighted sums replace means.
 void orient(const std::array<Plane, 2>& gradient, std::size_t image, const Mask& mask, const GaussianKernel& kernel,
             ImageDerivatives& out) {
     Plane trace(mask.inside.width, mask.inside.height), difference = trace, product = trace;
@@ -197,7 +199,7 @@ void orient(const std::array<Plane, 2>& gradient, std::size_t image, const Mask&
     }
     for (Plane* plane : {&trace, &difference, &product})
         *plane = weighted_sums_along_y(weighted_sums_along_x(*plane, kernel.weights), kernel.weights);
-    const double noise = std::pow(static_cast<double>(k_least_gradient), 2);
+    const double noise = std::pow(static_cast<double>(k_min_gradient), 2);
     for_each_inside(mask, out.value.width, [&](std::size_t x, std::size_t y, std::size_t pixel) {
         const double scale = 1 / (trace.row(y)[x] + noise);
         set(out.orientation_cos, image, pixel, scale * difference.row(y)[x]);
@@ -213,8 +215,8 @@ CumulantUnits cumulant_units(const GaussianKernel& kernel) {
 }
 
 void check_derivatives(const ImageStack& images, std::span<const std::uint32_t> face) {
-    if (images.count < 1 || images.count > k_most_derived_images)
-        throw UsageError(fmt::format("derivatives of {} images; give 1 to {}", images.count, k_most_derived_images));
+    if (images.count < 1 || images.count > k_max_derived_images)
+        throw UsageError(fmt::format("derivatives of {} images; give 1 to {}", images.count, k_max_derived_images));
     if (face.size() != images.pixels())
         throw UsageError(fmt::format("derivatives: {} faces for {} x {} pixels; give one per pixel", face.size(),
                                      images.width, images.height));

@@ -10,8 +10,8 @@
 
 namespace exemplar {
 
-/// How many images are differentiated at once.
-constexpr std::size_t k_most_derived_images = 4;
+/// The maximum number of images that are differentiated at once.
+constexpr std::size_t k_max_derived_images = 4;
 
 /// A rectangle of pixels.
 struct PixelBox {
@@ -20,40 +20,39 @@ struct PixelBox {
     bool operator==(const PixelBox&) const = default;
 };
 
-/// Smoothed values and derivatives of images inside a mask, all at one scale sigma (thesis App. B.2 and B.3): stacks of
-/// as many images as there were, zero outside of the mask. x is to the right, y down, and lengths are pixels.
-///
-/// What is outside of the mask is never seen: all are functions of Gaussian-weighted means over the pixels inside.
-/// - The value is the weighted mean (normalized convolution).
-/// - The gradient is the slope of the weighted least-squares line (Knutsson and Westin 1993, "Normalized and
-///   differential convolution"). Away from the mask's border that is the convolution with a Gaussian's derivative; next
-///   to it the slopes of linear images stay exact. Across parts of the mask that are too narrow to tell, of one
-///   pixel, or two for sigma 5 and more, slopes fade to zero.
-/// - The curvatures are the eigenvalues of the Hessian, in units of 1 / pixel^2: of the height field z = value(x, y)
-///   they are the principal curvatures, up to terms of the squared gradient. The Hessian is that of the weighted mean,
-///   less what the slope alone would contribute next to the mask's border: it is zero for linear images. Away from the
-///   border it is the convolution with a Gaussian's second derivatives, exact for quadratic images; next to it,
-///   smaller.
-/// - The orientation is of the structure tensor, the weighted mean of gradient gradient^T: the direction a along which
-///   values change most, as coherence (cos 2a, sin 2a). The coherence is the difference of the tensor's eigenvalues
-///   over their sum: 1 where all gradients are along one line, 0 where no direction is different from others, and, for
-///   images of values from 0 to 1, where gradients are far below k_least_gradient.
+/// Smoothed values and derivatives of images inside a mask, all at one scale sigma (thesis App. B.2 and B.3). Each
+/// stack has as many images as there were, zero outside of the mask. x is to the right, y down, and lengths are
+/// pixels. Pixels outside of the mask have no influence: all results are functions of Gaussian-weighted means over
+/// the pixels inside.
 struct ImageDerivatives {
+    /// The weighted mean (normalized convolution).
     ImageStack value;
+    /// The slope of the weighted least-squares line (Knutsson and Westin 1993, "Normalized and differential
+    /// convolution"). Away from the mask's border it is the convolution with a Gaussian's derivative; near the
+    /// border it stays exact for linear images. Slopes fade to zero across parts of the mask that are too narrow:
+    /// one pixel, or two for sigma 5 and more.
     ImageStack gradient_x, gradient_y, gradient_magnitude;
+    /// The eigenvalues of the Hessian in 1 / pixel^2: the principal curvatures of the height field z = value(x, y),
+    /// up to terms of the squared gradient. The Hessian is that of the weighted mean, less what the slope alone
+    /// contributes near the mask's border, so it is zero for linear images. Away from the border it is the
+    /// convolution with a Gaussian's second derivatives, exact for quadratic images; near it, smaller.
     ImageStack maximum_curvature, minimum_curvature;  ///< by sign
-    /// Of the doubled angle, times the coherence; of no images where they are left out.
+    /// Coherence times (cos 2a, sin 2a); no images if left out. a is the direction of largest change: the first
+    /// eigenvector of the structure tensor, the weighted mean of gradient gradient^T. The coherence is the
+    /// difference of the tensor's eigenvalues over their sum: 1 if all gradients are parallel, 0 if no direction is
+    /// preferred. It vanishes, for values from 0 to 1, where gradients are far below k_min_gradient.
     ImageStack orientation_cos, orientation_sin;
 };
 
-/// Gradients below this, per pixel, are taken for noise by the coherence of orientations.
-constexpr float k_least_gradient = 1e-4f;
-/// The weighted variance of the mask's pixels around a pixel, over sigma^2, below which slopes fade: an eigenvalue l of
-/// the covariance of offsets, whose inverse gives the slope, counts as l + k_least_spread^4 / l^3.
-constexpr float k_least_spread = 1e-2f;
+/// Gradients below this, per pixel, count as noise in the coherence of orientations.
+constexpr float k_min_gradient = 1e-4f;
+/// The spread is the weighted covariance of the offsets of the mask's pixels, over sigma^2; its inverse gives the
+/// slope. Where it is below this value slopes fade: an eigenvalue l counts as l + k_min_spread^4 / l^3.
+constexpr float k_min_spread = 1e-2f;
 
-/// The third cumulants (f, x, x) of f = x^2 / 2 and (f, x, y) of f = x y under a Gaussian, offsets per sigma: what
-/// turns cumulants into second derivatives. Both would be 1, were it not sampled and cut off.
+/// The third cumulants (f, x, x) of f = x^2 / 2 and (f, x, y) of f = x y under a Gaussian, offsets per sigma.
+/// Dividing by them turns cumulants into second derivatives. Both would be 1 if the Gaussian were not sampled and
+/// cut off.
 struct CumulantUnits {
     double xx, xy;
 };
@@ -63,13 +62,13 @@ CumulantUnits cumulant_units(const GaussianKernel& kernel);
 class ImageFilters {
   public:
     virtual ~ImageFilters() = default;
-    /// `face` has a number per pixel, k_no_face outside of the mask, as in G-buffers. What images hold there does not
-    /// matter; inside they must be finite. Results round as if values were about 1 at most. Throws UsageError unless
-    /// there are 1 to k_most_derived_images images, with a face for each pixel, and sigma is one of gaussian_kernel's.
-    /// Orientations, a third of the work, may be left out.
+    /// Computes the derivatives. `face` has a number per pixel, k_no_face outside of the mask, as in G-buffers.
+    /// Images must be finite inside the mask; their values outside do not matter. Rounding errors are those of
+    /// values up to about 1. Orientations, a third of the work, may be left out. Throws UsageError unless there are
+    /// 1 to k_max_derived_images images, with a face for each pixel, and gaussian_kernel accepts sigma.
     virtual ImageDerivatives derivatives(const ImageStack& images, std::span<const std::uint32_t> face, float sigma,
                                          bool with_orientations = true) = 0;
-    /// Any number of images convolved with a Gaussian, as if they were zero outside. Throws UsageError as
+    /// Convolves any number of images with a Gaussian, as if they were zero outside. Throws UsageError as
     /// gaussian_kernel.
     virtual ImageStack blurred(const ImageStack& images, float sigma) = 0;
 };
@@ -81,10 +80,10 @@ class CpuImageFilters final : public ImageFilters {
     ImageStack blurred(const ImageStack& images, float sigma) override { return gaussian_blur(images, sigma); }
 };
 
-/// Throws what ImageFilters::derivatives says of images and faces that do not fit together.
+/// Throws UsageError, as ImageFilters::derivatives documents, if images and faces do not fit together.
 void check_derivatives(const ImageStack& images, std::span<const std::uint32_t> face);
 
-/// The smallest rectangle around all pixels of the mask; none if there are none.
+/// Returns the smallest rectangle around all pixels of the mask; nothing if there are none.
 std::optional<PixelBox> mask_box(std::span<const std::uint32_t> face, int width);
 
 }  // namespace exemplar

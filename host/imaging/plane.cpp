@@ -7,7 +7,7 @@
 namespace exemplar {
 namespace {
 
-/// Where a + offset is in [0, count) for a in [begin, end).
+/// The range [begin, end) of a for which both a and a + offset are in [0, count).
 struct Overlap {
     std::size_t begin, end;
 };
@@ -23,7 +23,7 @@ std::ptrdiff_t offset_of(std::size_t weight, std::span<const double> weights) {
     return static_cast<std::ptrdiff_t>(weight) - static_cast<std::ptrdiff_t>(weights.size() / 2);
 }
 
-/// Adds a row, moved and weighted, to another; plain loops over neighbors become vector instructions.
+/// Adds a shifted and weighted row to another. Compilers turn plain loops over neighbors into vector instructions.
 void add(double weight, const double* from, double* to, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) to[i] += weight * from[i];
 }

@@ -18,9 +18,10 @@ struct Plane {
     std::span<const double> row(std::size_t y) const { return std::span(values).subspan(y * width, width); }
 };
 
-/// out(x, y) = sum of weights[radius + k] in(x + k, y) over k from -radius to radius; `weights` has 2 radius + 1.
+/// Returns out(x, y) = sum of weights[radius + k] in(x + k, y) over k from -radius to radius; `weights` has 2 radius
+/// + 1.
 Plane weighted_sums_along_x(const Plane& in, std::span<const double> weights);
-/// The same of in(x, y + k).
+/// Sums in(x, y + k) likewise.
 Plane weighted_sums_along_y(const Plane& in, std::span<const double> weights);
 
 }  // namespace exemplar

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int k_samples = 2;  // per pixel and axis
 
-/// Linear color of every face and the light that falls on a visible point.
+/// Linear color of every face, and the light on a visible point.
 class Shader {
   public:
     Shader(const TriangleMesh& mesh, std::span<const Color> colors, const Camera& camera, const RenderOptions& options)

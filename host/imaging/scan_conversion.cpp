@@ -12,16 +12,16 @@ namespace {
 
 using Vec4 = Eigen::Vector4f;
 
-constexpr int k_subpixels = 256;    // fixed-point positions make coverage exact, so shared edges never leak
+constexpr int k_subpixels = 256;    // fixed-point positions make coverage exact, so shared edges have no gaps
 constexpr float k_guard_band = 64;  // in units of the view's half width; keeps fixed-point products inside 64 bits
-constexpr std::size_t k_band = 32;  // sample rows that one task owns
+constexpr std::size_t k_band = 32;  // sample rows per task
 
 struct ClipVertex {
     Vec4 position;  // clip space
     Vec3 weight;    // barycentric coordinates in the source triangle
 };
 
-/// A triangle inside the guard band, ready to be scanned.
+/// A triangle inside the guard band, ready for scan conversion.
 struct ScreenTriangle {
     std::array<std::int64_t, 3> x, y;  // sample grid, in 1 / k_subpixels
     std::array<double, 3> depth, inverse_w;
@@ -45,7 +45,7 @@ std::vector<ClipVertex> clip_polygon(const std::vector<ClipVertex>& polygon, con
     return out;
 }
 
-/// The six planes a visible point is on the positive side of: near, far, and the guard band.
+/// Returns the planes with visible points on their positive side: near, far, and the guard band.
 const std::array<Vec4, 6>& clip_planes() {
     static const std::array<Vec4, 6> planes{Vec4(0, 0, 1, 0),
                                             Vec4(0, 0, -1, 1),
@@ -56,7 +56,7 @@ const std::array<Vec4, 6>& clip_planes() {
     return planes;
 }
 
-/// Appends a clip-space triangle in screen coordinates, ordered to a positive area; nothing if it has none.
+/// Appends a clip-space triangle in screen coordinates, ordered to a positive area; skips it if it has none.
 void append_screen_triangle(std::array<ClipVertex, 3> corners, std::uint32_t face, int columns, int rows,
                             std::vector<ScreenTriangle>& out) {
     ScreenTriangle t;
@@ -103,19 +103,20 @@ std::vector<ScreenTriangle> screen_triangles(const TriangleMesh& mesh, const Cam
     return out;
 }
 
-/// Twice the signed area of (a, b, p), in squared subpixels.
+/// Returns twice the signed area of (a, b, p), in squared subpixels.
 std::int64_t edge_function(const ScreenTriangle& t, std::size_t a, std::size_t b, std::int64_t x, std::int64_t y) {
     return (t.x[b] - t.x[a]) * (y - t.y[a]) - (t.y[b] - t.y[a]) * (x - t.x[a]);
 }
 
-/// Whether samples exactly on the edge a -> b belong to the triangle: on top and left edges only, so that of two
-/// triangles that share an edge exactly one covers each sample.
+/// Returns whether samples exactly on the edge a -> b belong to the triangle: on top and left edges only, so that of
+/// two triangles that share an edge exactly one covers each sample.
 bool owns_edge(const ScreenTriangle& t, std::size_t a, std::size_t b) {
     const std::int64_t dx = t.x[b] - t.x[a], dy = t.y[b] - t.y[a];
     return dy < 0 || (dy == 0 && dx > 0);
 }
 
-/// First and last sample whose center lies in [low, high], clamped to [begin, end).
+/// Returns the half-open range of samples whose centers lie between the smallest and the largest of v, clamped to
+/// [begin, end).
 std::array<std::int64_t, 2> sample_range(const std::array<std::int64_t, 3>& v, std::int64_t begin, std::int64_t end) {
     const auto [low, high] = std::minmax_element(v.begin(), v.end());
     const auto floor_div = [](std::int64_t a) {

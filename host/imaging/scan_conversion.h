@@ -13,14 +13,15 @@ constexpr std::uint32_t k_no_face = 0xFFFFFFFF;
 
 /// What is visible at a sample of an image.
 struct VisibleSample {
-    double depth = std::numeric_limits<double>::infinity();  ///< of clip space, in [0, 1]
+    double depth = std::numeric_limits<double>::infinity();  ///< depth in clip space, in [0, 1]
     std::uint32_t face = k_no_face;
-    Vec3 weight = Vec3::Zero();  ///< barycentric, of the surface: perspective is taken into account
+    Vec3 weight = Vec3::Zero();  ///< barycentric coordinates on the surface, perspective-correct
 };
 
-/// A z-buffer rasterizer with the fill rule and the depth range of Vulkan: what the camera sees through the centers of
-/// columns x rows cells (both positive), row by row from the top left. Faces have two sides and are clipped at the near
-/// and far planes; of equally near ones the first is visible. The result does not depend on the number of threads.
+/// Rasterizes a mesh with a z-buffer, by the fill rule and the depth range of Vulkan. Returns what the camera sees
+/// through the centers of columns x rows cells (both positive), row by row from the top left. Faces have two sides
+/// and are clipped at the near and far planes; of equally near ones the first is visible. The result does not depend
+/// on the number of threads.
 std::vector<VisibleSample> visible_samples(const TriangleMesh& mesh, const Camera& camera, int columns, int rows);
 
 }  // namespace exemplar

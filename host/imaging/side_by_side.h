@@ -6,7 +6,7 @@
 
 namespace exemplar {
 
-/// Images of the same height and channels from left to right as one. Throws UsageError if they are not, or there is
+/// Joins images of the same height and channels from left to right. Throws UsageError if they differ or there is
 /// none.
 Image side_by_side(std::span<const Image> images);
 

@@ -12,12 +12,12 @@
 
 namespace exemplar {
 
-/// A number as SVG has it: a point for the decimals, at most so many of them (0 to 6), no more than needed, never an
-/// exponent. Throws UsageError if it is not finite.
+/// Formats a number for SVG: a point as the decimal separator, at most `decimals` decimals (0 to 6) but no trailing
+/// zeros, never an exponent. Throws UsageError if it is not finite.
 std::string svg_number(double value, int decimals = 2);
-/// Text as it stands in an attribute or between tags: markup escaped; what XML cannot hold replaced by U+FFFD.
+/// Escapes text for an attribute or for between tags; replaces what XML cannot hold by U+FFFD.
 std::string svg_escaped(std::string_view text);
-/// "#rrggbb".
+/// Returns the color as "#rrggbb".
 std::string svg_color(const Color& color);
 
 /// Builds the data of a path, with coordinates to a hundredth.
@@ -38,18 +38,18 @@ class SvgPath {
 
 using SvgAttribute = std::pair<std::string_view, std::string>;
 
-/// Builds an SVG document of one coordinate unit per pixel. Groups are nested by opening and closing them.
+/// Builds an SVG document with one coordinate unit per pixel. Groups are nested by opening and closing them.
 class SvgDocument {
   public:
-    /// `title` is what viewers show as the document's name. Throws UsageError unless both sizes are positive.
+    /// `title` is the document's name in viewers. Throws UsageError unless both sizes are positive.
     SvgDocument(int width, int height, std::string_view title);
-    /// Opens a group that Inkscape shows as a layer of that name. Layers may be nested.
+    /// Opens a group that Inkscape shows as a layer with this name. Layers may be nested.
     void open_layer(std::string_view label, std::span<const SvgAttribute> attributes = {});
     void open_group(std::span<const SvgAttribute> attributes = {});
     void close();
     /// Adds an element without content.
     void add(std::string_view element, std::span<const SvgAttribute> attributes);
-    /// The whole document; throws UsageError if a group is still open.
+    /// Returns the whole document; throws UsageError if a group is still open.
     std::string text() const;
 
   private:
@@ -61,7 +61,7 @@ class SvgDocument {
     std::string title_;
 };
 
-/// Writes a document; readers never see half a file. Throws DataError if it cannot be written.
+/// Writes a document; readers never see half of it. Throws DataError if it cannot be written.
 void write_svg(const std::filesystem::path& path, const SvgDocument& document);
 
 }  // namespace exemplar

@@ -21,9 +21,9 @@ Columns evenly_taken(const Eigen::Ref<const Eigen::MatrixXf>& points, std::size_
 }
 
 Eigen::VectorXf seek_mode(const Columns& sample, Eigen::VectorXf at, float bandwidth) {
-    constexpr int k_most_steps = 100;
+    constexpr int k_max_steps = 100;
     const float scale = -0.5f / (bandwidth * bandwidth);
-    for (int step = 0; step < k_most_steps; ++step) {
+    for (int step = 0; step < k_max_steps; ++step) {
         const Eigen::RowVectorXf weight = ((sample.colwise() - at).colwise().squaredNorm() * scale).array().exp();
         const Eigen::VectorXf next = sample * weight.transpose() / weight.sum();
         const float moved = (next - at).norm();
@@ -33,7 +33,7 @@ Eigen::VectorXf seek_mode(const Columns& sample, Eigen::VectorXf at, float bandw
     return at;
 }
 
-/// One column per mode: those within the bandwidth of an earlier one are left out.
+/// Returns one column per mode, without those closer than the bandwidth to an earlier one.
 Columns distinct_modes(const Columns& found, float bandwidth) {
     std::vector<Eigen::Index> kept;
     for (Eigen::Index i = 0; i < found.cols(); ++i) {

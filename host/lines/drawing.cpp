@@ -41,14 +41,14 @@ LineOptions options_of(LineType type, const DrawingStyle& style, const StrokeVie
     return options;
 }
 
-/// A surface with all that is found out about it once.
+/// A surface with its index for visibility, which is built once.
 struct Drawn {
     explicit Drawn(const LineSurface& of) : surface(of), visibility(of) {}
     LineSurface surface;
     LineVisibility visibility;
 };
 
-/// Makes the layers of a drawing, one after the other.
+/// Makes the layers of a drawing one after the other, and adds up the time of the steps.
 class Drawer {
   public:
     Drawer(const DrawingStyle& style, const StrokeView& view, const VisibilityOptions& visibility, Drawing& drawing)
@@ -64,7 +64,7 @@ class Drawer {
         lap(drawing_.seconds.lines);
         return segments;
     }
-    /// Adds the strokes of segments that were found as `found` to the layer of another or the same type.
+    /// Adds the strokes of segments of the type `found` to a layer, whose type may be another.
     void add(const Drawn& drawn, LineType found, const std::vector<LineSegment>& segments, DrawingLayer& layer) {
         VisibleParts visible =
             drawn.visibility.visible_parts(found, segments, view_.camera, view_.width, view_.height, visibility_);
@@ -92,7 +92,7 @@ class Drawer {
     Stopwatch watch_;
 };
 
-/// Moves the creases that are outlines, with one face turned to the eye and the other away, to the end; returns where
+/// Moves the creases on the outline, with one face turned to the eye and the other away, to the end. Returns where
 /// they begin.
 std::vector<LineSegment>::iterator outlines_of(const LineSurface& surface, const Camera& camera,
                                                std::vector<LineSegment>& creases) {
@@ -103,7 +103,7 @@ std::vector<LineSegment>::iterator outlines_of(const LineSurface& surface, const
     };
     return std::stable_partition(creases.begin(), creases.end(), [&](const LineSegment& segment) {
         const std::uint32_t across = surface.neighbors[segment.face][segment.places[0] - k_at_corner];
-        return across > k_last_neighbor || faces_eye(segment.face) == faces_eye(across / 4);
+        return across > k_max_neighbor_code || faces_eye(segment.face) == faces_eye(across / 4);
     });
 }
 
@@ -178,7 +178,7 @@ std::vector<StrokeRun> visible_runs(const Stroke& stroke) {
         runs.front().closed = true;
         return runs;
     }
-    // The last run goes on in the first.
+    // The last run continues in the first.
     const float length = points.back().parameter;
     std::vector<StrokePoint>& last = runs.back().points;
     for (std::size_t i = 1; i < runs.front().points.size(); ++i) {

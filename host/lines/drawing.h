@@ -14,44 +14,44 @@ namespace exemplar {
 /// The strokes of one line type.
 struct DrawingLayer {
     LineType type = LineType::contours;
-    std::size_t segments = 0;  ///< that were found, hidden ones too
+    std::size_t segments = 0;  ///< number found, including hidden ones
     std::vector<Stroke> strokes;
 };
 
 /// A line drawing of a surface.
 struct Drawing {
     int width = 0, height = 0;         ///< pixels
-    std::vector<DrawingLayer> layers;  ///< in the order in which they are drawn
-    /// Wall time that its steps took.
+    std::vector<DrawingLayer> layers;  ///< in drawing order
+    /// Wall time of the steps.
     struct Seconds {
         double lines = 0, visibility = 0, strokes = 0;
     } seconds;
 };
 
-/// Types in the order in which they are drawn: highlights first, contours last, so that what says most is on top.
+/// Returns the line types in drawing order: highlights first, contours last, so that the most important are on top.
 std::span<const LineType> drawing_order();
 
-/// The drawing of all lines of some types that a camera sees, with thresholds and thickness of the style; hidden parts
-/// are marked in the strokes, but for gaps of up to three pixels in lines across smooth surfaces (see close_gaps).
-/// Creases and boundaries are those of `edges`: the same surface with the same faces, where `surface` was cut open
-/// along them (see split_at_creases); null: of `surface`. With contours, creases that are outlines, as one of their
-/// faces is turned away from the eye, are drawn as contours. Throws UsageError as extract_lines and make_strokes.
+/// Draws all lines of some types as a camera sees them, with thresholds and thickness of the style. Hidden parts are
+/// marked in the strokes; in lines across smooth surfaces hidden gaps of up to three pixels are closed (close_gaps).
+/// Creases and boundaries are found on `edges`, the same surface with the same faces, if `surface` was cut open
+/// along its creases (split_at_creases); null: on `surface`. If contours are drawn, creases on the outline (one face
+/// turned to the eye, one away) are drawn as contours. Throws UsageError as extract_lines and make_strokes do.
 Drawing draw_lines(const LineSurface& surface, std::span<const LineType> types, const DrawingStyle& style,
                    const StrokeView& view, const LineSurface* edges = nullptr,
                    const VisibilityOptions& visibility = {});
 
-/// Both as one drawing, `right` beside `left`. Throws UsageError unless they have the same layers and are equally high.
+/// Returns one drawing with `right` beside `left`. Throws UsageError if their layers or heights differ.
 Drawing side_by_side(Drawing left, const Drawing& right);
 
-/// What is visible of a stroke without a gap.
+/// A visible part of a stroke without a gap.
 struct StrokeRun {
-    std::vector<StrokePoint> points;  ///< two or more; of a closed run the last is the first
+    std::vector<StrokePoint> points;  ///< two or more; in a closed run the last equals the first
     bool closed = false;
 };
-/// The visible runs of a stroke, along it. One that goes over the start of a closed stroke is in one piece, and its
-/// parameters grow on.
+/// Returns the visible runs of a stroke in order. A run across the start of a closed stroke is one piece, along
+/// which parameters keep increasing.
 std::vector<StrokeRun> visible_runs(const Stroke& stroke);
-/// Length of a run in pixels.
+/// Returns the length of a run in pixels.
 float length_of(const StrokeRun& run);
 
 }  // namespace exemplar

@@ -14,25 +14,25 @@ namespace exemplar {
 
 namespace {
 
-constexpr float k_width_step = 0.2f;      // largest change of width within a center line, of the run's largest width
-constexpr float k_opacity_step = 0.2f;    // largest change of opacity within a path
-constexpr float k_most_bulge = 0.5f;      // pixels that control points are off the straight way
-constexpr float k_least_cosine = 0.7f;    // between a stroke and its tangent, but at corners
-constexpr float k_least_width = 0.05f;    // pixels; thinner paths are left out
-constexpr float k_least_opacity = 0.02f;  // paler ones, too
+constexpr float k_width_step = 0.2f;    // maximum change of width within a center line, per width of its run
+constexpr float k_opacity_step = 0.2f;  // maximum change of opacity within a path
+constexpr float k_max_bulge = 0.5f;     // maximum distance of control points from the chord, in pixels
+constexpr float k_min_cosine = 0.7f;    // between a chord and the tangent; below it the point is a corner
+constexpr float k_min_width = 0.05f;    // pixels; thinner paths are left out
+constexpr float k_min_opacity = 0.02f;  // paler ones, too
 
 /// A part of a run that becomes one path.
-struct Piece {
+struct SvgPiece {
     std::vector<StrokePoint> points;
     bool closed = false;
-    bool begins = true, ends = true;  ///< where its run does
+    bool begins = true, ends = true;  ///< whether its run begins or ends there
     float width = 0, opacity = 1;     ///< means along it
 
     const Vec2& begin() const { return points.front().position; }
     const Vec2& end() const { return points.back().position; }
 };
 
-/// Position and half width of a point, as simplification sees it.
+/// Returns what simplification compares: position and, for outlines, half width.
 Vec3 sides_of(const StrokePoint& point, bool outline) {
     return {point.position.x(), point.position.y(), outline ? 0.5f * point.width : 0};
 }
@@ -44,8 +44,7 @@ float distance_to(const Vec3& p, const Vec3& a, const Vec3& b) {
     return (a + t * way - p).norm();
 }
 
-/// Leaves out points that are no farther than the tolerance from the straight way between those that stay (Douglas and
-/// Peucker 1973).
+/// Leaves out points within the tolerance of the line between those that stay (Douglas and Peucker 1973).
 std::vector<StrokePoint> simplified(const std::vector<StrokePoint>& points, float tolerance, bool outline) {
     std::vector<std::uint8_t> stays(points.size(), 0);
     stays.front() = stays.back() = 1;
@@ -73,8 +72,8 @@ std::vector<StrokePoint> simplified(const std::vector<StrokePoint>& points, floa
     return result;
 }
 
-/// Means of width and opacity along a piece.
-void set_means(Piece& piece) {
+/// Sets the mean width and opacity along a piece.
+void set_means(SvgPiece& piece) {
     float length = 0, width = 0, opacity = 0;
     for (std::size_t i = 0; i + 1 < piece.points.size(); ++i) {
         const StrokePoint &a = piece.points[i], &b = piece.points[i + 1];
@@ -87,12 +86,12 @@ void set_means(Piece& piece) {
     piece.opacity = opacity / length;
 }
 
-/// Cuts a run where its width (of center lines) or its opacity has changed too much.
-std::vector<Piece> pieces_of(const StrokeRun& run, const SvgOptions& options) {
+/// Cuts a run where its opacity or, for center lines, its width has changed too much.
+std::vector<SvgPiece> pieces_of(const StrokeRun& run, const SvgOptions& options) {
     float widest = 0;
     for (const StrokePoint& point : run.points) widest = std::max(widest, point.width);
     const float width_step = options.form == SvgForm::lines ? k_width_step * widest : std::numeric_limits<float>::max();
-    std::vector<Piece> pieces;
+    std::vector<SvgPiece> pieces;
     for (std::size_t first = 0; first + 1 < run.points.size();) {
         float low = run.points[first].width, high = low;
         float palest = run.points[first].opacity, darkest = palest;
@@ -106,7 +105,7 @@ std::vector<Piece> pieces_of(const StrokeRun& run, const SvgOptions& options) {
             if (last > first && (high - low > width_step || darkest - palest > k_opacity_step)) break;
             ++last;
         }
-        Piece& piece = pieces.emplace_back();
+        SvgPiece& piece = pieces.emplace_back();
         piece.points.assign(run.points.begin() + static_cast<std::ptrdiff_t>(first),
                             run.points.begin() + static_cast<std::ptrdiff_t>(last) + 1);
         set_means(piece);
@@ -126,16 +125,16 @@ void apply_fading(SvgFading fading, StrokeRun& run) {
     }
 }
 
-/// The pieces of a layer, stroke by stroke.
-std::vector<Piece> pieces_of(std::span<const Stroke> strokes, const SvgOptions& options, SvgSummary& summary) {
-    std::vector<Piece> pieces;
+/// Returns the pieces of a layer, stroke by stroke.
+std::vector<SvgPiece> pieces_of(std::span<const Stroke> strokes, const SvgOptions& options, SvgSummary& summary) {
+    std::vector<SvgPiece> pieces;
     for (const Stroke& stroke : strokes)
         for (StrokeRun& run : visible_runs(stroke)) {
             if (length_of(run) < options.shortest) continue;
             summary.length += static_cast<double>(length_of(run));
             apply_fading(options.fading, run);
-            for (Piece& piece : pieces_of(run, options)) {
-                if (piece.width < k_least_width || piece.opacity < k_least_opacity) continue;
+            for (SvgPiece& piece : pieces_of(run, options)) {
+                if (piece.width < k_min_width || piece.opacity < k_min_opacity) continue;
                 if (options.tolerance > 0)
                     piece.points = simplified(piece.points, options.tolerance, options.form == SvgForm::outlines);
                 pieces.push_back(std::move(piece));
@@ -144,10 +143,10 @@ std::vector<Piece> pieces_of(std::span<const Stroke> strokes, const SvgOptions& 
     return pieces;
 }
 
-/// The way of a pen: always on to the nearest end of what is not drawn yet, turning a center line around if it is its
-/// second. Outlines begin where they do.
-std::vector<Piece> ordered(std::vector<Piece> pieces, SvgForm form) {
-    std::vector<Piece> result;
+/// Orders pieces for a pen, greedily: next is the piece with the end nearest to the pen. Center lines may be
+/// reversed; outlines always start at their beginning.
+std::vector<SvgPiece> ordered(std::vector<SvgPiece> pieces, SvgForm form) {
+    std::vector<SvgPiece> result;
     result.reserve(pieces.size());
     std::vector<std::size_t> left(pieces.size());
     for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
@@ -157,7 +156,7 @@ std::vector<Piece> ordered(std::vector<Piece> pieces, SvgForm form) {
         std::size_t chosen = 0;
         bool turned = false;
         for (std::size_t i = 0; i < left.size() && nearest > 0; ++i) {
-            const Piece& piece = pieces[left[i]];
+            const SvgPiece& piece = pieces[left[i]];
             const float to_begin = (piece.begin() - pen).squaredNorm();
             const float to_end = form == SvgForm::lines ? (piece.end() - pen).squaredNorm() : to_begin;
             if (std::min(to_begin, to_end) >= nearest) continue;
@@ -165,7 +164,7 @@ std::vector<Piece> ordered(std::vector<Piece> pieces, SvgForm form) {
             chosen = i;
             turned = to_end < to_begin;
         }
-        Piece& piece = pieces[left[chosen]];
+        SvgPiece& piece = pieces[left[chosen]];
         if (turned) std::reverse(piece.points.begin(), piece.points.end());
         pen = piece.end();
         result.push_back(std::move(piece));
@@ -175,8 +174,8 @@ std::vector<Piece> ordered(std::vector<Piece> pieces, SvgForm form) {
     return result;
 }
 
-/// The control point beside a point, on the way to another: along the stroke, which is across its normal. A curve's
-/// control points bulge it by up to three quarters of their distance from the straight way.
+/// Returns the control point of `at` towards another point: along the tangent, which is perpendicular to the normal.
+/// A curve deviates from the chord by up to three quarters of the distance of its control points.
 Vec2 control_point(const StrokePoint& at, const Vec2& other) {
     const Vec2 way = other - at.position;
     const float length = way.norm();
@@ -184,12 +183,12 @@ Vec2 control_point(const StrokePoint& at, const Vec2& other) {
     Vec2 tangent(at.normal.y(), -at.normal.x());
     if (tangent.dot(way) < 0) tangent = -tangent;
     const float cosine = tangent.dot(way) / length;
-    if (cosine < k_least_cosine) return at.position + way / 3;  // a corner
+    if (cosine < k_min_cosine) return at.position + way / 3;  // a corner
     const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
-    return at.position + std::min(length / 3, k_most_bulge / std::max(sine, 1e-6f)) * tangent;
+    return at.position + std::min(length / 3, k_max_bulge / std::max(sine, 1e-6f)) * tangent;
 }
 
-std::string center_line(const Piece& piece, bool curves) {
+std::string center_line(const SvgPiece& piece, bool curves) {
     SvgPath path;
     path.move_to(piece.begin());
     const std::size_t count = piece.points.size() - (piece.closed && !curves ? 1 : 0);
@@ -208,10 +207,10 @@ Vec2 side(const StrokePoint& point, float sign) {
     return point.position + sign * 0.5f * point.width * point.normal;
 }
 
-/// Around a piece: along its right side, around its end, back along its left and around its beginning. Of a closed one
-/// a ring.
-std::string outline(const Piece& piece) {
-    constexpr float k_round = 0.3f;  // pixels of width from which an end is a half circle
+/// Returns the outline of a piece: along its right side, around its end, back along its left side and around its
+/// beginning. The outline of a closed piece is a ring.
+std::string outline(const SvgPiece& piece) {
+    constexpr float k_round = 0.3f;  // ends wider than this, in pixels, are half circles
     const std::vector<StrokePoint>& points = piece.points;
     SvgPath path;
     path.move_to(side(points.front(), 1));
@@ -241,7 +240,7 @@ std::string outline(const Piece& piece) {
 /// Writes the layers of drawings into a document.
 class SvgWriter {
   public:
-    /// Without a background what is pale is transparent.
+    /// Without a background, pale strokes are transparent.
     SvgWriter(SvgDocument& document, const std::optional<Color>& background, const SvgOptions& options)
         : document_(document), background_(background), options_(options) {}
 
@@ -260,14 +259,14 @@ class SvgWriter {
             attributes = {
                 {"fill", "none"}, {"stroke", color}, {"stroke-linecap", "round"}, {"stroke-linejoin", "round"}};
         document_.open_layer(layer.name, attributes);
-        for (const Piece& piece : ordered(pieces_of(layer.strokes, options_, summary_), options_.form))
+        for (const SvgPiece& piece : ordered(pieces_of(layer.strokes, options_, summary_), options_.form))
             add_piece(piece, layer);
         document_.close();
     }
     const SvgSummary& summary() const { return summary_; }
 
   private:
-    void add_piece(const Piece& piece, const SvgLayer& layer) {
+    void add_piece(const SvgPiece& piece, const SvgLayer& layer) {
         const bool lines = options_.form == SvgForm::lines;
         std::vector<SvgAttribute> attributes = {{"d", lines ? center_line(piece, options_.curves) : outline(piece)}};
         if (lines) attributes.emplace_back("stroke-width", svg_number(static_cast<double>(piece.width)));
@@ -280,7 +279,7 @@ class SvgWriter {
         ++summary_.paths;
         summary_.points += piece.points.size();
     }
-    /// Paths overlap where they meet, which would show if they were transparent.
+    /// Mixes a color with the background. Overlaps of paths where they meet would show if they were transparent.
     Color mixed(const Color& color, float opacity) const {
         Color result{};
         for (std::size_t c = 0; c < 3; ++c)
@@ -313,7 +312,7 @@ void add_animation(SvgDocument& document, std::size_t frame, std::size_t count, 
                                            {"repeatCount", "indefinite"}});
 }
 
-void check(std::span<const Drawing> frames, const SvgOptions& options) {
+void check_frames(std::span<const Drawing> frames, const SvgOptions& options) {
     if (frames.empty()) throw UsageError("no drawing to write as SVG; give at least one frame");
     for (const Drawing& frame : frames)
         if (frame.width != frames[0].width || frame.height != frames[0].height)
@@ -342,7 +341,7 @@ SvgSummary write_layers_svg(const std::filesystem::path& path, int width, int he
 
 SvgSummary write_drawing_svg(const std::filesystem::path& path, std::span<const Drawing> frames,
                              const DrawingStyle& style, const SvgOptions& options) {
-    check(frames, options);
+    check_frames(frames, options);
     SvgDocument document(frames[0].width, frames[0].height, options.title);
     SvgWriter writer(document, style.background, options);
     writer.add_background(frames[0].width, frames[0].height);

@@ -10,28 +10,28 @@
 
 namespace exemplar {
 
-/// How strokes become paths.
+/// How strokes are converted to paths.
 enum class SvgForm {
-    lines,    ///< center lines with a stroke width, cut where it changes: what plotters and editors of lines want
-    outlines  ///< filled shapes, one a visible run, whose width changes smoothly
+    lines,    ///< center lines with a stroke width, cut where it changes: for plotters and line editors
+    outlines  ///< filled shapes whose width varies smoothly, one per visible run
 };
-/// What becomes of lines that are barely strong enough.
+/// How lines are drawn whose strength is little above the threshold.
 enum class SvgFading {
-    opacity,  ///< they are pale: of a color between theirs and the background's, or transparent without background
-    width,    ///< they are thin
-    none      ///< nothing
+    opacity,  ///< pale: a color between theirs and the background's; transparent without a background
+    width,    ///< thin
+    none      ///< like the others
 };
 
 struct SvgOptions {
     SvgForm form = SvgForm::lines;
     SvgFading fading = SvgFading::opacity;
-    float tolerance = 0.1f;  ///< pixels that simplified paths may be off; 0 keeps all points
-    float shortest = 1.5f;   ///< pixels; visible runs that are shorter are left out
-    /// Center lines are curves through their points, at most half a pixel from the straight ways, and stay smooth when
-    /// they are enlarged.
+    float tolerance = 0.1f;  ///< maximum deviation of simplified paths in pixels; 0 keeps all points
+    float shortest = 1.5f;   ///< pixels; shorter visible runs are left out
+    /// Whether center lines are curves through their points, which stay smooth when enlarged. They deviate from the
+    /// polyline by at most half a pixel.
     bool curves = false;
-    bool background = true;         ///< a rectangle of the style's background, if it has one, in a layer of its own
-    double frames_per_second = 30;  ///< of more than one frame
+    bool background = true;         ///< adds a layer with a rectangle of the background color, if there is one
+    double frames_per_second = 30;  ///< for more than one frame
     std::string title = "Drawing";
 };
 
@@ -41,7 +41,7 @@ struct SvgSummary {
     double length = 0;  ///< of all visible runs, in pixels
 };
 
-/// Strokes of one color under a name.
+/// A named layer of strokes of one color.
 struct SvgLayer {
     std::string name;
     Color color{0, 0, 0};
@@ -49,15 +49,15 @@ struct SvgLayer {
     std::span<const Stroke> strokes;
 };
 /// Writes layers of strokes as an SVG file, the first at the bottom, over a background if there is one. Paths of a
-/// layer stand in an order that keeps a pen's ways between them short. Throws as write_drawing_svg.
+/// layer are ordered so that a plotter's pen moves little between them. Throws as write_drawing_svg does.
 SvgSummary write_layers_svg(const std::filesystem::path& path, int width, int height,
                             const std::optional<Color>& background, std::span<const SvgLayer> layers,
                             const SvgOptions& options = {});
 
-/// Writes drawings of one size as an SVG file with a layer per line type, named after it. Hidden lines are not in it.
-/// Paths of a layer stand in an order that keeps a pen's ways between them short. More than one drawing are the frames
-/// of an animation that repeats, a layer each; programs that do not play it show the first. Throws UsageError if there
-/// is no drawing or sizes differ, DataError if the file cannot be written.
+/// Writes drawings of one size as an SVG file with a layer per line type, named after it, without hidden lines.
+/// Paths of a layer are ordered so that a plotter's pen moves little between them. Several drawings become the
+/// frames of a looping animation, a layer each; programs that do not play it show the first. Throws UsageError if
+/// there is no drawing, sizes differ or an option is out of range, DataError if the file cannot be written.
 SvgSummary write_drawing_svg(const std::filesystem::path& path, std::span<const Drawing> frames,
                              const DrawingStyle& style, const SvgOptions& options = {});
 

@@ -5,8 +5,8 @@
 namespace exemplar {
 namespace {
 
-/// Greedy farthest points in CIE L*a*b*, away from black, white and gray; the first nine of moderate chroma, as most
-/// meshes have no more labels. Any two are at least 38 apart there (1 is barely visible).
+/// Greedy farthest points in CIE L*a*b*, away from black, white and gray. The first nine have moderate chroma, since
+/// most meshes have no more labels. Any two colors are at least 38 apart there (1 is barely visible).
 constexpr std::array<Color, 20> k_palette{
     {{212, 80, 64},  {64, 120, 200},  {56, 212, 128}, {200, 176, 56}, {176, 44, 140},  {20, 212, 236}, {248, 176, 224},
      {80, 116, 56},  {248, 176, 140}, {32, 20, 248},  {32, 236, 20},  {248, 20, 248},  {128, 92, 236}, {116, 68, 80},

@@ -14,7 +14,7 @@ struct FaceLabels {
 };
 
 using Color = std::array<std::uint8_t, 3>;
-/// A fixed palette of well-separated sRGB colors for labels 0, 1, ...; repeats with other lightness after 20.
+/// Returns a color from a fixed palette of well-separated sRGB colors; it repeats with another lightness after 20.
 Color label_color(std::size_t label);
 /// The color of faces without a label.
 constexpr Color k_unlabeled_color{128, 128, 128};

@@ -8,20 +8,14 @@ namespace exemplar {
 
 namespace {
 
-/// Twice the area times the normal of a face, in double: the products of float coordinates then neither cancel
-/// nor underflow, so only truly degenerate faces give zero.
+/// Returns twice the area times the normal of a face, in double: the products of float coordinates then neither
+/// cancel nor underflow, so only truly degenerate faces give zero.
 Vec3d area_vector(const TriangleMesh& mesh, const Face& face) {
     const Vec3d a = mesh.vertices[face[0]].cast<double>();
     return (mesh.vertices[face[1]].cast<double>() - a).cross(mesh.vertices[face[2]].cast<double>() - a);
 }
 
-Vec3 unit_or_up(const Vec3d& v) {
-    const double length = v.norm();
-    if (!(length > 0) || !std::isfinite(length)) return Vec3::UnitZ();
-    return (v / length).cast<float>();
-}
-
-/// Sum of the area vectors of the faces around each vertex.
+/// Sums the area vectors of the faces around each vertex.
 std::vector<Vec3d> vertex_area_vectors(const TriangleMesh& mesh) {
     std::vector<Vec3d> sum(mesh.vertex_count(), Vec3d::Zero());
     for (const Face& face : mesh.faces) {
@@ -32,6 +26,12 @@ std::vector<Vec3d> vertex_area_vectors(const TriangleMesh& mesh) {
 }
 
 }  // namespace
+
+Vec3 unit_or_up(const Vec3d& v) {
+    const double length = v.norm();
+    if (!(length > 0) || !std::isfinite(length)) return Vec3::UnitZ();
+    return (v / length).cast<float>();
+}
 
 BoundingBox bounding_box(const TriangleMesh& mesh) {
     BoundingBox box{Vec3d::Constant(std::numeric_limits<double>::infinity()),
@@ -85,8 +85,8 @@ std::vector<Vec3> vertex_normals(const TriangleMesh& mesh) {
         const Vec3d pa = mesh.vertices[a].cast<double>();
         const Vec3d ab = mesh.vertices[b].cast<double>() - pa, ac = mesh.vertices[c].cast<double>() - pa;
         const Vec3d n = ab.cross(ac);
-        // |n| is sine times the two edge lengths, so the squared lengths leave sine over lengths. Between edges of
-        // which one is zero, fused products leave n a little above it.
+        // |n| is sine times the two edge lengths, so dividing by the squared lengths gives sine over lengths. The
+        // test for zero edges is needed because fused products can leave n slightly above zero there.
         const double ab2 = ab.squaredNorm(), ac2 = ac.squaredNorm(), bc2 = (ac - ab).squaredNorm();
         if (!(ab2 > 0 && ac2 > 0 && bc2 > 0)) continue;
         sum[a] += n / (ab2 * ac2);

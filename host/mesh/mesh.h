@@ -20,14 +20,14 @@ using Face = std::array<std::uint32_t, 3>;
 struct TriangleMesh {
     std::vector<Vec3> vertices;
     std::vector<Face> faces;
-    /// For each triangle the polygon of the file it was cut from; empty if the file held only triangles.
+    /// For each triangle the polygon of the file that it was cut from; empty if the file held only triangles.
     std::vector<std::uint32_t> source_face;
     /// Number of polygons in the file; equals faces.size() if the file held only triangles.
     std::uint32_t source_face_count = 0;
 
     std::size_t vertex_count() const { return vertices.size(); }
     std::size_t face_count() const { return faces.size(); }
-    /// The polygon of the file that triangle `face` belongs to.
+    /// Returns the polygon of the file that triangle `face` belongs to.
     std::uint32_t source_of(std::uint32_t face) const { return source_face.empty() ? face : source_face[face]; }
 };
 
@@ -35,19 +35,22 @@ struct BoundingBox {
     Vec3d low, high;
     double diagonal() const { return (high - low).norm(); }
 };
-/// The box around all vertices that faces refer to; low above high if there are no faces.
+/// Returns v / |v|, or +z if v is zero or not finite.
+Vec3 unit_or_up(const Vec3d& v);
+/// Returns the box around all vertices that faces refer to; `low` is above `high` if there are no faces.
 BoundingBox bounding_box(const TriangleMesh& mesh);
 
-/// Area of each face, in squared mesh units (zero for degenerate faces).
+/// Returns the area of each face, in squared mesh units (zero for degenerate faces).
 std::vector<float> face_areas(const TriangleMesh& mesh);
-/// Unit normal of each face; a degenerate face gets the area-weighted mean of its neighbors by vertex, else +z.
+/// Returns the unit normal of each face. A degenerate face gets the area-weighted mean of its neighbors by vertex,
+/// else +z.
 std::vector<Vec3> face_normals(const TriangleMesh& mesh);
-/// Center (mean of the three corners) of each face.
+/// Returns the center (mean of the three corners) of each face.
 std::vector<Vec3> face_centers(const TriangleMesh& mesh);
-/// Unit normal of each vertex, weighted as in Max 1999 (sine of the corner angle over edge lengths); +z where
-/// unreferenced.
+/// Returns the unit normal of each vertex, weighted as in Max 1999 (sine of the corner angle over edge lengths); +z
+/// for unreferenced vertices.
 std::vector<Vec3> vertex_normals(const TriangleMesh& mesh);
-/// Area-weighted mean of the face centers.
+/// Returns the area-weighted mean of the face centers.
 Vec3 area_centroid(const TriangleMesh& mesh);
 
 }  // namespace exemplar

@@ -10,15 +10,15 @@
 
 namespace exemplar {
 
-constexpr std::uint32_t k_none = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t k_invalid_index = std::numeric_limits<std::uint32_t>::max();
 
-/// An undirected edge, vertex[0] < vertex[1]. face[1] is k_none on a boundary.
+/// An undirected edge, vertex[0] < vertex[1]. face[1] is k_invalid_index on a boundary.
 /// A non-manifold edge (more than two faces) gives one Edge per consecutive pair of its faces (a chain), so that
 /// neighbors stay connected and every Edge still has at most two faces.
 struct Edge {
     std::array<std::uint32_t, 2> vertex;
     std::array<std::uint32_t, 2> face;
-    bool is_boundary() const { return face[1] == k_none; }
+    bool is_boundary() const { return face[1] == k_invalid_index; }
 };
 
 /// Edge, face and vertex incidence of a mesh. Built once in O(F log F); edges are sorted by their vertices.
@@ -37,15 +37,15 @@ struct Topology {
     }
 };
 
-/// Builds the incidence of a mesh; a face that names a vertex twice contributes only its proper edges.
+/// Builds the incidence of a mesh. A face that names a vertex twice contributes only its proper edges.
 Topology build_topology(const TriangleMesh& mesh);
 
-/// Connected component of each face (faces that share an edge), numbered from 0 in order of their first face.
+/// Returns the connected component of each face (faces that share an edge), numbered from 0 in order of first face.
 std::vector<std::uint32_t> face_components(const TriangleMesh& mesh, const Topology& topology);
 
-/// Exterior dihedral angle of each edge in radians, in [0, 2 pi]: the angle between its two faces measured outside the
-/// surface (the omega of thesis Eq. 3.4). Flat is pi, a convex edge of a cube 3 pi / 2, a concave one pi / 2.
-/// Boundary edges, and edges with a degenerate face, have pi.
+/// Returns the exterior dihedral angle of each edge in radians, in [0, 2 pi]: the angle between its two faces
+/// measured outside the surface (the omega of thesis Eq. 3.4). Flat is pi, a convex edge of a cube 3 pi / 2, a
+/// concave one pi / 2. Boundary edges and edges with a degenerate face have pi.
 std::vector<float> exterior_dihedral_angles(const TriangleMesh& mesh, const Topology& topology);
 
 }  // namespace exemplar

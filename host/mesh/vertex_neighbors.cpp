@@ -10,7 +10,7 @@ VertexNeighbors build_vertex_neighbors(std::span<const Face> faces, std::size_t 
     for (const Face& face : faces)
         for (const std::uint32_t v : face) begin[v + 1] += 2;
     for (std::size_t v = 0; v < vertex_count; ++v) begin[v + 1] += begin[v];
-    // Both other corners of each face; most of them twice, once for each face at the edge.
+    // Adds both other corners of each face; most occur twice, once for each face at the edge.
     std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1), corners(begin.back());
     for (const Face& face : faces)
         for (std::size_t i = 0; i < 3; ++i) {

@@ -3,8 +3,8 @@
 
 namespace exemplar {
 
-/// A cone none of whose rays counts takes the next wider cone that has one; faces without any ray are left to
-/// cone_features.
+/// A cone without valid rays takes the values of the next wider cone that has one; cone_features handles faces
+/// without any ray.
 FeatureMatrix diameter_features(const PreparedMesh& prepared, const InwardRays& rays) {
     const InwardRayPattern& pattern = inward_ray_pattern();
     ConeStatistics statistics(prepared.face_count());

@@ -8,8 +8,8 @@
 namespace exemplar {
 namespace {
 
-constexpr std::array<double, 9> k_shares{0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
-using Statistics = std::array<float, 2 + k_shares.size()>;
+constexpr std::array<double, 9> k_distance_shares{0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
+using Statistics = std::array<float, 2 + k_distance_shares.size()>;
 
 /// Mean, mean square and percentiles of the distances from one face to the samples of its component.
 Statistics distance_statistics(std::span<const float> distance, std::span<const float> weight,
@@ -33,7 +33,7 @@ Statistics distance_statistics(std::span<const float> distance, std::span<const 
         result[0] = static_cast<float>(sum / total);
         result[1] = static_cast<float>(squares / total);
     }
-    histogram.percentiles(k_shares, std::span(result).subspan(2));
+    histogram.percentiles(k_distance_shares, std::span(result).subspan(2));
     return result;
 }
 

@@ -13,8 +13,9 @@ namespace {
 constexpr std::array<std::size_t, 5> k_ring_directions{4, 8, 8, 8, 4};
 constexpr std::size_t k_directions = 32;
 
-/// Directions spread evenly over the unit sphere: rings in bands whose areas are as their numbers of rays. Even numbers
-/// make them their own mirror image along every axis, so that the two sides of a symmetric shape measure the same.
+/// Returns directions spread evenly over the unit sphere: rings in bands whose areas are proportional to their
+/// numbers of rays. With even numbers they equal their mirror image along every axis, so that the two sides of a
+/// symmetric shape measure the same.
 std::array<Vec3, k_directions> sphere_directions() {
     std::array<Vec3, k_directions> directions;
     double passed = 0.0;
@@ -33,9 +34,9 @@ std::array<Vec3, k_directions> sphere_directions() {
     return directions;
 }
 
-/// Radius of the largest sphere inside the mesh that touches the face at its center, as far as the rays of one cone
-/// tell: a sphere through the end of a ray of length d at angle t from the inward normal has radius d / (2 cos t).
-/// Infinity if no ray counts.
+/// Returns the radius of the largest sphere inside the mesh that touches the face at its center, estimated from the
+/// rays of one cone: a sphere through the end of a ray of length d at angle t from the inward normal has radius d /
+/// (2 cos t). Infinity if no ray counts.
 float inscribed_radius(std::span<const float> length, std::span<const float> angle) {
     float radius = std::numeric_limits<float>::infinity();
     for (std::size_t k = 0; k < length.size(); ++k) {
@@ -44,8 +45,8 @@ float inscribed_radius(std::span<const float> length, std::span<const float> ang
     return radius;
 }
 
-/// Statistics of the rays from the sphere's center to the surface around it. All rays weigh the same, as they spread
-/// evenly.
+/// Returns statistics of the rays from the sphere's center to the surface around it. All rays have the same weight,
+/// as they are spread evenly.
 std::optional<RayStatistics> measure_around(const PreparedMesh& prepared, const RayScene& scene, std::size_t face,
                                             float radius) {
     static const std::array<Vec3, k_directions> directions = sphere_directions();
@@ -67,7 +68,7 @@ std::optional<RayStatistics> measure_around(const PreparedMesh& prepared, const 
 
 }  // namespace
 
-/// As with the shape diameter, a cone none of whose rays counts takes the next wider cone that has one.
+/// As with the shape diameter, a cone without valid rays takes the values of the next wider cone that has one.
 FeatureMatrix medial_features(const PreparedMesh& prepared, const RayScene& scene, const InwardRays& rays) {
     const InwardRayPattern& pattern = inward_ray_pattern();
     ConeStatistics statistics(prepared.face_count());

@@ -48,8 +48,8 @@ std::array<float, k_columns.size()> pca_values(const Eigen::Matrix3d& covariance
             s1 / s3 + s2 / s3};
 }
 
-/// How many of the radii are measured from all faces: those that hold too few samples for the samples to stand for
-/// them.
+/// Returns how many of the radii are measured from all faces: those whose region has too few samples to represent
+/// it.
 std::size_t count_exact_radii(const PreparedMesh& prepared, std::size_t radii) {
     constexpr double k_enough_samples = 100.0;
     if (prepared.samples_are_all_faces() || !(prepared.total_area > 0.0F)) return radii;
@@ -90,7 +90,7 @@ void PcaFamily::measure(std::uint32_t face, Neighborhood neighborhood) {
     std::size_t added = 0;
     for (std::size_t scale = 0; scale < exact_radii_; ++scale) {
         const float radius = static_cast<float>(k_radii[scale]) * prepared_->median_distance;
-        const std::size_t end = count_within(neighborhood, radius, k_least_region);
+        const std::size_t end = count_within(neighborhood, radius, k_min_region_faces);
         for (; added < end; ++added) {
             const std::uint32_t near = neighborhood[added].face;
             const Vec3 offset = prepared_->center[near] - prepared_->center[face];

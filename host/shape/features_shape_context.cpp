@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t k_rings = ShapeContextFamily::k_rings, k_sectors = ShapeContextFamily::k_sectors;
 
-/// The innermost rings hold too few samples; they are about as wide as the searches of other families.
+/// Rings that are summed over all faces, as they hold too few samples. They are about as wide as the other families'
+/// searches.
 constexpr std::size_t k_near_rings = 3;
 
 /// Arc cosine to within 7e-5 (Abramowitz & Stegun 4.4.45); the compiler vectorizes it.
@@ -25,16 +26,16 @@ inline float fast_acos(float x) {
     return x < 0.0F ? std::numbers::pi_v<float> - angle : angle;
 }
 
-/// Position among the sectors' centers of the angle between `normal` and `offset`, in [-0.5, k_sectors - 0.5]. The face
-/// itself (offset zero) lies at a right angle, in its own plane.
+/// Returns the position of the angle between `normal` and `offset` among the sectors' centers, in [-0.5, k_sectors -
+/// 0.5]. The face itself (offset zero) is at a right angle, in its own plane.
 inline float sector_position(float nx, float ny, float nz, float x, float y, float z) {
     const float square = x * x + y * y + z * z;
     const float cosine = square > 1e-20F ? (nx * x + ny * y + nz * z) / std::sqrt(square) : 0.0F;
     return fast_acos(cosine) * (static_cast<float>(k_sectors) / std::numbers::pi_v<float>)-0.5F;
 }
 
-/// Adds to a ring's sectors. The weight is shared by the two nearest sectors: flat surfaces lie exactly on the edge
-/// between two, and must not fall to either by rounding.
+/// Adds to a ring's sectors. The two nearest sectors share the weight: flat surfaces lie exactly on the edge between
+/// two, and rounding must not decide between them.
 inline void add_to_sectors(float* ring, float position, float weight) {
     const float lower = std::floor(position), upper_share = position - lower;
     const int sector = static_cast<int>(lower), last = static_cast<int>(k_sectors) - 1;

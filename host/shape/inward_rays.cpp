@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "host/core/parallel.h"
+#include "host/core/statistics.h"
 #include "host/shape/percentile.h"
 
 namespace exemplar {
@@ -15,7 +16,7 @@ InwardRayPattern make_pattern() {
     constexpr std::array<std::size_t, 8> k_ring_rays{4, 6, 8, 10, 12, 12, 14, 14};
     constexpr double k_step = 7.5 * std::numbers::pi / 180.0;
     InwardRayPattern pattern{};
-    pattern.weight[0] = static_cast<float>(2.0 / k_step);  // the mean angle of its share of the cone is half a step
+    pattern.weight[0] = static_cast<float>(2.0 / k_step);  // the mean angle of its part of the cone is half a step
     std::size_t ray = 1;
     for (std::size_t ring = 0; ring < k_ring_rays.size(); ++ring) {
         const double angle = k_step * static_cast<double>(ring + 1);
@@ -33,14 +34,14 @@ InwardRayPattern make_pattern() {
 
 /// Length of one ray, or k_missed.
 float cast_ray(const PreparedMesh& prepared, const RayScene& scene, std::uint32_t face, const Vec3& direction) {
-    // Walls at a right angle are opposite enough: they must not come and go with rounding.
+    // Rays to walls at a right angle count: rounding must not switch them on and off.
     constexpr float k_same_way = 0.1F;
     const auto hit = scene.first_hit_from(face, prepared.center[face], direction);
     if (!hit || prepared.normal[hit->face].dot(prepared.normal[face]) > k_same_way) return k_missed;
     return std::isfinite(hit->distance) ? std::max(hit->distance, 0.0F) : k_missed;
 }
 
-/// Fills in faces without a value, clips and divides: values in [0, 1].
+/// Fills in faces without a value, then clips and divides: values are in [0, 1].
 void normalize_values(const PreparedMesh& prepared, const std::vector<bool>& known, std::span<float> values) {
     std::vector<std::pair<float, float>> pairs;
     for (std::size_t f = 0; f < values.size(); ++f) {
@@ -51,13 +52,6 @@ void normalize_values(const PreparedMesh& prepared, const std::vector<bool>& kno
         const float value = known[f] ? values[f] : middle;
         values[f] = top > 0.0F ? std::min(value / top, 1.0F) : 0.0F;
     }
-}
-
-/// The middle value, or the mean of the two middle ones; reorders the values.
-float median_of(std::span<float> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return values.size() % 2 == 1 ? *middle : 0.5F * (*middle + *std::max_element(values.begin(), middle));
 }
 
 }  // namespace
@@ -101,19 +95,19 @@ std::optional<RayStatistics> ray_statistics(std::span<const float> length, std::
         squares += static_cast<double>(d) * static_cast<double>(d);
     }
     if (count == 0) return std::nullopt;
-    const double n = static_cast<double>(count), median = static_cast<double>(median_of(std::span(kept).first(count)));
+    const double n = static_cast<double>(count), middle = static_cast<double>(median(std::span(kept).first(count)));
     const double deviation = std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)));
-    const double reach = 1.0001 * deviation + 1e-4 * median;  // equal lengths all count, whatever rounding does
+    const double reach = 1.0001 * deviation + 1e-4 * middle;  // rounding must not exclude equal lengths
 
     double total = 0.0, mean = 0.0, mean_square = 0.0;
     for (std::size_t k = 0; k < length.size(); ++k) {
         const double d = static_cast<double>(length[k]), w = static_cast<double>(weight[k]);
-        if (length[k] == k_missed || std::abs(d - median) > reach) continue;
+        if (length[k] == k_missed || std::abs(d - middle) > reach) continue;
         total += w;
         mean += w * d;
         mean_square += w * d * d;
     }
-    return RayStatistics{static_cast<float>(mean / total), static_cast<float>(median),
+    return RayStatistics{static_cast<float>(mean / total), static_cast<float>(middle),
                          static_cast<float>(mean_square / total)};
 }
 

@@ -28,8 +28,8 @@ struct InwardRayPattern {
 };
 const InwardRayPattern& inward_ray_pattern();
 
-/// Lengths of all rays, cast from each face's center inward: faces x k_rays, k_missed where there is none.
-/// Rays that meet a face whose normal points the same way as the source's are dropped (Shapira et al. 2008).
+/// Lengths of all rays, cast inward from each face's center: faces x k_rays; k_missed where there is no hit.
+/// Rays that hit a face whose normal points the same way as the source's are dropped (Shapira et al. 2008).
 struct InwardRays {
     std::vector<float> length;
     std::span<const float> of_face(std::size_t face) const {
@@ -38,19 +38,19 @@ struct InwardRays {
 };
 InwardRays cast_inward_rays(const PreparedMesh& prepared, const RayScene& scene);
 
-/// What the families of ray lengths keep of the rays in a cone. Mean and mean square are over the rays within one
-/// standard deviation of the median (Shapira et al. 2008).
+/// Statistics of the ray lengths in a cone. Mean and mean square are weighted, over the rays within one standard
+/// deviation of the median (Shapira et al. 2008).
 struct RayStatistics {
     float mean, median, mean_square;
 };
-/// Statistics of the lengths that are not k_missed; none if all are.
+/// Computes the statistics of the lengths that are not k_missed; nullopt if all are.
 std::optional<RayStatistics> ray_statistics(std::span<const float> length, std::span<const float> weight);
 
 /// Statistics per face and cone, faces x k_cones.
 using ConeStatistics = std::vector<std::array<std::optional<RayStatistics>, k_cones>>;
-/// The 60 columns of a family of ray lengths: each statistic clipped at its 95th percentile by area and divided by it
-/// (so in [0, 1]; a face without rays gets the median of the others), raw and as log(alpha x + 1) / log(alpha + 1) for
-/// alpha = 1, 2, 4, 8. Names: "FAMILY.mean@30", "FAMILY.mean@30/log2".
+/// Returns the 60 columns of a family of ray lengths: each statistic, clipped at its 95th percentile by area and
+/// divided by it (so in [0, 1]), raw and as log(alpha x + 1) / log(alpha + 1) for alpha = 1, 2, 4, 8. A face without
+/// rays gets the median of the others. Names: "FAMILY.mean@30", "FAMILY.mean@30/log2".
 FeatureMatrix cone_features(const PreparedMesh& prepared, const std::string& family, const ConeStatistics& statistics);
 
 }  // namespace exemplar

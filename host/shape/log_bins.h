@@ -6,8 +6,8 @@
 
 namespace exemplar {
 
-/// Edges of `count` distance ranges over [0, maximum], logarithmic in 1 + 9 d / maximum: edge b is
-/// maximum * (10^(b / count) - 1) / 9, so that the last range is ten times as wide as the logarithm is steep at 0. The
+/// Returns the edges of `count` distance ranges over [0, maximum], logarithmic in 1 + 9 d / maximum. Edge b is
+/// maximum * (10^(b / count) - 1) / 9, so that each range is 10^(1 / count) times as wide as the one before. The
 /// thesis asks for logarithmic ranges that start at 0 (App. A.1f, i), where the plain logarithm has no value.
 template <std::size_t count>
 std::array<float, count + 1> log_bin_edges(float maximum) {

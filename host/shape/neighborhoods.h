@@ -11,7 +11,8 @@ namespace exemplar {
 
 using Neighborhood = std::span<const GeodesicSearch::Reached>;  ///< in order of increasing distance
 
-/// Faces within `radius` of `face`; at least `least` of them where the component has so many.
+/// Returns the faces within `radius` of `face`. Doubles the radius until there are `least` of them, or all of the
+/// component.
 inline Neighborhood find_neighborhood(const PreparedMesh& prepared, GeodesicSearch& search, std::uint32_t face,
                                       float radius, std::size_t least) {
     const std::size_t needed = std::min<std::size_t>(least, prepared.component_size[face]);
@@ -23,8 +24,8 @@ inline Neighborhood find_neighborhood(const PreparedMesh& prepared, GeodesicSear
     return found;
 }
 
-/// Number of leading faces of a neighborhood that lie within `radius`; at least `least`, and then all at that distance,
-/// so that faces at equal distance are taken or left together.
+/// Returns how many leading faces of a neighborhood lie within `radius`, but at least `least`. In that case it
+/// counts all faces at the same distance, so that ties are taken or left together.
 inline std::size_t count_within(Neighborhood neighborhood, float radius, std::size_t least) {
     const std::size_t needed = std::min(least, neighborhood.size());
     if (needed > 0) radius = std::max(radius, 1.0001F * neighborhood[needed - 1].distance);
@@ -34,7 +35,8 @@ inline std::size_t count_within(Neighborhood neighborhood, float radius, std::si
     return static_cast<std::size_t>(end - neighborhood.begin());
 }
 
-/// Calls body(face, neighborhood) for every face, in parallel: one search serves all families that look around a face.
+/// Calls body(face, neighborhood) for every face, in parallel: one search serves all families that use
+/// neighborhoods.
 template <typename Body>
 void for_each_neighborhood(const PreparedMesh& prepared, float radius, std::size_t least, Body&& body) {
     parallel_ranges(prepared.face_count(), 128, [&](std::size_t begin, std::size_t end) {

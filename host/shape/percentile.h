@@ -8,8 +8,8 @@
 
 namespace exemplar {
 
-/// The value below which `share` (0 to 1) of the total weight lies; sorts `value_weight` by value. Zero if empty;
-/// equal weights are assumed where all weights are zero.
+/// Returns the value below which `share` (0 to 1) of the total weight lies; sorts `value_weight` by value. Zero if
+/// it is empty; if all weights are zero, they count as equal.
 inline float weighted_percentile(std::vector<std::pair<float, float>>& value_weight, double share) {
     if (value_weight.empty()) return 0.0F;
     std::sort(value_weight.begin(), value_weight.end());

@@ -32,8 +32,9 @@ Vec3d surface_centroid(const TriangleMesh& mesh) {
     return total > 0.0 ? Vec3d(weighted / total) : Vec3d(plain / static_cast<double>(mesh.face_count()));
 }
 
-/// Whether the normals of a centered mesh of unit diagonal point inward. A surface with holes is judged where they are
-/// too small to matter: the cones from the centroid over them hold less than the signed volume of the rest.
+/// Returns whether the normals of a centered mesh of unit diagonal point inward. A surface with holes is judged only
+/// if they are too small to matter: the cones over them from the centroid hold less than the signed volume of the
+/// rest.
 bool faces_inward(const TriangleMesh& mesh) {
     const MeshReport report = validate_mesh(mesh);
     if (report.inside_out) return true;
@@ -70,15 +71,16 @@ TriangleMesh centered_mesh(const TriangleMesh& mesh) {
     return centered;
 }
 
-/// A face near another: its weight, and where its center lies in the tangent plane of the other.
+/// A face near another one, its weight, and its center in the other's tangent plane.
 struct NearFace {
     std::uint32_t face;
     double weight;
     Eigen::Vector2d offset;
 };
 
-/// The faces that share a vertex with `face`, itself included, once per shared vertex. Weights are areas times the
-/// cosine between the normals: faces at a right angle to each other do not mix, so that the edges of a box stay sharp.
+/// Collects the faces that share a vertex with `face`, itself included, once per shared vertex. Weights are areas
+/// times the cosine between the normals: faces at a right angle to each other do not mix, so that the edges of a box
+/// stay sharp.
 void find_near_faces(const PreparedMesh& prepared, const std::vector<float>& areas, const std::vector<Vec3>& normals,
                      std::uint32_t face, std::vector<NearFace>& near) {
     const Vec3 &center = prepared.center[face], &normal = normals[face];
@@ -94,9 +96,9 @@ void find_near_faces(const PreparedMesh& prepared, const std::vector<float>& are
     }
 }
 
-/// The intercept of a weighted linear regression of the normals: the mean whose weights are balanced so that their
-/// center is the origin. Where all faces lie on one side the balance stops before a weight falls below zero: at a
-/// border the mean stays a mean. Zero where nothing weighs.
+/// Returns the intercept of a weighted linear regression of the normals: a mean whose weights are balanced so that
+/// their center is the origin. If all faces lie on one side, as at a border, balancing stops before a weight falls
+/// below zero. Zero if there is no weight.
 Vec3d regressed_normal(const std::vector<NearFace>& near, const std::vector<Vec3>& normals) {
     constexpr double k_ridge = 1e-3;  // faces on one line have no slope across it
     Eigen::Vector2d moment = Eigen::Vector2d::Zero(), slope = moment;
@@ -211,7 +213,8 @@ PreparedMesh prepare_mesh(const TriangleMesh& mesh, std::size_t samples) {
     mend_sample_shares(prepared.samples);
     prepared.distance = distances_from_sources(prepared.graph, prepared.samples.face);
 
-    // Without two connected faces of some size there is no distance to measure by; the size of the whole must do.
+    // Without two connected faces of some size there is no distance to use as unit; the size of the whole mesh
+    // replaces it.
     auto [unit, median, far] = distance_percentiles(prepared);
     constexpr float k_tiny = 1e-6F;
     if (!(unit > k_tiny)) unit = median > k_tiny ? median : 1.0F;
@@ -237,7 +240,7 @@ Vec3 face_tangent(const PreparedMesh& prepared, std::size_t face) {
     Vec3 longest = Vec3::Zero();
     for (std::size_t k = 0; k < 3; ++k) {
         const Vec3 edge = prepared.mesh.vertices[corners[(k + 1) % 3]] - prepared.mesh.vertices[corners[k]];
-        // A tie (an equilateral face) must not hinge on rounding: the first edge stands unless another is clearly
+        // Ties (an equilateral face) must not depend on rounding: the first edge is taken unless another is clearly
         // longer.
         if (edge.squaredNorm() > 1.0001F * longest.squaredNorm()) longest = edge;
     }

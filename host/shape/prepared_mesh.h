@@ -3,15 +3,16 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/mesh/queries/geodesics.h"
 #include "host/mesh/mesh.h"
+#include "host/mesh/queries/geodesics.h"
 #include "host/mesh/topology.h"
 
 namespace exemplar {
 
-/// The mesh in normalized units and what the feature families share. The area centroid is the origin; the 30th
-/// percentile of all geodesic distances is 1 (thesis App. A.1). "All" distances are those from the samples to the faces
-/// of their component, each weighted by the areas it stands for, so that the unit does not depend on the tessellation.
+/// A mesh in normalized units, with the data that the feature families share. The area centroid is the origin; the
+/// 30th percentile of all geodesic distances is 1 (thesis App. A.1). "All" distances are those from the samples to
+/// the faces of their component, each weighted by the areas it represents, so that the unit does not depend on the
+/// tessellation.
 struct PreparedMesh {
     TriangleMesh mesh;  ///< triangles in the caller's order, turned outward if the mesh was inside out
     Topology topology;
@@ -31,14 +32,14 @@ struct PreparedMesh {
     bool samples_are_all_faces() const { return sample_count() == face_count(); }
 };
 
-/// Normalizes a usable mesh (see require_usable) and measures it from at most `samples` faces.
+/// Normalizes a usable mesh (see require_usable) and computes distances from at most `samples` faces.
 PreparedMesh prepare_mesh(const TriangleMesh& mesh, std::size_t samples);
 
-/// Copies the distances between the faces [begin, end) and all samples to `out`, (end - begin) x S: what per-face sums
-/// over samples read, from the S x F matrix that searches write.
+/// Copies the distances between the faces [begin, end) and all samples to `out`, (end - begin) x S, from the S x F
+/// matrix that the searches write: per-face sums read all samples of a face.
 void gather_distances(const PreparedMesh& prepared, std::size_t begin, std::size_t end, std::vector<float>& out);
 
-/// A unit vector in the plane of each face's normal that turns with the mesh: along the face's longest edge.
+/// Returns a unit vector perpendicular to the face's normal that turns with the mesh: along the face's longest edge.
 Vec3 face_tangent(const PreparedMesh& prepared, std::size_t face);
 
 }  // namespace exemplar

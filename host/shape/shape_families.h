@@ -12,14 +12,14 @@
 #include "host/shape/neighborhoods.h"
 #include "host/shape/prepared_mesh.h"
 
-/// Descriptors of shape that label parts and drive strokes alike (thesis App. A.1b-f, B.2), one source file each
-/// (features_NAME.cpp). All read a PreparedMesh, give a value for every face and do not depend on the number of
+/// Shape features that both labeling and hatching use (thesis App. A.1b-f, B.2), one source file each
+/// (features_NAME.cpp). All read a PreparedMesh, compute a value for every face and do not depend on the number of
 /// threads.
 namespace exemplar {
 
-constexpr std::size_t k_least_region = 10;  ///< faces a PCA region has at least
+constexpr std::size_t k_min_region_faces = 10;  ///< minimum faces of a PCA region
 
-/// "name@radius" with the radius as a share of the median distance, e.g. "curvature.k1@0.05".
+/// Returns "name@radius" with the radius as a share of the median distance, e.g. "curvature.k1@0.05".
 std::string at_radius(const std::string& name, double share);
 
 /// Local shape by principal component analysis (A.1b), 75 columns: for geodesic radii of 5, 10, 20, 30 and 50% of the
@@ -29,13 +29,13 @@ std::string at_radius(const std::string& name, double share);
 class PcaFamily {
   public:
     static constexpr std::array<double, 5> k_radii{0.05, 0.1, 0.2, 0.3, 0.5};
-    /// Of these radii, or of the first few of them.
+    /// Uses the first `radii` of these radii.
     explicit PcaFamily(const PreparedMesh& prepared, std::size_t radii = k_radii.size());
-    float radius() const;  ///< how far its neighborhoods reach
+    float radius() const;  ///< radius of the neighborhoods that `measure` needs
     void measure(std::uint32_t face, Neighborhood neighborhood);
     void measure_large_radii();  ///< the radii that `measure` leaves out
     FeatureMatrix take() { return std::move(unary_); }
-    /// Keeps the covariances, too: call it before measuring.
+    /// Keeps the covariances too. Call it before measuring.
     void keep_covariances() { covariances_.assign(radii_, std::vector<std::array<float, 6>>(unary_.rows)); }
     /// Radii x faces: xx, xy, xz, yy, yz, zz, in squared normalized units; empty unless kept.
     std::vector<std::vector<std::array<float, 6>>> take_covariances() { return std::move(covariances_); }
@@ -55,16 +55,16 @@ class ShapeContextFamily {
   public:
     static constexpr std::size_t k_rings = 10, k_sectors = 24;  ///< fine bins that all six histograms sum up
     explicit ShapeContextFamily(const PreparedMesh& prepared);
-    float radius() const { return near_; }  ///< how far its neighborhoods reach
+    float radius() const { return near_; }  ///< radius of the neighborhoods that `measure` needs
     void measure(std::uint32_t face, Neighborhood neighborhood);
-    void measure_far();                                          ///< adds what lies beyond the neighborhoods
+    void measure_far();                                          ///< adds the surface beyond the neighborhoods
     FeatureMatrix take();                                        ///< all six histograms
     FeatureMatrix take(std::size_t rings, std::size_t sectors);  ///< one of them
 
   private:
     const PreparedMesh* prepared_;
     std::array<float, k_rings + 1> edges_{};  ///< distance of each ring's inner edge, and of the last one's outer edge
-    float near_ = 0.0F;                       ///< the ring edge where samples take over
+    float near_ = 0.0F;                       ///< the ring edge from which samples are used
     std::vector<float> fine_;                 ///< faces x rings x sectors
 };
 

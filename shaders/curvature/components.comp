@@ -3,12 +3,12 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/curvature.h"
 
-// Components of the attributes of curvature (exemplar::ComponentRegression), one per invocation: a row of coefficients times
-// the features it is for. Reads 16 bytes and 4 per coefficient, features from caches, and writes 4.
+// Computes the components of the attributes of curvature (exemplar::ComponentRegression), one per invocation: a row
+// of coefficients times its features. Reads 16 bytes and 4 per coefficient, features from caches, and writes 4.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { ComponentParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer table;        // CurvatureComponent
-layout(set = 0, binding = 1) uniform samplerBuffer coefficients;  // zero beyond the features of a component
+layout(set = 0, binding = 1) uniform samplerBuffer coefficients;  // padded with zeros
 layout(set = 0, binding = 2) uniform samplerBuffer features;
 layout(set = 0, binding = 3, std430) writeonly buffer Components { float components[]; };
 

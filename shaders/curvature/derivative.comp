@@ -3,15 +3,16 @@
 #include "shaders/curvature/face_fit.glsl"
 #include "shaders/curvature/surface.glsl"
 
-// Derivatives of curvature in the principal frames, from the forms at the corners of the faces around each vertex; as
-// curvature.comp. Per vertex of six faces 4 + 32 bytes of topology and 48 of its position and principal frame are read and
-// 16 written, each once; what its seven ring entries need comes from caches.
+// Computes derivatives of curvature in the principal frames from the forms at the corners of the faces around each
+// vertex, like curvature.comp. Per vertex with six faces 4 + 32 bytes of topology and 48 of position and principal
+// frame are read and 16 written, each once; the data of its seven ring entries comes from caches.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const bool k_smoothed = false;
 layout(set = 0, binding = 3) uniform samplerBuffer first;    // e1, k1
 layout(set = 0, binding = 4) uniform samplerBuffer second;   // e2, k2
 layout(set = 0, binding = 5) uniform samplerBuffer normals;  // for smoothing
-layout(set = 0, binding = 6, std430) writeonly buffer Derivatives { vec4 derivatives[]; };  // if smoothed, spins in any_frame(normal), in scaled units
+// If smoothed, to_angular_components of the derivatives in frame_of_normal(normal), in scaled units.
+layout(set = 0, binding = 6, std430) writeonly buffer Derivatives { vec4 derivatives[]; };
 
 struct Principal {
     vec3 axis;
@@ -24,16 +25,17 @@ Principal principal_of(uint vertex) {
     return Principal(one.xyz, cross(one.xyz, two.xyz), vec2(one.w, two.w) / parameters.scale);
 }
 
-// The form with these principal curvatures whose principal frame is turned from the frame at hand.
+// Returns the form with principal curvatures k, in a frame from which its principal frame is rotated by `turn`.
 vec3 form_of(vec2 k, vec2 turn) {
-    return turned(vec3(k.x, 0.0, k.y), vec2(turn.x, -turn.y));
+    return in_rotated_frame(vec3(k.x, 0.0, k.y), vec2(turn.x, -turn.y));
 }
 
 vec3 form_in(TangentFrame frame, Principal principal) {
-    return form_of(principal.k, turn_to(frame, principal.axis, principal.normal));
+    return form_of(principal.k, rotation_to(frame, principal.axis, principal.normal));
 }
 
-// The mean derivative of the faces around a vertex in its principal frame, weighted by area; zero without faces.
+// Returns the area-weighted mean of the derivatives of the faces around a vertex, in its principal frame; zero
+// without faces.
 vec4 mean_derivative(uint vertex) {
     const vec3 here = position_of(vertex);
     const Principal own = principal_of(vertex);
@@ -51,11 +53,11 @@ vec4 mean_derivative(uint vertex) {
             const FaceFit fit = measure_face(parameters.scale * (last - here), parameters.scale * (there - here),
                                              parameters.scale * (there - last));
             if ((entries.x & k_ring_fan) == 0 && fit.area > 0.0) {
-                const vec2 turn = turn_to(fit.frame, own.axis, own.normal);
+                const vec2 turn = rotation_to(fit.frame, own.axis, own.normal);
                 const vec3 form = form_of(own.k, turn);
                 const vec4 derivative =
                     fit_derivative(fit, form_in(fit.frame, last_principal) - form, form_in(fit.frame, principal) - form);
-                sum += fit.area * turned(derivative, turn);
+                sum += fit.area * in_rotated_frame(derivative, turn);
                 area += fit.area;
             }
             last = there;
@@ -75,8 +77,8 @@ void main() {
         derivatives[vertex] = parameters.scale * parameters.scale * derivative;
         return;
     }
-    // Back from the principal frame.
-    const TangentFrame frame = any_frame(texelFetch(normals, int(vertex)).xyz);
+    // From the principal frame to frame_of_normal.
+    const TangentFrame frame = frame_of_normal(texelFetch(normals, int(vertex)).xyz);
     const vec3 e1 = texelFetch(first, int(vertex)).xyz;
-    derivatives[vertex] = to_spins(turned(derivative, vec2(dot(e1, frame.tangent), -dot(e1, frame.bitangent))));
+    derivatives[vertex] = to_angular_components(in_rotated_frame(derivative, vec2(dot(e1, frame.tangent), -dot(e1, frame.bitangent))));
 }

@@ -3,14 +3,14 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/curvature.h"
 
-// Features of a pose (exemplar::ComponentRegression): monomials of its inputs, or neurons; one per invocation. Reads 16 bytes
-// and three inputs per monomial, a row of weights and all inputs per neuron, and writes 4.
+// Computes the features of a pose (exemplar::ComponentRegression), monomials of its inputs or neurons, one per
+// invocation. Reads 16 bytes and three inputs per monomial, a row of weights and all inputs per neuron; writes 4.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { FeatureParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer table;          // CurvatureFeature
 layout(set = 0, binding = 1) uniform samplerBuffer inputs;
 layout(set = 0, binding = 2) uniform samplerBuffer inputs_by_four;  // the same
-layout(set = 0, binding = 3) uniform samplerBuffer weights;         // neurons x input_texels; the one's weight is the bias
+layout(set = 0, binding = 3) uniform samplerBuffer weights;         // neurons x input_texels; bias: at the input 1
 layout(set = 0, binding = 4, std430) writeonly buffer Features { float features[]; };
 
 float input_of(uint index) {

@@ -3,15 +3,16 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/curvature.h"
 
-// Inputs of learned curvature from the local shape of patches (exemplar::StateReader::read_local), one per invocation. Reads
-// 16 bytes and 8 per vertex of its patch; normals and positions come from caches, which the inputs of a patch share. Writes 4.
+// Computes the inputs of learned curvature from the local shape of patches (exemplar::StateReader::read_local), one
+// per invocation. Reads 16 bytes and 8 per vertex of its patch; normals and positions come from caches, which the
+// inputs of a patch share. Writes 4.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { LocalInputParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer table;    // LocalInput
 layout(set = 0, binding = 1) uniform usamplerBuffer members;  // vertices of patches
 layout(set = 0, binding = 2) uniform usamplerBuffer weights;
-layout(set = 0, binding = 3) uniform samplerBuffer biases;     // what the mean shape and the mean input take away
-layout(set = 0, binding = 4) uniform samplerBuffer rotations;  // three rows a patch
+layout(set = 0, binding = 3) uniform samplerBuffer biases;     // minus mapped mean shape, minus mean input
+layout(set = 0, binding = 4) uniform samplerBuffer rotations;  // three rows per patch
 layout(set = 0, binding = 5) uniform samplerBuffer vertices;
 layout(set = 0, binding = 6) uniform samplerBuffer normals;
 layout(set = 0, binding = 7, std430) writeonly buffer Inputs { float inputs[]; };
@@ -33,13 +34,13 @@ void main() {
     const uvec4 entry = texelFetch(table, int(thread));
     const vec3 middle = center(entry.y, entry.z);
     const int row = int(3 * entry.x);
-    // Into the frame of the patch: by the columns of its rotation.
+    // The inverse rotation, to the frame of the patch: its columns are the rows of the rotation.
     const mat3 turn = mat3(texelFetch(rotations, row).xyz, texelFetch(rotations, row + 1).xyz, texelFetch(rotations, row + 2).xyz);
     const vec3 up = parameters.inverse_unit * vec3(turn[0].z, turn[1].z, turn[2].z);
     float sum = texelFetch(biases, int(thread)).x;
     for (uint i = 0; i < entry.z; i += 2) {
         const uvec4 words = texelFetch(weights, int(entry.w + i / 2));
-        const uint last = entry.z - 1;  // once more with no weight, if their number is odd
+        const uint last = entry.z - 1;  // padding of an odd number, with weight zero
         const int a = int(texelFetch(members, int(entry.y + i)).x), b = int(texelFetch(members, int(entry.y + min(i + 1, last))).x);
         sum += weighted(words.xy, turn * texelFetch(normals, a).xyz, dot(up, texelFetch(vertices, a).xyz - middle)) +
                weighted(words.zw, turn * texelFetch(normals, b).xyz, dot(up, texelFetch(vertices, b).xyz - middle));

@@ -3,13 +3,14 @@
 #include "shaders/curvature/face_fit.glsl"
 #include "shaders/curvature/surface.glsl"
 
-// Vertex normals, weighted as in Max 1999 (exemplar::vertex_normals), and areas, one vertex per invocation. Per vertex of six faces
-// 4 + 32 bytes of topology and 16 of its position are read and 16 written, each once; the positions of its seven ring
-// entries come from caches.
+// Computes vertex normals, weighted as in Max 1999 (exemplar::vertex_normals), and vertex areas, one vertex per
+// invocation. Per vertex with six faces 4 + 32 bytes of topology and 16 of position are read and 16 written, each
+// once; the positions of its seven ring entries come from caches.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(set = 0, binding = 3, std430) writeonly buffer Normals { vec4 normals[]; };
 
-// The share of a face: its normal weighted by the sine of its angle over the edge lengths, and its part of the vertex's area.
+// Returns the contribution of a face: its normal, weighted by the sine of its angle over the product of the edge
+// lengths, and its part of the vertex area.
 vec4 share(vec3 a, vec3 b, vec3 ab) {
     const vec3 n = area_vector(a, b, ab);
     const float lengths = dot(a, a) * dot(b, b);

@@ -3,13 +3,13 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/curvature.h"
 
-// Rotations of patches (exemplar::Segments::rotations_of_sequence), one per invocation, from the triangle
-// of three groups of vertices. Per patch 96 bytes are read, 24 positions through caches, and 48 written.
+// Computes the rotations of patches (exemplar::Segments::rotations_of_sequence), one per invocation, from the
+// triangle of three groups of vertices. Per patch 96 bytes are read, 24 positions through caches, and 48 written.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { PatchParameters parameters; };
-layout(set = 0, binding = 0) uniform usamplerBuffer corners;  // three times k_corner_vertices a patch, four to a texel
+layout(set = 0, binding = 0) uniform usamplerBuffer corners;  // 3 x k_corner_vertices per patch, four per texel
 layout(set = 0, binding = 1) uniform samplerBuffer vertices;
-layout(set = 0, binding = 2, std430) writeonly buffer Rotations { vec4 rotations[]; };  // three rows a patch
+layout(set = 0, binding = 2, std430) writeonly buffer Rotations { vec4 rotations[]; };  // three rows per patch
 
 vec3 position(uint vertex) {
     return texelFetch(vertices, int(vertex)).xyz;
@@ -24,12 +24,12 @@ vec3 corner(uint first_texel) {
     return sum;
 }
 
-// x along the first, z upright on both; none if they are on a line.
+// Returns the frame with x along the first edge and z perpendicular to both, or the identity if they are on a line.
 mat3 triangle_frame(vec3 first, vec3 second) {
-    const float k_least_width = 1e-4;  // as that of exemplar
+    const float k_min_width = 1e-4;  // as in host/curvature/state/segments.cpp
     const vec3 up = cross(first, second), x = normalize(first), z = normalize(up);
     const float longest = max(dot(first, first), dot(second, second));
-    return length(up) > k_least_width * longest ? mat3(x, cross(z, x), z) : mat3(1.0);
+    return length(up) > k_min_width * longest ? mat3(x, cross(z, x), z) : mat3(1.0);
 }
 
 void main() {

@@ -3,18 +3,18 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/curvature.h"
 
-// Morphing, then linear blend skinning (exemplar::pose_vertices), one vertex per invocation. Each gathers what moves it, so
-// that no two write to one place. Per vertex with i influences and m morph offsets 16 + 16 ceil(i / 2) + 4 + 16 m bytes are
-// read and 16 written, each once; the pose itself, 48 bytes per bone and 4 per target, stays in caches. Inputs are texels,
-// which a CPU driver fetches several times as fast as storage buffers.
+// Computes morphing and then linear blend skinning (exemplar::pose_vertices), one vertex per invocation. Each
+// invocation gathers, so no two write to one place. Per vertex with i influences and m morph offsets 16 + 16 ceil(i
+// / 2) + 4 + 16 m bytes are read and 16 written, each once; the pose, 48 bytes per bone and 4 per target, stays in
+// caches. Inputs are texel buffers (D4 in docs/portability.md).
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { PoseParameters parameters; };
-layout(set = 0, binding = 0) uniform usamplerBuffer rest;         // RestVertex; as floats, small integers might be flushed
+layout(set = 0, binding = 0) uniform usamplerBuffer rest;         // RestVertex; uints: D14 in docs/portability.md
 layout(set = 0, binding = 1) uniform usamplerBuffer influences;   // InfluencePair
-layout(set = 0, binding = 2) uniform usamplerBuffer morph_begin;  // per vertex, without targets empty
+layout(set = 0, binding = 2) uniform usamplerBuffer morph_begin;  // per vertex; empty without targets
 layout(set = 0, binding = 3) uniform usamplerBuffer morphs;       // MorphOffset
 layout(set = 0, binding = 4) uniform samplerBuffer palette;       // three rows of a 3 x 4 matrix per bone
-layout(set = 0, binding = 5) uniform samplerBuffer pose;          // the same and then a weight per target, as floats
+layout(set = 0, binding = 5) uniform samplerBuffer pose;          // the palette, then a weight per target, as floats
 layout(set = 0, binding = 6, std430) writeonly buffer Vertices { vec4 vertices[]; };
 
 vec3 morphed(vec3 position, uint vertex) {

@@ -5,19 +5,20 @@
 #include "shaders/curvature/tangent.glsl"
 #include "shaders/shared/curvature.h"
 
-// Curvature from its components (exemplar::reproject_curvature), k_quads x 4 vertices of a tile per invocation. Reads each
-// tile, a byte per vertex and entry, 4 per entry and 2 per vertex and mean, 16 of a normal, 16 of a point and those of its neighbor, and writes
-// 48 per vertex, each once; components, rotations and most neighbors come from caches. The vertices of a tile's last quads may repeat; all of one get the same.
+// Computes curvature from its components (exemplar::reproject_curvature), for k_quads x 4 vertices of a tile per
+// invocation. Reads, each once, 1 byte per vertex and entry, 4 per entry, 2 per vertex and mean, and 16 each per
+// normal, position and neighbor's position, and writes 48 per vertex; components, rotations and most neighbors come
+// from caches. Vertices may repeat at the end of a tile; all copies get the same values.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const bool k_principal = false;  // the thesis' eight attributes, else the seven of tensors
 layout(constant_id = 1) const uint k_quads = 1;          // 1, 2 or 4
 layout(push_constant) uniform Push { ReprojectionParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer table;  // CurvatureTile
 layout(set = 0, binding = 1) uniform usamplerBuffer tiles;
-layout(set = 0, binding = 2) uniform usamplerBuffer groups;  // of four entries: component and step each
+layout(set = 0, binding = 2) uniform usamplerBuffer groups;  // four entries each, of component and step
 layout(set = 0, binding = 3) uniform samplerBuffer components;
-layout(set = 0, binding = 4) uniform samplerBuffer rotations;  // principal: three rows for each segment
-layout(set = 0, binding = 5) uniform samplerBuffer vertices;   // not of principal
+layout(set = 0, binding = 4) uniform samplerBuffer rotations;  // principal: three rows per segment
+layout(set = 0, binding = 5) uniform samplerBuffer vertices;   // for tensors only
 layout(set = 0, binding = 6) uniform samplerBuffer normals;
 layout(set = 0, binding = 7, std430) writeonly buffer First { vec4 first[]; };                 // e1, k1
 layout(set = 0, binding = 8, std430) writeonly buffer Second { vec4 second[]; };               // e2, k2
@@ -26,7 +27,7 @@ layout(set = 0, binding = 9, std430) writeonly buffer Derivatives { vec4 derivat
 const uint k_constants = k_principal ? 11 : 7;  // rows: means, reference normals
 const uint k_constant_pairs = (k_constants + 1) / 2;
 const uint k_head = k_principal ? k_principal_head : k_tensor_head;
-const float k_least_divisor = 0.2, k_least_flat = 1e-6;  // as those of exemplar
+const float k_min_divisor = 0.2, k_min_flatness = 1e-6;  // as in host/curvature/state/attributes.h
 
 vec4 four_halves(uvec2 words) {
     return vec4(unpackHalf2x16(words.x), unpackHalf2x16(words.y));
@@ -36,9 +37,9 @@ vec4 four_bytes(uint word) {
     return vec4(ivec4(int(word) << 24, int(word) << 16, int(word) << 8, int(word)) >> 24);
 }
 
-// Rows of this invocation's quads: attributes, then the reference normal of principal ones.
+// Rows of this invocation's quads: attributes and, if principal, the reference normal.
 vec4 rows[12 * k_quads];
-// What is read next.
+// Position of the next reads.
 uint next_texel, next_group;
 
 void read_constants() {
@@ -50,8 +51,7 @@ void read_constants() {
         }
 }
 
-// A CPU driver calls a function for every fetch, around which all that is being computed goes to memory and back: a group is
-// fetched whole before anything is done with it.
+// Adds the components of one attribute. Fetches a whole group before it is used: D5 in docs/portability.md.
 void add_components(uint row, uint count, float scale) {
     vec4 sum[k_quads];
     for (uint q = 0; q < k_quads; ++q) sum[q] = scale * rows[row * k_quads + q];
@@ -69,7 +69,7 @@ void add_components(uint row, uint count, float scale) {
     for (uint q = 0; q < k_quads; ++q) rows[row * k_quads + q] = sum[q];
 }
 
-// Written out, so that `rows` need not be indexed by a variable.
+// Unrolled by hand, so that `rows` is not indexed by a variable.
 void add_all_components(uvec4 counts) {
     const vec4 low = parameters.low_scales, high = parameters.high_scales;
     add_components(0, counts.x & 0xffffu, low.x);
@@ -82,24 +82,24 @@ void add_all_components(uvec4 counts) {
     if (k_principal) add_components(7, counts.w >> 16, high.w);
 }
 
-// The direction of an edge in the tangent plane; some tangent if it stands upright.
+// Returns the unit direction of an edge in the tangent plane, or any tangent if the edge is parallel to the normal.
 vec3 edge_tangent(vec3 edge, vec3 normal) {
     const vec3 flattened = edge - dot(normal, edge) * normal;
     const float squared = dot(flattened, flattened);
-    return squared > k_least_flat * dot(edge, edge) ? flattened / sqrt(squared) : any_frame(normal).tangent;
+    return squared > k_min_flatness * dot(edge, edge) ? flattened / sqrt(squared) : frame_of_normal(normal).tangent;
 }
 
-// e1 from two of its coordinates: all but the one along which the reference normal is longest.
+// Completes e1 from two of its coordinates, all but the one where |reference| is largest.
 vec3 completed_direction(vec2 kept, vec3 reference, vec3 normal) {
     const vec3 size = abs(reference);
     const bool drop_x = size.x >= size.y && size.x >= size.z, drop_y = !drop_x && size.y >= size.z;
     vec3 e = drop_x ? vec3(0.0, kept) : drop_y ? vec3(kept.x, 0.0, kept.y) : vec3(kept, 0.0);
     const float along = drop_x ? normal.x : drop_y ? normal.y : normal.z;
-    const float missing = -dot(normal, e) / (along >= 0.0 ? max(along, k_least_divisor) : min(along, -k_least_divisor));
+    const float missing = -dot(normal, e) / (along >= 0.0 ? max(along, k_min_divisor) : min(along, -k_min_divisor));
     e += drop_x ? vec3(missing, 0.0, 0.0) : drop_y ? vec3(0.0, missing, 0.0) : vec3(0.0, 0.0, missing);
     e -= dot(normal, e) * normal;
     const float size_of_e = length(e);
-    return size_of_e > 1e-6 ? e / size_of_e : any_frame(normal).tangent;
+    return size_of_e > 1e-6 ? e / size_of_e : frame_of_normal(normal).tangent;
 }
 
 void store_tensor(uint vertex, uint neighbor, vec4 of_quad[11]) {
@@ -107,10 +107,10 @@ void store_tensor(uint vertex, uint neighbor, vec4 of_quad[11]) {
     const vec3 edge = texelFetch(vertices, int(neighbor)).xyz - texelFetch(vertices, int(vertex)).xyz;
     const vec3 tangent = edge_tangent(edge, normal), bitangent = cross(normal, tangent);
     vec2 k;
-    const vec2 turn = principal_turn(vec3(of_quad[0].x, of_quad[1].x, of_quad[2].x), k);
+    const vec2 turn = principal_rotation(vec3(of_quad[0].x, of_quad[1].x, of_quad[2].x), k);
     first[vertex] = vec4(turn.x * tangent + turn.y * bitangent, k.x);
     second[vertex] = vec4(turn.x * bitangent - turn.y * tangent, k.y);
-    derivatives[vertex] = turned(vec4(of_quad[3].x, of_quad[4].x, of_quad[5].x, of_quad[6].x), turn);
+    derivatives[vertex] = in_rotated_frame(vec4(of_quad[3].x, of_quad[4].x, of_quad[5].x, of_quad[6].x), turn);
 }
 
 void store_principal(uint vertex, mat3 rotation, vec4 of_quad[11]) {
@@ -122,13 +122,13 @@ void store_principal(uint vertex, mat3 rotation, vec4 of_quad[11]) {
     derivatives[vertex] = vec4(of_quad[4].x, of_quad[5].x, of_quad[6].x, of_quad[7].x);
 }
 
-// `quad` counts from this invocation's first; `texel` has its vertices.
+// Stores the results of a quad. `quad`: index in this invocation; `texel`: the texel of its vertices.
 void store_quad(uint quad, int texel, mat3 rotation) {
     uvec4 quad_vertices = texelFetch(tiles, texel), neighbors = quad_vertices;
     if (!k_principal) neighbors = texelFetch(tiles, texel + int(k_tile_quads));
     vec4 of_quad[11];
     for (uint i = 0; i < k_constants; ++i) of_quad[i] = rows[i * k_quads + quad];
-    // Turned around instead of indexed.
+    // Vectors are rotated by swizzles instead of indexed.
     [[unroll]] for (uint v = 0; v < 4; ++v, quad_vertices = quad_vertices.yzwx, neighbors = neighbors.yzwx) {
         if (k_principal)
             store_principal(quad_vertices.x, rotation, of_quad);

@@ -1,13 +1,13 @@
-// A deforming surface as kernels see it that gather over the faces around a vertex. The including shader declares its own
-// outputs from binding 3 on.
+// Bindings of a deforming surface for kernels that gather over the faces around a vertex. The including shader
+// declares its own buffers from binding 3 on.
 #ifndef EXEMPLAR_SURFACE_GLSL
 #define EXEMPLAR_SURFACE_GLSL
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/curvature.h"
 
-// Texels, which a CPU driver fetches several times as fast as storage buffers.
+// Texel buffers: D4 in docs/portability.md.
 layout(push_constant) uniform Push { SurfaceParameters parameters; };
-layout(set = 0, binding = 0) uniform usamplerBuffer ring_begin;  // per vertex, the texel of `rings` where its ring begins
+layout(set = 0, binding = 0) uniform usamplerBuffer ring_begin;  // per vertex, the first texel of its ring in `rings`
 layout(set = 0, binding = 1) uniform usamplerBuffer rings;       // see k_ring_fan
 layout(set = 0, binding = 2) uniform samplerBuffer positions;
 

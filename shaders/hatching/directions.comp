@@ -3,11 +3,12 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/hatching_features.h"
 
-// Directions of fields on a surface as the picture shows them at points of faces (host/hatching/features/pixel_projection.cpp), one
-// point per invocation. Reads 112 bytes, and 48 per field; writes 8 per field.
+// Directions of fields on a surface, as the picture shows them at points of faces
+// (host/hatching/features/pixel_projection.cpp). One point per invocation. Reads 112 bytes, and 48 per field; writes
+// 8 per field.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { DirectionParameters parameters; };
-layout(set = 0, binding = 0) uniform usamplerBuffer corners;       // of faces, a b c 0
+layout(set = 0, binding = 0) uniform usamplerBuffer corners;       // per face, a b c 0
 layout(set = 0, binding = 1) uniform usamplerBuffer point_faces;
 layout(set = 0, binding = 2) uniform samplerBuffer barycentrics;   // of corner 1, then of corner 2
 layout(set = 0, binding = 3) uniform samplerBuffer positions;      // x y z 1
@@ -18,7 +19,7 @@ vec3 turned(float weight, vec3 to, vec3 direction) {
     return (dot(to, direction) < 0.0 ? -weight : weight) * direction;
 }
 
-// Without sign, at a point: those of the corners turned to the first that has one.
+// Interpolates a direction without sign at a point: those of the corners are turned to the first that is not zero.
 vec3 direction_at(ivec3 corner, vec3 weights) {
     const vec3 first = texelFetch(directions, corner.x).xyz, second = texelFetch(directions, corner.y).xyz,
                third = texelFetch(directions, corner.z).xyz;
@@ -26,14 +27,14 @@ vec3 direction_at(ivec3 corner, vec3 weights) {
     return weights.x * first + turned(weights.y, leading, second) + turned(weights.z, leading, third);
 }
 
-// Where a direction at a clip position goes in the picture, by the derivative of the projection; any length.
+// Returns a direction at a clip position as seen in the picture, by the derivative of the projection; of any length.
 vec2 projected(vec3 at, vec3 direction) {
     const vec3 way = vec3(dot(parameters.clip_x.xyz, direction), dot(parameters.clip_y.xyz, direction),
                           dot(parameters.clip_w.xyz, direction));
     return (way.xy * at.z - at.xy * way.z) * vec2(parameters.width, parameters.height);
 }
 
-// Of a vector of any length; zero of zero.
+// Returns the unit vector of the doubled angle of a vector of any length; zero for zero.
 vec2 doubled_angle(vec2 v) {
     const float largest = max(abs(v.x), abs(v.y));
     if (!(largest > 0.0)) return vec2(0.0);

@@ -1,6 +1,6 @@
-// Whole numbers for positions and directions (host/hatching/placement/fixed_point.h): results are the same on every device. Here and in
-// what builds on it choices are made by selecting, not by branching: CPU drivers run both sides of a branch anyway, and some
-// take very long to compile many of them within a loop.
+// Integer arithmetic for positions and directions (host/hatching/placement/fixed_point.h): results are the same on
+// every device. This file and those that include it select between values instead of branching: D2 and D9 in
+// docs/portability.md.
 #ifndef EXEMPLAR_FIXED_POINT_GLSL
 #define EXEMPLAR_FIXED_POINT_GLSL
 #include "shaders/shared/hatching.h"
@@ -12,19 +12,19 @@ int cross_of(ivec2 a, ivec2 b) {
     return a.x * b.y - a.y * b.x;
 }
 
-// The root of a float is near on every device; the rest is exact.
+// The float root is at most one off on every device; the correction is exact.
 uint floor_sqrt(uint n) {
     uint root = uint(sqrt(float(n)));
     root -= uint(root * root > n);
     return root + uint((root + 1u) * (root + 1u) <= n);
 }
 
-// a / b rounded to nearest, halves away from zero.
+// Returns a / b rounded to nearest, halves away from zero.
 ivec2 rounded_quotient(ivec2 a, uint b) {
     return sign(a) * ivec2((uvec2(abs(a)) + b / 2u) / b);
 }
 
-// The unit vector along a vector, times k_unit; zero for none.
+// Returns the unit vector along a vector, times k_unit; zero for a zero vector.
 ivec2 direction_of(ivec2 way) {
     const uint size = floor_sqrt(uint(way.x * way.x) + uint(way.y * way.y));
     return rounded_quotient(way * k_unit, max(size, 1u));

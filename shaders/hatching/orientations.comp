@@ -3,12 +3,12 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/hatching_features.h"
 
-// Orientation functions (thesis Eq. 4.7), each row by the rule of its segment, one row per invocation. Reads 8 bytes, and 24
-// per term; writes 8.
+// Evaluates orientation functions (thesis Eq. 4.7), each row by the rule of its segment. One row per invocation.
+// Reads 8 bytes, and 24 per term; writes 8.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { RuleParameters parameters; };
-layout(set = 0, binding = 0) uniform usamplerBuffer segments;   // of rows
-layout(set = 0, binding = 1) uniform usamplerBuffer begins;     // of segments, and the end
+layout(set = 0, binding = 0) uniform usamplerBuffer segments;   // per row
+layout(set = 0, binding = 1) uniform usamplerBuffer begins;     // per segment, and the end
 layout(set = 0, binding = 2) uniform usamplerBuffer terms;      // RuleTerm
 layout(set = 0, binding = 3, std430) readonly buffer Fields { vec2 fields[]; };             // fields x stride
 layout(set = 0, binding = 4, std430) writeonly buffer Directions { vec2 directions[]; };    // rows

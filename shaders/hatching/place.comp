@@ -3,9 +3,10 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/hatching.h"
 
-// Puts the strokes that have won their round beside the others, and notes how near they are around them (host/hatching/
-// clearance.cpp). One or more workgroups per stroke: writes 8 bytes per point and up to 4 for each of the pixels within one and
-// a quarter spacings. The least word stays, whatever the order in which they come.
+// Appends the strokes that won their round to those placed, and records them in the clearance map
+// (host/hatching/placement/clearance.cpp). One or more workgroups per stroke: writes 8 bytes per point, and up to 4
+// for each of the pixels within one and a quarter spacings. The smallest word stays, so the order of writes does not
+// matter.
 layout(local_size_x = k_hatch_group) in;
 layout(push_constant) uniform Push { PlacementParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer grid;
@@ -21,7 +22,7 @@ void note(ivec2 point, int reach, uint first) {
     pixels_within(point, reach, low, high);
     for (int y = low.y + candidate_part(); y <= high.y; y += candidate_parts())
         for (int x = low.x; x <= high.x; ++x) {
-            const ivec2 way = way_from_center(ivec2(x, y), point);
+            const ivec2 way = offset_from_center(ivec2(x, y), point);
             const int squared = dot_of(way, way);
             if (squared > most) continue;
             const uint word = floor_sqrt(uint(squared)) << 22 | uint(way.x + 1024) << 11 | uint(way.y + 1024);
@@ -39,6 +40,6 @@ void main() {
         const ivec2 point = way_point(place, trial.way_begin, trial.begin + i);
         stroke_points[trial.target + i] = point;
         const int spacing = spacing_of(texel_of(point));
-        if (is_noted(i, trial.count, spacing)) note(point, near_reach(spacing), first);
+        if (is_recorded(i, trial.count, spacing)) note(point, clearance_radius(spacing), first);
     }
 }

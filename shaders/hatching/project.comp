@@ -4,13 +4,14 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/hatching_features.h"
 
-// Columns of a slab at points of faces (host/hatching/features/pixel_projection.cpp): of four points per invocation, so that a corner
-// that is fetched serves four columns, and what is written, four points. Reads 192 bytes and writes 64 per quad of columns.
+// Interpolates the columns of a slab at points of faces (host/hatching/features/pixel_projection.cpp). Four points
+// per invocation, so that a corner's texel serves four columns, and a written texel four points. Reads 192 bytes and
+// writes 64 per quad of columns.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { ProjectionParameters parameters; };
-layout(set = 0, binding = 0) uniform usamplerBuffer corners;       // of faces, a b c 0
-layout(set = 0, binding = 1) uniform usamplerBuffer point_faces;   // of four points
-layout(set = 0, binding = 2) uniform samplerBuffer barycentrics;   // of four points; of corner 1, then of corner 2
+layout(set = 0, binding = 0) uniform usamplerBuffer corners;       // per face, a b c 0
+layout(set = 0, binding = 1) uniform usamplerBuffer point_faces;   // four points per texel
+layout(set = 0, binding = 2) uniform samplerBuffer barycentrics;   // four points per texel; corner 1, then corner 2
 layout(set = 0, binding = 3) uniform samplerBuffer slab;           // vertices x k_slab_quads
 layout(set = 0, binding = 4, std430) writeonly buffer Columns { vec4 columns[]; };  // columns x stride / 4
 

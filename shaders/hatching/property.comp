@@ -3,7 +3,8 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/hatching_features.h"
 
-// A stroke property (thesis Eq. 4.8) of four rows per invocation, in the logarithm. Reads 48 bytes per term; writes 16.
+// Evaluates a stroke property (thesis Eq. 4.8) as a sum of logarithms. Four rows per invocation. Reads 48 bytes per
+// term; writes 16.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { PropertyParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer terms;      // PropertyTerm, two texels each

@@ -3,14 +3,14 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/hatching.h"
 
-// Looks for the next place of seed lists that a stroke may begin at, from where each was left on (host/hatching/placement/stroke_front.cpp).
-// One list per invocation: reads some 15 texels per place.
+// Finds the next place of each seed list at which a stroke may begin (host/hatching/placement/stroke_front.cpp). One
+// list per invocation: reads some 15 texels per place.
 layout(local_size_x = k_hatch_group) in;
 layout(push_constant) uniform Push { PlacementParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer grid;
 layout(set = 0, binding = 1) uniform usamplerBuffer near;
 layout(set = 0, binding = 2) uniform usamplerBuffer stroke_points;
-layout(set = 0, binding = 3, std430) buffer Lists { SeedListRecord lists[]; };
+layout(set = 0, binding = 3, std430) buffer Lists { SeedQueueRecord lists[]; };
 layout(set = 0, binding = 4, std430) writeonly buffer Trials { TrialRecord trials[]; };
 layout(set = 0, binding = 5, std430) readonly buffer Counts { PlacementCounts counts; };
 #include "shaders/hatching/stroke_seeds.glsl"
@@ -20,8 +20,8 @@ void main() {
     if (i >= counts.trials) return;
 
     const uint index = counts.in_blocks != 0u ? i : parameters.blocks + i;
-    const SeedListRecord list = lists[index];
-    const uint count = seed_count(list), end = min(count, list.next + k_most_places);
+    const SeedQueueRecord list = lists[index];
+    const uint count = seed_count(list), end = min(count, list.next + k_max_seeds_per_round);
     uint next = list.next;
     bool found = false;
     ivec2 point = ivec2(0), heading = ivec2(0);

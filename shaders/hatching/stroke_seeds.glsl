@@ -1,5 +1,5 @@
-// Where strokes are tried (host/hatching/placement/stroke_front.cpp). The including shader declares `stroke_points`, two words each,
-// those of all strokes.
+// The places at which strokes are tried (host/hatching/placement/stroke_front.cpp). The including shader declares
+// `stroke_points`, the points of all strokes, two words each.
 #ifndef EXEMPLAR_STROKE_SEEDS_GLSL
 #define EXEMPLAR_STROKE_SEEDS_GLSL
 #include "shaders/hatching/clearance.glsl"
@@ -10,13 +10,13 @@ const int k_side_cosine = 11585;
 const uint k_side_stride = 2;
 const uint k_part_places = 64;
 
-uint source_of(SeedListRecord list) {
+uint source_of(SeedQueueRecord list) {
     return list.kind & k_source_mask;
 }
 bool is_side(uint source) {
     return source == k_left_side_source || source == k_right_side_source;
 }
-uint sides_of(SeedListRecord list) {
+uint sides_of(SeedQueueRecord list) {
     return (list.second + k_side_stride - 1u) / k_side_stride;
 }
 int bits_of(uint count) {
@@ -33,8 +33,8 @@ uint every_second_bit(uint word) {
     return (word | word >> 8) & 0x0000ffffu;
 }
 
-// How many places a list has.
-uint seed_count(SeedListRecord list) {
+// Returns the number of places of a list.
+uint seed_count(SeedQueueRecord list) {
     const uint source = source_of(list);
     if (is_side(source)) return 1u << bits_of(sides_of(list));
     if (source == k_block_source) return 1u << (2u * parameters.block_bits);
@@ -44,13 +44,14 @@ uint seed_count(SeedListRecord list) {
 ivec2 stroke_point(uint i) {
     return ivec2(texelFetch(stroke_points, int(2u * i)).x, texelFetch(stroke_points, int(2u * i + 1u)).x);
 }
-// A direction times a spacing, as a way.
+// Returns the offset by a spacing along a direction.
 ivec2 times(ivec2 direction, int spacing) {
     const int shift = k_unit_bits - k_pixel_bits + k_spacing_bits;
     return (direction * spacing + (1 << (shift - 1))) >> shift;
 }
 
-// A place, and the direction that strokes there are to have, if any is wanted.
+// A place and a direction. `parallel`: strokes there must run in about that direction; else it only chooses their
+// sign.
 struct Place {
     ivec2 point;
     ivec2 heading;
@@ -58,7 +59,7 @@ struct Place {
     bool valid;
 };
 
-Place side_place(SeedListRecord list, uint i) {
+Place side_place(SeedQueueRecord list, uint i) {
     const uint sides = sides_of(list), place = reversed_bits(i, bits_of(sides));
     const uint chance = scatter(list.first ^ parameters.seed);
     const uint j = k_side_stride * ((place + chance % sides) % sides);
@@ -72,7 +73,7 @@ Place side_place(SeedListRecord list, uint i) {
     return Place(point + times(off, (here + spacing_of(there)) / 2), heading, true, valid);
 }
 
-Place end_place(SeedListRecord list) {
+Place end_place(SeedQueueRecord list) {
     const bool is_first = source_of(list) == k_first_end_source;
     const uint tip = is_first ? list.first : list.first + list.second - 1u;
     const ivec2 point = stroke_point(tip), heading = direction_of(point - stroke_point(is_first ? tip + 1u : tip - 1u));
@@ -81,7 +82,7 @@ Place end_place(SeedListRecord list) {
     return Place(point + times(heading, gap), heading, true, true);
 }
 
-Place hole_place(SeedListRecord list, uint i) {
+Place hole_place(SeedQueueRecord list, uint i) {
     const int bits = int(2u * parameters.block_bits);
     const uint chance = scatter(list.first ^ scatter(list.second ^ parameters.seed));
     const uint place = reversed_bits(i, bits) ^ (chance & ((1u << bits) - 1u));
@@ -89,7 +90,7 @@ Place hole_place(SeedListRecord list, uint i) {
     return Place(pixel * k_pixel + k_pixel / 2, ivec2(k_unit, 0), false, true);
 }
 
-Place part_place(SeedListRecord list, uint i) {
+Place part_place(SeedQueueRecord list, uint i) {
     const ivec2 middle = ivec2(list.first, list.second);
     const uint chance = scatter(list.first ^ scatter(list.second ^ scatter(parameters.seed ^ i)));
     const int size = int(i) * (spacing_of(texel_of(middle)) << (k_pixel_bits - k_spacing_bits));
@@ -97,7 +98,7 @@ Place part_place(SeedListRecord list, uint i) {
     return Place(middle + off, ivec2(k_unit, 0), false, true);
 }
 
-Place place_of(SeedListRecord list, uint i) {
+Place place_of(SeedQueueRecord list, uint i) {
     const uint source = source_of(list);
     Place place = Place(ivec2(0), ivec2(0), false, false);
     when (is_side(source)) place = side_place(list, i);
@@ -107,8 +108,8 @@ Place place_of(SeedListRecord list, uint i) {
     return place;
 }
 
-// Whether a stroke may begin at the i-th place of a list, and the direction that it has there.
-bool seed_at(SeedListRecord list, uint i, out ivec2 point, out ivec2 way) {
+// Returns whether a stroke may begin at the i-th place of a list, with the place and the direction of strokes there.
+bool seed_at(SeedQueueRecord list, uint i, out ivec2 point, out ivec2 way) {
     const uint layer = list.kind >> k_layer_shift;
     const Place place = place_of(list, i);
     const uvec4 texel = texel_of(place.point);

@@ -1,7 +1,7 @@
-// Follows a stroke from its seed (host/hatching/placement/stroke_way.cpp, stroke_tracing.cpp). An invocation follows one at a time; what
-// it knows of it is in variables of its own, as drivers take long over structures that many functions hand on. The including
-// shader declares `ways`, the points of the ways that are looked at: those of a trial in a ring of `room`, the seed first, one
-// side after it and the other before.
+// Traces a stroke from its seed (host/hatching/placement/streamline_steps.cpp, stroke_tracing.cpp), one stroke per
+// invocation. Its state is in global variables: D9 in docs/portability.md. The including shader declares `ways`, the
+// points of all streamlines: each trial has a ring of `room` points that starts with the seed; one side follows it,
+// and the other side precedes it.
 #ifndef EXEMPLAR_STROKE_TRACING_GLSL
 #define EXEMPLAR_STROKE_TRACING_GLSL
 #include "shaders/hatching/clearance.glsl"
@@ -23,21 +23,21 @@ const uint k_crowd_end = 3u;
 struct Branch {
     ivec2 tip;
     ivec2 heading;
-    int sign;   // of its places, counted from the seed
-    int reach;  // points without the seed
-    int steps;  // that it would have by its length
-    int turn;   // the sum of the sines of its turns
-    int quiet;  // steps in which it cannot come back to itself
+    int sign;   // +1 or -1: direction in which its places count from the seed
+    int reach;  // number of points without the seed
+    int steps;  // within its length; the rest is look-ahead
+    int turn;   // sum of the sines of its turns
+    int unchecked_steps;  // steps for which it cannot meet itself
     uint end;
 };
 
-// The way: the side that is walked on or was last, and the other.
+// The streamline: the side that is traced or was last, and the other one.
 Branch branch, other;
-uint way_first;    // point of its ring
+uint way_first;    // first point of its ring
 uint way_layer;
-uvec4 way_texel;   // that the seed is in
-int length_share;  // of targets, that its length is
-ivec2 turns;       // the least and the most of all steps so far, from the seed on
+uvec4 way_texel;   // that contains the seed
+int length_share;  // length of the stroke as a share of its target
+ivec2 turns;       // minimum and maximum of Branch::turn so far, on both sides
 
 uint ring_index(int from_seed) {
     return way_first + uint(mix(from_seed, from_seed + int(parameters.room), from_seed < 0));
@@ -45,16 +45,16 @@ uint ring_index(int from_seed) {
 int back_reach() {
     return mix(other.reach, branch.reach, branch.sign < 0);
 }
-// Places are counted in steps, from the end of one side to that of the other: the number of the last.
+// Returns the last place. Places count steps from the end of one side to that of the other, starting at 0.
 int last_place() {
     return branch.reach + other.reach;
 }
 int target_steps(uvec4 texel, int share) {
     return length_of(texel) * share >> (k_share_bits + k_length_bits);
 }
-int least_steps(int crowded_ends) {
-    const int by_length = target_steps(way_texel, parameters.least_share);
-    return max(min(by_length, (1 + crowded_ends) * spacing_of(way_texel) >> k_spacing_bits), k_least_steps);
+int min_stroke_steps(int crowded_ends) {
+    const int by_length = target_steps(way_texel, parameters.min_length_share);
+    return max(min(by_length, (1 + crowded_ends) * spacing_of(way_texel) >> k_spacing_bits), k_min_steps);
 }
 int gap_steps() {
     return (share_of_spacing(spacing_of(way_texel), parameters.test_share) >> k_pixel_bits) + 1;
@@ -63,7 +63,7 @@ int gap_steps() {
 int length_of_way(ivec2 way) {
     return int(floor_sqrt(uint(dot_of(way, way))));
 }
-// From a point to the line between two others, in units of 2^k_itself_bits.
+// Returns the distance of a point to the segment between two others, in units of 2^k_itself_bits.
 int distance_to_line(ivec2 point, ivec2 from, ivec2 to) {
     const ivec2 line = (to - from) >> k_itself_bits, begin = (point - from) >> k_itself_bits;
     const int along = dot_of(begin, line);
@@ -73,13 +73,13 @@ int distance_to_line(ivec2 point, ivec2 from, ivec2 to) {
     return mix(size, abs(cross_of(begin, line)) / max(size, 1), on_line);
 }
 
-// Whether a point comes nearer than the test distance to what the stroke has passed, but for the last two test distances
-// before it. From afar, less than the distance will do.
+// Returns whether a point is within the test distance of the stroke itself, except the last two test distances
+// before the point. For far pieces a lower bound of the distance is used.
 bool meets_itself(ivec2 next, uvec4 texel) {
     const bool far_turned = max(branch.turn - turns.x, turns.y - branch.turn) > k_far_turn;
     const int test = share_of_spacing(spacing_of(texel), parameters.test_share);
     const int begin = -other.reach, last = branch.reach - (2 * test >> k_pixel_bits);
-    const int stride = 1 + max(last - begin, 0) / k_most_pieces, end = mix(begin, last, all(bvec2(branch.quiet == 0, far_turned)));
+    const int stride = 1 + max(last - begin, 0) / k_most_pieces, end = mix(begin, last, all(bvec2(branch.unchecked_steps == 0, far_turned)));
     int nearest = k_far_from_itself;
     for (int i = begin; i < end; i += stride) {
         const ivec2 from = ways[ring_index(branch.sign * i)], to = ways[ring_index(branch.sign * min(i + stride, end))];
@@ -88,8 +88,8 @@ bool meets_itself(ivec2 next, uvec4 texel) {
         nearest = min(nearest, mix(distance_to_line(next, from, to), afar, afar > 2 * test >> k_itself_bits));
     }
     const int beyond = nearest - (test >> k_itself_bits);
-    const int quiet = mix(0, beyond >> (k_pixel_bits - k_itself_bits), far_turned);
-    branch.quiet = mix(quiet, branch.quiet - 1, branch.quiet > 0);
+    const int unchecked_steps = mix(0, beyond >> (k_pixel_bits - k_itself_bits), far_turned);
+    branch.unchecked_steps = mix(unchecked_steps, branch.unchecked_steps - 1, branch.unchecked_steps > 0);
     return beyond < 0;
 }
 
@@ -98,7 +98,7 @@ void take_step() {
     const ivec2 heading = direction_at(way_layer, middle, branch.heading);
     const ivec2 next = moved(branch.tip, heading, k_step);
     const uvec4 texel = texel_of(next);
-    const bool is_straight = dot_of(heading, branch.heading) >= parameters.least_turn_cosine * k_unit;
+    const bool is_straight = dot_of(heading, branch.heading) >= parameters.min_turn_cosine * k_unit;
     const bool free = all(bvec4(heading != ivec2(0), direction_word(texel, way_layer) != 0u, is_straight,
                                 is_free_step(branch.tip, next)));
     branch.turn += int(free) * (cross_of(branch.heading, heading) >> k_unit_bits);
@@ -115,7 +115,7 @@ void take_step() {
     }
 }
 
-// Ends a leg of the walk and begins the next, on the other side or the same.
+// Ends a leg of the trace and begins the next one, on the other side or the same.
 void turn_to_leg(int leg) {
     if (leg <= 3) branch.steps = branch.reach;
     if (leg == 1 || leg == 2 || leg == 4) {
@@ -124,12 +124,13 @@ void turn_to_leg(int leg) {
         other = swapped;
     }
     if (leg < 2 || branch.end == k_length_end) branch.end = k_no_end;
-    branch.quiet = 0;
+    branch.unchecked_steps = 0;
 }
 
-// Walks in five legs: on to a share of the length, back to all of it, and where that ended early on; then ahead of both ends.
+// Traces in five legs: forward to a share of the length, backward to all of it, forward again if that ended early,
+// and then the look-ahead at both ends.
 void walk(int first_share) {
-    const int ahead = gap_steps() + least_steps(2);
+    const int ahead = gap_steps() + min_stroke_steps(2);
     int leg = 0;
     while (leg < 5) {
         const int share = leg == 0 ? first_share : 1 << k_share_bits;
@@ -145,7 +146,8 @@ void walk(int first_share) {
     }
 }
 
-// 1 if a place of the way is beside the gap at the end of a stroke, or that is not known.
+// Returns 1 if a place of the streamline is beside the gap at the end of another stroke, or outside of the
+// streamline.
 int is_in_line(int place) {
     const bool known = place == clamp(place, 0, last_place());
     const ivec2 point = ways[ring_index(mix(0, place - back_reach(), known))];
@@ -156,8 +158,9 @@ int is_in_line(int place) {
     return int(any(bvec2(!known, all(bvec2(squared >= least * least, squared < most * most)))));
 }
 
-// A part of the way, begin and end in steps, or it moved by up to two gaps either way, or shortened by as much at its free
-// end: the first of which the fewest free ends have their gap beside that of another stroke.
+// Avoids gaps side by side. Tries the part (its begin and end in steps) as it is and with its ends moved by one and
+// two gaps either way, where `move` tells how each end moves (both: shifted; one: shortened). Returns the first one
+// whose free ends have the fewest gaps beside the gap of another stroke.
 ivec2 out_of_line(ivec2 part, ivec2 move) {
     const int gap = gap_steps(), steps = part.y - part.x;
     ivec2 best = part;
@@ -177,7 +180,8 @@ ivec2 out_of_line(ivec2 part, ivec2 move) {
     return best;
 }
 
-// The part of the way that becomes the stroke. The walk ends with the side that it went back, so `other` is the one on.
+// Returns the part of the streamline that becomes the stroke. Tracing ends on the backward side, so `other` is the
+// forward one.
 ivec2 fitted() {
     const int steps = branch.steps + other.steps, all = last_place();
     const bool on_is_free = other.end == k_length_end, back_is_free = branch.end == k_length_end;
@@ -192,12 +196,12 @@ ivec2 fitted() {
     }
     if (on_is_free || back_is_free) return out_of_line(part, move);
     if (all <= target_steps(way_texel, (1 << k_share_bits) + parameters.jitter)) return part;
-    const int half_steps = min(all, max((all - gap_steps()) / 2, least_steps(2)));
+    const int half_steps = min(all, max((all - gap_steps()) / 2, min_stroke_steps(2)));
     return other.steps == other.reach ? ivec2(all - half_steps, all) : ivec2(0, half_steps);
 }
 
-// Follows the stroke of a layer from a seed, with the points of its way from `first` on; whether it is long enough, and which
-// part of its way it is.
+// Traces the stroke of a layer from a seed into `ways`, from `first` on. Returns whether it is long enough, and
+// which part of its streamline it is.
 bool trace(uint first, uint layer, ivec2 seed, ivec2 heading, out ivec2 part) {
     way_first = first;
     way_layer = layer;
@@ -211,10 +215,10 @@ bool trace(uint first, uint layer, ivec2 seed, ivec2 heading, out ivec2 part) {
     walk(256 + int(chance >> 11 & 511u));
     part = fitted();
     const int crowded = (branch.end == k_crowd_end ? 1 : 0) + (other.end == k_crowd_end ? 1 : 0);
-    return part.y - part.x >= least_steps(crowded);
+    return part.y - part.x >= min_stroke_steps(crowded);
 }
 
-// 0 if a stroke of the way has three quarters of its target length or more; up to 3.
+// Returns 0 if a stroke has three quarters of its target length or more; up to 3.
 uint shortness(int steps) {
     return uint(3 - clamp(4 * steps / max(target_steps(way_texel, length_share), 1), 0, 3));
 }

@@ -3,26 +3,27 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/hatching.h"
 
-// Follows the strokes of a round from their seeds (host/hatching/placement/stroke_tracing.cpp). One stroke per invocation: reads some
-// twenty texels per pixel of its way, and writes 8 bytes.
+// Traces the strokes of a round from their seeds (host/hatching/placement/stroke_tracing.cpp). One stroke per
+// invocation: reads some twenty texels per pixel of its streamline, and writes 8 bytes.
 layout(local_size_x = k_hatch_group) in;
 layout(push_constant) uniform Push { PlacementParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer grid;
 layout(set = 0, binding = 1) uniform usamplerBuffer near;
-layout(set = 0, binding = 2, std430) buffer Lists { SeedListRecord lists[]; };
+layout(set = 0, binding = 2, std430) buffer Lists { SeedQueueRecord lists[]; };
 layout(set = 0, binding = 3, std430) buffer Trials { TrialRecord trials[]; };
 layout(set = 0, binding = 4, std430) buffer Ways { ivec2 ways[]; };
 layout(set = 0, binding = 5, std430) buffer Counts { PlacementCounts counts; };
 #include "shaders/hatching/stroke_tracing.glsl"
 
-// What place i of the round's list claims pixels with (StrokeClaims::claim_of).
+// Returns the claim of the trial at place i of the round's list (StrokeClaims::claim_of).
 uint claim_of(uint i, uint shortness) {
     const uint mask = (1u << 18) - 1u, mixed = i * 0x2c1b5u & mask;
     const uint chance = (mixed ^ mixed >> 9) * 0x297a9u & mask;
     return (parameters.rounds_left << 2 | shortness) << 18 | chance;
 }
 
-// Drivers may end a shader's loops after 65536 rounds: as many workgroups share the pixels around a way as keep far below.
+// Returns how many workgroups share the pixels around a streamline, so that each stays far below the limit of D1 in
+// docs/portability.md.
 uint parts_of(uint begin, uint count) {
     const uint k_most_rounds = 16384u;
     int spacing = 0;

@@ -5,15 +5,15 @@
 #include "shaders/lib/view_curvature.glsl"
 #include "shaders/shared/hatching_features.h"
 
-// What depends on surface and view at one scale (host/hatching/features/hatching_view.cpp), and its magnitudes, in their lanes of a
-// slab: one vertex per invocation. Reads 80 bytes and writes 4 per lane.
+// Features of surface and view at one scale (host/hatching/features/hatching_view.cpp), and their magnitudes,
+// written to their lanes of a slab. One vertex per invocation. Reads 80 bytes and writes 4 per lane.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { ViewCurvatureParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer states;                      // vertices x k_curvature_texels
 layout(set = 0, binding = 1, std430) writeonly buffer Slab { float slab[]; };   // vertices x k_slab_lanes
 
-// Derivative of radial curvature along w's projection, times the sine between w and the normal
-// (host/lines/extraction/view_curvature.cpp); uv is not shorter than its square root tells.
+// Returns the derivative of radial curvature along the projection of w, times the sine between w and the normal
+// (host/lines/extraction/view_curvature.cpp). `squared_sine` is the squared length of uv, not zero.
 float radial_derivative(vec2 k, vec4 d, vec2 uv, float squared_sine, float cosine) {
     const float third = uv.x * uv.x * (uv.x * d.x + 3.0 * uv.y * d.y) + uv.y * uv.y * (3.0 * uv.x * d.z + uv.y * d.w);
     const float torsion = (k.y - k.x) * uv.x * uv.y / squared_sine;
@@ -38,7 +38,7 @@ void main() {
     const vec4 first = clamp(vec4(k, first_is_large ? k : k.yx), -limit, limit);
     const vec4 derivative = clamp(d, -square, square);
     const vec4 seen = clamp(vec4(dot(k, uv * uv) / squared_sine, sqrt(largest),
-                                 sqrt(least_view_curvature(k, largest, cosine)),
+                                 sqrt(min_view_curvature(k, largest, cosine)),
                                  (k.y - k.x) * uv.x * uv.y / squared_sine), -limit, limit);
     const float values[k_curvature_values] = float[](clamp(0.5 * (k.x + k.y), -limit, limit), clamp(k.x * k.y, -square, square),
                                      first.x, first.y, first.z, first.w,

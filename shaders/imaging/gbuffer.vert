@@ -2,12 +2,12 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/gbuffer.h"
 
-// Faces, each vertex run for each of its corners, so that it may tell the number of the face.
+// Draws the faces without an index buffer: the shader runs for each corner, so that it knows the number of the face.
 layout(push_constant) uniform Push { FaceParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer positions;  // x, y, z, 1
 layout(set = 0, binding = 1) uniform usamplerBuffer faces;     // a, b, c, 0
 
-layout(location = 0) flat out uint number;  // of the face, from 1 on
+layout(location = 0) flat out uint number;  // face number, starting with 1
 
 void main() {
     const int face = gl_VertexIndex / 3;

@@ -2,20 +2,21 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/gbuffer.h"
 
-// Where the ray through each pixel's center meets the plane of the face it shows. The points of a ray are where two
-// homogeneous functions are zero, (clip.x - ndc.x clip.w) and (clip.y - ndc.y clip.w); they are linear in the barycentric
-// coordinates, so that these follow from their values at the first corner and along two edges. Edges are differences of
-// positions, which floats know well even of tiny faces far from the origin.
+// Computes the point where the ray through each pixel's center meets the plane of its face. On the ray two
+// homogeneous functions are zero, (clip.x - ndc.x clip.w) and (clip.y - ndc.y clip.w). They are linear in the
+// barycentric coordinates, which follow from their values at the first corner and along two edges. Edges are
+// differences of positions, which are precise even for tiny faces far from the origin.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { PointParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer positions;                                 // x, y, z, 1
 layout(set = 0, binding = 1) uniform usamplerBuffer faces;                                    // a, b, c, 0
-layout(set = 0, binding = 2, std430) readonly buffer Numbers { uint numbers[]; };             // of the tile; 0: nothing
+layout(set = 0, binding = 2, std430) readonly buffer Numbers { uint numbers[]; };             // of the tile; 0: no
+                                                                                              // face
 layout(set = 0, binding = 3, std430) writeonly buffer Seen { uint seen[]; };                  // pixels
 layout(set = 0, binding = 4, std430) writeonly buffer Barycentrics { float barycentrics[]; }; // of corner 1, of corner 2
 layout(set = 0, binding = 5, std430) writeonly buffer Depths { float depths[]; };
 
-// The two functions without their constants.
+// The linear parts of the two functions.
 vec2 along(vec2 ndc, vec3 direction) {
     const float w = dot(parameters.clip_w.xyz, direction);
     return vec2(dot(parameters.clip_x.xyz, direction) - ndc.x * w, dot(parameters.clip_y.xyz, direction) - ndc.y * w);
@@ -23,12 +24,12 @@ vec2 along(vec2 ndc, vec3 direction) {
 
 float cross_2d(vec2 a, vec2 b) { return a.x * b.y - a.y * b.x; }
 
-// Of corners 1 and 2, inside the face.
+// Returns the coordinates of corners 1 and 2, clamped to the face.
 vec2 barycentric(vec2 ndc, vec3 corner, vec3 edge1, vec3 edge2) {
     const vec2 constants = vec2(parameters.clip_x.w, parameters.clip_y.w) - ndc * parameters.clip_w.w;
     vec2 at = along(ndc, corner) + constants, first = along(ndc, edge1), second = along(ndc, edge2);
     const float largest = max(max(abs(first.x), abs(first.y)), max(abs(second.x), abs(second.y)));
-    const float scale = largest > 0.0 ? 1.0 / largest : 0.0;  // or products would underflow for tiny units
+    const float scale = largest > 0.0 ? 1.0 / largest : 0.0;  // else products would underflow for tiny units
     at *= scale;
     first *= scale;
     second *= scale;

@@ -3,8 +3,8 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "shaders/imaging/image_box.glsl"
 
-// Values, gradients and curvatures of up to four images (exemplar::ImageDerivatives) from Gaussian-weighted sums over the
-// pixels of the mask: of images, and of the mask itself. Offsets are per sigma.
+// Computes values, gradients and curvatures of up to four images (exemplar::ImageDerivatives) from Gaussian-weighted
+// sums over the pixels of the mask: sums of the images, and of the mask itself. Offsets are in units of sigma.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { DerivativeParameters parameters; };
 // Sums of the images' values times x^i y^j.
@@ -14,19 +14,19 @@ layout(set = 0, binding = 2) uniform samplerBuffer sums01;
 layout(set = 0, binding = 3) uniform samplerBuffer sums20;
 layout(set = 0, binding = 4) uniform samplerBuffer sums11;
 layout(set = 0, binding = 5) uniform samplerBuffer sums02;
-// Sums over the mask of x^i, lane i, times y^0 to y^3.
+// Sums over the mask of x^i y^j: lane i of buffer mask[j].
 layout(set = 0, binding = 6) uniform samplerBuffer mask0;
 layout(set = 0, binding = 7) uniform samplerBuffer mask1;
 layout(set = 0, binding = 8) uniform samplerBuffer mask2;
 layout(set = 0, binding = 9) uniform samplerBuffer mask3;
 layout(set = 0, binding = 10) uniform usamplerBuffer faces;
-// Per pixel of the image, images one after the other.
+// Per pixel of the image, one image after the other.
 layout(set = 0, binding = 11, std430) writeonly buffer Values { float values[]; };
 layout(set = 0, binding = 12, std430) writeonly buffer Gradients { float gradients[]; };    // all x, all y
 layout(set = 0, binding = 13, std430) writeonly buffer Magnitudes { float magnitudes[]; };
-layout(set = 0, binding = 14, std430) writeonly buffer Curvatures { float curvatures[]; };  // all largest, all least
+layout(set = 0, binding = 14, std430) writeonly buffer Curvatures { float curvatures[]; };  // all maxima, all minima
 
-// Weighted means around a pixel of quantities f, one per lane, and their products with the offsets x and y.
+// Weighted means around a pixel of quantities f, one per lane, and of their products with the offsets x and y.
 struct Means {
     vec4 f, fx, fy, fxx, fxy, fyy;
 };
@@ -44,14 +44,14 @@ struct Derivatives {
     vec4 value, gradient_x, gradient_y, largest, least;
 };
 
-// The joint third cumulants (f, x, x), (f, x, y), (f, y, y).
+// Returns the joint third cumulants (f, x, x), (f, x, y), (f, y, y).
 Hessian third_cumulants(Means m, Offsets o) {
     return Hessian(m.fxx - 2.0 * m.fx * o.x - m.f * o.xx + 2.0 * m.f * o.x * o.x,
                    m.fxy - m.fx * o.y - m.fy * o.x - m.f * o.xy + 2.0 * m.f * o.x * o.y,
                    m.fyy - 2.0 * m.fy * o.y - m.f * o.yy + 2.0 * m.f * o.y * o.y);
 }
 
-// Those of f = x in the first lane, of f = y in the second.
+// Returns the third cumulants of f = x in the first lane and of f = y in the second.
 Hessian offset_cumulants(vec4 m0, vec4 m1, vec4 m2, vec4 m3, Offsets o) {
     Means m;
     m.f = vec4(o.x, o.y, 0.0, 0.0);
@@ -63,13 +63,13 @@ Hessian offset_cumulants(vec4 m0, vec4 m1, vec4 m2, vec4 m3, Offsets o) {
     return third_cumulants(m, o);
 }
 
-// The inverse of an eigenvalue of the spread; nothing where there is too little spread for a slope.
+// Returns the inverse of an eigenvalue of the spread; fades to zero if there is too little spread for a slope.
 float inverse_spread(float spread) {
-    const float squared = spread * spread, least = parameters.least_spread * parameters.least_spread;
+    const float squared = spread * spread, least = parameters.min_spread * parameters.min_spread;
     return squared * spread / (squared * squared + least * least);
 }
 
-// The slope of the least-squares line: the inverse of the spread of offsets, times their covariance with f.
+// Computes the slope of the least-squares line: the inverse of the spread of offsets times their covariance with f.
 void slope(Means m, Offsets o, out vec4 x, out vec4 y) {
     const vec4 cx = m.fx - m.f * o.x, cy = m.fy - m.f * o.y;
     const float xx = o.xx - o.x * o.x, xy = o.xy - o.x * o.y, yy = o.yy - o.y * o.y;

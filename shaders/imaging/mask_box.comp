@@ -2,11 +2,12 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/image_filters.h"
 
-// The smallest rectangle around the pixels that show a face, a row per invocation.
+// Computes the smallest rectangle around the pixels that show a face, one row per invocation.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { ImageParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer faces;
-layout(set = 0, binding = 1, std430) buffer Box { uint box[]; };  // left, top, and the ends at the right and below
+layout(set = 0, binding = 1, std430) buffer Box { uint box[]; };  // left, top, right, bottom; the latter two are
+                                                                  // exclusive
 
 void main() {
     const uint y = gl_GlobalInvocationID.x;

@@ -3,12 +3,13 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "shaders/shared/image_filters.h"
 
-// As weighted_sums.comp, of the mask, which is one number per pixel: lane k has the power k of the offset.
+// Does what weighted_sums.comp does for the mask, which is one number per pixel: lane k of the result has the power
+// k of the offset.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 1) const uint k_outputs = 4;
 layout(push_constant) uniform Push { SumParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer inside;   // 1 or 0
-layout(set = 0, binding = 1) uniform samplerBuffer weights;  // four at a time
+layout(set = 0, binding = 1) uniform samplerBuffer weights;  // in groups of four
 layout(set = 0, binding = 2, std430) writeonly buffer Orders { vec4 orders[]; };
 
 float inside_at(uint line, int place) {

@@ -4,7 +4,8 @@
 #include "shaders/imaging/light.glsl"
 #include "shaders/shared/render.h"
 
-// Hemisphere light and headlight on a two-sided surface, in linear color (exemplar::RenderOptions has the formula).
+// Lights a two-sided surface by hemisphere light and headlight, in linear color (exemplar::RenderOptions has the
+// formula).
 layout(push_constant) uniform Push { RenderParameters parameters; };
 
 layout(location = 0) in vec3 position;

@@ -3,7 +3,8 @@
 #include "shaders/lib/srgb.glsl"
 #include "shaders/shared/render.h"
 
-// The corners of triangles, pulled from storage buffers: no vertex is stored twice, though every face has its own color.
+// Pulls the corners of triangles from storage buffers, so that no vertex is stored twice although every face has its
+// own color.
 layout(push_constant) uniform Push { RenderParameters parameters; };
 layout(set = 0, binding = 0, std430) readonly buffer Corners { uint corners[]; };       // faces x 3, vertex indices
 layout(set = 0, binding = 1, std430) readonly buffer Positions { float positions[]; };  // vertices x 3

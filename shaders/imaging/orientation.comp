@@ -3,10 +3,10 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "shaders/imaging/image_box.glsl"
 
-// Coherence (cos 2a, sin 2a) of smoothed structure tensors.
+// Computes coherence (cos 2a, sin 2a) from smoothed structure tensors.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { OrientationParameters parameters; };
-layout(set = 0, binding = 0) uniform samplerBuffer trace;  // the box
+layout(set = 0, binding = 0) uniform samplerBuffer trace;  // planes of the box
 layout(set = 0, binding = 1) uniform samplerBuffer difference;
 layout(set = 0, binding = 2) uniform samplerBuffer product;
 layout(set = 0, binding = 3) uniform usamplerBuffer faces;

@@ -3,7 +3,7 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "shaders/imaging/image_box.glsl"
 
-// Up to four images side by side in the box, zero outside of the mask.
+// Packs up to four images into the lanes of one vec4 per pixel of the box, zero outside of the mask.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const bool k_masked = true;
 layout(push_constant) uniform Push { ImageParameters image; };

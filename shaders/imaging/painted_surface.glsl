@@ -1,9 +1,9 @@
-// A posed surface that is drawn from the buffers that kernels left it in.
+// Vertices of a posed surface, read from the buffers that kernels wrote.
 #ifndef EXEMPLAR_PAINTED_SURFACE_GLSL
 #define EXEMPLAR_PAINTED_SURFACE_GLSL
 #include "shaders/shared/paint.h"
 
-layout(constant_id = 2) const bool k_by_corner = true;  // else by index: vertices that faces share run once
+layout(constant_id = 2) const bool k_by_corner = true;  // else by index: shared vertices are processed once
 layout(push_constant) uniform Push { PaintParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer positions;  // x, y, z, 1
 layout(set = 0, binding = 1) uniform usamplerBuffer faces;     // a, b, c, 0

@@ -3,11 +3,11 @@
 #include "shaders/lib/srgb.glsl"
 #include "shaders/shared/render.h"
 
-// The mean of each pixel's samples in linear color, encoded as sRGB.
+// Averages each pixel's samples in linear color and encodes the mean as sRGB.
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant) uniform Push { ResolveParameters parameters; };
 layout(set = 0, binding = 0, std430) readonly buffer Samples { uvec2 samples[]; };  // half floats: red, green, blue, 1
-layout(set = 0, binding = 1, std430) writeonly buffer Pixels { uint pixels[]; };    // 8 bits each, red lowest
+layout(set = 0, binding = 1, std430) writeonly buffer Pixels { uint pixels[]; };    // 8 bits per channel, red lowest
 
 vec3 linear_sample(uint column, uint row) {
     const uvec2 packed = samples[row * k_render_samples * parameters.width + column];

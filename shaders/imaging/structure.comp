@@ -3,11 +3,11 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "shaders/imaging/image_box.glsl"
 
-// The structure tensors of single pixels, by the double angle of their gradients.
+// Computes the structure tensors of single pixels, in terms of the doubled angle of their gradients.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { ImageParameters image; };
 layout(set = 0, binding = 0) uniform samplerBuffer gradients;  // 2 x images x pixels: all x, all y
-// The box.
+// Planes of the box.
 layout(set = 0, binding = 1, std430) writeonly buffer Trace { vec4 trace[]; };
 layout(set = 0, binding = 2, std430) writeonly buffer Difference { vec4 difference[]; };
 layout(set = 0, binding = 3, std430) writeonly buffer Product { vec4 product[]; };

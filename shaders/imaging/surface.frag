@@ -5,7 +5,7 @@
 #include "shaders/lib/srgb.glsl"
 #include "shaders/shared/paint.h"
 
-// Paint and light on a surface that has two sides.
+// Paints and lights a two-sided surface.
 layout(constant_id = 0) const uint k_paint = 0;
 layout(constant_id = 1) const uint k_light = 0;
 layout(push_constant) uniform Push { PaintParameters parameters; };
@@ -17,7 +17,7 @@ layout(location = 0) out vec4 drawn;  // sRGB, multiplied by its alpha
 
 const float k_ambient = 0.42, k_ground = 0.35, k_headlight = 0.62;  // of exemplar::RenderOptions
 
-// Hollow is blue, flat is nearly white, convex is red; linear.
+// Concave is blue, flat nearly white, convex red; linear colors.
 vec3 curvature_color(float strength) {
     const float x = clamp(strength, -1.0, 1.0);
     const vec3 flat_color = vec3(0.80), far = x < 0.0 ? vec3(0.03, 0.16, 0.55) : vec3(0.62, 0.04, 0.03);
@@ -41,7 +41,8 @@ vec3 lit(vec3 encoded) {
     const float facing = abs(dot(n, toward));
     if (k_light == k_light_headlight) return encoded * (0.45 + 0.55 * facing);
     if (k_light == k_light_steps) return encoded * (facing > 0.55 ? 1.0 : facing > 0.25 ? 0.86 : 0.72);
-    // As encoding the product of the linear color with the light would be, but next to black: for one power, not six.
+    // Approximates the encoded product of linear color and light. Equal to it except near black, and needs one power
+    // instead of six.
     const float light = reference_light(n, toward, k_ambient, k_ground, k_headlight);
     return (encoded + 0.055) * pow(light, 1.0 / 2.4) - 0.055;
 }

@@ -2,7 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/imaging/painted_surface.glsl"
 
-// Vertices with what paint and light need of them; both are constants, and what they do without is not read.
+// Outputs vertices with the attributes that paint and light need. Both are constants, and buffers that they do not
+// need are not read.
 layout(constant_id = 0) const uint k_paint = 0;
 layout(constant_id = 1) const uint k_light = 0;
 layout(set = 0, binding = 2) uniform samplerBuffer normals;
@@ -10,7 +11,7 @@ layout(set = 0, binding = 3) uniform usamplerBuffer colors;  // of faces, sRGB, 
 layout(set = 0, binding = 4) uniform samplerBuffer first;    // e1, k1
 layout(set = 0, binding = 5) uniform samplerBuffer second;   // e2, k2
 
-layout(location = 0) out vec4 place;  // its position, and curvature, of which 1 has the strongest color
+layout(location = 0) out vec4 place;  // position, and curvature, scaled so that 1 has the strongest color
 layout(location = 1) out vec3 normal;
 layout(location = 2) flat out vec3 color;  // sRGB
 

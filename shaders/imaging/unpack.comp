@@ -3,7 +3,7 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "shaders/imaging/image_box.glsl"
 
-// Images one after the other, of whole images side by side.
+// Unpacks whole images from the lanes of a vec4 per pixel into one image after the other.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { ImageParameters image; };
 layout(set = 0, binding = 0) uniform samplerBuffer packed;                         // pixels

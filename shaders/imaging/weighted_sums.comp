@@ -3,15 +3,16 @@
 #extension GL_EXT_control_flow_attributes : require
 #include "shaders/shared/image_filters.h"
 
-// Sums of a line's pixels times a Gaussian and powers 0 to k_orders - 1 of the offset, which is per sigma. An invocation
-// has k_outputs pixels of one line (y), so that a pixel, once loaded, serves all of them: the window holds the pixels that
-// four weights of all outputs see, and moves on by four. Lines (x) are side by side. Pixels outside of the line are zero.
+// Sums a line's pixels times a Gaussian and the powers 0 to k_orders - 1 of the offset, in units of sigma. An
+// invocation computes k_outputs pixels of one line (y), so that each loaded pixel is used for all of them. The
+// window holds the pixels that four weights of all outputs need, and moves on by four. Neighboring invocations (x)
+// have neighboring lines. Pixels outside of the line are zero.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const uint k_orders = 1;
 layout(constant_id = 1) const uint k_outputs = 4;
 layout(push_constant) uniform Push { SumParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer image;
-layout(set = 0, binding = 1) uniform samplerBuffer weights;  // four at a time
+layout(set = 0, binding = 1) uniform samplerBuffer weights;  // in groups of four
 layout(set = 0, binding = 2, std430) writeonly buffer Order0 { vec4 order0[]; };
 layout(set = 0, binding = 3, std430) writeonly buffer Order1 { vec4 order1[]; };
 layout(set = 0, binding = 4, std430) writeonly buffer Order2 { vec4 order2[]; };
@@ -26,7 +27,7 @@ vec4 pixel_at(uint line, int place) {
 void main() {
     const uint line = gl_GlobalInvocationID.x, first = gl_GlobalInvocationID.y * k_outputs;
     if (line >= parameters.lines || first >= parameters.pixels) return;
-    int next = int(first) - int(parameters.radius);  // the pixel to load
+    int next = int(first) - int(parameters.radius);  // the pixel to load next
     vec4 window[k_outputs + 3];
     [[unroll]] for (uint i = 0; i + 1 < k_outputs; ++i) window[i] = pixel_at(line, next++);
     vec4 sums[k_orders * k_outputs];

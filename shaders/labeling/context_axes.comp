@@ -4,9 +4,9 @@
 #include "shaders/labeling/context_bins.glsl"
 #include "shaders/shared/context.h"
 
-// Contextual histograms over the distance along an axis (thesis Eq. A.1): one face (x) and one axis (y) per invocation.
-// Along an axis samples can be sorted, so that the samples between two distances are two runs of the sorted order, found by
-// binary search, and their masses are differences of prefix sums.
+// Contextual histograms over the distance along an axis (thesis Eq. A.1): one face (x) and one axis (y) per
+// invocation. The samples are sorted along the axis. Those between two distances form two runs, found by binary
+// search, whose masses are differences of prefix sums.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { AxisContextParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer positions;  // axes x faces
@@ -14,10 +14,10 @@ layout(set = 0, binding = 1) uniform samplerBuffer sorted;     // axes x samples
 layout(set = 0, binding = 2) uniform samplerBuffer prefixes;   // axes x class blocks x (samples + 1)
 layout(set = 0, binding = 3, std430) writeonly buffer Histograms { float histograms[]; };
 
-// The searches repeat the reference's own float expression |p - s|, which is monotonic on either side of p: a sample on a
-// bin's edge falls into the same bin.
+// The searches evaluate the same float expression |p - s| as the reference. It is monotonic on either side of p, so
+// a sample on a bin's edge falls into the same bin.
 
-// The number of samples that lie before p by at least `edge`.
+// Returns the number of samples that lie before p by at least `edge`.
 uint count_before(uint first, float p, float edge) {
     uint low = 0, high = parameters.samples;
     while (low < high) {
@@ -28,7 +28,7 @@ uint count_before(uint first, float p, float edge) {
     return low;
 }
 
-// The first sample that lies behind p by at least `edge`.
+// Returns the first sample that lies behind p by at least `edge`.
 uint first_behind(uint first, float p, float edge) {
     uint low = 0, high = parameters.samples;
     while (low < high) {
@@ -47,7 +47,7 @@ void main() {
     if (face >= parameters.faces) return;
     const float p = texelFetch(positions, int(axis * parameters.faces + face)).x;
 
-    // Samples [before[b], behind[b]) are nearer than edge b; bounds 0 and k_context_bins are the empty and the whole range.
+    // Samples [before[b], behind[b]) are nearer than edge b. Bound 0 contains no sample, bound k_context_bins all.
     uint before[k_context_bins + 1], behind[k_context_bins + 1];
     before[k_context_bins] = 0;
     behind[k_context_bins] = parameters.samples;

@@ -1,5 +1,5 @@
-// Where contextual histograms are written: column (measure * bins + bin) * classes + class, feature-major. Measures count
-// from 0 in each kernel's output.
+// Layout of contextual histograms: column (measure * bins + bin) * classes + class, feature-major. Each kernel
+// counts its measures from 0.
 #ifndef EXEMPLAR_CONTEXT_BINS_GLSL
 #define EXEMPLAR_CONTEXT_BINS_GLSL
 

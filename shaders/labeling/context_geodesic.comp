@@ -4,13 +4,13 @@
 #include "shaders/labeling/context_bins.glsl"
 #include "shaders/shared/context.h"
 
-// Contextual histograms over geodesic distance (thesis Eq. A.1): k_faces faces (x) and one block of four classes (y) per
-// invocation. Loops whose bodies load or store stay loops: unrolled, they took a CPU driver seconds to compile. An invocation's
-// faces are far apart, so that neighbors read neighboring faces.
+// Contextual histograms over geodesic distance (thesis Eq. A.1): k_faces faces (x) and one block of four classes (y)
+// per invocation. Loops that load or store are not unrolled: D8 in docs/portability.md. The faces of an invocation
+// are `threads` apart, so that neighboring invocations read neighboring faces.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const uint k_faces = 1;
 layout(push_constant) uniform Push { GeodesicContextParameters parameters; };
-// Sample blocks x faces: the ranges of one face seen from 16 samples, a byte each; k_no_bin where there is no path.
+// Sample blocks x faces: the ranges from 16 samples to one face, one byte each; k_no_bin where there is no path.
 layout(set = 0, binding = 0) uniform usamplerBuffer ranges;
 layout(set = 0, binding = 1) uniform samplerBuffer masses;  // class blocks x 16 x sample blocks
 layout(set = 0, binding = 2, std430) writeonly buffer Histograms { float histograms[]; };
@@ -38,7 +38,7 @@ void main() {
         }
     }
 
-    // The loops below index at run time; only this copy then has to lie in memory.
+    // The loops below use dynamic indices. With this copy, only `result` has to lie in memory, not `bins`.
     vec4 result[k_faces * k_context_bins];
     for (uint f = 0; f < k_faces; ++f)
         for (uint b = 0; b < k_context_bins; ++b) result[f * k_context_bins + b] = bins[f][b];

@@ -4,22 +4,22 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/stumps.h"
 
-// Boosted stumps up to the probabilities (thesis Eq. 2.64 to 2.66), of k_quads x 4 items per invocation. Stumps come grouped
-// by the set of classes that share them: a group is summed once and then added to its classes, so that the cost of a stump
-// does not depend on the number of classes. Loops over classes stay loops: unrolled for many classes, they took a CPU
-// driver longer to compile than to run. Inputs are texels, which a CPU driver fetches six times as fast as storage buffers;
-// features may be read as either (k_from_storage). They are floats, or their ranks among the thresholds that the classifier
-// compares them with, of 16 or 8 bits (k_bits): these answer the same, and a texel has two or four times as many.
+// Computes the probabilities of boosted stumps (thesis Eq. 2.64 to 2.66), for k_quads x 4 items per invocation.
+// Stumps are grouped by the set of classes that share them. A group is summed once and then added to its classes, so
+// the cost of a stump does not depend on the number of classes. Loops over classes are not unrolled, and inputs are
+// texels (D8 and D4 in docs/portability.md); features may also be read from a storage buffer (k_from_storage).
+// Features are floats, or 16- or 8-bit ranks among the classifier's thresholds (k_bits): comparisons give the same
+// result, and a texel holds two or four times as many.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const uint k_classes = 1;
 layout(constant_id = 1) const uint k_quads = 1;  // a multiple of k_quads_of_texel
 layout(constant_id = 2) const bool k_from_storage = false;
 layout(constant_id = 3) const uint k_bits = 32;
-// Several dispatches add a part of the groups each; until the last, H is kept in `probabilities`.
+// If true, several dispatches add a part of the groups each, and keep H in `probabilities` between them.
 layout(constant_id = 4) const bool k_in_parts = false;
 layout(push_constant) uniform Push { StumpParameters parameters; };
 layout(set = 0, binding = 0) uniform usamplerBuffer features;  // columns x stride, 4, 8 or 16 items each
-layout(set = 0, binding = 1) uniform usamplerBuffer stumps;    // GroupedStump; as floats, small integers might be flushed
+layout(set = 0, binding = 1) uniform usamplerBuffer stumps;    // GroupedStump; uints: D14 in docs/portability.md
 layout(set = 0, binding = 2) uniform usamplerBuffer groups;    // StumpGroup
 layout(set = 0, binding = 3, std430) readonly buffer Constants { float constants[]; };
 layout(set = 0, binding = 4, std430) buffer Probabilities { float probabilities[]; };
@@ -32,8 +32,8 @@ uvec4 fetch_features(uint index) {
     return k_from_storage ? stored_features[index] : texelFetch(features, int(index));
 }
 
-// Of one of a texel's quads, which items are above the threshold of a stump. That of ranks has all lower bits set, so that
-// what lies below a rank in its word need not be cut off.
+// Returns which items of a texel's quad are above the threshold of a stump. The threshold of a rank has all lower
+// bits set, so that the bits below a rank in its word need not be masked.
 bvec4 is_above(uvec4 texel, uint quad, uint threshold) {
     if (k_bits == 32) return greaterThan(uintBitsToFloat(texel), vec4(uintBitsToFloat(threshold)));
     if (k_bits == 16) {
@@ -53,25 +53,26 @@ StumpGroup fetch_group(uint index) {
     return StumpGroup(g.x, g.y, g.z, g.w);
 }
 
-// Log of the unnormalized probability; the sigmoid's stays finite where sigma itself underflows.
+// Returns the log of the unnormalized probability. That of the sigmoid stays finite where sigma itself underflows.
 vec4 log_weight(vec4 scaled) {
     if (parameters.link == k_link_softmax) return scaled;
     return min(scaled, 0.0) - log(1.0 + exp(-abs(scaled)));
 }
 
-// H of an invocation's quads, quads x classes.
+// H of the invocation's quads: quads x classes.
 vec4 h[k_quads * k_classes];
 
-// How many of a quad's items there are.
+// Returns the number of valid items in a quad.
 uint items_of(uint quad) { return 4 * quad < parameters.rows ? min(4u, parameters.rows - 4 * quad) : 0; }
 
-// H of one quad, from h[first] on, as the dispatch before has left it; and for the next.
-void take_up_quad(uint quad, uint first) {
+// Loads H of one quad, as the previous dispatch stored it, into h from `first` on; and stores it for the next
+// dispatch.
+void load_partial_sums(uint quad, uint first) {
     const uint items = items_of(quad);
     [[dont_unroll]] for (uint c = 0; c < k_classes; ++c)
         [[dont_unroll]] for (uint item = 0; item < items; ++item) h[first + c][item] = probabilities[(4 * quad + item) * k_classes + c];
 }
-void leave_quad(uint quad, uint first) {
+void store_partial_sums(uint quad, uint first) {
     const uint items = items_of(quad);
     [[dont_unroll]] for (uint c = 0; c < k_classes; ++c)
         [[dont_unroll]] for (uint item = 0; item < items; ++item) probabilities[(4 * quad + item) * k_classes + c] = h[first + c][item];
@@ -96,7 +97,7 @@ void store_quad(uint quad, uint first) {
     }
 }
 
-// Of an invocation's quads in the order of h.
+// Returns the number of an invocation's quad `q` in the order of h.
 uint quad_of(uint texel, uint q) {
     return (texel + q / k_quads_of_texel * k_stump_neighbors) * k_quads_of_texel + q % k_quads_of_texel;
 }
@@ -109,7 +110,7 @@ void main() {
     [[dont_unroll]] for (uint c = 0; c < k_classes; ++c)
         for (uint q = 0; q < k_quads; ++q) h[q * k_classes + c] = vec4(constants[c]);
     if (k_in_parts && parameters.first_group > 0)
-        [[dont_unroll]] for (uint q = 0; q < k_quads; ++q) take_up_quad(quad_of(texel, q), q * k_classes);
+        [[dont_unroll]] for (uint q = 0; q < k_quads; ++q) load_partial_sums(quad_of(texel, q), q * k_classes);
     const uint stride = parameters.stride;
     for (uint g = parameters.first_group; g < parameters.end_group; ++g) {
         const StumpGroup group = fetch_group(g);
@@ -132,7 +133,7 @@ void main() {
             }
     }
     if (k_in_parts && parameters.end_group < parameters.groups)
-        [[dont_unroll]] for (uint q = 0; q < k_quads; ++q) leave_quad(quad_of(texel, q), q * k_classes);
+        [[dont_unroll]] for (uint q = 0; q < k_quads; ++q) store_partial_sums(quad_of(texel, q), q * k_classes);
     else
         [[dont_unroll]] for (uint q = 0; q < k_quads; ++q) store_quad(quad_of(texel, q), q * k_classes);
 }

@@ -1,8 +1,9 @@
-// Where things are seen from.
+// Direction to the eye.
 #ifndef EXEMPLAR_EYE_GLSL
 #define EXEMPLAR_EYE_GLSL
 
-// The unit vector from a point to an eye: its position and 1, or for a parallel projection the unit direction to it and 0.
+// Returns the unit vector from a point to the eye. `eye` is its position and w = 1 or, for a parallel projection,
+// the unit direction to it and w = 0.
 vec3 to_eye(vec4 eye, vec3 here) {
     return normalize(eye.xyz - eye.w * here);
 }

@@ -1,12 +1,12 @@
-// The sum of what the invocations before this one in its workgroup have, and of all, in `group_total`: for large groups, in as
-// many steps as their size has bits.
+// Exclusive prefix sum over a workgroup: exclusive_sum returns the sum of `count` over the invocations before this one,
+// and sets `group_total` to the sum over all. For large workgroups: takes log2 of their size steps.
 #ifndef EXEMPLAR_GROUP_SCAN_GLSL
 #define EXEMPLAR_GROUP_SCAN_GLSL
 
 shared uint group_sums[gl_WorkGroupSize.x];
 uint group_total;
 
-uint sum_before(uint count) {
+uint exclusive_sum(uint count) {
     const uint own = gl_LocalInvocationID.x;
     barrier();
     group_sums[own] = count;

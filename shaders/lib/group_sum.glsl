@@ -1,6 +1,6 @@
-// The sum of what the invocations before this one in its workgroup have, and of all, in `group_total`: first in rows of eight,
-// then of rows. Groups are small, so that adding up one by one takes less than the barriers of a tree, but loads of shared memory
-// are what it costs on a CPU.
+// Exclusive prefix sum over a small workgroup: exclusive_sum returns the sum of `count` over the invocations before
+// this one, and sets `group_total` to the sum over all. Adds in rows of eight, then the rows: D7 in
+// docs/portability.md.
 #ifndef EXEMPLAR_GROUP_SUM_GLSL
 #define EXEMPLAR_GROUP_SUM_GLSL
 
@@ -9,7 +9,7 @@ shared uint group_counts[gl_WorkGroupSize.x];
 shared uint row_counts[gl_WorkGroupSize.x / k_sum_row];
 uint group_total;
 
-uint sum_before(uint count) {
+uint exclusive_sum(uint count) {
     const uint own = gl_LocalInvocationID.x, row = own / k_sum_row, place = own % k_sum_row;
     group_counts[own] = count;
     barrier();

@@ -1,17 +1,17 @@
-// View-dependent curvature (Judd et al. 2007): how much the normal turns over a step on the screen
-// (host/lines/extraction/apparent_ridges.cpp).
+// View-dependent curvature (Judd et al. 2007): the turn of the normal per step on the screen
+// (host/lines/extraction/apparent_ridges.cpp). n is the normal, w the unit vector to the eye.
 #ifndef EXEMPLAR_VIEW_CURVATURE_GLSL
 #define EXEMPLAR_VIEW_CURVATURE_GLSL
 
-const float k_grazing = 1e-3;  // least |n.w| that the foreshortening is computed with
+const float k_grazing = 1e-3;  // min |n.w| in the foreshortening
 
-// How long a step on the surface towards the eye is that has length 1 on the screen.
+// Returns the length on the surface of a step towards the eye that has length 1 on the screen.
 float screen_step(float cosine) {
     return 1.0 / max(abs(cosine), k_grazing);
 }
 
-// The largest view-dependent curvature, squared, and its direction on the surface in (e1, e2), a step of length 1 on the
-// screen, from k1, k2, the unit vector to the eye along e1 and e2, and n.w.
+// Returns the maximum view-dependent curvature, squared (x), and its direction on the surface in (e1, e2) (yz), a
+// step of length 1 on the screen. `k`: k1 and k2; `uv`: the components of w along e1 and e2; `cosine`: n.w.
 vec3 view_curvature(vec2 k, vec2 uv, float cosine) {
     const float sine = length(uv), stretch = screen_step(cosine) - 1.0;
     const vec2 a = sine > 0.0 ? uv / sine : vec2(0.0);
@@ -25,8 +25,8 @@ vec3 view_curvature(vec2 k, vec2 uv, float cosine) {
     return vec3(0.5 * (xx + yy) + radius, to_surface * vec2(cos(angle), sin(angle)));
 }
 
-// The smallest, squared, from k1, k2, the largest, squared, and n.w.
-float least_view_curvature(vec2 k, float largest, float cosine) {
+// Returns the minimum view-dependent curvature, squared, given the maximum, squared, as `largest`.
+float min_view_curvature(vec2 k, float largest, float cosine) {
     const float determinant = k.x * k.y * screen_step(cosine);
     return largest > 0.0 ? min(determinant / largest * determinant, largest) : 0.0;
 }

@@ -1,5 +1,5 @@
-// if (condition) { ... }, which is jumped over where no invocation of a subgroup takes it: CPU drivers run the body of an if
-// masked, but leave loops. For bodies that few take; neither break nor continue may leave it.
+// `when (condition) { ... }` is an `if` that is skipped if no invocation of the subgroup takes it: D3 in
+// docs/portability.md. For bodies that few invocations take; break and continue must not leave them.
 #ifndef EXEMPLAR_WHEN_GLSL
 #define EXEMPLAR_WHEN_GLSL
 

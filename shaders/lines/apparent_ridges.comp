@@ -4,9 +4,10 @@
 #include "shaders/shared/curvature.h"
 #include "shaders/shared/lines.h"
 
-// The field of apparent ridges (host/lines/extraction/apparent_ridges.cpp): how view-dependent curvature grows along its direction, from
-// the faces that this leads into, one vertex per invocation. Per vertex of six faces 4 + 32 bytes of topology and 64 of
-// its own are read and 32 written; what the ring reads comes from caches.
+// Computes the field of apparent ridges (host/lines/extraction/apparent_ridges.cpp), one vertex per invocation: the
+// derivative of view-dependent curvature along its direction, from the faces that the direction leads into. Per
+// vertex with six faces 4 + 32 bytes of topology and 64 of its own are read and 32 written; the data of the ring
+// comes from caches.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const uint k_families = 0;
 layout(push_constant) uniform Push { FieldParameters parameters; };
@@ -23,8 +24,8 @@ float cross2(vec2 a, vec2 b) {
     return a.x * b.y - a.y * b.x;
 }
 
-// Sum and number of the difference quotients in a face, seen from a corner in (e1, e2), if the direction, forward or
-// backward, leads into it.
+// Returns sum and number of the difference quotients in a face, if the direction, forward or backward, leads into
+// it. to_a, to_b: edges from the vertex to the other corners, in (e1, e2).
 vec2 slope_in(vec3 here, vec2 to_a, vec2 to_b, float q_a, float q_b) {
     vec2 slope = vec2(0.0);
     for (float side = 1.0; side >= -1.0; side -= 2.0) {

@@ -2,10 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lines/line_buffers.glsl"
 
-// How many segments each face has, so that the next kernel knows where to write them in the order of the faces, whatever the
-// order in which they are found. One face per invocation: reads 16 bytes and those of its corners' fields (48 a family, from
-// caches), writes 4, and 4 a group.
-layout(set = 0, binding = 5, std430) writeonly buffer Counts { uint counts[]; };  // before it in its group, its own
+// Counts the segments of each face, so that segments.comp can write them in the order of the faces. One face per
+// invocation: reads 16 bytes and the fields of its corners (48 per family, from caches), writes 4, and 4 per group.
+// Per face: the number of segments before it in its group << 8 | its own.
+layout(set = 0, binding = 5, std430) writeonly buffer Counts { uint counts[]; };
 layout(set = 0, binding = 6, std430) writeonly buffer Groups { uint groups[]; };
 
 uint found = 0;
@@ -18,7 +18,7 @@ void emit(uint family, uint first_place, uint second_place, vec3 first_end, vec3
 void main() {
     const uint face = linear_thread();
     if (face < parameters.faces) find_lines(face);
-    const uint before = sum_before(found);
+    const uint before = exclusive_sum(found);
     if (face < parameters.faces) counts[face] = before << 8 | found;
     if (gl_LocalInvocationID.x == 0u && face < parameters.faces) groups[face / k_count_group] = group_total;
 }

@@ -1,12 +1,13 @@
-// The segments of lines in a face (host/lines/extraction/lines.cpp). The including shader declares `positions`, `faces`, `neighbors`,
-// `fields`, `directions`, the constant `k_families` and FaceLineParameters `parameters`, and defines what is done with each segment:
+// Finds the segments of lines in a face (host/lines/extraction/lines.cpp). The including shader declares
+// `positions`, `faces`, `neighbors`, `fields`, `directions`, the constant `k_families` and FaceLineParameters
+// `parameters`, and defines what is done with each segment:
 //   void emit(uint family, uint first_place, uint second_place, vec3 first_end, vec3 second_end, vec2 strength)
 #ifndef EXEMPLAR_FACE_LINES_GLSL
 #define EXEMPLAR_FACE_LINES_GLSL
 #include "shaders/lib/when.glsl"
 #include "shaders/shared/lines.h"
 
-// Cuts from [range.x, range.y] the part where the function that runs from `first` (at 0) to `last` (at 1) is not positive.
+// Shrinks [range.x, range.y] to where the linear function with value `first` at 0 and `last` at 1 is positive.
 void clip(float first, float last, inout vec2 range) {
     if (first > 0.0 && last > 0.0) return;
     if (!(first > 0.0) && !(last > 0.0)) {
@@ -20,7 +21,7 @@ void clip(float first, float last, inout vec2 range) {
         range.x = max(range.x, zero);
 }
 
-// The fields of the corners are the columns of `corners`.
+// Emits the part of a segment that faces the eye and passes the threshold. `corners`: fields as columns.
 void add_segment(uint family, mat3x4 corners, vec3 a, uint place_a, vec3 b, uint place_b) {
     const vec4 at_a = corners * a, at_b = corners * b;
     vec2 range = vec2(0.0, 1.0);
@@ -55,7 +56,7 @@ void add_zero_set(uint family, mat3x4 corners, mat3 axes) {
     }
     const bvec3 above = greaterThan(value, vec3(0.0));
     when (any(above) && !all(above)) {
-        // Around the face, values turn positive on one side and negative on another.
+        // Around the face, values become positive on one side and negative on another.
         uint falls = 0, rises = 0;
         for (uint i = 0; i < 3; ++i) {
             const uint next = i == 2u ? 0u : i + 1u;
@@ -98,11 +99,11 @@ void add_edges(uint family, uint face, uvec3 corners) {
     for (uint i = 0; i < 3; ++i) {
         float strength = 1.0;
         if (family == k_boundaries) {
-            if (across[i] != k_side_alone) continue;
-        } else if (across[i] == k_side_of_many) {
+            if (across[i] != k_boundary_side) continue;
+        } else if (across[i] == k_nonmanifold_side) {
             strength = 3.14159265;
         } else {
-            if (across[i] > k_last_side || across[i] / 4u < face) continue;
+            if (across[i] > k_max_side_code || across[i] / 4u < face) continue;
             const vec3 a = face_cross(corners), b = face_cross(texelFetch(faces, int(across[i] / 4u)).xyz);
             if (!(dot(a, a) > 0.0 && dot(b, b) > 0.0)) continue;
             strength = atan(length(cross(a, b)), dot(a, b));
@@ -119,7 +120,7 @@ mat3 three(samplerBuffer source, uint slot, uvec3 corners) {
                 texelFetch(source, int(begin + corners.z)).xyz);
 }
 
-// What the fields of a family tell of a face; `k_families` decides at compile time which there are.
+// Finds the lines of one family in a face; `k_families` decides at compile time whether there are any.
 void find_lines_of(uint family, uint face, uvec3 corners) {
     const uint bit = 1u << family, before = bit - 1u;
     if ((k_families & bit) == 0u) return;

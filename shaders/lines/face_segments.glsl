@@ -1,9 +1,9 @@
-// Which segments of lines a face has. The including shader declares `face_counts` and `groups` (count.comp, scan.comp).
+// Looks up the segments of a face. The including shader declares `face_counts` and `groups` (count.comp, scan.comp).
 #ifndef EXEMPLAR_FACE_SEGMENTS_GLSL
 #define EXEMPLAR_FACE_SEGMENTS_GLSL
 #include "shaders/shared/lines.h"
 
-// The first and the one after the last, of as many as there are.
+// Returns the range [x, y) of the segments of a face, clamped to `all`, the number of segments.
 uvec2 segments_of(uint face, uint all) {
     const uint count = texelFetch(face_counts, int(face)).x;
     const uint first = texelFetch(groups, int(face / k_count_group)).x + (count >> 8);

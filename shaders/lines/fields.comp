@@ -4,8 +4,8 @@
 #include "shaders/lib/eye.glsl"
 #include "shaders/shared/lines.h"
 
-// What decides at the vertices about lines in the faces around them (host/lines/extraction/line_fields.cpp), one vertex per invocation,
-// but for apparent ridges. Reads 80 bytes, without curvature 32; writes 16 for each family, and 16 more for its direction.
+// Computes the fields of all families but apparent ridges (host/lines/extraction/line_fields.cpp), one vertex per
+// invocation. Reads 80 bytes, without curvature 32; writes 16 per family, and 16 more for its direction.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const uint k_families = 0;
 layout(push_constant) uniform Push { FieldParameters parameters; };
@@ -61,7 +61,7 @@ void put_radial(View view, float k1, float k2, vec4 c) {
             vec4(value, -derivative / cosine, -derivative - threshold_of(k_suggestive_highlights) * view.cosine, view.cosine));
 }
 
-// The curvature of larger magnitude, positive for ridges and negative for valleys.
+// Uses the curvature of larger magnitude: positive for ridges, negative for valleys.
 void put_crests(vec4 e1, vec4 e2, vec4 c) {
     const bool takes_first = abs(e1.w) >= abs(e2.w);
     const float k = takes_first ? e1.w : e2.w;

@@ -1,8 +1,8 @@
-// Where points of the world are in the picture. The including shader declares `parameters` with matrix, width and height.
+// Projects points into the picture. The including shader declares `parameters` with matrix, width and height.
 #ifndef EXEMPLAR_IN_PICTURE_GLSL
 #define EXEMPLAR_IN_PICTURE_GLSL
 
-// Pixels to the right and down, depth, and depth along the camera's axis (not positive behind the eye).
+// Returns pixels to the right and down, depth, and depth along the camera's axis (not positive behind the eye).
 vec4 in_picture(vec3 at) {
     const vec4 clip = parameters.matrix[0] * at.x + parameters.matrix[1] * at.y + parameters.matrix[2] * at.z +
                       parameters.matrix[3];

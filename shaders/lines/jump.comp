@@ -3,9 +3,11 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/lines.h"
 
-// Doubles how far each node sees along its chain. A node has two texels: the node it leads to, how many steps that takes, the
-// pixels of the segments after its own, and whether the chain ends there; of the nodes before that one the one of the
-// smallest segment, with steps and pixels to it. One node per invocation: reads 64 bytes and writes 32.
+// A round of pointer jumping, which doubles the reach of each node along its chain. A node has two texels:
+// 1. the node it leads to, the steps to it, the pixels of the segments after its own up to and including that one's,
+//    and whether the chain ends there;
+// 2. of the nodes before that one, the one of the smallest segment, with steps and pixels to it.
+// One node per invocation: reads 64 bytes and writes 32.
 layout(local_size_x = k_count_group) in;
 layout(set = 0, binding = 0) uniform usamplerBuffer source;
 layout(set = 0, binding = 1, std430) readonly buffer Counts { LineCounts counts; };

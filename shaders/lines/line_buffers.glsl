@@ -1,4 +1,4 @@
-// What the kernels that look for lines in faces bind.
+// Bindings of the kernels that find lines in faces.
 #ifndef EXEMPLAR_LINE_BUFFERS_GLSL
 #define EXEMPLAR_LINE_BUFFERS_GLSL
 #include "shaders/lib/dispatch.glsl"

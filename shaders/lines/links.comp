@@ -3,20 +3,22 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/lines.h"
 
-// Where segments end in the picture, and which others continue them there (host/lines/strokes/chains.cpp). One segment per
-// invocation: reads 32 bytes and, from caches, its face, that face's neighbors and their segments; writes 32 + 8.
+// Projects the ends of segments into the picture and finds the ends that continue them
+// (host/lines/strokes/chains.cpp). One segment per invocation: reads 32 bytes and, from caches, its face, the face's
+// neighbors and their segments; writes 32 + 8.
 layout(local_size_x = k_count_group) in;
 layout(push_constant) uniform Push { LinkParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer positions;
 layout(set = 0, binding = 1) uniform usamplerBuffer faces;
 layout(set = 0, binding = 2) uniform usamplerBuffer neighbors;
-layout(set = 0, binding = 3) uniform usamplerBuffer face_begin;  // per vertex, where its faces begin, and where the last end
+layout(set = 0, binding = 3) uniform usamplerBuffer face_begin;  // per vertex and one more
 layout(set = 0, binding = 4) uniform usamplerBuffer vertex_faces;
 layout(set = 0, binding = 5) uniform usamplerBuffer face_counts;
 layout(set = 0, binding = 6) uniform usamplerBuffer groups;
 layout(set = 0, binding = 7) uniform usamplerBuffer segments;
 layout(set = 0, binding = 8, std430) readonly buffer Counts { LineCounts counts; };
-layout(set = 0, binding = 9, std430) writeonly buffer Ends { vec4 picture_ends[]; };  // pixels, depth, view depth; two a segment
+// Two per segment: pixels, depth, view depth.
+layout(set = 0, binding = 9, std430) writeonly buffer Ends { vec4 picture_ends[]; };
 layout(set = 0, binding = 10, std430) writeonly buffer Links { uvec2 links[]; };
 #include "shaders/lines/face_segments.glsl"
 #include "shaders/lines/in_picture.glsl"
@@ -24,7 +26,7 @@ layout(set = 0, binding = 10, std430) writeonly buffer Links { uvec2 links[]; };
 
 uint link_across(LineSegmentRecord segment, uint side) {
     const uint across = texelFetch(neighbors, int(segment.face))[side];
-    if (across > k_last_side) return k_no_link;
+    if (across > k_max_side_code) return k_no_link;
     const uvec2 others = segments_of(across / 4u, counts.segments);
     for (uint i = others.x; i < others.y; ++i) {
         const uint kind = texelFetch(segments, int(2u * i)).y;
@@ -35,7 +37,7 @@ uint link_across(LineSegmentRecord segment, uint side) {
     return k_no_link;
 }
 
-// The other end at a vertex, if there is one and not two.
+// Returns the other end at a vertex if there is exactly one.
 uint link_at(LineSegmentRecord segment, uint self, uint vertex) {
     uint found = k_no_link, ends = 0;
     const uint last = texelFetch(face_begin, int(vertex + 1u)).x;

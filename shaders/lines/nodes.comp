@@ -3,9 +3,10 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/lines.h"
 
-// Nodes as the jumps begin: each leads one step on. One node per invocation: reads 8 + 32 bytes, writes 32.
+// Initializes the nodes for pointer jumping: each leads one step on. One node per invocation: reads 40 bytes and
+// writes 32.
 layout(local_size_x = k_count_group) in;
-layout(set = 0, binding = 0) uniform usamplerBuffer links;  // of each end
+layout(set = 0, binding = 0) uniform usamplerBuffer links;  // per end
 layout(set = 0, binding = 1) uniform samplerBuffer picture_ends;
 layout(set = 0, binding = 2, std430) readonly buffer Counts { LineCounts counts; };
 layout(set = 0, binding = 3, std430) writeonly buffer Nodes { uvec4 nodes[]; };  // see jump.comp

@@ -3,20 +3,21 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/coherence.h"
 
-// Where the texture lies at each point of a chain: mostly where the pieces around it have it, a little where the whole chain
-// has it, so that what length a chain gains or loses evens out in time (host/lines/strokes/coherence.cpp). One point per invocation:
-// reads its chain's votes and, from caches, 16 bytes of each point around it; writes 8.
+// Computes the texture phase at each point of a chain: mostly from the votes around it, to a small part from those
+// of the whole chain, so that changes of length even out in time (host/lines/strokes/coherence.cpp). One point per
+// invocation: reads the votes of its chain and, from caches, 16 bytes of each point around it; writes 8.
 layout(local_size_x = k_count_group) in;
 layout(push_constant) uniform Push { FollowParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer points;  // LinePoint, two texels each
 layout(set = 0, binding = 1) uniform samplerBuffer matches;  // votes.comp, two texels each
 layout(set = 0, binding = 2, std430) readonly buffer Counts { LineCounts counts; };
 layout(set = 0, binding = 3, std430) readonly buffer Votes { ChainVotes votes[]; };
-layout(set = 0, binding = 4, std430) writeonly buffer Phases { vec2 phases[]; };  // 1 or -1, and pixels: texture_phase.glsl
+// Direction (+1 or -1) and offset in pixels, see texture_phase.glsl.
+layout(set = 0, binding = 4, std430) writeonly buffer Phases { vec2 phases[]; };
 
 const float k_pi = 3.14159265358979;
 
-// The votes of a chain's pieces to one side of a point, those nearer counting more.
+// Sums the votes of a chain's pieces to one side of a point; nearer ones weigh more.
 vec2 votes_beside(int point, int step, float here, uint chain_and_way) {
     vec2 sum = vec2(0.0);
     for (int i = 0; i < k_follow_points; ++i) {
@@ -51,7 +52,7 @@ void main() {
     if (parameters.keeps != 0u && of_all != vec2(0.0)) {
         const uint ours = 2u * chain + (along ? 0u : 1u);
         const vec2 around = unit(votes_beside(int(index), 1, here, ours) + votes_beside(int(index) - 1, -1, here, ours));
-        const vec2 turn = around == vec2(0.0) ? of_all : mix(around, of_all, 1.0 / float(k_calling));
+        const vec2 turn = around == vec2(0.0) ? of_all : mix(around, of_all, 1.0 / float(k_whole_chain_divisor));
         phase = vec2(along ? 1.0 : -1.0, period * fract(atan(turn.y, turn.x) / (2.0 * k_pi)));
     }
     phases[index] = phase;

@@ -3,8 +3,8 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/lines.h"
 
-// Writes the points of chains in their order: each segment the point where it begins, the last of a chain also the one where
-// it ends. One segment per invocation: reads 16 + 32 + 32 bytes, writes 32 to 64.
+// Writes the points of chains in their order: each segment writes its first point, the last segment of a chain also
+// its last point. One segment per invocation: reads 16 + 32 + 32 bytes, writes 32 to 64.
 layout(local_size_x = k_count_group) in;
 layout(set = 0, binding = 0) uniform usamplerBuffer ranks;
 layout(set = 0, binding = 1) uniform usamplerBuffer point_counts;

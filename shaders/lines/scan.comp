@@ -2,8 +2,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/lines.h"
 
-// Replaces the sums of groups by what is before each, and writes how much there is in all, with the arguments of the
-// commands that follow. A single workgroup: 4 bytes are read and 4 written for each group.
+// Replaces the sums of groups by their exclusive prefix sums, and writes the total and the arguments of the
+// following indirect commands. A single workgroup: 4 bytes are read and 4 written per group.
 layout(local_size_x = 128) in;
 layout(constant_id = 0) const bool k_of_points = false;  // else of segments
 layout(push_constant) uniform Push { ScanParameters parameters; };
@@ -24,7 +24,7 @@ void put_segments(uint total) {
     counts.segment_groups[0] = groups_of(segments);
     counts.trace_groups[0] = groups_of(max(segments, previous));
     counts.node_groups[0] = groups_of(2u * segments);
-    // As many jumps as the longest chain may take, an even number: the result is where the first began.
+    // Enough rounds for the longest possible chain. Their number is even, so that the result is in the first buffer.
     uint rounds = segments > 1u ? uint(findMSB(segments - 1u)) + 1u : 0u;
     rounds += rounds & 1u;
     for (uint i = 0; i < k_line_rounds; ++i) {
@@ -50,7 +50,7 @@ void main() {
     const uint begin = min(gl_LocalInvocationID.x * share, count), end = min(begin + share, count);
     uint sum = 0;
     for (uint i = begin; i < end; ++i) sum += groups[i];
-    uint before = sum_before(sum);
+    uint before = exclusive_sum(sum);
     for (uint i = begin; i < end; ++i) {
         const uint own = groups[i];
         groups[i] = before;

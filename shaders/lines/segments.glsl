@@ -1,4 +1,4 @@
-// Reading segments of lines (shared::LineSegmentRecord), two texels each. The including shader declares `segments`.
+// Reads segments of lines (shared::LineSegmentRecord), two texels each. The including shader declares `segments`.
 #ifndef EXEMPLAR_SEGMENTS_GLSL
 #define EXEMPLAR_SEGMENTS_GLSL
 #include "shaders/shared/lines.h"
@@ -14,7 +14,7 @@ uint family_of(LineSegmentRecord segment) {
 uint place_of(uint kind, uint end) {
     return kind >> (end == 0u ? k_kind_first_place : k_kind_second_place) & k_kind_place;
 }
-// The weights of the three corners.
+// Returns the barycentric coordinates of an end.
 vec3 end_of(LineSegmentRecord segment, uint end) {
     const vec2 of_others = end == 0u ? segment.ends.xy : segment.ends.zw;
     return vec3(1.0 - of_others.x - of_others.y, of_others);

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/lines.h"
 
-// The coverage of a pixel by the stroke, where it is visible, times its texture.
+// Computes the coverage of a pixel by the visible part of a stroke, times its texture.
 layout(set = 0, binding = 4) uniform samplerBuffer textures;  // rows of opacities, one texture after the other
 
 layout(location = 0) in vec4 along;
@@ -16,7 +16,7 @@ float texel(uint begin, int column, int row) {
     return texelFetch(textures, int(begin) + row * int(k_texture_width) + column).x;
 }
 
-// Bilinear; around along the stroke, and clamped across it.
+// Interpolates bilinearly, repeated along the stroke and clamped across it.
 float opacity_at(uint begin, float turn, float across) {
     const vec2 at = vec2(fract(turn) * float(k_texture_width), clamp(across, 0.0, 1.0) * float(k_texture_height)) - 0.5;
     const vec2 low = floor(at), part = at - low;
@@ -31,7 +31,7 @@ void main() {
     const uint sample_index = min(uint(along.w * float(seen.y)), seen.y - 1u);
     if ((seen.x >> sample_index & 1u) == 0u) discard;
     const float half_width = along.y;
-    // How much of the pixel's width the stroke covers.
+    // The share of the pixel's width that the stroke covers.
     const float covered = min(half_width, along.x + 0.5) - max(-half_width, along.x - 0.5);
     float alpha = along.z * max(covered, 0.0);
     const uint begin = floatBitsToUint(texture_of.x);

@@ -3,8 +3,8 @@
 #include "shaders/lines/texture_phase.glsl"
 #include "shaders/shared/lines.h"
 
-// A quad from each point of a chain to the next, as wide as the stroke and a pixel more to each side for soft edges. Those
-// that follow each other share their corners, so nothing is drawn twice.
+// Draws a quad from each point of a chain to the next, as wide as the stroke plus a pixel on each side for soft
+// edges. Consecutive quads share corners, so nothing is drawn twice.
 layout(push_constant) uniform Push { StrokeDrawParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer points;
 layout(set = 0, binding = 1) uniform samplerBuffer strokes;
@@ -13,22 +13,22 @@ layout(set = 0, binding = 3, std430) readonly buffer Looks { StrokeLook looks[];
 // Binding 4 is the fragment shader's.
 layout(set = 0, binding = 5, std430) readonly buffer Phases { vec2 phases[]; };
 
-layout(location = 0) out vec4 along;       // place across in pixels, half width, opacity, way to the next point (0 to 1)
-layout(location = 1) out float texture_at;  // its coordinate along the chain, in pixels
-layout(location = 2) flat out uvec2 seen;  // samples that are visible, and their number
+layout(location = 0) out vec4 along;       // pixels across, half width, opacity, share of the way to the next point
+layout(location = 1) out float texture_at;  // texture coordinate along the chain, in pixels
+layout(location = 2) flat out uvec2 seen;  // bits of the visible samples, and number of samples
 layout(location = 3) flat out vec4 color;
-layout(location = 4) flat out vec3 texture_of;  // where it begins, its period, its way along the chain
+layout(location = 4) flat out vec3 texture_of;  // 1 + first texel, period, direction along the chain
 
 void main() {
     const int corner = gl_VertexIndex % 6, point = gl_VertexIndex / 6;
-    // Two triangles: 0 1 2, 2 1 3; odd corners lie at the next point, upper two on the other side.
+    // Two triangles: 0 1 2, 2 1 3. Odd corners are at the next point, corners 2 and 3 on the other side.
     const int which = corner < 3 ? corner : corner == 3 ? 2 : corner == 4 ? 1 : 3;
     const bool next = (which & 1) != 0;
     const float side = which < 2 ? -1.0 : 1.0;
     const vec4 kind = texelFetch(points, 2 * point + 1);
     seen = uvec2(texelFetch(visible, 2 * point).x, texelFetch(visible, 2 * point + 1).x);
     if ((floatBitsToUint(kind.x) & k_point_last) != 0u || seen.x == 0u) {
-        gl_Position = vec4(0.0, 0.0, 0.0, 1.0);  // nothing
+        gl_Position = vec4(0.0, 0.0, 0.0, 1.0);  // degenerate: draws nothing
         return;
     }
     const int at = next ? point + 1 : point;

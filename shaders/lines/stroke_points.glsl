@@ -1,11 +1,11 @@
-// What strokes know of the surface at the points of their chains (host/lines/strokes/strokes.cpp). The including shader declares
+// Curvature of the surface at the points of chains (host/lines/strokes/strokes.cpp). The including shader declares
 // `positions`, `first`, `second` and StrokeParameters `parameters`.
 #ifndef EXEMPLAR_STROKE_POINTS_GLSL
 #define EXEMPLAR_STROKE_POINTS_GLSL
 #include "shaders/lib/eye.glsl"
 #include "shaders/shared/lines.h"
 
-// Radial curvature at a vertex, times the feature size.
+// Returns radial curvature at a vertex, times the feature size.
 float radial_curvature(int vertex) {
     const vec3 w = to_eye(parameters.eye, texelFetch(positions, vertex).xyz);
     const vec4 e1 = texelFetch(first, vertex), e2 = texelFetch(second, vertex);

@@ -3,13 +3,13 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/lines.h"
 
-// How points are drawn (host/lines/strokes/strokes.cpp): where, the normal across the stroke, its width, tapered towards the ends of
-// what is visible, and its opacity. One point per invocation: reads its segment, its face's corners and the points around
-// it, all from caches, and writes 32.
+// Computes how points are drawn (host/lines/strokes/strokes.cpp): position, normal across the stroke, width, tapered
+// towards the ends of visible runs, and opacity. One point per invocation: reads its segment, the corners of its
+// face and the points around it, all from caches, and writes 32.
 layout(local_size_x = k_count_group) in;
 layout(push_constant) uniform Push { StrokeParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer points;  // LinePoint, two texels each
-layout(set = 0, binding = 1) uniform usamplerBuffer visible;  // two words a point
+layout(set = 0, binding = 1) uniform usamplerBuffer visible;  // two words per point
 layout(set = 0, binding = 2) uniform usamplerBuffer segments;
 layout(set = 0, binding = 3) uniform usamplerBuffer faces;
 layout(set = 0, binding = 4) uniform samplerBuffer positions;
@@ -17,11 +17,12 @@ layout(set = 0, binding = 5) uniform samplerBuffer first;
 layout(set = 0, binding = 6) uniform samplerBuffer second;
 layout(set = 0, binding = 7, std430) readonly buffer Counts { LineCounts counts; };
 layout(set = 0, binding = 8, std430) readonly buffer Looks { StrokeLook looks[]; };  // per family
-layout(set = 0, binding = 9, std430) writeonly buffer Strokes { vec4 strokes[]; };   // place, width, opacity; normal
+// Two per point: position, width, opacity; normal.
+layout(set = 0, binding = 9, std430) writeonly buffer Strokes { vec4 strokes[]; };
 #include "shaders/lines/segments.glsl"
 #include "shaders/lines/stroke_points.glsl"
 
-const uint k_most_taper_points = 64;
+const uint k_max_taper_points = 64;
 
 uint kind_of(int point) {
     return floatBitsToUint(texelFetch(points, 2 * point + 1).x);
@@ -33,7 +34,8 @@ bool is_last(int point) {
     return (kind_of(point) & k_point_last) != 0u;
 }
 
-// The point before or after; of a closed chain, whose last point is its first, around; of an open one itself at the end.
+// Returns the previous or next point. Wraps around on closed chains, whose last point is the first; stays at the end
+// of open ones.
 int neighbor(int point, int way) {
     const uint kind = kind_of(point);
     if ((kind & (way > 0 ? k_point_last : k_point_first)) == 0u) return point + way;
@@ -48,7 +50,7 @@ vec2 place_of_point(int point) {
     return texelFetch(points, 2 * point).xy;
 }
 
-// What is to one side of a point: its integral over the length, the length, and where it ends.
+// The smoothing window on one side of a point: integral of the position over its length, length, and end.
 struct Side {
     vec2 sum;
     float pixels;
@@ -57,15 +59,15 @@ struct Side {
 Side side_of(int point, int way) {
     float reach = 0.0;
     int here = point;
-    for (int i = 0; i < k_calm_reach; ++i) {
+    for (int i = 0; i < k_smoothing_window_reach; ++i) {
         const int next = neighbor(here, way);
         reach += distance(place_of_point(next), place_of_point(here));
         here = next;
     }
-    reach = clamp(reach, k_least_calm, k_most_calm);
+    reach = clamp(reach, k_min_smoothing_window, k_max_smoothing_window);
     Side result = Side(vec2(0.0), 0.0, place_of_point(point));
     here = point;
-    for (int i = 0; i < k_calm_points && result.pixels < reach; ++i) {
+    for (int i = 0; i < k_smoothing_window_points && result.pixels < reach; ++i) {
         const int next = neighbor(here, way);
         const vec2 from = place_of_point(here), on = place_of_point(next) - from;
         const float size = length(on), part = min(size, reach - result.pixels);
@@ -80,19 +82,19 @@ Side side_of(int point, int way) {
     return result;
 }
 
-// Where a point is drawn, the normal there, and exemplar::straightness.
-struct Calmed {
+// A smoothed point: its position, its normal, and exemplar::straightness.
+struct SmoothedPoint {
     vec2 at;
     vec2 normal;
     float straightness;
 };
-Calmed calmed(int point, uint kind) {
+SmoothedPoint smoothed_point(int point, uint kind) {
     const vec2 here = place_of_point(point);
     vec2 tangent = vec2(0.0), there = here;
     float straightness = 1.0;
     if ((1u << (kind & k_kind_family) & k_edge_families) != 0u) {
         int before = point, after = point;
-        for (int i = 0; i < k_calm_reach; ++i) {
+        for (int i = 0; i < k_smoothing_window_reach; ++i) {
             before = neighbor(before, -1);
             after = neighbor(after, 1);
         }
@@ -107,7 +109,7 @@ Calmed calmed(int point, uint kind) {
         if (size > 0.0) straightness = min(1.0, 2.0 * length(tangent) / size);
     }
     const float size = length(tangent);
-    return Calmed(there, size > 0.0 ? vec2(-tangent.y, tangent.x) / size : vec2(0.0, 1.0), straightness);
+    return SmoothedPoint(there, size > 0.0 ? vec2(-tangent.y, tangent.x) / size : vec2(0.0, 1.0), straightness);
 }
 
 float thickness(uvec2 walked_end, StrokeLook look) {
@@ -123,10 +125,10 @@ float thickness(uvec2 walked_end, StrokeLook look) {
     return clamp(look.width * look.epsilon / (z * (max(curvature, 0.0) + look.epsilon)), look.least, look.most);
 }
 
-// Pixels from a point along its chain to where the way is hidden or ends, but no more than `most`.
+// Returns the pixels from a point along its chain to the end of its visible run, at most `most`.
 float visible_length(int point, int way, float most) {
     float sum = 0.0;
-    for (uint i = 0; i < k_most_taper_points && sum < most; ++i) {
+    for (uint i = 0; i < k_max_taper_points && sum < most; ++i) {
         const int next = neighbor(point, way);
         if (next == point) return sum;
         const int link = way > 0 ? (next == point + 1 ? point : next - 1) : next;
@@ -158,7 +160,7 @@ void main() {
     const vec4 more = texelFetch(points, 2 * point + 1);
     const uint kind = floatBitsToUint(more.x), walked = floatBitsToUint(more.z);
     const StrokeLook look = looks[kind & k_kind_family];
-    const Calmed drawn = calmed(point, kind);
+    const SmoothedPoint drawn = smoothed_point(point, kind);
     const bool last = (kind & k_point_last) != 0u;
     const uint begin_end = walked & 1u;
     const float width = thickness(uvec2(walked >> 1, last ? 1u - begin_end : begin_end), look) *

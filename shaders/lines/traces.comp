@@ -3,16 +3,17 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/coherence.h"
 
-// Where the lines of the frame before would be in this picture: on the surface as it is now. Clears the votes. One segment of
-// either frame per invocation: reads 32 + 16 bytes and its face's corners, writes 32 + 20.
+// Projects the lines of the previous frame, moved along with the surface, into this picture. Clears the votes. One
+// segment of either frame per invocation: reads 32 + 16 bytes and the corners of its face, writes 32 + 20.
 layout(local_size_x = k_count_group) in;
 layout(push_constant) uniform Push { FollowParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer positions;
 layout(set = 0, binding = 1) uniform usamplerBuffer faces;
-layout(set = 0, binding = 2) uniform usamplerBuffer segments;  // of the frame before
+layout(set = 0, binding = 2) uniform usamplerBuffer segments;  // of the previous frame
 layout(set = 0, binding = 3) uniform samplerBuffer traces;
 layout(set = 0, binding = 4, std430) readonly buffer Counts { LineCounts counts; };
-layout(set = 0, binding = 5, std430) writeonly buffer Ends { vec4 ends[]; };  // pixels, texture, share drawn or -1; two each
+// Two per segment: pixels, texture coordinate, share drawn or -1 if it reaches behind the eye.
+layout(set = 0, binding = 5, std430) writeonly buffer Ends { vec4 ends[]; };
 layout(set = 0, binding = 6, std430) writeonly buffer Votes { ChainVotes votes[]; };
 layout(set = 0, binding = 7, std430) writeonly buffer Flicker { FlickerSums flicker; };
 #include "shaders/lines/in_picture.glsl"

@@ -5,7 +5,7 @@
 #include "shaders/lib/view_curvature.glsl"
 #include "shaders/shared/lines.h"
 
-// View-dependent curvature and its direction, one vertex per invocation. Reads 64 bytes and writes 16.
+// Computes view-dependent curvature and its direction, one vertex per invocation. Reads 64 bytes and writes 16.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(push_constant) uniform Push { FieldParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer positions;

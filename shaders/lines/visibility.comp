@@ -3,8 +3,8 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/lines.h"
 
-// Which samples of the way from each point to the next are not hidden: a bit each, and their number. A sample is hidden if
-// all of the 3 x 3 pixels around it show something nearer. One point per invocation: reads 64 bytes and 36 a sample, from
+// Finds the visible samples between each point and the next: a bit each, and their number. A sample is hidden if all
+// 3 x 3 pixels around it show something nearer. One point per invocation: reads 64 bytes and 36 per sample, from
 // caches, and writes 8.
 layout(local_size_x = k_count_group) in;
 layout(push_constant) uniform Push { StrokeParameters parameters; };
@@ -41,9 +41,9 @@ float facing(int vertex) {
     return dot(normal, to_eye(parameters.eye, texelFetch(positions, vertex).xyz));
 }
 
-// By how much a segment may be behind what is drawn there. A contour is where the smooth surface turns away, up to an edge
-// behind the outline of its faces, unless it is one that the surface itself hides, where it bends away from the eye;
-// and faces near an outline may turn away where the smooth surface does not yet. Negative: it is hidden for certain.
+// Returns how far a segment may be behind the depth image; negative: it is hidden for certain. A contour of smooth
+// normals lies up to an edge behind the outline of its faces, unless radial curvature is not positive, where the
+// surface itself hides it. Near an outline, faces may turn away where the smooth surface does not yet.
 float tolerance_of(uint index) {
     const uvec2 head = texelFetch(segments, int(2u * index)).xy;
     const uvec3 corners = texelFetch(faces, int(head.x)).xyz;
@@ -57,7 +57,7 @@ float tolerance_of(uint index) {
     }
     if (parameters.curved != 0u && family != k_contours) {
         behind = dot(cross(b - a, c - a), to_eye(parameters.eye, a)) < 0.0;
-        // Others are cut off where the smooth surface turns away.
+        // Other families are cut off already where the smooth surface turns away.
         if (family == k_ridges || family == k_valleys)
             behind = behind && facing(int(corners.x)) + facing(int(corners.y)) + facing(int(corners.z)) > 0.0;
     }
@@ -77,7 +77,7 @@ void main() {
         return;
     }
     const vec3 there = texelFetch(points, int(2u * index + 2u)).xyz;
-    // A piece behind the eye or far outside of the picture has no length to speak of.
+    // The length of a piece behind the eye or far outside of the picture is meaningless, so it is clamped.
     const float pixels = distance(here.xy, there.xy);
     const uint samples = uint(clamp(ceil(pixels / k_sample_spacing), 1.0, 32.0));
     uint mask = 0;

@@ -4,17 +4,18 @@
 #include "shaders/lib/when.glsl"
 #include "shaders/shared/coherence.h"
 
-// What was near each piece of a chain in the frame before: the nearest line of its family in its face, or else in the first
-// face that has one on the way straight off the line, to either side. The piece votes for the texture to lie as it did there
-// (host/lines/strokes/coherence.cpp). One point per invocation: reads 64 bytes and, from caches, some faces and their lines; writes 32
-// and adds 12 to its chain's votes. The sums are of integers, the same in any order.
+// Finds the line of the previous frame nearest to each piece of a chain: of its family, in its face or else,
+// perpendicular to the line on either side, in the first face that has one. The piece votes for the texture's
+// placement there (host/lines/strokes/coherence.cpp). One point per invocation: reads 64 bytes and, from caches,
+// some faces and their lines; writes 32 and adds 12 to the votes of its chain. The sums are of integers, so their
+// order does not matter.
 layout(local_size_x = k_count_group) in;
 layout(set = 0, binding = 0) uniform samplerBuffer points;  // LinePoint, two texels each
 layout(set = 0, binding = 1) uniform usamplerBuffer segments;
 layout(set = 0, binding = 2) uniform usamplerBuffer faces;
 layout(set = 0, binding = 3) uniform usamplerBuffer neighbors;
 layout(set = 0, binding = 4) uniform samplerBuffer positions;
-// Of the frame before; ends as traces.comp leaves them.
+// Of the previous frame; ends as written by traces.comp.
 layout(set = 0, binding = 5) uniform usamplerBuffer face_counts;
 layout(set = 0, binding = 6) uniform usamplerBuffer groups;
 layout(set = 0, binding = 7) uniform usamplerBuffer old_segments;
@@ -22,9 +23,9 @@ layout(set = 0, binding = 8) uniform samplerBuffer old_ends;
 layout(set = 0, binding = 9, std430) readonly buffer Counts { LineCounts counts; };
 layout(set = 0, binding = 10, std430) readonly buffer Looks { StrokeLook looks[]; };
 layout(set = 0, binding = 11, std430) buffer Votes { ChainVotes votes[]; };
-// Of each point, for the way on: the texture where it was, the share of it drawn or -1 if there was nothing, the texture's
-// period; and its vote: weight times cosine and sine, pixels along the chain, 2 * chain + whether it is for a texture against
-// the chain.
+// Two texels per point, for the piece to the next point. Match: texture coordinate of the previous line, share of it
+// that was drawn or -1 if there was none, period of the texture. Vote: weight times cosine and sine, pixels along
+// the chain, and 2 * chain + 1 if the texture runs against the chain, else + 0.
 layout(set = 0, binding = 12, std430) writeonly buffer Matches { vec4 matches[]; };
 #include "shaders/lines/face_segments.glsl"
 #include "shaders/lines/segments.glsl"
@@ -47,7 +48,7 @@ void look_in(uint face, uint family, vec2 here, vec2 way, inout Match best) {
         if (a.w < 0.0 || b.w < 0.0) continue;
         const vec2 on = b.xy - a.xy;
         const float squared = dot(on, on);
-        // A little beyond its ends it is taken to go on.
+        // Texture coordinates are extrapolated by up to its length beyond its ends.
         const float t = squared > 0.0 ? clamp(dot(here - a.xy, on) / squared, -1.0, 2.0) : 0.5;
         const float away = distance(here, a.xy + clamp(t, 0.0, 1.0) * on);
         if (away < best.away) best = Match(away, mix(a.z, b.z, t), dot(on, way) * (b.z - a.z) >= 0.0, a.w);
@@ -58,16 +59,16 @@ vec3 corner_at(uvec3 corners, uint i) {
     return texelFetch(positions, int(corners[i])).xyz;
 }
 
-// The face across the side that lies farthest that way: the one opposite to the corner that lies farthest back.
+// Returns the neighbor in a direction: across the side opposite to the corner that lies farthest back.
 uint face_towards(uint face, vec3 way) {
     const uvec3 corners = texelFetch(faces, int(face)).xyz;
     const vec3 at = vec3(dot(corner_at(corners, 0u), way), dot(corner_at(corners, 1u), way), dot(corner_at(corners, 2u), way));
     const uint side = at.x <= at.y && at.x <= at.z ? 1u : at.y <= at.z ? 2u : 0u;
     const uint across = texelFetch(neighbors, int(face))[side];
-    return across > k_last_side ? k_no_link : across / 4u;
+    return across > k_max_side_code ? k_no_link : across / 4u;
 }
 
-// Off the line, within the surface.
+// Returns the direction perpendicular to the line, within the surface.
 vec3 way_off(LineSegmentRecord segment) {
     const uvec3 corners = texelFetch(faces, int(segment.face)).xyz;
     const vec3 a = corner_at(corners, 0u), b = corner_at(corners, 1u), c = corner_at(corners, 2u);
@@ -89,10 +90,11 @@ void look_beside(uint index, uint family, vec2 here, vec2 way, inout Match best)
     }
 }
 
-// The vote of a piece: a direction for the turn of the texture at which the chain begins, as long as its weight.
+// Returns the vote of a piece: the phase of the texture at the chain's start as an angle, in a vector with the
+// weight as length.
 vec2 vote(Match match, float along, float size, float period) {
-    // What is behind the eye has no say.
-    const float weight = size < 1e6 ? min(size, float(k_most_vote)) : 0.0;
+    // Pieces behind the eye have no weight.
+    const float weight = size < 1e6 ? min(size, float(k_max_vote)) : 0.0;
     const float begin = match.texture_at + (match.along ? -along : along);
     const float angle = 2.0 * k_pi * fract(begin / period);
     return weight * vec2(cos(angle), sin(angle));

@@ -3,7 +3,7 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/ceilings.h"
 
-// Copies vec4s: measures the bandwidth that kernels can reach.
+// Copies vec4s, to measure the bandwidth that kernels can reach.
 layout(local_size_x = 256) in;
 layout(push_constant) uniform Push { CopyParameters parameters; };
 layout(set = 0, binding = 0, std430) readonly buffer Source { vec4 source[]; };

@@ -3,7 +3,8 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/ceilings.h"
 
-// Eight independent chains of fused multiply-adds per invocation: measures the arithmetic rate that kernels can reach.
+// Runs eight independent chains of fused multiply-adds per invocation, to measure the arithmetic rate that kernels
+// can reach.
 layout(local_size_x = 256) in;
 layout(push_constant) uniform Push { MultiplyAddParameters parameters; };
 layout(set = 0, binding = 0, std430) writeonly buffer Result { float result[]; };

@@ -4,43 +4,43 @@
 
 SHARED_BEGIN
 
-// What a segment leaves behind for the frame after: a vec4 with the coordinates of the texture at its ends, the share of it
-// that was drawn, and 0.
+// The trace of a segment for the next frame is a vec4: the texture coordinates at its ends, the share of it that was
+// drawn, and 0.
 
-// The pieces of a chain vote on where its texture lies, in turns of the texture: sums in units of 1 / k_vote_unit pixels.
+// The votes of the pieces of a chain on the phase of its texture, as an angle, in units of 1 / k_vote_unit pixels.
 struct ChainVotes {
-    int balance;      // positive: the texture runs along the chain, else against it
-    int along_cos;    // of the turns at which it begins if it runs along
+    int balance;    // positive or zero: the texture runs along the chain, else against it
+    int along_cos;  // of the phase at its start if it runs along
     int along_sin;
-    int against_cos;  // and if against
+    int against_cos;  // of the phase at its start if it runs against
     int against_sin;
 };
 const float k_vote_unit = 16.0f;
-const int k_most_vote = 16;  // pixels
+const int k_max_vote = 16;  // pixels
 
-// Faces to each side of a line in which the same line is looked for.
+// Number of faces searched for the previous line, to each side of a line.
 const uint k_follow_faces = 8;
-// A point goes by the votes within so many pixels along the chain, and within so many points; and to one part in
-// k_calling by those of the whole chain.
+// The phase of a point follows the votes within this many pixels and points along the chain, blended with a share of
+// 1 / k_whole_chain_divisor of the votes of the whole chain.
 const int k_follow_reach = 64;
 const int k_follow_points = 32;
-const int k_calling = 16;
+const int k_whole_chain_divisor = 16;
 
 struct FollowParameters {
     vec4 matrix[4];  // columns: world to clip space
     float width;     // of the picture, in pixels
     float height;
-    uint keeps;  // 0: every chain begins its texture anew
+    uint keeps;  // 0: the texture of every chain starts at the chain's start
     uint unused;
 };
 
-// How lines differ from those of the frame before: sums in units of 1 / k_flicker_unit.
+// How lines differ from those of the previous frame: sums in units of 1 / k_flicker_unit.
 struct FlickerSums {
-    uint drawn;     // pixels of length that are drawn
-    uint kept;      // that were drawn before, too
-    uint appeared;  // and that were not
-    uint slip;      // kept pixels times the pixels by which the texture moved on them
-    uint stretch;   // pixels by which textures are longer or shorter than the pieces of lines that they are on
+    uint drawn;     // drawn length in pixels
+    uint kept;      // part of it that was drawn before
+    uint appeared;  // part of it that was not
+    uint slip;      // kept length times the movement of the texture on it, in pixels
+    uint stretch;   // difference of the lengths of textures and their pieces of lines, in pixels
 };
 const float k_flicker_unit = 4.0f;
 

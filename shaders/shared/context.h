@@ -6,20 +6,20 @@ SHARED_BEGIN
 
 const uint k_context_bins = 5;  // distance ranges
 const uint k_context_axes = 6;
-// Samples whose ranges one texel holds, a byte each.
+// Samples per texel of ranges, one byte each.
 const uint k_context_sample_block = 16;
-// Classes whose masses one texel holds.
+// Classes per texel of masses.
 const uint k_context_class_block = 4;
 
 struct GeodesicContextParameters {
-    uint faces;          // of the tile, also the distance from one output column to the next
+    uint faces;          // of the tile; also the stride between output columns
     uint sample_blocks;  // of k_context_sample_block samples
     uint classes;
     uint threads;  // invocations along x that have work
 };
 
 struct AxisContextParameters {
-    vec4 edges[k_context_axes];  // the inner bin edges of each, rising
+    vec4 edges[k_context_axes];  // inner bin edges of each axis, rising
     uint faces;
     uint samples;
     uint classes;

@@ -4,7 +4,7 @@
 
 SHARED_BEGIN
 
-// A vertex's place in space and where its influences begin.
+// A vertex's rest position and the start of its influences.
 struct RestVertex {
     float x;
     float y;
@@ -12,7 +12,7 @@ struct RestVertex {
     uint influences;  // index of its first InfluencePair
 };
 
-// Two influences on a vertex; a bone beyond the palette's weight is zero. The last pair of a vertex is marked.
+// Two influences on a vertex; an unused second one has weight zero. The last pair of a vertex is marked.
 struct InfluencePair {
     uint first_bone;  // with k_last_of_vertex
     float first_weight;
@@ -20,7 +20,7 @@ struct InfluencePair {
     float second_weight;
 };
 
-// What full weight of a morph target adds to a vertex. The last of a vertex is marked.
+// The offset of a vertex at full weight of a morph target. The last offset of a vertex is marked.
 struct MorphOffset {
     float x;
     float y;
@@ -32,39 +32,42 @@ const uint k_last_of_vertex = 0x80000000u;
 
 struct PoseParameters {
     uint vertices;
-    uint first_weight;  // where the weights of targets begin in the pose, in floats
+    uint first_weight;  // index of the first target weight in the pose, in floats
     uint targets;
 };
 
-// The ring of a vertex: the other corners of its faces, in their order around it, four to a texel. Two entries that
-// follow each other make a face with the vertex, unless the second starts a fan. The last entry of a vertex is marked.
+// The ring of a vertex: the other corners of its faces in order around it, four per texel. Two consecutive entries
+// form a face with the vertex, unless the second starts a fan (k_ring_fan). The last entry of a vertex is marked
+// (k_ring_last).
 const uint k_ring_fan = 0x80000000u;
 const uint k_ring_last = 0x40000000u;
 const uint k_ring_vertex = 0x3fffffffu;
 
 struct SurfaceParameters {
     uint vertices;
-    float scale;  // from mesh units to units in which edges are about 1 long
+    float scale;  // factor from mesh units to units in which edges are about 1 long
 };
 
-// The vertices that may come near a vertex, four to a texel; its last texel is marked in w. Gaps hold the vertex itself.
+// The vertices that may come near a vertex, four per texel; the last texel is marked in w. Padding: the vertex
+// itself.
 const uint k_near_last = 0x80000000u;
 const uint k_near_vertex = 0x7fffffffu;
 
-// The diffusion kernel exp(-d^2 / (2 s^2)) - k_diffusion_rest ends at d^2 = 2 k_diffusion_cutoff s^2, where it is zero.
+// The diffusion kernel exp(-d^2 / (2 s^2)) - k_diffusion_rest ends, at zero, at d^2 = 2 k_diffusion_cutoff s^2.
 const float k_diffusion_cutoff = 4.0f;
 const float k_diffusion_rest = 0.018315639f;  // exp(-k_diffusion_cutoff)
 
 struct DiffusionParameters {
-    uint first;       // vertex of the tile
-    uint vertices;    // in the tile
-    uint near_first;  // texel of all rows with which the tile's begin
-    float scale;     // as in SurfaceParameters; the others are in scaled units
-    float exponent;  // -1 / (2 s^2)
-    float limit;     // of the squared distance
+    uint first;       // first vertex of the tile
+    uint vertices;    // number in the tile
+    uint near_first;  // first texel of the tile among those of all rows
+    float scale;      // as in SurfaceParameters; the others are in scaled units
+    float exponent;   // -1 / (2 s^2)
+    float limit;      // maximum squared distance
 };
 
-// A feature of learned curvature: a neuron, or the product of three inputs, of which the last is followed by a one.
+// A feature of learned curvature: a neuron, or the product of three inputs. The input after the last one is the
+// constant 1.
 struct CurvatureFeature {
     uint first;
     uint second;
@@ -72,9 +75,9 @@ struct CurvatureFeature {
     uint neuron;  // 1 + its index; 0 for none
 };
 
-// Coefficients and features of one component, four to a texel.
+// Coefficients and features of one component, four per texel.
 struct CurvatureComponent {
-    uint first_feature;      // texel
+    uint first_feature;  // texel
     uint feature_texels;
     uint first_coefficient;  // texel
     uint unused;
@@ -82,26 +85,26 @@ struct CurvatureComponent {
 
 struct FeatureParameters {
     uint features;
-    uint first_input;   // in floats of what goes up with a pose; a multiple of four
-    uint input_texels;  // with the one, four to a texel
+    uint first_input;   // index among the uploaded floats of a pose; a multiple of four
+    uint input_texels;  // including the constant 1, four per texel
 };
 
 struct ComponentParameters {
     uint components;
 };
 
-// Learned curvature of mesh sequences reads its inputs from the local shape of patches. The corners of a patch' triangle
-// are this many vertices each, four to a texel.
+// Learned curvature of local shape reads its inputs from patches. Each corner of a patch' triangle is the mean of
+// this many vertices, four per texel.
 const uint k_corner_vertices = 8;
 
 struct PatchParameters {
     uint patches;
 };
 
-// An input that is read from local shape: halves for the vertices of its patch, two to a texel (normal, height).
+// An input of local shape: half-float weights of normal and height per vertex of its patch, 2 vertices per texel.
 struct LocalInput {
     uint surface_patch;
-    uint first_vertex;  // in the list of all patches' vertices
+    uint first_vertex;  // index in the list of all patches' vertices
     uint vertices;
     uint first_texel;
 };
@@ -111,28 +114,29 @@ struct LocalInputParameters {
     float inverse_unit;
 };
 
-// Vertices of learned curvature come in tiles of four quads. A tile is a run of texels: numbers of groups, one for each
-// attribute, two to a word; the vertices of each quad; of tensors, the neighbor of each of these that its first axis leads
-// to; then pairs of rows of halves, four texels to a pair, one for each quad, in which the first row has the first two words:
-// the means of all attributes and, of principal curvatures, the reference normals (an odd row has zeros beside it); then
-// the bases of the attributes, one after the other, in groups of four entries, four texels to a group, one for each quad,
-// in which each entry has a word, a byte for each vertex. The last group of an attribute has zeros for what it lacks.
+// Vertices of learned curvature are in tiles of four quads. A tile is a run of texels:
+// 1. 1 texel: the number of groups of each attribute, two per word.
+// 2. 1 texel per quad: its vertices. Tensors only: 1 more per quad, the neighbors that the first axes point to.
+// 3. 4 texels, one per quad, per pair of rows of halves (two words of each row): the means of all attributes and,
+//    if principal, the reference normals. A last single row is paired with zeros.
+// 4. The bases, attribute by attribute, in groups of four entries: 4 texels, one per quad, per group. In a texel
+//    each entry has a word, a byte per vertex. The last group of an attribute is padded with zeros.
 const uint k_tile_quads = 4;
-const uint k_principal_head = 5;  // texels before the rows
+const uint k_principal_head = 5;  // texels before part 3
 const uint k_tensor_head = 9;
 struct CurvatureTile {
     uint first_texel;
-    uint first_group;  // of entries
+    uint first_group;  // of entries (component and step)
     uint segment;
     uint unused;
 };
 
 struct ReprojectionParameters {
-    vec4 low_scales;   // what the means of attributes 0 to 3 are multiplied with
-    vec4 high_scales;  // and of 4 to 7
+    vec4 low_scales;   // factors of the means of attributes 0 to 3
+    vec4 high_scales;  // and of attributes 4 to 7
     uint first_tile;
     uint tiles;
-    uint first_texel;  // with which what is bound begins
+    uint first_texel;  // first texel of the bound range
     uint first_group;
 };
 

@@ -4,28 +4,28 @@
 
 SHARED_BEGIN
 
-// One tile of a G-buffer as it is rasterized.
+// Parameters of rasterizing one tile of a G-buffer.
 struct FaceParameters {
     vec4 matrix[4];   // columns: world to the tile's clip space
-    uint first_face;  // the number of the first face that is drawn
+    uint first_face;  // number of the first face that is drawn
     uint unused0;
     uint unused1;
     uint unused2;
 };
 
-// The points that a tile's pixels show.
+// Parameters of computing the points visible in a tile's pixels.
 struct PointParameters {
-    vec4 clip_x;  // rows of the matrix from the world to the picture's clip space
+    vec4 clip_x;  // rows of the matrix from world to the picture's clip space
     vec4 clip_y;
     vec4 clip_w;
-    vec4 axis;    // the row that gives depth along the camera's axis
-    uint tile_x;  // of the tile's upper left pixel in the picture
+    vec4 axis;    // row that gives the depth along the camera's axis
+    uint tile_x;  // upper left pixel of the tile in the picture
     uint tile_y;
     uint tile_width;
     uint tile_height;
-    uint width;  // of the picture
+    uint width;  // size of the picture
     uint height;
-    uint first_face;  // faces [first, end) are bound
+    uint first_face;  // faces [first_face, end_face) are bound
     uint end_face;
 };
 

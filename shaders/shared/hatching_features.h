@@ -4,27 +4,27 @@
 
 SHARED_BEGIN
 
-// Columns of values per vertex come in slabs: of each vertex, in turn, k_slab_quads vec4s.
+// Columns of values per vertex are stored in slabs: k_slab_quads vec4s for each vertex in turn.
 const uint k_slab_quads = 8;
 const uint k_slab_lanes = 32;
-// Fields of directions come in slabs too: of each vertex k_slab_fields vec4s.
+// Fields of directions are stored in slabs, too: k_slab_fields vec4s for each vertex.
 const uint k_slab_fields = 4;
 
-// A slab at points of faces.
+// Parameters of the interpolation of a slab at points of faces.
 struct ProjectionParameters {
     uint points;
     uint stride;  // points from one column of barycentrics and of the output to the next: a multiple of 4
-    uint quads;   // of the slab that count
+    uint quads;   // number of used quads of the slab
 };
 
-// Fields of directions in the picture.
+// Parameters of the projection of direction fields to the picture.
 struct DirectionParameters {
     vec4 clip_x;  // rows of the view-projection matrix
     vec4 clip_y;
     vec4 clip_w;
     uint points;
     uint stride;
-    uint fields;  // of the slab that count
+    uint fields;  // number of used fields of the slab
     float width;  // of the picture, in pixels
     float height;
     uint unused0;
@@ -32,21 +32,21 @@ struct DirectionParameters {
     uint unused2;
 };
 
-// View-dependent curvature at one scale. Of each vertex there are k_curvature_texels: position and normal, then at each
-// scale e1 with k1, e2 with k2, and the derivative; curvatures in units of 1 / (median distance).
+// View-dependent curvature at one scale. Each vertex has k_curvature_texels: position and normal, then for each
+// scale e1 with k1, e2 with k2, and the derivative. Curvatures are in units of 1 / (median distance).
 const uint k_curvature_texels = 11;
 const uint k_curvature_values = 15;
 struct ViewCurvatureParameters {
-    vec4 eye;  // and 1; of a parallel projection the direction to it, and 0
+    vec4 eye;  // position of the eye and 1, or the direction to it and 0 for a parallel projection
     uint vertices;
     uint scale;
-    float limit;      // of curvatures
+    float limit;  // bound of curvatures
     uint unused;
-    uint columns[8];  // of the scale, a byte for each lane of the slab: 2 k is value k, 2 k + 1 its magnitude
+    uint columns[8];  // one byte per lane of the slab: 2 k is value k of this scale, 2 k + 1 its magnitude
 };
-const uint k_other_scale = 255u;  // lanes that are of another scale, or of none
+const uint k_other_scale = 255u;  // marks lanes of another scale, or of none
 
-// Rules of segments: terms [begin[s], begin[s + 1]) of segment s.
+// Rules of segments: segment s has the terms [begin[s], begin[s + 1]).
 struct RuleParameters {
     uint rows;
     uint stride;  // rows from one field to the next
@@ -58,9 +58,9 @@ struct RuleTerm {
     uint unused1;
 };
 
-// A property of four rows at a time.
+// Evaluation of a property, four rows at a time.
 struct PropertyParameters {
-    uint quads;   // of rows
+    uint quads;   // number of groups of four rows
     uint stride;  // quads from one column to the next
     uint terms;
     float log_factor;
@@ -76,7 +76,8 @@ struct PropertyTerm {
     float high;
     float least;
 };
-// Values of columns are in [-k_largest_value, k_largest_value], whose squares are finite; what is below is none.
+// Values of columns are in [-k_largest_value, k_largest_value], whose squares are finite; lower ones mean that there
+// is no value.
 const float k_largest_value = 1e19f;
 const float k_no_value = -1e30f;
 

@@ -4,8 +4,8 @@
 
 SHARED_BEGIN
 
-// Images, one float per pixel, one image after the other; and the part of them that is worked on, as planes of a vec4 per
-// pixel of the box, one lane per image. Without a mask the box is the image.
+// Images with one float per pixel, one image after the other, and the box of them that is processed: planes with a
+// vec4 per pixel of the box, one lane per image. Without a mask the box is the image.
 struct ImageParameters {
     uint width;
     uint height;
@@ -17,14 +17,14 @@ struct ImageParameters {
     uint unused;
 };
 
-// Weighted sums along lines of pixels.
+// Parameters of weighted sums along lines of pixels.
 struct SumParameters {
-    uint pixels;     // of a line
+    uint pixels;  // number of pixels in a line
     uint lines;
     uint step;       // from one pixel of a line to the next
     uint line_step;  // from one line to the next
     uint radius;     // there are 2 radius + 1 weights
-    uint quads;      // of weights, the last filled up with zeros
+    uint quads;      // number of groups of four weights, the last filled up with zeros
     float inverse_sigma;
     uint unused;
 };
@@ -32,14 +32,14 @@ struct SumParameters {
 struct DerivativeParameters {
     ImageParameters image;
     float inverse_sigma;
-    float unit_xx;  // third cumulants of x^2 / 2 and of x y, offsets per sigma
+    float unit_xx;  // third cumulants of x^2 / 2 and of x y, offsets in units of sigma
     float unit_xy;
-    float least_spread;
+    float min_spread;
 };
 
 struct OrientationParameters {
     ImageParameters image;
-    float noise;  // squared gradient that counts as none
+    float noise;  // squared gradient that counts as noise
     uint unused0;
     uint unused1;
     uint unused2;
@@ -51,7 +51,7 @@ const uint k_filter_no_face = 0xFFFFFFFFu;  // exemplar::k_no_face
 #ifdef __cplusplus
 EXEMPLAR_LAYOUT(ImageParameters, width, height, box_x, box_y, box_width, box_height, images, unused)
 EXEMPLAR_LAYOUT(SumParameters, pixels, lines, step, line_step, radius, quads, inverse_sigma, unused)
-EXEMPLAR_LAYOUT(DerivativeParameters, image, inverse_sigma, unit_xx, unit_xy, least_spread)
+EXEMPLAR_LAYOUT(DerivativeParameters, image, inverse_sigma, unit_xx, unit_xy, min_spread)
 EXEMPLAR_LAYOUT(OrientationParameters, image, noise, unused0, unused1, unused2)
 #endif
 

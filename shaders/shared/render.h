@@ -4,10 +4,10 @@
 
 SHARED_BEGIN
 
-// One tile of a picture of a mesh; the light is exemplar::RenderOptions's.
+// Parameters of drawing one tile of a picture; the light is that of exemplar::RenderOptions.
 struct RenderParameters {
     vec4 matrix[4];  // columns: world to the tile's clip space
-    vec4 eye;        // its position and 1, or for a parallel projection the direction to it and 0
+    vec4 eye;        // its position and 1; for a parallel projection the direction to it and 0
     float ambient;
     float ground;
     float headlight;
@@ -15,7 +15,7 @@ struct RenderParameters {
 };
 
 struct ResolveParameters {
-    uint width;  // of the tile, in pixels
+    uint width;  // size of the tile, in pixels
     uint height;
 };
 

@@ -7,7 +7,7 @@ SHARED_BEGIN
 // One decision stump, without its classes.
 struct GroupedStump {
     uint column;     // of the uploaded features
-    uint threshold;  // the bits of a float; or its number among the column's thresholds in the highest bits, all others set
+    uint threshold;  // bits of a float; or its index among the column's thresholds in the highest bits, all others set
     float above;
     float below;
 };
@@ -22,11 +22,11 @@ struct StumpGroup {
 
 struct StumpParameters {
     uint rows;
-    uint stride;   // texels of items from one feature column to the next: at least threads x texels per thread
-    uint threads;  // invocations that have work, a multiple of k_stump_neighbors
-    uint first_group;  // of those that this dispatch adds
+    uint stride;       // texels between feature columns: at least threads x texels per thread
+    uint threads;      // invocations that have work, a multiple of k_stump_neighbors
+    uint first_group;  // this dispatch adds groups [first_group, end_group)
     uint end_group;
-    uint groups;  // of all dispatches
+    uint groups;  // total over all dispatches
     uint link;    // k_link_softmax or k_link_sigmoid
     float scale;
 };
@@ -35,7 +35,7 @@ struct StumpParameters {
 const uint k_link_softmax = 0;
 const uint k_link_sigmoid = 1;
 
-// Invocations that stand side by side read neighboring texels.
+// Number of consecutive invocations that read neighboring texels.
 const uint k_stump_neighbors = 8;
 
 #ifdef __cplusplus

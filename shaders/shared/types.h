@@ -1,5 +1,5 @@
-// Lets a structure be declared once for C++ and GLSL. In C++ the GLSL names become types of the same size and alignment
-// as in std430 blocks; Kernel checks the rest (offsets and sizes) against the compiled shader.
+// Lets a structure be declared once for C++ and GLSL. In C++ the GLSL names are types of the same size and alignment
+// as in std430 blocks; Kernel checks offsets and sizes against the compiled shader.
 #ifndef EXEMPLAR_SHARED_TYPES_H
 #define EXEMPLAR_SHARED_TYPES_H
 

@@ -4,11 +4,11 @@
 
 SHARED_BEGIN
 
-// Where the interface is in clip space, and its font atlas.
+// Transform of the interface to clip space, and its font atlas.
 struct InterfaceParameters {
     vec2 scale;  // clip = position * scale + offset
     vec2 offset;
-    vec2 white;  // coordinates of a place in the atlas that is opaque
+    vec2 white;  // coordinates of an opaque place in the atlas
     uint atlas_width;
     uint atlas_height;
 };

@@ -3,7 +3,7 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/test_kernels.h"
 
-// In place: value = value * factor + summand.
+// Computes value = value * factor + summand in place.
 layout(local_size_x_id = 0) in;
 layout(push_constant) uniform Push { AffineParameters parameters; };
 layout(set = 0, binding = 0, std430) buffer Values { float values[]; };

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/dispatch.glsl"
 
-// sums[i] is the sum of the four components of vectors[indices[i]].
+// Computes sums[i], the sum of the four components of vectors[indices[i]].
 layout(local_size_x = 32) in;
 layout(set = 0, binding = 0) uniform usamplerBuffer indices;
 layout(set = 0, binding = 1) uniform samplerBuffer vectors;

@@ -3,7 +3,7 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/test_kernels.h"
 
-// One float per particle: mass times the sum of its position, plus its id and a constant.
+// Computes one float per particle: its mass times the sum of its position's components, plus its id and a constant.
 layout(local_size_x = 32) in;
 layout(constant_id = 3) const float k_constant = 0.0;
 layout(set = 0, binding = 0, std430) readonly buffer Particles { Particle particles[]; };

@@ -2,10 +2,10 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/window.h"
 
-// Text and shapes of the interface: the color, as opaque as the atlas is there.
+// Draws text and shapes of the interface: the color, with the opacity of the atlas.
 layout(push_constant) uniform Push { InterfaceParameters parameters; };
-// Of each texel (x, y) the opacities at (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1), a byte each: all that is needed
-// between their centers.
+// Per texel (x, y) the opacities at (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1), a byte each: all that is needed
+// to interpolate between their centers.
 layout(set = 0, binding = 2) uniform usamplerBuffer atlas;
 
 layout(location = 0) in vec2 place;
@@ -13,7 +13,7 @@ layout(location = 1) in vec4 color;
 layout(location = 0) out vec4 premultiplied;
 
 float opacity() {
-    // Most of an interface is plain areas.
+    // Most of an interface is uniform areas.
     if (all(lessThan(abs(place - parameters.white), vec2(1e-6)))) return 1.0;
     const vec2 size = vec2(parameters.atlas_width, parameters.atlas_height);
     const vec2 at = clamp(place * size - 0.5, vec2(0.0), size - 1.0);

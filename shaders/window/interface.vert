@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/window.h"
 
-// Triangles of the interface, pulled by their indices.
+// Pulls the vertices of the interface's triangles by their indices.
 layout(push_constant) uniform Push { InterfaceParameters parameters; };
 layout(set = 0, binding = 0, std430) readonly buffer Indices { uint indices[]; };
 layout(set = 0, binding = 1, std430) readonly buffer Vertices { InterfaceVertex vertices[]; };

@@ -26,54 +26,54 @@ std::string error_of(const Gltf& gltf, double frames_per_second = 30) {
 
 /// What is said of the bending arm after `damage` to it.
 template <typename Damage>
-std::string error_after(Damage&& damage) {
+std::string gltf_error_after(Damage&& damage) {
     Gltf gltf = bending_arm();
     damage(gltf, gltf.json);
     return error_of(gltf);
 }
 
 TEST(BadGltfAnimation, NodesThatFormNoTree) {
-    EXPECT_THAT(error_after([](Gltf&, Json& json) { json["nodes"][k_lower]["children"] = {k_upper}; }),
+    EXPECT_THAT(gltf_error_after([](Gltf&, Json& json) { json["nodes"][k_lower]["children"] = {k_upper}; }),
                 HasSubstr("its own ancestor"));
-    EXPECT_THAT(error_after([](Gltf&, Json& json) { json["nodes"][k_surface]["children"] = {k_lower}; }),
+    EXPECT_THAT(gltf_error_after([](Gltf&, Json& json) { json["nodes"][k_surface]["children"] = {k_lower}; }),
                 HasSubstr("two parents"));
-    EXPECT_THAT(error_after([](Gltf&, Json& json) { json["nodes"][k_lower]["children"] = {7}; }),
+    EXPECT_THAT(gltf_error_after([](Gltf&, Json& json) { json["nodes"][k_lower]["children"] = {7}; }),
                 HasSubstr("node 7 is named, but there are 3"));
-    EXPECT_THAT(error_after([](Gltf&, Json& json) { json["scenes"][0]["nodes"] = {-2}; }), HasSubstr("node -2"));
-    EXPECT_THAT(error_after([](Gltf&, Json& json) {
+    EXPECT_THAT(gltf_error_after([](Gltf&, Json& json) { json["scenes"][0]["nodes"] = {-2}; }), HasSubstr("node -2"));
+    EXPECT_THAT(gltf_error_after([](Gltf&, Json& json) {
                     json["nodes"][k_upper]["rotation"] = {1, 2};
                 }),
                 HasSubstr("rotation of 2 numbers"));
-    EXPECT_THAT(error_after([](Gltf&, Json& json) {
+    EXPECT_THAT(gltf_error_after([](Gltf&, Json& json) {
                     json["nodes"][k_upper]["scale"] = {1e300, 1, 1};
                 }),
                 HasSubstr("('upper') is not finite"));
 }
 
 TEST(BadGltfAnimation, SkinsThatDoNotFit) {
-    EXPECT_THAT(error_after([](Gltf&, Json& json) { json["nodes"][k_surface]["skin"] = 1; }), HasSubstr("skin 1"));
-    EXPECT_THAT(error_after([](Gltf&, Json& json) {
+    EXPECT_THAT(gltf_error_after([](Gltf&, Json& json) { json["nodes"][k_surface]["skin"] = 1; }), HasSubstr("skin 1"));
+    EXPECT_THAT(gltf_error_after([](Gltf&, Json& json) {
                     json["skins"][0]["joints"] = {1, 0, 2};
                 }),
                 HasSubstr("2 inverse bind matrices for 3 joints"));
-    EXPECT_THAT(error_after([](Gltf&, Json& json) { json["skins"][0]["joints"] = {1}; }),
+    EXPECT_THAT(gltf_error_after([](Gltf&, Json& json) { json["skins"][0]["joints"] = {1}; }),
                 HasSubstr("joint 1 is named, but skin 0 has 1"));
-    EXPECT_THAT(error_after([](Gltf&, Json& json) { json["skins"][0]["joints"] = {1, 5}; }), HasSubstr("node 5"));
-    EXPECT_THAT(error_after([](Gltf&, Json& json) { json["skins"][0]["joints"] = Json::array(); }),
+    EXPECT_THAT(gltf_error_after([](Gltf&, Json& json) { json["skins"][0]["joints"] = {1, 5}; }), HasSubstr("node 5"));
+    EXPECT_THAT(gltf_error_after([](Gltf&, Json& json) { json["skins"][0]["joints"] = Json::array(); }),
                 HasSubstr("no joints"));
     const auto attributes = [](Json& json) -> Json& { return json["meshes"][0]["primitives"][0]["attributes"]; };
-    EXPECT_THAT(error_after([&](Gltf&, Json& json) { attributes(json).erase("WEIGHTS_0"); }),
+    EXPECT_THAT(gltf_error_after([&](Gltf&, Json& json) { attributes(json).erase("WEIGHTS_0"); }),
                 HasSubstr("JOINTS_0 without WEIGHTS_0"));
-    EXPECT_THAT(error_after([&](Gltf& gltf, Json& json) {
+    EXPECT_THAT(gltf_error_after([&](Gltf& gltf, Json& json) {
                     attributes(json)["WEIGHTS_0"] = gltf.accessor<float>({1, 0, 0, 0}, "VEC4");
                 }),
                 HasSubstr("weights for 1 of 6 vertices"));
-    EXPECT_THAT(error_after([&](Gltf& gltf, Json& json) {
+    EXPECT_THAT(gltf_error_after([&](Gltf& gltf, Json& json) {
                     std::vector<float> weights(24, std::numeric_limits<float>::quiet_NaN());
                     attributes(json)["WEIGHTS_0"] = gltf.accessor(weights, "VEC4");
                 }),
                 HasSubstr("vertex 0 has a weight that is not finite"));
-    EXPECT_THAT(error_after([&](Gltf& gltf, Json& json) {
+    EXPECT_THAT(gltf_error_after([&](Gltf& gltf, Json& json) {
                     std::vector<float> positions(18, std::numeric_limits<float>::infinity());
                     attributes(json)["POSITION"] = gltf.accessor(positions, "VEC3");
                 }),
@@ -82,31 +82,32 @@ TEST(BadGltfAnimation, SkinsThatDoNotFit) {
 
 TEST(BadGltfAnimation, KeysThatDoNotFit) {
     const auto sampler = [](Json& json) -> Json& { return json["animations"][0]["samplers"][0]; };
-    EXPECT_THAT(error_after([&](Gltf& gltf, Json& json) {
+    EXPECT_THAT(gltf_error_after([&](Gltf& gltf, Json& json) {
                     sampler(json)["input"] = gltf.accessor<float>({1, 0.5f}, "SCALAR");
                 }),
                 HasSubstr("key 1 is before key 0"));
     EXPECT_THAT(
-        error_after([&](Gltf& gltf, Json& json) {
+        gltf_error_after([&](Gltf& gltf, Json& json) {
             sampler(json)["input"] = gltf.accessor<float>({0, std::numeric_limits<float>::infinity()}, "SCALAR");
         }),
         HasSubstr("the time of key 1 is not finite"));
-    EXPECT_THAT(error_after([&](Gltf& gltf, Json& json) {
+    EXPECT_THAT(gltf_error_after([&](Gltf& gltf, Json& json) {
                     sampler(json)["input"] = gltf.accessor<float>({0, 1, 2}, "SCALAR");
                 }),
                 HasSubstr("3 keys need 12 numbers"));
-    EXPECT_THAT(error_after([&](Gltf&, Json& json) { sampler(json)["interpolation"] = "CUBICSPLINE"; }),
+    EXPECT_THAT(gltf_error_after([&](Gltf&, Json& json) { sampler(json)["interpolation"] = "CUBICSPLINE"; }),
                 HasSubstr("2 keys need 24 numbers"));
-    EXPECT_THAT(error_after([&](Gltf&, Json& json) { sampler(json)["output"] = 99; }), HasSubstr("accessor 99"));
-    EXPECT_THAT(error_after([&](Gltf&, Json& json) { json["animations"][0]["channels"][0]["sampler"] = 4; }),
+    EXPECT_THAT(gltf_error_after([&](Gltf&, Json& json) { sampler(json)["output"] = 99; }), HasSubstr("accessor 99"));
+    EXPECT_THAT(gltf_error_after([&](Gltf&, Json& json) { json["animations"][0]["channels"][0]["sampler"] = 4; }),
                 HasSubstr("sampler 4 is named, but there are 1"));
-    EXPECT_THAT(error_after([&](Gltf&, Json& json) { json["animations"][0]["channels"][0]["target"]["node"] = 9; }),
-                HasSubstr("node 9"));
-    EXPECT_THAT(error_after([&](Gltf& gltf, Json& json) {
+    EXPECT_THAT(
+        gltf_error_after([&](Gltf&, Json& json) { json["animations"][0]["channels"][0]["target"]["node"] = 9; }),
+        HasSubstr("node 9"));
+    EXPECT_THAT(gltf_error_after([&](Gltf& gltf, Json& json) {
                     sampler(json)["input"] = gltf.accessor<float>({0, 1e9f}, "SCALAR");
                 }),
                 HasSubstr("read fewer frames per second"));
-    EXPECT_THAT(error_after([&](Gltf& gltf, Json& json) {
+    EXPECT_THAT(gltf_error_after([&](Gltf& gltf, Json& json) {
                     sampler(json)["output"] = gltf.accessor(std::vector<float>(8, NAN), "VEC4");
                 }),
                 HasSubstr("clip 'bend': no frame is finite"));
@@ -123,10 +124,10 @@ TEST(BadGltfAnimation, MorphTargetsThatDoNotFit) {
 
 TEST(BadGltfAnimation, NothingThatMoves) {
     EXPECT_THAT(error_of(face({})), HasSubstr("neither a skin of several joints nor a morph target"));
-    EXPECT_THAT(error_after([&](Gltf&, Json& json) { json["scenes"][0]["nodes"] = {k_upper}; }),
+    EXPECT_THAT(gltf_error_after([&](Gltf&, Json& json) { json["scenes"][0]["nodes"] = {k_upper}; }),
                 HasSubstr("neither a skin of several joints nor a morph target"));
     // Joint 1 weighs 0.0005 once the weights of each vertex sum to one.
-    EXPECT_THAT(error_after([](Gltf& gltf, Json& json) {
+    EXPECT_THAT(gltf_error_after([](Gltf& gltf, Json& json) {
                     std::vector<float> weights;
                     std::vector<std::uint8_t> joints;
                     for (int v = 0; v < 6; ++v) {

@@ -21,7 +21,7 @@ Animation bending() {
 
 /// What check_animation says of the bending arm after `damage` to it.
 template <typename Damage>
-std::string error_after(Damage&& damage) {
+std::string check_error_after(Damage&& damage) {
     Animation animation = bending();
     animation.name = "the arm";
     damage(animation);
@@ -85,31 +85,32 @@ TEST(CheckAnimation, WeightsOfAnySizeEndBetweenZeroAndOne) {
 }
 
 TEST(CheckAnimation, WhatDoesNotFitIsRefused) {
-    EXPECT_THAT(error_after([](Animation& a) { a.rest.faces.clear(); }), HasSubstr("no faces"));
-    EXPECT_THAT(error_after([](Animation& a) { a.rest.faces[1][2] = 6; }), HasSubstr("vertex 6"));
-    EXPECT_THAT(error_after([](Animation& a) { a.rest.vertices[1][0] = NAN; }), HasSubstr("vertex 1"));
-    EXPECT_THAT(error_after([](Animation& a) { a.vertex_of_source[2] = 6; }), HasSubstr("vertex 6"));
-    EXPECT_THAT(error_after([](Animation& a) { a.rig.nodes[0].parent = 1; }), HasSubstr("node 0"));
-    EXPECT_THAT(error_after([](Animation& a) { a.rig.bones[1].node = 2; }), HasSubstr("bone 1 names node 2"));
-    EXPECT_THAT(error_after([](Animation& a) { a.rig.bones[1].inverse_bind.translation()[0] = INFINITY; }),
+    EXPECT_THAT(check_error_after([](Animation& a) { a.rest.faces.clear(); }), HasSubstr("no faces"));
+    EXPECT_THAT(check_error_after([](Animation& a) { a.rest.faces[1][2] = 6; }), HasSubstr("vertex 6"));
+    EXPECT_THAT(check_error_after([](Animation& a) { a.rest.vertices[1][0] = NAN; }), HasSubstr("vertex 1"));
+    EXPECT_THAT(check_error_after([](Animation& a) { a.vertex_of_source[2] = 6; }), HasSubstr("vertex 6"));
+    EXPECT_THAT(check_error_after([](Animation& a) { a.rig.nodes[0].parent = 1; }), HasSubstr("node 0"));
+    EXPECT_THAT(check_error_after([](Animation& a) { a.rig.bones[1].node = 2; }), HasSubstr("bone 1 names node 2"));
+    EXPECT_THAT(check_error_after([](Animation& a) { a.rig.bones[1].inverse_bind.translation()[0] = INFINITY; }),
                 HasSubstr("bone 1"));
-    EXPECT_THAT(error_after([](Animation& a) { a.rig.influences[0].bone = 2; }), HasSubstr("bone 2"));
-    EXPECT_THAT(error_after([](Animation& a) { a.rig.influences[0].weight = NAN; }), HasSubstr("vertex 0"));
-    EXPECT_THAT(error_after([](Animation& a) { a.rig.influence_begin.pop_back(); }), HasSubstr("number of vertices"));
-    EXPECT_THAT(error_after([](Animation& a) {
+    EXPECT_THAT(check_error_after([](Animation& a) { a.rig.influences[0].bone = 2; }), HasSubstr("bone 2"));
+    EXPECT_THAT(check_error_after([](Animation& a) { a.rig.influences[0].weight = NAN; }), HasSubstr("vertex 0"));
+    EXPECT_THAT(check_error_after([](Animation& a) { a.rig.influence_begin.pop_back(); }),
+                HasSubstr("number of vertices"));
+    EXPECT_THAT(check_error_after([](Animation& a) {
                     a.rig.targets = {{"t", {1, 1}, {Vec3::Zero(), Vec3::Zero()}, 0}};
                 }),
                 HasSubstr("'t' moves vertex 1"));
-    EXPECT_THAT(error_after([](Animation& a) { a.rig.targets = {{"t", {1}, {}, 0}}; }), HasSubstr("0 offsets"));
-    EXPECT_THAT(error_after([](Animation& a) {
+    EXPECT_THAT(check_error_after([](Animation& a) { a.rig.targets = {{"t", {1}, {}, 0}}; }), HasSubstr("0 offsets"));
+    EXPECT_THAT(check_error_after([](Animation& a) {
                     a.rig.targets = {{"t", {1}, {Vec3(0, NAN, 0)}, 0}};
                 }),
                 HasSubstr("not finite"));
-    EXPECT_THAT(error_after([](Animation& a) { a.clips[0].poses[1].nodes.pop_back(); }),
+    EXPECT_THAT(check_error_after([](Animation& a) { a.clips[0].poses[1].nodes.pop_back(); }),
                 HasSubstr("'bend': frame 1 has 1 nodes"));
-    EXPECT_THAT(error_after([](Animation& a) { a.clips[0].poses.clear(); }), HasSubstr("no frames"));
-    EXPECT_THAT(error_after([](Animation& a) { a.clips[0].frames_per_second = 0; }), HasSubstr("no rate"));
-    EXPECT_THAT(error_after([](Animation& a) { a.clips[0].frames = {a.rest.vertices}; }), HasSubstr("poses"));
+    EXPECT_THAT(check_error_after([](Animation& a) { a.clips[0].poses.clear(); }), HasSubstr("no frames"));
+    EXPECT_THAT(check_error_after([](Animation& a) { a.clips[0].frames_per_second = 0; }), HasSubstr("no rate"));
+    EXPECT_THAT(check_error_after([](Animation& a) { a.clips[0].frames = {a.rest.vertices}; }), HasSubstr("poses"));
 }
 
 TEST(CheckAnimation, FacesThatNameAVertexTwiceGoWithTheirSources) {

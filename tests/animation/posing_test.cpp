@@ -9,9 +9,9 @@ namespace exemplar {
 namespace {
 
 /// Two bones along x, the second at (1, 0, 0); vertices at 0, 1 and 2, the middle one bound to both.
-Rig arm() {
+Rig posed_arm() {
     Rig rig;
-    rig.nodes = {{"upper", k_none, {}}, {"lower", 0, {.translation = Vec3(1, 0, 0)}}};
+    rig.nodes = {{"upper", k_invalid_index, {}}, {"lower", 0, {.translation = Vec3(1, 0, 0)}}};
     Affine inverse = Affine::Identity();
     inverse.translation() = Vec3(-1, 0, 0);
     rig.bones = {{0, Affine::Identity()}, {1, inverse}};
@@ -22,14 +22,14 @@ Rig arm() {
 const std::vector<Vec3> k_line = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
 
 TEST(Posing, TheRestPoseOfAnArmIsItsRestMesh) {
-    const Rig rig = arm();
+    const Rig rig = posed_arm();
     std::vector<Vec3> posed;
     pose_vertices(rig, k_line, rest_pose(rig), posed);
     for (std::size_t v = 0; v < 3; ++v) EXPECT_NEAR((posed[v] - k_line[v]).norm(), 0, 1e-6);
 }
 
 TEST(Posing, AJointTurnsWhatHangsOnIt) {
-    const Rig rig = arm();
+    const Rig rig = posed_arm();
     Pose pose = rest_pose(rig);
     pose.nodes[1].rotation = Eigen::AngleAxisf(std::numbers::pi_v<float> / 2, Vec3::UnitZ());
     std::vector<Vec3> posed;
@@ -43,7 +43,7 @@ TEST(Posing, AJointTurnsWhatHangsOnIt) {
 }
 
 TEST(Posing, TargetsAddBeforeBonesMove) {
-    Rig rig = arm();
+    Rig rig = posed_arm();
     rig.targets = {{"bulge", {2}, {Vec3(0, 1, 0)}, 0.0f}};
     Pose pose = rest_pose(rig);
     pose.weights[0] = 0.5f;
@@ -54,8 +54,12 @@ TEST(Posing, TargetsAddBeforeBonesMove) {
 }
 
 TEST(Posing, AFrameThatIsNotThereIsRefused) {
-    Animation animation{.name = "a", .kind = AnimationKind::sequence};
-    animation.clips = {{.name = "walk", .frames = {k_line}}};
+    Animation animation;
+    animation.name = "a";
+    animation.kind = AnimationKind::sequence;
+    animation.clips.resize(1);
+    animation.clips[0].name = "walk";
+    animation.clips[0].frames = {k_line};
     EXPECT_EQ(frame_vertices(animation, animation.clips[0], 0), k_line);
     EXPECT_THROW(frame_vertices(animation, animation.clips[0], 1), UsageError);
 }

@@ -59,7 +59,7 @@ TEST(ReadGltfAnimation, ParentsComeBeforeChildrenAndNodesThatMoveNothingAreLeftO
     const Animation animation = bending_arm().read();
     ASSERT_THAT(animation.rig.nodes, SizeIs(2));
     EXPECT_EQ(animation.rig.nodes[0].name, "upper");
-    EXPECT_EQ(animation.rig.nodes[0].parent, k_none);
+    EXPECT_EQ(animation.rig.nodes[0].parent, k_invalid_index);
     EXPECT_EQ(animation.rig.nodes[1].name, "lower");
     EXPECT_EQ(animation.rig.nodes[1].parent, 0u);
     EXPECT_THAT(animation.rig.bones, SizeIs(2));

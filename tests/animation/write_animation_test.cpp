@@ -38,8 +38,8 @@ Animation random_rig() {
     animation.rest.source_face_count = static_cast<std::uint32_t>(animation.rest.face_count());
     Rig& rig = animation.rig;
     for (std::uint32_t i = 0; i < 6; ++i)
-        rig.nodes.push_back({"node " + std::to_string(i), i == 0 ? k_none : i / 2, random_transform(random)});
-    rig.nodes[1].parent = k_none;
+        rig.nodes.push_back({"node " + std::to_string(i), i == 0 ? k_invalid_index : i / 2, random_transform(random)});
+    rig.nodes[1].parent = k_invalid_index;
     for (std::uint32_t i = 0; i < 6; ++i) {
         Affine inverse = Affine::Identity();
         inverse.translation() = random_transform(random).translation;

@@ -17,7 +17,7 @@ class ShaderBench(ProgramTest):
 
     def test_the_list_has_all_kernels_and_measures_nothing(self):
         text = self.call("bench", "shaders", "--list").stdout
-        for part in ["stump scoring (5000, 20000, 100000 faces)", "learn/stumps.comp", "lines/settle.comp"]:
+        for part in ["stump scoring (5000, 20000, 100000 faces)", "learn/stumps.comp", "lines/write_traces.comp"]:
             self.assertIn(part, text)
         some = self.call("bench", "shaders", "--list", "--filter", "context_axes").stdout
         self.assertIn("labeling/context_axes.comp", some)

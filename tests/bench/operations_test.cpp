@@ -46,7 +46,7 @@ TEST(Operations, ParametersAreOfTheirKernels) {
 
 // Of a kernel that takes some ten milliseconds on a CPU, most of the way there and back is its own time.
 TEST(Profiling, KernelsAreTimedRightlyAfterSomethingWasDrawn) {
-    Device& device = testing::shared_device();
+    Device& device = test_support::shared_device();
     if (device.info().type != DeviceType::cpu) GTEST_SKIP() << "on GPUs the way there may take longer than the kernel";
     const auto prepared = [&](std::string_view name, Profiler& profiler, std::size_t size) {
         return std::ranges::find(operation_kinds(), name, &OperationKind::name)->prepare(device, profiler, size);
@@ -73,7 +73,7 @@ TEST_P(OperationTest, AgreesWithItsReferenceAtOddSizes) {
     for (const std::size_t size : {std::size_t{67}, std::size_t{1003}, std::size_t{4097}}) {
         SCOPED_TRACE(::testing::Message() << kind().name << ", " << size);
         Profiler profiler;
-        const Operation operation = kind().prepare(testing::shared_device(), profiler, size);
+        const Operation operation = kind().prepare(test_support::shared_device(), profiler, size);
         operation.run();
         operation.run();
         const auto differences = operation.differences();
@@ -86,7 +86,7 @@ TEST_P(OperationTest, AgreesWithItsReferenceAtOddSizes) {
 
 TEST_P(OperationTest, RunsTheKernelsThatItSaysAndKnowsTheirWork) {
     Profiler profiler;
-    const Operation operation = kind().prepare(testing::shared_device(), profiler, 1003);
+    const Operation operation = kind().prepare(test_support::shared_device(), profiler, 1003);
     operation.run();
     std::set<std::string> expected, ran, worked;
     for (const Shader* kernel : kind().kernels) expected.emplace(kernel->name);

@@ -20,15 +20,15 @@ const OperationKind& kind_named(std::string_view name) {
 // Leaves the device as it was.
 class Variants : public ::testing::Test {
   protected:
-    void SetUp() override { kept_ = testing::shared_device().tuning(); }
-    void TearDown() override { testing::shared_device().tuning() = kept_; }
+    void SetUp() override { kept_ = test_support::shared_device().tuning(); }
+    void TearDown() override { test_support::shared_device().tuning() = kept_; }
 
   private:
     Tuning kept_;
 };
 
 TEST_F(Variants, AllValuesOfAllParametersAreComparedAndTheFastestIsTaken) {
-    Device& device = testing::shared_device();
+    Device& device = test_support::shared_device();
     std::vector<std::string> known;
     const auto comparisons =
         compare_variants(device, kind_named("stump scoring"), 2000, KernelFilter(), k_short, known);
@@ -38,9 +38,9 @@ TEST_F(Variants, AllValuesOfAllParametersAreComparedAndTheFastestIsTaken) {
         EXPECT_GE(comparison.milliseconds.size(), 2u) << comparison.parameter;
         EXPECT_EQ(comparison.as_is.size(), k_short.repeats);
         // What changes the host's work too is judged by all of it.
-        const bool by_runs = comparison.parameter == "bits";
-        EXPECT_EQ(comparison.judged == Judged::by_runs, by_runs) << comparison.parameter;
-        EXPECT_EQ(to_json(comparison).at("times_of"), by_runs ? "whole runs" : "the kernel");
+        const bool end_to_end = comparison.parameter == "bits";
+        EXPECT_EQ(comparison.judged == TuningMetric::end_to_end, end_to_end) << comparison.parameter;
+        EXPECT_EQ(to_json(comparison).at("times_of"), end_to_end ? "whole runs" : "the kernel");
         EXPECT_EQ(device.tuning().find(comparison.kernel, comparison.parameter), comparison.chosen);
         if (!comparison.chosen) continue;
         for (const auto& [value, milliseconds] : comparison.milliseconds)
@@ -51,7 +51,7 @@ TEST_F(Variants, AllValuesOfAllParametersAreComparedAndTheFastestIsTaken) {
 // A whole run takes longer than its kernels, and is not among them.
 TEST_F(Variants, WholeRunsAreTimedBesideTheirKernels) {
     Profiler profiler;
-    const Operation operation = kind_named("stump scoring").prepare(testing::shared_device(), profiler, 2000);
+    const Operation operation = kind_named("stump scoring").prepare(test_support::shared_device(), profiler, 2000);
     const Timed timed{"scoring", &operation, &profiler};
     const OperationTimes times = time_in_turns(std::span(&timed, 1), k_short).front();
     ASSERT_EQ(times.kernels.size(), 1u);
@@ -62,9 +62,9 @@ TEST_F(Variants, WholeRunsAreTimedBesideTheirKernels) {
 
 TEST_F(Variants, KnownKernelsAreLeftAlone) {
     std::vector<std::string> known{"learn/stumps.comp"};
-    EXPECT_TRUE(
-        compare_variants(testing::shared_device(), kind_named("stump scoring"), 500, KernelFilter(), k_short, known)
-            .empty());
+    EXPECT_TRUE(compare_variants(test_support::shared_device(), kind_named("stump scoring"), 500, KernelFilter(),
+                                 k_short, known)
+                    .empty());
 }
 
 TEST(KernelFilters, FindKernelsOrOperations) {

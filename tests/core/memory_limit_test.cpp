@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t k_none = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t k_invalid_index = std::numeric_limits<std::size_t>::max();
 
 /// Control groups made up in a folder.
 class MemoryLimit : public testing::Test {
@@ -38,8 +38,8 @@ TEST_F(MemoryLimit, TheLeastOnTheWayCounts) {
     EXPECT_EQ(memory_limit("0::/slurm/job_7/step_batch\n", root_), 3000U);
     EXPECT_EQ(memory_limit("0::/slurm\n", root_), 8000U);
     EXPECT_EQ(memory_limit("0::/slurm/job_8", root_), 10U);
-    EXPECT_EQ(memory_limit("0::/\n", root_), k_none);
-    EXPECT_EQ(memory_limit("", root_), k_none);
+    EXPECT_EQ(memory_limit("0::/\n", root_), k_invalid_index);
+    EXPECT_EQ(memory_limit("", root_), k_invalid_index);
 }
 
 TEST_F(MemoryLimit, OfTheFirstVersionInItsOwnFolder) {
@@ -69,7 +69,7 @@ TEST_F(MemoryLimit, NamesMayHoldColonsAndSpaces) {
 TEST_F(MemoryLimit, WhatIsNoNumberSetsNone) {
     put("damaged/memory.max", "many");
     put("empty/memory.max", "");
-    EXPECT_EQ(memory_limit("0::/damaged\n0::/empty\nnonsense\n:\n", root_), k_none);
+    EXPECT_EQ(memory_limit("0::/damaged\n0::/empty\nnonsense\n:\n", root_), k_invalid_index);
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ TEST(Pipeline, EveryItemGoesThroughEveryStageOnce) {
     std::ranges::sort(arrived);
     for (int i = 0; i < 1000; ++i) ASSERT_EQ(arrived[i], 2 * i);
     std::vector<std::size_t> counts;
-    for (const StageLoad& report : pipeline.reports()) counts.push_back(report.items);
+    for (const StageStatistics& report : pipeline.reports()) counts.push_back(report.items);
     EXPECT_THAT(counts, ElementsAre(1000u, 1000u, 1000u));
 }
 
@@ -117,7 +117,7 @@ TEST(Pipeline, TheSlowestStageIsTheBusiest) {
     Pipeline<int> pipeline(counting_to(30),
                            {{"a", 1, 1, 2, lasting(1ms)}, {"b", 1, 1, 2, lasting(8ms)}, {"c", 1, 1, 2, lasting(1ms)}});
     pipeline.run();
-    const auto slowest = std::ranges::max_element(pipeline.reports(), {}, &StageLoad::load);
+    const auto slowest = std::ranges::max_element(pipeline.reports(), {}, &StageStatistics::load);
     EXPECT_EQ(slowest->name, "b");
     EXPECT_GT(slowest->load, 0.5);
     EXPECT_LE(slowest->load, 1.0);

@@ -15,7 +15,7 @@ Vec3 random_unit(Random& random) {
 
 /// Vertices with random curvature in two segments with random rotations; normals near the reference normals. Each
 /// vertex has a neighbor of its own, behind all of them.
-struct Scene {
+struct AttributeScene {
     AttributeFrames frames;
     std::vector<Vec3> vertices, normals;
     std::vector<Eigen::Matrix3f> rotations;
@@ -24,9 +24,9 @@ struct Scene {
     PosedSurface surface() const { return {vertices, normals, rotations}; }
 };
 
-Scene random_scene(AttributeSet set, std::size_t count, std::uint64_t seed) {
+AttributeScene random_attribute_scene(AttributeSet set, std::size_t count, std::uint64_t seed) {
     Random random(seed);
-    Scene scene;
+    AttributeScene scene;
     scene.frames.set = set;
     for (int s = 0; s < 2; ++s)
         scene.rotations.emplace_back(Eigen::AngleAxisf(float(random.uniform(0, 3)), random_unit(random)));
@@ -38,7 +38,7 @@ Scene random_scene(AttributeSet set, std::size_t count, std::uint64_t seed) {
         scene.frames.neighbor.push_back(static_cast<std::uint32_t>(count + v));
         scene.frames.reference_normal.push_back(reference);
         const Vec3 normal = scene.rotations[segment] * (reference + 0.5f * random_unit(random)).normalized();
-        const TangentFrame frame = any_frame(normal);
+        const TangentFrame frame = frame_of_normal(normal);
         const auto angle = static_cast<float>(random.uniform(0, 3.1));
         const Vec3 e1 = std::cos(angle) * frame.tangent + std::sin(angle) * frame.bitangent;
         scene.normals.push_back(normal);
@@ -54,7 +54,7 @@ Scene random_scene(AttributeSet set, std::size_t count, std::uint64_t seed) {
     return scene;
 }
 
-std::vector<float> encoded(const Scene& scene) {
+std::vector<float> encoded(const AttributeScene& scene) {
     std::vector<float> attributes(attribute_count(scene.frames.set) * scene.frames.vertex_count());
     scene.frames.encode(scene.curvature, scene.surface(), attributes);
     return attributes;
@@ -63,7 +63,7 @@ std::vector<float> encoded(const Scene& scene) {
 class AttributesTest : public ::testing::TestWithParam<AttributeSet> {};
 
 TEST_P(AttributesTest, DecodeToTheCurvatureTheyWereMadeFrom) {
-    const Scene scene = random_scene(GetParam(), 200, 1);
+    const AttributeScene scene = random_attribute_scene(GetParam(), 200, 1);
     VertexCurvature back;
     scene.frames.decode(encoded(scene), scene.surface(), back);
     for (std::size_t v = 0; v < 200; ++v) {
@@ -78,7 +78,7 @@ TEST_P(AttributesTest, DecodeToTheCurvatureTheyWereMadeFrom) {
 }
 
 TEST_P(AttributesTest, DoNotChangeWhenEverythingTurns) {
-    Scene scene = random_scene(GetParam(), 100, 2);
+    AttributeScene scene = random_attribute_scene(GetParam(), 100, 2);
     const std::vector<float> before = encoded(scene);
     const Eigen::Matrix3f turn(Eigen::AngleAxisf(1.3f, Vec3(1, 2, -1).normalized()));
     for (auto& rotation : scene.rotations) rotation = turn * rotation;
@@ -90,7 +90,7 @@ TEST_P(AttributesTest, DoNotChangeWhenEverythingTurns) {
 
 // The direction's sign is arbitrary; with it, four signs of the derivative.
 TEST_P(AttributesTest, DoNotDependOnTheSignOfTheDirection) {
-    Scene scene = random_scene(GetParam(), 100, 3);
+    AttributeScene scene = random_attribute_scene(GetParam(), 100, 3);
     const std::vector<float> before = encoded(scene);
     for (std::size_t v = 0; v < 100; v += 2) {
         scene.curvature.e1[v] *= -1;
@@ -108,8 +108,8 @@ INSTANTIATE_TEST_SUITE_P(Sets, AttributesTest, ::testing::Values(AttributeSet::p
 
 // Where k1 and k2 change places the principal direction jumps by a right angle; the tensor does not notice.
 TEST(Attributes, OfTheTensorStaySmoothThroughAnUmbilic) {
-    Scene scene = random_scene(AttributeSet::tensor, 1, 4);
-    const Vec3 normal = scene.normals[0], u = any_frame(normal).tangent, v = normal.cross(u);
+    AttributeScene scene = random_attribute_scene(AttributeSet::tensor, 1, 4);
+    const Vec3 normal = scene.normals[0], u = frame_of_normal(normal).tangent, v = normal.cross(u);
     const FormDerivative along_u{1, 2, 3, 4};
     const auto set_umbilic = [&](float difference) {
         const bool u_first = difference > 0;
@@ -117,7 +117,7 @@ TEST(Attributes, OfTheTensorStaySmoothThroughAnUmbilic) {
         scene.curvature.k2[0] = 1 - std::abs(difference);
         scene.curvature.e1[0] = u_first ? u : v;
         scene.curvature.e2[0] = u_first ? v : Vec3(-u);
-        scene.curvature.derivative[0] = u_first ? along_u : turned(along_u, Turn{0, 1});
+        scene.curvature.derivative[0] = u_first ? along_u : in_rotated_frame(along_u, TangentRotation{0, 1});
     };
     set_umbilic(1e-3f);
     const std::vector<float> before = encoded(scene);
@@ -132,7 +132,7 @@ TEST(Attributes, EdgesThatStandUprightHaveSomeTangent) {
     EXPECT_NEAR(tangent.dot(normal), 0, 1e-6);
     EXPECT_NEAR(tangent.norm(), 1, 1e-5);
     EXPECT_TRUE(edge_tangent(Vec3::Zero(), normal).allFinite());
-    const Vec3 flat = any_frame(normal).bitangent;
+    const Vec3 flat = frame_of_normal(normal).bitangent;
     EXPECT_NEAR((edge_tangent(3 * flat + normal, normal) - flat).norm(), 0, 1e-5);
 }
 

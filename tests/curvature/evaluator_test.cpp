@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "host/curvature/model/model.h"
 #include "host/curvature/learning/training.h"
+#include "host/curvature/model/model.h"
 #include "tests/support/bending_tube.h"
 #include "tests/support/resident_bytes.h"
 
@@ -39,14 +39,16 @@ TEST(CurvatureEvaluator, TenThousandFramesNeitherGrowNorChange) {
             normals.push_back(vertex_normals(mesh));
             first.push_back(evaluator.evaluate(tube.rig, clip.poses[f], vertices[f], normals[f]));
         }
-        const std::size_t before = testing::resident_bytes();
+        const std::size_t before = test_support::resident_bytes();
         for (std::size_t i = 0; i < 10'000; ++i) {
             const std::size_t f = i % clip.size();
             const VertexCurvature& again = evaluator.evaluate(tube.rig, clip.poses[f], vertices[f], normals[f]);
             ASSERT_EQ(again.k1, first[f].k1) << "frame " << i;
             ASSERT_EQ(again.derivative, first[f].derivative) << "frame " << i;
         }
-        if (!k_keeps_freed_memory) EXPECT_LE(testing::resident_bytes(), before + 1'000'000);
+        if (!k_keeps_freed_memory) {
+            EXPECT_LE(test_support::resident_bytes(), before + 1'000'000);
+        }
     }
 }
 

@@ -5,8 +5,8 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
-#include "host/curvature/model/evaluation.h"
 #include "host/curvature/learning/training.h"
+#include "host/curvature/model/evaluation.h"
 #include "host/data/safetensors.h"
 #include "tests/support/bending_tube.h"
 #include "tests/support/shapes.h"
@@ -41,7 +41,7 @@ std::vector<FrameRef> frames_of_clip(const Animation& animation, std::uint32_t c
     return frames;
 }
 
-CurvatureModel trained(const Animation& animation, CurvatureTraining options = {}) {
+CurvatureModel trained_locally(const Animation& animation, CurvatureTraining options = {}) {
     options.learner = Learner::local;
     CurvatureTrainingReport report;
     return train_curvature(animation, frames_of_clip(animation, 0), options, report);
@@ -52,11 +52,14 @@ TEST(LocalLearner, PredictsMotionItHasNotSeen) {
     for (const AttributeSet set : {AttributeSet::tensor, AttributeSet::principal}) {
         CurvatureTraining options;
         options.attributes = set;
-        const CurvatureEvaluation result = evaluate_curvature(trained(sheet, options), sheet, frames_of_clip(sheet, 1));
+        const CurvatureEvaluation result =
+            evaluate_curvature(trained_locally(sheet, options), sheet, frames_of_clip(sheet, 1));
         // The principal directions of a sheet that is flat now and then jump, whichever way they are learned.
         const double most = set == AttributeSet::tensor ? 0.1 : 0.5;
         EXPECT_LT(result.attributes[0].rms, most * result.attributes[0].zero_order_rms);
-        if (set == AttributeSet::tensor) EXPECT_LT(result.attributes[3].rms, 0.4 * result.attributes[3].zero_order_rms);
+        if (set == AttributeSet::tensor) {
+            EXPECT_LT(result.attributes[3].rms, 0.4 * result.attributes[3].zero_order_rms);
+        }
     }
 }
 
@@ -64,9 +67,9 @@ TEST(LocalLearner, IsEvaluatedAsItsStateIsRead) {
     const Animation sheet = waving_sheet();
     CurvatureTraining options;
     for (const std::size_t inputs : {3u, 16u, 21u}) {
-        options.sequence.most_inputs = inputs;
-        const CurvatureModel model = trained(sheet, options);
-        EXPECT_TRUE(model.regression.copies_inputs());
+        options.sequence.max_inputs = inputs;
+        const CurvatureModel model = trained_locally(sheet, options);
+        EXPECT_TRUE(model.regression.is_identity());
         CurvatureEvaluator evaluator(model);
         TriangleMesh mesh = sheet.rest;
         mesh.vertices = sheet.clips[1].frames[7];
@@ -87,7 +90,7 @@ TEST(LocalLearner, IsEvaluatedAsItsStateIsRead) {
 
 TEST(LocalLearner, DoesNotCareWhereTheSurfaceIs) {
     const Animation sheet = waving_sheet();
-    const CurvatureModel model = trained(sheet);
+    const CurvatureModel model = trained_locally(sheet);
     CurvatureEvaluator evaluator(model);
     TriangleMesh mesh = sheet.rest;
     mesh.vertices = sheet.clips[1].frames[7];
@@ -104,13 +107,13 @@ TEST(LocalLearner, DoesNotCareWhereTheSurfaceIs) {
 TEST(LocalLearner, FilesHoldTheWholeModel) {
     const TemporaryFolder folder;
     const Animation sheet = waving_sheet();
-    const CurvatureModel model = trained(sheet);
+    const CurvatureModel model = trained_locally(sheet);
     const std::filesystem::path path = folder.path() / "m.safetensors", again = folder.path() / "again.safetensors";
     save_curvature_model(path, model);
     const CurvatureModel back = load_curvature_model(path);
     save_curvature_model(again, back);
     EXPECT_EQ(read_file(path), read_file(again));
-    const CurvatureModel twin = trained(sheet);
+    const CurvatureModel twin = trained_locally(sheet);
     save_curvature_model(again, twin);
     EXPECT_EQ(read_file(path), read_file(again));
     TriangleMesh mesh = sheet.rest;
@@ -122,7 +125,7 @@ TEST(LocalLearner, FilesHoldTheWholeModel) {
 TEST(LocalLearner, DamagedFilesAreRefused) {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder.path() / "m.safetensors", damaged = folder.path() / "d.safetensors";
-    save_curvature_model(path, trained(waving_sheet()));
+    save_curvature_model(path, trained_locally(waving_sheet()));
     const auto refused = [&](auto&& change) {
         TensorFile file = read_safetensors(path);
         change(file);
@@ -166,7 +169,7 @@ TEST(LocalLearner, DamagedFilesAreRefused) {
 TEST(LocalLearner, IsForSurfacesThatBend) {
     Animation still = waving_sheet();
     for (auto& frame : still.clips[0].frames) frame = still.rest.vertices;
-    EXPECT_THROW(trained(still), UsageError);
+    EXPECT_THROW(trained_locally(still), UsageError);
 }
 
 TEST(LocalLearner, RigsAreReadByTheirSurface) {
@@ -175,14 +178,14 @@ TEST(LocalLearner, RigsAreReadByTheirSurface) {
     for (const AttributeSet set : {AttributeSet::tensor, AttributeSet::principal}) {
         CurvatureTraining options;
         options.attributes = set;
-        const CurvatureModel model = trained(tube, options);
+        const CurvatureModel model = trained_locally(tube, options);
         const CurvatureEvaluation result = evaluate_curvature(model, tube, frames_of_clip(tube, 1));
         EXPECT_LT(result.attributes[0].rms, 0.25 * result.attributes[0].zero_order_rms);
         EXPECT_LT(result.lines[0].misclassified, 0.25 * result.lines[0].zero_order);
         const std::filesystem::path path = folder.path() / "m.safetensors";
         save_curvature_model(path, model);
         const CurvatureModel back = load_curvature_model(path);
-        EXPECT_NO_THROW(require_fit(back, tube));
+        EXPECT_NO_THROW(require_compatible(back, tube));
         TriangleMesh mesh = tube.rest;
         mesh.vertices = frame_vertices(tube, tube.clips[1], 5);
         const std::vector<Vec3> normals = vertex_normals(mesh);
@@ -196,7 +199,7 @@ TEST(LocalLearner, RigsAreReadByTheirSurface) {
 TEST(LocalLearner, TheMeanIsThatOfTheFrames) {
     const Animation tube = shapes::bending_tube();
     const std::vector<FrameRef> frames = frames_of_clip(tube, 0);
-    const CurvatureModel model = trained(tube);
+    const CurvatureModel model = trained_locally(tube);
     std::vector<float> mean(attribute_count(AttributeSet::tensor) * model.vertex_count);
     reproject(model.tiles, std::vector<float>(model.regression.components.size(), 0.0f), mean);
     AttributeFrames attribute_frames;
@@ -205,8 +208,8 @@ TEST(LocalLearner, TheMeanIsThatOfTheFrames) {
         attribute_frames.neighbor[model.tiles.vertex[i]] = model.tiles.neighbor[i];
     std::vector<float> values(mean.size());
     std::vector<double> sum(mean.size(), 0);
-    for (const SurfaceMoment& moment : read_moments(tube, {}, frames, model.truth)) {
-        attribute_frames.encode(moment.curvature, moment.surface(), values);
+    for (const SurfaceSnapshot& snapshot : read_snapshots(tube, {}, frames, model.truth)) {
+        attribute_frames.encode(snapshot.curvature, snapshot.surface(), values);
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += values[i] / double(frames.size());
     }
     for (std::size_t i = 0; i < sum.size(); ++i) {

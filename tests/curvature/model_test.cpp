@@ -7,9 +7,9 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/random.h"
+#include "host/curvature/learning/training.h"
 #include "host/curvature/model/evaluation.h"
 #include "host/curvature/model/tiling.h"
-#include "host/curvature/learning/training.h"
 #include "host/data/safetensors.h"
 #include "tests/support/bending_tube.h"
 #include "tests/support/temporary_folder.h"
@@ -24,48 +24,48 @@ const Animation& tube() {
     return animation;
 }
 
-std::vector<FrameRef> frames_of_clip(const Animation& animation, std::uint32_t clip) {
+std::vector<FrameRef> frames_of(const Animation& animation, std::uint32_t clip) {
     std::vector<FrameRef> frames;
     for (std::uint32_t f = 0; f < animation.clips[clip].size(); ++f) frames.push_back({clip, f});
     return frames;
 }
 
-CurvatureModel trained(const Animation& animation, const CurvatureTraining& options) {
+CurvatureModel trained_model(const Animation& animation, const CurvatureTraining& options) {
     CurvatureTrainingReport report;
-    return train_curvature(animation, frames_of_clip(animation, 0), options, report);
+    return train_curvature(animation, frames_of(animation, 0), options, report);
 }
 
 /// RMS errors of k1 and of C111, over the zero-order's.
 std::pair<double, double> relative_errors(const CurvatureModel& model, const Animation& animation, std::uint32_t clip) {
-    const CurvatureEvaluation result = evaluate_curvature(model, animation, frames_of_clip(animation, clip));
+    const CurvatureEvaluation result = evaluate_curvature(model, animation, frames_of(animation, clip));
     return {result.attributes[0].rms / result.attributes[0].zero_order_rms,
             result.attributes[3].rms / result.attributes[3].zero_order_rms};
 }
 
-struct Way {
+struct TrainingCase {
     Learner learner;
     AttributeSet attributes;
     bool independent;
     double limit;  ///< of the error of k1 over the zero-order's; quadratics of the root's turns fit less
 };
-class TrainingTest : public ::testing::TestWithParam<Way> {};
+class TrainingTest : public ::testing::TestWithParam<TrainingCase> {};
 
 TEST_P(TrainingTest, PredictsABendItHasNotSeen) {
     CurvatureTraining options;
     options.learner = GetParam().learner;
     options.attributes = GetParam().attributes;
     options.independent = GetParam().independent;
-    const auto [curvature, derivative] = relative_errors(trained(tube(), options), tube(), 1);
+    const auto [curvature, derivative] = relative_errors(trained_model(tube(), options), tube(), 1);
     EXPECT_LT(curvature, GetParam().limit);
     EXPECT_LT(derivative, 0.3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Ways, TrainingTest,
-                         ::testing::Values(Way{Learner::additive, AttributeSet::tensor, true, 0.15},
-                                           Way{Learner::additive, AttributeSet::principal, true, 0.15},
-                                           Way{Learner::averaged, AttributeSet::tensor, true, 0.3},
-                                           Way{Learner::averaged, AttributeSet::principal, false, 0.3},
-                                           Way{Learner::global, AttributeSet::tensor, false, 0.3}),
+                         ::testing::Values(TrainingCase{Learner::additive, AttributeSet::tensor, true, 0.15},
+                                           TrainingCase{Learner::additive, AttributeSet::principal, true, 0.15},
+                                           TrainingCase{Learner::averaged, AttributeSet::tensor, true, 0.3},
+                                           TrainingCase{Learner::averaged, AttributeSet::principal, false, 0.3},
+                                           TrainingCase{Learner::global, AttributeSet::tensor, false, 0.3}),
                          [](const auto& info) {
                              return std::string(name_of(info.param.learner)) +
                                     (info.param.attributes == AttributeSet::tensor ? "_tensor" : "_principal") +
@@ -75,14 +75,14 @@ INSTANTIATE_TEST_SUITE_P(Ways, TrainingTest,
 TEST(Training, OfEqualSeedsGivesEqualFiles) {
     const TemporaryFolder folder;
     const std::filesystem::path first = folder.path() / "a.safetensors", second = folder.path() / "b.safetensors";
-    save_curvature_model(first, trained(tube(), {}));
-    save_curvature_model(second, trained(tube(), {}));
+    save_curvature_model(first, trained_model(tube(), {}));
+    save_curvature_model(second, trained_model(tube(), {}));
     EXPECT_EQ(read_file(first), read_file(second));
 }
 
 TEST(Training, NeedsPosesThatDiffer) {
     CurvatureTrainingReport report;
-    const std::vector<FrameRef> few(k_fewest_poses - 1, FrameRef{0, 0}), same(k_fewest_poses, FrameRef{0, 0});
+    const std::vector<FrameRef> few(k_min_poses - 1, FrameRef{0, 0}), same(k_min_poses, FrameRef{0, 0});
     CurvatureTraining no_others;
     no_others.augmented_poses = 0;
     try {
@@ -98,7 +98,7 @@ TEST(Training, SparsityMakesModelsSmallerAndErrorsHardlyLarger) {
     CurvatureTraining dense, sparse;
     dense.dropped_variance = 0;
     sparse.dropped_variance = 0.02;
-    const CurvatureModel large = trained(tube(), dense), small = trained(tube(), sparse);
+    const CurvatureModel large = trained_model(tube(), dense), small = trained_model(tube(), sparse);
     EXPECT_LT(small.tiles.entry.size(), large.tiles.entry.size());
     EXPECT_LT(relative_errors(small, tube(), 1).first, relative_errors(large, tube(), 1).first + 0.15);
 }
@@ -106,39 +106,39 @@ TEST(Training, SparsityMakesModelsSmallerAndErrorsHardlyLarger) {
 TEST(CurvatureModel, FilesHoldTheWholeModel) {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder.path() / "m.safetensors";
-    const CurvatureModel model = trained(tube(), {});
+    const CurvatureModel model = trained_model(tube(), {});
     save_curvature_model(path, model);
     const CurvatureModel back = load_curvature_model(path);
     save_curvature_model(folder.path() / "again.safetensors", back);
     EXPECT_EQ(read_file(path), read_file(folder.path() / "again.safetensors"));
 
-    MomentReader reader(tube(), model.segments, model.truth);
+    SnapshotReader reader(tube(), model.segments, model.truth);
     CurvatureEvaluator a(model), b(back);
-    const SurfaceMoment moment = reader.read({1, 4});
+    const SurfaceSnapshot snapshot = reader.read({1, 4});
     const Pose& pose = tube().clips[1].poses[4];
-    const VertexCurvature& from_memory = a.evaluate(tube().rig, pose, moment.vertices, moment.normals);
-    const VertexCurvature& from_file = b.evaluate(tube().rig, pose, moment.vertices, moment.normals);
+    const VertexCurvature& from_memory = a.evaluate(tube().rig, pose, snapshot.vertices, snapshot.normals);
+    const VertexCurvature& from_file = b.evaluate(tube().rig, pose, snapshot.vertices, snapshot.normals);
     EXPECT_EQ(from_memory.k1, from_file.k1);
     EXPECT_EQ(from_memory.derivative, from_file.derivative);
 }
 
 TEST(CurvatureModel, OfAnotherSurfaceIsRefused) {
-    const CurvatureModel model = trained(tube(), {.learner = Learner::additive});
-    EXPECT_NO_THROW(require_fit(model, tube()));
+    const CurvatureModel model = trained_model(tube(), {.learner = Learner::additive});
+    EXPECT_NO_THROW(require_compatible(model, tube()));
     const Animation finer = shapes::tube_rig(40, 16);
-    EXPECT_THROW(require_fit(model, finer), ModelError);
+    EXPECT_THROW(require_compatible(model, finer), ModelError);
     Animation renamed = tube();
     renamed.rig.nodes[2].name = "knee";
-    EXPECT_THROW(require_fit(model, renamed), ModelError);
+    EXPECT_THROW(require_compatible(model, renamed), ModelError);
     Animation flipped = tube();
     std::swap(flipped.rest.faces[3][0], flipped.rest.faces[3][1]);
-    EXPECT_THROW(require_fit(model, flipped), ModelError);
+    EXPECT_THROW(require_compatible(model, flipped), ModelError);
 }
 
 TEST(CurvatureModel, DamagedFilesAreRefused) {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder.path() / "m.safetensors", damaged = folder.path() / "d.safetensors";
-    save_curvature_model(path, trained(tube(), {.learner = Learner::additive}));
+    save_curvature_model(path, trained_model(tube(), {.learner = Learner::additive}));
     const auto refused = [&](auto&& change) {
         TensorFile file = read_safetensors(path);
         change(file);
@@ -255,12 +255,12 @@ TEST(Evaluator, GivesWhatReprojectionAndDecodingGive) {
     for (const AttributeSet set : {AttributeSet::principal, AttributeSet::tensor}) {
         CurvatureTraining options;
         options.attributes = set;
-        const CurvatureModel model = trained(tube(), options);
-        MomentReader reader(tube(), model.segments, model.truth);
-        const SurfaceMoment moment = reader.read({1, 7});
+        const CurvatureModel model = trained_model(tube(), options);
+        SnapshotReader reader(tube(), model.segments, model.truth);
+        const SurfaceSnapshot snapshot = reader.read({1, 7});
         CurvatureEvaluator evaluator(model);
         const VertexCurvature& fast =
-            evaluator.evaluate(tube().rig, tube().clips[1].poses[7], moment.vertices, moment.normals);
+            evaluator.evaluate(tube().rig, tube().clips[1].poses[7], snapshot.vertices, snapshot.normals);
 
         AttributeFrames frames;
         frames.set = set;
@@ -279,7 +279,7 @@ TEST(Evaluator, GivesWhatReprojectionAndDecodingGive) {
         std::vector<float> attributes(attribute_count(set) * model.vertex_count);
         reproject(model.tiles, evaluator.components(), attributes);
         VertexCurvature plain;
-        frames.decode(attributes, moment.surface(), plain);
+        frames.decode(attributes, snapshot.surface(), plain);
         for (std::size_t v = 0; v < model.vertex_count; ++v) {
             EXPECT_NEAR(fast.k1[v], plain.k1[v], 1e-4);
             EXPECT_NEAR(fast.k2[v], plain.k2[v], 1e-4);

@@ -136,7 +136,7 @@ TEST(Segments, ARotationIsFoundInWhatHoldsOne) {
 TEST(Influence, IsOfTheJointsBetweenTheBonesOfAVertex) {
     const Animation tube = shapes::bending_tube();
     const StateReader reader = make_rig_state(tube, pointers(tube.clips[0]));
-    const std::vector<InfluenceGroup> groups = possible_influences(tube, reader, 2);
+    const std::vector<InfluenceGroup> groups = candidate_influences(tube, reader, 2);
     std::vector<std::vector<std::uint32_t>> of_vertex(tube.rest.vertex_count());
     for (const InfluenceGroup& group : groups)
         for (const std::uint32_t v : group.vertices) of_vertex[v] = group.controls;
@@ -163,7 +163,7 @@ TEST(Influence, TheTestDropsWhatDoesNotMatter) {
         curvature(i, 3) = states(i, 0) + noise();
     }
     const std::vector<InfluenceGroup> possible = {{{0, 1, 2}, {0, 1, 2, 3}}};
-    const auto groups = tested_influences(possible, reader, states, curvature, {true, true, true, false}, {});
+    const auto groups = significant_influences(possible, reader, states, curvature, {true, true, true, false}, {});
     std::vector<std::vector<std::uint32_t>> of_vertex(4);
     for (const InfluenceGroup& group : groups)
         for (const std::uint32_t v : group.vertices) of_vertex[v] = group.controls;

@@ -40,16 +40,16 @@ Animation small_sheet() {
     return sheet;
 }
 
-struct Way {
+struct SurplusCase {
     const char* name;
     Animation (*animation)();
     Learner learner;
     AttributeSet attributes;
 };
-void PrintTo(const Way& way, std::ostream* out) {
+void PrintTo(const SurplusCase& way, std::ostream* out) {
     *out << way.name;
 }
-class SurplusTest : public ::testing::TestWithParam<Way> {
+class SurplusTest : public ::testing::TestWithParam<SurplusCase> {
   protected:
     void SetUp() override {
         const Animation animation = GetParam().animation();
@@ -115,11 +115,11 @@ TEST_P(SurplusTest, IsRefusedAsCoefficientsThatAreUsedTwice) {
 
 INSTANTIATE_TEST_SUITE_P(
     Models, SurplusTest,
-    ::testing::Values(Way{"joints", small_tube, Learner::additive, AttributeSet::tensor},
-                      Way{"joints_principal", small_tube, Learner::additive, AttributeSet::principal},
-                      Way{"hinges", small_sheet, Learner::additive, AttributeSet::tensor},
-                      Way{"hinges_principal", small_sheet, Learner::global, AttributeSet::principal},
-                      Way{"local_shape", small_sheet, Learner::local, AttributeSet::tensor}),
+    ::testing::Values(SurplusCase{"joints", small_tube, Learner::additive, AttributeSet::tensor},
+                      SurplusCase{"joints_principal", small_tube, Learner::additive, AttributeSet::principal},
+                      SurplusCase{"hinges", small_sheet, Learner::additive, AttributeSet::tensor},
+                      SurplusCase{"hinges_principal", small_sheet, Learner::global, AttributeSet::principal},
+                      SurplusCase{"local_shape", small_sheet, Learner::local, AttributeSet::tensor}),
     [](const auto& info) { return info.param.name; });
 
 }  // namespace

@@ -38,8 +38,8 @@ TensorFile entry_of(unsigned number, std::size_t bytes = k_entry_bytes) {
 class ResultCache : public testing::Test {
   protected:
     fs::path path(unsigned number) const { return folder_ / entry_name(number); }
-    void write(unsigned number, std::uint64_t most_bytes) const {
-        write_cache_entry(path(number), k_version, entry_of(number), most_bytes);
+    void write(unsigned number, std::uint64_t max_bytes) const {
+        write_cache_entry(path(number), k_version, entry_of(number), max_bytes);
     }
     /// Whether the entry is there; if it is, it must be the right one.
     bool read(unsigned number) const {

@@ -10,6 +10,7 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/random.h"
+#include "tests/support/mesh_files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace exemplar {
@@ -17,9 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write_bytes(const fs::path& path, const std::string& bytes) {
-    write_file_atomically(path, [&](std::ostream& out) { out << bytes; });
-}
+using mesh_files::write_bytes;
 
 /// A file with this header and data, whatever they are.
 std::string file_of(const std::string& header, const std::string& data) {

@@ -83,11 +83,15 @@ TEST_F(ScanTest, AFolderThatCannotBeReadIsLeftOut) {
     fs::permissions(folder_.path(), fs::perms::all);
     fs::permissions(folder_ / "locked", fs::perms::none);
     const uid_t user = geteuid(), nobody = 65534;
-    if (user == 0) ASSERT_EQ(seteuid(nobody), 0);  // root may read every folder
+    if (user == 0) {  // root may read every folder
+        ASSERT_EQ(seteuid(nobody), 0);
+    }
     EXPECT_THAT(found(), ElementsAre("a.off", "z/c.off"));
     EXPECT_THAT(left_out_, ElementsAre("locked"));
     EXPECT_THROW(found("locked"), DataError);
-    if (user == 0) ASSERT_EQ(seteuid(user), 0);
+    if (user == 0) {
+        ASSERT_EQ(seteuid(user), 0);
+    }
     fs::permissions(folder_ / "locked", fs::perms::owner_all);
 }
 

@@ -42,7 +42,7 @@ Animation animation_of(const CurvatureModel& model, const MadeUpSurface& surface
     if (model.kind == AnimationKind::sequence) return animation;
     Rig& rig = animation.rig;
     for (std::uint32_t i = 0; i < k_few; ++i) {
-        rig.nodes.push_back({"joint", i == 0 ? k_none : i - 1, {}});
+        rig.nodes.push_back({"joint", i == 0 ? k_invalid_index : i - 1, {}});
         rig.bones.push_back({i, Affine::Identity()});
         rig.targets.push_back({"target", {}, {}, 0});
     }
@@ -73,7 +73,7 @@ void require_use(const CurvatureModel& model, const MadeUpSurface& surface) {
         return require_curvature(evaluator.evaluate(surface.vertices, surface.normals), model.vertex_count);
     const Animation animation = animation_of(model, surface);
     const std::string refusal = "the model does not fit " + animation.name;
-    if (!accepts<ModelError>(refusal, 0, {1 << 16, 0}, [&] { require_fit(model, animation); })) return;
+    if (!accepts<ModelError>(refusal, 0, {1 << 16, 0}, [&] { require_compatible(model, animation); })) return;
     const Pose pose = some_pose(animation.rig);
     require_curvature(evaluator.evaluate(animation.rig, pose, surface.vertices, surface.normals), model.vertex_count);
 }

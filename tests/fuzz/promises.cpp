@@ -5,8 +5,8 @@
 
 #include "host/core/errors.h"
 #include "host/core/text.h"
-#include "host/mesh/io/io_formats.h"
 #include "host/mesh/editing/validate.h"
+#include "host/mesh/io/io_formats.h"
 
 namespace exemplar::fuzz {
 namespace {
@@ -49,7 +49,7 @@ void require_report(const TriangleMesh& mesh) {
 
 void require_rig(const Rig& rig, std::size_t vertex_count) {
     for (std::size_t i = 0; i < rig.nodes.size(); ++i)
-        require(rig.nodes[i].parent == k_none || rig.nodes[i].parent < i, "parents before children");
+        require(rig.nodes[i].parent == k_invalid_index || rig.nodes[i].parent < i, "parents before children");
     for (const Bone& bone : rig.bones) require(bone.node < rig.nodes.size(), "bones are nodes");
     require(rig.influence_begin.size() == vertex_count + 1, "influences of each vertex");
     for (std::size_t v = 0; v < vertex_count; ++v) {

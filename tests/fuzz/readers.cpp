@@ -19,10 +19,10 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/curvature/model/model.h"
-#include "host/data/corpus.h"
-#include "host/data/safetensors.h"
 #include "host/data/catalog/shape_record.h"
 #include "host/data/catalog/shard.h"
+#include "host/data/corpus.h"
+#include "host/data/safetensors.h"
 #include "host/hatching/style/hatching_style.h"
 #include "host/labeling/category/category_model.h"
 #include "host/labeling/inference/model.h"
@@ -343,12 +343,12 @@ bool reads_categories(std::string_view content) {
                                            {"descriptor_version", k_shape_descriptor_version}};
     if (!load() && !(made_for_today(path, content, today) && load())) return false;
     const ShapeDescriptor shape{model.features, std::vector<float>(model.scores.mean.size(), 0.5F)};
-    const CategoryOpinion opinion = recognize(model, shape);
-    require(opinion.category >= -1 && opinion.category < static_cast<std::int32_t>(model.category_count()),
+    const CategoryPrediction prediction = recognize(model, shape);
+    require(prediction.category >= -1 && prediction.category < static_cast<std::int32_t>(model.category_count()),
             "a category or none");
-    require(opinion.probability.size() == model.category_count(), "a probability per category");
-    require(opinion.confidence >= 0 && opinion.confidence <= 1, "a confidence");
-    for (const float p : opinion.probability) require(p >= 0 && p <= 1, "probabilities");
+    require(prediction.probability.size() == model.category_count(), "a probability per category");
+    require(prediction.confidence >= 0 && prediction.confidence <= 1, "a confidence");
+    for (const float p : prediction.probability) require(p >= 0 && p <= 1, "probabilities");
     save_category_model(again, model);
     const std::string bytes = read_file(again);
     save_category_model(again, load_category_model(again));

@@ -8,7 +8,7 @@
 namespace exemplar {
 namespace {
 
-using testing::shared_device;
+using test_support::shared_device;
 
 Canvas canvas_of(std::uint32_t width, std::uint32_t height, VkFormat format = Canvas::k_rgba) {
     Canvas canvas(shared_device(), format);
@@ -86,7 +86,7 @@ TEST(Canvas, StaysAsItIsIfItsSizeStays) {
     canvas.resize({8, 8});
     Stream stream(shared_device());
     clear(stream, canvas, {0, 1, 0, 1});
-    for (const std::uint32_t texel : testing::texels_of(canvas, stream)) EXPECT_EQ(texel, 0xff00ff00u);
+    for (const std::uint32_t texel : test_support::texels_of(canvas, stream)) EXPECT_EQ(texel, 0xff00ff00u);
 }
 
 TEST(Canvas, CopiesAPartOfWideColors) {

@@ -13,9 +13,9 @@
 #include <utility>
 
 #include "embedded/tests_affine_comp.h"
-#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/device/errors.h"
 #include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/buffer.h"
 #include "host/core/files.h"
 #include "shaders/shared/test_kernels.h"
 #include "tests/gpu/support/environment.h"
@@ -23,9 +23,9 @@
 namespace exemplar {
 namespace {
 
+using test_support::shared_device;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using testing::shared_device;
 
 // The message of the NoDeviceError that the call throws; empty if it throws none.
 template <typename Call>

@@ -23,9 +23,9 @@ namespace {
 
 using shared::AffineParameters;
 using shared::Particle;
+using test_support::shared_device;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-using testing::shared_device;
 
 // The message of the ShaderError that making the kernel throws; empty if it throws none.
 std::string shader_error(const Shader& shader, const KernelInterface& interface) {

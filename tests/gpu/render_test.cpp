@@ -17,7 +17,7 @@
 namespace exemplar {
 namespace {
 
-using testing::shared_device;
+using test_support::shared_device;
 
 constexpr Color k_white{255, 255, 255};
 

@@ -16,7 +16,7 @@ namespace exemplar {
 namespace {
 
 using shared::AffineParameters;
-using testing::shared_device;
+using test_support::shared_device;
 
 Kernel affine_kernel(std::uint32_t local_size = 64) {
     return Kernel(shared_device(), shaders::tests_affine_comp,
@@ -193,12 +193,12 @@ TEST(Stream, FetchesPartsOfABuffer) {
     std::vector<float> first(2), second(3);
     Stream stream(shared_device());
     const auto part = [](std::size_t from, std::vector<float>& to) {
-        return HostPart{from * sizeof(float), std::as_writable_bytes(std::span(to))};
+        return HostReadback{from * sizeof(float), std::as_writable_bytes(std::span(to))};
     };
-    stream.fetch(buffer, std::vector<HostPart>{part(5, first), part(1, second)});
+    stream.fetch(buffer, std::vector<HostReadback>{part(5, first), part(1, second)});
     EXPECT_THAT(first, ::testing::ElementsAre(5, 6));
     EXPECT_THAT(second, ::testing::ElementsAre(1, 2, 3));
-    EXPECT_THROW(stream.fetch(buffer, std::vector<HostPart>{part(0, first), part(6, second)}), DeviceError);
+    EXPECT_THROW(stream.fetch(buffer, std::vector<HostReadback>{part(0, first), part(6, second)}), DeviceError);
 }
 
 // The memory of the first may be the device's own, that of the others is the host's.
@@ -210,13 +210,14 @@ TEST(Stream, FetchesPartsOfSeveralBuffersByOneSubmission) {
     for (Buffer* buffer : {&one, &two, &three}) buffer->upload<float>(iota(8));
     std::vector<float> got(7, -1.0f);
     const auto part = [&](const Buffer& source, std::size_t from, std::size_t first, std::size_t count) {
-        return BufferPart{&source, from * sizeof(float), std::as_writable_bytes(std::span(got).subspan(first, count))};
+        return BufferReadback{&source, from * sizeof(float),
+                              std::as_writable_bytes(std::span(got).subspan(first, count))};
     };
     stream.copy(one, 0, two, 16, 16);
-    stream.fetch(std::vector<BufferPart>{part(one, 6, 0, 2), part(two, 3, 2, 3), part(three, 5, 5, 1)});
+    stream.fetch(std::vector<BufferReadback>{part(one, 6, 0, 2), part(two, 3, 2, 3), part(three, 5, 5, 1)});
     EXPECT_THAT(got, ::testing::ElementsAre(6, 7, 3, 0, 1, 5, -1));
     EXPECT_EQ(profiler.submissions(), 1u);
-    EXPECT_THROW(stream.fetch(std::vector<BufferPart>{part(one, 0, 0, 1), part(two, 7, 1, 2)}), DeviceError);
+    EXPECT_THROW(stream.fetch(std::vector<BufferReadback>{part(one, 0, 0, 1), part(two, 7, 1, 2)}), DeviceError);
     profiler.reset();
     EXPECT_EQ(profiler.submissions(), 0u);
 }

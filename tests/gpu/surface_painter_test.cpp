@@ -12,7 +12,7 @@ namespace {
 
 using shared::uvec4;
 using shared::vec4;
-using testing::shared_device;
+using test_support::shared_device;
 
 constexpr std::uint32_t k_size = 48;
 
@@ -43,7 +43,7 @@ class SurfacePainting : public ::testing::Test {
                                      .colors = colored_ ? &colors : nullptr,
                                      .first = curved_ ? &first : nullptr,
                                      .second = curved_ ? &second : nullptr};
-        return testing::drawn_texels(canvas, {0, 0, 0, 1}, [&](Stream& stream) {
+        return test_support::drawn_texels(canvas, {0, 0, 0, 1}, [&](Stream& stream) {
             Pass pass("surface", canvas.cleared(background_of(look)));
             painter.draw(pass, surface, camera, look);
             stream.render(pass);
@@ -91,7 +91,7 @@ TEST_F(SurfacePainting, LightIsThatOfTheReference) {
 }
 
 TEST_F(SurfacePainting, ConvexIsRedAndHollowIsBlue) {
-    PaintLook look{.paint = SurfacePaint::mean_curvature, .light = SurfaceLight::none, .strongest_curvature = 4};
+    PaintLook look{.paint = SurfacePaint::mean_curvature, .light = SurfaceLight::none, .full_color_curvature = 4};
     const std::uint32_t flat = middle(look);
     EXPECT_EQ(red(flat), blue(flat));
     k1_ = 3;

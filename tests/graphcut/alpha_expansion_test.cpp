@@ -12,12 +12,12 @@
 namespace exemplar {
 namespace {
 
-using Edge = std::array<std::uint32_t, 2>;
+using LabelEdge = std::array<std::uint32_t, 2>;
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
 struct Instance {
     std::size_t nodes, labels;
-    std::vector<Edge> edges;
+    std::vector<LabelEdge> edges;
     std::vector<float> unary;
     std::vector<double> weight, v;
 
@@ -276,7 +276,7 @@ TEST(AlphaExpansion, TakesEachNodesCheapestLabelWithoutEdges) {
 }
 
 TEST(AlphaExpansion, RefusesBadEnergies) {
-    const std::vector<Edge> edges{{0, 1}};
+    const std::vector<LabelEdge> edges{{0, 1}};
     const std::vector<float> unary{0, 1, 1, 0}, bad_unary{0, 1, std::nanf(""), 0};
     const std::vector<double> weight{1.0}, bad_weight{-1.0};
     const std::vector<double> v{0, 1, 1, 0}, lopsided{0, 1, 2, 0}, diagonal{1, 1, 1, 0}, negative{0, -1, -1, 0};

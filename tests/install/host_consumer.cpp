@@ -4,8 +4,8 @@
 
 #include "host/core/errors.h"
 #include "host/learn/components/pca.h"
-#include "host/mesh/io/io.h"
 #include "host/mesh/editing/validate.h"
+#include "host/mesh/io/io.h"
 
 int main(int argc, char** argv) {
     if (argc != 2) return 2;

@@ -19,7 +19,7 @@
 namespace exemplar {
 namespace {
 
-using namespace testing;
+using namespace test_support;
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;

@@ -16,7 +16,7 @@
 namespace exemplar {
 namespace {
 
-using namespace testing;
+using namespace test_support;
 
 /// Depths of the nearest surface at pixel centers, by the plainest of rasterizers.
 FloatImage depth_picture(const Scene& scene) {

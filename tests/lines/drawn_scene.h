@@ -8,7 +8,7 @@
 #include "tests/lines/extraction/measured_surface.h"
 #include "tests/support/shapes.h"
 
-namespace exemplar::testing {
+namespace exemplar::test_support {
 
 constexpr int k_size = 400;  // pixels of pictures, both ways
 
@@ -40,4 +40,4 @@ inline LineStyle black() {
     return style;
 }
 
-}  // namespace exemplar::testing
+}  // namespace exemplar::test_support

@@ -12,17 +12,17 @@
 namespace exemplar {
 namespace {
 
-double total_area(const TriangleMesh& mesh) {
+double summed_area(const TriangleMesh& mesh) {
     double sum = 0;
     for (float area : face_areas(mesh)) sum += area;
     return sum;
 }
 
 TEST(FaceAreas, SumToTheAreaOfTheShape) {
-    EXPECT_NEAR(total_area(shapes::box(1, 2, 3, 4)), 22, 1e-5);
-    EXPECT_NEAR(total_area(shapes::grid(7, 3, 2)), 4, 1e-6);
-    EXPECT_NEAR(total_area(shapes::icosphere(5, 2)), 16 * std::numbers::pi, 0.02);
-    EXPECT_NEAR(total_area(shapes::torus(3, 1, 200, 100)), 12 * std::numbers::pi * std::numbers::pi, 0.1);
+    EXPECT_NEAR(summed_area(shapes::box(1, 2, 3, 4)), 22, 1e-5);
+    EXPECT_NEAR(summed_area(shapes::grid(7, 3, 2)), 4, 1e-6);
+    EXPECT_NEAR(summed_area(shapes::icosphere(5, 2)), 16 * std::numbers::pi, 0.02);
+    EXPECT_NEAR(summed_area(shapes::torus(3, 1, 200, 100)), 12 * std::numbers::pi * std::numbers::pi, 0.1);
 }
 
 TEST(FaceAreas, AreZeroOnlyWhereDegenerate) {

@@ -28,7 +28,7 @@ std::vector<std::array<std::uint32_t, 4>> naive_edges(const TriangleMesh& mesh) 
         }
     std::vector<std::array<std::uint32_t, 4>> edges;
     for (const auto& [vertex, around] : faces) {
-        if (around.size() == 1) edges.push_back({vertex.first, vertex.second, *around.begin(), k_none});
+        if (around.size() == 1) edges.push_back({vertex.first, vertex.second, *around.begin(), k_invalid_index});
         for (auto it = around.begin(); std::next(it) != around.end(); ++it)
             edges.push_back({vertex.first, vertex.second, *it, *std::next(it)});
     }
@@ -44,7 +44,7 @@ void expect_consistent(const TriangleMesh& mesh, const Topology& topology) {
     std::vector<std::set<std::uint32_t>> edges_of(mesh.face_count()), faces_of(mesh.vertex_count());
     for (std::uint32_t e = 0; e < topology.edges.size(); ++e)
         for (std::uint32_t f : topology.edges[e].face)
-            if (f != k_none) edges_of[f].insert(e);
+            if (f != k_invalid_index) edges_of[f].insert(e);
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
         for (std::uint32_t v : mesh.faces[f]) faces_of[v].insert(f);
         EXPECT_THAT(topology.edges_of_face(f), testing::UnorderedElementsAreArray(edges_of[f]));

@@ -18,15 +18,15 @@
 namespace exemplar {
 namespace {
 
-using testing::ContextGroup;
-using testing::expect_as_one_by_one;
-using testing::expect_context_parity;
-using testing::histogram_count;
-using testing::random_context;
-using testing::random_probabilities;
+using test_support::ContextGroup;
+using test_support::expect_as_one_by_one;
+using test_support::expect_context_parity;
+using test_support::histogram_count;
+using test_support::random_context;
+using test_support::random_probabilities;
 
 TEST(ContextParity, OddNumbersOfFaces) {
-    GpuContextHistograms histograms(testing::shared_device());
+    GpuContextHistograms histograms(test_support::shared_device());
     Random random(1);
     for (const std::size_t faces : {0u, 1u, 63u, 64u, 65u, 300u}) {
         SCOPED_TRACE(faces);
@@ -35,7 +35,7 @@ TEST(ContextParity, OddNumbersOfFaces) {
 }
 
 TEST(ContextParity, OddNumbersOfSamples) {
-    GpuContextHistograms histograms(testing::shared_device());
+    GpuContextHistograms histograms(test_support::shared_device());
     Random random(2);
     for (const std::size_t samples : {0u, 1u, 2u, 15u, 16u, 17u, 255u, 256u, 257u, 1000u}) {
         SCOPED_TRACE(samples);
@@ -44,7 +44,7 @@ TEST(ContextParity, OddNumbersOfSamples) {
 }
 
 TEST(ContextParity, AllNumbersOfClasses) {
-    GpuContextHistograms histograms(testing::shared_device());
+    GpuContextHistograms histograms(test_support::shared_device());
     Random random(3);
     const ContextGeometry geometry = random_context(66, 40, random);
     for (const std::size_t classes : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 8u, 9u, 16u, 17u, 64u}) {
@@ -59,7 +59,7 @@ TEST(ContextParity, WorkOverTheLimitsIsTiled) {
     const ContextGeometry geometry = random_context(70, 60, random);
     for (const std::size_t tile_bytes :
          {std::size_t{1}, 30 * k_context_measures * k_context_bins * 4 * sizeof(float)}) {
-        GpuContextHistograms histograms(testing::shared_device(), nullptr, tile_bytes);
+        GpuContextHistograms histograms(test_support::shared_device(), nullptr, tile_bytes);
         for (const std::size_t classes : {4u, 6u, 13u}) {
             SCOPED_TRACE(classes);
             expect_context_parity(histograms, geometry, classes, random);
@@ -74,18 +74,18 @@ TEST(ContextParity, MeshesOfAGroupAreDoneAsOneByOne) {
          {std::size_t{1}, 30 * k_context_measures * k_context_bins * 4 * sizeof(float), k_context_tile_bytes})
         for (const std::size_t classes : {1u, 4u, 6u}) {
             SCOPED_TRACE(tile_bytes);
-            GpuContextHistograms histograms(testing::shared_device(), nullptr, tile_bytes);
-            expect_as_one_by_one(histograms, ContextGroup(testing::k_odd_meshes, classes, random));
+            GpuContextHistograms histograms(test_support::shared_device(), nullptr, tile_bytes);
+            expect_as_one_by_one(histograms, ContextGroup(test_support::k_odd_meshes, classes, random));
             expect_as_one_by_one(histograms, ContextGroup({}, classes, random));
         }
     CpuContextHistograms reference;
-    expect_as_one_by_one(reference, ContextGroup(testing::k_odd_meshes, 5, random));
+    expect_as_one_by_one(reference, ContextGroup(test_support::k_odd_meshes, 5, random));
 }
 
 TEST(ContextParity, ManyMeshesAreOneSubmission) {
     Random random(10);
     Profiler profiler;
-    GpuContextHistograms histograms(testing::shared_device(), &profiler);
+    GpuContextHistograms histograms(test_support::shared_device(), &profiler);
     for (const std::size_t count : {1u, 60u, 7u}) {
         std::vector<std::pair<std::size_t, std::size_t>> sizes;
         while (sizes.size() < count) sizes.emplace_back(1 + random.index(90), 1 + random.index(40));
@@ -101,7 +101,7 @@ TEST(ContextParity, ManyMeshesAreOneSubmission) {
 TEST(ContextParity, AGroupOverTheLimitIsSeveralSubmissions) {
     Random random(11);
     Profiler profiler;
-    GpuContextHistograms histograms(testing::shared_device(), &profiler,
+    GpuContextHistograms histograms(test_support::shared_device(), &profiler,
                                     200 * k_context_measures * k_context_bins * 4 * sizeof(float));
     ContextGroup group({{100, 20}, {100, 20}, {150, 20}, {60, 20}, {140, 20}}, 4, random);
     histograms.accumulate_all(group.meshes(), group.classes);
@@ -110,7 +110,7 @@ TEST(ContextParity, AGroupOverTheLimitIsSeveralSubmissions) {
 
 // A flat mesh has no extent along an axis: all edges and distances are zero, and everything is in the last bin.
 TEST(ContextParity, DegenerateAxes) {
-    GpuContextHistograms histograms(testing::shared_device());
+    GpuContextHistograms histograms(test_support::shared_device());
     Random random(5);
     ContextGeometry geometry = random_context(70, 20, random);
     std::fill_n(geometry.axis_position.begin(), 70, 0.0f);
@@ -126,7 +126,7 @@ TEST(ContextParity, BinsOfAMeasureHoldTheWholeMass) {
     for (std::uint8_t& range : geometry.geodesic_bin) range = std::min<std::uint8_t>(range, k_context_bins - 1);
     const std::vector<float> probabilities = random_probabilities(65, 6, random);
     std::vector<float> histograms(histogram_count(65, 6));
-    GpuContextHistograms(testing::shared_device()).accumulate(geometry, probabilities, 6, histograms);
+    GpuContextHistograms(test_support::shared_device()).accumulate(geometry, probabilities, 6, histograms);
     for (std::size_t measure = 0; measure < k_context_measures; ++measure)
         for (std::size_t face = 0; face < 65; ++face) {
             float sum = 0.0f;
@@ -144,7 +144,7 @@ TEST(ContextParity, RefusesContradictions) {
     stray_sample.sample_face[3] = 20;
     const std::vector<float> probabilities = random_probabilities(20, 2, random);
     std::vector<float> out(histogram_count(20, 2));
-    GpuContextHistograms gpu(testing::shared_device());
+    GpuContextHistograms gpu(test_support::shared_device());
     CpuContextHistograms cpu;
     for (ContextHistograms* histograms : std::initializer_list<ContextHistograms*>{&gpu, &cpu}) {
         EXPECT_THROW(histograms->accumulate(short_geodesic, probabilities, 2, out), UsageError);

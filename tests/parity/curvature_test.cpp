@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "gpu/curvature/surface/animated_surface.h"
+#include "gpu/curvature/animated_surface.h"
 #include "gpu/curvature/surface/curvature.h"
 #include "gpu/curvature/surface/near_vertices.h"
 #include "gpu/curvature/surface/poser.h"
@@ -25,20 +25,20 @@
 namespace exemplar {
 namespace {
 
-using testing::derivative_in_space;
-using testing::distance;
-using testing::download;
-using testing::form_in_space;
-using testing::random_pose;
-using testing::same_bits;
-using testing::shared_device;
-using testing::size_of;
-using testing::strip;
-using testing::Tensor2;
-using testing::Tensor3;
-using testing::waved;
+using test_support::derivative_in_space;
+using test_support::distance;
+using test_support::download;
+using test_support::form_in_space;
+using test_support::random_pose;
+using test_support::same_bits;
+using test_support::shared_device;
+using test_support::size_of;
+using test_support::strip;
+using test_support::Tensor2;
+using test_support::Tensor3;
+using test_support::waved;
 
-constexpr double k_tolerance = 1e-6;
+constexpr double k_curvature_tolerance = 1e-6;
 
 // Of a frame of a surface that was made at rest.
 VertexCurvature device_curvature(const TriangleMesh& rest, const std::vector<Vec3>& vertices,
@@ -46,9 +46,9 @@ VertexCurvature device_curvature(const TriangleMesh& rest, const std::vector<Vec
     const GpuSurface surface(shared_device(), rest);
     GpuCurvature curvature(surface, options);
     Stream stream(shared_device());
-    curvature.record(stream, testing::upload_vertices(shared_device(), vertices));
+    curvature.record(stream, test_support::upload_vertices(shared_device(), vertices));
     stream.finish();
-    return testing::download_curvature(curvature);
+    return test_support::download_curvature(curvature);
 }
 
 VertexCurvature device_curvature(const TriangleMesh& mesh) {
@@ -68,8 +68,8 @@ std::vector<double> least_heights(const TriangleMesh& mesh) {
     return heights;
 }
 
-void expect_near(const TriangleMesh& mesh, const VertexCurvature& actual, const VertexCurvature& expected,
-                 double tolerance) {
+void expect_near_curvature(const TriangleMesh& mesh, const VertexCurvature& actual, const VertexCurvature& expected,
+                           double tolerance) {
     ASSERT_EQ(actual.k1.size(), expected.k1.size());
     const std::vector<Vec3> normals = vertex_normals(mesh);
     const std::vector<double> heights = least_heights(mesh);
@@ -88,8 +88,8 @@ void expect_near(const TriangleMesh& mesh, const VertexCurvature& actual, const 
     }
 }
 
-void expect_parity(const TriangleMesh& mesh, double tolerance = k_tolerance) {
-    expect_near(mesh, device_curvature(mesh), estimate_curvature(mesh, true), tolerance);
+void expect_curvature_parity(const TriangleMesh& mesh, double tolerance = k_curvature_tolerance) {
+    expect_near_curvature(mesh, device_curvature(mesh), estimate_curvature(mesh, true), tolerance);
 }
 
 // Smoothed in units of the mesh at rest, of a frame of it.
@@ -100,7 +100,7 @@ void expect_smoothed_parity(const TriangleMesh& rest, const std::vector<Vec3>& v
     options.smoothing_unit = reference.median_edge_length(rest.vertices);
     TriangleMesh frame = rest;
     frame.vertices = vertices;
-    expect_near(frame, actual, reference.estimate(vertices, options), k_tolerance);
+    expect_near_curvature(frame, actual, reference.estimate(vertices, options), k_curvature_tolerance);
 }
 
 // With a vertex of no face, three on a line and their face, one where another is, and faces that name a vertex twice.
@@ -116,22 +116,22 @@ TriangleMesh with_junk(TriangleMesh mesh) {
 TEST(CurvatureParity, OddNumbersOfVerticesAndFaces) {
     for (const std::size_t vertices : {0u, 1u, 2u, 3u, 63u, 64u, 65u, 66u, 67u, 257u}) {
         SCOPED_TRACE(vertices);
-        expect_parity(strip(vertices));
+        expect_curvature_parity(strip(vertices));
     }
 }
 
 TEST(CurvatureParity, ClosedAndBoundedSurfaces) {
-    expect_parity(waved(shapes::icosphere(3, 1), 0.2f));
-    expect_parity(waved(shapes::torus(2, 0.7f, 40, 17), 0.1f));
-    expect_parity(waved(shapes::grid(13, 9, 2), 0.3f));
-    expect_parity(waved(shapes::cylinder(1, 3, 19, 7, false), 0.2f));
-    expect_parity(shapes::box(1, 2, 3, 4));
-    expect_parity(shapes::icosphere(3, 1));
+    expect_curvature_parity(waved(shapes::icosphere(3, 1), 0.2f));
+    expect_curvature_parity(waved(shapes::torus(2, 0.7f, 40, 17), 0.1f));
+    expect_curvature_parity(waved(shapes::grid(13, 9, 2), 0.3f));
+    expect_curvature_parity(waved(shapes::cylinder(1, 3, 19, 7, false), 0.2f));
+    expect_curvature_parity(shapes::box(1, 2, 3, 4));
+    expect_curvature_parity(shapes::icosphere(3, 1));
 }
 
 TEST(CurvatureParity, DegenerateFacesAndLooseVertices) {
     const TriangleMesh clean = waved(shapes::icosphere(2, 1), 0.2f), mesh = with_junk(clean);
-    expect_parity(mesh);
+    expect_curvature_parity(mesh);
     const VertexCurvature actual = device_curvature(mesh);
     for (std::size_t v = clean.vertex_count(); v < mesh.vertex_count() - 1; ++v) {
         EXPECT_EQ(actual.k1[v], 0.0f);
@@ -145,9 +145,9 @@ TEST(CurvatureParity, DegenerateFacesAndLooseVertices) {
 TEST(CurvatureParity, NeedlesAndCaps) {
     for (const Vec3& stretch : {Vec3(100, 1, 1), Vec3(1, 100, 1), Vec3(1, 0.01f, 1)}) {
         SCOPED_TRACE(stretch.transpose());
-        expect_parity(shapes::transformed(waved(shapes::torus(2, 0.7f, 30, 20), 0.1f),
-                                          [&](const Vec3& p) -> Vec3 { return p.cwiseProduct(stretch); }),
-                      20 * k_tolerance);
+        expect_curvature_parity(shapes::transformed(waved(shapes::torus(2, 0.7f, 30, 20), 0.1f),
+                                                    [&](const Vec3& p) -> Vec3 { return p.cwiseProduct(stretch); }),
+                                20 * k_curvature_tolerance);
     }
 }
 
@@ -158,7 +158,7 @@ TEST(CurvatureParity, SurfacesThatAreNotManifold) {
     const auto apex = static_cast<std::uint32_t>(mesh.vertex_count() - 1);
     for (std::uint32_t v = 16; v < 20; ++v) mesh.faces.push_back({v, v + 1, apex});
     mesh.faces.push_back(mesh.faces[7]);
-    expect_parity(mesh);
+    expect_curvature_parity(mesh);
 }
 
 // Where orientations clash, faces turn away from the normals of their corners, and frames have hardly a least rotation
@@ -285,7 +285,7 @@ TEST(CurvatureParity, MeshesOfAnyScale) {
     const TriangleMesh mesh = waved(shapes::icosphere(2, 1), 0.2f);
     for (const float scale : {1e-15f, 1e-6f, 1e6f, 1e15f}) {
         SCOPED_TRACE(scale);
-        expect_parity(shapes::scaled(mesh, scale));
+        expect_curvature_parity(shapes::scaled(mesh, scale));
     }
 }
 
@@ -293,7 +293,7 @@ TEST(CurvatureParity, WithoutDerivatives) {
     const TriangleMesh mesh = waved(shapes::icosphere(2, 1), 0.2f);
     const GpuSurface surface(shared_device(), mesh);
     GpuCurvature with(surface), without(surface, {.derivatives = false});
-    const Buffer vertices = testing::upload_vertices(shared_device(), mesh.vertices);
+    const Buffer vertices = test_support::upload_vertices(shared_device(), mesh.vertices);
     Stream stream(shared_device());
     with.record(stream, vertices);
     without.record(stream, vertices);
@@ -307,7 +307,7 @@ TEST(CurvatureParity, RefusesVerticesOfAnotherSurface) {
     const GpuSurface surface(shared_device(), shapes::icosphere(1, 1));
     GpuCurvature curvature(surface);
     Stream stream(shared_device());
-    EXPECT_THROW(curvature.record(stream, testing::upload_vertices(shared_device(), std::vector<Vec3>(41))),
+    EXPECT_THROW(curvature.record(stream, test_support::upload_vertices(shared_device(), std::vector<Vec3>(41))),
                  UsageError);
 }
 
@@ -323,19 +323,21 @@ TEST(SmoothedCurvatureParity, TheScaleOfTheBindSpaceDoesNotMatter) {
     Stream stream(shared_device());
     moving.record(stream, tube.clips[0].poses[1], CurvatureSource::estimated);
     stream.finish();
-    const GpuCurvedSurface moment = moving.moment();
+    const GpuCurvedSurface snapshot = moving.snapshot();
     TriangleMesh frame = tube.rest;
     frame.vertices = frame_vertices(tube, tube.clips[0], 1);
     CurvatureEstimator reference(frame.faces, frame.vertex_count());
-    expect_near(frame, testing::download_curvature(*moment.first, *moment.second, *moment.derivative),
-                reference.estimate(frame.vertices, options), 10 * k_tolerance);  // posed in another order of sums
+    expect_near_curvature(frame,
+                          test_support::download_curvature(*snapshot.first, *snapshot.second, *snapshot.derivative),
+                          reference.estimate(frame.vertices, options),
+                          10 * k_curvature_tolerance);  // posed in another order of sums
 }
 
 // A character of many frames: each is what it would be alone, reruns are equal bit for bit, and nothing grows.
 TEST(CurvatureParity, ManyFramesOfARig) {
     Random random(9);
     const TriangleMesh rest = waved(shapes::icosphere(2, 1), 0.2f);
-    const Rig rig = testing::random_rig(rest.vertex_count(), 12, 5, random);
+    const Rig rig = test_support::random_rig(rest.vertex_count(), 12, 5, random);
     const GpuSurface surface(shared_device(), rest);
     GpuPoser poser(shared_device(), rig, rest.vertices);
     GpuCurvature curvature(surface, {.smoothing = 1});
@@ -349,7 +351,7 @@ TEST(CurvatureParity, ManyFramesOfARig) {
         stream.finish();
         return std::array{download(curvature.first()), download(curvature.second()), download(curvature.derivative())};
     };
-    testing::expect_repeatable_without_growth(poses, run);
+    test_support::expect_repeatable_without_growth(poses, run);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@
 namespace exemplar {
 namespace {
 
-using testing::shared_device;
+using test_support::shared_device;
 
 constexpr float k_infinite = std::numeric_limits<float>::infinity();
 constexpr double k_place_error = 1e-3;  // pixels
@@ -88,7 +88,8 @@ bool shown_nearby(const GBuffer& gbuffer, int x, int y, std::uint32_t face) {
     return false;
 }
 
-void expect_parity(GBufferRenderer& device, const TriangleMesh& mesh, const Camera& camera, int width, int height) {
+void expect_gbuffer_parity(GBufferRenderer& device, const TriangleMesh& mesh, const Camera& camera, int width,
+                           int height) {
     const GBuffer expected = render_gbuffer(mesh, camera, width, height);
     const GBuffer actual = device.render(mesh, camera, width, height);
     ASSERT_EQ(actual.width, width);
@@ -126,7 +127,7 @@ TEST(GBufferParity, SurfacesAtOddSizes) {
             SCOPED_TRACE(::testing::Message() << width << " x " << height << ", " << fov);
             const Camera camera =
                 fit_camera(mesh, Vec3(0.4f, 0.8f, 1), aspect_of(width, height), {.vertical_fov = fov});
-            expect_parity(renderer, mesh, camera, width, height);
+            expect_gbuffer_parity(renderer, mesh, camera, width, height);
         }
 }
 
@@ -138,7 +139,7 @@ TEST(GBufferParity, FacesOfAPixelAndTinyUnits) {
         for (Vec3& v : mesh.vertices) v += unit * Vec3(3, -2, 1);
         // Faces are so small that edges pass many pixels.
         const Camera camera = fit_camera(mesh, Vec3(1, 2, 3), 1);
-        expect_parity(renderer, mesh, camera, 400, 400);
+        expect_gbuffer_parity(renderer, mesh, camera, 400, 400);
     }
 }
 
@@ -150,7 +151,7 @@ TEST(GBufferParity, TrianglesThatPierceEachOther) {
         for (int k = 0; k < 3; ++k) mesh.vertices.emplace_back(random.normal(), random.normal(), random.normal());
         mesh.faces.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
-    expect_parity(renderer, mesh, fit_camera(mesh, Vec3(1, 1, 1), 1.3f), 131, 101);
+    expect_gbuffer_parity(renderer, mesh, fit_camera(mesh, Vec3(1, 1, 1), 1.3f), 131, 101);
 }
 
 TEST(GBufferParity, NothingInView) {
@@ -163,7 +164,7 @@ TEST(GBufferParity, NothingInView) {
         EXPECT_EQ(gbuffer.face, std::vector<std::uint32_t>(gbuffer.size(), k_no_face));
         EXPECT_EQ(gbuffer.depth, std::vector<float>(gbuffer.size(), k_infinite));
     }
-    expect_parity(renderer, {}, eye_at_origin(), 7, 5);
+    expect_gbuffer_parity(renderer, {}, eye_at_origin(), 7, 5);
 }
 
 TEST(GBufferParity, AcrossTheNearPlaneAndBehindTheEye) {
@@ -173,10 +174,10 @@ TEST(GBufferParity, AcrossTheNearPlaneAndBehindTheEye) {
     floor.faces = {{0, 1, 2}, {0, 2, 3}};
     for (const float height : {-0.5f, -0.09f, 0.3f}) {
         for (Vec3& vertex : floor.vertices) vertex.y() = height;
-        expect_parity(renderer, floor, eye_at_origin(), 65, 63);
+        expect_gbuffer_parity(renderer, floor, eye_at_origin(), 65, 63);
     }
     // The eye is inside of the ball.
-    expect_parity(renderer, shapes::icosphere(3, 0.3f), eye_at_origin(), 65, 63);
+    expect_gbuffer_parity(renderer, shapes::icosphere(3, 0.3f), eye_at_origin(), 65, 63);
 }
 
 TEST(GBufferParity, OfEquallyNearFacesTheFirstIsSeen) {
@@ -192,7 +193,7 @@ TEST(GBufferParity, TilesAndPartsChangeNothingButEdges) {
     const TriangleMesh mesh = shapes::torus(2.0f, 0.7f, 30, 20);
     const Camera camera = fit_camera(mesh, Vec3(0.6f, 0.5f, 1.0f), aspect_of(150, 101));
     GpuGBufferRenderer tiled(shared_device(), 32), in_parts(shared_device(), 2048, 7 * 48 + 5), whole(shared_device());
-    expect_parity(tiled, mesh, camera, 150, 101);
+    expect_gbuffer_parity(tiled, mesh, camera, 150, 101);
     const GBuffer expected = whole.render(mesh, camera, 150, 101), actual = in_parts.render(mesh, camera, 150, 101);
     EXPECT_EQ(actual.face, expected.face);
     EXPECT_EQ(actual.depth, expected.depth);

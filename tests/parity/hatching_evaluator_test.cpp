@@ -19,7 +19,7 @@
 namespace exemplar {
 namespace {
 
-using testing::shared_device;
+using test_support::shared_device;
 
 const std::initializer_list<std::size_t> k_odd_sizes{0, 1, 3, 4, 5, 63, 64, 65, 255, 256, 257, 1003};
 

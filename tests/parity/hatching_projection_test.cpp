@@ -23,14 +23,14 @@
 namespace exemplar {
 namespace {
 
-using testing::random_vec3;
-using testing::shared_device;
-using testing::strip;
+using test_support::random_vec3;
+using test_support::shared_device;
+using test_support::strip;
 
 constexpr float k_scalar_tolerance = 1e-6f;
 constexpr double k_epsilon = 0x1p-24;
 constexpr double k_roundings = 16;
-const std::initializer_list<std::size_t> k_odd_sizes{0, 1, 2, 3, 4, 5, 63, 64, 65, 255, 256, 257, 1003};
+const std::initializer_list<std::size_t> k_odd_point_counts{0, 1, 2, 3, 4, 5, 63, 64, 65, 255, 256, 257, 1003};
 
 FacePoints random_points(const TriangleMesh& mesh, std::size_t count, Random& random) {
     FacePoints points;
@@ -91,7 +91,7 @@ TEST(PixelProjectionParity, ScalarsOfOddNumbersOfPoints) {
     Random random(1);
     const TriangleMesh mesh = strip(65);
     const FeatureMatrix values = random_values(65, 5, random);
-    for (const std::size_t count : k_odd_sizes) {
+    for (const std::size_t count : k_odd_point_counts) {
         SCOPED_TRACE(count);
         expect_scalar_parity(projection, mesh, random_points(mesh, count, random), values, all_columns(5));
     }
@@ -164,7 +164,7 @@ struct Fields {
 };
 
 /// Tangent to nothing, of lengths from tiny to large; one in ten is zero.
-Fields random_fields(std::size_t vertices, std::size_t count, Random& random) {
+Fields random_vertex_fields(std::size_t vertices, std::size_t count, Random& random) {
     Fields fields;
     for (std::size_t k = 0; k < count; ++k) {
         auto& field = fields.values.emplace_back();
@@ -241,15 +241,16 @@ TEST(PixelProjectionParity, DirectionsOfOddNumbersOfPointsAndFields) {
     Random random(6);
     const TriangleMesh mesh = shapes::torus(2, 0.7f, 13, 9);
     const HatchingView view = view_of(mesh, {1, 2, 3}, 170, 101);
-    for (const std::size_t count : k_odd_sizes) {
+    for (const std::size_t count : k_odd_point_counts) {
         SCOPED_TRACE(count);
         const FacePoints points = random_points(mesh, count, random);
-        expect_direction_parity(projection, mesh, view, points, random_fields(mesh.vertex_count(), 5, random));
+        expect_direction_parity(projection, mesh, view, points, random_vertex_fields(mesh.vertex_count(), 5, random));
     }
     for (const std::size_t fields : {0u, 1u, 3u, 4u, 19u}) {
         SCOPED_TRACE(::testing::Message() << fields << " fields");
         const FacePoints points = random_points(mesh, 77, random);
-        expect_direction_parity(projection, mesh, view, points, random_fields(mesh.vertex_count(), fields, random));
+        expect_direction_parity(projection, mesh, view, points,
+                                random_vertex_fields(mesh.vertex_count(), fields, random));
     }
 }
 
@@ -264,7 +265,7 @@ TEST(PixelProjectionParity, DirectionsInViewsOfAllKinds) {
                 const HatchingView view = view_of(mesh, random_vec3(random), width, height, fov);
                 const FacePoints points = random_points(mesh, 1500, random);
                 EXPECT_GT(expect_direction_parity(projection, mesh, view, points,
-                                                  random_fields(mesh.vertex_count(), 3, random)),
+                                                  random_vertex_fields(mesh.vertex_count(), 3, random)),
                           0.9);
             }
 }
@@ -414,7 +415,7 @@ TEST(PixelProjectionParity, RerunsAndOthersBetweenThemChangeNothing) {
     const HatchingView view = view_of(surface.mesh, {1, 2, 3}, 100, 100);
     const FacePoints points = random_points(surface.mesh, 501, random);
     const FeatureMatrix values = random_values(400, 50, random);
-    const Fields fields = random_fields(400, 7, random);
+    const Fields fields = random_vertex_fields(400, 7, random);
     struct Results {
         std::vector<float> scalars, curvature;
         std::vector<DoubledAngle> directions;
@@ -451,7 +452,7 @@ TEST(PixelProjectionParity, RefusesWhatTheReferenceRefuses) {
     torn.faces[1][1] = 20;
     HatchingSurface unmeasured = surface;
     unmeasured.curvature[1].derivative.clear();
-    const Fields fields = random_fields(20, 2, random), few = random_fields(19, 2, random);
+    const Fields fields = random_vertex_fields(20, 2, random), few = random_vertex_fields(19, 2, random);
     std::vector<float> out(10), small(9);
     std::vector<DoubledAngle> doubled(10), less(9);
     const std::vector<std::uint32_t> which{0, 2}, missing{0, 3}, no_curvature{0, 90};

@@ -15,17 +15,17 @@
 #include "tests/gpu/support/environment.h"
 
 // The device adds in floats: with values below 1, weighted means are known to about 1e-6. Slopes divide differences of
-// means by the spread of the mask's pixels, in the worst case by 2 k_least_spread, and by sigma; curvatures are
+// means by the spread of the mask's pixels, in the worst case by 2 k_min_spread, and by sigma; curvatures are
 // differences of means, with errors of slopes times the third cumulants of offsets, over sigma^2. Orientations divide
 // by the squared gradient.
 namespace exemplar {
 namespace {
 
-using testing::shared_device;
+using test_support::shared_device;
 using Faces = std::vector<std::uint32_t>;
 
 constexpr float k_value_tolerance = 1e-5f;
-constexpr float k_tolerance = 1e-4f;  // of derivatives per sigma
+constexpr float k_derivatives_tolerance = 1e-4f;  // of derivatives per sigma
 constexpr float k_orientation_tolerance = 1e-3f;
 constexpr float k_steep = 0.01f;  // gradients that are steep enough for that
 
@@ -43,7 +43,7 @@ ImageStack random_images(int width, int height, std::size_t count, std::uint64_t
     return images;
 }
 
-void expect_near(const ImageStack& expected, const ImageStack& actual, float tolerance, const char* what) {
+void expect_near_images(const ImageStack& expected, const ImageStack& actual, float tolerance, const char* what) {
     ASSERT_EQ(actual.width, expected.width);
     ASSERT_EQ(actual.height, expected.height);
     ASSERT_EQ(actual.count, expected.count);
@@ -61,17 +61,17 @@ void expect_near_where_steep(const ImageStack& expected, const ImageStack& actua
     }
 }
 
-void expect_parity(ImageFilters& device, const ImageStack& images, const Faces& faces, float sigma) {
+void expect_derivatives_parity(ImageFilters& device, const ImageStack& images, const Faces& faces, float sigma) {
     SCOPED_TRACE(::testing::Message() << "sigma " << sigma);
     const ImageDerivatives expected = CpuImageFilters().derivatives(images, faces, sigma);
     const ImageDerivatives actual = device.derivatives(images, faces, sigma);
-    const float first = k_tolerance / sigma, second = k_tolerance / (sigma * sigma);
-    expect_near(expected.value, actual.value, k_value_tolerance, "value");
-    expect_near(expected.gradient_x, actual.gradient_x, first, "x");
-    expect_near(expected.gradient_y, actual.gradient_y, first, "y");
-    expect_near(expected.gradient_magnitude, actual.gradient_magnitude, first, "magnitude");
-    expect_near(expected.maximum_curvature, actual.maximum_curvature, second, "largest");
-    expect_near(expected.minimum_curvature, actual.minimum_curvature, second, "least");
+    const float first = k_derivatives_tolerance / sigma, second = k_derivatives_tolerance / (sigma * sigma);
+    expect_near_images(expected.value, actual.value, k_value_tolerance, "value");
+    expect_near_images(expected.gradient_x, actual.gradient_x, first, "x");
+    expect_near_images(expected.gradient_y, actual.gradient_y, first, "y");
+    expect_near_images(expected.gradient_magnitude, actual.gradient_magnitude, first, "magnitude");
+    expect_near_images(expected.maximum_curvature, actual.maximum_curvature, second, "largest");
+    expect_near_images(expected.minimum_curvature, actual.minimum_curvature, second, "least");
     expect_near_where_steep(expected.orientation_cos, actual.orientation_cos, expected.gradient_magnitude);
     expect_near_where_steep(expected.orientation_sin, actual.orientation_sin, expected.gradient_magnitude);
 }
@@ -96,7 +96,8 @@ TEST(ImageDerivativesParity, OddSizesAllMasks) {
         const ImageStack images = random_images(w, h, 4, seed++);
         for (std::size_t m = 0; m < masks.size(); ++m) {
             SCOPED_TRACE(::testing::Message() << "mask " << m);
-            for (const float sigma : {1.0f, 2.0f, 3.0f, 5.0f}) expect_parity(filters, images, masks[m], sigma);
+            for (const float sigma : {1.0f, 2.0f, 3.0f, 5.0f})
+                expect_derivatives_parity(filters, images, masks[m], sigma);
         }
     }
 }
@@ -106,7 +107,7 @@ TEST(ImageDerivativesParity, AnyNumberOfImagesAndAnySigma) {
     const Faces faces = faces_where(70, 41, [](int x, int y) { return std::hypot(x - 30, y - 20) < 18; });
     for (std::size_t count = 1; count <= 4; ++count)
         for (const float sigma : {0.5f, 1.3f, 9.7f})
-            expect_parity(filters, random_images(70, 41, count, count), faces, sigma);
+            expect_derivatives_parity(filters, random_images(70, 41, count, count), faces, sigma);
 }
 
 TEST(ImageDerivativesParity, SmoothImagesHaveOrientations) {
@@ -120,7 +121,7 @@ TEST(ImageDerivativesParity, SmoothImagesHaveOrientations) {
             images.image(2)[images.index(x, y)] = std::exp(-0.002f * ((u - 40) * (u - 40) + (v - 40) * (v - 40)));
         }
     const Faces faces = faces_where(90, 77, [](int x, int y) { return std::hypot(x - 40, y - 40) < 35; });
-    for (const float sigma : {1.0f, 2.0f, 3.0f, 5.0f}) expect_parity(filters, images, faces, sigma);
+    for (const float sigma : {1.0f, 2.0f, 3.0f, 5.0f}) expect_derivatives_parity(filters, images, faces, sigma);
 }
 
 TEST(ImageDerivativesParity, WhatIsOutsideOfTheMaskIsNeverSeen) {
@@ -203,8 +204,8 @@ TEST(GaussianBlurParity, OddSizesAndAnyNumberOfImages) {
             for (const float sigma : {0.5f, 5.0f, 10.0f, 20.0f}) {
                 SCOPED_TRACE(::testing::Message() << width << " x " << height << ", " << count << ", " << sigma);
                 const ImageStack images = random_images(width, height, count, count);
-                expect_near(CpuImageFilters().blurred(images, sigma), filters.blurred(images, sigma), k_value_tolerance,
-                            "blurred");
+                expect_near_images(CpuImageFilters().blurred(images, sigma), filters.blurred(images, sigma),
+                                   k_value_tolerance, "blurred");
             }
 }
 

@@ -16,8 +16,8 @@
 #include "gpu/runtime/device/errors.h"
 #include "host/core/errors.h"
 #include "host/curvature/learning/model_builder.h"
-#include "host/curvature/model/tiling.h"
 #include "host/curvature/learning/training.h"
+#include "host/curvature/model/tiling.h"
 #include "tests/gpu/support/environment.h"
 #include "tests/parity/many_frames.h"
 #include "tests/parity/random_model.h"
@@ -32,31 +32,32 @@ namespace exemplar {
 namespace {
 
 using shared::vec4;
-using testing::derivative_in_space;
-using testing::distance;
-using testing::download;
-using testing::form_in_space;
-using testing::shared_device;
-using testing::size_of;
+using test_support::derivative_in_space;
+using test_support::distance;
+using test_support::download;
+using test_support::form_in_space;
+using test_support::shared_device;
+using test_support::size_of;
 
-using testing::RandomModel;
-using testing::Shape;
-using testing::Surface;
+using test_support::RandomModel;
+using test_support::Shape;
+using test_support::Surface;
 
-constexpr double k_tolerance = 1e-5;
+constexpr double k_learned_tolerance = 1e-5;
 // Inputs of local shape are sums of a hundred products of such roundings, and of edges, which are differences of
 // rounded positions up to forty times as long; components are sums of these.
 constexpr double k_local_tolerance = 1e-4;
 
-void expect_near(const VertexCurvature& actual, const VertexCurvature& expected, double tolerance = k_tolerance) {
+void expect_near_learned(const VertexCurvature& actual, const VertexCurvature& expected,
+                         double tolerance = k_learned_tolerance) {
     ASSERT_EQ(actual.k1.size(), expected.k1.size());
     for (std::size_t v = 0; v < expected.k1.size(); ++v) {
         ASSERT_GE(actual.k1[v], actual.k2[v]) << "vertex " << v;
-        const testing::Tensor2 form = form_in_space(expected, v);
+        const test_support::Tensor2 form = form_in_space(expected, v);
         ASSERT_LE((form_in_space(actual, v) - form).norm(), tolerance * (1 + form.norm()))
             << "vertex " << v << ": curvatures " << actual.k1[v] << " and " << actual.k2[v] << " instead of "
             << expected.k1[v] << " and " << expected.k2[v];
-        const testing::Tensor3 derivative = derivative_in_space(expected, v);
+        const test_support::Tensor3 derivative = derivative_in_space(expected, v);
         ASSERT_LE(distance(derivative_in_space(actual, v), derivative), tolerance * (1 + size_of(derivative)))
             << "vertex " << v;
     }
@@ -64,12 +65,12 @@ void expect_near(const VertexCurvature& actual, const VertexCurvature& expected,
 
 struct DeviceSurface {
     explicit DeviceSurface(const Surface& surface)
-        : vertices(testing::upload_vertices(shared_device(), surface.vertices)),
-          normals(testing::upload_vertices(shared_device(), surface.normals)) {}
+        : vertices(test_support::upload_vertices(shared_device(), surface.vertices)),
+          normals(test_support::upload_vertices(shared_device(), surface.normals)) {}
     Buffer vertices, normals;
 };
 
-void expect_parity(const Shape& shape, const ReprojectionOptions& options = {}) {
+void expect_learned_parity(const Shape& shape, const ReprojectionOptions& options = {}) {
     RandomModel random(shape, 7 + shape.vertices);
     CurvatureEvaluator reference(random.model);
     GpuLearnedCurvature curvature(shared_device(), random.model, options);
@@ -80,9 +81,9 @@ void expect_parity(const Shape& shape, const ReprojectionOptions& options = {}) 
         const DeviceSurface on_device(surface);
         curvature.record(stream, random.rig, pose, on_device.vertices, on_device.normals);
         stream.finish();
-        expect_near(testing::download_curvature(curvature),
-                    reference.evaluate(random.rig, pose, surface.vertices, surface.normals),
-                    anywhere ? 10 * k_tolerance : k_tolerance);
+        expect_near_learned(test_support::download_curvature(curvature),
+                            reference.evaluate(random.rig, pose, surface.vertices, surface.normals),
+                            anywhere ? 10 * k_learned_tolerance : k_learned_tolerance);
         EXPECT_EQ(curvature.farthest().control, reference.farthest().control);
         EXPECT_EQ(curvature.farthest().distance, reference.farthest().distance);
     }
@@ -94,30 +95,31 @@ TEST(LearnedCurvatureParity, OddNumbersOfVertices) {
     for (const AttributeSet set : k_sets)
         for (const std::size_t vertices : {1u, 2u, 15u, 16u, 17u, 63u, 64u, 65u, 1023u}) {
             SCOPED_TRACE(vertices);
-            expect_parity({.vertices = vertices, .set = set, .segments = std::min<std::size_t>(vertices, 3)});
+            expect_learned_parity({.vertices = vertices, .set = set, .segments = std::min<std::size_t>(vertices, 3)});
         }
 }
 
 TEST(LearnedCurvatureParity, WithoutComponents) {
-    for (const AttributeSet set : k_sets) expect_parity({.set = set, .blocks = 0});
+    for (const AttributeSet set : k_sets) expect_learned_parity({.set = set, .blocks = 0});
 }
 
 TEST(LearnedCurvatureParity, ManySegments) {
-    expect_parity({.vertices = 900, .set = AttributeSet::principal, .segments = 300});
+    expect_learned_parity({.vertices = 900, .set = AttributeSet::principal, .segments = 300});
 }
 
 TEST(LearnedCurvatureParity, Neurons) {
     for (const AttributeSet set : k_sets)
-        for (const std::size_t neurons : {1u, 4u, 21u}) expect_parity({.set = set, .neurons = neurons});
-    expect_parity({.blocks = 0, .neurons = 7});
+        for (const std::size_t neurons : {1u, 4u, 21u}) expect_learned_parity({.set = set, .neurons = neurons});
+    expect_learned_parity({.blocks = 0, .neurons = 7});
 }
 
 TEST(LearnedCurvatureParity, ManyComponents) {
-    expect_parity({.vertices = 50, .blocks = 60, .most_components = 30});
+    expect_learned_parity({.vertices = 50, .blocks = 60, .most_components = 30});
 }
 
 TEST(LearnedCurvatureParity, BasesInManyRanges) {
-    for (const AttributeSet set : k_sets) expect_parity({.vertices = 700, .set = set}, {.most_texels = 700});
+    for (const AttributeSet set : k_sets)
+        expect_learned_parity({.vertices = 700, .set = set}, {.max_texels_per_range = 700});
 }
 
 // What suits another device than this.
@@ -125,7 +127,7 @@ TEST(LearnedCurvatureParity, AnyNumberOfVerticesPerInvocation) {
     for (const AttributeSet set : k_sets)
         for (const std::uint32_t quads : {1u, 2u, 4u})
             for (const std::size_t vertices : {16u, 65u, 700u})
-                expect_parity({.vertices = vertices, .set = set}, {.quads = quads});
+                expect_learned_parity({.vertices = vertices, .set = set}, {.quads = quads});
 }
 
 TEST(LearnedCurvatureParity, OppositeNormalsAndUprightEdgesStayFinite) {
@@ -138,10 +140,10 @@ TEST(LearnedCurvatureParity, OppositeNormalsAndUprightEdgesStayFinite) {
         const DeviceSurface on_device(surface);
         curvature.record(stream, random.rig, pose, on_device.vertices, on_device.normals);
         stream.finish();
-        const VertexCurvature actual = testing::download_curvature(curvature);
+        const VertexCurvature actual = test_support::download_curvature(curvature);
         if (set == AttributeSet::tensor)
-            expect_near(actual,
-                        CurvatureEvaluator(random.model).evaluate(random.rig, pose, surface.vertices, surface.normals));
+            expect_near_learned(
+                actual, CurvatureEvaluator(random.model).evaluate(random.rig, pose, surface.vertices, surface.normals));
         for (std::size_t v = 0; v < actual.k1.size(); ++v) {
             ASSERT_TRUE(std::isfinite(actual.k1[v]) && std::isfinite(actual.k2[v])) << "vertex " << v;
             ASSERT_TRUE(actual.e1[v].allFinite() && actual.e2[v].allFinite()) << "vertex " << v;
@@ -159,7 +161,7 @@ CurvatureModel trained(const Animation& animation, const CurvatureTraining& opti
 
 std::vector<Vec3> download_vectors(const Buffer& buffer) {
     std::vector<Vec3> vectors;
-    for (const vec4& v : download(buffer)) vectors.push_back(testing::xyz(v));
+    for (const vec4& v : download(buffer)) vectors.push_back(test_support::xyz(v));
     return vectors;
 }
 
@@ -179,10 +181,10 @@ TEST(LearnedCurvatureParity, TrainedOnARig) {
                 normals.record(stream, poser.vertices());
                 curvature.record(stream, tube.rig, pose, poser.vertices(), normals.normals());
                 stream.finish();
-                expect_near(testing::download_curvature(curvature),
-                            reference.evaluate(tube.rig, pose, download_vectors(poser.vertices()),
-                                               download_vectors(normals.normals())),
-                            learner == Learner::local ? k_local_tolerance : k_tolerance);
+                expect_near_learned(test_support::download_curvature(curvature),
+                                    reference.evaluate(tube.rig, pose, download_vectors(poser.vertices()),
+                                                       download_vectors(normals.normals())),
+                                    learner == Learner::local ? k_local_tolerance : k_learned_tolerance);
             }
         }
 }
@@ -218,7 +220,7 @@ TEST(LearnedCurvatureParity, TrainedOnASequence) {
         const DeviceSurface on_device({vertices, normals});
         curvature.record(stream, vertices, on_device.vertices, on_device.normals);
         stream.finish();
-        expect_near(testing::download_curvature(curvature), reference.evaluate(vertices, normals));
+        expect_near_learned(test_support::download_curvature(curvature), reference.evaluate(vertices, normals));
     }
 }
 
@@ -228,7 +230,7 @@ struct MovedSheet {
         mesh.vertices = sheet.clips[0].frames[frame];
         for (Vec3& p : mesh.vertices) p = Eigen::AngleAxisf(1.1f, Vec3(1, 2, -1).normalized()) * p + Vec3(2, 0, 1);
         normals = vertex_normals(mesh);
-        on_device.emplace(testing::Surface{mesh.vertices, normals});
+        on_device.emplace(test_support::Surface{mesh.vertices, normals});
     }
     TriangleMesh mesh;
     std::vector<Vec3> normals;
@@ -277,9 +279,10 @@ TEST(LearnedCurvatureParity, ReadsLocalShapeOnTheDevice) {
                   (std::vector<float>{1, 0, 0}));
         const std::vector<vec4> rows = download(state.rotations());
         for (std::size_t i = 0; i < rows.size(); ++i)
-            EXPECT_LT((testing::xyz(rows[i]) - rotations[i / 3].row(Eigen::Index(i % 3)).transpose()).norm(), 1e-5f);
-        expect_near(testing::download_curvature(curvature), reference.evaluate(moved.mesh.vertices, moved.normals),
-                    k_local_tolerance);
+            EXPECT_LT((test_support::xyz(rows[i]) - rotations[i / 3].row(Eigen::Index(i % 3)).transpose()).norm(),
+                      1e-5f);
+        expect_near_learned(test_support::download_curvature(curvature),
+                            reference.evaluate(moved.mesh.vertices, moved.normals), k_local_tolerance);
     }
 }
 
@@ -287,7 +290,7 @@ TEST(LearnedCurvatureParity, LocalShapeIsOfSequencesThatAreWhole) {
     const Animation sheet = waving_sheet();
     GpuLearnedCurvature read_on_host(shared_device(), trained(sheet, {.learner = Learner::additive}));
     Stream stream(shared_device());
-    const Buffer vertices = testing::upload_vertices(shared_device(), sheet.rest.vertices);
+    const Buffer vertices = test_support::upload_vertices(shared_device(), sheet.rest.vertices);
     EXPECT_THROW(read_on_host.record(stream, vertices, vertices), UsageError);
     CurvatureModel damaged = trained(sheet, {.learner = Learner::local});
     damaged.segments.triangles.pop_back();
@@ -298,8 +301,8 @@ TEST(LearnedCurvatureParity, RefusesWhatIsOfAnotherModel) {
     RandomModel random({}, 5);
     GpuLearnedCurvature curvature(shared_device(), random.model);
     Stream stream(shared_device());
-    const Buffer all = testing::upload_vertices(shared_device(), std::vector<Vec3>(200, Vec3::UnitZ())),
-                 few = testing::upload_vertices(shared_device(), std::vector<Vec3>(199, Vec3::UnitZ()));
+    const Buffer all = test_support::upload_vertices(shared_device(), std::vector<Vec3>(200, Vec3::UnitZ())),
+                 few = test_support::upload_vertices(shared_device(), std::vector<Vec3>(199, Vec3::UnitZ()));
     const Pose pose = random.pose();
     EXPECT_THROW(curvature.record(stream, random.rig, pose, all, few), UsageError);
     EXPECT_THROW(curvature.record(stream, random.rig, pose, few, all), UsageError);
@@ -325,7 +328,7 @@ TEST(LearnedCurvatureParity, RefusesWhatIsOfAnotherModel) {
     bad = random.model;
     bad.state.controls[1].input_count = 30;
     EXPECT_THROW(GpuLearnedCurvature(shared_device(), bad), ModelError);
-    EXPECT_THROW(GpuLearnedCurvature(shared_device(), random.model, {.most_texels = 20}), DeviceLimitError);
+    EXPECT_THROW(GpuLearnedCurvature(shared_device(), random.model, {.max_texels_per_range = 20}), DeviceLimitError);
     EXPECT_THROW(GpuLearnedCurvature(shared_device(), random.model, {.quads = 3}), UsageError);
 }
 
@@ -348,7 +351,7 @@ TEST(LearnedCurvatureParity, ManyFrames) {
         stream.finish();
         return std::array{download(curvature.first()), download(curvature.second()), download(curvature.derivative())};
     };
-    testing::expect_repeatable_without_growth(frames, run);
+    test_support::expect_repeatable_without_growth(frames, run);
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace exemplar {
 namespace {
 
-using namespace testing;
+using namespace test_support;
 
 /// A chain as the numbers of its segments, with what is walked from the second end.
 using Walk = std::vector<std::pair<std::uint32_t, bool>>;
@@ -28,7 +28,7 @@ FoundChains chain_on_device(const Scene& scene, std::uint32_t families, const Li
     GpuLineExtraction lines(scene.line_surface);
     GpuChains chains(lines);
     Stream stream(shared_device());
-    lines.record(stream, scene.moment(), families, on_device(options));
+    lines.record(stream, scene.snapshot(), families, on_device(options));
     chains.record(stream, scene.vertices, camera, picture_width(), picture_height());
     stream.finish();
     FoundChains result{};

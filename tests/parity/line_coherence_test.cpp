@@ -13,7 +13,7 @@
 namespace exemplar {
 namespace {
 
-using namespace testing;
+using namespace test_support;
 
 constexpr float k_period = shared::k_texture_width;
 
@@ -42,7 +42,7 @@ struct Motion {
         std::vector<Vec3> vertices = rest;
         for (Vec3& v : vertices) v = turn * v + 0.02f * std::sin(static_cast<float>(frame) + v.y()) * v;
         scene.move(std::move(vertices));
-        renderer.render(stream, scene.moment(), picture);
+        renderer.render(stream, scene.snapshot(), picture);
     }
     Found found() const {
         Found result{};

@@ -13,7 +13,7 @@ namespace exemplar {
 namespace {
 
 using shared::vec4;
-using testing::shared_device;
+using test_support::shared_device;
 
 constexpr int k_width = 90, k_height = 60;
 
@@ -22,8 +22,8 @@ struct Ball {
     TriangleMesh mesh = shapes::icosphere(3, 1);
     GpuSurface surface{shared_device(), mesh};
     GpuLineSurface line_surface{surface};
-    Buffer vertices = testing::upload_vertices(shared_device(), mesh.vertices);
-    Buffer normals = testing::upload_vertices(shared_device(), mesh.vertices);
+    Buffer vertices = test_support::upload_vertices(shared_device(), mesh.vertices);
+    Buffer normals = test_support::upload_vertices(shared_device(), mesh.vertices);
     LinePicture picture;
 
     Ball() {
@@ -34,10 +34,10 @@ struct Ball {
                         .feature_size = 0};
         picture.looks = plain_looks({}, {});
     }
-    GpuCurvedSurface moment() const { return {vertices, normals}; }
+    GpuCurvedSurface snapshot() const { return {vertices, normals}; }
     Image render(LineRenderer& renderer, Profiler* profiler = nullptr) const {
         Stream stream(shared_device(), profiler);
-        return renderer.render(stream, moment(), picture);
+        return renderer.render(stream, snapshot(), picture);
     }
 };
 

@@ -17,7 +17,7 @@
 #include "tests/parity/surfaces.h"
 
 /// Surfaces, and the lines that the device finds on them, for the parity tests of lines.
-namespace exemplar::testing {
+namespace exemplar::test_support {
 
 using shared::LineCounts;
 using shared::LinePoint;
@@ -70,7 +70,7 @@ struct Scene : MeasuredSurface {
             out.push_back({vectors[i].x(), vectors[i].y(), vectors[i].z(), last[i]});
         return Buffer::of<vec4>(shared_device(), out);
     }
-    GpuCurvedSurface moment() const { return {vertices, device_normals, &first, &second, &derivative}; }
+    GpuCurvedSurface snapshot() const { return {vertices, device_normals, &first, &second, &derivative}; }
     float size() const { return feature_size(mesh.vertices, curvature); }
 };
 
@@ -103,7 +103,7 @@ struct Found {
 inline Found extract_on_device(const Scene& scene, GpuLineExtraction& lines, std::uint32_t families,
                                const LineOptions& options) {
     Stream stream(shared_device());
-    lines.record(stream, scene.moment(), families, on_device(options));
+    lines.record(stream, scene.snapshot(), families, on_device(options));
     stream.finish();
     Found found{};
     lines.counts().download(std::span(&found.counts, 1));
@@ -119,4 +119,4 @@ inline std::uint32_t family_of(LineType type, const LineSegment& segment) {
     return static_cast<std::uint32_t>(std::countr_zero(families)) + segment.family;
 }
 
-}  // namespace exemplar::testing
+}  // namespace exemplar::test_support

@@ -19,7 +19,7 @@
 namespace exemplar {
 namespace {
 
-using namespace testing;
+using namespace test_support;
 
 LineStyle even_style() {
     LineStyle style;
@@ -62,7 +62,7 @@ DrawnLines draw(const Scene& scene, LineType type, bool parallel, const LineStyl
     LineRenderer renderer(shared_device(), scene.line_surface);
     renderer.set_textures(looks.textures);
     Stream stream(shared_device());
-    drawn.image = renderer.render(stream, scene.moment(), picture);
+    drawn.image = renderer.render(stream, scene.snapshot(), picture);
 
     LineCounts counts{};
     const GpuLineExtraction& lines = renderer.strokes().chains().lines();

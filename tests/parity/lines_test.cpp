@@ -19,7 +19,7 @@
 namespace exemplar {
 namespace {
 
-using namespace testing;
+using namespace test_support;
 
 /// What tells one segment of a face and family from another: where it ends.
 using SegmentKey = std::array<std::uint32_t, 4>;
@@ -106,7 +106,7 @@ TEST(LineParityOfAll, TypesAtOnceAreThoseOneByOne) {
 
 TEST(LineParityOfAll, OddSizesAndNoFaces) {
     for (const std::size_t vertices : {3u, 4u, 65u, 66u, 67u}) {
-        const Scene scene(testing::strip(vertices));
+        const Scene scene(test_support::strip(vertices));
         expect_same_lines(scene, {k_line_types.begin(), k_line_types.end()},
                           {.eye = {6.13f, 4.29f, 8.41f}, .feature_size = 0.1f, .thresholds = {}});
     }
@@ -174,7 +174,8 @@ TEST(LineParityOfAll, CurvatureIsAskedForWhereItIsNeeded) {
     Stream stream(shared_device());
     const GpuCurvedSurface flat{scene.vertices, scene.device_normals};
     EXPECT_THROW(lines.record(stream, flat, 2, on_device({.feature_size = 1, .thresholds = {}})), UsageError);
-    EXPECT_THROW(lines.record(stream, scene.moment(), 2, on_device({.feature_size = 0, .thresholds = {}})), UsageError);
+    EXPECT_THROW(lines.record(stream, scene.snapshot(), 2, on_device({.feature_size = 0, .thresholds = {}})),
+                 UsageError);
     EXPECT_NO_THROW(lines.record(stream, flat, 1, on_device({.eye = {6.13f, 4.29f, 8.41f}, .thresholds = {}})));
 }
 

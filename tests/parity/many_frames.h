@@ -8,7 +8,7 @@
 #include "tests/parity/tensors.h"
 #include "tests/support/resident_bytes.h"
 
-namespace exemplar::testing {
+namespace exemplar::test_support {
 
 /// Runs `frames` again and again, 10,000 in all: each must give the bits of its first run, and memory must not grow.
 /// `run` returns an array of what it downloads.
@@ -28,4 +28,4 @@ void expect_repeatable_without_growth(const std::vector<Frame>& frames, Run&& ru
     EXPECT_LE(resident_bytes(), before + 1'000'000);
 }
 
-}  // namespace exemplar::testing
+}  // namespace exemplar::test_support

@@ -20,16 +20,16 @@ namespace exemplar {
 namespace {
 
 using shared::vec4;
-using testing::download;
-using testing::shared_device;
-using testing::strip;
-using testing::waved;
+using test_support::download;
+using test_support::shared_device;
+using test_support::strip;
+using test_support::waved;
 
-constexpr float k_tolerance = 6e-6f;
+constexpr float k_normals_tolerance = 6e-6f;
 
 std::vector<vec4> device_normals(const TriangleMesh& mesh) {
     const GpuSurface surface(shared_device(), mesh);
-    const Buffer vertices = testing::upload_vertices(shared_device(), mesh.vertices);
+    const Buffer vertices = test_support::upload_vertices(shared_device(), mesh.vertices);
     GpuNormals normals(surface);
     Stream stream(shared_device());
     normals.record(stream, vertices);
@@ -37,13 +37,13 @@ std::vector<vec4> device_normals(const TriangleMesh& mesh) {
     return download(normals.normals());
 }
 
-void expect_parity(const TriangleMesh& mesh) {
+void expect_normals_parity(const TriangleMesh& mesh) {
     const std::vector<vec4> actual = device_normals(mesh);
     const std::vector<Vec3> expected = vertex_normals(mesh);
     ASSERT_EQ(actual.size(), expected.size());
     for (std::size_t v = 0; v < expected.size(); ++v)
-        ASSERT_LE((testing::xyz(actual[v]) - expected[v]).norm(), k_tolerance)
-            << "vertex " << v << ": " << testing::xyz(actual[v]).transpose() << " instead of "
+        ASSERT_LE((test_support::xyz(actual[v]) - expected[v]).norm(), k_normals_tolerance)
+            << "vertex " << v << ": " << test_support::xyz(actual[v]).transpose() << " instead of "
             << expected[v].transpose();
 }
 
@@ -51,7 +51,7 @@ void expect_parity(const TriangleMesh& mesh) {
 std::vector<Face> faces_of_rings(const VertexRings& rings) {
     std::vector<Face> faces;
     for (std::uint32_t v = 0; v < rings.begin.size(); ++v) {
-        std::uint32_t last = k_none;
+        std::uint32_t last = k_invalid_index;
         for (std::size_t i = 0;; ++i) {
             const std::uint32_t entry = (&rings.texels[rings.begin[v] + i / 4].x)[i % 4];
             const std::uint32_t corner = entry & shared::k_ring_vertex;
@@ -90,7 +90,7 @@ std::size_t entry_count(const VertexRings& rings) {
 TriangleMesh tangle(std::size_t vertices, std::size_t faces, std::uint64_t seed) {
     Random random(seed);
     TriangleMesh mesh;
-    for (std::size_t v = 0; v < vertices; ++v) mesh.vertices.push_back(testing::random_vec3(random));
+    for (std::size_t v = 0; v < vertices; ++v) mesh.vertices.push_back(test_support::random_vec3(random));
     const auto vertex = [&] { return static_cast<std::uint32_t>(random.index(vertices)); };
     while (mesh.faces.size() < faces) {
         const Face face{vertex(), vertex(), vertex()};
@@ -138,7 +138,7 @@ TEST(GpuSurface, RefusesMeshesOverTheLimitOfTexels) {
 TEST(NormalParity, OddNumbersOfVerticesAndFaces) {
     for (const std::size_t vertices : {0u, 1u, 2u, 3u, 63u, 64u, 65u, 66u, 67u, 257u}) {
         SCOPED_TRACE(vertices);
-        expect_parity(strip(vertices));
+        expect_normals_parity(strip(vertices));
     }
 }
 
@@ -158,17 +158,17 @@ TriangleMesh fan(std::uint32_t faces) {
 TEST(NormalParity, AVertexOfManyFaces) {
     constexpr std::uint32_t k_faces = 30'000;
     const TriangleMesh most = fan(k_faces);
-    const Vec3 normal = testing::xyz(device_normals(most)[0]), expected = vertex_normals(most)[0];
+    const Vec3 normal = test_support::xyz(device_normals(most)[0]), expected = vertex_normals(most)[0];
     EXPECT_LE((normal - expected).norm(), k_faces * std::numeric_limits<float>::epsilon() / 2);
     EXPECT_THROW(GpuSurface(shared_device(), fan(40'000)), DeviceLimitError);
 }
 
 TEST(NormalParity, ClosedAndBoundedSurfaces) {
-    expect_parity(waved(shapes::icosphere(3, 1), 0.2f));
-    expect_parity(waved(shapes::torus(2, 0.7f, 40, 17), 0.1f));
-    expect_parity(waved(shapes::grid(13, 9, 2), 0.3f));
-    expect_parity(waved(shapes::cylinder(1, 3, 19, 7, false), 0.2f));
-    expect_parity(shapes::box(1, 2, 3, 4));
+    expect_normals_parity(waved(shapes::icosphere(3, 1), 0.2f));
+    expect_normals_parity(waved(shapes::torus(2, 0.7f, 40, 17), 0.1f));
+    expect_normals_parity(waved(shapes::grid(13, 9, 2), 0.3f));
+    expect_normals_parity(waved(shapes::cylinder(1, 3, 19, 7, false), 0.2f));
+    expect_normals_parity(shapes::box(1, 2, 3, 4));
 }
 
 TEST(NormalParity, TangledFaces) {
@@ -177,7 +177,7 @@ TEST(NormalParity, TangledFaces) {
     const std::vector<vec4> actual = device_normals(mesh);
     const std::vector<Vec3> expected = vertex_normals(mesh);
     for (std::size_t v = 0; v < expected.size(); ++v)
-        ASSERT_LE((testing::xyz(actual[v]) - expected[v]).norm(), 1e-3f) << "vertex " << v;
+        ASSERT_LE((test_support::xyz(actual[v]) - expected[v]).norm(), 1e-3f) << "vertex " << v;
 }
 
 TEST(NormalParity, DegenerateFacesAndLooseVertices) {
@@ -190,10 +190,10 @@ TEST(NormalParity, DegenerateFacesAndLooseVertices) {
     mesh.faces.push_back({3, 3, 8});
     mesh.faces.push_back({7, 7, 7});
     mesh.faces.push_back({0, first + 4, 1});
-    expect_parity(mesh);
+    expect_normals_parity(mesh);
     const std::vector<vec4> normals = device_normals(mesh);
     for (const std::uint32_t v : {first, first + 1, first + 2}) {
-        EXPECT_EQ(testing::xyz(normals[v]), Vec3::UnitZ());
+        EXPECT_EQ(test_support::xyz(normals[v]), Vec3::UnitZ());
         EXPECT_EQ(normals[v].w, 0.0f);
     }
 }
@@ -202,7 +202,7 @@ TEST(NormalParity, NeedlesAndCaps) {
     // Stretched a hundredfold, faces lose two digits of their height at most.
     TriangleMesh mesh = waved(shapes::torus(2, 0.7f, 30, 20), 0.1f);
     for (Vec3& p : mesh.vertices) p.x() *= 100.0f;
-    expect_parity(mesh);
+    expect_normals_parity(mesh);
 }
 
 TEST(NormalParity, AreasAddUpToThoseOfTheFaces) {
@@ -220,7 +220,7 @@ TEST(NormalParity, MeshesOfAnyScale) {
     const TriangleMesh mesh = waved(shapes::icosphere(2, 1), 0.2f);
     for (const float scale : {1e-15f, 1e-6f, 1e6f, 1e15f}) {
         SCOPED_TRACE(scale);
-        expect_parity(shapes::scaled(mesh, scale));
+        expect_normals_parity(shapes::scaled(mesh, scale));
     }
 }
 
@@ -228,7 +228,8 @@ TEST(NormalParity, RefusesVerticesOfAnotherSurface) {
     const GpuSurface surface(shared_device(), shapes::icosphere(1, 1));
     GpuNormals normals(surface);
     Stream stream(shared_device());
-    EXPECT_THROW(normals.record(stream, testing::upload_vertices(shared_device(), std::vector<Vec3>(41))), UsageError);
+    EXPECT_THROW(normals.record(stream, test_support::upload_vertices(shared_device(), std::vector<Vec3>(41))),
+                 UsageError);
     EXPECT_THROW(normals.record(stream, Buffer()), UsageError);
 }
 

@@ -18,25 +18,25 @@ namespace exemplar {
 namespace {
 
 using shared::vec4;
-using testing::download;
-using testing::random_pose;
-using testing::random_rig;
-using testing::shared_device;
+using test_support::download;
+using test_support::random_pose;
+using test_support::random_rig;
+using test_support::shared_device;
 
-constexpr float k_tolerance = 4e-5f;
+constexpr float k_posing_tolerance = 4e-5f;
 
-std::vector<Vec3> random_points(std::size_t count, Random& random) {
+std::vector<Vec3> random_rest_points(std::size_t count, Random& random) {
     std::vector<Vec3> points;
-    for (std::size_t i = 0; i < count; ++i) points.push_back(testing::random_vec3(random));
+    for (std::size_t i = 0; i < count; ++i) points.push_back(test_support::random_vec3(random));
     return points;
 }
 
-void expect_near(const std::vector<vec4>& actual, const std::vector<Vec3>& expected) {
+void expect_near_points(const std::vector<vec4>& actual, const std::vector<Vec3>& expected) {
     ASSERT_EQ(actual.size(), expected.size());
     float size = 1.0f;
     for (const Vec3& v : expected) size = std::max(size, v.norm());
     for (std::size_t v = 0; v < expected.size(); ++v) {
-        ASSERT_LE((testing::xyz(actual[v]) - expected[v]).norm(), k_tolerance * size) << "vertex " << v;
+        ASSERT_LE((test_support::xyz(actual[v]) - expected[v]).norm(), k_posing_tolerance * size) << "vertex " << v;
         ASSERT_EQ(actual[v].w, 1.0f) << "vertex " << v;
     }
 }
@@ -47,16 +47,16 @@ std::vector<Vec3> reference(const Rig& rig, const std::vector<Vec3>& rest, const
     return posed;
 }
 
-void expect_parity(std::size_t vertices, std::size_t bones, std::size_t targets, Random& random) {
+void expect_posing_parity(std::size_t vertices, std::size_t bones, std::size_t targets, Random& random) {
     const Rig rig = random_rig(vertices, bones, targets, random);
-    const std::vector<Vec3> rest = random_points(vertices, random);
+    const std::vector<Vec3> rest = random_rest_points(vertices, random);
     GpuPoser poser(shared_device(), rig, rest);
     Stream stream(shared_device());
     for (int frame = 0; frame < 3; ++frame) {
         const Pose pose = random_pose(rig, random);
         poser.record(stream, pose);
         stream.finish();
-        expect_near(download(poser.vertices()), reference(rig, rest, pose));
+        expect_near_points(download(poser.vertices()), reference(rig, rest, pose));
     }
 }
 
@@ -64,7 +64,7 @@ TEST(PosingParity, OddNumbersOfVertices) {
     Random random(1);
     for (const std::size_t vertices : {0u, 1u, 63u, 64u, 65u, 1003u}) {
         SCOPED_TRACE(vertices);
-        expect_parity(vertices, 20, 7, random);
+        expect_posing_parity(vertices, 20, 7, random);
     }
 }
 
@@ -73,23 +73,23 @@ TEST(PosingParity, RigsOfAnySize) {
     for (const std::size_t bones : {1u, 2u, 6u, 200u})
         for (const std::size_t targets : {0u, 1u, 3u, 4u, 60u}) {
             SCOPED_TRACE(::testing::Message() << bones << " bones, " << targets << " targets");
-            expect_parity(150, bones, targets, random);
+            expect_posing_parity(150, bones, targets, random);
         }
 }
 
 TEST(PosingParity, VerticesAreAtRestBeforeTheFirstPose) {
     Random random(3);
-    const std::vector<Vec3> rest = random_points(70, random);
+    const std::vector<Vec3> rest = random_rest_points(70, random);
     const GpuPoser poser(shared_device(), random_rig(70, 3, 1, random), rest);
     const std::vector<vec4> vertices = download(poser.vertices());
-    for (std::size_t v = 0; v < rest.size(); ++v) ASSERT_EQ(testing::xyz(vertices[v]), rest[v]);
+    for (std::size_t v = 0; v < rest.size(); ++v) ASSERT_EQ(test_support::xyz(vertices[v]), rest[v]);
 }
 
 // What is recorded next to each other runs one after the other, each with its own pose.
 TEST(PosingParity, ManyPosesInOneSubmission) {
     Random random(4);
     const Rig rig = random_rig(130, 10, 3, random);
-    const std::vector<Vec3> rest = random_points(130, random);
+    const std::vector<Vec3> rest = random_rest_points(130, random);
     GpuPoser poser(shared_device(), rig, rest);
     Stream stream(shared_device());
     std::vector<Pose> poses;
@@ -99,18 +99,18 @@ TEST(PosingParity, ManyPosesInOneSubmission) {
         stream.download(poser.vertices(), std::span(frame));
     }
     stream.finish();
-    for (std::size_t i = 0; i < frames.size(); ++i) expect_near(frames[i], reference(rig, rest, poses[i]));
+    for (std::size_t i = 0; i < frames.size(); ++i) expect_near_points(frames[i], reference(rig, rest, poses[i]));
 }
 
 TEST(PosingParity, SequencesSetTheirVertices) {
     Random random(5);
-    const std::vector<Vec3> rest = random_points(65, random), frame = random_points(65, random);
+    const std::vector<Vec3> rest = random_rest_points(65, random), frame = random_rest_points(65, random);
     GpuPoser poser(shared_device(), Rig{}, rest);
     Stream stream(shared_device());
     poser.set_vertices(stream, frame);
     stream.finish();
     const std::vector<vec4> vertices = download(poser.vertices());
-    for (std::size_t v = 0; v < frame.size(); ++v) ASSERT_EQ(testing::xyz(vertices[v]), frame[v]);
+    for (std::size_t v = 0; v < frame.size(); ++v) ASSERT_EQ(test_support::xyz(vertices[v]), frame[v]);
     EXPECT_THROW(poser.set_vertices(stream, std::span(frame).first(64)), UsageError);
     EXPECT_THROW(poser.record(stream, Pose{}), UsageError);
 }
@@ -118,7 +118,7 @@ TEST(PosingParity, SequencesSetTheirVertices) {
 TEST(PosingParity, IsDeterministic) {
     Random random(6);
     const Rig rig = random_rig(500, 30, 20, random);
-    const std::vector<Vec3> rest = random_points(500, random);
+    const std::vector<Vec3> rest = random_rest_points(500, random);
     const Pose pose = random_pose(rig, random), other = random_pose(rig, random);
     GpuPoser poser(shared_device(), rig, rest);
     Stream stream(shared_device());
@@ -135,7 +135,7 @@ TEST(PosingParity, IsDeterministic) {
 
 TEST(PosingParity, RefusesContradictions) {
     Random random(7);
-    const std::vector<Vec3> rest = random_points(20, random);
+    const std::vector<Vec3> rest = random_rest_points(20, random);
     const Rig good = random_rig(20, 4, 2, random);
     const auto refused = [&](auto&& change) {
         Rig rig = good;

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "host/core/random.h"
-#include "host/curvature/model/model.h"
 #include "host/curvature/learning/model_builder.h"
+#include "host/curvature/model/model.h"
 #include "host/curvature/model/tiling.h"
 #include "tests/parity/surfaces.h"
 
-namespace exemplar::testing {
+namespace exemplar::test_support {
 
 struct Shape {
     std::size_t vertices = 200;
@@ -95,7 +95,7 @@ class RandomModel {
             if (frames_.set == AttributeSet::principal)
                 normals.emplace_back(rotations[frames_.segment[v]] * frames_.reference_normal[v]);
             else if (const Vec3 edge = edge_at(vertices, v); edge.norm() > 0)
-                normals.push_back(any_frame(edge.normalized()).tangent);
+                normals.push_back(frame_of_normal(edge.normalized()).tangent);
             else
                 normals.push_back(Vec3::UnitY());
         return normals;
@@ -180,4 +180,4 @@ class RandomModel {
     std::vector<Vec3> points_;
 };
 
-}  // namespace exemplar::testing
+}  // namespace exemplar::test_support

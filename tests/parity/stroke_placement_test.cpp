@@ -15,7 +15,7 @@
 namespace exemplar {
 namespace {
 
-using namespace testing;
+using namespace test_support;
 
 std::vector<std::uint8_t> random_barriers(const HatchingFields& fields, std::uint64_t seed) {
     Random random(seed);
@@ -54,9 +54,9 @@ TEST_F(StrokePlacement, FindsTheSameStrokesInRandomPictures) {
 TEST_F(StrokePlacement, FindsTheSameStrokesWhateverTheOptions) {
     const HatchingFields fields = wavy_fields(160, 140, 9);
     for (const StrokeOptions& options :
-         {StrokeOptions{.test_distance = 0.3f}, StrokeOptions{.test_distance = 0.95f}, StrokeOptions{.least_length = 0},
-          StrokeOptions{.least_length = 1, .length_jitter = 0}, StrokeOptions{.length_jitter = 0.5f},
-          StrokeOptions{.sharpest_turn = 0.05f}, StrokeOptions{.sharpest_turn = 1.5f}})
+         {StrokeOptions{.test_distance = 0.3f}, StrokeOptions{.test_distance = 0.95f}, StrokeOptions{.min_length = 0},
+          StrokeOptions{.min_length = 1, .length_jitter = 0}, StrokeOptions{.length_jitter = 0.5f},
+          StrokeOptions{.max_turn = 0.05f}, StrokeOptions{.max_turn = 1.5f}})
         expect_same(fields, {}, options);
 }
 

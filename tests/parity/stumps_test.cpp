@@ -20,9 +20,9 @@
 namespace exemplar {
 namespace {
 
-constexpr float k_tolerance = 1e-5f;
+constexpr float k_stumps_tolerance = 1e-5f;
 
-FeatureMatrix random_features(std::size_t rows, std::size_t columns, Random& random) {
+FeatureMatrix random_stump_features(std::size_t rows, std::size_t columns, Random& random) {
     FeatureMatrix features;
     features.rows = rows;
     for (std::size_t c = 0; c < columns; ++c)
@@ -52,13 +52,13 @@ BoostedStumps random_stumps(std::uint32_t classes, std::size_t count, std::size_
     return result;
 }
 
-void expect_parity(StumpScorer& device, const BoostedStumps& classifier, const FeatureMatrix& features, Link link,
-                   float scale) {
+void expect_stumps_parity(StumpScorer& device, const BoostedStumps& classifier, const FeatureMatrix& features,
+                          Link link, float scale) {
     std::vector<float> expected(features.rows * classifier.class_count), actual(expected.size(), -1.0f);
     CpuStumpScorer().probabilities(classifier, features, link, scale, expected);
     device.probabilities(classifier, features, link, scale, actual);
     for (std::size_t i = 0; i < expected.size(); ++i)
-        ASSERT_NEAR(actual[i], expected[i], k_tolerance)
+        ASSERT_NEAR(actual[i], expected[i], k_stumps_tolerance)
             << "item " << i / classifier.class_count << ", class " << i % classifier.class_count;
 }
 
@@ -66,7 +66,7 @@ void expect_parity(StumpScorer& device, const BoostedStumps& classifier, const F
 std::unique_ptr<GpuStumpScorer> scorer_of_bits(std::uint32_t bits, std::uint32_t from_storage = 0,
                                                std::size_t tile_bytes = std::size_t{1} << 28,
                                                Profiler* profiler = nullptr) {
-    Device& device = testing::shared_device();
+    Device& device = test_support::shared_device();
     const Tuning kept = device.tuning();
     device.tuning().set("learn/stumps.comp", "bits", bits);
     device.tuning().set("learn/stumps.comp", "storage", from_storage);
@@ -76,58 +76,58 @@ std::unique_ptr<GpuStumpScorer> scorer_of_bits(std::uint32_t bits, std::uint32_t
 }
 
 TEST(StumpParity, OddNumbersOfRows) {
-    GpuStumpScorer scorer(testing::shared_device());
+    GpuStumpScorer scorer(test_support::shared_device());
     Random random(1);
     for (const std::size_t rows : {0u, 1u, 3u, 63u, 64u, 65u, 255u, 256u, 257u, 1003u}) {
         SCOPED_TRACE(rows);
-        const FeatureMatrix features = random_features(rows, 30, random);
-        expect_parity(scorer, random_stumps(5, 100, 30, random), features, Link::softmax, 1.0f);
+        const FeatureMatrix features = random_stump_features(rows, 30, random);
+        expect_stumps_parity(scorer, random_stumps(5, 100, 30, random), features, Link::softmax, 1.0f);
     }
 }
 
 TEST(StumpParity, OddNumbersOfClasses) {
-    GpuStumpScorer scorer(testing::shared_device());
+    GpuStumpScorer scorer(test_support::shared_device());
     Random random(2);
-    const FeatureMatrix features = random_features(70, 20, random);
+    const FeatureMatrix features = random_stump_features(70, 20, random);
     for (const std::uint32_t classes : {1u, 3u, 4u, 5u, 8u, 17u, 33u})
         for (const Link link : {Link::softmax, Link::sigmoid}) {
             SCOPED_TRACE(classes);
-            expect_parity(scorer, random_stumps(classes, 60, 20, random), features, link, 2.0f);
+            expect_stumps_parity(scorer, random_stumps(classes, 60, 20, random), features, link, 2.0f);
         }
 }
 
 TEST(StumpParity, TheMostClasses) {
-    GpuStumpScorer scorer(testing::shared_device());
+    GpuStumpScorer scorer(test_support::shared_device());
     Random random(8);
-    const FeatureMatrix features = random_features(70, 20, random);
-    expect_parity(scorer, random_stumps(64, 60, 20, random), features, Link::softmax, 2.0f);
+    const FeatureMatrix features = random_stump_features(70, 20, random);
+    expect_stumps_parity(scorer, random_stumps(64, 60, 20, random), features, Link::softmax, 2.0f);
 }
 
 // A group of stumps runs through all of its classes, so that few stumps of many classes take many iterations as well.
 TEST(StumpParity, MoreSetsOfClassesThanADispatchTakes) {
-    GpuStumpScorer scorer(testing::shared_device());
+    GpuStumpScorer scorer(test_support::shared_device());
     Random random(17);
-    const FeatureMatrix features = random_features(70, 20, random);
+    const FeatureMatrix features = random_stump_features(70, 20, random);
     for (const std::size_t count : {900u, 5000u})
         for (const Link link : {Link::softmax, Link::sigmoid})
-            expect_parity(scorer, random_stumps(60, count, 20, random), features, link, 0.5f);
+            expect_stumps_parity(scorer, random_stumps(60, count, 20, random), features, link, 0.5f);
 }
 
 TEST(StumpParity, ClassifiersOfAnyLength) {
-    GpuStumpScorer scorer(testing::shared_device());
+    GpuStumpScorer scorer(test_support::shared_device());
     Random random(3);
-    const FeatureMatrix features = random_features(130, 40, random);
+    const FeatureMatrix features = random_stump_features(130, 40, random);
     for (const std::size_t stumps : {0u, 1u, 2u, 300u}) {
         SCOPED_TRACE(stumps);
-        expect_parity(scorer, random_stumps(6, stumps, 40, random), features, Link::softmax, 1.0f);
+        expect_stumps_parity(scorer, random_stumps(6, stumps, 40, random), features, Link::softmax, 1.0f);
     }
 }
 
 // The device asks once where several stumps ask the same.
 TEST(StumpParity, RepeatedStumpsCountAsOftenAsTheyCome) {
-    GpuStumpScorer scorer(testing::shared_device());
+    GpuStumpScorer scorer(test_support::shared_device());
     Random random(13);
-    const FeatureMatrix features = random_features(130, 10, random);
+    const FeatureMatrix features = random_stump_features(130, 10, random);
     std::vector<BoostedStumps> classifiers(4, random_stumps(5, 80, 10, random));
     for (BoostedStumps& classifier : classifiers)
         for (Stump& stump : classifier.stumps) {
@@ -135,39 +135,40 @@ TEST(StumpParity, RepeatedStumpsCountAsOftenAsTheyCome) {
             stump.above += static_cast<float>(random.uniform(-0.2, 0.2));
             stump.below += static_cast<float>(random.uniform(-0.2, 0.2));
         }
-    expect_parity(scorer, mean_classifier(classifiers), features, Link::softmax, 2.0f);
+    expect_stumps_parity(scorer, mean_classifier(classifiers), features, Link::softmax, 2.0f);
 }
 
 TEST(StumpParity, RowsAreTiledToTheLimit) {
     Random random(4);
-    const FeatureMatrix features = random_features(1001, 25, random);
+    const FeatureMatrix features = random_stump_features(1001, 25, random);
     const BoostedStumps classifier = random_stumps(7, 90, 25, random);
     for (const std::size_t tile_bytes : {1u, 2000u, 25u * 4u * 64u, 50'000u}) {
-        GpuStumpScorer scorer(testing::shared_device(), nullptr, tile_bytes);
+        GpuStumpScorer scorer(test_support::shared_device(), nullptr, tile_bytes);
         SCOPED_TRACE(tile_bytes);
-        expect_parity(scorer, classifier, features, Link::softmax, 1.0f);
+        expect_stumps_parity(scorer, classifier, features, Link::softmax, 1.0f);
     }
 }
 
 // All sums are multiples of 1/64 below 2^11, which floats hold exactly, in any order.
 TEST(StumpParity, LargeScoresStayFinite) {
-    GpuStumpScorer scorer(testing::shared_device());
+    GpuStumpScorer scorer(test_support::shared_device());
     Random random(5);
-    const FeatureMatrix features = random_features(65, 10, random);
+    const FeatureMatrix features = random_stump_features(65, 10, random);
     BoostedStumps classifier = random_stumps(4, 20, 10, random);
     for (Stump& stump : classifier.stumps) {
         stump.above = stump.above > 0.0f ? 64.0f : -64.0f;
         stump.below = std::round(64.0f * stump.below) / 64.0f;
     }
     for (float& constant : classifier.elsewhere) constant = std::round(64.0f * constant) / 64.0f;
-    for (const Link link : {Link::softmax, Link::sigmoid}) expect_parity(scorer, classifier, features, link, 4.0f);
+    for (const Link link : {Link::softmax, Link::sigmoid})
+        expect_stumps_parity(scorer, classifier, features, link, 4.0f);
 }
 
 // Reruns on one device are equal bit for bit.
 TEST(StumpParity, IsDeterministic) {
-    GpuStumpScorer scorer(testing::shared_device());
+    GpuStumpScorer scorer(test_support::shared_device());
     Random random(6);
-    const FeatureMatrix features = random_features(500, 10, random);
+    const FeatureMatrix features = random_stump_features(500, 10, random);
     const BoostedStumps classifier = random_stumps(6, 50, 10, random);
     std::vector<float> first(500 * 6), second(500 * 6);
     scorer.probabilities(classifier, features, Link::sigmoid, 1.0f, first);
@@ -181,7 +182,7 @@ struct Group {
 
     Group(const std::vector<std::size_t>& rows, std::size_t columns, std::uint32_t classes, Random& random) {
         for (const std::size_t count : rows) {
-            features.push_back(random_features(count, columns, random));
+            features.push_back(random_stump_features(count, columns, random));
             out.emplace_back(count * classes, -1.0f);
         }
     }
@@ -199,7 +200,7 @@ void expect_as_one_by_one(StumpScorer& scorer, const BoostedStumps& classifier, 
         std::vector<float> alone(group.out[i].size());
         scorer.probabilities(classifier, group.features[i], Link::sigmoid, 1.5f, alone);
         EXPECT_EQ(group.out[i], alone);
-        expect_parity(scorer, classifier, group.features[i], Link::sigmoid, 1.5f);
+        expect_stumps_parity(scorer, classifier, group.features[i], Link::sigmoid, 1.5f);
     }
 }
 
@@ -210,7 +211,7 @@ TEST(StumpParity, MatricesOfAGroupAreScoredAsOneByOne) {
     const std::vector<std::size_t> sizes{0, 1, 31, 32, 33, 0, 127, 128, 129, 3, 1003, 0};
     for (const std::size_t tile_bytes : {std::size_t{1}, std::size_t{30} * 4 * 300, std::size_t{1} << 28}) {
         SCOPED_TRACE(tile_bytes);
-        GpuStumpScorer scorer(testing::shared_device(), nullptr, tile_bytes);
+        GpuStumpScorer scorer(test_support::shared_device(), nullptr, tile_bytes);
         expect_as_one_by_one(scorer, classifier, Group(sizes, 30, 5, random));
         for (const std::size_t only : {0u, 127u, 128u, 129u})
             expect_as_one_by_one(scorer, classifier, Group({only}, 30, 5, random));
@@ -223,7 +224,7 @@ TEST(StumpParity, MatricesOfAGroupAreScoredAsOneByOne) {
 TEST(StumpParity, ManyMatricesAreOneSubmission) {
     Random random(10);
     Profiler profiler;
-    GpuStumpScorer scorer(testing::shared_device(), &profiler);
+    GpuStumpScorer scorer(test_support::shared_device(), &profiler);
     std::vector<std::size_t> sizes(200);
     for (std::size_t& size : sizes) size = random.index(40);
     Group group(sizes, 20, 4, random);
@@ -266,7 +267,7 @@ void expect_the_same_of_all_bits(const BoostedStumps& classifier, const FeatureM
             std::vector<float> actual(of_floats.size());
             scorer->probabilities(classifier, features, Link::softmax, 1.0f, actual);
             EXPECT_EQ(actual, of_floats);
-            expect_parity(*scorer, classifier, features, Link::softmax, 1.0f);
+            expect_stumps_parity(*scorer, classifier, features, Link::softmax, 1.0f);
         }
 }
 
@@ -275,7 +276,7 @@ TEST(StumpPrecision, OddNumbersOfRows) {
     const BoostedStumps classifier = random_stumps(5, 100, 30, random);
     for (const std::size_t rows : {0u, 1u, 3u, 15u, 16u, 17u, 127u, 128u, 129u, 1003u}) {
         SCOPED_TRACE(rows);
-        expect_the_same_of_all_bits(classifier, random_features(rows, 30, random));
+        expect_the_same_of_all_bits(classifier, random_stump_features(rows, 30, random));
     }
 }
 
@@ -320,7 +321,7 @@ TEST(StumpPrecision, AnyNumberOfThresholds) {
         features.values[0] = static_cast<float>(count);
         features.values[1] = static_cast<float>(count) - 1;
         const BoostedStumps classifier = stumps_of_one_feature(count, random);
-        if (count <= testing::shared_device().info().max_texels) {
+        if (count <= test_support::shared_device().info().max_texels) {
             expect_the_same_of_all_bits(classifier, features);
         } else {  // a texel a stump: refused, naming the limit
             std::vector<float> out(features.rows * classifier.class_count);
@@ -331,23 +332,23 @@ TEST(StumpPrecision, AnyNumberOfThresholds) {
 }
 
 TEST(StumpParity, NothingOfAGroupIsScoredIfOneIsRefused) {
-    GpuStumpScorer gpu(testing::shared_device());
+    GpuStumpScorer gpu(test_support::shared_device());
     CpuStumpScorer cpu;
     Random random(12);
     const BoostedStumps classifier = random_stumps(3, 40, 5, random);
     for (StumpScorer* scorer : std::initializer_list<StumpScorer*>{&gpu, &cpu}) {
         Group group({10, 10}, 5, 3, random);
-        group.features[1] = random_features(10, 1, random);
+        group.features[1] = random_stump_features(10, 1, random);
         EXPECT_THROW(scorer->probabilities_of_all(classifier, Link::softmax, 1.0f, group.matrices()), ModelError);
         EXPECT_EQ(group.out[0], std::vector<float>(30, -1.0f));
     }
 }
 
 TEST(StumpParity, RefusesWhatTheReferenceRefuses) {
-    GpuStumpScorer gpu(testing::shared_device());
+    GpuStumpScorer gpu(test_support::shared_device());
     CpuStumpScorer cpu;
     Random random(7);
-    const FeatureMatrix features = random_features(10, 5, random);
+    const FeatureMatrix features = random_stump_features(10, 5, random);
     const BoostedStumps good = random_stumps(3, 4, 5, random);
     BoostedStumps missing = good, beyond = good, none = good;
     missing.stumps[2].feature = 5;

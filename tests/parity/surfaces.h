@@ -12,7 +12,7 @@
 #include "tests/support/shapes.h"
 
 /// Rigs and deforming surfaces for the parity tests of the device's curvature.
-namespace exemplar::testing {
+namespace exemplar::test_support {
 
 inline Vec3 random_vec3(Random& random) {
     return {static_cast<float>(random.normal()), static_cast<float>(random.normal()),
@@ -49,7 +49,7 @@ inline void add_influences(Rig& rig, std::size_t vertices, Random& random) {
 inline Rig random_rig(std::size_t vertices, std::size_t bones, std::size_t targets, Random& random) {
     Rig rig;
     for (std::uint32_t i = 0; i < bones; ++i) {
-        const std::uint32_t parent = i == 0 ? k_none : static_cast<std::uint32_t>(random.index(i));
+        const std::uint32_t parent = i == 0 ? k_invalid_index : static_cast<std::uint32_t>(random.index(i));
         rig.nodes.push_back({"node" + std::to_string(i), parent, random_transform(random)});
         Affine inverse = Affine::Identity();
         inverse.translation() = random_vec3(random);
@@ -116,4 +116,4 @@ inline Vec3 xyz(const shared::vec4& v) {
     return {v.x, v.y, v.z};
 }
 
-}  // namespace exemplar::testing
+}  // namespace exemplar::test_support

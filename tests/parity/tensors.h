@@ -10,7 +10,7 @@
 #include "tests/parity/surfaces.h"
 
 /// Curvature of the device, compared in space.
-namespace exemplar::testing {
+namespace exemplar::test_support {
 
 using Tensor2 = Eigen::Matrix3d;
 using Tensor3 = std::array<Eigen::Matrix3d, 3>;
@@ -68,4 +68,4 @@ inline bool same_bits(const std::vector<shared::vec4>& a, const std::vector<shar
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(shared::vec4)) == 0;
 }
 
-}  // namespace exemplar::testing
+}  // namespace exemplar::test_support

@@ -14,7 +14,7 @@
 namespace exemplar {
 namespace {
 
-using testing::RandomModel;
+using test_support::RandomModel;
 
 // Each tile lies whole in one range.
 TEST(TileLayout, IsCutToTheLimit) {

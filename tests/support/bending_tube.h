@@ -26,7 +26,7 @@ inline Animation tube_rig(std::uint32_t rings = 33, std::uint32_t around = 16) {
             tube.rest.faces.push_back({at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)});
         }
     tube.rest.source_face_count = static_cast<std::uint32_t>(tube.rest.faces.size());
-    tube.rig.nodes = {{"root", k_none, {}}, {"upper", 0, {}}, {"elbow", 1, {}}};
+    tube.rig.nodes = {{"root", k_invalid_index, {}}, {"upper", 0, {}}, {"elbow", 1, {}}};
     tube.rig.bones = {{1, Affine::Identity()}, {2, Affine::Identity()}};
     for (const Vec3& p : tube.rest.vertices) {
         const float t = std::clamp(0.5f * (p.x() + 1), 0.0f, 1.0f), weight = t * t * (3 - 2 * t);

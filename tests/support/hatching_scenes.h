@@ -8,7 +8,7 @@
 #include "host/core/random.h"
 #include "host/hatching/fields/hatching_fields.h"
 
-namespace exemplar::testing {
+namespace exemplar::test_support {
 
 /// Hatching that is the same all over a picture.
 inline HatchingFields even_fields(int width, int height, float orientation, float spacing = 6, float length = 60) {
@@ -73,4 +73,4 @@ inline HatchingFields wavy_fields(int width, int height, std::uint64_t seed, flo
     return fields;
 }
 
-}  // namespace exemplar::testing
+}  // namespace exemplar::test_support

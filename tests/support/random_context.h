@@ -12,7 +12,7 @@
 #include "host/labeling/features/context.h"
 
 // Random input of contextual histograms, and what their implementations are held to.
-namespace exemplar::testing {
+namespace exemplar::test_support {
 
 // Positions on a coarse grid, so that many distances fall exactly on range edges; some samples have no path.
 inline ContextGeometry random_context(std::size_t faces, std::size_t samples, Random& random) {
@@ -107,4 +107,4 @@ inline void expect_as_one_by_one(ContextHistograms& histograms, ContextGroup gro
 inline const std::vector<std::pair<std::size_t, std::size_t>> k_odd_meshes{
     {0, 0}, {1, 1}, {30, 0}, {63, 16}, {64, 15}, {65, 17}, {0, 0}, {70, 60}, {29, 33}, {30, 31}, {31, 32}, {90, 33}};
 
-}  // namespace exemplar::testing
+}  // namespace exemplar::test_support

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <fstream>
 
-namespace exemplar::testing {
+namespace exemplar::test_support {
 
 /// Memory of this process; 0 where there is no /proc.
 inline std::size_t resident_bytes() {
@@ -15,4 +15,4 @@ inline std::size_t resident_bytes() {
     return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
-}  // namespace exemplar::testing
+}  // namespace exemplar::test_support

@@ -8,7 +8,7 @@
 #include "host/hatching/fields/hatching_fields.h"
 #include "host/hatching/placement/streamlines.h"
 
-namespace exemplar::testing {
+namespace exemplar::test_support {
 
 inline float length_of(const HatchStroke& stroke) {
     float length = 0;
@@ -46,4 +46,4 @@ inline double empty_share(const std::vector<HatchStroke>& strokes, const Hatchin
     return static_cast<double>(empty) / static_cast<double>(std::max<std::size_t>(hatched, 1));
 }
 
-}  // namespace exemplar::testing
+}  // namespace exemplar::test_support

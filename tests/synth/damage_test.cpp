@@ -13,8 +13,8 @@
 #include <string>
 
 #include "host/core/errors.h"
-#include "host/mesh/topology.h"
 #include "host/mesh/editing/validate.h"
+#include "host/mesh/topology.h"
 #include "host/synth/shapes/shapes.h"
 #include "tests/support/shapes.h"
 

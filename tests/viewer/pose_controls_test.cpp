@@ -13,7 +13,7 @@ namespace {
 // A root with an arm of two joints, of which the hand moves vertices, and a lamp that moves none.
 Rig arm() {
     Rig rig;
-    rig.nodes = {{"root", k_none, {}}, {"upper", 0, {}}, {"hand", 1, {}}, {"lamp", 0, {}}};
+    rig.nodes = {{"root", k_invalid_index, {}}, {"upper", 0, {}}, {"hand", 1, {}}, {"lamp", 0, {}}};
     rig.nodes[2].rest.translation = Vec3(1, 0, 0);
     rig.bones = {{.node = 2}};
     rig.influence_begin = {0, 1};

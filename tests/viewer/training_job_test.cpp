@@ -36,7 +36,7 @@ TEST(TrainingJob, LearnsInTheBackgroundAndSaysHowFarItIs) {
         EXPECT_LE(status.share, 1);
     });
     EXPECT_GE(steps.size(), 2u);
-    EXPECT_NO_THROW(require_fit(job.take(), figure()));
+    EXPECT_NO_THROW(require_compatible(job.take(), figure()));
 }
 
 TEST(TrainingJob, EndsSoonWhenItIsCanceled) {

@@ -10,7 +10,7 @@
 namespace exemplar {
 namespace {
 
-using testing::shared_device;
+using test_support::shared_device;
 
 constexpr std::uint32_t k_width = 60, k_height = 40;
 
@@ -33,7 +33,7 @@ class Interface : public ::testing::Test {
         ImGui::Render();
         Canvas canvas(shared_device());
         canvas.resize({scale * k_width, scale * k_height});
-        return testing::drawn_texels(canvas, {0, 0, 1, 1}, [&](Stream& stream) {
+        return test_support::drawn_texels(canvas, {0, 0, 1, 1}, [&](Stream& stream) {
             renderer.record(stream, *ImGui::GetDrawData(), canvas.color_view(), canvas.extent());
         });
     }

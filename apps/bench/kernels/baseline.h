@@ -8,16 +8,16 @@
 
 namespace exemplar {
 
-/// How a kernel's time has changed.
+/// Change of a kernel's time.
 struct Change {
     std::string operation, kernel;
     std::size_t size = 0;
-    Ratio ratio;  ///< now over before, less what the whole device has drifted
+    Ratio ratio;  ///< now over before, divided by the drift of the whole device
     double drift = 1;
 };
 
-/// Changes of the kernels that both have. A device may be slower today as a whole: what kernels that only copy or only
-/// calculate, timed in turns with each operation, have changed by in the geometric mean is taken away.
+/// Returns the changes of the kernels in both measurements. As a whole device may be slower today, divides by its
+/// drift: the geometric mean change of kernels that only copy or only calculate, timed in turns with each operation.
 std::vector<Change> changes_between(const std::vector<Measurement>& now, const std::vector<Measurement>& before);
 
 }  // namespace exemplar

@@ -31,7 +31,7 @@ struct Posing {
     std::vector<Difference> differences() const {
         std::vector<Vec3> expected;
         pose_vertices(rig, rest.vertices, posed, expected);
-        // Sums of a few products, relative to the size of the mesh.
+        // Positions are sums of a few products, so they are compared relative to the size of the mesh.
         const float size = 1.0f / static_cast<float>(bounding_box(rest).diagonal());
         return {{"positions, relative to the mesh",
                  largest_difference(flattened(vectors_of(poser.vertices()), size), flattened(expected, size)), 1e-5}};
@@ -50,11 +50,11 @@ struct Posing {
     GpuPoser poser;
 };
 
-// What the kernels read and write of the topology of a vertex of six faces, and about how much they calculate per face.
+// Bytes of topology that kernels read per vertex of six faces, and their approximate operations per face.
 constexpr double k_ring_bytes = 4 + 32, k_normal_operations = 60, k_curvature_operations = 200,
                  k_derivative_operations = 350, k_near_operations = 100;
-// Diffusion over an edge length reaches three of them far; near vertices, of which there are this many here, are four
-// away.
+// Number of near vertices of this mesh: diffusion over an edge length reaches three edges far, near vertices are
+// within four.
 constexpr double k_near = 82;
 
 struct Estimating {

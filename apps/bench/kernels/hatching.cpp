@@ -1,4 +1,4 @@
-// What hatching knows of pixels, what a style says of them, and the placement of strokes.
+// Pixel features of hatching, evaluation of a style, and placement of strokes.
 
 #include <algorithm>
 #include <cmath>
@@ -8,19 +8,19 @@
 #include "apps/bench/kernels/surfaces.h"
 #include "embedded/hatching_claim_comp.h"
 #include "embedded/hatching_directions_comp.h"
+#include "embedded/hatching_end_round_comp.h"
 #include "embedded/hatching_orientations_comp.h"
 #include "embedded/hatching_place_comp.h"
 #include "embedded/hatching_project_comp.h"
 #include "embedded/hatching_property_comp.h"
 #include "embedded/hatching_seed_comp.h"
-#include "embedded/hatching_settle_comp.h"
 #include "embedded/hatching_trace_comp.h"
 #include "embedded/hatching_view_curvature_comp.h"
 #include "gpu/hatching/hatching_evaluator.h"
 #include "gpu/hatching/pixel_projection.h"
 #include "gpu/hatching/stroke_placer.h"
-#include "host/hatching/fields/hatching_fields.h"
 #include "host/hatching/features/powers.h"
+#include "host/hatching/fields/hatching_fields.h"
 #include "host/hatching/placement/streamlines.h"
 #include "host/mesh/curvature/curvature_estimator.h"
 
@@ -52,7 +52,7 @@ std::vector<std::uint32_t> first_columns(std::size_t count) {
     return which;
 }
 
-// All that curvature at pixels depends on; the rest of the surface is empty.
+// Makes a surface with all that curvature at pixels depends on; the rest is empty.
 HatchingSurface measured(const TriangleMesh& mesh) {
     HatchingSurface surface;
     surface.mesh = mesh;
@@ -99,8 +99,8 @@ struct Projecting {
                 {"share of directions off by a thousandth",
                  share_off(flat(actual.directions), flat(expected.directions)), 1e-2}};
     }
-    // Where the eye is along a normal, view-dependent curvature changes without bound, as directions do where terms
-    // cancel out.
+    // Compares by shares, as view-dependent curvature is unstable where the eye is along a normal, and directions
+    // are where terms cancel out.
     static double share_off(std::span<const float> a, std::span<const float> b) {
         std::size_t off = 0;
         for (std::size_t i = 0; i < a.size(); ++i) off += !(std::abs(a[i] - b[i]) <= 1e-3f * (1 + std::abs(b[i])));
@@ -111,8 +111,8 @@ struct Projecting {
         for (const DoubledAngle& d : directions) values.insert(values.end(), d.begin(), d.end());
         return values;
     }
-    // In quads of columns: 8 of scalars, 23 of curvature, in 1 + 3 slabs; directions in 3 slabs of 4. Each pass reads
-    // the face of a point, its barycentrics and the corners.
+    // Columns are in quads: 8 of scalars and 23 of curvature in 1 + 3 slabs; directions in 3 slabs of 4. Each pass
+    // reads the face, the barycentrics and the corners of a point.
     std::map<std::string, Work> work() const {
         const auto count = static_cast<double>(points.size()), vertices = static_cast<double>(mesh.vertex_count()),
                    faces = static_cast<double>(mesh.face_count());
@@ -137,7 +137,7 @@ struct Projecting {
     GpuPixelProjection projection;
 };
 
-// A style of five segments with rules of six terms, and a property of 24 terms: the largest that are learned.
+// A style of five segments with rules of six terms, and a property of 24 terms, the largest that learning gives.
 struct StyleEvaluation {
     static constexpr std::size_t k_segments = 5, k_rule_terms = 6, k_property_terms = 24, k_columns = 12;
 
@@ -151,7 +151,7 @@ struct StyleEvaluation {
         for (std::int32_t& s : segment) s = static_cast<std::int32_t>(random.index(k_segments));
         for (std::size_t s = 0; s < k_segments; ++s) {
             OrientationFunction& function = functions.emplace_back();
-            // One term outweighs the others together, so that no sum is next to nothing.
+            // One term outweighs the others together, so that no sum is close to zero.
             for (std::size_t k = 0; k < k_rule_terms; ++k)
                 function.terms.push_back({static_cast<std::uint32_t>(random.index(k_orientation_features)),
                                           k == 0 ? 1.0f : static_cast<float>(random.uniform(-0.15, 0.15))});
@@ -196,7 +196,7 @@ struct StyleEvaluation {
     GpuHatchingEvaluator evaluator;
 };
 
-// Both layers of strokes that bend, with targets that differ everywhere.
+// Makes fields of two layers of bent strokes, with targets that differ everywhere.
 HatchingFields waves(int side) {
     HatchingFields fields(side, side);
     for (int y = 0; y < side; ++y)
@@ -225,9 +225,9 @@ struct Placement {
         for (std::size_t i = 0; i < std::min(strokes.size(), expected.size()); ++i) other += strokes[i] != expected[i];
         return {{"strokes that differ", static_cast<double>(other), 0}};
     }
-    // Of the strokes that are placed: how many places and ways are tried beside is not known beforehand. What is told
-    // of pixels, 16 bytes, and how near strokes are, 4 bytes a layer, are read once; a stroke claims and notes about a
-    // spacing to both sides of each pixel of its way.
+    // Counts only the strokes that are placed, as the number of rejected seeds and streamlines is not known. Pixels,
+    // of 16 bytes, and clearance, of 4 bytes a layer, are read once. A stroke claims and marks about a spacing to
+    // both sides of each of its pixels.
     std::map<std::string, Work> work() const {
         double points = 0;
         for (const HatchStroke& stroke : strokes) points += static_cast<double>(stroke.points.size());
@@ -237,7 +237,7 @@ struct Placement {
                 {"hatching/trace.comp", {.bytes = pixels * 24 + points * 8, .operations = points * 200}},
                 {"hatching/claim.comp",
                  {.bytes = points * (8 + 2 * k_around * 4), .operations = points * 2 * k_around * 6}},
-                {"hatching/settle.comp", {.bytes = count * (48 + 3 * 16 + 16), .operations = count * 40}},
+                {"hatching/end_round.comp", {.bytes = count * (48 + 3 * 16 + 16), .operations = count * 40}},
                 {"hatching/place.comp", {.bytes = points * (16 + k_around * 4), .operations = points * k_around * 10}}};
     }
     HatchingFields fields;
@@ -265,7 +265,7 @@ std::vector<OperationKind> hatching_operations() {
          "pixels",
          {65'536, 262'144},
          {&shaders::hatching_seed_comp, &shaders::hatching_trace_comp, &shaders::hatching_claim_comp,
-          &shaders::hatching_settle_comp, &shaders::hatching_place_comp},
+          &shaders::hatching_end_round_comp, &shaders::hatching_place_comp},
          {},
          prepare_as<Placement>}};
 }

@@ -46,12 +46,12 @@ std::vector<std::uint32_t> disc(int side) {
     return faces;
 }
 
-// A product and a sum for each weight, pixel and lane of four.
+// A product and a sum for each weight, pixel and lane of a vec4.
 double sum_operations(double pixels) {
     return pixels * (2 * gaussian_kernel(k_sigma).radius + 1) * 4 * 2;
 }
 
-// Derivatives of random images, the worst that there is for a float, in a mask.
+// Derivatives of random images, the worst case for floats, in a mask.
 struct Derivatives {
     Derivatives(Device& device, Profiler& profiler, std::size_t pixels)
         : images(random_images(side_of(pixels), random)), faces(disc(images.width)), filters(device, &profiler) {}
@@ -67,7 +67,7 @@ struct Derivatives {
                 of("largest curvatures", actual.maximum_curvature, expected.maximum_curvature, k_second),
                 {"orientations where steep", orientation_difference(expected), 1e-3}};
     }
-    // Orientations of gradients below 0.01 per pixel divide by next to nothing.
+    // Ignores gradients below 0.01 per pixel, whose orientations divide by almost zero.
     double orientation_difference(const ImageDerivatives& expected) const {
         double largest = 0;
         for (std::size_t i = 0; i < expected.orientation_cos.values.size(); ++i)
@@ -80,8 +80,8 @@ struct Derivatives {
         const auto all = static_cast<double>(faces.size());
         const PixelBox box_of_mask = mask_box(faces, images.width).value();
         const double box = static_cast<double>(box_of_mask.width) * box_of_mask.height;
-        // Planes of a vec4 per pixel of the box: along x, one to three; along y, one to four of the mask, to three, to
-        // two, to one; of tensors one to one, six times.
+        // Planes of a vec4 per pixel of the box that passes read + write: along x 1 + 3; along y 1 + 4 (the mask), 1
+        // + 3, 1 + 2 and 1 + 1; for tensors six times 1 + 1.
         constexpr double k_planes = (1 + 3) + (1 + 4) + (1 + 3) + (1 + 2) + (1 + 1) + 6 * (1 + 1), k_outputs = 19;
         return {
             {"imaging/mask_box.comp", {.bytes = 4 * all, .operations = 3 * all}},
@@ -125,7 +125,7 @@ TriangleMesh pictured_torus(std::size_t pixels) {
     return wavy_torus(static_cast<std::uint32_t>(std::max<std::size_t>(pixels / 500, 64)));
 }
 
-// Devices round positions of vertices to 1/16 of a pixel or less: edges pass other pixels there.
+// Pixels at edges may differ: D16 in docs/portability.md.
 constexpr double k_share_at_edges = 0.04;
 
 struct GBuffers {
@@ -150,7 +150,7 @@ struct GBuffers {
         return {{"share of pixels with another face", share(other_face), k_share_at_edges},
                 {"share of pixels off by a hundredth of a face", share(other_place), 1e-3}};
     }
-    // Of each pixel its number, 16 bytes of what is written; of each face its corners, and each vertex.
+    // Per pixel its face number is read and 16 bytes are written; per face its corners are read, and each vertex.
     std::map<std::string, Work> work() const {
         const auto pixels = static_cast<double>(actual.size());
         return {{"imaging/gbuffer_points.comp",
@@ -179,7 +179,7 @@ struct Pictures {
         return {{"share of values off by more than 2 of 255",
                  static_cast<double>(other) / static_cast<double>(expected.data.size()), k_share_at_edges}};
     }
-    // Four samples of 8 bytes to 4 bytes; a power of each color.
+    // Per pixel four samples of 8 bytes are read and 4 bytes written; a power per color channel.
     std::map<std::string, Work> work() const {
         const double pixels = static_cast<double>(side) * side;
         return {{"imaging/resolve.comp", {.bytes = pixels * (4 * 8 + 4), .operations = pixels * 24}}};

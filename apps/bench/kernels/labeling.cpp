@@ -12,8 +12,8 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_classes = 8, k_samples = 1000;
-constexpr std::size_t k_columns = k_context_measures * k_context_bins * k_classes;
+constexpr std::size_t k_label_classes = 8, k_samples = 1000;
+constexpr std::size_t k_context_columns = k_context_measures * k_context_bins * k_label_classes;
 
 ContextGeometry random_geometry(std::size_t faces, Random& random) {
     ContextGeometry geometry;
@@ -32,13 +32,13 @@ ContextGeometry random_geometry(std::size_t faces, Random& random) {
 struct Histograms {
     Histograms(Device& device, Profiler& profiler, std::size_t faces)
         : geometry(random_geometry(faces, random)),
-          probabilities(faces * k_classes, 1.0f / k_classes),
-          actual(k_columns * faces),
+          probabilities(faces * k_label_classes, 1.0f / k_label_classes),
+          actual(k_context_columns * faces),
           histograms(device, &profiler) {}
-    void run() { histograms.accumulate(geometry, probabilities, k_classes, actual); }
+    void run() { histograms.accumulate(geometry, probabilities, k_label_classes, actual); }
     std::vector<Difference> differences() const {
         std::vector<float> expected(actual.size());
-        CpuContextHistograms().accumulate(geometry, probabilities, k_classes, expected);
+        CpuContextHistograms().accumulate(geometry, probabilities, k_label_classes, expected);
         return {{"histograms", largest_difference(actual, expected), 1e-5}};
     }
     // Geodesic ranges: a byte and a sum per sample and class. Axes: two binary searches per inner edge, three sums per
@@ -46,11 +46,11 @@ struct Histograms {
     std::map<std::string, Work> work() const {
         const auto faces = static_cast<double>(geometry.faces);
         const double searches = k_context_axes * 2 * (k_context_bins - 1) * std::log2(k_samples);
-        const double of_axes = k_context_axes * k_context_bins * k_classes;
+        const double of_axes = k_context_axes * k_context_bins * k_label_classes;
         return {
             {"labeling/context_geodesic.comp",
-             {.bytes = faces * (k_samples + 4 * k_context_bins * k_classes),
-              .operations = faces * k_samples * k_classes}},
+             {.bytes = faces * (k_samples + 4 * k_context_bins * k_label_classes),
+              .operations = faces * k_samples * k_label_classes}},
             {"labeling/context_axes.comp",
              {.bytes = faces * 4 * (k_context_axes + of_axes), .operations = faces * (2 * searches + 3 * of_axes)}}};
     }

@@ -11,13 +11,13 @@
 #include "embedded/curvature_reproject_comp.h"
 #include "gpu/curvature/learned/learned_curvature.h"
 #include "host/curvature/learning/model_builder.h"
-#include "host/curvature/state/patches.h"
 #include "host/curvature/model/tiling.h"
+#include "host/curvature/state/patches.h"
 
 namespace exemplar {
 namespace {
 
-// How many components matter to a vertex.
+// Number of components that affect a vertex.
 struct Density {
     std::size_t controls;    // that move its part of the surface
     std::size_t components;  // of each control and attribute
@@ -51,7 +51,7 @@ std::vector<Monomial> cubic_monomials(std::uint32_t first_input, std::uint32_t o
     return monomials;
 }
 
-// Tensors along the first edge of some face.
+// Makes frames along the first edge of some face of each vertex.
 AttributeFrames first_edges(const TriangleMesh& mesh) {
     AttributeFrames frames;
     frames.neighbor.resize(mesh.vertex_count());
@@ -60,7 +60,7 @@ AttributeFrames first_edges(const TriangleMesh& mesh) {
     return frames;
 }
 
-// The poses near which nothing is out of range.
+// Makes a pose range of mean 0, unit whitening and largest distance 1.
 PoseRange unit_range(const StateReader& state) {
     PoseRange range;
     range.mean = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(state.input_count));
@@ -151,8 +151,8 @@ CurvatureModel local_model(const TriangleMesh& rest, Random& random) {
 // Two controls at a vertex, three components of each for each attribute.
 constexpr Density k_typical{.controls = 2, .components = 3};
 
-// Each once: tiles as the host has them, components, vertices, normals, and what comes out. A multiplication and a sum
-// per entry and vertex, and about 150 operations to turn and decode a vertex.
+// Reads tiles, components, vertices and normals and writes the result once each. A multiplication and a sum per
+// entry and vertex, and about 150 operations to rotate and decode a vertex.
 Work reprojection_work(const CurvatureModel& model) {
     const auto count = static_cast<double>(model.vertex_count);
     return {.bytes = static_cast<double>(model.tiles.bytes()) +
@@ -201,7 +201,7 @@ struct Additive {
     GpuLearnedCurvature curvature;
 };
 
-// Positions and normals that are on the device, to curvature.
+// Curvature from positions and normals that are on the device.
 struct Local {
     Local(Device& device, Profiler& profiler, std::size_t vertices)
         : rest(wavy_torus(static_cast<std::uint32_t>(vertices))),

@@ -18,17 +18,17 @@
 #include "embedded/lines_rank_comp.h"
 #include "embedded/lines_scan_comp.h"
 #include "embedded/lines_segments_comp.h"
-#include "embedded/lines_settle_comp.h"
 #include "embedded/lines_strokes_comp.h"
 #include "embedded/lines_traces_comp.h"
 #include "embedded/lines_view_curvature_comp.h"
 #include "embedded/lines_visibility_comp.h"
 #include "embedded/lines_votes_comp.h"
+#include "embedded/lines_write_traces_comp.h"
 #include "gpu/lines/line_renderer.h"
 #include "gpu/lines/segment_records.h"
+#include "host/lines/extraction/face_neighbors.h"
 #include "host/lines/strokes/chains.h"
 #include "host/lines/strokes/coherence.h"
-#include "host/lines/extraction/face_neighbors.h"
 #include "host/lines/strokes/strokes.h"
 #include "host/mesh/curvature/curvature_estimator.h"
 
@@ -40,7 +40,7 @@ using shared::LinePoint;
 using shared::LineSegmentRecord;
 using shared::vec4;
 
-// Smaller for devices that kernels see few texels on.
+// Smaller for devices with few texels per binding.
 int width_for(const Device& device) {
     return device.info().max_texels < 800 * 600 ? 280 : 800;
 }
@@ -68,7 +68,7 @@ struct CurvedTorus {
         return Buffer::of<vec4>(device, both);
     }
     LineSurface surface() const { return {mesh.faces, mesh.vertices, normals, curvature, neighbors}; }
-    GpuCurvedSurface moment() const { return {positions, device_normals, &first, &second, &derivative}; }
+    GpuCurvedSurface snapshot() const { return {positions, device_normals, &first, &second, &derivative}; }
 
     TriangleMesh mesh;
     std::vector<FaceNeighbors> neighbors;
@@ -83,7 +83,7 @@ LineThresholds low_thresholds() {
     return thresholds;
 }
 
-// Blunt, so that what is hidden does not change a stroke.
+// No taper, so that hidden parts do not change a stroke.
 constexpr StrokeThickness k_thickness{.taper = 0};
 
 LinePicture picture_of(const CurvedTorus& torus, int width) {
@@ -99,7 +99,7 @@ LinePicture picture_of(const CurvedTorus& torus, int width) {
     return picture;
 }
 
-// What the device has made of a drawing.
+// A drawing downloaded from the device.
 struct Drawn {
     LineCounts counts{};
     std::vector<LineSegmentRecord> segments;
@@ -126,7 +126,7 @@ double share(std::size_t part, std::size_t of) {
     return of ? static_cast<double>(part) / static_cast<double>(of) : 0.0;
 }
 
-// A face may carry a line on one side only where the line just touches it.
+// Allows for faces that a line only touches: device and host may disagree on them.
 Difference missing_segments(const Drawn& drawn, const CurvedTorus& torus, const StrokeView& view) {
     const LineOptions options{
         .eye = view.camera.position(), .feature_size = view.feature_size, .thresholds = low_thresholds()};
@@ -179,13 +179,13 @@ void compare_strokes(const Drawn& drawn, std::span<const StrokePoint> expected, 
     differences.push_back({"opacities", largest_difference(opacities, wanted_opacities), 1e-3});
 }
 
-// How far coordinates of a texture are apart, around its period.
+// Returns the distance of two texture coordinates, modulo the period.
 double apart(float a, float b) {
     const double turns = static_cast<double>(a - b) / shared::k_texture_width;
     return shared::k_texture_width * std::abs(turns - std::round(turns));
 }
 
-// A line that was equally near to two others may follow either.
+// Allows for lines that are equally near to two others, as they may follow either.
 Difference moved_textures(const Drawn& before, const Drawn& now, const CurvedTorus& torus, const StrokeView& view) {
     std::size_t off = 0;
     for (const LineType type : k_line_types) {
@@ -216,7 +216,7 @@ struct LineDrawing {
           stream(device, &profiler),
           renderer(device, line_surface) {}
     void run() {
-        renderer.record(stream, torus.moment(), picture);
+        renderer.record(stream, torus.snapshot(), picture);
         stream.finish();
     }
     std::vector<Difference> differences() {
@@ -238,9 +238,9 @@ struct LineDrawing {
     LineRenderer renderer;
 };
 
-// Kernels over vertices and faces read each vertex' fields once: 8 families of a vec4, 5 with a direction. Those over
-// segments and points say themselves what they read; what others read before them may come from caches. Jumps double,
-// so that chains take as many as their number of segments has bits.
+// Kernels over vertices and faces read each vertex' fields once: 8 families of a vec4, 5 with a direction. The
+// comments of kernels over segments and points list what they read; data read by earlier kernels may come from
+// caches. Jumps double, so chains take log2 of their number of segments.
 std::map<std::string, Work> LineDrawing::work() const {
     const Drawn drawn = download(renderer);
     const auto vertices = static_cast<double>(torus.mesh.vertex_count()),
@@ -268,7 +268,7 @@ std::map<std::string, Work> LineDrawing::work() const {
             {"lines/traces.comp", of(segments, 32 + 16 + 32 + 20, 40)},
             {"lines/votes.comp", of(points, 64 + 32 + 12, 80)},
             {"lines/phases.comp", of(points, 32 + 32 + 8, 200)},
-            {"lines/settle.comp", of(points, 128 + 16, 30)}};
+            {"lines/write_traces.comp", of(points, 128 + 16, 30)}};
 }
 
 }  // namespace
@@ -282,7 +282,7 @@ std::vector<OperationKind> line_operations() {
               &shaders::lines_links_comp, &shaders::lines_nodes_comp, &shaders::lines_jump_comp,
               &shaders::lines_rank_comp, &shaders::lines_points_comp, &shaders::lines_visibility_comp,
               &shaders::lines_strokes_comp, &shaders::lines_traces_comp, &shaders::lines_votes_comp,
-              &shaders::lines_phases_comp, &shaders::lines_settle_comp},
+              &shaders::lines_phases_comp, &shaders::lines_write_traces_comp},
              {},
              prepare_as<LineDrawing>}};
 }

@@ -10,7 +10,7 @@
 
 namespace exemplar {
 
-/// One kernel of an operation of one size.
+/// One kernel of an operation at one size.
 struct KernelRow {
     std::string kernel;
     std::vector<double> milliseconds;  ///< of one run, a value per repeat
@@ -21,28 +21,28 @@ struct KernelRow {
     double gop_per_s() const;
 };
 
-/// An operation of one size, compared with its reference and timed.
+/// An operation at one size, compared with its reference and timed.
 struct Measurement {
     std::string operation, items;
     std::size_t size = 0;
     std::string refused;  ///< why the device cannot take this size; empty if it can
     std::vector<Difference> differences;
     std::vector<KernelRow> kernels;
-    /// Milliseconds of kernels that only copy, or only multiply and add, in turns with the operation: how fast the
-    /// device was then.
+    /// Milliseconds of kernels that only copy, or only multiply and add, timed in turns with the operation: the
+    /// speed of the device at that time.
     KernelTimes references;
 
     bool fits() const;
 };
 
-/// A speed as shares of the device's ceilings; the larger of both says what bounds a kernel.
+/// A speed as shares of the device's ceilings. The larger one tells what limits a kernel.
 struct Shares {
     double of_copy = 0, of_multiply_add = 0;
 };
 Shares shares_of(const KernelRow& row, const Ceilings& ceilings);
 
-/// Which kernels are wanted: all, or those whose name or whose operation's name a regular expression finds. Throws
-/// UsageError if it is none, or finds nothing.
+/// Selects kernels: all, or those whose name or operation's name matches a regular expression. Throws UsageError if
+/// it is invalid or matches nothing.
 class KernelFilter {
   public:
     explicit KernelFilter(const std::string& expression = "");
@@ -53,14 +53,15 @@ class KernelFilter {
     std::string expression_;
 };
 
-/// Prepares an operation, runs it twice and compares it; times it unless it is over the device's limits or differs from
-/// its reference.
+/// Prepares an operation, runs it twice and compares it with its reference. Times it unless it exceeds the device's
+/// limits or differs from the reference.
 Measurement measure_operation(Device& device, const OperationKind& kind, std::size_t size, const KernelFilter& filter,
                               const TimingOptions& options);
 
 nlohmann::ordered_json to_json(const Measurement& measurement, const Device& device, const Ceilings& ceilings);
 
-/// What is compared between two files that to_json has filled. Throws DataError, naming the file, if it is none.
+/// Reads the measurements of a file of to_json, for comparison. Throws DataError naming the file if it is no such
+/// file, UsageError if it was measured on another device.
 std::vector<Measurement> read_measurements(const std::filesystem::path& path, const DeviceInfo& device);
 
 }  // namespace exemplar

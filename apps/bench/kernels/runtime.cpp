@@ -1,12 +1,12 @@
-// The kernels that ceilings are measured with: what others' speeds are shares of.
+// The kernels that ceilings are measured with.
 
 #include <cmath>
 
 #include "apps/bench/kernels/operation.h"
 #include "embedded/runtime_copy_comp.h"
 #include "embedded/runtime_multiply_add_comp.h"
-#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/record/stream.h"
 #include "shaders/shared/ceilings.h"
 
@@ -49,8 +49,8 @@ struct Copying {
 constexpr std::uint32_t k_rounds = 64;
 constexpr MultiplyAddParameters k_multiply_add{.rounds = k_rounds, .factor = 0.9999f, .summand = 1e-4f};
 
-// x -> factor x + summand moves towards a fixed point: by how much after all rounds is known of the 32 chains of an
-// item.
+// Returns the expected sums of the 32 chains of an item: x -> factor x + summand converges to a fixed point, so the
+// value after all rounds has a closed form.
 std::vector<float> multiplied(std::size_t size) {
     const auto factor = static_cast<double>(k_multiply_add.factor);
     const double fixed = static_cast<double>(k_multiply_add.summand) / (1 - factor), left = std::pow(factor, k_rounds);
@@ -74,7 +74,7 @@ struct MultiplyAdd {
     std::vector<Difference> differences() const {
         std::vector<float> sums(results.bytes() / sizeof(float));
         results.download(std::span(sums));
-        // Sixty-four roundings of values below 10 in each of 32 chains.
+        // Tolerance for 64 roundings of values below 10 in each of 32 chains.
         return {{"sums", largest_difference(sums, multiplied(sums.size())), 2e-3}};
     }
     std::map<std::string, Work> work() const {

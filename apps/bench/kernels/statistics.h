@@ -5,27 +5,28 @@
 
 namespace exemplar {
 
-/// The median; NaN of nothing.
+/// Returns the median; NaN if there are no values.
 double median(std::span<const double> values);
 
-/// How uncertain the median of repeats is, as a share of it: its standard error for normally distributed repeats, of a
-/// deviation that a few stray ones do not change (1.4826 times the median distance from the median). NaN of nothing.
+/// Returns the relative standard error of the median of normally distributed repeats. Their deviation is estimated
+/// robustly, as 1.4826 times the median distance from the median. 0 if there are no values or the median is not
+/// positive.
 double relative_error(std::span<const double> values);
 
-/// How many times as long something takes as before.
+/// Ratio of a time to the time before.
 struct Ratio {
     double value = 1;
     double error = 0;  ///< standard error of its logarithm
-    /// Whether it takes longer beyond what `errors` standard errors explain, and by more than `least`.
+    /// Returns whether it takes longer by more than `errors` standard errors and by more than the share `least`.
     bool is_slower(double errors = 3, double least = 0.05) const;
-    /// The same of shorter.
+    /// The same for shorter.
     bool is_faster(double errors = 3, double least = 0.05) const;
 };
 
 Ratio ratio_of(std::span<const double> now, std::span<const double> before);
-/// The ratio that is left of `ratio` when the whole machine has become `drift` times as slow.
+/// Returns `ratio` divided by `drift`, the ratio of the whole machine.
 Ratio without_drift(const Ratio& ratio, const Ratio& drift);
-/// The geometric mean of independent ratios; 1 of none.
+/// Returns the geometric mean of independent ratios; 1 if there are none.
 Ratio mean_ratio(std::span<const Ratio> ratios);
 
 }  // namespace exemplar

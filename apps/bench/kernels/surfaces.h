@@ -16,12 +16,12 @@
 #include "host/mesh/curvature/curvature.h"
 #include "shaders/shared/types.h"
 
-/// The animated surface that kernels are measured on, and how what they leave on the device is compared.
+/// The animated surface that kernels are measured on, and the comparison of their results.
 
 namespace exemplar {
 
-// A wavy torus of twice as many faces as vertices, its edges about 1 long, so that rounding is about the same in all
-// sizes.
+// Makes a wavy torus of twice as many faces as vertices. Its edges are about 1 long, so that rounding is about the
+// same at all sizes.
 inline TriangleMesh wavy_torus(std::uint32_t vertices) {
     const auto around = static_cast<std::uint32_t>(std::sqrt(vertices / 2.0)), along = vertices / around;
     TriangleMesh mesh;
@@ -37,11 +37,11 @@ inline TriangleMesh wavy_torus(std::uint32_t vertices) {
     return mesh;
 }
 
-// A chain of 60 bones, four on each vertex, and 20 targets that move a twentieth of the vertices each.
+// Makes a chain of 60 bones, four per vertex, and 20 morph targets that move a twentieth of the vertices each.
 inline Rig chain_rig(std::size_t vertices, Random& random) {
     Rig rig;
     for (std::uint32_t b = 0; b < 60; ++b) {
-        rig.nodes.push_back({std::to_string(b), b == 0 ? k_none : b - 1, {.translation = Vec3(0.1f, 0, 0)}});
+        rig.nodes.push_back({std::to_string(b), b == 0 ? k_invalid_index : b - 1, {.translation = Vec3(0.1f, 0, 0)}});
         rig.bones.push_back({b, Affine::Identity()});
     }
     for (std::size_t v = 0; v < vertices; ++v) {
@@ -89,7 +89,8 @@ inline Buffer uploaded(Device& device, std::span<const Vec3> vertices) {
     return Buffer::of<shared::vec4>(device, values);
 }
 
-// The forms as matrices, row by row, whose values do not depend on the signs of principal directions.
+// Returns the second fundamental forms as matrices, row by row, which do not depend on the signs of principal
+// directions.
 inline std::vector<float> forms(const VertexCurvature& c) {
     std::vector<float> values;
     values.reserve(9 * c.k1.size());
@@ -100,7 +101,7 @@ inline std::vector<float> forms(const VertexCurvature& c) {
     return values;
 }
 
-// The squared size of the derivative, which does not depend on the frame either.
+// Returns the squared sizes of the derivatives, which do not depend on the frame either.
 inline std::vector<float> derivative_sizes(std::span<const std::array<float, 4>> derivatives) {
     std::vector<float> values;
     values.reserve(derivatives.size());
@@ -119,7 +120,7 @@ VertexCurvature downloaded(const DeviceCurvature& curvature) {
     return result;
 }
 
-/// Curvatures are of edges about 1 long; what both round is compared as it is.
+/// Compares curvature by absolute tolerances, as edges are about 1 long.
 template <typename DeviceCurvature>
 std::vector<Difference> differences_of(const DeviceCurvature& curvature, const VertexCurvature& expected) {
     const VertexCurvature actual = downloaded(curvature);

@@ -13,10 +13,10 @@
 namespace exemplar {
 namespace {
 
-// Among a benchmark's counters, the others of which are kernels.
+// Counter of a benchmark for the whole run; the other counters are kernels.
 constexpr std::string_view k_run = "run";
 
-// Google Benchmark takes what it does not take by function from a command line, once.
+// Some settings of Google Benchmark can be set only by a command line, once.
 void initialize() {
     static const bool done = [] {
         std::array arguments{std::string("exemplar"), std::string("--benchmark_enable_random_interleaving=true")};
@@ -28,7 +28,7 @@ void initialize() {
     static_cast<void>(done);
 }
 
-// The runs that are reported, which are not those that only find out how many a repeat takes.
+// Collects the reported runs, without those that only determine the iterations of a repeat.
 class Collector final : public benchmark::BenchmarkReporter {
   public:
     explicit Collector(std::map<std::string, OperationTimes*> times) : times_(std::move(times)) {}

@@ -9,31 +9,31 @@
 
 namespace exemplar {
 
-/// Device milliseconds of each kernel in one run of an operation: a value per repeat, the mean of some runs.
+/// Device milliseconds of each kernel in one run of an operation: a value per repeat, each the mean of several runs.
 using KernelTimes = std::map<std::string, std::vector<double>>;
 
-/// What was measured of an operation, a value per repeat.
+/// Times of an operation, a value per repeat.
 struct OperationTimes {
     KernelTimes kernels;
-    std::vector<double> runs;  ///< milliseconds that the host needed and waited for in one run
+    std::vector<double> runs;  ///< milliseconds of one run on the host, waiting included
 };
 
 struct TimingOptions {
     std::size_t repeats = 7;
-    double seconds = 0.02;  ///< device time of a repeat, at least
+    double seconds = 0.02;  ///< minimum device time of a repeat
 };
 
-/// Something to be timed; `profiler` sees its kernels.
+/// An operation to be timed; its kernels report to `profiler`.
 struct Timed {
-    std::string name;  ///< unlike all others'
+    std::string name;  ///< unique
     const Operation* operation;
     Profiler* profiler;
 };
 
-/// Times operations by the device's own timestamps, and whole runs by the host's clock, with Google Benchmark: repeats
-/// of all of them in random turns, so that what slows the machine for a while slows all alike. Each has run before, as
-/// drivers may compile at the first dispatch. Throws DeviceError if the device has no timestamps, Interrupted at
-/// Ctrl-C.
+/// Times operations by timestamps of the device, and whole runs by the host's clock, with Google Benchmark. Repeats
+/// of all operations take turns at random, so that a temporary slowdown of the machine affects all alike. Each
+/// operation must have run before (D17 in docs/portability.md). Throws DeviceError if the device has no timestamps,
+/// Interrupted at Ctrl-C.
 std::vector<OperationTimes> time_in_turns(std::span<const Timed> timed, const TimingOptions& options);
 
 }  // namespace exemplar

@@ -11,7 +11,7 @@
 namespace exemplar {
 namespace {
 
-// An operation with a parameter at one value, or as it is.
+// An operation with one value of a parameter; without a value, with the current one.
 struct Variant {
     std::optional<std::uint32_t> value;
     Profiler profiler;
@@ -54,7 +54,7 @@ std::unique_ptr<Variant> prepare_variant(Device& device, const OperationKind& ki
     return variant;
 }
 
-// Variants of kernels that have the parameter, at each of its values; all in turns.
+// Times kernels that have the parameter at each of its values, all in turns.
 std::vector<VariantComparison> time_variants(Device& device, const OperationKind& kind, std::size_t size,
                                              std::span<const std::string> kernels, const TunableParameter& parameter,
                                              const TimingOptions& options) {
@@ -70,7 +70,8 @@ std::vector<VariantComparison> time_variants(Device& device, const OperationKind
     for (const std::string& kernel : kernels) {
         if (!times[0].kernels.contains(kernel)) continue;
         const auto times_of = [&](std::size_t variant) {
-            return parameter.judged == Judged::by_runs ? times[variant].runs : times[variant].kernels.at(kernel);
+            return parameter.judged == TuningMetric::end_to_end ? times[variant].runs
+                                                                : times[variant].kernels.at(kernel);
         };
         VariantComparison& comparison =
             comparisons.emplace_back(VariantComparison{.operation = std::string(kind.name),
@@ -93,7 +94,7 @@ void choose(VariantComparison& comparison) {
         comparison.chosen = fastest->first;
 }
 
-// What is to be compared: a parameter, and the kernels that have it.
+// A parameter to compare, and the kernels that have it.
 struct Question {
     TunableParameter parameter;
     std::vector<std::string> kernels;
@@ -134,12 +135,13 @@ std::vector<VariantComparison> compare_variants(Device& device, const OperationK
 }
 
 nlohmann::ordered_json to_json(const VariantComparison& comparison) {
-    nlohmann::ordered_json json = {{"operation", comparison.operation},
-                                   {"kernel", comparison.kernel},
-                                   {"parameter", comparison.parameter},
-                                   {"times_of", comparison.judged == Judged::by_runs ? "whole runs" : "the kernel"},
-                                   {"size", comparison.size},
-                                   {"ms_as_it_was", comparison.as_is}};
+    nlohmann::ordered_json json = {
+        {"operation", comparison.operation},
+        {"kernel", comparison.kernel},
+        {"parameter", comparison.parameter},
+        {"times_of", comparison.judged == TuningMetric::end_to_end ? "whole runs" : "the kernel"},
+        {"size", comparison.size},
+        {"ms_as_it_was", comparison.as_is}};
     json["variants"] = nlohmann::ordered_json::array();
     for (const auto& [value, milliseconds] : comparison.milliseconds)
         json["variants"].push_back({{"value", value}, {"ms_of_repeats", milliseconds}});

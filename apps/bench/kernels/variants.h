@@ -12,16 +12,16 @@ namespace exemplar {
 /// The variants of a kernel that differ in one parameter.
 struct VariantComparison {
     std::string operation, kernel, parameter;
-    Judged judged = Judged::by_kernel;  ///< what the times are of
+    TuningMetric judged = TuningMetric::kernel_time;  ///< which times these are
     std::size_t size = 0;
-    std::vector<double> as_is;                                  ///< milliseconds of each repeat, as it was before
+    std::vector<double> as_is;                                  ///< milliseconds per repeat, with the current value
     std::map<std::uint32_t, std::vector<double>> milliseconds;  ///< by value
-    std::optional<std::uint32_t> chosen;  ///< the fastest, if it beats what was before beyond noise and by a twentieth
+    std::optional<std::uint32_t> chosen;  ///< the fastest, if it beats the current one beyond noise and by 1/20
 };
 
-/// Compares variants of the kernels of an operation, each with its reference, times them in turns, and sets those
-/// chosen in the device's tuning. `known`: kernels that need not be looked at any more; those that were are added.
-/// Throws DeviceError if a variant's results differ from the reference.
+/// Compares each variant of an operation's kernels with the reference, times all in turns, and stores the chosen
+/// ones in the device's tuning. Skips kernels in `known`, and adds those it has compared. Throws DeviceError if a
+/// variant's results differ from the reference.
 std::vector<VariantComparison> compare_variants(Device& device, const OperationKind& kind, std::size_t size,
                                                 const KernelFilter& filter, const TimingOptions& options,
                                                 std::vector<std::string>& known);

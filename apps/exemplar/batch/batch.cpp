@@ -8,11 +8,11 @@
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/backend.h"
-#include "apps/exemplar/batch/batch_elsewhere.h"
-#include "apps/exemplar/batch/batch_page.h"
 #include "apps/exemplar/batch/batch_run.h"
 #include "apps/exemplar/batch/batch_shards.h"
 #include "apps/exemplar/batch/batch_slurm.h"
+#include "apps/exemplar/batch/batch_tasks.h"
+#include "apps/exemplar/catalog/batch_page.h"
 #include "apps/exemplar/catalog/catalog_add.h"
 #include "apps/exemplar/commands.h"
 #include "host/core/errors.h"
@@ -30,10 +30,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// How shapes are labeled and what is written of them; results of another version are made anew.
+/// Version of the labeling and of its output; results of another version are made again.
 constexpr int k_batch_version = 1;
-/// Names what the results depend on, but for the shapes.
-std::string run_key(const BatchModels& models, bool gltf, bool keep_small) {
+/// Returns a key of everything that the results depend on except the shapes.
+std::string batch_run_key(const BatchModels& models, bool gltf, bool keep_small) {
     const std::string key = fmt::format("{} features {} batch {} gltf {} small {}", models.key(), k_feature_version,
                                         k_batch_version, gltf, keep_small);
     return fmt::format("{:016x}", XXH3_64bits(key.data(), key.size()));
@@ -46,7 +46,7 @@ std::string describe_models(const BatchModels& models) {
 
 BatchModels load_models(const fs::path& path, bool keep_small) {
     require_input(path);
-    if (!fs::is_directory(path)) model_of_argument(path);  // says best what is no model
+    if (!fs::is_directory(path)) model_of_argument(path);  // has the best error message
     BatchModels models = load_batch_models(path);
     if (keep_small)
         for (BatchModel& model : models.models) model.model.crf.merge_fraction = 0;
@@ -61,7 +61,7 @@ AddOptions add_options(const BatchCommand& options) {
     return add;
 }
 
-/// The catalog that was given, or one in the output folder of the meshes that were.
+/// Opens the given catalog, or makes one of the given meshes in the output folder.
 Catalog open_catalog(const BatchCommand& options) {
     if (is_database(options.source)) return {options.source, Database::Open::existing};
     Catalog catalog(options.out / "catalog.db", Database::Open::create);
@@ -69,7 +69,8 @@ Catalog open_catalog(const BatchCommand& options) {
     return catalog;
 }
 
-/// What is written is no shape; an output folder that holds the shapes would hide them.
+/// Marks the output folder, so that results in it are not found as shapes. Throws UsageError if it is the shapes'
+/// folder.
 void prepare_output(const BatchCommand& options) {
     require_output_folder(options.out);
     if (fs::is_directory(options.source) && fs::weakly_canonical(options.out) == fs::weakly_canonical(options.source))
@@ -79,26 +80,26 @@ void prepare_output(const BatchCommand& options) {
     mark_output_folder(options.out);
 }
 
-std::size_t most_memory(const BatchCommand& options) {
+std::size_t max_memory(const BatchCommand& options) {
     return options.memory > 0 ? memory_of_option(options.memory) : usable_memory() / 2;
 }
 
 BatchOptions batch_options(const BatchCommand& options) {
     return {.cache = usable_cache(options.cache, options.common.quiet),
-            .memory = most_memory(options),
+            .memory = max_memory(options),
             .group = options.group};
 }
 
-void report(const BatchCommand& options, const BatchResult& result, const DeviceBackend& backend, Json more) {
+void report_batch(const BatchCommand& options, const BatchResult& result, const DeviceBackend& backend, Json more) {
     if (!options.common.quiet) print_result(result);
     Json json = describe(result);
     json.update(more);
     json["device"] = backend.device_name();
-    json["memory"] = 1e-9 * static_cast<double>(most_memory(options));
+    json["memory"] = 1e-9 * static_cast<double>(max_memory(options));
     write_report(options.common, json);
 }
 
-/// Labels what is left of a run, beside other programs that do so.
+/// Labels the remaining shapes of a run; other programs may do so at the same time.
 void run_here(const BatchCommand& options, Catalog& catalog, CatalogRun& run, const BatchPlan& plan,
               const BatchModels& models) {
     DeviceBackend backend(options.common.device);
@@ -109,20 +110,21 @@ void run_here(const BatchCommand& options, Catalog& catalog, CatalogRun& run, co
     write_batch_page(plan.out, catalog, run,
                      {result.stages, result.counts.all() - result.counts.taken_over, result.wall});
     const std::int64_t unusable = catalog.count("problem <> ''");
-    report(options, result, backend, {{"run", run.id()}, {"unusable", unusable}});
+    report_batch(options, result, backend, {{"run", run.id()}, {"unusable", unusable}});
     if (unusable > 0 && !options.common.quiet)
         fmt::print("{} cannot be used ('exemplar catalog list {} --problems' says why)\n",
                    counted(static_cast<std::size_t>(unusable), "shape"), shell_word(catalog.database().name()));
 }
 
-/// Slurm gives a task less than the machine has.
-void heed_slurm(BatchCommand& options) {
-    if (options.common.threads == 0) options.common.threads = number_of_task("SLURM_CPUS_PER_TASK");
-    if (options.common.threads == 0) options.common.threads = number_of_task("SLURM_CPUS_ON_NODE");
-    if (options.memory == 0) options.memory = 0.5e-9 * static_cast<double>(std::min(memory_of_task(), usable_memory()));
+/// Limits threads and memory to those that Slurm gives the task.
+void apply_slurm_limits(BatchCommand& options) {
+    if (options.common.threads == 0) options.common.threads = slurm_number("SLURM_CPUS_PER_TASK");
+    if (options.common.threads == 0) options.common.threads = slurm_number("SLURM_CPUS_ON_NODE");
+    if (options.memory == 0)
+        options.memory = 0.5e-9 * static_cast<double>(std::min(slurm_task_memory(), usable_memory()));
 }
 
-/// A shard says itself what is labeled, how and where to.
+/// Throws UsageError for options that a shard fixes: what is labeled, how and where to.
 void check_shard_usage(const BatchCommand& options) {
     for (const auto& [is_given, option] : {std::pair(!options.model.empty(), "--model"),
                                            {!options.models.empty(), "--models"},
@@ -140,12 +142,12 @@ void check_shard_usage(const BatchCommand& options) {
 
 void run_shard(BatchCommand options) {
     check_shard_usage(options);
-    heed_slurm(options);
+    apply_slurm_limits(options);
     const auto limits = apply_common_options(options.common);
     Shard shard = read_shard(options.source);
     const BatchPlan plan = shard.plan;
     const BatchModels models = load_models(plan.models, plan.keep_small);
-    if (run_key(models, plan.gltf, plan.keep_small) != plan.key)
+    if (batch_run_key(models, plan.gltf, plan.keep_small) != plan.key)
         throw ModelError(
             fmt::format("{}: the models in {} are not those that the shard was written for; write the shards "
                         "again",
@@ -157,10 +159,10 @@ void run_shard(BatchCommand options) {
                                     options.source.string(), plan.out.string()));
     DeviceBackend backend(options.common.device);
     const WorkerFolder worker(plan.out);
-    ShardWork work(std::move(shard), number_of_task("SLURM_RESTART_COUNT") % 2 == 1);
+    ShardWork work(std::move(shard), slurm_number("SLURM_RESTART_COUNT") % 2 == 1);
     const BatchWriter writer(plan.out / "labeled", worker, plan.key, plan.gltf);
-    report(options, run_work(work, writer, models, backend, batch_options(options)), backend,
-           {{"shard", options.source.string()}});
+    report_batch(options, run_work(work, writer, models, backend, batch_options(options)), backend,
+                 {{"shard", options.source.string()}});
 }
 
 void check_usage(const BatchCommand& options) {
@@ -171,7 +173,7 @@ void check_usage(const BatchCommand& options) {
 }
 
 void run_batch(const BatchCommand& options) {
-    keep_freed_memory();  // each shape wants as much as the one before
+    keep_freed_memory();  // each shape needs as much as the one before
     require_input(options.source);
     if (is_shard(options.source)) return run_shard(options);
     const auto limits = apply_common_options(options.common);
@@ -181,17 +183,17 @@ void run_batch(const BatchCommand& options) {
     prepare_output(options);
     const BatchPlan plan{.models = whole_path(source_of_models),
                          .out = whole_path(options.out),
-                         .key = run_key(models, options.gltf, options.keep_small),
+                         .key = batch_run_key(models, options.gltf, options.keep_small),
                          .gltf = options.gltf,
                          .keep_small = options.keep_small};
     Catalog catalog = open_catalog(options);
     CatalogRun run(catalog, plan.key, plan.out / "labeled", describe_models(models));
     if (options.retry) {
-        look_at_unusable(catalog, add_options(options));
-        run.merge_records([](std::size_t) {});  // what tasks could not do is tried again as well
+        retry_unusable(catalog, add_options(options));
+        run.merge_records([](std::size_t) {});  // also retries what tasks could not do
     }
     reopen_shapes(run, options.retry);
-    if (options.tasks > 0) return run_elsewhere(options, catalog, run, plan);
+    if (options.tasks > 0) return run_as_tasks(options, catalog, run, plan);
     run_here(options, catalog, run, plan, models);
 }
 

@@ -9,7 +9,7 @@
 
 namespace exemplar {
 
-/// What the user of `exemplar label batch` asked for.
+/// Arguments of `exemplar label batch`.
 struct BatchCommand {
     CommonOptions common;
     std::filesystem::path source, model, models, out;
@@ -21,7 +21,7 @@ struct BatchCommand {
     SlurmOptions slurm_options;
 };
 
-/// A path that means the same elsewhere.
+/// Returns an absolute path, which is valid in any working folder.
 inline std::filesystem::path whole_path(const std::filesystem::path& path) {
     return std::filesystem::absolute(path).lexically_normal();
 }

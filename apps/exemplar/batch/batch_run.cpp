@@ -14,13 +14,13 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json describe(const StageLoad& stage) {
+Json describe_stage(const StageStatistics& stage) {
     return {{"stage", stage.name},   {"workers", stage.workers}, {"shapes", stage.items},
             {"calls", stage.groups}, {"busy", stage.busy},       {"load", stage.load}};
 }
 
-void print_stages(const std::vector<StageLoad>& stages) {
-    for (const StageLoad& stage : stages)
+void print_stages(const std::vector<StageStatistics>& stages) {
+    for (const StageStatistics& stage : stages)
         fmt::print("{:>10}: {} busy {:3.0f} % of the time, {:.3f} s per shape{}\n", stage.name,
                    counted(stage.workers, "worker"), 100 * stage.load,
                    stage.items ? stage.busy / static_cast<double>(stage.items) : 0.0,
@@ -29,7 +29,7 @@ void print_stages(const std::vector<StageLoad>& stages) {
                                               : "");
 }
 
-/// Tells how far the work is: how many a second and, by the class itself, the time left.
+/// Shows progress: shapes per second and the time left.
 class BatchProgress {
   public:
     explicit BatchProgress(std::size_t total) : progress_("labeling", total) {}
@@ -79,14 +79,14 @@ void print_result(const BatchResult& result) {
         fmt::print("{} of earlier or other programs taken over\n", counted(counts.taken_over, "result"));
     if (result.stages.empty() || counts.all() == counts.taken_over) return;
     print_stages(result.stages);
-    const auto slowest = std::ranges::max_element(result.stages, {}, &StageLoad::load);
+    const auto slowest = std::ranges::max_element(result.stages, {}, &StageStatistics::load);
     fmt::print("slowest stage: {}\n", slowest->name);
 }
 
 Json describe(const BatchResult& result) {
     Json stages = Json::array();
-    for (const StageLoad& stage : result.stages) stages.push_back(describe(stage));
-    const auto slowest = std::ranges::max_element(result.stages, {}, &StageLoad::load);
+    for (const StageStatistics& stage : result.stages) stages.push_back(describe_stage(stage));
+    const auto slowest = std::ranges::max_element(result.stages, {}, &StageStatistics::load);
     return {{"labeled", result.counts.done},
             {"unknown", result.counts.unknown},
             {"failed", result.counts.failed},

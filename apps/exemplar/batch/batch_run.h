@@ -8,14 +8,14 @@
 
 namespace exemplar {
 
-/// What a program has done of a batch run.
+/// Work of one program on a batch run.
 struct BatchResult {
     BatchCounts counts;
-    std::vector<StageLoad> stages;
+    std::vector<StageStatistics> stages;
     double wall = 0, cpu = 0;  ///< seconds
 };
 
-/// Labels what there is to do, with progress. Throws Interrupted at Ctrl-C, and what else ends the work.
+/// Labels the shapes of `work`, with progress. Throws Interrupted at Ctrl-C, and the error that ends the work.
 BatchResult run_work(BatchWork& work, const BatchWriter& writer, const BatchModels& models, DeviceBackend& backend,
                      const BatchOptions& options);
 

@@ -14,9 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What labeling costs, in faces: some time goes by for every shape, and large ones are simplified.
+/// Estimates the cost of labeling, in faces: each shape has a fixed cost, and large ones are simplified.
 std::int64_t cost_of(const CatalogShape& shape) {
-    return 500 + std::min<std::int64_t>(shape.faces, k_most_working_faces);
+    return 500 + std::min<std::int64_t>(shape.faces, k_max_working_faces);
 }
 
 /// Calls `use` for every shape that is open.
@@ -35,11 +35,11 @@ void for_each_open(CatalogRun& run, Use&& use) {
     }
 }
 
-/// Whether a record is about a shape as it was when the shard was written, or as it is now.
+/// Returns whether a record is of the shape's file as it was when the shard was written, or as it is now.
 bool is_about(const ShapeRecord& record, CatalogShape shape) {
     if (record.content == content_of(shape)) return true;
     try {
-        stat_shape(shape.path);  // a pipe would never end
+        stat_shape(shape.path);  // rejects pipes, whose reading would never end
         shape.hash = file_hash(shape.path);
     } catch (const DataError&) {  // it has vanished
         return false;
@@ -47,7 +47,7 @@ bool is_about(const ShapeRecord& record, CatalogShape shape) {
     return record.content == content_of(shape);
 }
 
-/// A folder that nobody else has.
+/// Makes a new numbered folder.
 fs::path new_folder(const fs::path& in) {
     std::error_code error;
     fs::create_directories(in, error);
@@ -101,7 +101,7 @@ std::optional<CatalogShape> ShardWork::next() {
             counts_.count(*record, false);
             continue;
         }
-        // One of another run, a damaged one, or of the file before it changed; not one that has come this moment.
+        // Removes a record that is of another run, damaged, or of an older file; not one that appeared just now.
         if (is_there) remove_record(shard_.plan.out / "labeled", shape.name);
         return shape;
     }

@@ -8,12 +8,12 @@
 
 namespace exemplar {
 
-/// Divides the shapes that a run has still to label among `count` shards of about equal work (fewer if there are fewer
-/// shapes): OUT/shards/NUMBER/1.shard and so on. Returns their paths, none if nothing is left. Throws DataError.
+/// Divides the remaining shapes of a run among `count` shards of about equal work (fewer if there are fewer shapes):
+/// OUT/shards/NUMBER/1.shard and so on. Returns their paths; none if no shape is left. Throws DataError.
 std::vector<std::filesystem::path> write_shards(CatalogRun& run, const BatchPlan& plan, std::size_t count);
 
-/// The shapes of a shard. A task that a cluster starts a second time begins at the other end: the first may still be at
-/// work where its node has only lost touch, and so they meet in the middle.
+/// The shapes of a shard. A task that a cluster has restarted begins at the end: the first copy may still be running
+/// if its node has only lost its connection, so both meet in the middle.
 class ShardWork final : public BatchWork {
   public:
     ShardWork(Shard shard, bool from_the_end);

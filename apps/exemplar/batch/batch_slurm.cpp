@@ -72,7 +72,7 @@ std::string first_line(const std::string& text) {
     return text.substr(0, text.find('\n'));
 }
 
-/// A name may hold what Slurm puts numbers in the place of.
+/// Escapes '%', which Slurm replaces by numbers in file names.
 std::string slurm_pattern(const fs::path& path) {
     std::string text;
     for (const char c : path.string()) text += c == '%' ? std::string("%%") : std::string(1, c);
@@ -110,11 +110,11 @@ std::vector<std::string> sbatch_words(const fs::path& folder, std::size_t tasks,
     return words;
 }
 
-/// Beside the shards; what job they were given to.
+/// File in the folder of the shards that names their job.
 constexpr const char* k_job_file = "job.json";
 
 /// The job of a folder of shards; nothing if there is none, or it is another run's.
-std::optional<SlurmJob> job_of(const fs::path& shards, const std::string& run) {
+std::optional<SlurmJob> job_in_queue(const fs::path& shards, const std::string& run) {
     std::error_code ignored;
     if (!fs::exists(shards / k_job_file, ignored)) return {};
     const nlohmann::json json = parse_shallow(read_file(shards / k_job_file));
@@ -126,9 +126,9 @@ std::optional<SlurmJob> job_of(const fs::path& shards, const std::string& run) {
     return SlurmJob{word("job"), word("cluster")};
 }
 
-/// Whether a task of squeue's answer has not ended. Other lines are not about tasks: squeue heads the answer of each
-/// cluster by its name, and may have remarks.
-bool has_living_state(const std::string& answer) {
+/// Returns whether squeue's answer has a task that has not ended. Other lines are the name of each cluster, and
+/// remarks.
+bool has_active_task(const std::string& answer) {
     constexpr std::array<std::string_view, 10> k_ended{"BOOT_FAIL", "CANCELLED", "COMPLETED", "DEADLINE",
                                                        "FAILED",    "NODE_FAIL", "TIMEOUT",   "OUT_OF_MEMORY",
                                                        "PREEMPTED", "REVOKED"};
@@ -174,7 +174,7 @@ SlurmJob submit_shards(std::span<const fs::path> shards, const SlurmOptions& opt
             "sbatch cannot be run (" + output.text +
             "); Slurm's client is missing here (Debian: slurm-client). Without --slurm shards are only written");
     if (output.code != 0) throw DataError("sbatch refused the job: " + first_line(output.text));
-    // "JOB" or "JOB;CLUSTER", after what the site may have to say
+    // the last line is "JOB" or "JOB;CLUSTER"; messages of the site may precede it
     std::string last = output.text.substr(0, output.text.find_last_not_of('\n') + 1);
     last = last.substr(last.rfind('\n') + 1);
     const std::size_t end = std::min(last.find(';'), last.size());
@@ -183,24 +183,24 @@ SlurmJob submit_shards(std::span<const fs::path> shards, const SlurmOptions& opt
     return job;
 }
 
-SlurmAnswer ask_for_job(const SlurmJob& job) {
-    // all states: what a user's SQUEUE_STATES leaves out would seem to have ended
+SlurmStatus query_job(const SlurmJob& job) {
+    // all states, as tasks that a user's SQUEUE_STATES leaves out would seem to have ended
     std::vector<std::string> words{"squeue", "--noheader", "--states=all", "--format=%T", "--jobs=" + job.number};
     if (!job.cluster.empty()) words.push_back("--clusters=" + job.cluster);
     const ProgramOutput output = run_words(words);
     if (output.code != 0 && output.text.find("Invalid job id") != std::string::npos)
-        return {SlurmAnswer::Job::ended, {}};
-    if (output.code != 0) return {SlurmAnswer::Job::unknown, "squeue: " + first_line(output.text)};
-    return {has_living_state(output.text) ? SlurmAnswer::Job::alive : SlurmAnswer::Job::ended, {}};
+        return {SlurmStatus::Job::ended, {}};
+    if (output.code != 0) return {SlurmStatus::Job::unknown, "squeue: " + first_line(output.text)};
+    return {has_active_task(output.text) ? SlurmStatus::Job::alive : SlurmStatus::Job::ended, {}};
 }
 
-std::vector<SlurmJob> jobs_at_work(const fs::path& out, const std::string& run) {
+std::vector<SlurmJob> running_jobs(const fs::path& out, const std::string& run) {
     std::vector<SlurmJob> jobs;
     std::error_code error;
     for (fs::directory_iterator it(out / "shards", error), end; !error && it != end; it.increment(error)) {
-        const std::optional<SlurmJob> job = job_of(it->path(), run);
+        const std::optional<SlurmJob> job = job_in_queue(it->path(), run);
         if (!job) continue;
-        if (ask_for_job(*job).job == SlurmAnswer::Job::ended)
+        if (query_job(*job).job == SlurmStatus::Job::ended)
             fs::remove(it->path() / k_job_file, error);  // it need not be asked for again
         else
             jobs.push_back(*job);
@@ -208,16 +208,16 @@ std::vector<SlurmJob> jobs_at_work(const fs::path& out, const std::string& run) 
     return jobs;
 }
 
-std::size_t number_of_task(const char* name) {
+std::size_t slurm_number(const char* name) {
     const char* const text = std::getenv(name);
     return text ? static_cast<std::size_t>(std::strtoull(text, nullptr, 10)) : 0;
 }
 
-std::size_t memory_of_task() {
+std::size_t slurm_task_memory() {
     constexpr std::size_t k_megabyte = 1'000'000;
-    const std::size_t processors = number_of_task("SLURM_CPUS_ON_NODE");
-    if (std::getenv("SLURM_MEM_PER_NODE")) return k_megabyte * number_of_task("SLURM_MEM_PER_NODE");
-    if (std::getenv("SLURM_MEM_PER_CPU")) return k_megabyte * number_of_task("SLURM_MEM_PER_CPU") * processors;
+    const std::size_t processors = slurm_number("SLURM_CPUS_ON_NODE");
+    if (std::getenv("SLURM_MEM_PER_NODE")) return k_megabyte * slurm_number("SLURM_MEM_PER_NODE");
+    if (std::getenv("SLURM_MEM_PER_CPU")) return k_megabyte * slurm_number("SLURM_MEM_PER_CPU") * processors;
     const auto all = static_cast<std::size_t>(std::max(sysconf(_SC_NPROCESSORS_ONLN), 1L));
     return processors < all ? usable_memory() / all * processors : 0;
 }

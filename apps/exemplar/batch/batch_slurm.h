@@ -7,48 +7,49 @@
 
 namespace exemplar {
 
-/// What Slurm is to give each task; what is empty or 0 is left to the cluster.
+/// Resources of each Slurm task; those that are empty or 0 are left to the cluster.
 struct SlurmOptions {
     std::string partition, gres, time;
     std::size_t cpus = 0;              ///< per task
     double memory = 0;                 ///< GB per task
-    std::vector<std::string> further;  ///< options of sbatch, as they are
+    std::vector<std::string> further;  ///< more options of sbatch, passed as they are
 };
 
 /// A job that was submitted.
 struct SlurmJob {
     std::string number;
-    std::string cluster;  ///< where it is if the site has several; else empty
+    std::string cluster;  ///< its cluster if the site has several; else empty
 };
 
-/// What Slurm says of a job; nothing where it does not answer.
-struct SlurmAnswer {
+/// Slurm's answer on the state of a job.
+struct SlurmStatus {
     enum class Job { alive, ended, unknown };
     Job job;
-    std::string problem;  ///< why it is unknown
+    std::string problem;  ///< why the state is unknown
 };
 
-/// Submits an array of tasks, one per shard (all in one folder, 1.shard, 2.shard, ...), each of which runs `exemplar
-/// label batch SHARD` with `arguments`, and is run again elsewhere if its node fails. The script and the logs are in
-/// the folder of the shards, and so is, once it is submitted, what job it is. Throws DataError with what sbatch says.
+/// Submits an array of tasks, one per shard (1.shard, 2.shard, ... in one folder). Each runs `exemplar label batch
+/// SHARD` with `arguments`, and is rerun on another node if its node fails. Writes the script, the logs and then the
+/// number of the job into the folder of the shards. Throws DataError with the message of sbatch.
 SlurmJob submit_shards(std::span<const std::filesystem::path> shards, const SlurmOptions& options,
                        std::span<const std::string> arguments, const std::string& run);
 
-/// Whether tasks of a job wait or run. Slurm forgets jobs some minutes after their end: one that it does not know has
+/// Asks Slurm whether tasks of a job are waiting or running. Slurm forgets jobs some minutes after their end, so an
+/// unknown job has ended.
+SlurmStatus query_job(const SlurmJob& job);
+/// Returns the jobs that were submitted for shards of this run below OUT/shards and that Slurm does not report as
 /// ended.
-SlurmAnswer ask_for_job(const SlurmJob& job);
-/// The jobs that were submitted for shards of this run below OUT/shards, and have not ended as far as Slurm tells.
-std::vector<SlurmJob> jobs_at_work(const std::filesystem::path& out, const std::string& run);
+std::vector<SlurmJob> running_jobs(const std::filesystem::path& out, const std::string& run);
 
-/// A number that Slurm tells its tasks by a variable; 0 if it does not.
-std::size_t number_of_task(const char* name);
-/// Bytes of memory that Slurm gives the task that runs here: what the job asked for or, if it asked for none, the share
-/// of the machine that its processors are. 0 if Slurm says neither, or gives all of the machine.
-std::size_t memory_of_task();
+/// Returns the number in one of Slurm's environment variables; 0 if it is not set.
+std::size_t slurm_number(const char* name);
+/// Returns the bytes of memory of the running Slurm task: those that the job asked for, else the machine's memory in
+/// proportion to the task's processors. 0 if Slurm tells neither, or the task has the whole machine.
+std::size_t slurm_task_memory();
 
-/// A text as one word of a shell.
+/// Quotes a text as one word of a shell.
 std::string shell_word(const std::string& text);
-/// This program, by its whole path.
+/// Returns the absolute path of this program.
 std::filesystem::path this_program();
 
 }  // namespace exemplar

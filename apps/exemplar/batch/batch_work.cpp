@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// So few that two programs that share a catalog end together, so many that asking costs nothing.
+/// Few enough that two programs that share a catalog end together, many enough that claiming costs nothing.
 constexpr std::size_t k_claimed_at_once = 4;
 
 constexpr std::string_view k_optional_ending = ".glb";
@@ -32,7 +32,7 @@ void remove_file(const fs::path& file) {
     if (error) throw DataError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
 }
 
-/// Moves a shape's files from a folder to another one of the same file system, in the place of all that it had there.
+/// Moves a shape's files to another folder of the same file system, replacing all files that the shape had there.
 void move_files(const fs::path& from, const fs::path& to, const std::string& name) {
     for (const std::string_view ending : k_endings) {
         const fs::path source = from / fmt::format("{}{}", name, ending), target = to / source.filename();
@@ -49,7 +49,7 @@ void remove_files(const fs::path& folder, const std::string& name) {
     for (const std::string_view ending : k_endings) remove_file(folder / fmt::format("{}{}", name, ending));
 }
 
-/// Whether anything is there, be it a link that leads nowhere.
+/// Returns whether anything is at the path, even a dangling link.
 bool is_taken(const fs::path& path) {
     std::error_code ignored;
     return fs::exists(fs::symlink_status(path, ignored));
@@ -73,7 +73,7 @@ void reopen_shapes(CatalogRun& run, bool retry) {
     run.for_each(
         [&](const CatalogRun::Labeled& labeled) {
             std::optional<ShapeRecord> record = run.record_of(labeled.shape);
-            // Another program may have tried again what the catalog had as failed when this one began to ask.
+            // Another program may have retried a shape since the catalog was asked for failed ones.
             if (retry && record && record->state() != "done") {
                 remove_record(run.folder(), labeled.shape.name);
                 record.reset();
@@ -86,18 +86,18 @@ void reopen_shapes(CatalogRun& run, bool retry) {
 
 CatalogWork::CatalogWork(Catalog& catalog, CatalogRun& run, const fs::path& output, const std::string& worker)
     : catalog_(catalog), run_(run), output_(output), worker_(worker) {
-    free_claims_of_the_dead();
+    release_dead_claims();
 }
 
 CatalogWork::~CatalogWork() {
     try {
         run_.release(worker_);
     } catch (const Error&) {
-        // The next program sees that this one is dead.
+        // The next program frees the claims of this one.
     }
 }
 
-void CatalogWork::free_claims_of_the_dead() {
+void CatalogWork::release_dead_claims() {
     for (const std::string& worker : run_.workers())
         if (!WorkerFolder::may_be_alive(output_, worker)) run_.release(worker);
 }
@@ -116,21 +116,21 @@ std::optional<CatalogShape> CatalogWork::next() {
         check_interrupt();
         if (claimed_.empty() && !claim_some()) {
             if (!again_) return {};
-            again_ = false;  // once more from the beginning: another program may have died meanwhile
+            again_ = false;  // once more from the start, as another program may have died
             last_ = 0;
-            free_claims_of_the_dead();
+            release_dead_claims();
             continue;
         }
         CatalogShape shape = std::move(claimed_.front());
         claimed_.pop_front();
         const bool is_there = is_taken(run_.record_path(shape));
-        // A program that was killed after the record was written, and before the catalog was told.
+        // A program may have been killed between writing the record and updating the catalog.
         if (const auto record = run_.record_of(shape)) {
             run_.finish(shape.id, *record);
             counts_.count(*record, false);
             continue;
         }
-        // One of another run, a damaged one, or of the file before it changed; not one that has come this moment.
+        // Removes a record that is of another run, damaged, or of an older file; not one that appeared just now.
         if (is_there) remove_record(run_.folder(), shape.name);
         return shape;
     }
@@ -160,7 +160,8 @@ void BatchWriter::write_labels(BatchShape& shape, const fs::path& target) const 
     shape.record.confidence = described["confidence"];
 }
 
-/// What a file format cannot hold is the shape's own fault; a full disk is not.
+/// Writes labels. Records an error if a format cannot hold the shape or memory runs out; throws others, as a full
+/// disk.
 void BatchWriter::try_to_write_labels(BatchShape& shape, const fs::path& target) const {
     try {
         write_labels(shape, target);
@@ -171,11 +172,12 @@ void BatchWriter::try_to_write_labels(BatchShape& shape, const fs::path& target)
     }
 }
 
-/// Whether another program has been faster.
+/// Returns whether another program has written the shape; takes over its record.
 bool BatchWriter::is_done(BatchShape& shape, const fs::path& path) const {
     if (!is_taken(path)) return false;
     std::optional<ShapeRecord> other = read_record(path);
-    // One of the same run may be about the file as it was before or after this moment: whoever asks next sees that.
+    // A record of the same run may be of an older or newer state of the file; the next program that asks checks
+    // that.
     if (!other || other->run != key_)
         throw DataError(
             fmt::format("{}: another run, with other models or options, writes to the same folder; give one of "
@@ -207,7 +209,7 @@ bool BatchWriter::write(BatchShape& shape) const {
         if (commit_file(written, target)) break;
         if (is_done(shape, target)) return false;
     }
-    // Not before: another program may have been at the same shape at the same time, with more success.
+    // Only now, as another program may have labeled the same shape meanwhile, with success.
     if (failed) remove_files(folder, name);
     return true;
 }

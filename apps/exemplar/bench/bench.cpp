@@ -88,7 +88,7 @@ void add_bench_command(CLI::App& app) {
                      "labeled meshes (folder, or a list) to measure on, instead of six generated quadrupeds")
         ->type_name("LIST");
     command->add_option("--only", options->only, fmt::format("measure only these: {}", fmt::join(part_names(), " ")))
-        ->check(offered_words(part_names()))
+        ->check(completion_words(part_names()))
         ->type_name("NAME");
     command->add_flag("--full", options->full, "also how costs grow up to two million faces, which takes many minutes");
     command->add_flag("--quick", options->quick, "one run of each, and none on one thread that takes long");

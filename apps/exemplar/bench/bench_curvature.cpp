@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "apps/exemplar/bench/bench_rows.h"
-#include "host/curvature/model/evaluation.h"
 #include "host/curvature/learning/training.h"
+#include "host/curvature/model/evaluation.h"
 #include "host/synth/animations/animations.h"
 
 namespace exemplar {
@@ -20,13 +20,13 @@ Cost per_frame(std::size_t runs, std::size_t frames, const std::function<void(st
 }
 
 struct Moments {
-    std::vector<SurfaceMoment> moments;
+    std::vector<SurfaceSnapshot> moments;
     Cost estimated, diffused;
 };
 
 /// The unseen frames, and what measuring their curvature costs.
 Moments measure_estimation(const BenchContext& context, const BenchCharacter& character, const CurvatureModel& model) {
-    MomentReader reader(character.unseen, model.segments, model.truth);
+    SnapshotReader reader(character.unseen, model.segments, model.truth);
     Moments result;
     for (const FrameRef& frame : character.unseen_frames) result.moments.push_back(reader.read(frame));
     CurvatureEstimator estimator(character.unseen.rest.faces, model.vertex_count);

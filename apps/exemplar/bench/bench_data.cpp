@@ -10,6 +10,7 @@
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
 #include "host/core/random.h"
+#include "host/core/statistics.h"
 #include "host/mesh/queries/geodesics.h"
 #include "host/mesh/topology.h"
 #include "host/synth/shapes/shapes.h"
@@ -43,7 +44,7 @@ TriangleMesh refine_once(TriangleMesh mesh) {
     return mesh;
 }
 
-/// Noise of faces that neighbors share: `passes` times the mean of a face and its neighbors, scaled to deviation 1.
+/// Makes smooth noise on faces: averages over a face and its neighbors `passes` times, then scales to deviation 1.
 std::vector<float> smooth_noise(const DualGraph& graph, int passes, Random& random) {
     std::vector<float> noise(graph.face_count()), mean(noise.size());
     for (float& value : noise) value = static_cast<float>(random.normal());
@@ -62,12 +63,6 @@ std::vector<float> smooth_noise(const DualGraph& graph, int passes, Random& rand
     return noise;
 }
 
-float median(std::vector<float> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
-}
-
 /// The region of each face: the nearest of the sources.
 std::vector<std::size_t> nearest_source(const DualGraph& graph, std::span<const std::uint32_t> sources) {
     const std::vector<float> distance = distances_from_sources(graph, sources);
@@ -81,7 +76,8 @@ std::vector<std::size_t> nearest_source(const DualGraph& graph, std::span<const 
 
 /// -log of a softmax of `scores`, faces x labels, times the areas.
 void scores_to_costs(std::span<const float> area, std::size_t labels, std::vector<float>& scores) {
-    const float unit = median({area.begin(), area.end()});
+    std::vector<float> sorted(area.begin(), area.end());
+    const float unit = upper_median(sorted);
     for (std::size_t f = 0; f < area.size(); ++f) {
         const std::span<float> of_face = std::span(scores).subspan(f * labels, labels);
         float sum = 0.0F;
@@ -134,7 +130,8 @@ CutProblem make_cut_problem(const TriangleMesh& mesh, std::size_t labels) {
         problem.edges.push_back(edge.face);
         length.push_back((mesh.vertices[edge.vertex[0]] - mesh.vertices[edge.vertex[1]]).norm());
     }
-    const float unit = median(length);
+    std::vector<float> sorted = length;
+    const float unit = upper_median(sorted);
     for (const float l : length) problem.weight.push_back(static_cast<double>(l / unit));
     problem.compatibility.assign(labels * labels, 1.0);
     for (std::size_t l = 0; l < labels; ++l) problem.compatibility[l * labels + l] = 0.0;

@@ -13,12 +13,13 @@
 
 namespace exemplar {
 
-// What `exemplar bench` measures on where the user brings no data. All of it is generated: equal calls, equal data.
+// Generated data for `exemplar bench` if the user gives none. Equal calls give equal data.
 
-/// Cuts every triangle into four at the middles of its edges, `times` times: the same surface of 4^times as many faces.
+/// Splits every triangle into four at the midpoints of its edges, `times` times: the same surface of 4^times as many
+/// faces.
 TriangleMesh refine(TriangleMesh mesh, std::size_t times);
 
-/// Generated quadrupeds of about `faces` faces with their true labels, of seeds 1 to `count`.
+/// Generates quadrupeds of about `faces` faces with their true labels, for seeds 1 to `count`.
 LabeledCorpus generated_fourlegs(std::size_t count, std::size_t faces);
 
 /// A labeling energy on the faces of a mesh.
@@ -29,15 +30,16 @@ struct CutProblem {
     std::vector<double> weight, compatibility;
     LabelingEnergy energy() const { return {unary, weight, compatibility}; }
 };
-/// What a classifier leaves to the cut: `labels` regions around far points of the surface, -log of probabilities that
-/// err in patches of all sizes, and Potts terms in proportion to the lengths of edges.
+/// Makes a typical problem for the graph cut: `labels` regions around distant points of the surface, unary costs
+/// -log of probabilities that err in patches of all sizes, and Potts terms in proportion to the lengths of edges.
 CutProblem make_cut_problem(const TriangleMesh& mesh, std::size_t labels);
 
-/// Lower bound on what any good method reaches: iterated conditional modes from the cheapest labels (each node takes
-/// the label that costs least beside its neighbors, until none changes), the simplest minimizer of such an energy.
+/// Returns the energy that iterated conditional modes reach from the cheapest labels: each node takes the label of
+/// minimum cost given its neighbors, until none changes. It is the simplest minimizer; any good method does better.
 double energy_of_conditional_modes(const CutProblem& problem);
 
-/// Overlapping classes to boost on: normal values whose means differ by class, 30% of them zero, as in histograms.
+/// Training data of overlapping classes: normal values whose means differ by class, 30% of them zero, as in
+/// histograms.
 struct BoostingData {
     FeatureMatrix features;
     std::vector<std::int32_t> labels;
@@ -45,7 +47,7 @@ struct BoostingData {
 };
 BoostingData make_boosting_data(std::size_t rows, std::size_t columns, std::size_t classes);
 
-/// A classifier of random stumps that are shared by 40 sets of classes, which is what training leaves.
+/// Makes a classifier of random stumps that are shared by 40 sets of classes, as after training.
 BoostedStumps random_stumps(std::size_t stumps, std::size_t columns, std::size_t classes);
 
 }  // namespace exemplar

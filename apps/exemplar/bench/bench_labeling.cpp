@@ -15,7 +15,7 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_faces = 20'000, k_training_meshes = 6;
+constexpr std::size_t k_faces = 20'000, k_bench_training_meshes = 6;
 constexpr std::size_t k_quick_rows = 1500;  // faces per mesh of a model that serves only to be applied
 
 /// What takes the place of a device's shaders on a CPU; keeps to the number of threads.
@@ -74,7 +74,7 @@ DeviceBackend& BenchContext::backend() {
 
 const LabeledCorpus& BenchContext::corpus() {
     if (!corpus_)
-        corpus_ = options_.meshes.empty() ? generated_fourlegs(k_training_meshes, k_faces)
+        corpus_ = options_.meshes.empty() ? generated_fourlegs(k_bench_training_meshes, k_faces)
                                           : working_corpus(load_corpus(list_meshes(options_.meshes)));
     return *corpus_;
 }
@@ -141,7 +141,7 @@ void bench_labeling(BenchContext& context, const std::function<void(const BenchR
         result.name = "label";
         result.cost = measure(context.runs(), [&] { label(folder, context.backend().labeling()); });
         result.remarks.push_back(fmt::format("{} stumps of {} labels, scored on {}", stump_count(model),
-                                             model.class_count(), context.backend().labels_on()));
+                                             model.class_count(), context.backend().labeling_device_name()));
         if (!context.quick()) result.single_thread = measure_single_thread(1, [&] { label(folder, host.labeling()); });
         row(result);
     };

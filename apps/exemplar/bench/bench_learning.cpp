@@ -26,7 +26,7 @@ Cost per_call(Cost cost, std::size_t calls) {
     return cost;
 }
 
-/// Device time as shares of the device's ceilings: what must cross the memory and be computed at least, per second.
+/// Adds shares of the device's ceilings: the minimum memory traffic and arithmetic, per second of device time.
 void add_shares(const BoostedStumps& classifier, std::size_t rows, double device_seconds, const Ceilings& ceilings,
                 BenchRow& result) {
     std::set<std::uint32_t> used;

@@ -11,11 +11,11 @@
 namespace exemplar {
 namespace {
 
-constexpr int k_width = 1280, k_height = 720;
+constexpr int k_bench_width = 1280, k_bench_height = 720;
 
 LinePicture picture_of(const BenchCharacter& character) {
     LinePicture picture;
-    picture.view = view_of_frames(character.unseen, character.unseen_frames, k_width, k_height);
+    picture.view = view_of_frames(character.unseen, character.unseen_frames, k_bench_width, k_bench_height);
     const LineType types[] = {LineType::contours, LineType::suggestive_contours};
     picture.families = line_families(types);
     picture.thresholds = family_thresholds({});
@@ -37,19 +37,19 @@ void bench_lines(BenchContext& context, const std::function<void(const BenchRow&
     const auto draw_all = [&](CurvatureSource from) {
         for (const FrameRef& frame : character.unseen_frames) {
             drawn.record(stream, frame, from);
-            drawn.renderer().record(stream, drawn.moment(), picture);
+            drawn.renderer().record(stream, drawn.snapshot(), picture);
             stream.finish();
         }
     };
     for (const CurvatureSource from : {CurvatureSource::learned, CurvatureSource::estimated}) {
-        draw_all(from);  // once without a clock: drivers compile at the first dispatch
+        draw_all(from);  // once untimed: D17 in docs/portability.md
         Cost cost = measure(3 * context.runs(), [&] { draw_all(from); });
         const auto frames = static_cast<double>(character.unseen_frames.size());
         for (double* seconds : {&cost.wall, &cost.cpu}) *seconds /= frames;
         row({.name = "lines",
              .what = fmt::format("two types, {}, pose to image, 20k vertices, {} x {}, {}",
                                  from == CurvatureSource::learned ? "learned curvature" : "estimated with diffusion",
-                                 k_width, k_height, device.info().name),
+                                 k_bench_width, k_bench_height, device.info().name),
              .goal = "24 frames a second",
              .cost = cost,
              .remarks = {fmt::format("{:.1f} frames a second", 1 / cost.wall)},

@@ -17,13 +17,13 @@
 
 namespace exemplar {
 
-/// A generated character of 20,000 vertices that moves, and moves otherwise.
+/// A generated character of 20,000 vertices with two different motions.
 struct BenchCharacter {
     Animation seen, unseen;
     std::vector<FrameRef> seen_frames, unseen_frames;
 };
 
-/// What the rows of `exemplar bench` share; made when a row first asks for it.
+/// Data that the rows of `exemplar bench` share, made at first use.
 class BenchContext {
   public:
     struct Options {
@@ -40,11 +40,11 @@ class BenchContext {
     const LabeledCorpus& corpus();
     /// The mesh of the corpus whose size is nearest to 20,000 faces.
     const LabeledMesh& mesh();
-    /// A model that the training row left, or one trained on fewer faces.
+    /// The model of the training row if that has run, else one trained on fewer faces.
     const LabelingModel& model();
     void set_model(LabelingModel model) { model_ = std::move(model); }
     const BenchCharacter& character();
-    /// Of the character: one that a training row left, or one trained on fewer poses.
+    /// A model of the character: that of a training row if one has run, else one trained on fewer poses.
     const CurvatureModel& curvature_model();
     void set_curvature_model(CurvatureModel model) { curvature_model_ = std::move(model); }
 
@@ -57,11 +57,11 @@ class BenchContext {
     std::optional<CurvatureModel> curvature_model_;
 };
 
-/// A part of the table: the rows that --only NAME asks for.
+/// A part of the table: the rows that --only NAME selects.
 struct BenchPart {
     const char* name;
-    bool only_full;  ///< takes many minutes: not without --full or --only
-    /// Measures and hands each row to `row` when it is done.
+    bool only_full;  ///< takes many minutes: only with --full or --only
+    /// Measures, and passes each row to `row` when it is done.
     void (*run)(BenchContext& context, const std::function<void(const BenchRow&)>& row);
 };
 

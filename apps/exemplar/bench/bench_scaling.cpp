@@ -30,7 +30,7 @@ struct Growth {
     }
 };
 
-/// Over all sizes, and between the last two: where several terms add up, the steepest shows there first.
+/// Adds the exponent over all sizes and that between the last two, where the steepest of several terms shows first.
 void add_exponent(const char* what, const char* key, const std::vector<double>& faces,
                   const std::vector<double>& values, BenchRow& result) {
     if (std::ranges::any_of(values, [](double value) { return !(value > 0); })) return;
@@ -43,7 +43,7 @@ void add_exponent(const char* what, const char* key, const std::vector<double>& 
     result.numbers[std::string(key) + "_at_end"] = end;
 }
 
-void report(const Growth& growth, const std::function<void(const BenchRow&)>& row) {
+void report_growth(const Growth& growth, const std::function<void(const BenchRow&)>& row) {
     for (std::size_t i = 0; i < growth.costs.size(); ++i) {
         BenchRow result{.name = "scaling",
                         .what = fmt::format("{}, {:.0f} faces", growth.what, growth.faces[i]),
@@ -84,8 +84,8 @@ void bench_scaling(BenchContext& context, const std::function<void(const BenchRo
         progress.advance(1, fmt::format("{} faces", mesh.face_count()));
     }
     progress.finish();
-    report(labeling, row);
-    report(cut, row);
+    report_growth(labeling, row);
+    report_growth(cut, row);
 }
 
 }  // namespace exemplar

@@ -36,7 +36,7 @@ std::vector<Task> tasks_of(const ShaderBenchOptions& options, const KernelFilter
     std::vector<Task> tasks;
     for (const OperationKind& kind : operation_kinds()) {
         if (!filter.wants(kind)) continue;
-        // Variants are told apart at the middle size: large enough that dispatches do not count.
+        // Variants are compared at the middle size, where the cost of dispatching does not matter.
         const std::vector<std::size_t> usual =
             options.tune ? std::vector{kind.sizes[kind.sizes.size() / 2]} : kind.sizes;
         for (const std::size_t size : options.sizes.empty() ? usual : options.sizes) tasks.push_back({&kind, size});
@@ -102,14 +102,14 @@ void print_statistics(const Device& device, const std::vector<Measurement>& meas
 void print_comparison(const VariantComparison& comparison) {
     const double as_is = median(comparison.as_is);
     fmt::print("{} ({}, {}): {}{}\n    as it is {:.4f} ms", comparison.kernel, comparison.operation, comparison.size,
-               comparison.parameter, comparison.judged == Judged::by_runs ? ", by whole runs" : "", as_is);
+               comparison.parameter, comparison.judged == TuningMetric::end_to_end ? ", by whole runs" : "", as_is);
     for (const auto& [value, milliseconds] : comparison.milliseconds)
         fmt::print(", {}: {:.4f} ({:.2f}x){}", value, median(milliseconds), median(milliseconds) / as_is,
                    comparison.chosen == value ? " <- taken" : "");
     fmt::print("{}\n", comparison.chosen ? "" : "; stays as it is");
 }
 
-/// Between the tables, which a line that is rewritten in place would disturb.
+/// Prints progress between the tables, as a line rewritten in place would disturb them.
 void print_progress(const ShaderBenchOptions& options, std::size_t done, std::size_t total, const Stopwatch& watch) {
     std::fflush(stdout);
     if (options.common.quiet || done == 0) return;

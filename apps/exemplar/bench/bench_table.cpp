@@ -10,6 +10,7 @@
 
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
+#include "host/core/statistics.h"
 #include "host/core/stopwatch.h"
 
 namespace exemplar {
@@ -33,12 +34,6 @@ double memory(const std::string& line) {
         return 1024 * kilobytes;
     }
     return std::numeric_limits<double>::quiet_NaN();
-}
-
-double median(std::vector<double> values) {
-    std::ranges::sort(values);
-    const std::size_t n = values.size();
-    return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
 std::string format_time(double seconds) {
@@ -77,7 +72,7 @@ Cost measure(std::size_t runs, const std::function<void()>& run) {
         peak.push_back(has_peak ? memory("VmHWM") : std::numeric_limits<double>::quiet_NaN());
         own.push_back(peak.back() - before);
     }
-    return {median(wall), median(cpu), median(peak), median(own)};
+    return {median(std::span(wall)), median(std::span(cpu)), median(std::span(peak)), median(std::span(own))};
 }
 
 Cost measure_single_thread(std::size_t runs, const std::function<void()>& run) {

@@ -26,10 +26,9 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t k_at_a_time = 256;  ///< shapes that are kept in one step, and lost if the program is killed
 
-/// Calls `found` for every mesh of a source. What a list names and is not there is found, too: a shape like others that
-/// cannot be read.
+/// Calls `found` for every mesh of a source. Missing files of a list are included, as shapes that cannot be read.
 void find_in_source(const fs::path& source, const std::function<void(const FoundShape&)>& found,
-                    const LeftOut& left_out) {
+                    const SkipHandler& left_out) {
     require_input(source);
     if (fs::is_directory(source)) return find_shapes(source, found, left_out);
     for (const fs::path& path : meshes_of_argument(source, MissingMeshes::kept)) {
@@ -47,7 +46,7 @@ fs::path name_of_source(const fs::path& source) {
     return whole.filename();
 }
 
-/// Looks into files, several at a time, and keeps what it finds.
+/// Reads files, several at a time, and stores what it finds in the catalog.
 class Adder {
   public:
     Adder(Catalog& catalog, const AddOptions& options, std::size_t total)
@@ -77,7 +76,7 @@ class Adder {
     }
 
   private:
-    /// Size and time are left at 0 where they cannot be had: reading says why.
+    /// Leaves size and time at 0 if they are not available; reading then tells why.
     static CatalogShape stat_of(const fs::path& path) {
         try {
             return stat_shape(path);
@@ -87,14 +86,14 @@ class Adder {
             return shape;
         }
     }
-    /// What could not be read may be readable now: by another user, with more memory.
+    /// Unusable shapes count as changed: another user, or more memory, may make them readable.
     static bool is_same(const CatalogShape& known, const CatalogShape& now) {
         return known.problem.empty() && known.bytes == now.bytes && known.modified == now.modified &&
                (now.category.empty() || known.category == now.category);
     }
     void flush() {
         parallel_for(waiting_.size(), [&](std::size_t i) {
-            // While one waits for memory its thread must not begin with another: both would wait forever.
+            // A thread that waits for memory must not start another shape, or both would wait forever.
             tbb::this_task_arena::isolate([&] { look_into(waiting_[i]); });
         });
         for (const CatalogShape& shape : waiting_) counts_.unusable += shape.problem.empty() ? 0 : 1;
@@ -107,7 +106,7 @@ class Adder {
         const auto take = [&] { return budget_.take(std::min(reading_memory(bytes), memory_)); };
         if (reading_memory(bytes) <= memory_) {
             const MemoryBudget::Share looking = take();
-            bytes += bytes_beside(shape.path);
+            bytes += external_buffer_bytes(shape.path);
         }
         const MemoryBudget::Share share = take();
         CatalogShape described = describe_shape(shape.path, memory_);
@@ -146,7 +145,7 @@ AddCounts add_to_catalog(Catalog& catalog, const std::vector<fs::path>& sources,
     return adder.finish();
 }
 
-AddCounts look_at_unusable(Catalog& catalog, const AddOptions& options) {
+AddCounts retry_unusable(Catalog& catalog, const AddOptions& options) {
     std::vector<fs::path> paths;
     catalog.for_each([&](const CatalogShape& shape) { paths.push_back(shape.path); }, "problem <> ''");
     Adder adder(catalog, options, paths.size());

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "apps/exemplar/arguments.h"
-#include "apps/exemplar/batch/batch_page.h"
+#include "apps/exemplar/catalog/batch_page.h"
 #include "apps/exemplar/catalog/catalog_output.h"
 #include "apps/exemplar/catalog/catalog_runs.h"
 #include "apps/exemplar/commands.h"
@@ -31,13 +31,14 @@ struct ExportCommand {
 };
 
 /// One shape and, if it was labeled in the run, how.
-struct Row {
+struct ExportedRow {
     CatalogShape shape;
     const CatalogRun::Labeled* labeled;  ///< null if it was not
 };
 
 /// Calls `use` for every shape of the catalog. Both lists come in order of number, so that they run side by side.
-void for_each_row(Catalog& catalog, std::optional<CatalogRun>& run, const std::function<void(const Row&)>& use) {
+void for_each_row(Catalog& catalog, std::optional<CatalogRun>& run,
+                  const std::function<void(const ExportedRow&)>& use) {
     std::int64_t next = 0;
     const auto between = [&](std::int64_t end) {  // shapes from `next` up to but without `end`
         catalog.for_each(
@@ -55,7 +56,7 @@ void for_each_row(Catalog& catalog, std::optional<CatalogRun>& run, const std::f
     between(std::numeric_limits<std::int64_t>::max());
 }
 
-Json describe(const Row& row, const fs::path& cache) {
+Json describe_row(const ExportedRow& row, const fs::path& cache) {
     Json json = describe_shape_row(row.shape, cache);
     json["state"] = row.labeled ? row.labeled->state : "open";
     if (!row.labeled) return json;
@@ -70,28 +71,28 @@ Json describe(const Row& row, const fs::path& cache) {
 }
 
 /// The columns of a CSV file: those of the JSON that are no lists.
-constexpr std::array k_columns{"id",
-                               "path",
-                               "name",
-                               "bytes",
-                               "hash",
-                               "vertices",
-                               "faces",
-                               "components",
-                               "usable",
-                               "problem",
-                               "category",
-                               "features",
-                               "state",
-                               "model",
-                               "model_hash",
-                               "recognized",
-                               "category_probability",
-                               "confidence",
-                               "labels",
-                               "seconds",
-                               "error",
-                               "finished"};
+constexpr std::array k_export_columns{"id",
+                                      "path",
+                                      "name",
+                                      "bytes",
+                                      "hash",
+                                      "vertices",
+                                      "faces",
+                                      "components",
+                                      "usable",
+                                      "problem",
+                                      "category",
+                                      "features",
+                                      "state",
+                                      "model",
+                                      "model_hash",
+                                      "recognized",
+                                      "category_probability",
+                                      "confidence",
+                                      "labels",
+                                      "seconds",
+                                      "error",
+                                      "finished"};
 
 /// Shares of the labels as "head 0.12; torso 0.55"; of the stages the sum.
 std::string csv_value(const std::string& column, const Json& value) {
@@ -115,19 +116,19 @@ std::string csv_value(const std::string& column, const Json& value) {
 }
 
 void write_csv(std::ostream& out, Catalog& catalog, std::optional<CatalogRun>& run, const fs::path& cache) {
-    out << fmt::format("{}\r\n", fmt::join(k_columns, ","));
-    for_each_row(catalog, run, [&](const Row& row) {
-        const Json json = describe(row, cache);
+    out << fmt::format("{}\r\n", fmt::join(k_export_columns, ","));
+    for_each_row(catalog, run, [&](const ExportedRow& row) {
+        const Json json = describe_row(row, cache);
         std::vector<std::string> fields;
-        fields.reserve(k_columns.size());
-        for (const char* column : k_columns) fields.push_back(csv_value(column, json.value(column, Json())));
+        fields.reserve(k_export_columns.size());
+        for (const char* column : k_export_columns) fields.push_back(csv_value(column, json.value(column, Json())));
         out << fmt::format("{}\r\n", fmt::join(fields, ","));
     });
 }
 
 void write_json_rows(std::ostream& out, Catalog& catalog, std::optional<CatalogRun>& run, const fs::path& cache) {
     write_json_list(out, [&](const auto& write) {
-        for_each_row(catalog, run, [&](const Row& row) { write(describe(row, cache)); });
+        for_each_row(catalog, run, [&](const ExportedRow& row) { write(describe_row(row, cache)); });
     });
     out << '\n';
 }
@@ -147,7 +148,7 @@ void run_export(const ExportCommand& options) {
     fmt::print("{} written to {}\n", counted(static_cast<std::size_t>(catalog.count()), "shape"), options.out.string());
 }
 
-/// A catalog may come from anywhere: only a folder that batch labeling wrote to is written to.
+/// Rewrites the page, but only in a folder that batch labeling has marked, as a catalog may come from anywhere.
 void renew_page(Catalog& catalog, CatalogRun& run) {
     const fs::path out = run.folder().parent_path();
     std::error_code ignored;
@@ -181,7 +182,7 @@ void run_merge(const ExportCommand& options) {
     write_report(options.common, {{"catalog", options.catalog.string()}, {"runs", merged}});
 }
 
-void add_catalog_options(CLI::App& command, ExportCommand& options) {
+void add_export_options(CLI::App& command, ExportCommand& options) {
     command.add_option("CATALOG", options.catalog, "catalog file")->required()->type_name("");
     command.add_option("--run", options.run, "number of the labeling run, see 'exemplar catalog status'")
         ->check(whole_number(1, 1'000'000'000))
@@ -197,7 +198,7 @@ void add_catalog_export_command(CLI::App& catalog) {
     command->footer(
         "A row for every shape, with what the latest run (or --run) made of it.\n\nExample:\n"
         "  exemplar catalog export shapes.db --out shapes.csv");
-    add_catalog_options(*command, *options);
+    add_export_options(*command, *options);
     command->add_option("--out", options->out, "file to write, .csv or .json")->required()->type_name("FILE");
     command->add_option("--cache", options->cache, "folder that remembers features")
         ->capture_default_str()
@@ -211,7 +212,7 @@ void add_catalog_merge_command(CLI::App& catalog) {
     command->footer(
         "Looks into the folders that runs write to, for shapes that the catalog has no result of.\n\nExample:\n"
         "  exemplar catalog merge shapes.db");
-    add_catalog_options(*command, *options);
+    add_export_options(*command, *options);
     command->callback([options] { run_merge(*options); });
 }
 

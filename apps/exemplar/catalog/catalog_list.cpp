@@ -25,7 +25,7 @@ struct ListCommand {
     bool problems = false, usable = false;
 };
 
-constexpr std::size_t k_shown = 200;  ///< characters of a text from a file
+constexpr std::size_t k_max_listed_text = 200;  ///< maximum characters of a text from a file
 
 /// An SQL condition for the shapes that are asked for.
 std::string condition(const ListCommand& options) {
@@ -37,14 +37,14 @@ std::string condition(const ListCommand& options) {
 }
 
 void print_shape(const CatalogShape& shape) {
-    const std::string path = mesh_io::printable(shape.path.string(), k_shown);
+    const std::string path = mesh_io::printable(shape.path.string(), k_max_listed_text);
     if (!shape.problem.empty()) {
         // Most problems begin with the path.
         const std::string& problem = shape.problem;
         const bool named = problem.starts_with(shape.path.string() + ':');
-        fmt::print(
-            "{:>7}  unusable  {}\n", shape.id,
-            named ? mesh_io::printable(problem, 2 * k_shown) : path + ": " + mesh_io::printable(problem, k_shown));
+        fmt::print("{:>7}  unusable  {}\n", shape.id,
+                   named ? mesh_io::printable(problem, 2 * k_max_listed_text)
+                         : path + ": " + mesh_io::printable(problem, k_max_listed_text));
         return;
     }
     const auto pieces = static_cast<std::size_t>(shape.components);
@@ -97,8 +97,8 @@ CacheState cache_state(Catalog& catalog, const fs::path& cache) {
 
 void print_run(const Json& run) {
     fmt::print("run {}: {} with {}, into {}\n", run["run"].get<std::int64_t>(), run["started"].get<std::string>(),
-               mesh_io::printable(run["models"].get<std::string>(), k_shown),
-               mesh_io::printable(run["folder"].get<std::string>(), k_shown));
+               mesh_io::printable(run["models"].get<std::string>(), k_max_listed_text),
+               mesh_io::printable(run["folder"].get<std::string>(), k_max_listed_text));
     fmt::print("    {} labeled, {} of unknown category, {} failed, {} being worked on, {} to do\n",
                run["done"].get<std::int64_t>(), run["unknown"].get<std::int64_t>(), run["failed"].get<std::int64_t>(),
                run["claimed"].get<std::int64_t>(), run["open"].get<std::int64_t>());
@@ -128,7 +128,8 @@ void run_status(const ListCommand& options) {
     fmt::print("features remembered of {}, {:.1f} GB\n", features.cached, 1e-9 * static_cast<double>(features.bytes));
     for (const Json& category : categories)
         if (const auto name = category["category"].get<std::string>(); !name.empty())
-            fmt::print("{:>8} {}\n", category["shapes"].get<std::int64_t>(), mesh_io::printable(name, k_shown));
+            fmt::print("{:>8} {}\n", category["shapes"].get<std::int64_t>(),
+                       mesh_io::printable(name, k_max_listed_text));
     Json runs = Json::array();
     for (const RunSummary& run : runs_of(catalog)) {
         runs.push_back(describe_run(catalog, run));
@@ -142,7 +143,7 @@ void run_status(const ListCommand& options) {
                                   {"runs", runs}});
 }
 
-void add_catalog_options(CLI::App& command, ListCommand& options) {
+void add_list_options(CLI::App& command, ListCommand& options) {
     command.add_option("CATALOG", options.catalog, "catalog file")->required()->type_name("");
     command.add_option("--cache", options.cache, "folder that remembers features")
         ->capture_default_str()
@@ -156,7 +157,7 @@ void add_catalog_list_command(CLI::App& catalog) {
     auto options = std::make_shared<ListCommand>();
     CLI::App* command = catalog.add_subcommand("list", "Prints a line for every shape of a catalog");
     command->footer("Example:\n  exemplar catalog list shapes.db --problems");
-    add_catalog_options(*command, *options);
+    add_list_options(*command, *options);
     CLI::Option* problems =
         command->add_flag("--problems", options->problems, "only those that cannot be used, and why");
     command->add_flag("--usable", options->usable, "only those that can be used")->excludes(problems);
@@ -169,7 +170,7 @@ void add_catalog_status_command(CLI::App& catalog) {
     auto options = std::make_shared<ListCommand>();
     CLI::App* command = catalog.add_subcommand("status", "Prints what a catalog holds and how far its labeling is");
     command->footer("Example:\n  exemplar catalog status shapes.db --json status.json");
-    add_catalog_options(*command, *options);
+    add_list_options(*command, *options);
     command->callback([options] { run_status(*options); });
 }
 

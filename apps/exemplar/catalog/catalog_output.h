@@ -8,15 +8,16 @@
 
 namespace exemplar {
 
-/// A text as a field of a CSV file (RFC 4180): in quotes where it needs them. What a spreadsheet would take for a
-/// formula is preceded by an apostrophe: names of files come from anywhere.
+/// Returns a text as a field of a CSV file (RFC 4180), quoted if needed. An apostrophe precedes what a spreadsheet
+/// would take for a formula, as file names may come from anywhere.
 std::string csv_field(std::string_view text);
-/// JSON on one line; bytes that are no UTF-8 become U+FFFD.
+/// Returns JSON on one line; bytes that are not UTF-8 become U+FFFD.
 std::string json_text(const nlohmann::json& json);
-/// Writes a list, a value a line, as the values come: `fill` is called once, with a function that writes one.
+/// Writes a list while its values are made, one value a line: `fill` is called once, with a function that writes a
+/// value.
 void write_json_list(std::ostream& out,
                      const std::function<void(const std::function<void(const nlohmann::json&)>&)>& fill);
-/// A text as an SQL literal.
+/// Returns a text as an SQL literal.
 std::string sql_text(std::string_view text);
 
 }  // namespace exemplar

@@ -11,7 +11,7 @@ namespace exemplar {
 namespace fs = std::filesystem;
 
 std::string format_time(double seconds_since_1970) {
-    // Years of four digits; what is not one was never written by this program.
+    // Years of four digits; this program never writes others.
     if (!(seconds_since_1970 > 0) || seconds_since_1970 > 2.5e11) return {};
     return fmt::format("{:%Y-%m-%d %H:%M:%S}", fmt::gmtime(static_cast<std::time_t>(seconds_since_1970)));
 }

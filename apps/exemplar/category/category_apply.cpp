@@ -41,20 +41,20 @@ nlohmann::json recognize_mesh(const std::filesystem::path& path, const CategoryM
                               const std::filesystem::path& cache, bool quiet) {
     const MeshFile file = read_mesh(path);
     const std::vector<std::string> warnings = mesh_warnings(file, path, quiet);
-    const CategoryOpinion opinion = of_file(
+    const CategoryPrediction prediction = of_file(
         path, [&] { return recognize(model, cached_shape_descriptor(file.mesh, model.feature_options, cache)); });
-    const auto [best, second] = two_most_probable(opinion.probability);
-    const bool known = opinion.category >= 0;
+    const auto [best, second] = two_most_probable(prediction.probability);
+    const bool known = prediction.category >= 0;
     const std::string name = known ? model.category_names[best] : std::string(k_unknown_category);
     fmt::print("{:<24} {:<14} confidence {:.2f}  {} {:.2f}, {} {:.2f}\n", path.filename().string(), name,
-               opinion.confidence, model.category_names[best], opinion.probability[best], model.category_names[second],
-               opinion.probability[second]);
+               prediction.confidence, model.category_names[best], prediction.probability[best],
+               model.category_names[second], prediction.probability[second]);
     nlohmann::json probabilities;
     for (std::size_t c = 0; c < model.category_count(); ++c)
-        probabilities[model.category_names[c]] = opinion.probability[c];
+        probabilities[model.category_names[c]] = prediction.probability[c];
     return {{"mesh", path.string()},
             {"category", known ? nlohmann::json(name) : nlohmann::json(nullptr)},
-            {"confidence", opinion.confidence},
+            {"confidence", prediction.confidence},
             {"nearest", model.category_names[best]},
             {"runner_up", model.category_names[second]},
             {"probabilities", std::move(probabilities)},

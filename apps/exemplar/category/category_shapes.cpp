@@ -119,7 +119,7 @@ void add_category_options(CLI::App& command, CategoryTrainingOptions& training, 
         ->check(whole_number(0));
     command.add_option("--samples", features.samples, "faces that stand for the surface in distance statistics")
         ->capture_default_str()
-        ->check(whole_number(1, k_most_samples));
+        ->check(whole_number(1, k_max_samples));
     command.add_flag("--orientation", features.orientation, "add coordinates, for shapes that share an orientation");
     command
         .add_option("--least-confidence", training.least_confidence,

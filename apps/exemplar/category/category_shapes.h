@@ -16,23 +16,23 @@ struct CategoryMeshes {
     std::vector<std::filesystem::path> meshes;
 };
 
-/// What SOURCE says of a category's meshes.
+/// Help text on SOURCE, the meshes of a category.
 extern const char* const k_category_source_help;
 
-/// Categories in the order in which they come, those of equal names as one, a mesh once. An argument is NAME=SOURCE
-/// (a folder, list or mesh file), a folder of meshes, whose name is the category, or a folder of such folders. Throws
-/// DataError or UsageError saying what is missing.
+/// Returns categories in the order of the arguments; merges those of equal names and lists each mesh once. An
+/// argument is NAME=SOURCE (a folder, list or mesh file), a folder of meshes, whose name is the category, or a
+/// folder of such folders. Throws DataError or UsageError naming what is missing.
 std::vector<CategoryMeshes> categories_of_arguments(const std::vector<std::string>& arguments);
 
-/// Reads all meshes and describes them, with progress. Throws MeshError naming the first that cannot be used.
+/// Reads all meshes and computes their descriptors, with progress. Throws MeshError naming the first unusable mesh.
 CategorizedShapes describe_categories(const std::vector<CategoryMeshes>& categories, const FeatureOptions& options,
                                       const std::filesystem::path& cache, bool quiet);
 
-/// Adds the options of a training, of its features and of the memory of these to a subcommand.
+/// Adds the options of training, of its features and of their cache to a subcommand.
 void add_category_options(CLI::App& command, CategoryTrainingOptions& training, FeatureOptions& features,
                           std::filesystem::path& cache);
 
-/// What was measured on held-out shapes, as text and for --json.
+/// Results on held-out shapes, as text and for --json.
 void print_category_report(const CategoryReport& report);
 nlohmann::json describe_category_report(const CategoryReport& report);
 

@@ -21,8 +21,8 @@ struct CategoryTrainCommand {
     CategoryTrainingOptions training;
 };
 
-nlohmann::json describe(const CategoryTrainCommand& options, const std::vector<CategoryMeshes>& categories,
-                        const CategoryModel& model, const CategoryReport& report) {
+nlohmann::json describe_training(const CategoryTrainCommand& options, const std::vector<CategoryMeshes>& categories,
+                                 const CategoryModel& model, const CategoryReport& report) {
     nlohmann::json listed = nlohmann::json::array();
     for (const CategoryMeshes& category : categories)
         listed.push_back({{"category", category.name}, {"meshes", category.meshes.size()}});
@@ -33,7 +33,7 @@ nlohmann::json describe(const CategoryTrainCommand& options, const std::vector<C
             {"least_confidence", model.least_confidence}};
 }
 
-/// Before the long work.
+/// Throws before the long work if the categories cannot be learned.
 void require_learnable(const std::vector<CategoryMeshes>& categories) {
     std::vector<std::string> names;
     std::vector<std::size_t> counts;
@@ -64,7 +64,7 @@ void run_category_train(const CategoryTrainCommand& options) {
     print_category_report(report);
     fmt::print("{} of {}: {} in {:.1f} s (features {:.1f} s)\n", counted(categories.size(), "category", "categories"),
                counted(shapes.shapes.size(), "mesh", "meshes"), options.out.string(), watch.wall(), describe_seconds);
-    nlohmann::json json = describe(options, categories, model, report);
+    nlohmann::json json = describe_training(options, categories, model, report);
     json["seconds"] = {{"features", describe_seconds}, {"all", watch.wall()}, {"cpu", watch.cpu()}};
     write_report(options.common, json);
 }

@@ -67,7 +67,7 @@ void check_trainings(CategoryTrials& trials) {
     }
     std::string needed;
     for (std::size_t k = 0; k < trials.splits.size(); ++k)  // all have as many training meshes of each category
-        for (const std::int32_t c : categories_needed(names, category, trials.splits[k]))
+        for (const std::int32_t c : indispensable_categories(names, category, trials.splits[k]))
             if (k == 0) needed += (needed.empty() ? "" : ", ") + names[static_cast<std::size_t>(c)];
     if (needed.empty()) return;
     trials.remarks.push_back(
@@ -89,20 +89,20 @@ std::vector<std::string> content_hashes(const std::vector<fs::path>& paths) {
 }
 
 /// A test mesh, and a training mesh of the same content.
-struct Twins {
+struct DuplicatePair {
     std::size_t tested, trained;
 };
 
-std::vector<Twins> find_twins(const std::vector<std::string>& hashes, const Split& split) {
+std::vector<DuplicatePair> find_duplicates(const std::vector<std::string>& hashes, const Split& split) {
     std::map<std::string, std::size_t> trained;
     for (const std::size_t i : split.train) trained.emplace(hashes[i], i);
-    std::vector<Twins> twins;
+    std::vector<DuplicatePair> twins;
     for (const std::size_t i : split.test)
         if (const auto twin = trained.find(hashes[i]); twin != trained.end()) twins.push_back({i, twin->second});
     return twins;
 }
 
-/// A file given both to train on and to test is a mistake.
+/// Throws UsageError for a file that is given both to train on and to test.
 void refuse_same_files(const CategoryTrials& trials) {
     const std::vector<fs::path> paths = trials.paths();
     std::set<fs::path> trained;
@@ -112,16 +112,16 @@ void refuse_same_files(const CategoryTrials& trials) {
             throw UsageError(fmt::format("{}: is among the training meshes; test others", paths[i].string()));
 }
 
-void leave_twins_out(CategoryTrials& trials) {
+void drop_duplicates(CategoryTrials& trials) {
     const std::vector<fs::path> paths = trials.paths();
     const std::vector<std::string> hashes = content_hashes(paths);
-    struct LeftOut {
+    struct SkipHandler {
         std::size_t splits = 0, trained = 0;
     };
-    std::map<std::size_t, LeftOut> left_out;
+    std::map<std::size_t, SkipHandler> left_out;
     std::size_t tests = 0;
     for (Split& split : trials.splits) {
-        for (const Twins& twins : find_twins(hashes, split)) {
+        for (const DuplicatePair& twins : find_duplicates(hashes, split)) {
             std::erase(split.test, twins.tested);
             left_out[twins.tested] = {left_out[twins.tested].splits + 1, twins.trained};
         }
@@ -152,7 +152,7 @@ CategoryTrials make_category_trials(const CategoryTrialOptions& options, std::ui
     CategoryTrials trials = given ? given_trial(options) : random_trials(options, seed);
     if (given) refuse_same_files(trials);
     check_trainings(trials);
-    leave_twins_out(trials);
+    drop_duplicates(trials);
     return trials;
 }
 

@@ -10,13 +10,13 @@
 
 namespace exemplar {
 
-/// Either sources to split, or those to train on and to test.
+/// Either sources to split, or sources to train on and sources to test.
 struct CategoryTrialOptions {
     std::vector<std::string> sources, train, test;
     std::size_t train_count = 6, splits = 1;
 };
 
-/// The meshes of all categories, and which of them are trained on and tested, numbered through all categories.
+/// The meshes of all categories, and the training and test meshes of each split, numbered across all categories.
 struct CategoryTrials {
     std::vector<CategoryMeshes> categories;
     std::vector<Split> splits;
@@ -25,10 +25,10 @@ struct CategoryTrials {
     std::vector<std::filesystem::path> paths() const;
 };
 
-/// Makes the trials, and refuses what would fail after the long work: it reads all meshes, but computes nothing. A mesh
-/// of the same content as one that is trained on, in whatever category, would not test anything: it is left out, with a
-/// remark; the same file is refused. Throws UsageError or DataError saying what is missing or cannot be learned, and
-/// MeshError for a mesh that cannot be read.
+/// Makes the trials, and rejects what would fail after the long work: reads all meshes, but computes nothing. Leaves
+/// out test meshes of the same content as a training mesh of any category, with a remark; rejects the same file in
+/// both. Throws UsageError or DataError naming what is missing or cannot be learned, and MeshError for an unreadable
+/// mesh.
 CategoryTrials make_category_trials(const CategoryTrialOptions& options, std::uint64_t seed);
 
 }  // namespace exemplar

@@ -21,15 +21,15 @@ struct EvaluateOptions {
     std::uint64_t seed = 2;
 };
 
-/// Of the first, the middle and the last frame.
-void write_pictures(const std::filesystem::path& folder, const CurvatureModel& model, const Animation& animation,
-                    const std::vector<FrameRef>& frames) {
+/// Writes pictures of the first, the middle and the last frame.
+void write_frame_pictures(const std::filesystem::path& folder, const CurvatureModel& model, const Animation& animation,
+                          const std::vector<FrameRef>& frames) {
     std::filesystem::create_directories(folder);
     for (const std::size_t i : std::set<std::size_t>{0, frames.size() / 2, frames.size() - 1})
         write_line_pictures(folder, model, animation, frames[i]);
 }
 
-void run_evaluate(const EvaluateOptions& options) {
+void run_curvature_evaluate(const EvaluateOptions& options) {
     const auto limits = apply_common_options(options.common);
     const Stopwatch watch;
     require_input(options.model);
@@ -39,7 +39,7 @@ void run_evaluate(const EvaluateOptions& options) {
     const std::vector<FrameRef> frames = select_frames(animation, selection_of(options.frames));
     const CurvatureEvaluation evaluation = evaluate_curvature(model, animation, frames);
     print_evaluation(evaluation);
-    if (!options.pictures.empty()) write_pictures(options.pictures, model, animation, frames);
+    if (!options.pictures.empty()) write_frame_pictures(options.pictures, model, animation, frames);
     nlohmann::json json = describe_evaluation(evaluation);
     json["model"] = options.model.string();
     json["animation"] = options.animation.string();
@@ -72,7 +72,7 @@ void add_curvature_evaluate_command(CLI::App& curvature) {
         ->capture_default_str()
         ->check(whole_number(0));
     add_common_options(*command, options->common);
-    command->callback([options] { run_evaluate(*options); });
+    command->callback([options] { run_curvature_evaluate(*options); });
 }
 
 }  // namespace exemplar

@@ -24,7 +24,8 @@ Learner learner_of(const std::string& name) {
     return Learner::global;
 }
 
-/// What training hardly shows another motion of a rig hardly shows either, but another fold of a cloth may.
+/// Components of little variance in training are also small in other motions of a rig, but not in other folds of
+/// cloth.
 double suitable_sparsity(AnimationKind kind) {
     return kind == AnimationKind::sequence ? 0 : CurvatureTraining{}.dropped_variance;
 }
@@ -100,13 +101,13 @@ CurvatureTraining training_of(const CurvatureArguments& arguments, AnimationKind
     training.seed = arguments.seed;
     training.augmented_poses = arguments.augmented_poses;
     training.sequence.patch_vertices = arguments.patch_vertices;
-    training.sequence.most_inputs = arguments.patch_inputs;
+    training.sequence.max_inputs = arguments.patch_inputs;
     training.sequence.share = arguments.state_variance;
     training.sequence.seed = arguments.seed;
     return training;
 }
 
-std::map<std::string, std::string> words_of(const CurvatureArguments& arguments, AnimationKind kind) {
+std::map<std::string, std::string> training_words(const CurvatureArguments& arguments, AnimationKind kind) {
     const CurvatureTraining training = training_of(arguments, kind);
     return {{"smoothing", fmt::format("{}", arguments.smoothing)},
             {"robust", arguments.robust},

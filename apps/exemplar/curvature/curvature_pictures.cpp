@@ -25,7 +25,7 @@ std::vector<Color> colors_of(const Marks& truth, const Marks& guess) {
     return colors;
 }
 
-/// Clips may be called anything, and "../x" should not lead out of the folder.
+/// Returns a safe file name: clips may have any name, and "../x" must not lead out of the folder.
 std::string file_name_of(std::string clip) {
     for (char& c : clip)
         if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-') c = '_';
@@ -39,16 +39,16 @@ void write_line_pictures(const std::filesystem::path& folder, const CurvatureMod
                          FrameRef frame) {
     const FrameCurvature at = curvature_at(model, animation, frame);
     TriangleMesh mesh = animation.rest;
-    mesh.vertices = at.moment.vertices;
+    mesh.vertices = at.snapshot.vertices;
     const Camera camera = fit_camera(mesh, Vec3(0.5f, 0.3f, 1), float(k_width) / k_height);
     for (const LineType type : compared_lines()) {
         const auto marks = [&](const VertexCurvature& curvature) {
-            return classify_faces({mesh.faces, mesh.vertices, at.moment.normals, curvature}, type,
+            return classify_faces({mesh.faces, mesh.vertices, at.snapshot.normals, curvature}, type,
                                   {.eye = camera.position(), .feature_size = model.feature_size, .thresholds = {}});
         };
-        const Marks truth = marks(at.moment.curvature);
+        const Marks truth = marks(at.snapshot.curvature);
         std::vector<Image> images;
-        for (const VertexCurvature* curvature : {&at.moment.curvature, &at.learned, &at.zero_order})
+        for (const VertexCurvature* curvature : {&at.snapshot.curvature, &at.learned, &at.zero_order})
             images.push_back(render_mesh(mesh, colors_of(truth, marks(*curvature)), camera, k_width, k_height));
         write_png(folder / fmt::format("{}_{:04d}_{}.png", file_name_of(animation.clips[frame.clip].name), frame.frame,
                                        name_of(type)),

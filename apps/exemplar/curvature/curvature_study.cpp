@@ -45,7 +45,7 @@ std::vector<FrameRef> unseen_frames(std::vector<FrameRef> test, const std::vecto
     return test;
 }
 
-/// `most` of some frames, evenly taken.
+/// Returns `most` of the frames, evenly spaced.
 std::vector<FrameRef> evenly(const std::vector<FrameRef>& frames, std::size_t most) {
     std::vector<FrameRef> taken;
     for (std::size_t i = 0; i < std::min(most, frames.size()); ++i)
@@ -53,10 +53,10 @@ std::vector<FrameRef> evenly(const std::vector<FrameRef>& frames, std::size_t mo
     return taken;
 }
 
-/// What Figs. 5.6, 5.8, 5.10, 5.12 and 5.14 vary, and sparsity.
+/// The variations of Figs. 5.6, 5.8, 5.10, 5.12 and 5.14, and of sparsity.
 std::vector<Variation> variations(const CurvatureArguments& given, std::size_t poses, Learner learner) {
     std::vector<Variation> result{{"as given", "", given, poses}};
-    for (std::size_t few = k_fewest_poses; few < poses; few *= 2)
+    for (std::size_t few = k_min_poses; few < poses; few *= 2)
         result.push_back({"poses", std::to_string(few), given, few});
     const auto vary = [&](const char* what, auto CurvatureArguments::*member, const auto& values) {
         for (const auto& value : values) {
@@ -78,8 +78,8 @@ std::vector<Variation> variations(const CurvatureArguments& given, std::size_t p
 }
 
 /// The line types of the thesis' figures.
-constexpr std::array<LineType, 4> k_shown{LineType::suggestive_contours, LineType::ridges, LineType::valleys,
-                                          LineType::apparent_ridges};
+constexpr std::array<LineType, 4> k_study_faces{LineType::suggestive_contours, LineType::ridges, LineType::valleys,
+                                                LineType::apparent_ridges};
 
 const LineError& error_of(const CurvatureEvaluation& evaluation, LineType type) {
     return *std::ranges::find(evaluation.lines, type, &LineError::type);
@@ -87,14 +87,14 @@ const LineError& error_of(const CurvatureEvaluation& evaluation, LineType type) 
 
 void print_head() {
     fmt::print("{:<24}{:>9}{:>9}", "faces wrong, %", "MB", "train s");
-    for (const LineType type : k_shown) fmt::print("{:>22}", name_of(type));
+    for (const LineType type : k_study_faces) fmt::print("{:>22}", name_of(type));
     fmt::print("\n");
 }
 
-void print_row(const std::string& name, double bytes, double seconds, const CurvatureEvaluation& evaluation,
-               double LineError::*share) {
+void print_study_row(const std::string& name, double bytes, double seconds, const CurvatureEvaluation& evaluation,
+                     double LineError::*share) {
     fmt::print("{:<24}{:>9.2f}{:>9.1f}", name, 1e-6 * bytes, seconds);
-    for (const LineType type : k_shown) fmt::print("{:>22.2f}", 100 * error_of(evaluation, type).*share);
+    for (const LineType type : k_study_faces) fmt::print("{:>22.2f}", 100 * error_of(evaluation, type).*share);
     fmt::print("\n");
     std::fflush(stdout);
 }
@@ -107,15 +107,15 @@ nlohmann::json run_variation(const Variation& variation, const Animation& animat
     const CurvatureModel model = train_curvature(animation, evenly(frames, variation.poses),
                                                  training_of(variation.arguments, animation.kind), report);
     const double seconds = watch.wall();
-    require_fit(model, test);
+    require_compatible(model, test);
     const CurvatureEvaluation evaluation = evaluate_curvature(model, test, test_frames);
     const auto bytes = static_cast<double>(report.model_bytes);
     if (variation.what == "as given") {
         print_head();
-        print_row("zero order", 0, 0, evaluation, &LineError::zero_order);
+        print_study_row("zero order", 0, 0, evaluation, &LineError::zero_order);
     }
-    print_row(fmt::format("{} {}", variation.what, variation.value), bytes, seconds, evaluation,
-              &LineError::misclassified);
+    print_study_row(fmt::format("{} {}", variation.what, variation.value), bytes, seconds, evaluation,
+                    &LineError::misclassified);
     return {{"what", variation.what},
             {"value", variation.value},
             {"training", describe_training(report)},

@@ -11,14 +11,14 @@
 namespace exemplar {
 namespace {
 
-struct TrainOptions {
+struct CurvatureTrainOptions {
     CommonOptions common;
     std::filesystem::path animation, out;
     FrameArguments frames;
     CurvatureArguments curvature;
 };
 
-void run_train(const TrainOptions& options) {
+void run_curvature_train(const CurvatureTrainOptions& options) {
     const auto limits = apply_common_options(options.common);
     require_output_file(options.out);
     const Stopwatch watch;
@@ -29,7 +29,8 @@ void run_train(const TrainOptions& options) {
     CurvatureModel model = train_curvature(animation, frames, training_of(options.curvature, animation.kind), report);
     model.training["animation"] = options.animation.filename().string();
     model.training["poses"] = std::to_string(frames.size());
-    for (const auto& [option, value] : words_of(options.curvature, animation.kind)) model.training[option] = value;
+    for (const auto& [option, value] : training_words(options.curvature, animation.kind))
+        model.training[option] = value;
     save_curvature_model(options.out, model);
 
     fmt::print("{}, {} ({} varying), {}: {} with {}, {:.1f} of {:.1f} matter to a vertex\n", name_of(animation.kind),
@@ -52,7 +53,7 @@ void run_train(const TrainOptions& options) {
 }  // namespace
 
 void add_curvature_train_command(CLI::App& curvature) {
-    auto options = std::make_shared<TrainOptions>();
+    auto options = std::make_shared<CurvatureTrainOptions>();
     CLI::App* command = curvature.add_subcommand("train", "Learns curvature from the poses of an animation");
     command->footer(
         "Example:\n  exemplar curvature train figure.glb --clips walk,run --out figure.safetensors --seed 1");
@@ -63,7 +64,7 @@ void add_curvature_train_command(CLI::App& curvature) {
     add_frame_options(*command, options->frames, "", "learn from");
     add_curvature_options(*command, options->curvature);
     add_common_options(*command, options->common);
-    command->callback([options] { run_train(*options); });
+    command->callback([options] { run_curvature_train(*options); });
 }
 
 }  // namespace exemplar

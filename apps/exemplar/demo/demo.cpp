@@ -28,7 +28,8 @@ struct DemoOptions {
     std::uint64_t seed = 1;
 };
 
-/// Training shapes of a kind: what the user says, else six; the quadrupeds are of nine species, so six cannot show all.
+/// Number of training shapes of a kind: the user's, else six, or more for quadrupeds, whose nine species six cannot
+/// show.
 std::size_t train_count(const DemoOptions& options, const std::string& kind) {
     if (options.train_count > 0) return options.train_count;
     return kind == "fourleg" ? 12 : 6;
@@ -97,7 +98,7 @@ void add_demo_command(CLI::App& app) {
     command->footer("Example:\n  exemplar demo --out out/demo");
     command->add_option("--out", options->out, "folder to write to")->capture_default_str()->type_name("FOLDER");
     command->add_option("--kinds", options->kinds, "kinds of shapes (see 'exemplar synth --help'); all by default")
-        ->check(offered_words(synth_kinds()))
+        ->check(completion_words(synth_kinds()))
         ->type_name("KIND");
     command
         ->add_option("--train", options->train_count,

@@ -11,8 +11,8 @@
 #include "host/core/progress.h"
 #include "host/core/stopwatch.h"
 #include "host/core/text.h"
-#include "host/curvature/model/evaluation.h"
 #include "host/curvature/learning/training.h"
+#include "host/curvature/model/evaluation.h"
 #include "host/lines/drawing_svg.h"
 #include "host/synth/animations/animations.h"
 
@@ -21,22 +21,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t k_vertices = 4000, k_seen = 60, k_frames = 120, k_shown = 30;
-constexpr int k_width = 560, k_height = 620;
+constexpr std::size_t k_vertices = 4000, k_seen = 60, k_frames = 120, k_demo_frames = 30;
+constexpr int k_demo_width = 560, k_demo_height = 620;
 constexpr std::array k_types{LineType::suggestive_contours, LineType::contours};
 
 /// One frame twice: by learned curvature, and by that which is measured in it.
 Drawing draw_twice(const std::vector<Face>& faces, const std::vector<FaceNeighbors>& neighbors,
                    const FrameCurvature& at, const DrawingStyle& style, const StrokeView& view) {
     const auto draw = [&](const VertexCurvature& curvature) {
-        return draw_lines({faces, at.moment.vertices, at.moment.normals, curvature, neighbors}, k_types, style, view);
+        return draw_lines({faces, at.snapshot.vertices, at.snapshot.normals, curvature, neighbors}, k_types, style,
+                          view);
     };
-    return side_by_side(draw(at.learned), draw(at.moment.curvature));
+    return side_by_side(draw(at.learned), draw(at.snapshot.curvature));
 }
 
-std::vector<Drawing> draw_frames(const CurvatureModel& model, const Animation& animation,
-                                 const std::vector<FrameRef>& frames, const DrawingStyle& style) {
-    StrokeView view = view_of_frames(animation, frames, k_width, k_height);
+std::vector<Drawing> draw_demo_frames(const CurvatureModel& model, const Animation& animation,
+                                      const std::vector<FrameRef>& frames, const DrawingStyle& style) {
+    StrokeView view = view_of_frames(animation, frames, k_demo_width, k_demo_height);
     view.feature_size = model.feature_size;
     const std::vector<Face>& faces = animation.rest.faces;
     const std::vector<FaceNeighbors> neighbors = build_face_neighbors(faces, animation.rest.vertex_count());
@@ -50,7 +51,7 @@ std::vector<Drawing> draw_frames(const CurvatureModel& model, const Animation& a
     return drawings;
 }
 
-/// Of suggestive contours: contours take no curvature.
+/// Returns the error of suggestive contours, as contours do not depend on curvature.
 LineError error_of_lines(const CurvatureModel& model, const Animation& animation, const std::vector<FrameRef>& frames) {
     for (const LineError& error : evaluate_curvature(model, animation, frames).lines)
         if (error.type == LineType::suggestive_contours) return error;
@@ -71,12 +72,13 @@ DemoLines make_demo_lines(const fs::path& folder, std::uint64_t seed) {
         train_curvature(animation, select_frames(animation, {.clips = {}, .end = k_seen}), {.seed = seed}, training);
     const double learned = training_watch.wall();
     save_curvature_model(folder / "figure.safetensors", model);
-    const std::vector<FrameRef> unseen = select_frames(animation, {.clips = {}, .begin = k_seen, .most = k_shown});
+    const std::vector<FrameRef> unseen =
+        select_frames(animation, {.clips = {}, .begin = k_seen, .most = k_demo_frames});
     const DrawingStyle style = load_style("ink");
-    const std::vector<Drawing> drawings = draw_frames(model, animation, unseen, style);
+    const std::vector<Drawing> drawings = draw_demo_frames(model, animation, unseen, style);
     SvgOptions svg;
-    // The shown ones follow each other in the time of all.
-    svg.frames_per_second = animation.clips[0].frames_per_second * k_shown / (k_frames - k_seen);
+    // The shown frames take the time of all unseen ones.
+    svg.frames_per_second = animation.clips[0].frames_per_second * k_demo_frames / (k_frames - k_seen);
     svg.title = "A figure in lines";
     write_drawing_svg(folder / "figure.svg", drawings, style, svg);
 

@@ -125,7 +125,7 @@ std::vector<LineType> HatchDrawJob::curve_types() const {
     std::vector<LineType> types;
     for (const std::string& word : curves) {
         if (word == "none") continue;
-        const auto type = line_type_meant(word);
+        const auto type = line_type_from_prefix(word);
         if (!type)
             throw UsageError(fmt::format("--curves '{}' is no type of lines; see 'exemplar lines --help'", word));
         types.push_back(*type);
@@ -166,7 +166,7 @@ void add_hatch_draw_command(CLI::App& hatch) {
         ->add_option("--curves", arguments->curves,
                      "feature curves drawn with it, as 'exemplar lines --types' has them, or none")
         ->type_name("TYPE")
-        ->check(offered_words(curve_words()))
+        ->check(completion_words(curve_words()))
         ->delimiter(',')
         ->allow_extra_args(false)
         ->capture_default_str();

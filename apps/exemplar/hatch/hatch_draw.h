@@ -13,7 +13,7 @@
 
 namespace exemplar {
 
-/// What 'exemplar hatch draw' is asked to draw.
+/// Arguments of 'exemplar hatch draw'.
 struct HatchDrawJob {
     std::filesystem::path style, out, properties;
     LinesOutput output = LinesOutput::svg;
@@ -23,10 +23,10 @@ struct HatchDrawJob {
     float taper = 6, scale = 1;
     bool no_tone = false, outlines = false;
     std::uint64_t seed = 1;
-    // Of animations:
+    // For animations:
     FrameArguments frames;
     double frames_per_second = 30;
-    double turn = 0;  ///< degrees from a frame to the next
+    double turn = 0;  ///< degrees from one frame to the next
     bool fresh = false, remeasure = false;
 
     HatchingOptions options() const {
@@ -35,9 +35,9 @@ struct HatchDrawJob {
         options.matches_tone = !no_tone;
         return options;
     }
-    /// Throws UsageError for a word that is no type of lines.
+    /// Returns the line types of `curves`; throws UsageError for an unknown one.
     std::vector<LineType> curve_types() const;
-    /// Whether frames are asked for, not a still of a mesh.
+    /// Returns whether frames are asked for rather than a still of a mesh.
     bool has_frames() const {
         return std::filesystem::is_directory(scene.mesh) || output == LinesOutput::video ||
                output == LinesOutput::folder || !frames.range.empty() || !frames.clips.empty() || frames.most > 0 ||
@@ -47,7 +47,7 @@ struct HatchDrawJob {
 
 /// Writes a drawing as .svg or .png.
 void write_hatched_drawing(const HatchDrawJob& job, const HatchedDrawing& drawing, const DrawingStyle& look);
-/// Draws frames of an animation, or of a mesh that turns, and writes them: strokes stay on the surface.
+/// Draws and writes frames of an animation, or of a mesh that turns; strokes stay on the surface.
 void write_hatched_frames(const HatchDrawJob& job);
 
 }  // namespace exemplar

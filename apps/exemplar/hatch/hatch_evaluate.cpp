@@ -13,14 +13,15 @@
 #include "host/core/errors.h"
 #include "host/core/progress.h"
 #include "host/core/random.h"
+#include "host/core/statistics.h"
 #include "host/core/stopwatch.h"
 #include "host/data/npy.h"
-#include "host/hatching/hatching_errors.h"
 #include "host/hatching/fields/occlusion_barriers.h"
+#include "host/hatching/hatching_errors.h"
 #include "host/hatching/refinement/stroke_relaxation.h"
 #include "host/hatching/refinement/stroke_statistics.h"
-#include "host/hatching/style/style_learning.h"
 #include "host/hatching/refinement/tone_matching.h"
+#include "host/hatching/style/style_learning.h"
 #include "host/synth/hatching/hatched_drawing.h"
 
 namespace exemplar {
@@ -48,7 +49,7 @@ HatchSceneArguments scene_of(const EvaluateArguments& arguments, const fs::path&
     return scene;
 }
 
-/// The same rule for the whole drawing, without segments: what boosting finds among some features.
+/// Learns one rule for the whole drawing, without segments, by boosting on all features or on those of curvature.
 OrientationFunction one_rule(PixelFeatures& pixels, const DrawingProperties& drawing, bool curvature_only,
                              std::uint64_t seed) {
     std::vector<std::uint32_t> rows;
@@ -82,7 +83,7 @@ double rule_error(const OrientationFunction& function, PixelFeatures& pixels, co
         errors.push_back(orientation_difference(angle_of(function.evaluate(fields, row)), truth.orientation[0][p]) *
                          57.29578f);
     }
-    return median_of_values(std::move(errors));
+    return static_cast<double>(upper_median(errors));
 }
 
 /// The level and the properties of rows.
@@ -100,8 +101,8 @@ FeatureMatrix targets_of(const HatchingFields& fields, PixelFeatures& pixels, st
     return targets;
 }
 
-/// Some rows of features, with targets that were measured or are true and, where there are some, those that were
-/// learned, as arrays for other programs.
+/// Writes some rows of features with their measured or true targets and, if given, the learned ones, as arrays for
+/// other programs.
 void export_rows(const fs::path& folder, const std::string& name, PixelFeatures& pixels, const HatchingFields& targets,
                  const HatchingFields* learned, std::size_t most, std::uint64_t seed) {
     fs::create_directories(folder);
@@ -116,7 +117,7 @@ void export_rows(const fs::path& folder, const std::string& name, PixelFeatures&
     if (learned) write_npy(folder / (name + "_learned.npy"), targets_of(*learned, pixels, rows));
 }
 
-/// The truth in the place of a drawing's targets, where the drawing was measured.
+/// Returns the measured values of a drawing as hatching fields.
 HatchingFields measured_fields(const DrawingProperties& drawing) {
     HatchingFields fields(drawing.width, drawing.height);
     fields.level = drawing.level;
@@ -158,7 +159,7 @@ class StyleEvaluation {
         Stopwatch watch;
         Image mask(truth.width, truth.height, 1);
         for (const std::uint32_t pixel : scene.pixels().pixels().pixel) mask.data[pixel] = 1;
-        // Eight bits, as in a file.
+        // Rounded to eight bits, as in a file.
         FloatImage darkness(truth.width, truth.height, 1);
         for (std::size_t i = 0; i < drawn.ink.size(); ++i) darkness.data[i] = std::round(255 * drawn.ink[i]) / 255;
         const DrawingProperties drawing = drawing_properties(measure_strokes(darkness, mask));
@@ -178,7 +179,7 @@ class StyleEvaluation {
         progress_.advance(1, name_ + " learned");
     }
 
-    /// What was measured of the drawing beside the rule, on center lines.
+    /// Compares the values measured on the drawing's center lines with the rule.
     static nlohmann::json measured_errors(const DrawingProperties& drawing, const HatchingFields& truth) {
         std::array<std::vector<float>, k_stroke_properties> ratios;
         std::vector<float> angles;
@@ -193,9 +194,9 @@ class StyleEvaluation {
                 ratios[k].push_back(
                     std::abs(drawing.property[k][p] / property_of(truth, static_cast<StrokeProperty>(k))[p] - 1));
         }
-        nlohmann::json out = {{"orientation_degrees", median_of_values(std::move(angles))}};
+        nlohmann::json out = {{"orientation_degrees", upper_median(angles)}};
         for (std::size_t k = 0; k < k_stroke_properties; ++k)
-            out[name_of(static_cast<StrokeProperty>(k))] = median_of_values(std::move(ratios[k]));
+            out[name_of(static_cast<StrokeProperty>(k))] = upper_median(ratios[k]);
         return out;
     }
 
@@ -230,7 +231,7 @@ class StyleEvaluation {
     nlohmann::json result_;
 };
 
-std::string percent(const nlohmann::json& row, const char* key) {
+std::string percent_cell(const nlohmann::json& row, const char* key) {
     return fmt::format("{:.1f}%", 100 * row[key].get<double>());
 }
 
@@ -241,20 +242,20 @@ void print_result(const nlohmann::json& result) {
                "curvature", "level", "thickness", "intensity", "spacing", "length", "drawn spacing", "tone");
     const nlohmann::json& read = result["measured"];
     fmt::print("{:>34} {:7.1f} {:>17} {:>6} {:>9} {:>9} {:>8} {:>6}\n", "as read from the drawing",
-               read["orientation_degrees"].get<double>(), "", percent(read, "level_accuracy"),
-               percent(read, "thickness"), percent(read, "intensity"), percent(read, "spacing"),
-               percent(read, "length"));
+               read["orientation_degrees"].get<double>(), "", percent_cell(read, "level_accuracy"),
+               percent_cell(read, "thickness"), percent_cell(read, "intensity"), percent_cell(read, "spacing"),
+               percent_cell(read, "length"));
     for (const nlohmann::json& row : result["rows"]) {
         fmt::print("{:>34} {:7.1f} {:7.1f} {:9.1f} {:>6} {:>9} {:>9} {:>8} {:>6} {:>13} {:>6}\n",
                    row["mesh"].get<std::string>() + ", " + row["view"].get<std::string>(),
                    row["orientation_degrees"].get<double>(), row["global_rule_degrees"].get<double>(),
-                   row["curvature_only_degrees"].get<double>(), percent(row, "level_accuracy"),
-                   percent(row, "thickness"), percent(row, "intensity"), percent(row, "spacing"),
-                   percent(row, "length"), percent(row, "drawn_spacing"), percent(row, "drawn_tone"));
+                   row["curvature_only_degrees"].get<double>(), percent_cell(row, "level_accuracy"),
+                   percent_cell(row, "thickness"), percent_cell(row, "intensity"), percent_cell(row, "spacing"),
+                   percent_cell(row, "length"), percent_cell(row, "drawn_spacing"), percent_cell(row, "drawn_tone"));
     }
 }
 
-void run_evaluate(EvaluateArguments arguments) {
+void run_hatch_evaluate(EvaluateArguments arguments) {
     const auto limits = apply_common_options(arguments.common);
     if (arguments.styles.empty()) arguments.styles.assign(hatching_rule_names().begin(), hatching_rule_names().end());
     for (const std::string& style : arguments.styles) {
@@ -291,7 +292,7 @@ void add_hatch_evaluate_command(CLI::App& hatch) {
         ->add_option("--styles", arguments->styles,
                      fmt::format("which of {}; default: all", fmt::join(hatching_rule_names(), ", ")))
         ->type_name("NAME")
-        ->check(offered_words(hatching_rule_names()))
+        ->check(completion_words(hatching_rule_names()))
         ->delimiter(',')
         ->allow_extra_args(false);
     command->add_option("--size", arguments->size, "pixels of the drawings")->type_name("WxH")->capture_default_str();
@@ -304,7 +305,7 @@ void add_hatch_evaluate_command(CLI::App& hatch) {
         ->type_name("FOLDER");
     add_device_option(*command, arguments->common);
     add_common_options(*command, arguments->common);
-    command->callback([arguments] { run_evaluate(*arguments); });
+    command->callback([arguments] { run_hatch_evaluate(*arguments); });
 }
 
 }  // namespace exemplar

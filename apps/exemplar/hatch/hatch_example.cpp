@@ -56,7 +56,7 @@ void add_hatch_example_command(CLI::App& hatch) {
                     fmt::join(hatching_rule_names(), " ")));
     command->add_option("STYLE", arguments->style, "how it is drawn")
         ->required()
-        ->check(offered_words(hatching_rule_names()))
+        ->check(completion_words(hatching_rule_names()))
         ->type_name("");
     command->add_option("MESH", arguments->scene.mesh, "mesh (OFF, OBJ, PLY, STL, glTF)")->required()->type_name("");
     command->add_option("--out", arguments->out, "the drawing to write (PNG)")->required()->type_name("FILE");

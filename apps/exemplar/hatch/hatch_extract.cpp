@@ -6,8 +6,8 @@
 #include "apps/exemplar/hatch/hatch_reading.h"
 #include "apps/exemplar/hatch/hatch_scene.h"
 #include "host/core/text.h"
-#include "host/hatching/measurement/drawing_properties.h"
 #include "host/hatching/hatching_drawing.h"
+#include "host/hatching/measurement/drawing_properties.h"
 #include "host/imaging/png.h"
 
 namespace exemplar {
@@ -27,7 +27,7 @@ Image mask_picture(std::span<const std::uint8_t> mask, int width, int height) {
     return image;
 }
 
-nlohmann::json write_pictures(const fs::path& folder, const StrokeMeasurements& m) {
+nlohmann::json write_measurement_pictures(const fs::path& folder, const StrokeMeasurements& m) {
     fs::create_directories(folder);
     const auto write = [&](const char* name, const Image& image) {
         write_png(folder / fmt::format("{}.png", name), image);
@@ -55,7 +55,7 @@ void run_extract(const ExtractArguments& arguments) {
     require_output_folder(arguments.out);
     HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
     const StrokeMeasurements measured = read_drawing(arguments.drawing, scene.pixels(), arguments.common.quiet);
-    const nlohmann::json ranges = write_pictures(arguments.out, measured);
+    const nlohmann::json ranges = write_measurement_pictures(arguments.out, measured);
     if (!arguments.common.quiet) {
         fmt::print("{}: strokes {:.1f} pixels thick, {:.1f} apart in the median; {}\n", arguments.out.string(),
                    measured.median_thickness, measured.median_spacing,

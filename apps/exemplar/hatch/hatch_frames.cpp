@@ -16,7 +16,7 @@
 #include "host/core/progress.h"
 #include "host/core/stopwatch.h"
 #include "host/core/text.h"
-#include "host/hatching/animation/carried_strokes.h"
+#include "host/hatching/animation/advected_strokes.h"
 #include "host/hatching/animation/hatching_flicker.h"
 #include "host/imaging/png.h"
 #include "host/mesh/editing/loose_vertices.h"
@@ -67,7 +67,7 @@ class HatchedFrames {
         for (std::size_t i = 0; i < kept_.size(); ++i) mesh.vertices[i] = all[kept_[i]];
         return mesh;
     }
-    /// The object turns before a camera that stands still, which is to say that the camera turns around it.
+    /// Turns the object before a fixed camera, by turning the camera around it.
     HatchingView view(std::size_t frame) const {
         HatchingView view;
         view.camera = sized_.camera;
@@ -80,7 +80,7 @@ class HatchedFrames {
     float unit_depth() const { return unit_depth_; }
 
   private:
-    /// Frames of a mesh are those of its turning.
+    /// For a mesh the frames are those of its turning, not of an animation.
     static LinesSourceArguments arguments_of(const HatchDrawJob& job) {
         LinesSourceArguments arguments = source_of(job);
         if (job.turn != 0 && !is_animation(arguments)) arguments.frames = {};
@@ -114,7 +114,7 @@ class HatchedFrames {
 
     const HatchDrawJob& job_;
     LinesSource source_;
-    std::size_t count_ = 0, first_ = 0;  // the first: of a mesh that turns
+    std::size_t count_ = 0, first_ = 0;  // first_: of a mesh that turns
     std::vector<std::uint32_t> kept_;    // vertices of the source that the surface has
     TriangleMesh surface_;
     SizedCamera sized_;
@@ -132,10 +132,10 @@ class FrameHatcher {
         follow(frame);
         const HatchingView view = frames_.view(frame);
         PixelFeatures pixels(*surface_, view, device_.tools().images);
-        const std::vector<CarriedStroke> carried = carried_strokes(before_, surface_->mesh, view, pixels.gbuffer());
+        const std::vector<AdvectedStroke> carried = advected_strokes(before_, surface_->mesh, view, pixels.gbuffer());
         std::vector<HatchStroke> kept;
         if (!job_.fresh)
-            for (const CarriedStroke& one : carried) kept.push_back(one.stroke);
+            for (const AdvectedStroke& one : carried) kept.push_back(one.stroke);
         ViewHatching hatching = hatch_view(style_, pixels, device_.tools(), job_.options(), kept);
         if (frame > 0) flicker_.push_back(measure_flicker(hatching.strokes, carried));
         stroke_counts_.push_back(hatching.strokes.size());

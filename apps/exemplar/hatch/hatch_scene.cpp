@@ -5,9 +5,9 @@
 #include "apps/exemplar/arguments.h"
 #include "gpu/hatching/hatching_device.h"
 #include "host/core/errors.h"
-#include "host/mesh/io/io.h"
 #include "host/mesh/editing/loose_vertices.h"
 #include "host/mesh/editing/weld.h"
+#include "host/mesh/io/io.h"
 
 namespace exemplar {
 

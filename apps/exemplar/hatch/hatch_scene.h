@@ -14,23 +14,23 @@
 
 namespace exemplar {
 
-/// What 'exemplar hatch' looks at: a mesh, from where, in which light.
+/// Arguments of the scene of 'exemplar hatch': a mesh, the camera and the light.
 struct HatchSceneArguments {
     std::filesystem::path mesh;
     CameraArguments camera;
     std::string light = "-0.45,0.55,0.7";                    ///< direction to it: x right, y up, z towards the eye
-    std::filesystem::path cache = default_surface_folder();  ///< remembers measured surfaces; empty: nothing does
+    std::filesystem::path cache = default_surface_folder();  ///< cache of measured surfaces; empty: none
 };
 void add_hatch_scene_options(CLI::App& command, HatchSceneArguments& arguments);
 /// Checks what can be checked before any work; throws UsageError or DataError.
 void require_hatch_scene(const HatchSceneArguments& arguments);
-/// The view of a mesh.
+/// Returns the view of a mesh.
 HatchingView hatching_view(const HatchSceneArguments& arguments, const TriangleMesh& mesh);
 
-/// A mesh that is looked at, and everything that measures and hatches it: on a device.
+/// A mesh in a view, and everything that measures and hatches it on a device.
 class HatchScene {
   public:
-    /// Reads the mesh and measures it, or remembers how it was measured; tells what is unusual about it unless `quiet`.
+    /// Reads the mesh, and measures it or loads its measurements from the cache. Prints its defects unless `quiet`.
     HatchScene(const HatchSceneArguments& arguments, const std::string& device, bool quiet);
     ~HatchScene();
 

@@ -25,7 +25,7 @@ struct TrainArguments {
     CommonOptions common;
 };
 
-/// Steps of learning in their order, and the share of the time that each takes of a common drawing, in hundredths.
+/// Steps of learning in order, and the percentage of time that each takes for a typical drawing.
 struct LearningStep {
     std::string_view name;
     std::size_t share;
@@ -42,7 +42,7 @@ constexpr std::array<LearningStep, 11> k_learning_steps{{{"surface", 14},
                                                          {"spacing", 2},
                                                          {"length", 2}}};
 
-/// Tells how far learning is. Steps that a drawing does not need are passed over.
+/// Shows the progress of learning. Skips steps that a drawing does not need.
 class LearningProgress {
   public:
     /// All steps before this one are done.
@@ -67,7 +67,7 @@ class LearningProgress {
     Progress progress_{"learning", 100};
 };
 
-nlohmann::json describe(const StyleReport& report, const HatchingStyle& style, double reading) {
+nlohmann::json describe_style(const StyleReport& report, const HatchingStyle& style, double reading) {
     nlohmann::json seconds = {{"reading", reading}};
     for (const auto& [step, time] : report.seconds) seconds[step] = time;
     return {{"segments", style.rules.size()},
@@ -79,7 +79,7 @@ nlohmann::json describe(const StyleReport& report, const HatchingStyle& style, d
             {"seconds", seconds}};
 }
 
-void run_train(const TrainArguments& arguments) {
+void run_hatch_train(const TrainArguments& arguments) {
     const auto limits = apply_common_options(arguments.common);
     require_hatch_scene(arguments.scene);
     require_input(arguments.drawing);
@@ -101,7 +101,7 @@ void run_train(const TrainArguments& arguments) {
     style.name = arguments.drawing.filename().string();
     save_hatching_style(arguments.out, style);
     if (!arguments.common.quiet) fmt::print("{}{}\n", describe_hatching_style(style), arguments.out.string());
-    write_report(arguments.common, describe(report, style, reading));
+    write_report(arguments.common, describe_style(report, style, reading));
 }
 
 }  // namespace
@@ -120,7 +120,7 @@ void add_hatch_train_command(CLI::App& hatch) {
     add_hatch_scene_options(*command, arguments->scene);
     add_device_option(*command, arguments->common);
     add_common_options(*command, arguments->common);
-    command->callback([arguments] { run_train(*arguments); });
+    command->callback([arguments] { run_hatch_train(*arguments); });
 }
 
 }  // namespace exemplar

@@ -30,7 +30,7 @@ struct EvaluateCommand {
     TrainOptions train;
 };
 
-/// A folder for what nobody asked to keep; removed with all it holds.
+/// A temporary folder, removed with its contents.
 class ScratchFolder {
   public:
     ScratchFolder() {
@@ -70,8 +70,8 @@ bool holds(const fs::path& folder, bool (*kind)(const fs::path&)) {
                        [&](const fs::directory_entry& entry) { return entry.is_regular_file() && kind(entry.path()); });
 }
 
-/// The folder itself if it holds meshes: folders in it may be what a model made of them. Else the folders in it that
-/// hold meshes with labels, which are elsewhere if `labels` says so.
+/// Returns the folder itself if it holds meshes, as its subfolders may be results of a model. Otherwise returns its
+/// subfolders with labeled meshes, or with any meshes if `labels` names another folder of labels.
 std::vector<fs::path> category_folders(const fs::path& folder, const fs::path& labels) {
     if (folder.empty()) throw UsageError("--protocol needs the folder of a category, or of several");
     require_input(folder);
@@ -91,7 +91,7 @@ fs::path without_trailing_slash(const fs::path& path) {
     return absolute.has_filename() ? absolute : absolute.parent_path();
 }
 
-/// The benchmark keeps human segmentations in seg/ beside labeled/, or the user says where they are.
+/// Returns the folder of human segmentations: the user's, else the benchmark's seg/ beside labeled/, else empty.
 fs::path human_folder(const EvaluateCommand& options, const fs::path& category) {
     if (!options.humans.empty()) {
         require_input(options.humans);
@@ -129,7 +129,7 @@ std::vector<EvaluationTask> protocol_tasks(const EvaluateCommand& options) {
     return tasks;
 }
 
-/// Meshes that were trained on are labeled too well.
+/// Warns of test meshes that are also trained on, as they are labeled too well.
 void warn_of_common(const std::vector<fs::path>& train, const std::vector<fs::path>& test) {
     std::set<fs::path> trained;
     for (const fs::path& path : train) trained.insert(fs::weakly_canonical(path));
@@ -140,7 +140,7 @@ void warn_of_common(const std::vector<fs::path>& train, const std::vector<fs::pa
                        path.string());
 }
 
-/// Mesh sets (folders, lists or mesh files) made one.
+/// The union of mesh sets (folders, lists or mesh files).
 struct MeshUnion {
     std::string name;                  ///< of the sets, joined by +
     std::vector<fs::path> meshes;      ///< a mesh that is in several sets once
@@ -196,7 +196,7 @@ std::string protocol_name(const EvaluateCommand& options) {
     return options.train_on.empty() ? "lists" : "category";
 }
 
-void run_evaluate(const EvaluateCommand& options) {
+void run_label_evaluate(const EvaluateCommand& options) {
     const auto limits = apply_common_options(options.common);
     if (options.out.empty() && options.report.empty())
         throw UsageError("give --out FOLDER for models, labels and the page, or --report FOLDER for the page alone");
@@ -275,7 +275,7 @@ void add_evaluate_command(CLI::App& label) {
     add_training_options(*command, options->train, options->cache);
     add_device_option(*command, options->common);
     add_common_options(*command, options->common);
-    command->callback([options] { run_evaluate(*options); });
+    command->callback([options] { run_label_evaluate(*options); });
 }
 
 }  // namespace exemplar

@@ -25,7 +25,7 @@ std::vector<ReportMeasure> measures_of(const Json& rates) {
     return measures;
 }
 
-std::string subtitle_of(const Json& splits) {
+std::string evaluation_subtitle(const Json& splits) {
     std::string text =
         fmt::format("{} training meshes, {} unseen meshes", splits[0]["train"].size(), splits[0]["meshes"].size());
     if (splits.size() > 1)
@@ -98,7 +98,7 @@ ReportData report_group(const Json& category) {
     const Json& splits = category["splits"];
     ReportData group;
     group.title = category["category"];
-    group.subtitle = subtitle_of(splits);
+    group.subtitle = evaluation_subtitle(splits);
     group.label_names = category["names"].get<std::vector<std::string>>();
     for (std::size_t c = 0; c < group.label_names.size(); ++c) group.label_colors.push_back(label_color(c));
     group.recognition_rate = rate_of(category, "recognition_rate");

@@ -8,10 +8,11 @@
 
 namespace exemplar {
 
-/// A category of the report of `label evaluate` as a group of the page: all but its meshes.
+/// Converts a category of the report of `label evaluate` to a group of the page, without its meshes.
 ReportData report_group(const nlohmann::json& category);
 
-/// Which test meshes of a split the page shows, as positions in it: the worst ones, then the middle and the best one.
+/// Returns the indices of the test meshes of a split that the page shows: the worst ones, then the middle and the
+/// best.
 std::vector<std::size_t> shown_meshes(const nlohmann::json& split);
 
 }  // namespace exemplar

@@ -12,6 +12,7 @@
 #include "apps/exemplar/label/evaluation_page.h"
 #include "apps/exemplar/label/labeled_output.h"
 #include "apps/exemplar/label/thesis_rates.h"
+#include "apps/report/report_page.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/interrupt.h"
@@ -19,7 +20,6 @@
 #include "host/core/text.h"
 #include "host/labeling/evaluation/evaluation.h"
 #include "host/labeling/inference/mesh_labeling.h"
-#include "apps/report/report_page.h"
 
 namespace exemplar {
 namespace {
@@ -27,10 +27,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// How meshes are labeled, and what their scores hold; scores of another version are not taken over.
+/// Version of the labeling and of the scores; scores of another version are not reused.
 constexpr int k_score_version = 3;
 
-/// Beside NAME.json of every test mesh: no mesh is called so.
+/// File beside NAME.json of every test mesh; no mesh has this name.
 constexpr const char* k_training_report = "model.training.json";
 
 std::string digest(const std::string& content) {
@@ -51,7 +51,7 @@ std::string digest_of_humans(const fs::path& folder, const std::string& name) {
 }
 
 /// Everything that a model depends on: results of another run are not mixed into this one.
-std::string run_key(const EvaluationTask& task, const TrainOptions& train) {
+std::string evaluation_run_key(const EvaluationTask& task, const TrainOptions& train) {
     Json key{{"seed", train.seed},
              {"rounds", train.rounds},
              {"patience", train.patience},
@@ -81,7 +81,7 @@ fs::path folder_of(const fs::path& out, const EvaluationTask& task) {
     return out / task.category / task.split;
 }
 
-/// Human segmentations are per face of the file; here they are wanted per triangle.
+/// Reads human segmentations and converts them from faces of the file to triangles.
 std::vector<std::vector<std::int32_t>> human_segmentations(const fs::path& folder, const LabeledMesh& item) {
     auto segmentations = read_human_segmentations(folder, item.name, item.mesh.source_face_count);
     for (std::vector<std::int32_t>& segments : segmentations) {
@@ -129,7 +129,7 @@ std::vector<std::string> shared_labels(const LabelingModel& model, const Json& m
     return shared;
 }
 
-/// What the page and the reader of the report want to know of a training.
+/// Returns the part of a training's report that the page and the report show.
 Json training_of(const Json& run) {
     Json training = Json::object();
     for (const char* key : {"labels", "classifiers", "crf", "first_features", "seconds"})
@@ -137,14 +137,15 @@ Json training_of(const Json& run) {
     return training;
 }
 
-/// What to compare a task with, if it is one of the benchmark: other data may have categories of the same names.
+/// Returns the rates to compare with if the task is of the benchmark; other data may have categories of the same
+/// names.
 std::optional<ThesisRates> benchmark_rates(const EvaluationTask& task) {
     if (task.humans.empty() || !task.labels.empty() || !task.sources.empty() || task.other_category) return {};
     return thesis_rates(task.category, task.train.size());
 }
 
-/// Adds what is said of a category as a whole to its splits.
-void summarize(Json& category) {
+/// Adds the summary of a category to its splits.
+void summarize_category(Json& category) {
     Json meshes = Json::array(), models = Json::array();
     for (const Json& split : category["splits"]) {
         for (const Json& mesh : split["meshes"]) meshes.push_back(mesh);
@@ -187,7 +188,7 @@ LabelingModel EvaluationRun::model_for(const EvaluationTask& task, const fs::pat
     TrainReport report;
     LabelingModel model = train_labeling(corpus, features, train_, backend_.labeling(), report);
     if (!behavior_.quiet) print_training(model, report);
-    fs::remove(run);  // it tells what the model is of
+    fs::remove(run);  // it describes the model
     save_model(path, model);
     Json json = describe_training(model, report);
     json["key"] = key;
@@ -244,7 +245,7 @@ Json EvaluationRun::test_mesh(const EvaluationTask& task, const fs::path& mesh, 
     const Stopwatch scoring;
     const std::vector<float> areas = face_areas(item.mesh);
     MeshScore score = score_labeling(areas, item.label, labeling.label, corpus.names.size());
-    if (task.other_category) {  // all labels are compared, but only what both could name is rated
+    if (task.other_category) {  // all labels are compared, but only those that both have are rated
         std::vector<std::int32_t> rated = item.label;
         for (std::int32_t& label : rated)
             if (label >= static_cast<std::int32_t>(model.class_count())) label = -1;
@@ -267,7 +268,7 @@ Json EvaluationRun::test_mesh(const EvaluationTask& task, const fs::path& mesh, 
 
 Json EvaluationRun::run_task(const EvaluationTask& task, Progress& progress) {
     const fs::path folder = folder_of(out_, task);
-    const std::string key = run_key(task, train_);
+    const std::string key = evaluation_run_key(task, train_);
     const LabelingModel model = model_for(task, folder, key);
     progress.advance(1, task.category + " trained");
     const Json run = read_json(folder / k_training_report);
@@ -306,7 +307,7 @@ Json EvaluationRun::evaluate(const std::vector<EvaluationTask>& tasks, const std
             categories.back()["thesis"] = {{"recognition_rate", thesis->recognition_rate},
                                            {"rand_error", thesis->rand_error}};
     }
-    for (Json& category : categories) summarize(category);
+    for (Json& category : categories) summarize_category(category);
     progress.finish();
     Json report{{"protocol", protocol}, {"device", backend_.device_name()}};
     report.update(mean_rates(categories));

@@ -8,30 +8,30 @@
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/label/evaluation_summary.h"
 #include "apps/exemplar/label/training_run.h"
+#include "apps/report/report_page.h"
 #include "host/core/progress.h"
 #include "host/data/corpus.h"
-#include "apps/report/report_page.h"
 
 namespace exemplar {
 
-/// One training and the tests of what it learned.
+/// One training and the tests of its model.
 struct EvaluationTask {
     std::string category, split;  ///< name the output folder OUT/CATEGORY/SPLIT
     std::vector<std::filesystem::path> train, test;
     std::filesystem::path humans;           ///< human segmentations; may be empty
     std::filesystem::path labels = {};      ///< folder of the label files; empty: beside the meshes
-    std::vector<std::string> sources = {};  ///< where each training mesh is from, if several sets are merged
-    bool other_category = false;            ///< rates are of the labels that training and test meshes both have
+    std::vector<std::string> sources = {};  ///< the set of each training mesh, if several are merged
+    bool other_category = false;            ///< rates count only the labels of both training and test meshes
 };
 
-/// Works through tasks and keeps what is finished on disk, so that a run that was interrupted goes on from there:
-/// OUT/CATEGORY/SPLIT/model.safetensors and, per test mesh, NAME_labels.txt, NAME.ply and NAME.json (its scores). What
-/// is found there counts as finished if options, training meshes and labels, and the test mesh are still the same.
+/// Runs tasks and keeps finished results on disk, so that an interrupted run can continue:
+/// OUT/CATEGORY/SPLIT/model.safetensors and, per test mesh, NAME_labels.txt, NAME.ply and NAME.json (its scores).
+/// Results are reused if options, training meshes and labels, and the test mesh are unchanged.
 class EvaluationRun {
   public:
     struct Behavior {
         bool quiet = false;                        ///< no tables, no warnings
-        bool fresh = false;                        ///< take nothing over from an earlier run
+        bool fresh = false;                        ///< reuse nothing of an earlier run
         std::filesystem::path report = {};         ///< the page's folder; empty: the output folder
         std::vector<ReportDrawing> drawings = {};  ///< below the categories of the page
     };
@@ -43,7 +43,7 @@ class EvaluationRun {
           out_(std::move(out)),
           behavior_(std::move(behavior)) {}
 
-    /// Runs everything and writes index.html; returns the report (docs/formats.md).
+    /// Runs all tasks and writes index.html; returns the report (docs/formats.md).
     nlohmann::json evaluate(const std::vector<EvaluationTask>& tasks, const std::string& protocol,
                             const std::string& title);
 

@@ -69,7 +69,7 @@ Json confused_pairs(const std::vector<std::string>& names, const std::vector<dou
     return result;
 }
 
-std::string shown(const Rate& rate, double value) {
+std::string shown_rate(const Rate& rate, double value) {
     if (std::isnan(value)) return "-";
     return rate.share ? fmt::format("{:.1f}", 100 * value) : fmt::format("{:.3f}", value);
 }
@@ -83,11 +83,11 @@ std::size_t name_width(const Json& categories) {
 
 void print_rates(std::size_t width, const std::string& name, const std::string& meshes, const Json& rates) {
     fmt::print("{:>{}} {:>6}", name, width, meshes);
-    for (const Rate& rate : k_rates) fmt::print(" {:>6}", shown(rate, rate_of(rates, rate.key)));
+    for (const Rate& rate : k_rates) fmt::print(" {:>6}", shown_rate(rate, rate_of(rates, rate.key)));
     if (rates.contains("thesis"))
         for (const Rate& rate : k_rates)
             if (rates["thesis"].contains(rate.key))
-                fmt::print("  {} {}", rate.column, shown(rate, rate_of(rates["thesis"], rate.key)));
+                fmt::print("  {} {}", rate.column, shown_rate(rate, rate_of(rates["thesis"], rate.key)));
     fmt::print("\n");
 }
 
@@ -121,7 +121,7 @@ void print_shared_labels(const Json& category) {
     }
 }
 
-/// The pairs of each category that take most area, but for those of next to none.
+/// Prints the confused pairs of largest area of each category, without negligible ones.
 void print_confused(const Json& categories) {
     const std::size_t most = categories.size() == 1 ? 5 : 2, width = name_width(categories);
     bool headed = false;
@@ -140,7 +140,7 @@ void print_confused(const Json& categories) {
         }
 }
 
-/// Families by how much the whole cascade uses them, and the share of each classifier's stumps that they have.
+/// Prints families, the most used in the whole cascade first, with their share of each classifier's stumps.
 void print_chosen_features(const Json& stages) {
     std::map<std::string, double> stumps;
     fmt::print("\n{:>16}", "% of stumps");

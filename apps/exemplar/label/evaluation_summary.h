@@ -9,9 +9,10 @@
 
 namespace exemplar {
 
-// What the report of `label evaluate` (docs/formats.md) says beyond the scores of single meshes, and how it is printed.
+// The parts of the report of `label evaluate` (docs/formats.md) beyond the scores of single meshes, and their
+// printing.
 
-/// A number per tested mesh, of which categories have means.
+/// A number per tested mesh, averaged per category.
 struct Rate {
     const char* key;     ///< in the report
     const char* title;   ///< on the page
@@ -24,11 +25,11 @@ std::span<const Rate> evaluation_rates();
 
 /// A rate of a report; NaN where it is null.
 double rate_of(const nlohmann::json& json, const char* key);
-/// Null for NaN.
+/// Returns a rate as JSON; null for NaN.
 nlohmann::json rate_json(double rate);
 /// The rates of a mesh.
 nlohmann::json describe_scores(const MeshScore& labels, const SegmentationErrors& segments);
-/// Mean of each rate over `items`, without those that lack it.
+/// Returns the mean of each rate over the items that have it.
 nlohmann::json mean_rates(const nlohmann::json& items);
 
 /// Per classifier of the unary cascade `stage`, `stumps` and `share_per_family` (thesis Fig. 3.5).
@@ -36,8 +37,8 @@ nlohmann::json chosen_features(const LabelingModel& model);
 /// The same over several models.
 nlohmann::json sum_chosen_features(const nlohmann::json& models);
 
-/// `names`, `confusion` (mean over meshes) and `confused` (the pairs that take most area) of test meshes that may
-/// differ in names.
+/// Returns `names`, `confusion` (mean over meshes) and `confused` (the pairs of largest area) of test meshes, whose
+/// label names may differ.
 nlohmann::json confusion_of(const nlohmann::json& meshes);
 
 /// Prints the tables of rates, confused labels and chosen features.

@@ -8,7 +8,7 @@
 
 namespace exemplar {
 
-/// A labeling brought back to the faces of the mesh file (polygons included).
+/// A labeling converted to the faces of the mesh file (polygons included).
 struct LabeledOutput {
     FaceLabels labels;              ///< per source face
     std::vector<float> confidence;  ///< per source face: area-weighted mean over its triangles

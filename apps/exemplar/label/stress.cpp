@@ -43,10 +43,10 @@ struct Subject {
     std::vector<std::int32_t> truth;  ///< per triangle, as the model numbers its labels; empty if the file has none
 };
 
-/// What became of one mesh under one damage. Rates are shares of the area, in [0, 1].
+/// Result of one mesh under one damage. Rates are shares of the area, in [0, 1].
 struct Outcome {
     std::size_t faces = 0;
-    double unchanged = 1;                    ///< of the damaged surface, labeled as where it came from
+    double unchanged = 1;                    ///< of the damaged surface, labeled as its original
     std::optional<double> recognition_rate;  ///< where the mesh has labels
     double seconds = 0;
     std::vector<std::string> warnings{};
@@ -58,7 +58,7 @@ struct StressRow {
     std::vector<Outcome> outcomes;  ///< one per mesh
 };
 
-/// True labels in the numbers of the model; labels that it does not know get numbers that it never gives.
+/// Returns true labels as numbers of the model; labels unknown to it get numbers that it never predicts.
 std::vector<std::int32_t> true_labels(const fs::path& path, const MeshFile& file, const LabelingModel& model) {
     if (!file.labels && !fs::exists(labels_path(path))) return {};
     const LabeledCorpus own = load_corpus({path});
@@ -86,7 +86,8 @@ std::vector<Subject> read_subjects(const StressOptions& options, const LabelingM
     return subjects;
 }
 
-/// Share of the area with label[f] == expected[origin[f]], of the faces where something is expected; none if nowhere.
+/// Returns the share of the area with label[f] == expected[origin[f]] among faces with an expected label; none
+/// without.
 std::optional<double> area_share_right(const DamagedMesh& damaged, const std::vector<std::int32_t>& label,
                                        const std::vector<std::int32_t>& expected) {
     const std::vector<float> area = face_areas(damaged.mesh);
@@ -190,7 +191,8 @@ class StressRun {
         row.outcomes.push_back(std::move(outcome));
     }
 
-    /// Labels per triangle, after each polygon got one; a mesh that only this run will see is not worth remembering.
+    /// Labels each polygon and returns labels per triangle. `cache` is empty for damaged meshes, as no other run
+    /// reads their features.
     std::vector<std::int32_t> label(const Subject& subject, const DamagedMesh& damaged, const fs::path& cache,
                                     const std::string& name, Outcome& outcome) {
         const Stopwatch watch;
@@ -214,7 +216,7 @@ class StressRun {
         backend_.render_png(stem + ".png", mesh, triangle_colors(model_, labeling));
     }
 
-    /// The mean of what a function says about the outcomes where it says something.
+    /// Returns the mean of a function over the outcomes for which it has a value.
     template <typename Function>
     static std::optional<double> mean(const StressRow& row, Function&& function) {
         double sum = 0, count = 0;
@@ -301,7 +303,7 @@ void add_stress_command(CLI::App& label) {
         ->required()
         ->type_name("");
     command->add_option("--damage", options->damages, "only these damages; all of them, if not given")
-        ->check(offered_words(damage_names()))
+        ->check(completion_words(damage_names()))
         ->type_name("NAME");
     command->add_option("--seed", options->seed, "seed of what is damaged where")
         ->capture_default_str()

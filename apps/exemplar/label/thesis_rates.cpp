@@ -6,13 +6,13 @@
 namespace exemplar {
 namespace {
 
-constexpr std::array<std::size_t, 4> k_training_meshes{19, 12, 6, 3};
+constexpr std::array<std::size_t, 4> k_thesis_training_meshes{19, 12, 6, 3};
 
-struct Row {
+struct ThesisRow {
     std::string_view category;
     std::array<double, 4> recognition_rate, rand_error;  ///< in percent, in the order of k_training_meshes
 };
-constexpr Row k_rows[] = {
+constexpr ThesisRow k_rows[] = {
     {"Human", {93.6, 93.2, 89.4, 83.2}, {11.9, 12.9, 14.3, 14.7}},
     {"Cup", {99.6, 99.6, 99.1, 96.3}, {9.9, 9.9, 10.0, 10.0}},
     {"Glasses", {97.4, 97.2, 96.1, 94.4}, {13.6, 14.1, 14.1, 14.2}},
@@ -34,7 +34,7 @@ constexpr Row k_rows[] = {
     {"FourLeg", {88.7, 86.2, 85.0, 82.0}, {13.3, 13.9, 14.7, 16.3}},
 };
 
-/// Whether `name` is `category`, or that and something set off from it.
+/// Returns whether `name` is `category`, perhaps with a suffix that starts with '-' or '_'.
 bool names(std::string_view name, std::string_view category) {
     return name.starts_with(category) &&
            (name.size() == category.size() || name[category.size()] == '-' || name[category.size()] == '_');
@@ -43,11 +43,11 @@ bool names(std::string_view name, std::string_view category) {
 }  // namespace
 
 std::optional<ThesisRates> thesis_rates(std::string_view category, std::size_t training_meshes) {
-    const auto column = std::find(k_training_meshes.begin(), k_training_meshes.end(), training_meshes);
+    const auto column = std::find(k_thesis_training_meshes.begin(), k_thesis_training_meshes.end(), training_meshes);
     const auto row = std::find_if(std::begin(k_rows), std::end(k_rows),
-                                  [&](const Row& candidate) { return names(category, candidate.category); });
-    if (column == k_training_meshes.end() || row == std::end(k_rows)) return {};
-    const auto i = static_cast<std::size_t>(column - k_training_meshes.begin());
+                                  [&](const ThesisRow& candidate) { return names(category, candidate.category); });
+    if (column == k_thesis_training_meshes.end() || row == std::end(k_rows)) return {};
+    const auto i = static_cast<std::size_t>(column - k_thesis_training_meshes.begin());
     return ThesisRates{row->recognition_rate[i] / 100, row->rand_error[i] / 100};
 }
 

@@ -20,7 +20,7 @@ struct TrainCommand {
     TrainOptions train;
 };
 
-void run_train(const TrainCommand& options) {
+void run_label_train(const TrainCommand& options) {
     const auto limits = apply_common_options(options.common);
     const Stopwatch watch;
     require_output_file(options.out);
@@ -84,7 +84,7 @@ void add_training_options(CLI::App& command, TrainOptions& options, std::filesys
     command
         .add_option("--samples", options.features.samples, "faces that stand for the surface in distance statistics")
         ->capture_default_str()
-        ->check(whole_number(1, k_most_samples));
+        ->check(whole_number(1, k_max_samples));
     command.add_flag("--orientation", options.features.orientation,
                      "add coordinates, for shapes that share an orientation");
     command.add_option("--cache", cache, "folder that remembers features; '' remembers none")
@@ -111,7 +111,7 @@ void add_train_command(CLI::App& label) {
     add_training_options(*command, options->train, options->cache);
     add_device_option(*command, options->common);
     add_common_options(*command, options->common);
-    command->callback([options] { run_train(*options); });
+    command->callback([options] { run_label_train(*options); });
 }
 
 }  // namespace exemplar

@@ -16,11 +16,12 @@ namespace exemplar {
 /// Adds --seed, --rounds and the other options of training to a subcommand.
 void add_training_options(CLI::App& command, TrainOptions& options, std::filesystem::path& cache);
 
-/// Features of all meshes of a corpus, with progress.
+/// Computes the features of all meshes of a corpus, with progress.
 std::vector<MeshFeatures> features_of(const LabeledCorpus& corpus, const FeatureOptions& options,
                                       const std::filesystem::path& cache);
 
-/// How many stumps of the unary cascade, or of one classifier of it, use each feature family, most used first.
+/// Returns the number of stumps of the unary cascade, or of its classifier `stage`, per feature family, most used
+/// first.
 std::vector<std::pair<std::string, std::size_t>> stumps_per_family(const LabelingModel& model,
                                                                    std::optional<std::size_t> stage = {});
 /// Names of the features of the first `count` stumps of the first classifier.

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "gpu/curvature/surface/animated_surface.h"
+#include "gpu/curvature/animated_surface.h"
 #include "gpu/lines/line_renderer.h"
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/record/stream.h"
@@ -11,10 +11,10 @@
 
 namespace exemplar {
 
-/// An animation on the device, and what draws it in lines.
+/// An animation on the device, and its line renderer.
 class DrawnAnimation {
   public:
-    /// `measured`: how curvature is, where it is not learned. The animation must live as long as this. Throws as
+    /// `measured`: how to estimate curvature that is not learned. The animation must outlive this. Throws as
     /// GpuAnimatedSurface and LineRenderer.
     DrawnAnimation(Device& device, const Animation& animation, const CurvatureOptions& measured)
         : animation_(animation),
@@ -32,8 +32,8 @@ class DrawnAnimation {
         else
             moving_.record(stream, clip.poses[frame.frame], from);
     }
-    /// What was recorded last.
-    GpuCurvedSurface moment() const { return moving_.moment(); }
+    /// The surface that was recorded last.
+    GpuCurvedSurface snapshot() const { return moving_.snapshot(); }
     const GpuLineSurface& line_surface() const { return line_surface_; }
     LineRenderer& renderer() { return renderer_; }
     const LineRenderer& renderer() const { return renderer_; }

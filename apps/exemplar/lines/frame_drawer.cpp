@@ -31,7 +31,7 @@ Image FrameDrawer::draw(std::size_t frame) {
 
 Image FrameDrawer::draw(std::size_t frame, CurvatureSource from) {
     drawn_.record(stream_, source_.frames()[frame], from);
-    Image image = drawn_.renderer().render(stream_, drawn_.moment(), picture_);
+    Image image = drawn_.renderer().render(stream_, drawn_.snapshot(), picture_);
     flicker_.push_back(drawn_.renderer().coherence().flicker());
     return image;
 }
@@ -54,7 +54,7 @@ FaceTypes FrameDrawer::face_types() const {
 
 FaceTypes FrameDrawer::face_types_from(const Vec3& eye) {
     if (!elsewhere_) elsewhere_.emplace(drawn_.line_surface());
-    elsewhere_->record(stream_, drawn_.moment(), picture_.families,
+    elsewhere_->record(stream_, drawn_.snapshot(), picture_.families,
                        {.eye = {eye.x(), eye.y(), eye.z(), 1},
                         .feature_size = picture_.view.feature_size,
                         .thresholds = picture_.thresholds});

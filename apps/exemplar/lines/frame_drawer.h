@@ -18,17 +18,17 @@ class FrameDrawer {
   public:
     FrameDrawer(const LinesJob& job, LinesSource& source, const StrokeView& view);
 
-    /// By learned curvature if there is a model, else by measured.
+    /// Draws a frame by learned curvature if there is a model, else by measured.
     Image draw(std::size_t frame);
-    /// Of a source with a model, measured curvature is what the model was trained to predict.
+    /// Draws a frame by that curvature. With a model, curvature is measured as in its training.
     Image draw(std::size_t frame, CurvatureSource from);
 
-    /// The mean over all pictures but the first, each against the one before.
+    /// Returns the mean flicker over all pictures but the first, each compared with the one before.
     LineFlicker flicker() const;
 
-    /// The types of lines that faces carry in the last picture.
+    /// Returns the line types of the faces in the last picture.
     FaceTypes face_types() const;
-    /// And as seen from another place.
+    /// The same as seen from another eye.
     FaceTypes face_types_from(const Vec3& eye);
 
     const std::string& device_name() const { return device_.info().name; }
@@ -40,7 +40,7 @@ class FrameDrawer {
     Stream stream_;
     LinePicture picture_;
     std::vector<LineFlicker> flicker_;
-    std::optional<GpuLineExtraction> elsewhere_;  // made when it is first asked for
+    std::optional<GpuLineExtraction> elsewhere_;  // made at first use
 };
 
 }  // namespace exemplar

@@ -8,8 +8,8 @@
 
 namespace exemplar {
 
-/// The view of pictures of that size that shows what all these frames cover, from above and one side. The feature size
-/// is that of the first. There must be a frame.
+/// Returns a view, from above and one side, that shows everything that these frames cover, in pictures of that size.
+/// The feature size is that of the first frame. Needs at least one frame.
 StrokeView view_of_frames(const Animation& animation, std::span<const FrameRef> frames, int width, int height);
 
 }  // namespace exemplar

@@ -17,7 +17,7 @@
 namespace exemplar {
 namespace {
 
-/// The words of the command line before they are looked at.
+/// Command-line arguments before parsing.
 struct LinesArguments {
     LinesJob job;
     std::vector<std::string> types = {"contours", "suggestive_contours", "boundaries"};
@@ -34,7 +34,7 @@ std::vector<std::string> type_words() {
 }
 
 LineType type_of(const std::string& word) {
-    if (const std::optional<LineType> type = line_type_meant(word)) return *type;
+    if (const std::optional<LineType> type = line_type_from_prefix(word)) return *type;
     const std::vector<std::string> words = type_words();
     throw UsageError(fmt::format("'{}' is no type of lines{}; the types are {}", word, suggestion(word, words),
                                  fmt::join(words, ", ")));
@@ -76,7 +76,7 @@ std::vector<std::string> fading_words() {
     return {"opacity", "width", "none"};
 }
 
-/// What the word is called in a list of words, in their order.
+/// Returns the value whose number is the index of the word in `words`.
 template <typename Value>
 Value choice(const std::string& word, const char* option, const std::vector<std::string>& words) {
     const auto at = std::find(words.begin(), words.end(), word);
@@ -149,16 +149,16 @@ void add_look_options(CLI::App& command, LinesArguments& arguments) {
         ->type_name("TYPE")
         ->delimiter(',')
         ->allow_extra_args(false)
-        ->check(offered_words(type_words()))
+        ->check(completion_words(type_words()))
         ->capture_default_str();
     command
         .add_option("--style", arguments.style,
                     fmt::format("how they look: {}, or a style file (JSON)", fmt::join(builtin_style_names(), ", ")))
         ->type_name("NAME|FILE")
-        ->check(offered_words(builtin_style_names()))
+        ->check(completion_words(builtin_style_names()))
         ->capture_default_str();
     command.add_option("--print-style", arguments.print_style, "prints a built-in style, to start a file from")
-        ->check(offered_words(builtin_style_names()))
+        ->check(completion_words(builtin_style_names()))
         ->type_name("NAME");
     command
         .add_option("--threshold", arguments.thresholds,
@@ -178,12 +178,12 @@ void add_svg_options(CLI::App& command, LinesArguments& arguments) {
         .add_option("--form", arguments.form,
                     "lines: center lines with a stroke width, for plotters; outlines: filled shapes of varying width")
         ->type_name("FORM")
-        ->check(offered_words(form_words()))
+        ->check(completion_words(form_words()))
         ->capture_default_str();
     command
         .add_option("--fading", arguments.fading,
                     "weak lines fade by opacity (default of lines), width (of outlines), or not (none)")
-        ->check(offered_words(fading_words()))
+        ->check(completion_words(fading_words()))
         ->type_name("HOW");
     command.add_flag("--curves", arguments.job.svg.curves, "center lines of Bezier curves, which stay smooth enlarged");
     command

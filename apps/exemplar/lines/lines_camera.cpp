@@ -27,15 +27,15 @@ std::array<int, 2> size_of(const std::string& text) {
     const std::size_t cross = text.find('x');
     const auto read = [&](std::size_t begin, std::size_t end, int& value) {
         const auto [stop, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-        return error == std::errc() && stop == text.data() + end && value >= 1 && value <= k_most_picture_size;
+        return error == std::errc() && stop == text.data() + end && value >= 1 && value <= k_max_picture_size;
     };
     if (cross == std::string::npos || !read(0, cross, size[0]) || !read(cross + 1, text.size(), size[1]))
         throw UsageError(
-            fmt::format("--size '{}' is no size; write WIDTHxHEIGHT as 1000x800, up to {}", text, k_most_picture_size));
+            fmt::format("--size '{}' is no size; write WIDTHxHEIGHT as 1000x800, up to {}", text, k_max_picture_size));
     return size;
 }
 
-/// Vertices of evenly taken frames together: what a camera has to show.
+/// Returns the vertices of evenly spaced frames together, which a camera has to show.
 TriangleMesh extent_of(const LinesSource& source) {
     constexpr std::size_t k_most_frames = 60;
     TriangleMesh all;
@@ -82,7 +82,7 @@ void add_camera_options(CLI::App& command, CameraArguments& arguments) {
         .add_option("--view", arguments.view,
                     fmt::format("where it is seen from, as large as it fits: {}", fmt::join(view_names(), ", ")))
         ->type_name("NAME")
-        ->check(offered_words(view_names()))
+        ->check(completion_words(view_names()))
         ->capture_default_str();
     command.add_option("--eye", arguments.eye, "a point to see it from instead, in the units of the mesh")
         ->type_name("X,Y,Z");

@@ -8,7 +8,7 @@
 
 namespace exemplar {
 
-/// Where a drawing is seen from, as words on the command line.
+/// Command-line arguments of the camera.
 struct CameraArguments {
     std::string view = "three-quarter";
     std::string eye, target, up = "0,1,0", size = "1000x800";
@@ -16,19 +16,19 @@ struct CameraArguments {
 };
 
 void add_camera_options(CLI::App& command, CameraArguments& arguments);
-/// Three numbers separated by commas; throws UsageError naming the option.
+/// Parses three numbers separated by commas; throws UsageError naming the option.
 Vec3 point_of(const std::string& text, const char* option);
-/// Checks all words before any work: throws UsageError naming the option.
+/// Checks all arguments before any work; throws UsageError naming the option.
 void require_camera(const CameraArguments& arguments);
 /// A camera and the size of its picture.
 struct SizedCamera {
     Camera camera;
     int width = 0, height = 0;
 };
-/// The camera that shows all vertices of a mesh.
+/// Returns the camera that shows all vertices of a mesh.
 SizedCamera camera_of(const CameraArguments& arguments, const TriangleMesh& extent);
-/// The view of all frames: the same camera, which shows the surface in each. Widths of strokes are those of the style
-/// at the depth of its center.
+/// Returns the view of all frames: one camera that shows the surface in each. At the depth of the surface's center,
+/// strokes have the widths of their style.
 StrokeView view_of(const CameraArguments& arguments, LinesSource& source);
 
 }  // namespace exemplar

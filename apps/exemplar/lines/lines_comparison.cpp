@@ -14,7 +14,7 @@ namespace {
 
 using Shares = LineDifference::Shares;
 
-void print_row(std::string_view name, const Shares& in_view, const Shares& from_around) {
+void print_share_row(std::string_view name, const Shares& in_view, const Shares& from_around) {
     fmt::print("{:<24}{:>14.2f}{:>8.2f}{:>20.2f}{:>8.2f}\n", name, 100 * in_view.truth, 100 * in_view.misclassified,
                100 * from_around.truth, 100 * from_around.misclassified);
 }
@@ -56,8 +56,8 @@ Image LinesComparison::draw(std::size_t frame) {
 void LinesComparison::print() const {
     fmt::print("{:<24}{:>22}{:>28}\n", "faces, %", "in this view", "from six sides");
     fmt::print("{:<24}{:>14}{:>8}{:>20}{:>8}\n", "", "with a line", "wrong", "with a line", "wrong");
-    for (const LineType type : types_) print_row(name_of(type), in_view_.of(type), from_around_.of(type));
-    if (types_.size() > 1) print_row("any of these", in_view_.of_any(), from_around_.of_any());
+    for (const LineType type : types_) print_share_row(name_of(type), in_view_.of(type), from_around_.of(type));
+    if (types_.size() > 1) print_share_row("any of these", in_view_.of_any(), from_around_.of_any());
 }
 
 nlohmann::json LinesComparison::describe() const {

@@ -8,19 +8,19 @@
 
 namespace exemplar {
 
-/// The types that curvature decides on: lines of others are the same by any.
+/// Returns the types that depend on curvature; lines of others are the same by any curvature.
 std::vector<LineType> types_to_compare(std::span<const LineType> types);
 
 /// Draws frames by learned and by measured curvature, and counts the faces in whose lines they differ.
 class LinesComparison {
   public:
-    /// All must live as long as this; the source has a model.
+    /// `source` and `drawer` must outlive this; the source must have a model.
     LinesComparison(const LinesJob& job, LinesSource& source, FrameDrawer& drawer);
 
-    /// Learned curvature on the left, measured on the right.
+    /// Draws a frame by learned curvature on the left and by measured on the right.
     Image draw(std::size_t frame);
 
-    /// A table, means over the frames.
+    /// Prints a table of means over the frames.
     void print() const;
     nlohmann::json describe() const;
 
@@ -28,7 +28,7 @@ class LinesComparison {
     LinesSource& source_;
     FrameDrawer& drawer_;
     std::vector<LineType> types_;
-    LineDifference in_view_, from_around_;  // as pictures see it, and as `curvature evaluate` does
+    LineDifference in_view_, from_around_;  // in the picture's view, and from six sides as in `curvature evaluate`
 };
 
 }  // namespace exemplar

@@ -11,12 +11,12 @@
 
 namespace exemplar {
 
-/// What is written: a file, or a folder of pictures.
+/// Kind of output: a file, or a folder of pictures.
 enum class LinesOutput { svg, picture, video, folder };
-/// By the end of the name; a name without one is a folder. Throws UsageError for what is not written.
+/// Returns the kind by the extension; a name without one is a folder. Throws UsageError for other extensions.
 LinesOutput lines_output_of(const std::filesystem::path& path);
 
-/// What 'exemplar lines' is asked to draw, checked: one function per kind of output takes it.
+/// Checked arguments of 'exemplar lines', for one function per kind of output.
 struct LinesJob {
     CommonOptions common;
     LinesSourceArguments source;
@@ -29,7 +29,7 @@ struct LinesJob {
     SvgOptions svg;
 };
 
-/// The report of a job, to which what is special to an output is added.
+/// Returns the report of a job, without the parts that depend on the kind of output.
 nlohmann::json describe_job(const LinesJob& job, const LinesSource& source, const StrokeView& view);
 
 /// Draws on the host and writes an SVG file, with frames as an animation.

@@ -42,7 +42,7 @@ void write_video(const LinesJob& job, LinesSource& source, const DrawFrame& draw
     video.finish();
 }
 
-void write_pictures(const LinesJob& job, LinesSource& source, const DrawFrame& draw) {
+void write_frames(const LinesJob& job, LinesSource& source, const DrawFrame& draw) {
     fs::create_directories(job.out);
     draw_frames(draw, source.frame_count(), [&](const Image& image, std::size_t frame) {
         write_png(job.out / fmt::format("frame_{:04}.png", frame), image);
@@ -73,7 +73,7 @@ void write_lines_pictures(const LinesJob& job) {
             write_video(job, source, draw, width, view.height);
             break;
         default:
-            write_pictures(job, source, draw);
+            write_frames(job, source, draw);
     }
     if (!job.common.quiet)
         fmt::print("{}: {} of {} x {}, drawn on {}\n", job.out.string(), counted(source.frame_count(), "frame"), width,

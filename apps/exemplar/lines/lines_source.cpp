@@ -82,7 +82,7 @@ LinesSource::LinesSource(const LinesSourceArguments& arguments) : arguments_(arg
     if (!arguments.model.empty()) {
         require_input(arguments.model);
         model_ = load_curvature_model(arguments.model);
-        require_fit(*model_, animation_);
+        require_compatible(*model_, animation_);
         evaluator_ = std::make_unique<CurvatureEvaluator>(*model_);
     }
     const DrawableOptions options{arguments.smoothing, arguments.derivatives,

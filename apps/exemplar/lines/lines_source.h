@@ -17,38 +17,38 @@
 
 namespace exemplar {
 
-/// What lines are drawn of, as words on the command line.
+/// Command-line arguments of the surface that is drawn.
 struct LinesSourceArguments {
     std::filesystem::path input, model;  ///< no model: curvature is measured
     FrameArguments frames;
-    bool first_frame_only = false;  ///< where no frames are asked for
+    bool first_frame_only = false;  ///< if no frames are selected
     double frames_per_second = 30;
     double smoothing = 1;     ///< of measured curvature, in edge lengths
-    bool derivatives = true;  ///< of curvature: some type needs them
-    /// Radians: measured curvature and normals know nothing of what is across edges of a larger angle; none: they do.
+    bool derivatives = true;  ///< of curvature; some line types need them
+    /// Radians. Measured curvature and normals ignore the surface across edges of a larger angle; none: cuts no edge.
     std::optional<float> split_angle;
     bool quiet = false;
 };
 
-/// A mesh, or the chosen frames of an animation, with curvature: all that lines are drawn from, frame by frame.
+/// A mesh, or the selected frames of an animation, with its curvature frame by frame.
 class LinesSource {
   public:
-    /// Reads all files, whatever kind they are, and prints their warnings unless `quiet`. Throws MeshError, ModelError,
+    /// Reads all files, of any kind, and prints their warnings unless `quiet`. Throws MeshError, ModelError,
     /// DataError or UsageError for what cannot be drawn.
     explicit LinesSource(const LinesSourceArguments& arguments);
 
     std::size_t frame_count() const { return frames_.size(); }
     bool is_animation() const { return animated_; }
-    /// Frames a second of the clip that the first frame is of.
+    /// Frames per second of the first frame's clip.
     double frames_per_second() const { return animation_.clips[frames_[0].clip].frames_per_second; }
-    std::span<const Face> faces() const { return animation_.rest.faces; }  ///< not cut
+    std::span<const Face> faces() const { return animation_.rest.faces; }  ///< of the uncut surface
     std::size_t vertex_count() const { return animation_.rest.vertex_count(); }
     std::vector<Vec3> vertices(std::size_t frame) const;
     /// The surface at a frame, cut open along edges of the split angle; valid until the next call.
     LineSurface surface(std::size_t frame);
-    /// The same as it is, without normals and curvature: what creases and boundaries are of; null if it was not cut.
+    /// The uncut surface, without normals and curvature, for creases and boundaries; null if no edges were cut.
     const LineSurface* edges() const { return drawable_->edges(); }
-    /// Of the first frame, or of the model's training: the same for all frames, so that lines do not flicker.
+    /// Feature size of the first frame, or of the model's training. It is constant, so that lines do not flicker.
     float feature_size();
 
     const Animation& animation() const { return animation_; }
@@ -64,8 +64,8 @@ class LinesSource {
     bool animated_ = false;
     std::vector<FrameRef> frames_;
     std::optional<CurvatureModel> model_;
-    std::unique_ptr<DrawableSurface> drawable_;      ///< with a model its neighbors alone are used
-    std::unique_ptr<CurvatureEstimator> estimator_;  ///< of normals, with a model
+    std::unique_ptr<DrawableSurface> drawable_;      ///< with a model only its neighbors are used
+    std::unique_ptr<CurvatureEstimator> estimator_;  ///< for normals, with a model
     std::unique_ptr<CurvatureEvaluator> evaluator_;
     std::vector<Vec3> vertices_;
     const VertexCurvature* curvature_ = nullptr;  ///< learned

@@ -17,7 +17,7 @@ struct TypeSummary {
     double length = 0;  ///< visible, in pixels
 };
 
-TypeSummary summarize(std::span<const Drawing> drawings, LineType type) {
+TypeSummary summarize_type(std::span<const Drawing> drawings, LineType type) {
     TypeSummary summary;
     for (const Drawing& drawing : drawings)
         for (const DrawingLayer& layer : drawing.layers) {
@@ -36,7 +36,7 @@ TypeSummary summarize(std::span<const Drawing> drawings, LineType type) {
 nlohmann::json describe_types(const LinesJob& job, std::span<const Drawing> drawings) {
     nlohmann::json types = nlohmann::json::object();
     for (const LineType type : job.types) {
-        const TypeSummary summary = summarize(drawings, type);
+        const TypeSummary summary = summarize_type(drawings, type);
         types[std::string(name_of(type))] = {{"segments", summary.segments},
                                              {"chains", summary.strokes},
                                              {"visible_runs", summary.runs},

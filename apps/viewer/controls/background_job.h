@@ -7,8 +7,8 @@
 
 namespace exemplar {
 
-/// Work in the background that ends with a result and can be canceled. Classes that derive from it start it at the end
-/// of their constructor and end it at the beginning of their destructor, as it uses their members.
+/// Background work with a result that can be canceled. Derived classes call start() at the end of their constructor
+/// and end() at the beginning of their destructor, as the work uses their members.
 template <typename Result>
 class BackgroundJob {
   public:
@@ -18,9 +18,10 @@ class BackgroundJob {
     void cancel() { canceled_ = true; }
     bool canceled() const { return canceled_; }
     bool finished() const { return result_.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
-    /// Since it was started.
+    /// Seconds since the start.
     double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-    /// What the work returned, once, when it is finished; throws what it threw, Interrupted if it was canceled.
+    /// Returns the result, once, when the work is finished. Throws what the work threw; Interrupted if it was
+    /// canceled.
     Result take() { return result_.get(); }
 
   protected:
@@ -31,12 +32,12 @@ class BackgroundJob {
     void start(Work&& work) {
         result_ = std::async(std::launch::async, std::forward<Work>(work));
     }
-    /// Cancels it and waits, which takes moments.
+    /// Cancels the work and waits briefly for its end.
     void end() {
         cancel();
         if (result_.valid()) result_.wait();
     }
-    /// What the work is to look at.
+    /// The flag that the work must check.
     const std::atomic<bool>& canceled_flag() const { return canceled_; }
 
   private:

@@ -9,23 +9,23 @@
 
 namespace exemplar {
 
-/// How long the last frames took on the device, by kernel and pass, in milliseconds.
+/// Device times of the last frames by kernel and pass, in milliseconds.
 class FrameTimes {
   public:
     static constexpr std::size_t k_frames = 120;
-    using Series = std::array<float, k_frames>;  ///< a ring, see at()
+    using Series = std::array<float, k_frames>;  ///< a ring buffer, see at()
 
-    /// Begins the next frame, with zeros.
+    /// Begins the next frame, with times of 0.
     void begin_frame();
-    /// Of the current frame.
+    /// Adds a time to the current frame.
     void add(std::string_view kernel, double milliseconds);
 
-    /// Names, those that take longest on average first.
+    /// Returns the names, longest average time first.
     std::vector<std::string> names() const;
-    /// Of the frame `age` frames before the last; 0 where there was none.
+    /// Returns the time in the frame `age` frames before the last; 0 if there was none.
     float at(const std::string& name, std::size_t age) const;
     float average(const std::string& name) const;
-    /// All kernels together.
+    /// Sums over all kernels.
     float total(std::size_t age) const;
     float average_total() const;
     std::size_t frame_count() const { return count_; }

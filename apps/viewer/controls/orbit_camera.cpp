@@ -10,8 +10,8 @@ namespace {
 constexpr float k_field_of_view = 0.6f;  // radians, along the shorter side of the picture when it fits
 constexpr float k_free_margin = 1.02f;
 
-// A cursor as a point on a ball of radius 1 in front of the picture, which far out becomes a hyperbola, so that there
-// is a point for every cursor.
+// Returns the point of a cursor on a ball of radius 1 in front of the picture. Far out the ball continues as a
+// hyperbola, so that every cursor has a point.
 Vec3 on_trackball(const Vec2& cursor, ViewSize size) {
     const float shorter = static_cast<float>(std::max(1, std::min(size.width, size.height)));
     const float x = (2 * cursor.x() - static_cast<float>(size.width)) / shorter,
@@ -65,7 +65,7 @@ float OrbitCamera::half_height() const {
     return distance_ * std::tan(k_field_of_view / 2);
 }
 
-// From the picture's center, in mesh units, y up.
+// Returns the offset from the picture's center, in mesh units, y up.
 Vec2 OrbitCamera::on_target_plane(const Vec2& cursor, ViewSize size) const {
     const float pixel = 2 * half_height() / static_cast<float>(std::max(size.height, 1));
     return pixel * Vec2(cursor.x() - 0.5f * static_cast<float>(size.width),
@@ -131,7 +131,7 @@ Camera OrbitCamera::camera(ViewSize size) const {
     const Eigen::Matrix3f to_view = rotation_.conjugate().toRotationMatrix();
     camera.view.topLeftCorner<3, 3>() = to_view;
     camera.view.topRightCorner<3, 1>() = -to_view * eye;
-    // As near to the ball as it goes: depths are then told apart best.
+    // The near plane is as close to the ball as possible, for the best depth resolution.
     const float depth = (eye - ball_.center).dot(rotation_ * Vec3::UnitZ());
     const float far = std::max(depth + 1.01f * ball_.radius, 0.02f * ball_.radius);
     if (parallel_) {

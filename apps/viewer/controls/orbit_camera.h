@@ -8,12 +8,12 @@
 
 namespace exemplar {
 
-/// A ball around what is looked at, in mesh units.
+/// A ball around the object, in mesh units.
 struct ViewBall {
     Vec3 center = Vec3::Zero();
     float radius = 1;
 };
-/// A ball around all points, at least a little larger than nothing.
+/// Returns a ball around all points, with a positive radius.
 ViewBall ball_around(std::span<const Vec3> points);
 
 /// Size of a picture in pixels.
@@ -23,22 +23,22 @@ struct ViewSize {
 
 enum class ViewSide { front, back, left, right, top, bottom };
 
-/// A camera that a hand moves: it turns around a target as a ball under the cursor does (after Bell's trackball, which
-/// never jumps or flips), pans with the target under the cursor, and zooms towards it. Cursors are in pixels, (0, 0)
-/// the upper left corner.
+/// A camera moved by the mouse. It orbits around a target by Bell's trackball, which never jumps or flips, pans so
+/// that the target follows the cursor, and zooms towards the cursor. Cursors are in pixels, (0, 0) the upper left
+/// corner.
 class OrbitCamera {
   public:
-    /// Shows the whole ball from where the camera is turned to.
+    /// Shows the whole ball, without changing the rotation.
     void fit(const ViewBall& ball, ViewSize size);
-    /// Turns by the way from one place of the cursor to another.
+    /// Rotates by a movement of the cursor.
     void orbit(const Vec2& from, const Vec2& to, ViewSize size);
-    /// Turns around the picture's up axis and its right axis, in radians.
+    /// Rotates around the picture's up axis and its right axis, in radians.
     void turn(float around_up, float around_right);
-    /// Moves so that what is at the target's depth follows the cursor.
+    /// Moves so that points at the target's depth follow the cursor.
     void pan(const Vec2& from, const Vec2& to, ViewSize size);
-    /// Comes nearer by a factor (below 1: goes away); what is under the cursor at the target's depth stays there.
+    /// Zooms in by a factor (below 1: out); the point under the cursor at the target's depth stays in place.
     void zoom(float factor, const Vec2& cursor, ViewSize size);
-    /// Looks from a side, or with +y up from where it is.
+    /// Look from a side, or keep the viewing direction and turn +y up.
     void look_from(ViewSide side);
     void turn_upright();
     void set_parallel(bool parallel) { parallel_ = parallel; }

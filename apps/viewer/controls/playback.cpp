@@ -44,7 +44,7 @@ bool Playback::advance(double seconds) {
     const std::size_t before = frame();
     const auto count = static_cast<double>(frames_);
     time_ += seconds * frames_per_second_ * speed_;
-    // A sum of many steps may be a rounding short of a frame.
+    // Rounding errors of many steps may leave the time just short of a frame.
     const double nearest = std::round(time_);
     if (std::abs(time_ - nearest) < 1e-9 * count) time_ = nearest;
     if (time_ >= count) {

@@ -4,11 +4,11 @@
 
 namespace exemplar {
 
-/// A clock over the frames of a clip. Without frames, or with one, it stands still.
+/// A clock over the frames of a clip. It does not run if there is no frame or only one.
 class Playback {
   public:
     Playback() = default;
-    /// Starts at the first frame; speed, looping and whether it plays stay.
+    /// Sets the clip and goes to the first frame; keeps speed, looping and whether it plays.
     void set_clip(std::size_t frames, double frames_per_second);
 
     std::size_t frame_count() const { return frames_; }
@@ -19,18 +19,18 @@ class Playback {
     bool loops() const { return loops_; }
     double speed() const { return speed_; }
 
-    /// Plays on; from the start if it stands at the end and does not loop.
+    /// Starts playing; from the first frame if it is at the end and does not loop.
     void play();
     void pause() { playing_ = false; }
     void toggle() { playing_ ? pause() : play(); }
     void set_loops(bool loops) { loops_ = loops; }
-    /// In [0.05, 8]: how much faster than the clip's own rate.
+    /// Sets the speed relative to the clip's frame rate, clamped to [0.05, 8].
     void set_speed(double speed);
-    /// Pauses at a frame, or the last if there are not as many.
+    /// Pauses at a frame, or at the last one if there are fewer frames.
     void scrub(std::size_t frame);
-    /// Pauses so many frames on; around the ends if it loops.
+    /// Pauses `frames` frames further; wraps around the ends if it loops.
     void step(int frames);
-    /// Lets so many seconds go by. Returns whether another frame is to be shown.
+    /// Advances the clock. Returns whether the frame has changed.
     bool advance(double seconds);
 
   private:

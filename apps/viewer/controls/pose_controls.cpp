@@ -47,7 +47,7 @@ std::vector<std::uint32_t> moving_nodes(const Rig& rig) {
     std::vector<bool> moves(rig.nodes.size(), false);
     for (const Influence& influence : rig.influences) {
         std::uint32_t node = rig.bones[influence.bone].node;
-        for (; node != k_none && !moves[node]; node = rig.nodes[node].parent) moves[node] = true;
+        for (; node != k_invalid_index && !moves[node]; node = rig.nodes[node].parent) moves[node] = true;
     }
     std::vector<std::uint32_t> nodes;
     for (std::uint32_t i = 0; i < moves.size(); ++i)

@@ -7,13 +7,13 @@
 
 namespace exemplar {
 
-/// What sliders change of the poses of a rig: nodes are turned further, blend weights are added to.
+/// Changes of a rig's poses by sliders: further rotations of nodes, and additions to blend weights.
 class PoseControls {
   public:
     PoseControls() = default;
     explicit PoseControls(const Rig& rig);
 
-    /// Degrees about the x, y and z axis of a node, in this order, after the rotation that the pose has.
+    /// Degrees about the x, y and z axis of each node, in this order, after the rotation of the pose.
     std::vector<Vec3> turns;
     /// Added to the weights of the pose.
     std::vector<float> added_weights;
@@ -24,7 +24,7 @@ class PoseControls {
     Pose apply(const Pose& pose) const;
 };
 
-/// The nodes that move something when they turn: those of bones with influence, and what these hang from; rising.
+/// Returns the nodes whose rotation moves vertices: those of bones with influence, and their ancestors; ascending.
 std::vector<std::uint32_t> moving_nodes(const Rig& rig);
 
 }  // namespace exemplar

@@ -7,7 +7,7 @@
 
 namespace exemplar {
 
-/// What keys do. One table says which; the help panel shows the same.
+/// Actions of keys. One table assigns them; the help panel shows the same table.
 enum class Action {
     play_pause,
     next_frame,
@@ -49,7 +49,7 @@ enum class Action {
 
 struct Shortcut {
     Action action;
-    int key;  ///< as GLFW numbers them
+    int key;  ///< key code of GLFW
     bool control;
     std::string_view keys;  ///< as they are shown
     std::string_view what;
@@ -59,7 +59,7 @@ struct Shortcut {
 std::span<const Shortcut> shortcuts();
 /// The action of a key, if it has one.
 std::optional<Action> action_of(int key, bool control);
-/// What moves the camera, for the same panel: buttons or wheel, and what they do.
+/// Help on moving the camera, for the same panel: buttons or wheel, and what they do.
 struct MouseHint {
     std::string_view mouse, what;
 };

@@ -27,7 +27,7 @@ CurvatureModel TrainingJob::train(const Animation& animation, std::uint64_t seed
     const std::vector<FrameRef> frames = select_frames(animation, {});
     CurvatureTraining options;
     options.seed = seed;
-    // As the command line has it: another fold of a cloth may show what training hardly does.
+    // As on the command line: components that are small in training may be large in other folds of cloth.
     if (animation.kind == AnimationKind::sequence) options.dropped_variance = 0;
     CurvatureTrainingReport report;
     CurvatureModel model = train_curvature(animation, frames, options, report);

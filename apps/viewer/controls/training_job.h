@@ -6,17 +6,17 @@
 
 #include "apps/viewer/controls/background_job.h"
 #include "host/animation/animation.h"
-#include "host/curvature/model/model.h"
 #include "host/curvature/learning/training.h"
+#include "host/curvature/model/model.h"
 
 namespace exemplar {
 
-/// Learns the curvature of an animation in the background, as `exemplar curvature train` does by itself. There may be
-/// one at a time.
+/// Learns the curvature of an animation in the background, with the defaults of `exemplar curvature train`. Only one
+/// may run at a time.
 class TrainingJob final : public BackgroundJob<CurvatureModel> {
   public:
     struct Status {
-        std::string what;  ///< a present participle
+        std::string what;  ///< current step, a present participle
         float share = 0;   ///< of that step, in [0, 1]
     };
 

@@ -11,8 +11,8 @@
 #include "host/core/files.h"
 #include "host/core/text.h"
 #include "host/data/corpus.h"
-#include "host/mesh/io/io.h"
 #include "host/mesh/editing/validate.h"
+#include "host/mesh/io/io.h"
 
 namespace exemplar {
 namespace {
@@ -43,7 +43,7 @@ FaceLabels segments_as_labels(const std::vector<std::int32_t>& segments) {
     return labels;
 }
 
-// Labels that lie beside the mesh; what is wrong with them is a remark, for the mesh can be seen without.
+// Adds labels found beside the mesh. Errors in them become remarks, as the mesh can be shown without labels.
 void add_labels_beside(Document& document) {
     const fs::path segments = fs::path(document.path).replace_extension(".seg");
     for (const fs::path& candidate : {labels_path(document.path), segments}) {
@@ -58,7 +58,7 @@ void add_labels_beside(Document& document) {
     }
 }
 
-// Faces that name a vertex twice have no area, and rings of faces no place for them.
+// Drops faces that name a vertex twice: they have no area, and cannot be part of rings of faces.
 void drop_degenerate_faces(Document& document, const std::string& name) {
     std::vector<Face>& faces = document.animation.rest.faces;
     std::size_t kept = 0;
@@ -76,7 +76,7 @@ void drop_degenerate_faces(Document& document, const std::string& name) {
     document.source_face.resize(kept);
 }
 
-// Lines are drawn where the surface faces the eye.
+// Flips all faces, as lines are drawn where the surface faces the eye.
 void turn_outward(Document& document) {
     for (Face& face : document.animation.rest.faces) std::swap(face[1], face[2]);
     document.remarks.emplace_back("the surface is inside out; its faces were turned around");

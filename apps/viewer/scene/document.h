@@ -15,11 +15,11 @@ struct LegendEntry {
     Color color{};
 };
 
-/// What a viewer shows: a surface and its motions. A mesh alone is a sequence without clips.
+/// What the viewer shows: a surface and its motions. A single mesh is a sequence without clips.
 struct Document {
     std::filesystem::path path;
     Animation animation;
-    /// For each face of the surface the polygon of the file that it was cut from, which labels are of.
+    /// For each face of the surface, the polygon of the file that it is a part of. Labels are per polygon.
     std::vector<std::uint32_t> source_face;
     std::size_t source_face_count = 0;
     std::vector<Color> face_colors;  ///< of labels; empty without
@@ -31,10 +31,10 @@ struct Document {
 };
 
 /// Reads a mesh (with the labels in it, in NAME_labels.txt or in NAME.seg beside it), an animation or a folder of
-/// meshes. Throws MeshError or DataError in one line.
+/// meshes. Throws MeshError or DataError with a message of one line.
 Document read_document(const std::filesystem::path& path);
 
-/// Colors the surface by a NAME_labels.txt or .seg file. Throws DataError if it is not of the surface.
+/// Colors the surface by a NAME_labels.txt or .seg file. Throws DataError if it does not fit the surface.
 void add_labels(Document& document, const std::filesystem::path& path);
 
 }  // namespace exemplar

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/viewer/scene/surface_scene.h"
-#include "apps/viewer/window/viewer_state.h"
+#include "apps/viewer/scene/viewer_state.h"
 #include "gpu/imaging/canvas.h"
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/record/profiler.h"
@@ -14,22 +14,22 @@
 
 namespace exemplar {
 
-/// Draws what a viewer shows, into pictures off the screen: the same frames with and without a window. A frame is one
-/// submission: record(), then whatever brings it to a window, then finish().
+/// Draws the frames of the viewer off the screen, the same with and without a window. A frame is one submission:
+/// record(), then commands that bring it to a window, then finish().
 class FrameRenderer {
   public:
     explicit FrameRenderer(Device& device);
 
-    /// Brings document and model to the device if they are others than before. Throws an Error if it cannot show the
-    /// document, which must then be closed, or ModelError if the model is not of it.
+    /// Uploads document and model if they have changed. Throws an Error if the document cannot be shown, which must
+    /// then be closed, or ModelError if the model does not fit the document.
     void follow(ViewerState& state);
     /// Records a frame of that size, in one picture or two side by side.
     void record(const ViewerState& state, ViewSize size);
     /// Records copies of the pictures to a part of an image, whose size may differ if it has just changed.
     void blit(VkImage target, VkRect2D part);
-    /// Waits for the frame that was submitted; takes its times down.
+    /// Waits for the submitted frame and adds its times.
     void finish(FrameTimes& times);
-    /// The frame that was drawn last, read back: RGB.
+    /// Reads back the last frame, as RGB.
     Image read();
 
     Stream& stream() { return stream_; }
@@ -40,7 +40,7 @@ class FrameRenderer {
     Device& device_;
     Profiler profiler_;
     Stream stream_;
-    Canvas empty_;                // without a document
+    Canvas empty_;                // shown without a document
     std::vector<Canvas*> shown_;  // side by side
     std::unique_ptr<SurfaceScene> scene_;
     std::uint64_t document_version_ = 0, model_version_ = 0;

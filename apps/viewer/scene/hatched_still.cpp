@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "apps/viewer/options.h"
-#include "apps/viewer/window/viewer_state.h"
+#include "apps/viewer/scene/options.h"
+#include "apps/viewer/scene/viewer_state.h"
 #include "gpu/hatching/hatching_device.h"
 #include "host/core/errors.h"
 #include "host/hatching/features/surface_cache.h"
@@ -17,7 +17,7 @@
 namespace exemplar {
 namespace {
 
-// Hatching is black on white, whatever the paper of the style of lines.
+// Adapts a line style to hatching, which is black on white: makes pale lines black.
 DrawingStyle on_white(DrawingStyle look) {
     constexpr int k_pale = 128;
     for (LineStyle& line : look.lines) {
@@ -29,7 +29,7 @@ DrawingStyle on_white(DrawingStyle look) {
 
 HatchedDrawing draw_on(HatchingDevice& device, const HatchedStill& still,
                        const std::function<void(const char*)>& step) {
-    constexpr float k_taper = 6;  // pixels, as 'exemplar hatch draw' has it
+    constexpr float k_taper = 6;  // pixels, as in 'exemplar hatch draw'
     step("measuring the surface");
     const HatchingSurface surface = cached_surface(still.mesh, default_surface_folder());
     step("hatching");
@@ -52,11 +52,11 @@ HatchedStill hatched_still(const ViewerState& state, ViewSize size, const std::s
     still.hatching = state.hatching();
     still.mesh = state.document().animation.rest;
     still.mesh.vertices = vertices_at(state.document(), state.moment());
-    // What touches in a pose may part in the next; a mesh stays as it is.
+    // Parts that touch in one pose may separate in the next, so only single meshes are welded.
     if (state.document().animation.clips.empty()) still.mesh = welded(still.mesh);
     still.mesh = without_loose_vertices(still.mesh);
     still.view.camera = state.camera.camera(size);
-    still.view.light = usual_light(still.view.camera);
+    still.view.light = default_light(still.view.camera);
     still.view.width = size.width;
     still.view.height = size.height;
     still.unit_depth = state.camera.distance();
@@ -75,7 +75,7 @@ HatchedDrawing draw_still(const HatchedStill& still, const std::function<void(co
         log = device.device().validation_log();
         drawing = draw_on(device, still, step);
     }
-    require_silence(*log);  // also of how the device ended
+    require_no_validation_messages(*log);  // includes messages from the end of the device
     return drawing;
 }
 

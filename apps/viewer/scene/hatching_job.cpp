@@ -21,7 +21,7 @@ std::vector<std::filesystem::path> HatchingJob::run(const HatchedStill& still, c
         drawing = draw_still(still, step);
         step("saving");
     });
-    // All files or none: no longer to be canceled.
+    // Can no longer be canceled, so that all files are written or none.
     std::vector<std::filesystem::path> files = names();
     for (const std::filesystem::path& file : files) write_still(file, still, drawing);
     return files;

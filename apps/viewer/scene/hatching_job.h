@@ -10,17 +10,18 @@
 
 namespace exemplar {
 
-/// Gives the files that a still is written to.
+/// Returns the files to write a still to.
 using StillNames = std::function<std::vector<std::filesystem::path>()>;
 
-/// Draws a hatched still in the background and writes it; its result are the files. There may be one at a time.
+/// Draws a hatched still in the background and writes it; the result is the list of files. Only one may run at a
+/// time.
 class HatchingJob final : public BackgroundJob<std::vector<std::filesystem::path>> {
   public:
-    /// Asks for names when there is something to write, as others may take them until then.
+    /// Calls `names` only when the drawing is ready, as other programs may use names before that.
     HatchingJob(HatchedStill still, StillNames names);
     ~HatchingJob() { end(); }
 
-    /// What it is at: a present participle.
+    /// The current step: a present participle.
     const char* what() const { return what_; }
 
   private:

@@ -9,9 +9,9 @@ PaintLook look_of(const ViewSettings& settings, float feature_size) {
     PaintLook look{.paint = settings.paint,
                    .light = settings.light,
                    .plain = settings.plain,
-                   .strongest_curvature = settings.curvature_range / std::max(feature_size, 1e-20f),
+                   .full_color_curvature = settings.curvature_range / std::max(feature_size, 1e-20f),
                    .background = settings.background};
-    // Under lines, which should stand out, surfaces are as light as styles have them.
+    // Under lines the surface has the headlight, as in styles, so that lines stand out.
     if (look.light == SurfaceLight::smooth && settings.shows_lines()) look.light = SurfaceLight::headlight;
     return look;
 }
@@ -30,7 +30,7 @@ void SceneView::follow_style(const ViewSettings& settings) {
     style_version_ = settings.style_version;
 }
 
-void SceneView::record(Stream& stream, const SceneMoment& moment, const ViewCamera& camera, VkExtent2D extent,
+void SceneView::record(Stream& stream, const SceneFrame& moment, const ViewCamera& camera, VkExtent2D extent,
                        const ViewSettings& settings) {
     follow_style(settings);
     LinePicture picture;

@@ -10,13 +10,13 @@
 
 namespace exemplar {
 
-/// A surface at a moment, and what is known of it beside.
-struct SceneMoment {
+/// A surface at one frame, with its feature size.
+struct SceneFrame {
     GpuCurvedSurface surface;
     float feature_size = 0;
 };
 
-/// Where a scene is seen from.
+/// The camera of a view.
 struct ViewCamera {
     Camera camera;
     float distance;  ///< at which strokes have the widths of their style, in mesh units
@@ -25,12 +25,12 @@ struct ViewCamera {
 /// One picture of a scene.
 class SceneView {
   public:
-    /// `surface` must live as long. `colors` has one per face, or is empty.
+    /// `surface` must outlive this. `colors` has one per face, or is empty.
     SceneView(const GpuLineSurface& surface, std::span<const Color> colors);
 
-    void record(Stream& stream, const SceneMoment& moment, const ViewCamera& camera, VkExtent2D extent,
+    void record(Stream& stream, const SceneFrame& moment, const ViewCamera& camera, VkExtent2D extent,
                 const ViewSettings& settings);
-    /// Has the picture when the recorded work is done.
+    /// Holds the picture when the recorded work is done.
     Canvas& canvas() { return renderer_.canvas(); }
 
   private:

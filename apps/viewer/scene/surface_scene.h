@@ -11,41 +11,41 @@
 #include "apps/viewer/scene/document.h"
 #include "apps/viewer/scene/scene_view.h"
 #include "apps/viewer/scene/view_settings.h"
-#include "gpu/curvature/surface/animated_surface.h"
+#include "gpu/curvature/animated_surface.h"
 #include "gpu/runtime/record/stream.h"
 #include "host/curvature/model/model.h"
 
 namespace exemplar {
 
-/// What a surface looks like at a moment: a pose of its rig, or vertices of a sequence.
-struct Moment {
+/// Shape of a surface at one frame: a pose of its rig, or vertices of a sequence.
+struct FrameShape {
     std::optional<Pose> pose;
     std::span<const Vec3> vertices{};  ///< empty for rigs
 };
 
-/// The moment of a frame of a document, which must live as long.
-Moment moment_of(const Document& document, std::size_t clip, std::size_t frame);
-/// The vertices at a moment, on the host.
-std::vector<Vec3> vertices_at(const Document& document, const Moment& moment);
+/// Returns the shape at a frame of a document. The document must outlive it.
+FrameShape frame_shape_of(const Document& document, std::size_t clip, std::size_t frame);
+/// Computes the vertices of a shape, on the host.
+std::vector<Vec3> vertices_at(const Document& document, const FrameShape& moment);
 
-/// A document on the device: from moments to vertices, normals and curvature, and from these to pictures, without any
-/// of them coming back.
+/// A document on the device. Computes vertices, normals, curvature and pictures from a pose there, without copying
+/// any of them to the host.
 class SurfaceScene {
   public:
-    /// The document must live as long as this. Throws MeshError or DeviceLimitError if the device cannot show it.
+    /// The document must outlive this. Throws MeshError or DeviceLimitError if the device cannot show it.
     SurfaceScene(Device& device, const Document& document);
 
-    /// Takes learned curvature from a model, or from none. Throws ModelError if it is of another surface.
+    /// Sets the model of learned curvature; null: none. Throws ModelError if it is of another surface.
     void set_model(std::shared_ptr<const CurvatureModel> model);
     bool has_model() const { return model_ != nullptr; }
 
-    /// Records a moment in one view, or in two side by side of learned and estimated curvature.
-    void record(Stream& stream, const Moment& moment, const OrbitCamera& camera, std::span<const VkExtent2D> extents,
-                const ViewSettings& settings);
+    /// Records a frame in one view, or in two side by side with learned and estimated curvature.
+    void record(Stream& stream, const FrameShape& moment, const OrbitCamera& camera,
+                std::span<const VkExtent2D> extents, const ViewSettings& settings);
     SceneView& view(std::size_t index) { return views_[index]; }
 
   private:
-    void record_moment(Stream& stream, const Moment& moment, CurvatureSource source);
+    void record_moment(Stream& stream, const FrameShape& moment, CurvatureSource source);
     void find_feature_size();
     const Document& document_;
     GpuSurface surface_;

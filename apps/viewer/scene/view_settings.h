@@ -12,10 +12,10 @@
 
 namespace exemplar {
 
-/// Which curvature colors and lines are taken from: measured anew on every frame, or learned; or both side by side.
+/// The curvature that colors and lines use: measured on every frame, learned, or both side by side.
 enum class ShownCurvature { estimated, learned, both };
 
-/// Everything that decides how a surface looks, but for where it is seen from.
+/// Everything that decides how a surface looks, except the camera.
 struct ViewSettings {
     SurfacePaint paint = SurfacePaint::plain;
     SurfaceLight light = SurfaceLight::smooth;
@@ -24,9 +24,9 @@ struct ViewSettings {
     /// The curvature of the strongest color, times the feature size.
     float curvature_range = 0.25f;
     ShownCurvature source = ShownCurvature::estimated;
-    std::array<bool, k_line_types.size()> lines{true, true};  ///< that are shown, in the order of k_line_types
+    std::array<bool, k_line_types.size()> lines{true, true};  ///< which are shown, in the order of k_line_types
     DrawingStyle style = load_style("ink");                   ///< of lines; its surface and background are above
-    std::uint64_t style_version = 1;                          ///< to be counted up when the style is changed
+    std::uint64_t style_version = 1;                          ///< increment it when the style is changed
 
     bool shows_lines() const { return std::ranges::find(lines, true) != lines.end(); }
     std::vector<LineType> shown_lines() const {
@@ -35,9 +35,9 @@ struct ViewSettings {
             if (lines[i]) types.push_back(k_line_types[i]);
         return types;
     }
-    /// All lines do, for strokes are thinner where the surface bends.
+    /// All lines need it, as strokes are thinner where the surface bends.
     bool needs_curvature() const { return paints_curvature(paint) || shows_lines(); }
-    /// Takes a style with its surface and background.
+    /// Sets a style, with its surface and background.
     void set_style(const DrawingStyle& next);
 };
 

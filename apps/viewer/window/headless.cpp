@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "apps/viewer/scene/frame_renderer.h"
-#include "apps/viewer/options.h"
+#include "apps/viewer/scene/options.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
@@ -17,7 +17,8 @@
 namespace exemplar {
 namespace {
 
-// Memory of this process that is not of files, which come and go with the system's cache; 0 where there is no /proc.
+// Returns the memory of this process without mapped files, which vary with the system's cache; 0 if there is no
+// /proc.
 std::size_t own_memory() {
     std::ifstream file("/proc/self/statm");
     std::size_t total = 0, resident = 0, shared = 0;
@@ -25,7 +26,7 @@ std::size_t own_memory() {
     return (resident - std::min(resident, shared)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
-// What may still grow in the first frames: pools, caches, compiled kernels.
+// Frames after which pools, caches and compiled kernels should no longer grow.
 constexpr std::size_t k_warm_frames = 50;
 
 void draw_frames(ViewerState& state, FrameRenderer& renderer, const ViewerOptions& options) {
@@ -91,7 +92,7 @@ void run_headless(const ViewerOptions& options) {
         FrameRenderer renderer(device);
         draw_frames(state, renderer, options);
     }
-    require_silence(*log);
+    require_no_validation_messages(*log);
 }
 
 }  // namespace exemplar

@@ -11,7 +11,7 @@
 namespace exemplar {
 namespace {
 
-// Freely licensed fonts that systems have, best first; without one there is the pixel font of the library.
+// Freely licensed fonts of common systems, best first. If none is found, the library's pixel font is used.
 constexpr std::array k_fonts = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
                                 "/usr/share/fonts/TTF/DejaVuSans.ttf",
                                 "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
@@ -124,7 +124,7 @@ InterfaceRequests Interface::lay_out(ViewerState& state, VkExtent2D pixels) {
     return requests;
 }
 
-// Of two pictures side by side both move alike.
+// Two pictures side by side move together.
 void Interface::move_camera(ViewerState& state) const {
     const ImGuiIO& io = ImGui::GetIO();
     if (io.WantCaptureMouse || !state.has_document()) return;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/viewer/window/viewer_state.h"
+#include "apps/viewer/scene/viewer_state.h"
 #include "apps/viewer/window/window.h"
 
 struct ImDrawData;
@@ -15,20 +15,20 @@ struct ImFontAtlas;
 
 namespace exemplar {
 
-/// What panels ask of the program beyond what they change of its state.
+/// Requests of panels to the program, beyond their changes of its state.
 struct InterfaceRequests {
     std::vector<Action> actions;
     std::vector<std::filesystem::path> open;
 };
 
-/// Where the surface is shown: in units of the window, and in pixels.
+/// The area that shows the surface: in units of the window, and in pixels.
 struct ViewArea {
     float left = 0, top = 0, width = 1, height = 1;
     VkRect2D pixels{};
     ViewSize size() const { return {static_cast<int>(pixels.extent.width), static_cast<int>(pixels.extent.height)}; }
 };
 
-/// The panels of a window and what the mouse does. There is one at a time.
+/// The panels of a window and the control by mouse. Only one may exist at a time.
 class Interface {
   public:
     explicit Interface(Window& window);
@@ -46,7 +46,7 @@ class Interface {
     void find_view(const ViewerState& state, VkExtent2D pixels);
     void move_camera(ViewerState& state) const;
     float scale_;
-    std::string path_;  // that is being typed
+    std::string path_;  // text being typed
     ViewArea view_;
 };
 

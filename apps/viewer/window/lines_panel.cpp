@@ -29,7 +29,7 @@ void choose_style(ViewerState& state) {
     ImGui::EndCombo();
 }
 
-// The threshold that a style has for a type, in the unit that set_threshold takes.
+// Returns a style's threshold for a type, in the unit of set_threshold.
 float threshold_of(const DrawingStyle& style, LineType type) {
     const LineThresholds thresholds = style.thresholds(type);
     switch (type) {
@@ -63,7 +63,7 @@ bool edit_threshold(DrawingStyle& style, LineType type) {
     return changed;
 }
 
-// A line of the list: whether it is shown, its color, and below, when it is, threshold and width.
+// Draws an entry of the list: whether the type is shown, its color and, if it is shown, threshold and width below.
 void draw_type(ViewSettings& settings, std::size_t index) {
     const LineType type = k_line_types[index];
     LineStyle& line = settings.style.of(type);

@@ -64,9 +64,9 @@ void draw_speed(ViewerState& state) {
 }  // namespace
 
 PanelSizes panel_sizes(const ViewerState& state, float width, float height, float scale) {
-    constexpr float k_side = 300, k_bottom = 40, k_least_width = 560, k_least_height = 240;
+    constexpr float k_side = 300, k_bottom = 40, k_min_width = 560, k_min_height = 240;
     PanelSizes sizes{.side = 0, .bottom = 0, .width = width, .height = height};
-    if (!state.show_panels || width < k_least_width * scale || height < k_least_height * scale) return sizes;
+    if (!state.show_panels || width < k_min_width * scale || height < k_min_height * scale) return sizes;
     sizes.side = k_side * scale;
     if (state.playback.frame_count() > 1) sizes.bottom = k_bottom * scale;
     return sizes;

@@ -8,7 +8,7 @@ namespace exemplar {
 
 // The panels of a window, drawn with Dear ImGui between the begin and the end of its frame.
 
-/// How much of a window panels take, in its units; none of a window that is too small for them.
+/// Sizes of the panels in units of the window; 0 if the window is too small for them.
 struct PanelSizes {
     float side = 0;               ///< width, at the left
     float bottom = 0;             ///< height, beside it
@@ -16,11 +16,11 @@ struct PanelSizes {
 };
 PanelSizes panel_sizes(const ViewerState& state, float width, float height, float scale);
 
-/// `path` is what is being typed into the field for files.
+/// `path` is the text in the field for files.
 void draw_side_panel(ViewerState& state, const PanelSizes& sizes, std::string& path, InterfaceRequests& requests);
 void draw_playback_bar(ViewerState& state, const PanelSizes& sizes, InterfaceRequests& requests);
 void draw_messages(ViewerState& state, const ViewArea& view, float scale);
-/// What each of two pictures side by side shows; what to do while there is nothing to show.
+/// Draws captions of two pictures side by side, or a hint if there is nothing to show.
 void draw_view_captions(const ViewerState& state, const ViewArea& view);
 void draw_help(ViewerState& state, const ViewArea& view, float scale);
 

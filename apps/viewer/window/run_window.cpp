@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "apps/viewer/scene/frame_renderer.h"
+#include "apps/viewer/scene/options.h"
 #include "apps/viewer/window/interface.h"
-#include "apps/viewer/options.h"
 #include "apps/viewer/window/save_svg.h"
 #include "apps/viewer/window/window.h"
 #include "gpu/runtime/device/errors.h"
@@ -33,10 +33,10 @@ constexpr Transition k_interface_drawn{VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTP
                                        VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT, VK_PIPELINE_STAGE_2_NONE,
                                        VK_ACCESS_2_NONE};
 
-// Frames that are drawn after something happened: an interface takes more than one to settle.
+// Number of frames drawn after an event, as an interface needs more than one to become stable.
 constexpr int k_settling_frames = 3;
 
-/// STEM_0.png and so on, with the first number that is free for all of them, in the working folder.
+/// Returns STEM_0.png and so on in the working folder, with the first number that is free for all extensions.
 std::vector<std::filesystem::path> free_names(const std::string& stem, const std::vector<std::string>& extensions) {
     for (int i = 0;; ++i) {
         std::vector<std::filesystem::path> names;
@@ -46,7 +46,7 @@ std::vector<std::filesystem::path> free_names(const std::string& stem, const std
     }
 }
 
-/// Everything on the device; it ends when the device is lost, and another takes its place.
+/// Everything on the device. It is replaced when the device is lost.
 class Session {
   public:
     Session(Window& window, Interface& interface, const std::string& device)
@@ -73,7 +73,7 @@ class Session {
     FrameRenderer renderer_;
 };
 
-// What the device cannot show is told and closed; a lost device is not the document's fault.
+// Closes a document that the device cannot show, with a message; keeps it if the device was lost.
 void Session::follow(ViewerState& state) {
     try {
         renderer_.follow(state);
@@ -114,7 +114,7 @@ void Session::record(const ViewerState& state, const WindowImage& image) {
                       VK_IMAGE_LAYOUT_PRESENT_SRC_KHR, k_interface_drawn);
 }
 
-/// From the window's events to frames.
+/// The main loop, from events of the window to frames.
 class Viewer {
   public:
     explicit Viewer(const ViewerOptions& options)
@@ -125,7 +125,7 @@ class Viewer {
         set_title();
     }
 
-    /// Stays until the window is closed; a device that is lost is opened again, a few times.
+    /// Runs until the window is closed. Opens a lost device again, a few times.
     void run();
 
   private:
@@ -164,7 +164,7 @@ void Viewer::open(const std::filesystem::path& path) {
     set_title();
 }
 
-// A viewer that shows what stands still takes no processor.
+// Waits for events while nothing moves, so that an idle viewer takes no CPU time.
 void Viewer::wait_for_work() {
     constexpr double k_idle_seconds = 0.5, k_progress_seconds = 0.1;
     const bool busy = (state_.playback.playing() && state_.playback.frame_count() > 1) || options_.frames > 0;
@@ -176,7 +176,7 @@ void Viewer::wait_for_work() {
     --restless_;
 }
 
-// In the working folder, beside what was saved before.
+// Saves in the working folder, without replacing earlier files.
 void Viewer::save(const std::string& extension, const std::function<void(const std::filesystem::path&)>& write) {
     const std::filesystem::path path = free_names(state_.document().path.stem().string(), {extension})[0];
     try {
@@ -228,7 +228,7 @@ void Viewer::run_session(Session& session) {
         InterfaceRequests requests;
         if (!session.draw(state_, requests)) {
             window_.wait(0.1);
-            restless_ = k_settling_frames;  // there is something to draw as soon as it can be shown
+            restless_ = k_settling_frames;  // draws as soon as the window can show it
             continue;
         }
         if (!options_.quiet && frames_ == 0)
@@ -241,9 +241,9 @@ void Viewer::run_session(Session& session) {
         for (const std::filesystem::path& path : requests.open) open(path);
         for (const Action action : requests.actions) perform(action, session);
         for (const Action action : window_.take_actions()) perform(action, session);
-        // Only now it is known how much of the window panels take.
+        // Fits only now that the size of the panels is known.
         if (!std::exchange(fitted_, true)) state_.fit(interface_.view().size());
-        require_silence(*session.device().validation_log());
+        require_no_validation_messages(*session.device().validation_log());
     }
 }
 
@@ -262,7 +262,7 @@ void Viewer::run() {
             if (losses >= k_most_losses) throw;
             state_.messages.error(error.what());
         }
-        if (log) require_silence(*log);
+        if (log) require_no_validation_messages(*log);
     }
     check_interrupt();
 }

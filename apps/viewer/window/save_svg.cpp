@@ -9,29 +9,29 @@
 namespace exemplar {
 namespace {
 
-// As the device measures it; see SurfaceScene.
+// Returns the options by which SurfaceScene measures on the device.
 CurvatureOptions measuring_options(const ViewerState& state) {
     CurvatureOptions options = state.model() ? state.model()->truth : CurvatureOptions{.smoothing = 1};
     options.derivatives = true;
     return options;
 }
 
-VertexCurvature learned_curvature(const ViewerState& state, const Moment& moment, std::span<const Vec3> vertices,
+VertexCurvature learned_curvature(const ViewerState& state, const FrameShape& moment, std::span<const Vec3> vertices,
                                   std::span<const Vec3> normals) {
     CurvatureEvaluator evaluator(*state.model());
     return moment.pose ? evaluator.evaluate(state.document().animation.rig, *moment.pose, vertices, normals)
                        : evaluator.evaluate(vertices, normals);
 }
 
-/// A moment on the host.
-struct SavedMoment {
+/// The surface at one frame, on the host.
+struct HostFrame {
     const std::vector<Face>& faces;
     std::vector<Vec3> vertices;
     std::vector<FaceNeighbors> neighbors;
     CurvatureEstimator estimator;
     VertexCurvature estimated;
 
-    SavedMoment(const ViewerState& state, const Moment& moment)
+    HostFrame(const ViewerState& state, const FrameShape& moment)
         : faces(state.document().animation.rest.faces),
           vertices(vertices_at(state.document(), moment)),
           neighbors(build_face_neighbors(faces, vertices.size())),
@@ -51,8 +51,8 @@ struct SavedMoment {
 };
 
 Drawing drawing_of(const ViewerState& state, ViewSize size) {
-    const Moment moment = state.moment();
-    const SavedMoment saved(state, moment);
+    const FrameShape moment = state.moment();
+    const HostFrame saved(state, moment);
     if (!state.model() || state.settings.source == ShownCurvature::estimated)
         return saved.draw(state, saved.estimated, size);
     const VertexCurvature learned = learned_curvature(state, moment, saved.vertices, saved.estimator.normals());

@@ -70,7 +70,7 @@ void draw_legend(const Document& document) {
 
 void draw_training(ViewerState& state) {
     if (!state.training) {
-        const bool can = state.document().posable() || state.document().animation.frame_count() >= k_fewest_poses;
+        const bool can = state.document().posable() || state.document().animation.frame_count() >= k_min_poses;
         if (!can || !ImGui::Button(state.model() ? "Train again" : "Train a model", ImVec2(-1, 0))) return;
         try {
             state.start_training();
@@ -125,7 +125,7 @@ std::string short_name(const std::string& program) {
     return program.substr(0, program.find('.'));
 }
 
-// The frames side by side, newest at the right, with what each kernel took on top of one another.
+// Draws frames side by side, newest at the right, with the times of kernels stacked.
 void draw_stack(const FrameTimes& times, const std::vector<std::string>& names) {
     const ImVec2 origin = ImGui::GetCursorScreenPos();
     const ImVec2 size(ImGui::GetContentRegionAvail().x, ImGui::GetFontSize() * 6);

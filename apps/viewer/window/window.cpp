@@ -19,7 +19,7 @@ std::string last_error() {
     return text ? text : "unknown error";
 }
 
-// What one would hold a key for.
+// Returns whether an action repeats while its key is held.
 bool repeats(Action action) {
     return action == Action::next_frame || action == Action::previous_frame || action == Action::faster ||
            action == Action::slower || (action >= Action::turn_left && action <= Action::zoom_out);

@@ -14,7 +14,7 @@ struct GLFWwindow;
 
 namespace exemplar {
 
-/// A window of the system, without anything in it. There is one at a time.
+/// An empty window of the system. Only one may exist at a time.
 class Window {
   public:
     /// Throws UsageError if there is no display.
@@ -23,22 +23,22 @@ class Window {
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    /// What a device must have to show images in it.
+    /// Requirements on a device that shows images in it.
     PresentationOptions presentation() const;
-    /// A surface of an instance with these extensions, which the caller ends.
+    /// Makes a surface of an instance that has these extensions; the caller destroys it.
     VkSurfaceKHR make_surface(VkInstance instance) const;
     /// Its size in pixels; zero while it is minimized.
     VkExtent2D pixels() const;
-    /// Pixels per unit that texts should be scaled with.
+    /// Pixels per unit, for the scale of text.
     float content_scale() const;
     bool closing() const;
     void close();
     void set_title(const std::string& title);
 
-    /// Takes events that are there, or waits for some for so many seconds. Returns whether there was any.
+    /// Handle pending events, or wait for events for up to that many seconds. Return whether there was any.
     bool poll();
     bool wait(double seconds);
-    /// What keys asked for and files that were dropped since the last call.
+    /// Return the actions of keys, and the dropped files, since the last call.
     std::vector<Action> take_actions();
     std::vector<std::filesystem::path> take_drops();
 

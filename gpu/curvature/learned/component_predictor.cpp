@@ -27,7 +27,7 @@ using shared::vec4;
 // The kernels fetch each as one four-component vector.
 static_assert(sizeof(CurvatureFeature) == 16 && sizeof(CurvatureComponent) == 16);
 
-// Features in runs that begin at whole texels: each that some components are for, in their order.
+// Features in runs, one per range of features that components use, in their order. Runs begin at whole texels.
 struct FeatureRuns {
     std::vector<CurvatureFeature> features;
     std::vector<CurvatureComponent> components;

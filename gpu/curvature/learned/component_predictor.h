@@ -2,27 +2,27 @@
 
 #include <cstddef>
 
-#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/record/stream.h"
 #include "host/curvature/model/predictor.h"
 
 namespace exemplar {
 
-/// From the inputs x of a pose to the components z of curvature on the device, as ComponentRegression::evaluate. Sums
-/// are taken in another order.
+/// Computes the components z of curvature from the inputs x of a pose on the device, as
+/// ComponentRegression::evaluate does, but with another order of summation.
 class GpuComponentPredictor {
   public:
-    /// Throws ModelError if the regression contradicts itself, DeviceLimitError if kernels cannot see all of it.
+    /// Throws ModelError if the regression is inconsistent, DeviceLimitError if it exceeds the device's texel limit.
     GpuComponentPredictor(Device& device, const ComponentRegression& regression);
 
-    /// Two dispatches. `pose` has the inputs from float `first_input` on, a multiple of four, and behind them a one and
-    /// zeros to the next multiple of four.
+    /// Records two dispatches. `pose` has the inputs from float `first_input` on, a multiple of four, followed by a
+    /// one and zeros up to the next multiple of four.
     void record(Stream& stream, const Buffer& pose, std::size_t first_input);
     /// A float per component.
     const Buffer& components() const { return components_; }
-    /// Floats that the inputs, the one and the zeros take.
+    /// Returns the number of floats of the inputs, the one and the zeros.
     std::size_t padded_inputs() const { return 4 * input_texels_; }
 
   private:

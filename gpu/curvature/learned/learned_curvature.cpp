@@ -48,7 +48,7 @@ GpuLearnedCurvature::GpuLearnedCurvature(Device& device, const CurvatureModel& m
       range_(model.range),
       segments_(needed_segments(model)),
       predictor_(device, model.regression),
-      copies_inputs_(model.regression.copies_inputs()),
+      is_identity_(model.regression.is_identity()),
       reprojection_(device, model.tiles, model.regression.components.size(), segments_.count(), options),
       x_(model.state.input_count),
       rotations_(segments_.count()) {
@@ -104,8 +104,8 @@ void GpuLearnedCurvature::record(Stream& stream, const Buffer& vertices, const B
         throw UsageError(
             fmt::format("{} vertices cannot have {} normals", vertex_count_, normals.bytes() / sizeof(vec4)));
     local_->record(stream, vertices, normals);
-    if (!copies_inputs_) predictor_.record(stream, local_->inputs(), 0);
-    reprojection_.record(stream, copies_inputs_ ? local_->inputs() : predictor_.components(),
+    if (!is_identity_) predictor_.record(stream, local_->inputs(), 0);
+    reprojection_.record(stream, is_identity_ ? local_->inputs() : predictor_.components(),
                          {.vertices = vertices, .normals = normals, .rotations = local_->rotations()});
 }
 

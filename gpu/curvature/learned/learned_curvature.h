@@ -10,8 +10,8 @@
 #include "gpu/curvature/learned/component_predictor.h"
 #include "gpu/curvature/learned/local_state.h"
 #include "gpu/curvature/learned/reprojection.h"
-#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/device/device.h"
+#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/record/stream.h"
 #include "host/animation/animation.h"
 #include "host/curvature/model/model.h"
@@ -19,31 +19,31 @@
 namespace exemplar {
 
 /// Evaluates learned curvature (thesis Ch. 5) on the device, as CurvatureEvaluator does. Per frame only the state of
-/// the pose goes up, 4 bytes per input and, of principal attributes, 48 per segment; curvature stays on the device and
-/// is laid out as that of GpuCurvature.
+/// the pose is uploaded, 4 bytes per input and, for principal attributes, 48 per segment. Curvature stays on the
+/// device, in the layout of GpuCurvature.
 class GpuLearnedCurvature {
   public:
-    /// The model may end when this returns. Throws ModelError if it contradicts itself, DeviceLimitError if it is too
-    /// large for the device.
+    /// The model need not outlive this. Throws ModelError if it is inconsistent, DeviceLimitError if it is too large
+    /// for the device.
     GpuLearnedCurvature(Device& device, const CurvatureModel& model, const ReprojectionOptions& options = {});
 
-    /// Curvature at a pose of the rig, given GpuPoser::vertices() and GpuNormals::normals() of the posed surface: three
-    /// dispatches, more where the device's limits are low. Throws UsageError if the model was learned on mesh
-    /// sequences, or if rig, pose, vertices or normals are not those it was learned on.
+    /// Records the curvature in a pose of the rig, given GpuPoser::vertices() and GpuNormals::normals() of the posed
+    /// surface: three dispatches, more where the device's limits are low. Throws UsageError if the model was learned
+    /// on mesh sequences, or if rig, pose, vertices or normals do not match the model.
     void record(Stream& stream, const Rig& rig, const Pose& pose, const Buffer& vertices, const Buffer& normals);
-    /// The same of a frame of a mesh sequence: five dispatches, and nothing goes up, if the state is that of local
-    /// shape. One of hinges is read on the host from the same vertices.
+    /// Records the same for a frame of a mesh sequence. Local shape is read on the device, in up to five dispatches
+    /// without uploads; dihedral angles are read on the host from the same vertices.
     void record(Stream& stream, std::span<const Vec3> vertices_on_host, const Buffer& vertices, const Buffer& normals);
-    /// The same of vertices that only the device has. Throws UsageError if the state is not that of local shape.
+    /// Records the same for vertices that only the device has. Throws UsageError if the state is not of local shape.
     void record(Stream& stream, const Buffer& vertices, const Buffer& normals);
 
-    /// The control of the last call that was farthest from the training poses; zero of local shape, which the host does
-    /// not see.
+    /// Returns the control that was farthest from the training poses in the last call; zero for local shape, which
+    /// the host does not read.
     PoseRange::Farthest farthest() const { return farthest_; }
 
-    /// The unit principal direction e1 and its curvature k1 >= k2, in 1 / mesh units.
+    /// A vec4 per vertex: unit principal direction e1 and its curvature k1 >= k2, in 1 / mesh units.
     const Buffer& first() const { return reprojection_.first(); }
-    /// The same of the second; e1 x e2 is the normal.
+    /// The same for e2 and k2; e1 x e2 is the normal.
     const Buffer& second() const { return reprojection_.second(); }
     /// C111, C112, C122, C222 in (e1, e2), in 1 / squared mesh units.
     const Buffer& derivative() const { return reprojection_.derivative(); }
@@ -56,9 +56,9 @@ class GpuLearnedCurvature {
     StateReader reader_;
     PoseRange range_;
     Segments segments_;                                   // none for tensors
-    std::size_t fewest_bones_ = 0, fewest_controls_ = 0;  // of a rig: nodes or targets
+    std::size_t fewest_bones_ = 0, fewest_controls_ = 0;  // minimum sizes of a rig; controls: nodes or targets
     GpuComponentPredictor predictor_;
-    bool copies_inputs_;
+    bool is_identity_;
     GpuReprojection reprojection_;
     std::optional<GpuLocalState> local_;
     Buffer state_;  // rotations, then inputs; not of local shape

@@ -25,7 +25,7 @@ static_assert(sizeof(LocalInput) == 16);
 static_assert(shared::k_corner_vertices == Segments::Triangle::k_patch && shared::k_corner_vertices % 4 == 0);
 static_assert(StateReader::k_local_numbers == 4);  // a texel of halves has two vertices
 
-void check(const CurvatureModel& model) {
+void check_local_model(const CurvatureModel& model) {
     const StateReader& state = model.state;
     const std::size_t patches = state.controls.size();
     bool fits = state.local_begin.size() == patches + 1 && model.segments.triangles.size() == patches &&
@@ -44,7 +44,7 @@ std::vector<std::uint32_t> corner_vertices(const Segments& segments) {
     return vertices;
 }
 
-// A row of a control's map, a texel per two vertices.
+// Appends a row of a control's map, a texel per two vertices.
 void append_weights(const Eigen::Ref<const Eigen::RowVectorXf>& row, std::vector<uvec4>& texels) {
     const auto word = [&](Eigen::Index at) {
         if (at >= row.size()) return std::uint32_t{0};
@@ -90,7 +90,7 @@ GpuLocalState::GpuLocalState(Device& device, const CurvatureModel& model, std::s
           {.push_constants = layout_of<LocalInputParameters>(),
            .elements = {layout_of<uvec4>(), layout_of<std::uint32_t>(), layout_of<uvec4>(), layout_of<float>(),
                         layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<float>()}}) {
-    check(model);
+    check_local_model(model);
     const LocalInputs inputs = gather_inputs(model);
     check_texels(device, std::max({inputs.weights.size(), model.state.local_vertex.size(), 6 * patch_count_}),
                  "the patches of a curvature model");

@@ -2,28 +2,28 @@
 
 #include <cstddef>
 
-#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/record/stream.h"
 #include "host/curvature/model/model.h"
 
 namespace exemplar {
 
-/// Reads the state of a mesh sequence from the local shape of its patches on the device: what StateReader::read_surface
-/// and PoseRange::prepare do of a model whose state is_local().
+/// Reads the state of a surface from the local shape of its patches on the device, as StateReader::read_surface and
+/// PoseRange::prepare do for a model whose state is_local().
 class GpuLocalState {
   public:
-    /// The model may end when this returns. `padded_inputs`: as many floats as inputs() has; the first beyond those of
-    /// the model is 1, the others are 0. Throws ModelError if the model contradicts itself, DeviceLimitError if it is
-    /// too large for the device.
+    /// The model need not outlive this. `padded_inputs`: number of floats of inputs(); the first after the model's
+    /// inputs is 1, the others are 0. Throws ModelError if the model is inconsistent, DeviceLimitError if it is too
+    /// large for the device.
     GpuLocalState(Device& device, const CurvatureModel& model, std::size_t padded_inputs);
 
-    /// Two dispatches. vertices, normals: a vec4 (x, y, z, any) per vertex; normals are unit.
+    /// Records two dispatches. vertices, normals: a vec4 (x, y, z, any) per vertex; normals are unit.
     void record(Stream& stream, const Buffer& vertices, const Buffer& normals);
-    /// Less their means.
+    /// Inputs minus their means.
     const Buffer& inputs() const { return inputs_; }
-    /// Of each patch three rows, a vec4 (x, y, z, 0) each.
+    /// Per patch the three rows of its rotation, a vec4 (x, y, z, 0) each.
     const Buffer& rotations() const { return rotations_; }
 
   private:

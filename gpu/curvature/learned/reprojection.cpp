@@ -20,11 +20,10 @@ using shared::vec4;
 // The kernel fetches each as one four-component vector.
 static_assert(sizeof(CurvatureTile) == 16);
 
-// As the kernel has it.
-static_assert(k_least_flat == 1e-6f && k_least_divisor == 0.2f);
+// The kernel has copies.
+static_assert(k_min_flatness == 1e-6f && k_min_divisor == 0.2f);
 
-// On a CPU every load of a kernel is expensive, so that a component, once loaded, serves a whole tile; a GPU wants many
-// invocations.
+// On a CPU a loaded component serves a whole tile: D6 in docs/portability.md.
 std::uint32_t suitable_quads(const Device& device) {
     return device.tuning().choose(k_reprojected_quads, device.info().type == DeviceType::cpu ? k_tile_quads : 1);
 }
@@ -51,10 +50,10 @@ GpuReprojection::GpuReprojection(Device& device, const BasisTiles& tiles, std::s
         throw UsageError(fmt::format("vertices are re-projected by 4, 8 or 16, not by 4 x {}", quads_));
     check_texels(device, std::max({tiles.tile_count(), vertex_count_, components, 3 * segments}),
                  "the vertices of a curvature model");
-    const TileLayout layout =
-        lay_out_tiles(tiles, components, segments, std::min<std::size_t>(options.most_texels, device.info().max_texels),
-                      device.info().texel_alignment);
-    scale_.resize(k_most_attributes, 0.0f);
+    const TileLayout layout = lay_out_tiles(
+        tiles, components, segments, std::min<std::size_t>(options.max_texels_per_range, device.info().max_texels),
+        device.info().texel_alignment);
+    scale_.resize(k_max_attributes, 0.0f);
     ranges_ = layout.ranges;
     table_ = Buffer::of<CurvatureTile>(device, layout.table);
     tiles_ = Buffer::of<uvec4>(device, layout.texels);

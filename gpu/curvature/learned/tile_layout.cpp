@@ -22,12 +22,12 @@ using shared::uvec4;
 constexpr std::size_t k_lanes = BasisTiles::k_lanes;
 constexpr std::uint32_t k_group = 4;  // entries
 static_assert(k_lanes == std::size_t{4} * k_tile_quads);
-static_assert(k_most_attributes == 8, "the counts of a tile are one texel");
+static_assert(k_max_attributes == 8, "the counts of a tile are one texel");
 
 // The halves of a tile's lanes.
 using Row = std::array<Half, k_lanes>;
 
-[[noreturn]] void refuse(const std::string& what) {
+[[noreturn]] void refuse_tiles(const std::string& what) {
     throw ModelError("a curvature model is damaged: " + what + "; train it again");
 }
 
@@ -44,15 +44,16 @@ void check_tiles(const BasisTiles& tiles, std::size_t components, std::size_t se
         begin.size() != count * attributes + 1 || begin.back() != tiles.entry.size() ||
         tiles.basis.size() != tiles.entry.size() * k_lanes || tiles.scale.size() != attributes ||
         !std::is_sorted(begin.begin(), begin.end()))
-        refuse(fmt::format("its parts are not those of {} tiles of {} attributes", count, attributes));
+        refuse_tiles(fmt::format("its parts are not those of {} tiles of {} attributes", count, attributes));
     const auto beyond = [](const auto& values, std::size_t most) {
         return std::any_of(values.begin(), values.end(), [&](std::size_t value) { return value >= most; });
     };
     if (beyond(tiles.vertex, tiles.vertex_count) || beyond(tiles.neighbor, tiles.vertex_count))
-        refuse("a tile has a vertex that does not exist");
+        refuse_tiles("a tile has a vertex that does not exist");
     if (std::ranges::any_of(tiles.entry, [&](auto entry) { return BasisTiles::component_of(entry) >= components; }))
-        refuse("a tile has a component that does not exist");
-    if (!is_tensor(tiles) && beyond(tiles.segment, segments)) refuse("a tile is of a segment that does not exist");
+        refuse_tiles("a tile has a component that does not exist");
+    if (!is_tensor(tiles) && beyond(tiles.segment, segments))
+        refuse_tiles("a tile is of a segment that does not exist");
 }
 
 Row row_at(const std::vector<Half>& halves, std::size_t index) {
@@ -77,7 +78,7 @@ void append_pair(const Row& a, const Row& b, std::vector<uvec4>& texels) {
             {packed(a[i], a[i + 1]), packed(a[i + 2], a[i + 3]), packed(b[i], b[i + 1]), packed(b[i + 2], b[i + 3])});
 }
 
-// The means of a tile and its reference normals, if there are any.
+// Appends the means of a tile and its reference normals, if there are any.
 void append_constants(const BasisTiles& tiles, std::size_t tile, std::vector<uvec4>& texels) {
     const std::size_t attributes = attribute_count(tiles.set);
     std::vector<Row> rows;
@@ -93,7 +94,7 @@ void append_indices(const std::vector<std::uint32_t>& indices, std::size_t tile,
         texels.push_back({of_tile[i], of_tile[i + 1], of_tile[i + 2], of_tile[i + 3]});
 }
 
-// Where the entries of an attribute of a tile end.
+// The range of entries of an attribute of a tile.
 struct Entries {
     std::uint32_t begin, end;
     std::uint32_t groups() const { return (end - begin + k_group - 1) / k_group; }
@@ -110,7 +111,7 @@ void append_entries(const BasisTiles& tiles, Entries entries, TileLayout& layout
         std::array<std::array<std::uint32_t, k_group>, k_tile_quads> words{};
         for (std::uint32_t i = 0; i < k_group; ++i) {
             const std::uint32_t e = first + i;
-            // Zero times a component that the tile has anyway: what is not finite comes into nothing else.
+            // Padding is zero times a component the tile uses anyway, so that a non-finite one does not spread.
             group[i] = e < entries.end ? tiles.entry[e] : BasisTiles::component_of(tiles.entry[first]);
             for (std::size_t q = 0; e < entries.end && q < k_tile_quads; ++q)
                 words[q][i] = packed(&tiles.basis[e * k_lanes + 4 * q]);
@@ -122,7 +123,7 @@ void append_entries(const BasisTiles& tiles, Entries entries, TileLayout& layout
 
 void append_tile(const BasisTiles& tiles, std::size_t tile, TileLayout& layout) {
     const std::size_t attributes = attribute_count(tiles.set);
-    std::array<std::uint32_t, k_most_attributes> groups{};
+    std::array<std::uint32_t, k_max_attributes> groups{};
     for (std::size_t a = 0; a < attributes; ++a) groups[a] = entries_at(tiles, tile, a).groups();
     const auto counts = [&](std::size_t a) { return groups[a] | groups[a + 1] << 16; };
     layout.texels.push_back({counts(0), counts(2), counts(4), counts(6)});
@@ -144,17 +145,17 @@ std::size_t texels_of(const BasisTiles& tiles, std::size_t tile) {
            k_tile_quads * ((constants + 1) / 2 + groups_of(tiles, tile));
 }
 
-// So far apart that any stretch of multiples, modulo `count`, is spread evenly (by the golden ratio), and all are met.
+// Returns a step, near the golden ratio times `count` and coprime to it, whose multiples modulo `count` visit
+// everything and are evenly spread in any stretch.
 std::size_t spreading_step(std::size_t count) {
     auto step = static_cast<std::size_t>(0.618 * static_cast<double>(count));
     while (std::gcd(step, count) != 1) ++step;
     return step;
 }
 
-// Invocations that run in step wait for the one with the most groups, so that tiles with about as many stand together,
-// in runs as long as such invocations are many. Short and long runs are mixed: cores that take equal shares of the
-// tiles get about equal shares of the work. All that only within windows: what is near on the surface is still near in
-// time.
+// Orders tiles by work. Invocations of a subgroup wait for the one with the most groups, so runs of k_run tiles have
+// similar numbers of groups. Runs with few and many groups are interleaved, so that cores with equal shares of the
+// tiles have about equal work. Windows limit the reordering, so that neighbors on the surface stay close in time.
 std::vector<std::uint32_t> order_by_work(const BasisTiles& tiles) {
     constexpr std::size_t k_run = 8, k_window = 512;
     std::vector<std::size_t> groups;
@@ -179,18 +180,18 @@ void pad(std::size_t alignment, TileLayout& layout) {
 
 }  // namespace
 
-TileLayout lay_out_tiles(const BasisTiles& tiles, std::size_t components, std::size_t segments, std::size_t most_texels,
-                         std::size_t alignment) {
+TileLayout lay_out_tiles(const BasisTiles& tiles, std::size_t components, std::size_t segments,
+                         std::size_t max_texels_per_range, std::size_t alignment) {
     check_tiles(tiles, components, segments);
     TileLayout layout;
     for (const std::uint32_t t : order_by_work(tiles)) {
         const std::size_t texels = texels_of(tiles, t);
-        if (texels > most_texels)
+        if (texels > max_texels_per_range)
             throw DeviceLimitError(fmt::format("16 vertices of a curvature model need {} texels, over the device's "
                                                "limit of {}; train it with fewer components",
-                                               texels, most_texels),
-                                   texels, most_texels);
-        if (layout.ranges.empty() || layout.ranges.back().texels + texels > most_texels) {
+                                               texels, max_texels_per_range),
+                                   texels, max_texels_per_range);
+        if (layout.ranges.empty() || layout.ranges.back().texels + texels > max_texels_per_range) {
             pad(alignment, layout);
             layout.ranges.push_back(
                 {static_cast<std::uint32_t>(layout.table.size()), 0, layout.texels.size(), 0, layout.groups.size(), 0});

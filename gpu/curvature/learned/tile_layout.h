@@ -9,8 +9,8 @@
 
 namespace exemplar {
 
-/// BasisTiles as kernels read them (see shared::CurvatureTile), ordered by what there is to add up, in ranges of which
-/// one binding sees each.
+/// BasisTiles in the layout of the kernels (see shared::CurvatureTile), with tiles of similar work adjacent, in
+/// ranges that each fit into one binding.
 struct TileLayout {
     struct Range {
         std::uint32_t first_tile, tiles;
@@ -22,10 +22,10 @@ struct TileLayout {
     std::vector<Range> ranges;
 };
 
-/// No range has more than `most_texels`, and each begins at a multiple of `alignment` bytes. Throws DeviceLimitError if
-/// a single tile has more, ModelError if the tiles contradict themselves or refer to more than `components` or,
-/// if principal, `segments`.
-TileLayout lay_out_tiles(const BasisTiles& tiles, std::size_t components, std::size_t segments, std::size_t most_texels,
-                         std::size_t alignment);
+/// Lays out tiles in ranges of at most `max_texels_per_range` that begin at multiples of `alignment` bytes. Throws
+/// DeviceLimitError if a single tile has more texels, ModelError if the tiles are inconsistent or refer to
+/// components or, for principal attributes, segments that do not exist.
+TileLayout lay_out_tiles(const BasisTiles& tiles, std::size_t components, std::size_t segments,
+                         std::size_t max_texels_per_range, std::size_t alignment);
 
 }  // namespace exemplar

@@ -22,7 +22,7 @@ using shared::SurfaceParameters;
 using shared::uvec4;
 using shared::vec4;
 
-// What part of a whole Gaussian's variance its middle up to the cutoff keeps; as host/mesh/curvature/tensor_diffusion.cpp.
+// Share of a Gaussian's variance that is left when it is cut off; as in host/mesh/curvature/tensor_diffusion.cpp.
 double kept_variance() {
     const double cutoff = shared::k_diffusion_cutoff, rest = std::exp(-cutoff);
     return (1 - (1 + cutoff + cutoff * cutoff / 2) * rest) / (1 - (1 + cutoff) * rest);
@@ -46,7 +46,8 @@ double smoothing_width(const GpuSurface& surface, const CurvatureOptions& option
     return options.smoothing * CurvatureEstimator(rest.faces, rest.vertex_count()).median_edge_length(rest.vertices);
 }
 
-// A list of vertices and where its rows begin, and what kernels read and write beside it, a vec4 per vertex each.
+// Bindings of a kernel: where the rows of a list of vertices begin, the list, and `attributes` buffers of vec4 per
+// vertex.
 template <typename Parameters>
 KernelInterface gathering_interface(std::size_t attributes, bool smoothed) {
     KernelInterface interface {
@@ -64,14 +65,14 @@ Buffer attribute(const GpuSurface& surface) {
 }  // namespace
 
 GpuCurvature::Diffusion::Diffusion(const GpuSurface& surface, double width, bool with_derivatives)
-    : spins(attribute(surface)),
+    : angular_components(attribute(surface)),
       forms(surface.device(), shaders::curvature_smooth_forms_comp,
             gathering_interface<DiffusionParameters>(5, false)) {
     const DeviceInfo& info = surface.device().info();
-    // A device may claim more than the machine has; lists of near vertices are kept a few times while they are made.
-    const std::size_t most_bytes = std::min<std::size_t>(info.max_allocation, usable_memory() / 16);
+    // A device may claim more memory than the machine has, and building the lists takes a few copies of them.
+    const std::size_t max_bytes = std::min<std::size_t>(info.max_allocation, usable_memory() / 16);
     const NearVertices rows = build_near_vertices(surface.rest(), k_smoothing_reach * std::sqrt(squared_radius(width)),
-                                                  most_bytes / sizeof(uvec4));
+                                                  max_bytes / sizeof(uvec4));
     near_begin = Buffer::of<std::uint32_t>(surface.device(), rows.begin);
     near = Buffer::of<uvec4>(surface.device(), rows.texels);
     const double scaled = width * static_cast<double>(surface.scale());
@@ -92,10 +93,10 @@ GpuCurvature::Diffusion::Diffusion(const GpuSurface& surface, double width, bool
 void GpuCurvature::Diffusion::record(Stream& stream, const Kernel& kernel, const Buffer& vertices,
                                      const Buffer& normals, const Buffer& sixth, const Buffer& seventh) const {
     for (const Tile& tile : tiles)
-        stream.dispatch(
-            kernel, tile.parameters.vertices,
-            {near_begin, BufferRange(near, tile.offset, tile.bytes), vertices, normals, spins, sixth, seventh},
-            tile.parameters);
+        stream.dispatch(kernel, tile.parameters.vertices,
+                        {near_begin, BufferRange(near, tile.offset, tile.bytes), vertices, normals, angular_components,
+                         sixth, seventh},
+                        tile.parameters);
 }
 
 GpuCurvature::GpuCurvature(const GpuSurface& surface, const CurvatureOptions& options)
@@ -116,13 +117,14 @@ void GpuCurvature::record(Stream& stream, const Buffer& vertices) {
     const std::uint32_t count = surface_.vertex_count();
     const Buffer &begin = surface_.ring_begin(), &rings = surface_.rings();
     stream.dispatch(curvature_kernel_, count,
-                    {begin, rings, vertices, normals(), diffusion_ ? diffusion_->spins : first_, second_},
+                    {begin, rings, vertices, normals(), diffusion_ ? diffusion_->angular_components : first_, second_},
                     surface_.parameters());
     if (diffusion_) diffusion_->record(stream, diffusion_->forms, vertices, normals(), first_, second_);
     if (!derivative_) return;
-    stream.dispatch(derivative_kernel_, count,
-                    {begin, rings, vertices, first_, second_, normals(), diffusion_ ? diffusion_->spins : derivative_},
-                    surface_.parameters());
+    stream.dispatch(
+        derivative_kernel_, count,
+        {begin, rings, vertices, first_, second_, normals(), diffusion_ ? diffusion_->angular_components : derivative_},
+        surface_.parameters());
     if (diffusion_) diffusion_->record(stream, diffusion_->derivatives, vertices, normals(), first_, derivative_);
 }
 

@@ -4,8 +4,8 @@
 
 namespace exemplar {
 
-/// A surface of one moment on the device. Curvature as GpuCurvature and GpuLearnedCurvature have it; null where there
-/// is none, or it has no derivatives.
+/// Non-owning buffers of a surface in one frame. Curvature is in the layout of GpuCurvature; null if there is none,
+/// or no derivatives.
 struct GpuCurvedSurface {
     const Buffer& vertices;  ///< a vec4 (x, y, z, 1) per vertex
     const Buffer& normals;   ///< a vec4 (unit normal, any) per vertex

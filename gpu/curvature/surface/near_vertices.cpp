@@ -27,7 +27,7 @@ class Flood {
           limit_(static_cast<float>(radius * radius)),
           seen_by_(mesh.vertex_count(), k_nobody) {}
 
-    /// Those around `center`, the nearest over edges first; until the next call.
+    /// Returns the vertices around `center` in breadth-first order; valid until the next call.
     std::span<const std::uint32_t> around(std::uint32_t center) {
         reached_ = {center};
         seen_by_[center] = center;
@@ -62,7 +62,7 @@ std::uint32_t append_row(std::uint32_t vertex, std::span<const std::uint32_t> ot
 
 }  // namespace
 
-NearVertices build_near_vertices(const TriangleMesh& mesh, double radius, std::size_t most_texels) {
+NearVertices build_near_vertices(const TriangleMesh& mesh, double radius, std::size_t max_texels_per_range) {
     const std::size_t count = mesh.vertex_count();
     const VertexNeighbors neighbors = build_vertex_neighbors(mesh.faces, count);
     std::vector<std::vector<uvec4>> chunks((count + k_chunk - 1) / k_chunk);
@@ -73,11 +73,11 @@ NearVertices build_near_vertices(const TriangleMesh& mesh, double radius, std::s
         for (std::size_t v = begin * k_chunk; v < std::min(end * k_chunk, count); ++v) {
             const auto vertex = static_cast<std::uint32_t>(v);
             lengths[v] = append_row(vertex, flood.around(vertex), chunks[v / k_chunk]);
-            if ((total += lengths[v]) > most_texels)
+            if ((total += lengths[v]) > max_texels_per_range)
                 throw UsageError(fmt::format(
                     "smoothing over {:.3g} mesh units reaches too many of {} vertices for the memory there is "
                     "({} texels of four); smooth less (--smoothing 0: not at all), or simplify the mesh",
-                    radius, count, most_texels));
+                    radius, count, max_texels_per_range));
         }
     });
     NearVertices near;
@@ -92,7 +92,7 @@ NearVertices build_near_vertices(const TriangleMesh& mesh, double radius, std::s
     return near;
 }
 
-std::vector<NearTile> tile_rows(const NearVertices& rows, std::size_t most_texels, std::size_t alignment) {
+std::vector<NearTile> tile_rows(const NearVertices& rows, std::size_t max_texels_per_range, std::size_t alignment) {
     const auto count = static_cast<std::uint32_t>(rows.begin.size());
     const auto end_of = [&](std::uint32_t v) {
         return v + 1 < count ? rows.begin[v + 1] : static_cast<std::uint32_t>(rows.texels.size());
@@ -100,16 +100,16 @@ std::vector<NearTile> tile_rows(const NearVertices& rows, std::size_t most_texel
     const auto aligned = static_cast<std::uint32_t>(std::max<std::size_t>(alignment, 1));
     std::vector<NearTile> tiles;
     for (std::uint32_t v = 0; v < count; ++v) {
-        if (tiles.empty() || end_of(v) - tiles.back().first_texel > most_texels)
+        if (tiles.empty() || end_of(v) - tiles.back().first_texel > max_texels_per_range)
             tiles.push_back({.first = v, .count = 0, .first_texel = rows.begin[v] / aligned * aligned, .texels = 0});
         NearTile& tile = tiles.back();
         ++tile.count;
         tile.texels = end_of(v) - tile.first_texel;
-        if (tile.texels > most_texels)
+        if (tile.texels > max_texels_per_range)
             throw UsageError(
                 fmt::format("smoothing reaches {} texels of vertices from vertex {}, over the limit of {} "
                             "of this device; smooth less",
-                            tile.texels, v, most_texels));
+                            tile.texels, v, max_texels_per_range));
     }
     return tiles;
 }

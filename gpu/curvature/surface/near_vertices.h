@@ -9,19 +9,19 @@
 
 namespace exemplar {
 
-/// For each vertex those around it, as kernels gather them: the row of vertex v starts at texels[begin[v]] (see
-/// shared::k_near_last).
+/// The nearby vertices of each vertex in the layout of the kernels: the row of vertex v starts at texels[begin[v]]
+/// (see shared::k_near_last).
 struct NearVertices {
     std::vector<std::uint32_t> begin;
     std::vector<shared::uvec4> texels;
 };
 
-/// The vertices that are reached from each over edges without leaving the ball of this radius around it, in mesh units;
-/// without the vertex itself. Throws UsageError if that takes more than `most_texels`.
-NearVertices build_near_vertices(const TriangleMesh& mesh, double radius, std::size_t most_texels);
+/// Finds for each vertex those that are connected to it by edges inside the ball of this radius (mesh units) around
+/// it, without itself. Throws UsageError if they take more than `max_texels_per_range`.
+NearVertices build_near_vertices(const TriangleMesh& mesh, double radius, std::size_t max_texels_per_range);
 
-/// Rows of consecutive vertices: those of vertices [first, first + count) are in the `texels` texels from
-/// `first_texel`.
+/// Rows of consecutive vertices: the rows of vertices [first, first + count) are in texels
+/// [first_texel, first_texel + texels).
 struct NearTile {
     std::uint32_t first;
     std::uint32_t count;
@@ -29,8 +29,8 @@ struct NearTile {
     std::uint32_t texels;
 };
 
-/// Splits the rows so that no tile has more than `most_texels`, and each begins at a multiple of `alignment` (with the
-/// end of the row before it, perhaps). Throws UsageError if a single row is longer.
-std::vector<NearTile> tile_rows(const NearVertices& rows, std::size_t most_texels, std::size_t alignment);
+/// Splits the rows into tiles of at most `max_texels_per_range` that begin at multiples of `alignment`; a tile may thus
+/// begin with the end of the previous row. Throws UsageError if a single row is longer.
+std::vector<NearTile> tile_rows(const NearVertices& rows, std::size_t max_texels_per_range, std::size_t alignment);
 
 }  // namespace exemplar

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "gpu/curvature/surface/surface.h"
-#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/record/stream.h"
 
 namespace exemplar {
@@ -13,10 +13,10 @@ class GpuNormals {
     /// `surface` must live as long as this.
     explicit GpuNormals(const GpuSurface& surface);
 
-    /// Normals of `vertices`, a vec4 per vertex. Throws UsageError if they are not of the surface.
+    /// Records the normals of `vertices`, a vec4 per vertex. Throws UsageError if they are not of the surface.
     void record(Stream& stream, const Buffer& vertices);
-    /// A vec4 per vertex: the unit normal, (0, 0, 1) where no face is, and the area around the vertex, the parts of its
-    /// faces that are nearest to it (Meyer et al. 2003), in squared mesh units.
+    /// A vec4 per vertex: unit normal, (0, 0, 1) without faces, and vertex area in squared mesh units, i.e. the
+    /// parts of its faces that are nearest to it (Meyer et al. 2003).
     const Buffer& normals() const { return normals_; }
 
   private:

@@ -27,39 +27,40 @@ static_assert(sizeof(RestVertex) == 16 && sizeof(InfluencePair) == 16 && sizeof(
 
 constexpr std::size_t k_rows_per_bone = 3;
 
-[[noreturn]] void refuse(const std::string& what) {
+[[noreturn]] void refuse_rig(const std::string& what) {
     throw UsageError("a rig cannot be posed: " + what);
 }
 
 void check_influences(const Rig& rig, std::size_t vertices) {
     const std::vector<std::uint32_t>& begin = rig.influence_begin;
     if (begin.size() != vertices + 1 || begin.front() != 0 || begin.back() != rig.influences.size())
-        refuse(fmt::format("its influences are not those of {} vertices; read or build it for this mesh", vertices));
+        refuse_rig(
+            fmt::format("its influences are not those of {} vertices; read or build it for this mesh", vertices));
     for (std::size_t v = 0; v < vertices; ++v)
-        if (begin[v + 1] <= begin[v]) refuse(fmt::format("vertex {} has no influence; bind it to a bone", v));
+        if (begin[v + 1] <= begin[v]) refuse_rig(fmt::format("vertex {} has no influence; bind it to a bone", v));
     for (const Influence& influence : rig.influences)
         if (influence.bone >= rig.bones.size())
-            refuse(fmt::format("an influence is of bone {}, but there are {}", influence.bone, rig.bones.size()));
+            refuse_rig(fmt::format("an influence is of bone {}, but there are {}", influence.bone, rig.bones.size()));
 }
 
 void check_targets(const Rig& rig, std::size_t vertices) {
     for (const MorphTarget& target : rig.targets) {
         if (target.vertices.size() != target.offsets.size())
-            refuse(fmt::format("target '{}' has {} vertices and {} offsets", target.name, target.vertices.size(),
-                               target.offsets.size()));
+            refuse_rig(fmt::format("target '{}' has {} vertices and {} offsets", target.name, target.vertices.size(),
+                                   target.offsets.size()));
         for (const std::uint32_t v : target.vertices)
             if (v >= vertices)
-                refuse(fmt::format("target '{}' moves vertex {}, but there are {}", target.name, v, vertices));
+                refuse_rig(fmt::format("target '{}' moves vertex {}, but there are {}", target.name, v, vertices));
     }
 }
 
 void check_skeleton(const Rig& rig) {
     for (std::size_t i = 0; i < rig.nodes.size(); ++i)
-        if (rig.nodes[i].parent != k_none && rig.nodes[i].parent >= i)
-            refuse(fmt::format("node {} comes before its parent {}", i, rig.nodes[i].parent));
+        if (rig.nodes[i].parent != k_invalid_index && rig.nodes[i].parent >= i)
+            refuse_rig(fmt::format("node {} comes before its parent {}", i, rig.nodes[i].parent));
     for (const Bone& bone : rig.bones)
         if (bone.node >= rig.nodes.size())
-            refuse(fmt::format("a bone is of node {}, but there are {}", bone.node, rig.nodes.size()));
+            refuse_rig(fmt::format("a bone is of node {}, but there are {}", bone.node, rig.nodes.size()));
 }
 
 // Appends the pairs of one vertex.
@@ -74,7 +75,7 @@ void append_pairs(std::span<const Influence> influences, std::vector<InfluencePa
 // The offsets of all targets, by vertex and then by target.
 struct Morphs {
     std::vector<std::uint32_t> begin;  // per vertex; 0 where no target moves it
-    std::vector<MorphOffset> offsets;  // the first is nobody's
+    std::vector<MorphOffset> offsets;  // the first is unused
 };
 
 Morphs gather_morphs(const Rig& rig, std::size_t vertices) {

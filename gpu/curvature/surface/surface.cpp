@@ -33,16 +33,16 @@ std::vector<shared::uvec4> corners_of(const TriangleMesh& mesh) {
     return corners;
 }
 
-// Kernels go around a vertex in one loop.
+// Checks that kernels can visit each ring in one loop.
 void check_rings(const VertexRings& rings) {
     for (std::size_t v = 0; v < rings.begin.size(); ++v) {
         const std::size_t end = v + 1 < rings.begin.size() ? rings.begin[v + 1] : rings.texels.size();
         const std::size_t corners = 4 * (end - rings.begin[v]);
-        if (corners > k_most_iterations)
+        if (corners > k_max_iterations)
             throw DeviceLimitError(fmt::format("vertex {} has some {} faces around it, and kernels go around {} at "
                                                "most; simplify the mesh",
-                                               v, corners, k_most_iterations),
-                                   corners, k_most_iterations);
+                                               v, corners, k_max_iterations),
+                                   corners, k_max_iterations);
     }
 }
 

@@ -7,7 +7,7 @@
 
 namespace exemplar {
 
-/// Throws DeviceLimitError if kernels of the device cannot see this many texels at once; `what` needs them.
+/// Throws DeviceLimitError if a texel buffer of the device cannot hold the texels of `what`.
 void check_texels(const Device& device, std::size_t texels, std::string_view what);
 
 }  // namespace exemplar

@@ -12,7 +12,7 @@
 namespace exemplar {
 namespace {
 
-// What a face has beside the vertex: its next and its last corner.
+// The other two corners of a face at a vertex, in the face's order.
 struct Wing {
     std::uint32_t from;
     std::uint32_t to;
@@ -29,7 +29,7 @@ bool names_a_vertex_twice(const Face& face) {
     return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
 }
 
-void check(const TriangleMesh& mesh) {
+void check_ring_sizes(const TriangleMesh& mesh) {
     if (mesh.vertex_count() > shared::k_ring_vertex)
         throw MeshError(fmt::format("a mesh of {} vertices is over the limit of {}; split or simplify it",
                                     mesh.vertex_count(), shared::k_ring_vertex));
@@ -65,7 +65,7 @@ class FanBuilder {
         for (const Wing& wing : wings) ends_.push_back(wing.to);
         std::ranges::sort(ends_);
         taken_.assign(wings.size(), 0);
-        // Open fans begin at a corner where no wing ends; what they leave are closed rings, which may begin anywhere.
+        // Open fans begin at a corner where no wing ends. The other wings are closed rings, which begin anywhere.
         for (const Wing& wing : wings)
             if (!std::ranges::binary_search(ends_, wing.from)) append_fan(wings, wing.from, entries);
         for (const Wing& wing : wings) append_fan(wings, wing.from, entries);
@@ -81,8 +81,7 @@ class FanBuilder {
             entries.push_back(corner);
         }
     }
-    // The next wing from `corner`, of which there are several only where the surface is not manifold; null if all are
-    // taken.
+    // Returns the next unused wing from `corner`, or null. There are several only where the surface is not manifold.
     const Wing* take(std::span<const Wing> wings, std::uint32_t corner) {
         const auto first =
             static_cast<std::size_t>(std::ranges::lower_bound(wings, corner, {}, &Wing::from) - wings.begin());
@@ -94,7 +93,7 @@ class FanBuilder {
     }
 
     std::vector<std::uint32_t> ends_;
-    std::vector<std::size_t> taken_;  // at the first wing from a corner, how many of them
+    std::vector<std::size_t> taken_;  // at the first wing from a corner: number of used ones
 };
 
 void append_texels(const std::vector<std::uint32_t>& entries, std::vector<shared::uvec4>& texels) {
@@ -108,7 +107,7 @@ void append_texels(const std::vector<std::uint32_t>& entries, std::vector<shared
 }  // namespace
 
 VertexRings build_vertex_rings(const TriangleMesh& mesh) {
-    check(mesh);
+    check_ring_sizes(mesh);
     Wings wings = wings_of(mesh);
     VertexRings rings;
     rings.begin.reserve(mesh.vertex_count());

@@ -10,7 +10,7 @@
 namespace exemplar {
 namespace {
 
-// Everything recorded so far becomes visible to all that follows, on the device and on the host.
+// Makes all writes recorded so far visible to later commands and to the host.
 void make_visible(VkCommandBuffer commands) {
     const VkMemoryBarrier2 all{
         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,

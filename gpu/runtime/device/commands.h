@@ -8,15 +8,15 @@ namespace exemplar {
 
 class Device;
 
-/// What work waits for and tells on the device, beside the fence: null is nothing.
+/// Semaphores of a submission, in addition to its fence; null: none.
 struct SubmitOrder {
     VkSemaphore wait = VK_NULL_HANDLE;
-    VkPipelineStageFlags2 wait_stage = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;  ///< which of its stages waits
+    VkPipelineStageFlags2 wait_stage = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;  ///< stages of the work that wait
     VkSemaphore signal = VK_NULL_HANDLE;
 };
 
-/// One command buffer, recorded, submitted and waited for, then recorded again. What its commands wrote is visible to
-/// all later submissions and to the host: sequences need no barriers between them. One thread at a time may use it.
+/// A command buffer that is recorded, submitted, waited for and then recorded again. Its writes are visible to all
+/// later submissions and to the host, so submissions need no barriers between them. One thread at a time may use it.
 class Commands {
   public:
     enum class State { idle, recording, submitted };
@@ -28,13 +28,13 @@ class Commands {
     Commands& operator=(const Commands&) = delete;
 
     State state() const { return state_; }
-    /// Only while recording.
+    /// Valid only while recording.
     VkCommandBuffer handle() const { return buffer_; }
 
     /// Starts recording unless it has started. Throws DeviceError while submitted work has not been waited for.
     void begin();
-    /// Makes everything recorded visible and hands it to the device; returns at once. Nothing is left recorded if it
-    /// throws.
+    /// Ends recording with a barrier that makes all writes visible, submits, and returns at once. Discards what was
+    /// recorded if it throws.
     void submit(const SubmitOrder& order = {});
     /// Waits until submitted work is done, if there is any. Throws DeviceLostError if the device was lost.
     void wait();

@@ -21,8 +21,8 @@ bool wants_validation() {
     return !value.empty() && value != "0";
 }
 
-// Without its tuning a device works as well, only not as fast; `exemplar doctor` says that the file is damaged.
-Tuning kept_tuning(const DeviceInfo& info) {
+// A damaged file is ignored, which costs only speed; `exemplar doctor` reports it.
+Tuning load_tuning(const DeviceInfo& info) {
     if (environment("EXEMPLAR_TUNING") == "0") return {};
     try {
         return Tuning::load(tuning_path(info));
@@ -55,7 +55,7 @@ Device::Device(const DeviceOptions& options)
     vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
     if (options.presentation) require_presentation(*options.presentation);
     statistics_ = options.statistics && has_executable_statistics(physical_);
-    tuning_ = kept_tuning(info_);
+    tuning_ = load_tuning(info_);
     create(options.presentation.has_value());
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
     try {
@@ -66,7 +66,7 @@ Device::Device(const DeviceOptions& options)
     }
 }
 
-// The queue for compute and drawing is the one that presents; drivers with windows have it so.
+// Requires that the queue for compute and drawing can present too, as it can with drivers that have windows.
 void Device::require_presentation(const PresentationOptions& presentation) const {
     if (has_extension(physical_, VK_KHR_SWAPCHAIN_EXTENSION_NAME) &&
         presentation.can_present(instance_.handle(), physical_, queue_family_))
@@ -125,7 +125,7 @@ std::vector<ExecutableStatistic> Device::statistics_of(const std::string& kernel
     return found == statistics_of_kernels_.end() ? std::vector<ExecutableStatistic>{} : found->second;
 }
 
-void Device::keep_statistics(const std::string& kernel, std::vector<ExecutableStatistic> statistics) {
+void Device::store_statistics(const std::string& kernel, std::vector<ExecutableStatistic> statistics) {
     const std::lock_guard lock(statistics_mutex_);
     statistics_of_kernels_[kernel] = std::move(statistics);
 }

@@ -20,36 +20,36 @@
 
 namespace exemplar {
 
-/// What a device needs to show images in windows, as the window system says.
+/// Requirements of the window system on a device that shows images in windows.
 struct PresentationOptions {
     std::vector<std::string> instance_extensions;  ///< for surfaces
-    /// Whether queues of that family can present.
+    /// Returns whether queues of `family` can present.
     std::function<bool(VkInstance, VkPhysicalDevice, std::uint32_t family)> can_present;
 };
 
 struct DeviceOptions {
-    /// An index of list_devices() or a part of a name in any case; empty: the environment's EXEMPLAR_DEVICE, else the
-    /// best.
+    /// Index in list_devices(), or part of a device's name in any case. Empty: the environment variable
+    /// EXEMPLAR_DEVICE, else the best device.
     std::string name{};
     std::optional<PresentationOptions> presentation{};  ///< none: nothing is shown in windows
-    bool statistics = false;                            ///< keep what the driver says of kernels, where it can tell
+    bool statistics = false;                            ///< keep the driver's statistics of kernels, if it has any
 };
 
-/// An opened Vulkan device with one queue for compute, copies and drawing. Everything made from it must end before it.
-/// With EXEMPLAR_VALIDATION=1 in the environment the validation layer watches; see validation_messages().
+/// An opened Vulkan device with one queue for compute, copies and drawing. Objects made from it must be destroyed
+/// before it. EXEMPLAR_VALIDATION=1 in the environment turns the validation layer on; see validation_messages().
 class Device {
   public:
-    /// Throws NoDeviceError (no such device; the message lists those there are) or another DeviceError, such as for a
-    /// device that cannot present though it should.
+    /// Throws NoDeviceError, which lists the available devices, if there is no such device; another DeviceError for
+    /// other failures, e.g. if the device must present and cannot.
     explicit Device(const DeviceOptions& options = {});
     ~Device();
     Device(const Device&) = delete;
     Device& operator=(const Device&) = delete;
 
     const DeviceInfo& info() const { return info_; }
-    /// What the validation layer has complained about since the device was opened; empty without EXEMPLAR_VALIDATION=1.
+    /// Returns the validation layer's messages since the device was opened; empty without EXEMPLAR_VALIDATION=1.
     std::vector<std::string> validation_messages() const { return validation_log()->messages(); }
-    /// The same, to be read after the device has ended too: objects that were left over are reported then.
+    /// Returns the same log. It outlives the device, whose end reports objects that were not destroyed.
     std::shared_ptr<const ValidationLog> validation_log() const { return instance_.validation_log(); }
     bool validating() const { return validating_; }
 
@@ -59,26 +59,26 @@ class Device {
     VkQueue queue() const { return queue_; }
     std::uint32_t queue_family() const { return queue_family_; }
     PipelineCache& pipeline_cache() { return *pipeline_cache_; }
-    /// What kernels made from now on are compiled with: at first what an earlier run has found fastest (tuning_path),
-    /// unless EXEMPLAR_TUNING=0 is in the environment or that file is damaged.
+    /// Variants for kernels made from now on. Initially those that an earlier run found fastest (tuning_path); none
+    /// if EXEMPLAR_TUNING=0 is in the environment or that file is damaged.
     Tuning& tuning() { return tuning_; }
     const Tuning& tuning() const { return tuning_; }
 
     /// Whether pipelines are to be made with VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR.
-    bool keeps_statistics() const { return statistics_; }
-    /// What the driver says of the kernel of this name that was made last; empty if it does not tell.
+    bool captures_statistics() const { return statistics_; }
+    /// Returns the driver's statistics of the latest kernel of this name; empty if it has none.
     std::vector<ExecutableStatistic> statistics_of(const std::string& kernel) const;
-    void keep_statistics(const std::string& kernel, std::vector<ExecutableStatistic> statistics);
+    void store_statistics(const std::string& kernel, std::vector<ExecutableStatistic> statistics);
 
     /// Submits recorded commands; any thread may call it. `fence` is signaled when they are done.
     void submit(VkCommandBuffer commands, VkFence fence, const SubmitOrder& order = {});
-    /// Hands images of swapchains back for showing, as vkQueuePresentKHR; any thread may call it.
+    /// Calls vkQueuePresentKHR; any thread may call it.
     VkResult present(const VkPresentInfoKHR& info);
-    /// Waits until the device has nothing to do.
+    /// Waits until the device is idle.
     void wait_idle();
 
-    /// A memory type among `allowed` bits with all `required` properties and, where there is one, all `preferred` too.
-    /// Throws DeviceError if none has the required ones.
+    /// Returns a memory type among the bits `allowed` that has all `required` properties, and all `preferred` ones if
+    /// there is such a type. Throws DeviceError if none has the required ones.
     std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
                               VkMemoryPropertyFlags preferred) const;
     VkMemoryPropertyFlags memory_properties(std::uint32_t type) const {

@@ -7,8 +7,8 @@
 
 namespace exemplar {
 
-/// Where something is kept that belongs to a device and its driver's version: FOLDER/STEM-UUID-DRIVER.EXTENSION in
-/// $XDG_CACHE_HOME/exemplar or ~/.cache/exemplar; empty if neither variable nor HOME is set.
+/// Returns the path of a cache file that belongs to a device and its driver version: STEM-UUID-DRIVER.EXTENSION in
+/// $XDG_CACHE_HOME/exemplar or ~/.cache/exemplar. Empty if neither XDG_CACHE_HOME nor HOME is set.
 std::filesystem::path device_cache_path(const DeviceInfo& info, std::string_view stem, std::string_view extension);
 
 }  // namespace exemplar

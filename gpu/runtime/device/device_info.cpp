@@ -94,7 +94,7 @@ std::string device_list(std::span<const DeviceInfo> devices) {
     return list;
 }
 
-// What a user might have meant: whole names and their words.
+// Suggests the nearest device name, or word of one.
 std::string suggest_name(std::span<const DeviceInfo> devices, std::string_view wanted) {
     std::vector<std::string> candidates;
     for (const DeviceInfo& device : devices) {
@@ -188,7 +188,7 @@ std::uint64_t buffer_limit(const DeviceInfo& info, std::uint64_t wanted) {
 }
 
 bool is_better(const DeviceInfo& a, const DeviceInfo& b) {
-    // Among CPU drivers lavapipe is the fastest; among GPUs of one type, the one with more memory is the larger one.
+    // D13 in docs/portability.md. Among GPUs of one type, the one with more memory is the larger one.
     const auto rank = [](const DeviceInfo& d) {
         const bool other_cpu_driver = d.type == DeviceType::cpu && lower(d.name).find("llvmpipe") == std::string::npos;
         return std::tuple(!d.unusable.empty(), d.type, other_cpu_driver, ~d.memory);

@@ -24,13 +24,13 @@ class DeviceLostError : public DeviceError {
     using DeviceError::DeviceError;
 };
 
-/// What a window showed images on is gone; a new surface must be made of it.
+/// The surface of a window is lost; a new one must be made.
 class SurfaceLostError : public DeviceError {
   public:
     using DeviceError::DeviceError;
 };
 
-/// Something larger than the device allows.
+/// A request exceeds a limit of the device.
 class DeviceLimitError : public DeviceError {
   public:
     DeviceLimitError(const std::string& message, std::uint64_t requested_size, std::uint64_t size_limit)
@@ -39,14 +39,14 @@ class DeviceLimitError : public DeviceError {
     std::uint64_t limit;
 };
 
-/// Throws the DeviceError that belongs to a failed Vulkan call; `what` completes "cannot ...".
+/// Throws the matching DeviceError if a Vulkan call failed; `what` completes the message "cannot ...".
 void check(VkResult result, std::string_view what);
-/// As above; `what` makes the text, which takes longer than most calls, only when it is needed.
+/// The same; `what` returns the text. It is called only on failure, as making the text takes longer than most calls.
 void check(VkResult result, std::invocable auto&& what) {
     if (result != VK_SUCCESS) check(result, std::string_view(what()));
 }
 
-/// An empty Vulkan structure of its type, for those of which only a few members are set.
+/// Returns a zeroed Vulkan structure with its type set, for structures of which only a few members are set.
 template <typename T>
 T empty_structure(VkStructureType type, void* next = nullptr) {
     T structure{};

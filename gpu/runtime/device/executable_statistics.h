@@ -9,18 +9,18 @@ namespace exemplar {
 
 class Device;
 
-/// What a driver says of a pipeline it has compiled (VK_KHR_pipeline_executable_properties): registers, instructions,
-/// occupancy; names and units are the driver's own.
+/// A statistic of a compiled pipeline (VK_KHR_pipeline_executable_properties), such as registers, instructions or
+/// occupancy. Names and units are the driver's own.
 struct ExecutableStatistic {
     std::string name;
     std::string value;
 };
 
-/// Whether the device can tell.
+/// Returns whether the device offers such statistics.
 bool has_executable_statistics(VkPhysicalDevice device);
 
-/// Of a pipeline that was made with VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR, all its executables' one after the
-/// other. Empty if the driver fails to tell.
+/// Returns the statistics of all executables of a pipeline, one after the other. It must have been made with
+/// VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR. Empty if the driver's query fails.
 std::vector<ExecutableStatistic> executable_statistics(const Device& device, VkPipeline pipeline);
 
 }  // namespace exemplar

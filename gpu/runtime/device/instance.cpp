@@ -23,8 +23,8 @@ void load_loader() {
         throw NoDeviceError("the Vulkan loader is older than 1.3; update libvulkan1");
 }
 
-// The loader's functions work for the handles of every instance, so they are loaded once; again, with those of
-// extensions, when the first instance with some is there. An instance without must not unload these.
+// Loads Vulkan's functions. They serve every instance, so they are loaded once, and once more when the first instance
+// with extensions is made. An instance without extensions must not unload the functions of extensions.
 void load_functions(VkInstance instance, bool extended) {
     static std::mutex mutex;
     static bool has_some = false, has_extended = false;
@@ -57,7 +57,7 @@ VkDebugUtilsMessengerCreateInfoEXT messenger_info(PFN_vkDebugUtilsMessengerCallb
 
 }  // namespace
 
-// Delegates, so that the destructor ends what is there when the rest fails.
+// Delegates to the default constructor, so that the destructor runs if create() throws.
 Instance::Instance(bool validation, const std::vector<std::string>& extensions) : Instance() {
     load_loader();
     create(validation, extensions);

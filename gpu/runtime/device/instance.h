@@ -13,8 +13,8 @@
 
 namespace exemplar {
 
-/// Warnings and errors of the validation layer; outlives the instance, which may still complain while it ends. Any
-/// thread may use it.
+/// Warnings and errors of the validation layer. Outlives the instance, whose destruction may add messages. Any thread
+/// may use it.
 class ValidationLog {
   public:
     void add(std::string message) {
@@ -31,11 +31,11 @@ class ValidationLog {
     std::vector<std::string> messages_;
 };
 
-/// The connection to the Vulkan loader. Collects what the validation layer says.
+/// A Vulkan instance. Collects the messages of the validation layer.
 class Instance {
   public:
-    /// `validation` loads VK_LAYER_KHRONOS_validation with synchronization validation. Throws NoDeviceError if there is
-    /// no loader, DeviceError if the layer or one of `extensions` is missing.
+    /// `validation` loads VK_LAYER_KHRONOS_validation with synchronization validation. Throws NoDeviceError if there
+    /// is no loader, DeviceError if the layer or one of `extensions` is missing.
     explicit Instance(bool validation, const std::vector<std::string>& extensions = {});
     ~Instance();
     Instance(const Instance&) = delete;
@@ -59,7 +59,8 @@ class Instance {
 
 std::vector<VkQueueFamilyProperties> queue_families(VkPhysicalDevice device);
 
-/// The queue family Exemplar uses: compute, and graphics too where one family has both.
+/// Returns the queue family that Exemplar uses: one with compute and graphics, else one with compute alone, else
+/// none.
 std::optional<std::uint32_t> find_compute_queue(VkPhysicalDevice device);
 
 }  // namespace exemplar

@@ -15,7 +15,7 @@
 namespace exemplar {
 namespace {
 
-// Drivers check a cache's header but not its body, and a damaged body may crash them: hence a checksum of our own.
+// With a checksum of the body: D18 in docs/portability.md.
 struct Header {
     char magic[8] = {'e', 'x', 'e', 'm', 'p', 'i', 'p', '1'};
     std::uint64_t bytes = 0;

@@ -13,41 +13,41 @@
 
 namespace exemplar {
 
-/// What a variant is judged by: the time of its kernel, or that of whole runs, where the host's work differs too.
-enum class Judged { by_kernel, by_runs };
+/// Time by which variants are compared: that of the kernel, or that of whole runs if the host's work differs too.
+enum class TuningMetric { kernel_time, end_to_end };
 
-/// A number that kernels are compiled with and that changes their speed, not what they compute (but for the order of
-/// sums).
+/// A constant that kernels are compiled with. It affects their speed but not their results, except for the order of
+/// sums.
 struct TunableParameter {
-    std::string_view kernel;  ///< as "learn/stumps.comp"; the group size, k_group_size, is that of any
+    std::string_view kernel;  ///< as "learn/stumps.comp"; empty for k_group_size, which is for any kernel
     std::string_view name;
-    std::span<const std::uint32_t> values;  ///< all that it may be
-    Judged judged = Judged::by_kernel;
+    std::span<const std::uint32_t> values;  ///< all possible values
+    TuningMetric judged = TuningMetric::kernel_time;
 };
 
-/// Invocations per workgroup, of kernels that leave it to the host: their local_size_x is specialization constant
-/// k_group_size_constant.
+/// Possible numbers of invocations per workgroup, for kernels that leave it to the host: their local_size_x is the
+/// specialization constant k_group_size_constant.
 inline constexpr std::array<std::uint32_t, 6> k_group_sizes{16, 32, 64, 128, 256, 512};
 inline constexpr TunableParameter k_group_size{"", "group", k_group_sizes};
 inline constexpr std::uint32_t k_group_size_constant = 100;
 
-/// The variants of kernels that were found fastest on a device (`exemplar bench shaders --tune`). What is not there is
-/// as the kernel's author chose.
+/// Fastest known kernel variants of one device (`exemplar bench shaders --tune`). Parameters without an entry use the
+/// kernel's default.
 class Tuning {
   public:
-    /// The value kept for a kernel's parameter if it is one of the parameter's values, else `otherwise`.
+    /// Returns the stored value of a kernel's parameter if it is one of the parameter's values, else `otherwise`.
     std::uint32_t choose(std::string_view kernel, const TunableParameter& parameter, std::uint32_t otherwise) const;
     std::uint32_t choose(const TunableParameter& parameter, std::uint32_t otherwise) const {
         return choose(parameter.kernel, parameter, otherwise);
     }
-    /// What was kept, whether or not it is a possible value.
+    /// Returns the stored value, even if it is not a possible one.
     std::optional<std::uint32_t> find(std::string_view kernel, std::string_view parameter) const;
     void set(std::string_view kernel, std::string_view parameter, std::uint32_t value);
     void forget(std::string_view kernel, std::string_view parameter);
     bool empty() const { return kernels_.empty(); }
 
-    /// Reads what save() has written; no file is an empty tuning. Throws DataError, naming the file and the mend, if it
-    /// is damaged.
+    /// Reads a file written by save(); a missing file gives an empty tuning. Throws DataError, which names the file
+    /// and the remedy, if it is damaged.
     static Tuning load(const std::filesystem::path& path);
     /// Throws DataError if the file cannot be written.
     void save(const std::filesystem::path& path) const;
@@ -58,7 +58,7 @@ class Tuning {
     std::map<std::string, std::map<std::string, std::uint32_t, std::less<>>, std::less<>> kernels_;
 };
 
-/// Where the tuning of a device lives (device_cache_path); empty if there is no folder.
+/// Returns the path of a device's tuning file (device_cache_path); empty if there is no cache folder.
 std::filesystem::path tuning_path(const DeviceInfo& info);
 
 }  // namespace exemplar

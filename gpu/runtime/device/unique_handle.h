@@ -6,7 +6,7 @@
 
 namespace exemplar {
 
-/// Owns one Vulkan object of a device. `destroy` is the address of the function that ends it, e.g. &vkDestroyImage.
+/// Owns one Vulkan object of a device. `destroy` is the address of its destroy function, e.g. &vkDestroyImage.
 template <typename Handle, auto destroy>
 class UniqueHandle {
   public:
@@ -26,7 +26,7 @@ class UniqueHandle {
     }
 
     Handle get() const { return handle_; }
-    /// Where a vkCreate function puts the object; only for a handle that owns none yet.
+    /// Returns the address that a vkCreate function writes to; only for a handle that owns no object yet.
     Handle* put() { return &handle_; }
 
   private:

@@ -20,7 +20,7 @@ void require_graphics(const Device& device) {
                         device.info().name));
 }
 
-// The part of the interface that one of the shaders declares, for either may leave bindings to the other.
+// Reflects one shader and checks the part of the interface that it declares; either shader may lack some bindings.
 Reflection reflect_part(const Shader& shader, const ProgramInterface& interface) {
     Reflection reflection = reflect(shader);
     ProgramInterface part;
@@ -36,7 +36,7 @@ Reflection reflect_part(const Shader& shader, const ProgramInterface& interface)
     return reflection;
 }
 
-// What either of two shaders declares.
+// Returns the union of the declarations of two shaders.
 Reflection merged(Reflection a, const Reflection& b) {
     for (const ReflectedBinding& binding : b.bindings) {
         const auto same = std::ranges::find(a.bindings, binding.binding, &ReflectedBinding::binding);

@@ -9,20 +9,20 @@
 
 namespace exemplar {
 
-/// What a drawing pipeline does to the images of a pass.
+/// Fixed state of a drawing pipeline.
 struct DrawState {
     VkFormat color = VK_FORMAT_UNDEFINED;
-    VkFormat depth = VK_FORMAT_UNDEFINED;  ///< none: drawn over all that is there
+    VkFormat depth = VK_FORMAT_UNDEFINED;  ///< undefined: no depth, draws over everything
     bool writes_depth = true;
     VkCompareOp depth_test = VK_COMPARE_OP_LESS;
-    bool blends = false;  ///< color over color, by an alpha that the shader has multiplied it with
-    /// Added to depths: in units of the least difference, and of the slope.
+    bool blends = false;  ///< draws premultiplied colors over those of the image
+    /// Added to depths: a constant in units of the smallest depth difference, and a factor of the slope.
     float depth_bias = 0, slope_bias = 0;
 };
 
-/// A vertex and a fragment shader that draw triangles into color and, perhaps, depth. Both read storage and texel
-/// buffers only, vertices too, which the vertex shader finds by their index; they share bindings and push constants.
-/// Nothing is culled: surfaces of the wild are open, or wound the wrong way. Streams keep it alive until they are done.
+/// A pipeline that draws triangles into a color image and, optionally, a depth image. Both shaders share bindings
+/// and push constants and read only storage and texel buffers; the vertex shader fetches vertices by index. No faces
+/// are culled, as real meshes may be open or wrongly oriented. Streams keep it alive until they are done.
 class DrawPipeline {
   public:
     DrawPipeline() = default;

@@ -16,8 +16,8 @@ void specialize_local_size(Reflection& reflection, const ProgramInterface& inter
             if (reflection.local_size_ids[axis] == id) reflection.local_size[axis] = value;
 }
 
-// Workgroups of kernels that leave their size to the host are as large as was found fastest on the device, if anything
-// was; the shader says how large otherwise.
+// Sets the tuned workgroup size, if there is one, of a kernel that leaves its size to the host. Otherwise the
+// shader's default stays.
 void choose_group_size(const Device& device, const Program& program, ProgramInterface& interface) {
     if (program.reflection.local_size_ids[0] != k_group_size_constant) return;
     const DeviceInfo& info = device.info();
@@ -61,8 +61,8 @@ void create_pipeline(Device& device, Program& program, const Shader& shader, con
     const VkComputePipelineCreateInfo info{
         .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
         .pNext = nullptr,
-        .flags = device.keeps_statistics() ? VkPipelineCreateFlags{VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR}
-                                           : VkPipelineCreateFlags{},
+        .flags = device.captures_statistics() ? VkPipelineCreateFlags{VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR}
+                                              : VkPipelineCreateFlags{},
         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                   .pNext = nullptr,
                   .flags = 0,
@@ -76,8 +76,8 @@ void create_pipeline(Device& device, Program& program, const Shader& shader, con
     check(vkCreateComputePipelines(device.handle(), device.pipeline_cache().handle(), 1, &info, nullptr,
                                    program.pipeline.put()),
           [&] { return fmt::format("compile kernel {}", program.name); });
-    if (device.keeps_statistics())
-        device.keep_statistics(program.name, executable_statistics(device, program.pipeline.get()));
+    if (device.captures_statistics())
+        device.store_statistics(program.name, executable_statistics(device, program.pipeline.get()));
 }
 
 }  // namespace

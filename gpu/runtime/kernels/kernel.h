@@ -13,9 +13,9 @@ class Device;
 
 using KernelInterface = ProgramInterface;
 
-/// A compute pipeline. The descriptor layout, which bindings are read or written and the local size come from the
-/// SPIR-V itself: mark buffers `readonly` or `writeonly` in GLSL, and barriers follow. Streams keep it alive until they
-/// are done.
+/// A compute pipeline. Descriptor layout, reads and writes of each binding, and local size are reflected from
+/// SPIR-V. Mark buffers `readonly` or `writeonly` in GLSL, as barriers are derived from it. Streams keep it alive
+/// until they are done.
 class Kernel {
   public:
     Kernel() = default;

@@ -14,14 +14,14 @@ struct FieldLayout {
     std::size_t bytes;
 };
 
-/// The memory layout of a C++ type that kernels see; without fields for scalars and vectors.
+/// Memory layout of a C++ type that kernels read or write. Scalars and vectors have no fields.
 struct StructLayout {
     std::string_view name;
     std::size_t bytes = 0;
     std::vector<FieldLayout> fields;
 };
 
-/// The layout of T: one declared with EXEMPLAR_LAYOUT, or a plain scalar or vector of which only the size counts.
+/// Returns the layout of T: the one declared with EXEMPLAR_LAYOUT, or only the size for a plain scalar or vector.
 template <typename T>
 StructLayout layout_of() {
     if constexpr (requires { describe_layout(static_cast<const T*>(nullptr)); })
@@ -32,7 +32,7 @@ StructLayout layout_of() {
 
 }  // namespace exemplar
 
-// EXEMPLAR_LAYOUT(Struct, field, ...) beside a shared structure lets Kernel compare it with what the shader declares.
+// EXEMPLAR_LAYOUT(Struct, field, ...) after a shared structure lets Kernel compare it with the shader's declaration.
 #define EXEMPLAR_LAYOUT_FIELD(Struct, field) \
     ::exemplar::FieldLayout{#field, offsetof(Struct, field), sizeof(Struct::field)},
 #define EXEMPLAR_PARENTHESES ()

@@ -6,21 +6,22 @@
 #include <string>
 #include <vector>
 
+#include "gpu/runtime/device/unique_handle.h"
 #include "gpu/runtime/kernels/layout.h"
 #include "gpu/runtime/kernels/reflection.h"
 #include "gpu/runtime/kernels/shader.h"
-#include "gpu/runtime/device/unique_handle.h"
 
 namespace exemplar {
 
 class Device;
 
-/// What C++ hands to a program on the device: compared with what its shaders declare when it is made.
+/// The C++ side of a program's interface. It is compared with the declarations of the shaders when the program is
+/// made.
 struct ProgramInterface {
-    /// layout_of<Parameters>(); without it the shader may have no push constants.
+    /// layout_of<Parameters>(); none: the shader must not declare push constants.
     std::optional<StructLayout> push_constants{};
-    /// Per buffer in binding order, the layout of an element of its array; may stop early, but not before texels: the
-    /// size of their C++ type, 4 or 16 bytes, is their format.
+    /// Element layout of each buffer, in binding order. Storage buffers at the end may be left out, texel buffers
+    /// not: their format follows from the size of the C++ type, 4 or 16 bytes.
     std::vector<StructLayout> elements{};
     /// Specialization constants: id and the bits of its value (std::bit_cast<uint32_t> for floats).
     std::vector<std::pair<std::uint32_t, std::uint32_t>> constants{};
@@ -36,13 +37,14 @@ struct Program {
     UniquePipeline pipeline;
 };
 
-/// Throws ShaderError if what one of a program's shaders declares and `interface` disagree; sets the formats of texels.
+/// Throws ShaderError if the declarations of a shader differ from `interface`. Sets the texel formats in
+/// `reflection`.
 void check_interface(const Shader& shader, const ProgramInterface& interface, Reflection& reflection);
 
-/// Makes the layouts of descriptor set and push constants from name, stages and reflection.
+/// Creates the layouts of descriptor set and push constants from the program's name, stages and reflection.
 void create_layouts(const Device& device, Program& program);
 
-/// Specialization constants as pipelines take them; points into itself.
+/// Specialization constants in Vulkan's form. info() points into the object.
 class Specialization {
   public:
     explicit Specialization(const ProgramInterface& interface);
@@ -56,7 +58,7 @@ class Specialization {
     VkSpecializationInfo info_;
 };
 
-/// A shader as pipelines take it; it may end when they are made.
+/// Creates a shader module. It may be destroyed once the pipelines are made.
 UniqueShaderModule make_module(const Device& device, const Shader& shader);
 
 }  // namespace exemplar

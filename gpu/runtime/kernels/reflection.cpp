@@ -68,7 +68,7 @@ class Module {
     spvc_resources resources_ = nullptr;
 };
 
-// What all types of bindings have.
+// Reflects what all binding types have in common.
 ReflectedBinding reflect_place(const Shader& shader, const Module& module, const spvc_reflected_resource& resource) {
     if (spvc_compiler_get_decoration(module.compiler(), resource.id, SpvDecorationDescriptorSet) != 0)
         throw ShaderError(fmt::format("shader {}: '{}' is not in descriptor set 0", shader.name, resource.name));

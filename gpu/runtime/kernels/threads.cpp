@@ -12,7 +12,7 @@
 namespace exemplar {
 namespace {
 
-constexpr std::uint64_t k_most_threads = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint64_t k_max_threads = std::numeric_limits<std::uint32_t>::max();
 
 std::uint64_t divide_up(std::uint64_t count, std::uint64_t size) {
     return count / size + (count % size != 0);
@@ -22,8 +22,8 @@ std::uint64_t divide_up(std::uint64_t count, std::uint64_t size) {
     throw DeviceLimitError(
         fmt::format("kernel {} over {} threads: its indices have 32 bits, which is up to {} threads; "
                     "tile the work",
-                    kernel.name(), threads.x, k_most_threads),
-        threads.x, k_most_threads);
+                    kernel.name(), threads.x, k_max_threads),
+        threads.x, k_max_threads);
 }
 
 void check_foldable(const Kernel& kernel, const Threads& threads) {
@@ -31,7 +31,7 @@ void check_foldable(const Kernel& kernel, const Threads& threads) {
         throw ShaderError(fmt::format("kernel {} has workgroups of {} x {} x {}: give its threads per axis",
                                       kernel.name(), kernel.local_size()[0], kernel.local_size()[1],
                                       kernel.local_size()[2]));
-    if (threads.x > k_most_threads) throw_too_many(kernel, threads);
+    if (threads.x > k_max_threads) throw_too_many(kernel, threads);
 }
 
 }  // namespace
@@ -55,8 +55,8 @@ std::array<std::uint32_t, 3> workgroups(const Kernel& kernel, const Threads& thr
                 fmt::format("kernel {} needs {} workgroups along axis {}, over the limit of {} of device '{}'",
                             kernel.name(), groups[axis], axis, info.max_groups[axis], info.name),
                 groups[axis], info.max_groups[axis]);
-    // Groups beyond the last thread have indices too.
-    if (threads.foldable && groups[0] * groups[1] * groups[2] * local[0] > k_most_threads)
+    // Surplus threads have indices too.
+    if (threads.foldable && groups[0] * groups[1] * groups[2] * local[0] > k_max_threads)
         throw_too_many(kernel, threads);
     return {static_cast<std::uint32_t>(groups[0]), static_cast<std::uint32_t>(groups[1]),
             static_cast<std::uint32_t>(groups[2])};

@@ -15,8 +15,8 @@ namespace {
 
 constexpr int k_runs = 5;
 
-// Seconds of the fastest of several runs, after one that compiles and fills caches. The host's clock around a
-// submission is right on every device; dispatches here are long against the cost of submitting.
+// Returns the seconds of the fastest of several runs, after one that compiles and fills caches. The host's clock is
+// accurate enough, as these dispatches take much longer than submitting, and it is right on every device.
 template <typename Record>
 double fastest(Stream& stream, Record&& record) {
     double best = 0.0;
@@ -30,7 +30,7 @@ double fastest(Stream& stream, Record&& record) {
 }
 
 double copy_rate(Device& device, Stream& stream) {
-    // Larger together than the caches of GPUs and of most CPUs: servers whose last level holds 128 MiB copy within it.
+    // Both buffers together exceed the caches of GPUs and of most CPUs, but not the 128 MiB of some servers.
     const std::size_t wanted = std::size_t{device.info().type == DeviceType::cpu ? 64u : 512u} << 20;
     const std::size_t bytes = buffer_limit(device.info(), wanted) / 16 * 16;
     const Buffer source(device, bytes), target(device, bytes);
@@ -41,7 +41,7 @@ double copy_rate(Device& device, Stream& stream) {
     const double by_kernel = fastest(stream, [&] {
         stream.dispatch(kernel, parameters.count, {source, target}, parameters);
     });
-    // CPU drivers copy many times faster than their kernels load and store.
+    // D12 in docs/portability.md.
     const double by_command = fastest(stream, [&] { stream.copy(source, 0, target, 0, bytes); });
     return 2.0 * static_cast<double>(bytes) / std::min(by_kernel, by_command) * 1e-9;
 }

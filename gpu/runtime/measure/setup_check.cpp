@@ -66,7 +66,7 @@ std::vector<path> installed_drivers(const MachineView& machine) {
     return files;
 }
 
-/// What keeps a library from being loaded; empty if nothing does.
+/// Returns why a library cannot be loaded; empty if it can.
 std::string loading_error(const std::string& library) {
     void* const handle = dlopen(library.c_str(), RTLD_LAZY | RTLD_LOCAL);
     if (!handle) return dlerror();
@@ -83,7 +83,7 @@ Finding check_driver(const path& file) {
         return {Level::remark, fmt::format("driver {} cannot be read", file.string()),
                 "install the package that it belongs to again, or delete it"};
     }
-    // With a folder in it the path counts from the file's own; without, the system looks for the library.
+    // A path with a folder is relative to the file; a bare name is left to the system's search.
     if (library.find('/') != std::string::npos && path(library).is_relative())
         library = (file.parent_path() / library).string();
     const std::string error = loading_error(library);
@@ -152,7 +152,7 @@ std::string describe(const DeviceInfo& device) {
                        device.driver_name, device.driver_version);
 }
 
-/// What keeps a folder's files from being written; empty if nothing does.
+/// Returns why files cannot be written to a folder; empty if they can.
 std::string writing_error(const path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);

@@ -12,14 +12,14 @@
 namespace exemplar {
 namespace {
 
-struct MemoryWish {
+struct MemoryRequest {
     VkMemoryPropertyFlags required;
     VkMemoryPropertyFlags preferred;
 };
 
 constexpr VkMemoryPropertyFlags k_mappable = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
 
-MemoryWish wish_for(BufferMemory memory) {
+MemoryRequest memory_request_for(BufferMemory memory) {
     switch (memory) {
         case BufferMemory::upload:
             return {k_mappable, 0};
@@ -31,7 +31,7 @@ MemoryWish wish_for(BufferMemory memory) {
     return {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, k_mappable | VK_MEMORY_PROPERTY_HOST_CACHED_BIT};
 }
 
-// Reading device memory through an uncached window is slower than a copy, so such memory counts as invisible.
+// Device memory that is not cached is never mapped: reading it directly is slower than copying.
 bool can_map(VkMemoryPropertyFlags properties, BufferMemory memory) {
     const VkMemoryPropertyFlags needed =
         memory == BufferMemory::device ? k_mappable | VK_MEMORY_PROPERTY_HOST_CACHED_BIT : k_mappable;
@@ -56,7 +56,7 @@ Buffer::Resource::Resource(Device& owner, std::size_t capacity, BufferMemory mem
     check(vkCreateBuffer(device.handle(), &info, nullptr, buffer.put()), what);
     VkMemoryRequirements needs{};
     vkGetBufferMemoryRequirements(device.handle(), buffer.get(), &needs);
-    const MemoryWish wish = wish_for(memory);
+    const MemoryRequest wish = memory_request_for(memory);
     const VkMemoryAllocateInfo allocate{
         .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
         .pNext = nullptr,
@@ -75,7 +75,7 @@ Buffer::Buffer(Device& device, std::size_t bytes, BufferMemory memory) : bytes_(
         throw DeviceLimitError(fmt::format("a buffer of {} is over the limit of {} of device '{}'; split the work",
                                            format_bytes(bytes), format_bytes(limit), device.info().name),
                                bytes, limit);
-    // Vulkan has no empty buffers, and kernels may bind the tail of a vec4.
+    // Rounded up to 16 bytes: Vulkan has no empty buffers, and kernels may bind the tail of a vec4.
     const std::size_t capacity = std::max<std::size_t>((bytes + 15) / 16 * 16, 16);
     resource_ = std::make_shared<Resource>(device, capacity, memory);
 }

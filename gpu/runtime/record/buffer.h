@@ -18,7 +18,7 @@ class Device;
 /// Where a buffer lives.
 enum class BufferMemory {
     device,    ///< fastest for kernels; mapped too where device and host share cached memory
-    upload,    ///< host memory for writing by the host and reading by the device once
+    upload,    ///< host memory that the host writes and the device reads once
     readback,  ///< cached host memory for reading what the device wrote
 };
 
@@ -46,14 +46,14 @@ class Buffer {
     VkBuffer handle() const { return resource_ ? resource_->buffer.get() : VK_NULL_HANDLE; }
     explicit operator bool() const { return resource_ != nullptr; }
 
-    /// Writes `values` at byte `offset`, after all submitted work that uses the buffer is done; returns when they are
-    /// there. Work that is recorded but not submitted sees them too.
+    /// Waits for all submitted work that uses the buffer, then writes `values` at byte `offset` and returns. Work
+    /// that is recorded but not yet submitted reads the new values too.
     template <typename T>
     void upload(std::span<const T> values, std::size_t offset = 0) {
         static_assert(std::is_trivially_copyable_v<T>);
         write(std::as_bytes(values), offset);
     }
-    /// Reads `values.size()` values from byte `offset`, after all submitted work that uses the buffer is done.
+    /// Waits for all submitted work that uses the buffer, then reads `values.size()` values from byte `offset`.
     template <typename T>
     void download(std::span<T> values, std::size_t offset = 0) const {
         static_assert(std::is_trivially_copyable_v<T>);
@@ -68,7 +68,7 @@ class Buffer {
         Resource(const Resource&) = delete;
         Resource& operator=(const Resource&) = delete;
         Device& device;
-        UniqueMemory allocation;  // ends after the buffer in it
+        UniqueMemory allocation;  // destroyed after the buffer in it
         UniqueBuffer buffer;
         std::byte* mapped = nullptr;             ///< null if the host cannot see the memory
         std::atomic<std::uint32_t> streams = 0;  ///< streams that have recorded a use and are not done
@@ -81,14 +81,14 @@ class Buffer {
     std::size_t bytes_ = 0;
 };
 
-/// Replaces the buffer by a new one unless it has `bytes` bytes; only then its contents survive.
+/// Replaces the buffer by a new one, of undefined contents, if it has fewer than `bytes` bytes.
 void reserve(Device& device, Buffer& buffer, std::size_t bytes);
 
-/// A part of a buffer, as a kernel's binding sees it.
+/// A part of a buffer for a binding of a kernel.
 struct BufferRange {
     BufferRange(const Buffer& whole)
         : buffer(&whole), offset(0), bytes(whole.bytes()) {}  // NOLINT: a buffer is its whole range
-    /// `first` is a multiple of DeviceInfo::storage_alignment, or of texel_alignment where it is bound as texels.
+    /// `first` must be a multiple of DeviceInfo::storage_alignment, or of texel_alignment for a binding of texels.
     BufferRange(const Buffer& part_of, std::size_t first, std::size_t size)
         : buffer(&part_of), offset(first), bytes(size) {}
     const Buffer* buffer;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t k_sets_per_pool = 256;
 constexpr std::uint32_t k_bindings_per_pool = 8 * k_sets_per_pool;
-constexpr std::uint64_t k_least_bytes = 16;  // what every buffer has, empty ones too
+constexpr std::uint64_t k_min_bytes = 16;  // what every buffer has, empty ones too
 
 // What a device demands of ranges of one type.
 struct RangeLimits {
@@ -46,12 +46,12 @@ void check_binding(const Program& program, const ReflectedBinding& binding, cons
                                range.bytes, limits.bytes);
 }
 
-// What Vulkan is told of a range. Empty ranges still need an address; ranges that end their buffer reach to the end of
-// its last 16 bytes, for kernels that read four values at once.
+// Converts a range for Vulkan. Empty ranges still need an address. A range that ends its buffer is extended to a
+// multiple of 16 bytes, for kernels that read four values at once.
 VkDescriptorBufferInfo bound_range(const ReflectedBinding& binding, const BufferRange& range, const DeviceInfo& info) {
-    if (range.bytes == 0) return {range.buffer->handle(), 0, k_least_bytes};
+    if (range.bytes == 0) return {range.buffer->handle(), 0, k_min_bytes};
     const bool last = range.offset + range.bytes == range.buffer->bytes();
-    const std::uint64_t padded = (range.bytes + k_least_bytes - 1) / k_least_bytes * k_least_bytes;
+    const std::uint64_t padded = (range.bytes + k_min_bytes - 1) / k_min_bytes * k_min_bytes;
     const std::uint64_t bytes = last ? std::min(padded, limits_of(binding, info).bytes) : range.bytes;
     const bool whole_texels = binding.type == BindingType::texels;
     return {range.buffer->handle(), range.offset, whole_texels ? bytes / binding.stride * binding.stride : bytes};

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "gpu/runtime/record/buffer.h"
-#include "gpu/runtime/kernels/program.h"
 #include "gpu/runtime/device/unique_handle.h"
+#include "gpu/runtime/kernels/program.h"
+#include "gpu/runtime/record/buffer.h"
 
 namespace exemplar {
 
@@ -21,12 +21,12 @@ class Descriptors {
     Descriptors(const Descriptors&) = delete;
     Descriptors& operator=(const Descriptors&) = delete;
 
-    /// Throws ShaderError unless the ranges are what the program binds, DeviceLimitError if one is over the device's
-    /// limits or at an offset that it cannot bind.
+    /// Throws ShaderError if the ranges do not match the program's bindings, DeviceLimitError if one exceeds the
+    /// device's limits or has an offset that the device cannot bind.
     void check_bindings(const Program& program, std::span<const BufferRange> ranges) const;
-    /// Records the binding of ranges that are fit for it.
+    /// Records the binding of ranges that passed check_bindings.
     void bind(VkCommandBuffer commands, const Program& program, std::span<const BufferRange> ranges);
-    /// Takes all sets back; call it when the commands are done.
+    /// Frees all sets; call it when the commands are done.
     void reset();
 
   private:

@@ -25,7 +25,7 @@ std::vector<Access> merge(std::span<const Access> accesses) {
 
 bool HazardTracker::needs_barrier(const State& state, const Access& access) {
     if (access.writes) return state.write_stage || state.read_stages;
-    const auto covers = [&](const Sight& sight) {
+    const auto covers = [&](const VisibleAccess& sight) {
         return (sight.stages & access.stage) == access.stage && (sight.reads & access.reads) == access.reads;
     };
     return state.write_stage && std::ranges::none_of(state.visible, covers);

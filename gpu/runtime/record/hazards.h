@@ -25,20 +25,21 @@ struct Barrier {
     VkAccessFlags2 target_access = 0;
 };
 
-/// Remembers the last uses of every buffer of one command sequence and derives the barriers between commands:
+/// Tracks the last uses of every buffer of one command sequence and derives the barriers between commands:
 /// read after write, write after write (memory dependencies) and write after read (an execution dependency).
-/// Reads after reads need none. Buffers are tracked as wholes. Knows no device, so it can be tested by itself.
+/// Reads after reads need none. Buffers are tracked as a whole. Needs no device, so it can be tested alone.
 class HazardTracker {
   public:
-    /// The barriers needed before a command with these accesses; remembers the accesses. A buffer named several times
-    /// counts once.
+    /// Returns the barriers needed before a command with these accesses, and records the accesses. Those of the same
+    /// buffer are merged.
     std::vector<Barrier> before(std::span<const Access> accesses);
-    /// Forgets everything, after a barrier that covers all earlier commands.
+    /// Forgets all accesses; call it after a barrier that covers all earlier commands.
     void reset() { states_.clear(); }
 
   private:
-    // A barrier makes a write visible to these accesses in these stages, and not to others of two barriers mixed.
-    struct Sight {
+    // One barrier makes a write visible to these accesses in these stages. Stages of one barrier and accesses of
+    // another do not combine.
+    struct VisibleAccess {
         VkPipelineStageFlags2 stages;
         VkAccessFlags2 reads;
     };
@@ -46,7 +47,7 @@ class HazardTracker {
         VkPipelineStageFlags2 write_stage = 0;
         VkAccessFlags2 write_access = 0;
         VkPipelineStageFlags2 read_stages = 0;  // since the write
-        std::vector<Sight> visible;             // who can see the write already
+        std::vector<VisibleAccess> visible;     // one per barrier since the write
     };
     static bool needs_barrier(const State& state, const Access& access);
     static void remember(State& state, const Access& access, bool barrier);

@@ -12,33 +12,33 @@
 #include <type_traits>
 #include <vector>
 
-#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/kernels/draw_pipeline.h"
+#include "gpu/runtime/record/buffer.h"
 
 namespace exemplar {
 
-/// The images that a pass draws into, as attachments of that layout (color or depth, "optimal").
+/// Images that a pass draws into, in the optimal layouts of color and depth attachments.
 struct PassTarget {
     VkImageView color = VK_NULL_HANDLE;
     VkImageView depth = VK_NULL_HANDLE;
     VkExtent2D extent{};
-    std::optional<std::array<float, 4>> clear_color{};  ///< else it is drawn over what is there
+    std::optional<std::array<float, 4>> clear_color{};  ///< none: draws over the contents
     std::optional<float> clear_depth{};
 };
 
-/// What is drawn at once.
+/// One draw call.
 struct Draw {
     std::uint32_t vertices = 0;
     std::uint32_t first_vertex = 0;
-    /// As many uints, from `first_vertex` on, that are the vertices to draw; not together with `indirect`.
+    /// Index buffer of uints, read from index `first_vertex` on; not together with `indirect`.
     const Buffer* indices = nullptr;
-    /// Where the device finds a VkDrawIndirectCommand instead.
+    /// Holds a VkDrawIndirectCommand that replaces the counts above.
     const Buffer* indirect = nullptr;
     std::size_t indirect_offset = 0;  ///< bytes, a multiple of 4
     std::optional<VkRect2D> scissor{};
 };
 
-/// Draws into one target, in order; Stream::render records them. Buffers must live until then.
+/// Draw calls into one target, in order; Stream::render records them. Buffers must live until then.
 class Pass {
   public:
     Pass(std::string name, const PassTarget& target) : name_(std::move(name)), target_(target) {}

@@ -7,8 +7,8 @@
 
 namespace exemplar {
 
-/// Device time per kernel, from timestamps around every dispatch of the streams that have this profiler, and how often
-/// those streams have waited for submitted work.
+/// Collects the device time per kernel, from timestamps around every dispatch of the streams that use this profiler,
+/// and counts the submissions that these streams have waited for.
 class Profiler {
   public:
     struct Entry {
@@ -29,7 +29,7 @@ class Profiler {
         return found == entries_.end() ? 0.0 : found->second.milliseconds;
     }
     void add_submission() { ++submissions_; }
-    /// Submissions that streams have waited for.
+    /// Number of submissions that streams have waited for.
     std::size_t submissions() const { return submissions_; }
     void reset() {
         entries_.clear();

@@ -106,7 +106,7 @@ Stream::~Stream() {
     try {
         commands_.wait();
     } catch (const DeviceError&) {
-        // A lost device has nothing under way.
+        // A lost device runs nothing to wait for.
     }
     release();
 }
@@ -144,7 +144,7 @@ void Stream::order(std::span<const Access> accesses) {
     barriers_.insert(barriers_.end(), barriers.begin(), barriers.end());
 }
 
-// All of a dispatch but the dispatch itself; `accesses` are those beside its bindings.
+// Records all of a dispatch but the dispatch command. `accesses` are those in addition to its bindings.
 void Stream::prepare(const Kernel& kernel, std::span<const BufferRange> ranges, std::span<const std::byte> push,
                      std::vector<Access> accesses) {
     const Program& program = *kernel.program();
@@ -212,7 +212,7 @@ void Stream::render(const Pass& pass) {
             use(*item.draw.indirect);
         }
     }
-    // Within a pass nothing can wait.
+    // Within a pass there can be no barriers.
     order(accesses);
     timestamps_.start(commands_.handle(), pass.name());
     begin_rendering(commands_.handle(), pass.target());
@@ -275,10 +275,10 @@ std::pair<Stream::Staging*, std::size_t> Stream::stage(std::vector<Staging>& blo
     return {&*block, offset};
 }
 
-Stream::UploadPlace Stream::begin_upload(const Buffer& target, std::size_t offset, std::size_t bytes) {
+Stream::UploadTarget Stream::begin_upload(const Buffer& target, std::size_t offset, std::size_t bytes) {
     check_bytes(target, offset, bytes);
     if (bytes == 0) return {{}, nullptr, 0};
-    // Nobody uses the target yet, so that the host may write it where it lies.
+    // No stream uses the target, so the host may write into it directly.
     if (target.resource()->mapped && target.resource()->streams == 0)
         return {{target.resource()->mapped + offset, bytes}, nullptr, 0};
     begin();
@@ -286,7 +286,7 @@ Stream::UploadPlace Stream::begin_upload(const Buffer& target, std::size_t offse
     return {{block->buffer.resource()->mapped + first, bytes}, block, first};
 }
 
-void Stream::end_upload(const UploadPlace& place, Buffer& target, std::size_t offset) {
+void Stream::end_upload(const UploadTarget& place, Buffer& target, std::size_t offset) {
     if (place.staging) copy(place.staging->buffer, place.offset, target, offset, place.memory.size());
 }
 
@@ -353,23 +353,23 @@ void Stream::finish() {
     wait();
 }
 
-void Stream::fetch(const Buffer& source, std::span<const HostPart> parts) {
-    std::vector<BufferPart> of_source;
+void Stream::fetch(const Buffer& source, std::span<const HostReadback> parts) {
+    std::vector<BufferReadback> of_source;
     of_source.reserve(parts.size());
-    for (const HostPart& part : parts) of_source.push_back({&source, part.offset, part.target});
+    for (const HostReadback& part : parts) of_source.push_back({&source, part.offset, part.target});
     fetch(of_source);
 }
 
-void Stream::fetch(std::span<const BufferPart> parts) {
-    const auto mapped = [](const BufferPart& part) { return *part.source && part.source->resource()->mapped; };
-    for (const BufferPart& part : parts)
+void Stream::fetch(std::span<const BufferReadback> parts) {
+    const auto mapped = [](const BufferReadback& part) { return *part.source && part.source->resource()->mapped; };
+    for (const BufferReadback& part : parts)
         if (!mapped(part)) download_bytes(*part.source, part.target, part.offset);
     finish();
-    for (const BufferPart& part : parts)
+    for (const BufferReadback& part : parts)
         if (mapped(part)) part.source->read(part.target, part.offset);
 }
 
-// Lets go of everything that finished work used.
+// Releases everything that the finished work used.
 void Stream::release() {
     for (const std::shared_ptr<Buffer::Resource>& buffer : buffers_) --buffer->streams;
     buffers_.clear();

@@ -11,35 +11,35 @@
 #include <utility>
 #include <vector>
 
-#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/device/commands.h"
+#include "gpu/runtime/kernels/kernel.h"
+#include "gpu/runtime/kernels/threads.h"
+#include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/record/descriptors.h"
 #include "gpu/runtime/record/hazards.h"
 #include "gpu/runtime/record/image_layout.h"
-#include "gpu/runtime/kernels/kernel.h"
 #include "gpu/runtime/record/pass.h"
 #include "gpu/runtime/record/profiler.h"
-#include "gpu/runtime/kernels/threads.h"
 #include "gpu/runtime/record/timestamps.h"
 
 namespace exemplar {
 
-/// Bytes of a buffer from `offset` on, and where they go on the host.
-struct HostPart {
+/// Bytes of a buffer from `offset` on, and their destination on the host.
+struct HostReadback {
     std::size_t offset;
     std::span<std::byte> target;
 };
 
-/// The same of any buffer.
-struct BufferPart {
+/// The same with the buffer.
+struct BufferReadback {
     const Buffer* source;
     std::size_t offset;
     std::span<std::byte> target;
 };
 
-/// A sequence of device work: record, submit, wait; then record again. Commands run as if one after the other: barriers
-/// follow from what each command reads and writes, and a stream sees what earlier submitted streams wrote. One thread
-/// at a time may use a stream. Waits for its work when it ends.
+/// A sequence of device work: record, submit, wait, then record again. Commands behave as if run one after the
+/// other: barriers are derived from their reads and writes. Writes of streams submitted earlier are visible. One
+/// thread at a time may use a stream. The destructor waits for submitted work.
 class Stream {
   public:
     explicit Stream(Device& device, Profiler* profiler = nullptr);
@@ -47,10 +47,10 @@ class Stream {
     Stream(const Stream&) = delete;
     Stream& operator=(const Stream&) = delete;
 
-    /// Runs a kernel over `threads`; nothing if there are none. `bindings` are in the order of the shader's binding
-    /// numbers. Throws ShaderError if their number or the push constants' size is wrong, DeviceLimitError if a binding
-    /// is over the device's max_storage_range or max_texels (bind BufferRanges of a tiled buffer instead) or there are
-    /// more threads than a kernel can count.
+    /// Records a kernel over `threads`, or nothing if there are none. `bindings` are in the order of the shader's
+    /// binding numbers. Throws ShaderError if their number or the size of the push constants is wrong,
+    /// DeviceLimitError if a binding exceeds the device's max_storage_range or max_texels (bind BufferRanges of a
+    /// tiled buffer instead) or there are too many threads (see workgroups).
     void dispatch(const Kernel& kernel, Threads threads, std::initializer_list<BufferRange> bindings) {
         dispatch_bytes(kernel, threads, {bindings.begin(), bindings.size()}, {});
     }
@@ -63,8 +63,8 @@ class Stream {
     void dispatch_bytes(const Kernel& kernel, Threads threads, std::span<const BufferRange> bindings,
                         std::span<const std::byte> push);
 
-    /// Runs a kernel over as many workgroups as the device finds in `arguments` at byte `offset` (a multiple of 4): a
-    /// VkDispatchIndirectCommand of no more than the device allows. Throws as dispatch.
+    /// Records a kernel whose workgroup counts the device reads from `arguments` at byte `offset` (a multiple of 4):
+    /// a VkDispatchIndirectCommand within the device's limits. Throws as dispatch.
     void dispatch_indirect(const Kernel& kernel, const Buffer& arguments, std::size_t offset,
                            std::initializer_list<BufferRange> bindings) {
         dispatch_indirect_bytes(kernel, arguments, offset, {bindings.begin(), bindings.size()}, {});
@@ -79,36 +79,37 @@ class Stream {
     void dispatch_indirect_bytes(const Kernel& kernel, const Buffer& arguments, std::size_t offset,
                                  std::span<const BufferRange> bindings, std::span<const std::byte> push);
 
-    /// Draws. Throws ShaderError and DeviceLimitError as dispatch.
+    /// Records a pass. Throws ShaderError and DeviceLimitError as dispatch.
     void render(const Pass& pass);
     /// Changes an image's layout; its contents survive unless `from` is VK_IMAGE_LAYOUT_UNDEFINED. Images are not
-    /// tracked: `transition` says what is waited for.
+    /// tracked: `transition` gives the stages and accesses to wait for.
     void transition(VkImage image, VkImageAspectFlags aspect, VkImageLayout from, VkImageLayout to,
                     const Transition& transition);
     /// Copies the first mip of an image in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL to the start of a buffer, row by row
-    /// without gaps. The caller has made its contents visible to copies.
+    /// without gaps. The caller must have made its contents visible to copies.
     void copy_image(VkImage image, VkImageAspectFlags aspect, VkExtent2D extent, std::size_t texel_bytes,
                     const Buffer& target);
 
-    /// Fills a part of an image in VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL with all of another's color, of `extent` pixels
-    /// and in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL; scales it if sizes differ. The caller has made the source visible.
+    /// Copies the color of `source`, `extent` pixels in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, into `part` of
+    /// `target`, in VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL; scales if the sizes differ. The caller must have made the
+    /// source visible.
     void blit(VkImage source, VkExtent2D extent, VkImage target, VkRect2D part);
 
-    /// Copies host values into `target` at byte `offset`; `values` may end as soon as this returns.
+    /// Copies host values into `target` at byte `offset`; `values` is not used after the return.
     template <typename T>
     void upload(Buffer& target, std::span<const T> values, std::size_t offset = 0) {
         static_assert(std::is_trivially_copyable_v<T>);
         upload_bytes(target, std::as_bytes(values), offset);
     }
-    /// As upload, of `bytes` bytes that `write` puts into the std::span<std::byte> it is called with, at once: for
-    /// values that are computed on the way. The span is write-only memory.
+    /// As upload, of `bytes` bytes that `write` computes into the std::span<std::byte> it is called with. It is
+    /// called before the return. The span is write-only memory.
     template <typename Write>
     void upload_with(Buffer& target, std::size_t bytes, std::size_t offset, Write&& write) {
-        const UploadPlace place = begin_upload(target, offset, bytes);
+        const UploadTarget place = begin_upload(target, offset, bytes);
         write(place.memory);
         end_upload(place, target, offset);
     }
-    /// Copies device values to the host: they are in `values`, which must live until then, after wait().
+    /// Copies device values to the host. They arrive in `values` at wait(), so `values` must live until then.
     template <typename T>
     void download(const Buffer& source, std::span<T> values, std::size_t offset = 0) {
         static_assert(std::is_trivially_copyable_v<T>);
@@ -120,26 +121,26 @@ class Stream {
     /// Sets every 4 bytes of the buffer to `word`.
     void fill(const Buffer& target, std::uint32_t word);
 
-    /// Hands the recorded work to the device and returns at once; nothing may be recorded until wait().
+    /// Submits the recorded work and returns at once; nothing may be recorded until wait().
     void submit(const SubmitOrder& order = {});
     /// Waits until the submitted work is done and downloads have arrived. Throws DeviceLostError if the device was
     /// lost.
     void wait();
     /// submit() and wait().
     void finish();
-    /// download() and finish(), without a copy between where the host sees the buffer's memory.
+    /// download() and finish() in one; reads mapped buffers directly, without a staging copy.
     template <typename T>
     void fetch(const Buffer& source, std::span<T> values) {
         static_assert(std::is_trivially_copyable_v<T>);
-        const HostPart whole{0, std::as_writable_bytes(values)};
+        const HostReadback whole{0, std::as_writable_bytes(values)};
         fetch(source, std::span(&whole, 1));
     }
-    /// The same of parts of a buffer.
-    void fetch(const Buffer& source, std::span<const HostPart> parts);
-    /// The same of parts of several buffers.
-    void fetch(std::span<const BufferPart> parts);
+    /// The same for parts of a buffer.
+    void fetch(const Buffer& source, std::span<const HostReadback> parts);
+    /// The same for parts of several buffers.
+    void fetch(std::span<const BufferReadback> parts);
 
-    /// All barriers of the current recording, or of the last one while there is none.
+    /// Returns all barriers of the current recording, or of the last one if none is in progress.
     const std::vector<Barrier>& barriers() const { return barriers_; }
 
   private:
@@ -151,8 +152,8 @@ class Stream {
         const std::byte* source;
         std::span<std::byte> target;
     };
-    // Where the host writes what is uploaded: into the target itself, or into staging memory.
-    struct UploadPlace {
+    // Memory that the host writes an upload to: that of the target itself, or staging memory.
+    struct UploadTarget {
         std::span<std::byte> memory;
         Staging* staging;  // null for the target itself
         std::size_t offset;
@@ -167,8 +168,8 @@ class Stream {
     void upload_bytes(Buffer& target, std::span<const std::byte> data, std::size_t offset);
     void download_bytes(const Buffer& source, std::span<std::byte> data, std::size_t offset);
     std::pair<Staging*, std::size_t> stage(std::vector<Staging>& blocks, std::size_t bytes, BufferMemory memory);
-    UploadPlace begin_upload(const Buffer& target, std::size_t offset, std::size_t bytes);
-    void end_upload(const UploadPlace& place, Buffer& target, std::size_t offset);
+    UploadTarget begin_upload(const Buffer& target, std::size_t offset, std::size_t bytes);
+    void end_upload(const UploadTarget& place, Buffer& target, std::size_t offset);
 
     Device& device_;
     HazardTracker hazards_;

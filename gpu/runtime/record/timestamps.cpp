@@ -11,8 +11,7 @@ namespace {
 
 constexpr std::uint32_t k_dispatches_per_pool = 512;
 
-// Once something has been drawn, lavapipe takes timestamps on the threads that draw, whenever they come to it, while
-// kernels run at once: a barrier behind a timestamp waits until it has been taken.
+// Writes a timestamp; the barrier on CPU devices is D11 in docs/portability.md.
 void write(const Device& device, VkCommandBuffer commands, VkPipelineStageFlags2 stage, VkQueryPool pool,
            std::uint32_t query) {
     vkCmdWriteTimestamp2(commands, stage, pool, query);

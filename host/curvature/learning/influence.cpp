@@ -15,8 +15,8 @@ namespace {
 
 using ControlSet = std::vector<std::uint32_t>;
 
-/// A bone with less weight than this in the surroundings of a vertex bends nothing there.
-constexpr float k_least_weight = 0.02f;
+/// Bones with less weight at a vertex are ignored.
+constexpr float k_min_bone_weight = 0.02f;
 
 std::vector<InfluenceGroup> grouped(const std::vector<ControlSet>& of_vertex) {
     std::map<ControlSet, std::size_t> index;
@@ -35,7 +35,7 @@ void merge_into(ControlSet& target, const ControlSet& other) {
     target = std::move(merged);
 }
 
-/// Adds to each vertex' set those of its neighbors, `rings` times.
+/// Merges into the set of each vertex those of its neighbors, `rings` times.
 void spread(const std::vector<Face>& faces, int rings, std::vector<ControlSet>& sets) {
     for (int ring = 0; ring < rings; ++ring) {
         std::vector<ControlSet> wider = sets;
@@ -53,32 +53,32 @@ std::vector<ControlSet> bones_of_vertices(const Rig& rig, std::size_t count) {
     std::vector<ControlSet> bones(count);
     for (std::size_t v = 0; v < count; ++v)
         for (const Influence& influence : rig.influences_of(v))
-            if (influence.weight >= k_least_weight) bones[v].push_back(influence.bone);
+            if (influence.weight >= k_min_bone_weight) bones[v].push_back(influence.bone);
     return bones;
 }
 
-/// The nodes from `node` up to its root, the root last.
+/// Returns the nodes from `node` up to its root.
 std::vector<std::uint32_t> path_up(const Rig& rig, std::uint32_t node) {
     std::vector<std::uint32_t> path;
-    for (; node != k_none; node = rig.nodes[node].parent) path.push_back(node);
+    for (; node != k_invalid_index; node = rig.nodes[node].parent) path.push_back(node);
     return path;
 }
 
-/// The joints between bones: all above them, up to but without the lowest node that is above (or is) every one.
+/// Returns the joints between bones: the bones' nodes and their ancestors, below the lowest one common to all.
 ControlSet joints_between(const Rig& rig, const ControlSet& bones, const std::vector<std::uint32_t>& control_of_node) {
     std::map<std::uint32_t, std::size_t> seen;
     for (const std::uint32_t bone : bones)
         for (const std::uint32_t node : path_up(rig, rig.bones[bone].node)) ++seen[node];
     ControlSet joints;
     for (const auto& [node, times] : seen)
-        if (times < bones.size() && control_of_node[node] != k_none) joints.push_back(control_of_node[node]);
+        if (times < bones.size() && control_of_node[node] != k_invalid_index) joints.push_back(control_of_node[node]);
     std::sort(joints.begin(), joints.end());
     return joints;
 }
 
 std::vector<ControlSet> joints_of_vertices(const Animation& animation, const StateReader& reader, int rings) {
     const Rig& rig = animation.rig;
-    std::vector<std::uint32_t> control_of_node(rig.nodes.size(), k_none);
+    std::vector<std::uint32_t> control_of_node(rig.nodes.size(), k_invalid_index);
     for (std::uint32_t c = 0; c < reader.nodes.size(); ++c) control_of_node[reader.nodes[c]] = c;
     std::vector<ControlSet> sets = bones_of_vertices(rig, animation.rest.vertex_count());
     spread(animation.rest.faces, rings, sets);
@@ -91,7 +91,7 @@ std::vector<ControlSet> joints_of_vertices(const Animation& animation, const Sta
     return sets;
 }
 
-/// Gives vertices without controls those of their neighbors, from ring to ring, until none is left that has any near.
+/// Gives vertices without controls those of their neighbors, ring by ring, until nothing changes.
 void fill(const std::vector<Face>& faces, std::vector<ControlSet>& sets) {
     for (bool changes = true; changes;) {
         changes = false;
@@ -114,7 +114,7 @@ std::vector<ControlSet> targets_of_vertices(const Animation& animation, const St
     return sets;
 }
 
-/// Quadratic features of some controls, with the constant.
+/// Computes the quadratic features of some controls, with the constant.
 Eigen::MatrixXd features_of(const StateReader& reader, const ControlSet& controls,
                             const Eigen::Ref<const Eigen::MatrixXf>& states) {
     Eigen::Index inputs = 0;
@@ -142,7 +142,7 @@ Fit fit(const Eigen::MatrixXd& features, const Eigen::MatrixXd& targets) {
     return {rotated.bottomRows(rotated.rows() - rank).colwise().squaredNorm(), static_cast<std::size_t>(rank)};
 }
 
-/// The controls of each of a group's vertices that pass the test.
+/// Returns for each vertex of a group the controls that pass the test.
 std::vector<ControlSet> test_group(const InfluenceGroup& group, const StateReader& reader,
                                    const Eigen::Ref<const Eigen::MatrixXf>& states, const Eigen::MatrixXd& targets,
                                    const InfluenceTest& options) {
@@ -159,12 +159,12 @@ std::vector<ControlSet> test_group(const InfluenceGroup& group, const StateReade
             fit(features_of(reader, {group.controls[c]}, states), targets).residual;
         for (std::size_t i = 0; i < kept.size(); ++i) {
             const auto column = static_cast<Eigen::Index>(i);
-            // Where a control adds no parameter, its inputs are combinations of the others'.
+            // A control that adds no parameter has inputs that are combinations of the others'.
             if (without.parameters >= full.parameters) continue;
             const FTest test = f_test(without.residual[column], without.parameters, full.residual[column],
                                       full.parameters, samples, variation[column]);
             const double gain = without.residual[column] - full.residual[column];
-            if (test.p_value < options.significance && gain >= options.least_gain * variation[column])
+            if (test.p_value < options.significance && gain >= options.min_gain * variation[column])
                 kept[i].push_back(group.controls[c]);
         }
     }
@@ -179,7 +179,7 @@ std::vector<ControlSet> test_group(const InfluenceGroup& group, const StateReade
 
 }  // namespace
 
-std::vector<InfluenceGroup> possible_influences(const Animation& animation, const StateReader& reader, int rings) {
+std::vector<InfluenceGroup> candidate_influences(const Animation& animation, const StateReader& reader, int rings) {
     std::vector<ControlSet> sets;
     switch (animation.kind) {
         case AnimationKind::skeleton:
@@ -196,10 +196,11 @@ std::vector<InfluenceGroup> possible_influences(const Animation& animation, cons
     return grouped(sets);
 }
 
-std::vector<InfluenceGroup> tested_influences(const std::vector<InfluenceGroup>& possible, const StateReader& reader,
-                                              const Eigen::Ref<const Eigen::MatrixXf>& states,
-                                              const Eigen::Ref<const Eigen::MatrixXf>& mean_curvature,
-                                              const std::vector<bool>& varies, const InfluenceTest& options) {
+std::vector<InfluenceGroup> significant_influences(const std::vector<InfluenceGroup>& possible,
+                                                   const StateReader& reader,
+                                                   const Eigen::Ref<const Eigen::MatrixXf>& states,
+                                                   const Eigen::Ref<const Eigen::MatrixXf>& mean_curvature,
+                                                   const std::vector<bool>& varies, const InfluenceTest& options) {
     std::vector<ControlSet> kept(varies.size());
     parallel_for(possible.size(), [&](std::size_t g) {
         InfluenceGroup group{possible[g].controls, {}};

@@ -1,6 +1,7 @@
-// The sum of polynomials of the controls that matter, and of pairs of them. Joints bend a surface nearly independently,
-// each near itself, so the parts of the joints add up; fitted together they share out what each explains, where an
-// average of predictions that each joint makes alone (Eq. 5.10) would give every joint a part of the whole.
+// A sum of polynomials of the controls that influence a vertex, and of pairs of them. Joints bend a surface nearly
+// independently, each near itself, so their contributions add up. Fitting all of them at once attributes to
+// each joint what it explains; averaging predictions of single joints (Eq. 5.10) would give each a share of the
+// whole.
 
 #include <algorithm>
 #include <array>
@@ -17,21 +18,20 @@ namespace exemplar {
 
 namespace {
 
-/// Which features a fit uses: each family has those of the ones before, too. Pairs are products of inputs of two
-/// controls.
+/// Which features a fit uses. Each family contains the previous ones; pairs are products of inputs of two controls.
 enum class Family : std::size_t { linear, squares, products, cubes, pairs };
 constexpr std::size_t k_families = 5;
 
 /// Controls: one, or two whose inputs are multiplied.
 using Controls = std::vector<std::uint32_t>;
 
-/// What is added up: features of one control or of a pair, with coefficients for the vertices it matters to.
+/// A term of the sum: features of one control or of a pair, with coefficients for the vertices they influence.
 struct Term {
-    std::vector<Monomial> monomials;              ///< without the constant, in the order of the families
-    std::array<std::size_t, k_families> count{};  ///< how many of them each family has
+    std::vector<Monomial> monomials;              ///< without the constant, ordered by family
+    std::array<std::size_t, k_families> count{};  ///< number of them in each family
     Eigen::MatrixXd values;                       ///< poses x monomials
-    std::vector<std::uint32_t> vertices;          ///< rising
-    std::vector<Eigen::MatrixXf> coefficients{};  ///< of each attribute: monomials x vertices
+    std::vector<std::uint32_t> vertices;          ///< ascending
+    std::vector<Eigen::MatrixXf> coefficients{};  ///< per attribute: monomials x vertices
 };
 
 void close(Term& term, Family family) {
@@ -72,7 +72,7 @@ std::vector<Controls> terms_of_group(const InfluenceGroup& group) {
     return terms;
 }
 
-/// Attributes that are fitted with the same features and ridge: those of second and those of third order.
+/// Attributes of the same order, second or third, are fitted with the same features and ridge.
 constexpr std::size_t k_orders = 2;
 
 /// A family and a ridge for each order.
@@ -118,7 +118,7 @@ class AdditiveLearner {
     }
 
   private:
-    /// Features of a family of a group's terms, the constant first.
+    /// Returns the features of a group's terms in a family, the constant first.
     Eigen::MatrixXd features(const InfluenceGroup& group, std::size_t family) const {
         const std::vector<Controls> keys = terms_of_group(group);
         Eigen::Index count = 1;
@@ -139,7 +139,7 @@ class AdditiveLearner {
         return is_derivative(task_.options.attributes, attribute) == (order == 1);
     }
 
-    /// Some of a group's values of one order, each attribute scaled to unit variance: what the choice is made on.
+    /// Returns a sample of a group's values of one order, each attribute scaled to unit norm, to choose a model on.
     Eigen::MatrixXd choice_targets(const InfluenceGroup& group, std::size_t order) const {
         constexpr std::size_t k_vertices = 48;
         std::vector<std::uint32_t> vertices;
@@ -155,7 +155,7 @@ class AdditiveLearner {
         return targets;
     }
 
-    /// The family and ridge that predict runs of poses best that are left out.
+    /// Returns the family and ridge of each order with the smallest error of cross-validation over blocks of poses.
     Choices choose(const InfluenceGroup& group) const {
         check_interrupt();
         Choices choices;
@@ -177,7 +177,8 @@ class AdditiveLearner {
         return choices;
     }
 
-    /// Chooses for the largest groups; the others do as the largest one with as many controls, or with about as many.
+    /// Makes choices for the largest groups. The others use that of the largest group with as many controls, or else
+    /// with the next larger number of controls.
     void make_choices() {
         constexpr std::size_t k_chosen = 64;
         std::vector<std::size_t> largest;
@@ -219,8 +220,8 @@ class AdditiveLearner {
         }
     }
 
-    /// Sorts a group's coefficients (features x vertices) to their terms. Groups share no vertices, so no two write to
-    /// the same place.
+    /// Stores a group's coefficients (features x vertices) in their terms. Groups share no vertices, so parallel
+    /// writes never overlap.
     void keep(const InfluenceGroup& group, std::size_t family, std::size_t attribute, const Eigen::MatrixXd& solution) {
         Eigen::Index at = 1;
         for (const Controls& key : terms_of_group(group)) {
@@ -240,7 +241,7 @@ class AdditiveLearner {
         Eigen::MatrixXf basis, regression;
     };
 
-    /// The part of a term in training, poses x vertices, reduced to components that follow from its features.
+    /// Reduces a term's contribution in training, poses x vertices, to components that are linear in its features.
     Reduced reduce(const Term& term, std::size_t attribute) const {
         const Eigen::MatrixXf& coefficients = term.coefficients[attribute];
         const Eigen::RowVectorXf mean = term.values.colwise().mean().cast<float>();
@@ -283,7 +284,7 @@ class AdditiveLearner {
     std::size_t attributes_;
     std::map<Controls, Term> terms_;
     std::map<std::size_t, Choices> chosen_;    // of the largest groups
-    std::map<std::size_t, Choices> by_count_;  // of the largest group with so many controls
+    std::map<std::size_t, Choices> by_count_;  // per number of controls: of the largest group
     bool uses_pairs_ = false;
 };
 

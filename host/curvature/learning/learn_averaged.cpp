@@ -1,5 +1,5 @@
-// The thesis' way for skeletons (Secs. 5.4.4, 5.4.5): every joint predicts the vertices it matters to, alone, from its
-// own and its parent's angles; the predictions are averaged.
+// The thesis' method for skeletons (Secs. 5.4.4, 5.4.5): every joint predicts the vertices it influences from its
+// own and its parent joint's angles; the predictions are averaged.
 
 #include <algorithm>
 
@@ -13,19 +13,19 @@ namespace exemplar {
 
 namespace {
 
-/// What one joint makes of one attribute.
+/// The prediction of one attribute by one joint.
 struct JointPredictor {
     Eigen::MatrixXf basis, regression;  ///< vertices x components, components x features
-    Eigen::VectorXd residual;           ///< r_j of each vertex: sum over the poses of squared errors
+    Eigen::VectorXd residual;           ///< r_j per vertex: sum of squared errors over the poses
 };
 
-/// The inputs of a bone: those of its joint and of the nearest joint above it that turns.
+/// Returns the inputs of a bone: those of its joint and of the nearest ancestor joint that is a control.
 std::vector<std::uint32_t> bone_inputs(const LearningTask& task, std::size_t control) {
     const StateReader& reader = task.reader;
     std::vector<std::size_t> controls{control};
     if (reader.kind == AnimationKind::skeleton) {
         const Rig& rig = task.animation.rig;
-        for (std::uint32_t node = rig.nodes[reader.nodes[control]].parent; node != k_none;
+        for (std::uint32_t node = rig.nodes[reader.nodes[control]].parent; node != k_invalid_index;
              node = rig.nodes[node].parent) {
             const auto place = std::find(reader.nodes.begin(), reader.nodes.end(), node);
             if (place == reader.nodes.end()) continue;
@@ -52,7 +52,7 @@ JointPredictor predict_from(const LearningTask& task, std::size_t attribute, con
     return predictor;
 }
 
-/// Multiplies the rows of the joints' bases with the weights of Eq. 5.11.
+/// Multiplies the rows of the joints' bases by the weights of Eq. 5.11.
 void weigh(const std::vector<std::vector<std::uint32_t>>& vertices, std::size_t vertex_count,
            std::vector<JointPredictor>& joints) {
     std::vector<std::vector<std::pair<std::size_t, Eigen::Index>>> predictors(vertex_count);
@@ -76,7 +76,7 @@ void learn_averaged(const LearningTask& task, PredictorBuilder& builder) {
     const std::size_t attributes = task.samples.attributes.size(), controls = task.reader.controls.size();
     const std::vector<std::vector<std::uint32_t>> vertices = vertices_of_controls(task);
     std::vector<std::vector<Monomial>> quadratic(controls), cubic(controls);
-    std::vector<std::uint32_t> first(controls, 0);  // feature; the quadratic ones are the first of the cubic ones
+    std::vector<std::uint32_t> first(controls, 0);  // feature; the cubic features start with the quadratic ones
     for (std::size_t c = 0; c < controls; ++c) {
         if (vertices[c].empty()) continue;
         const std::vector<std::uint32_t> inputs = bone_inputs(task, c);

@@ -1,4 +1,4 @@
-// The thesis' way for cloth (Sec. 5.5.2): a polynomial of all inputs to the components of each attribute.
+// The thesis' method for cloth (Sec. 5.5.2): a polynomial of all inputs to the components of each attribute.
 
 #include <algorithm>
 #include <numeric>
@@ -10,7 +10,7 @@ namespace exemplar {
 
 namespace {
 
-/// A polynomial and its ridge, chosen by leaving out runs of poses.
+/// A polynomial and its ridge, chosen by cross-validation over blocks of poses.
 struct Polynomial {
     int degree = 1;
     double ridge = 0;
@@ -44,7 +44,7 @@ void learn_global(const LearningTask& task, PredictorBuilder& builder) {
     const std::vector<Ica> bases = task.reduce_all(vertices);
     for (std::size_t a = 0; a < bases.size(); ++a) {
         if (bases[a].mixing.cols() == 0) continue;
-        // In the units of the attribute, as that is what errors count in.
+        // In the units of the attribute, so that strong components weigh more.
         const Eigen::MatrixXd targets =
             bases[a].sources.cast<double>() * bases[a].mixing.cast<double>().colwise().norm().asDiagonal();
         const Polynomial choice =

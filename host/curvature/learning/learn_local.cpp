@@ -1,7 +1,7 @@
-// Curvature is the derivative of the normals, so nearly a linear map of the normals and positions around a vertex, seen
-// in a frame that moves along. Each patch learns that map for all attributes of all its vertices at once, through as
-// few numbers as will do: reduced-rank regression finds the directions of the shape that matter to curvature, where
-// components of the shape alone (Sec. 5.5.1) are those that vary most, whether they matter or not.
+// Curvature is the derivative of the normals, so it is nearly a linear map of the normals and positions around a
+// vertex in a frame that moves with the surface. Each patch learns that map for all attributes of all its vertices
+// at once, by reduced-rank regression: it finds the few directions of the shape that matter to curvature. Components
+// of the shape alone (Sec. 5.5.1) are those that vary most, whether they matter to curvature or not.
 
 #include "host/curvature/learning/learn_local.h"
 
@@ -17,8 +17,8 @@
 #include "host/core/progress.h"
 #include "host/core/stopwatch.h"
 #include "host/curvature/learning/model_builder.h"
-#include "host/curvature/state/patches.h"
 #include "host/curvature/model/tiling.h"
+#include "host/curvature/state/patches.h"
 #include "host/learn/regression/reduced_rank.h"
 #include "host/lines/extraction/lines.h"
 #include "host/mesh/topology.h"
@@ -30,14 +30,14 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXf;
 
-/// How far around a patch its shape is read: curvature at its border is that of what lies around.
+/// Rings around a patch whose shape is read, too, since curvature at its border depends on its surroundings.
 constexpr int k_rings = 1;
-/// Root mean square of the local shape about its mean, below which a patch does not bend: it is rounding.
-constexpr double k_least_motion = 1e-5;
-/// Of the regression, relative to the variance of the shape.
+/// A patch whose local shape deviates less than this from its mean (root mean square) does not bend: it is rounding.
+constexpr double k_min_motion = 1e-5;
+/// Ridge of the regression, relative to the variance of the shape.
 constexpr double k_ridge = 1e-3;
-/// A component that predicts less than this share of the mean variance of a patch is not worth its place.
-constexpr double k_least_explained = 2e-4;
+/// A component that explains less than this share of the mean variance of a patch is dropped.
+constexpr double k_min_explained = 2e-4;
 
 using Neighbors = std::vector<std::vector<std::uint32_t>>;
 
@@ -50,7 +50,7 @@ Neighbors neighbors_of(const TriangleMesh& mesh) {
     return neighbors;
 }
 
-/// A patch and some rings around it, rising.
+/// Returns a patch with k_rings around it, ascending.
 std::vector<std::uint32_t> widened(std::vector<std::uint32_t> patch, const Neighbors& neighbors) {
     for (int ring = 0; ring < k_rings; ++ring) {
         const std::size_t before = patch.size();
@@ -62,10 +62,10 @@ std::vector<std::uint32_t> widened(std::vector<std::uint32_t> patch, const Neigh
     return patch;
 }
 
-/// About every third vertex: no two are neighbors, and each that is left out has one that is not. Measured curvature is
-/// smooth over an edge or so, so the others would tell little more, at three times the cost.
+/// Returns about every third vertex: a maximal set in which no two are neighbors. Measured curvature is smooth over
+/// about an edge, so the other vertices would add little, at three times the cost.
 std::vector<std::uint32_t> thinned(const std::vector<std::uint32_t>& vertices, const Neighbors& neighbors) {
-    std::vector<std::uint32_t> taken;  // rising, as the vertices are
+    std::vector<std::uint32_t> taken;  // ascending, like the vertices
     for (const std::uint32_t v : vertices)
         if (std::none_of(neighbors[v].begin(), neighbors[v].end(),
                          [&](std::uint32_t other) { return std::binary_search(taken.begin(), taken.end(), other); }))
@@ -73,13 +73,13 @@ std::vector<std::uint32_t> thinned(const std::vector<std::uint32_t>& vertices, c
     return taken;
 }
 
-/// One attribute of all vertices in all moments, and so on for each: poses x vertices.
-std::vector<MatrixXf> encode_all(const AttributeFrames& frames, const std::vector<SurfaceMoment>& moments) {
+/// Returns each attribute of all vertices in all frames: poses x vertices.
+std::vector<MatrixXf> encode_all(const AttributeFrames& frames, const std::vector<SurfaceSnapshot>& snapshots) {
     const std::size_t count = frames.vertex_count(), attributes = attribute_count(frames.set);
-    std::vector<MatrixXf> result(attributes, MatrixXf(Index(moments.size()), Index(count)));
+    std::vector<MatrixXf> result(attributes, MatrixXf(Index(snapshots.size()), Index(count)));
     std::vector<float> values(count * attributes);
-    for (std::size_t i = 0; i < moments.size(); ++i) {
-        frames.encode(moments[i].curvature, moments[i].surface(), values);
+    for (std::size_t i = 0; i < snapshots.size(); ++i) {
+        frames.encode(snapshots[i].curvature, snapshots[i].surface(), values);
         for (std::size_t a = 0; a < attributes; ++a)
             result[a].row(Index(i)) = Eigen::Map<const Eigen::RowVectorXf>(values.data() + a * count, Index(count));
     }
@@ -88,13 +88,13 @@ std::vector<MatrixXf> encode_all(const AttributeFrames& frames, const std::vecto
 
 class LocalLearner {
   public:
-    LocalLearner(const std::vector<SurfaceMoment>& moments, std::size_t real, const AttributeFrames& frames,
-                 std::size_t most_inputs, StateReader& reader)
-        : moments_(moments),
+    LocalLearner(const std::vector<SurfaceSnapshot>& snapshots, std::size_t real, const AttributeFrames& frames,
+                 std::size_t max_inputs, StateReader& reader)
+        : moments_(snapshots),
           real_(Index(real)),
-          most_inputs_(most_inputs),
+          most_inputs_(max_inputs),
           reader_(reader),
-          attributes_(encode_all(frames, moments)),
+          attributes_(encode_all(frames, snapshots)),
           means_(Index(attributes_.size()), Index(frames.vertex_count())),
           patches_(reader.local_begin.size() - 1) {
         for (std::size_t a = 0; a < attributes_.size(); ++a)
@@ -107,7 +107,7 @@ class LocalLearner {
         for (std::uint32_t v = 0; v < frames.vertex_count(); ++v) patches_[frames.segment[v]].push_back(v);
     }
 
-    /// Fills what is learned of the reader's state and gives the bases to a builder.
+    /// Learns the reader's maps and inputs. Returns a builder with the bases.
     PredictorBuilder learn() {
         reader_.local_mean.resize(patches_.size());
         std::vector<ReducedRank> maps(patches_.size());
@@ -137,13 +137,13 @@ class LocalLearner {
     PoseRange range() const { return make_pose_range(reader_, states(), static_cast<std::size_t>(real_)); }
 
   private:
-    /// x of all moments: poses x inputs.
+    /// Computes x of all frames: poses x inputs.
     MatrixXf states() const {
         MatrixXf states(Index(moments_.size()), Index(reader_.input_count));
         std::vector<float> x(reader_.input_count);
         for (std::size_t i = 0; i < moments_.size(); ++i) {
-            const SurfaceMoment& moment = moments_[i];
-            reader_.read_surface(moment.vertices, moment.normals, moment.rotations, x);
+            const SurfaceSnapshot& snapshot = moments_[i];
+            reader_.read_surface(snapshot.vertices, snapshot.normals, snapshot.rotations, x);
             states.row(Index(i)) = Eigen::Map<const Eigen::RowVectorXf>(x.data(), Index(x.size()));
         }
         return states;
@@ -163,7 +163,7 @@ class LocalLearner {
         MatrixXf x = shapes(patch);
         reader_.local_mean[patch] = x.topRows(real_).colwise().mean().transpose();
         x.rowwise() -= reader_.local_mean[patch].transpose();
-        if (x.squaredNorm() < k_least_motion * k_least_motion * static_cast<double>(x.size())) x.setZero();
+        if (x.squaredNorm() < k_min_motion * k_min_motion * static_cast<double>(x.size())) x.setZero();
         const std::vector<std::uint32_t>& vertices = patches_[patch];
         MatrixXf y(x.rows(), Index(vertices.size() * attributes_.size()));
         for (std::size_t a = 0; a < attributes_.size(); ++a)
@@ -172,11 +172,11 @@ class LocalLearner {
         return fit_reduced_rank(x, y, k_ridge, most_inputs_);
     }
 
-    /// Drops components that hardly matter. The variance of an attribute of a vertex is one or less.
+    /// Drops components that explain little. An attribute of a vertex has a variance of at most 1.
     void keep_strongest(ReducedRank& map) const {
         const double mean = static_cast<double>(means_.size()) / static_cast<double>(patches_.size());
         Index kept = 0;
-        while (kept < map.explained.size() && map.explained[kept] > k_least_explained * mean) ++kept;
+        while (kept < map.explained.size() && map.explained[kept] > k_min_explained * mean) ++kept;
         map.projection.conservativeResize(kept, Eigen::NoChange);
         map.basis.conservativeResize(Eigen::NoChange, kept);
         map.explained.conservativeResize(kept);
@@ -197,7 +197,7 @@ class LocalLearner {
         }
     }
 
-    const std::vector<SurfaceMoment>& moments_;
+    const std::vector<SurfaceSnapshot>& moments_;
     Index real_;
     std::size_t most_inputs_;
     StateReader& reader_;
@@ -206,7 +206,7 @@ class LocalLearner {
     std::vector<std::vector<std::uint32_t>> patches_;
 };
 
-/// The reader of the local shape of patches, before anything is learned.
+/// Builds the reader of the local shape of patches, without the learned maps.
 StateReader local_reader(const TriangleMesh& rest, const Segments& segments, float unit) {
     StateReader reader;
     reader.kind = AnimationKind::sequence;
@@ -233,15 +233,15 @@ void learn_local(const Animation& animation, std::span<const FrameRef> frames, s
     model.segments = segment_patches(rest, surface_patches(rest, options.sequence.patch_vertices));
     const auto unit = static_cast<float>(model.truth.smoothing_unit);
     model.state = local_reader(rest, model.segments, unit > 0 ? unit : 1.0f);
-    const std::vector<SurfaceMoment> moments = read_moments(animation, model.segments, frames, model.truth);
-    for (const SurfaceMoment& moment : moments)
-        model.feature_size += feature_size(moment.vertices, moment.curvature) / static_cast<float>(frames.size());
+    const std::vector<SurfaceSnapshot> snapshots = read_snapshots(animation, model.segments, frames, model.truth);
+    for (const SurfaceSnapshot& snapshot : snapshots)
+        model.feature_size += feature_size(snapshot.vertices, snapshot.curvature) / static_cast<float>(frames.size());
     report.seconds_truth = watch.wall();
 
     watch = Stopwatch();
-    AttributeFrames attribute_frames = make_attribute_frames(options.attributes, rest, model.segments, moments);
-    attribute_frames.segment = model.segments.segment_of_vertex;  // tiles of one patch need the components of no other
-    LocalLearner learner(moments, real, attribute_frames, options.sequence.most_inputs, model.state);
+    AttributeFrames attribute_frames = make_attribute_frames(options.attributes, rest, model.segments, snapshots);
+    attribute_frames.segment = model.segments.segment_of_vertex;  // so that tiles hold vertices of one patch only
+    LocalLearner learner(snapshots, real, attribute_frames, options.sequence.max_inputs, model.state);
     const PredictorBuilder builder = learner.learn();
     if (model.state.input_count == 0)
         throw UsageError(fmt::format("{}: nothing bends in the {} poses given; name other clips or frames",

@@ -3,16 +3,16 @@
 #include <span>
 
 #include "host/animation/animation.h"
+#include "host/curvature/learning/training.h"
 #include "host/curvature/model/model.h"
 #include "host/curvature/state/samples.h"
-#include "host/curvature/learning/training.h"
 
 namespace exemplar {
 
-/// Learns the curvature of a surface patch by patch from the shape of the patch and its surroundings: fills segments
-/// (the patches), state, range, regression, tiles and feature_size of `model`, whose truth is set. `real` of the
-/// frames, the first, are of the animation: predictions are exact where curvature and shape are at the mean of these,
-/// whatever other poses follow. Throws UsageError if nothing moves.
+/// Learns the curvature of each patch of a surface from the local shape of the patch and its surroundings. Fills
+/// segments (the patches), state, range, regression, tiles and feature_size of `model`, whose truth must be set. The
+/// first `real` frames are of the animation, the others augmented: means are over the real ones, so that at their
+/// mean shape the prediction is their mean curvature. Throws UsageError if nothing bends.
 void learn_local(const Animation& animation, std::span<const FrameRef> frames, std::size_t real,
                  const CurvatureTraining& options, CurvatureModel& model, CurvatureTrainingReport& report);
 

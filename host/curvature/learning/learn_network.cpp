@@ -1,4 +1,4 @@
-// The thesis' way for faces (Sec. 5.6.1): one hidden layer from all inputs to the components of each attribute.
+// The thesis' method for faces (Sec. 5.6.1): one hidden layer from all inputs to the components of each attribute.
 
 #include <array>
 
@@ -30,7 +30,7 @@ void learn_network(const LearningTask& task, PredictorBuilder& builder) {
         Eigen::MatrixXf hidden = Eigen::MatrixXf::Zero(neurons + 1, nets[a].hidden.cols());
         hidden.bottomRows(neurons) = nets[a].hidden;
         Eigen::VectorXf bias(neurons + 1);
-        bias << 20.0f, nets[a].hidden_bias;  // tanh(20) is one: the constant w_0 stands with its neurons
+        bias << 20.0f, nets[a].hidden_bias;  // tanh(20) is 1: a constant neuron carries w_0
         Eigen::MatrixXf regression(nets[a].output.rows(), neurons + 1);
         regression << nets[a].output_bias, nets[a].output;
         builder.add_basis(a, vertices, bases[a].mixing, builder.add_neurons(hidden, bias), regression);

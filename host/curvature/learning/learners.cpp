@@ -10,7 +10,7 @@ namespace exemplar {
 
 namespace {
 
-/// Principal components in the form of independent ones.
+/// Computes principal components, scaled to unit variance like independent ones.
 Ica principal_components(const Eigen::MatrixXf& values, double share) {
     const Pca pca = fit_pca(values, share);
     const Eigen::VectorXf deviation = pca.variance.cast<float>().cwiseSqrt();

@@ -10,15 +10,15 @@
 
 namespace exemplar {
 
-/// Collects what learning finds, block by block: features of some inputs, and bases whose components follow from them.
+/// Collects learned features of inputs, and bases whose components are linear in these features.
 class PredictorBuilder {
   public:
     explicit PredictorBuilder(std::size_t input_count);
 
-    /// Adds features that stand together; returns the index of the first.
+    /// Appends features; returns the index of the first.
     std::uint32_t add_monomials(std::span<const Monomial> monomials);
-    /// Neurons are numbered after all monomials; add them when no monomials follow. With the constant before them: the
-    /// index of that.
+    /// Appends neurons (weights: neurons x inputs); returns the feature index of the first. Neurons are numbered
+    /// after all monomials, so no monomials may be added later.
     std::uint32_t add_neurons(const Eigen::Ref<const Eigen::MatrixXf>& weights,
                               const Eigen::Ref<const Eigen::VectorXf>& bias);
 
@@ -28,10 +28,9 @@ class PredictorBuilder {
                    const Eigen::Ref<const Eigen::MatrixXf>& basis, std::uint32_t first_feature,
                    const Eigen::Ref<const Eigen::MatrixXf>& regression);
 
-    /// Adds components that are the inputs themselves; returns the index of the first.
+    /// Adds components that equal `inputs`; returns the index of the first.
     std::uint32_t add_inputs(std::span<const Monomial> inputs);
-    /// Adds a basis of an attribute for components that are there, from `first_component` on; attributes can share
-    /// them.
+    /// Adds a basis of an attribute for existing components, from `first_component` on. Attributes can share them.
     void add_shared_basis(std::size_t attribute, const std::vector<std::uint32_t>& vertices,
                           const Eigen::Ref<const Eigen::MatrixXf>& basis, std::uint32_t first_component);
 

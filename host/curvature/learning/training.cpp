@@ -7,21 +7,21 @@
 
 #include "host/core/errors.h"
 #include "host/core/stopwatch.h"
-#include "host/curvature/state/augmentation.h"
 #include "host/curvature/learning/learn_local.h"
 #include "host/curvature/learning/learners.h"
+#include "host/curvature/state/augmentation.h"
 
 namespace exemplar {
 
 namespace {
 
-/// Curvature at a vertex is that of its surroundings: of a ring for its normals, one for the fit, and what is diffused.
+/// Rings that curvature at a vertex depends on: one for the normals, one for the fit, and one for smoothing.
 constexpr int k_surrounding_rings = 3;
 /// A vertex varies if its curvature's deviation is at least this share of that of the vertex that varies most
 /// (Sec. 5.4.1).
-constexpr double k_least_variation = 0.005;
+constexpr double k_min_curvature_variation = 0.005;
 
-/// (k1 + k2) / 2, which both sets of attributes have: poses x vertices.
+/// Computes (k1 + k2) / 2, which both sets of attributes contain: poses x vertices.
 Eigen::MatrixXf mean_curvature(const TrainingSamples& samples) {
     const std::size_t second = samples.frames.set == AttributeSet::principal ? 1 : 2;
     return 0.5f * (samples.attributes[0] + samples.attributes[second]);
@@ -34,22 +34,21 @@ Eigen::MatrixXf mean_attributes(const TrainingSamples& samples) {
     return means;
 }
 
-/// Whether the curvature at each vertex varies, all attributes of second order together.
+/// Returns whether the curvature at each vertex varies, from all attributes of second order together.
 std::vector<bool> varying(AttributeSet set, const Eigen::MatrixXf& deviations) {
     Eigen::VectorXd deviation = Eigen::VectorXd::Zero(deviations.cols());
     for (Eigen::Index a = 0; a < deviations.rows(); ++a)
         if (!is_derivative(set, static_cast<std::size_t>(a)))
             deviation += deviations.row(a).transpose().cast<double>().cwiseAbs2();
     deviation = deviation.cwiseSqrt().eval();
-    const double least = k_least_variation * largest_but_outliers(deviation);
+    const double least = k_min_curvature_variation * percentile_99(deviation);
     std::vector<bool> varies;
     varies.reserve(static_cast<std::size_t>(deviation.size()));
     for (const double d : deviation) varies.push_back(d > least);
     return varies;
 }
 
-/// A control that nothing is predicted from, such as the heading of a figure, may do as it likes: no pose is far for
-/// it.
+/// Removes the range limit of controls from which nothing is predicted, such as the heading of a figure.
 void leave_out_unused(CurvatureModel& model) {
     constexpr float k_no_limit = 1e30f;
     std::vector<bool> used(model.state.input_count + 1, model.regression.neurons.rows() > 0);
@@ -85,19 +84,19 @@ void learn(const LearningTask& task, PredictorBuilder& builder) {
         case Learner::global:
             return learn_global(task, builder);
         case Learner::local:
-            break;  // has a state of its own, learned with the map; see learn_local
+            break;  // its state is learned together with the map; see learn_local
     }
 }
 
 void require_learnable(const Animation& animation, std::span<const FrameRef> frames) {
-    if (frames.size() < k_fewest_poses)
+    if (frames.size() < k_min_poses)
         throw UsageError(
             fmt::format("{}: {} poses are too few to learn from; at least {} are needed: name more clips "
                         "or frames",
-                        animation.name, frames.size(), k_fewest_poses));
+                        animation.name, frames.size(), k_min_poses));
 }
 
-/// What is known of a model before anything is learned: what it is of, and how curvature is measured.
+/// Returns a model with what is known before learning: its surface, and how curvature is measured.
 CurvatureModel blank_model(const Animation& animation, FrameRef first, const CurvatureTraining& options) {
     CurvatureModel model;
     model.kind = animation.kind;
@@ -121,7 +120,7 @@ void find_state(const Animation& animation, std::span<const FrameRef> frames, co
                                      animation.name, frames.size()));
 }
 
-/// All learners that start from a state which is found first.
+/// Trains with one of the learners whose state is determined before learning, i.e. all but local.
 void learn_by_controls(const Animation& animation, std::span<const FrameRef> frames, const CurvatureTraining& options,
                        CurvatureModel& model, CurvatureTrainingReport& report) {
     Stopwatch watch;
@@ -130,7 +129,7 @@ void learn_by_controls(const Animation& animation, std::span<const FrameRef> fra
         collect_samples(animation, model.segments, model.state, frames, options.attributes, model.truth);
     model.feature_size = samples.feature_size;
     model.range = make_pose_range(model.state, samples.states);
-    // Around zero, products of inputs say what their factors do not.
+    // Centered, so that products of inputs are less correlated with their factors.
     samples.states.rowwise() -= model.range.mean.transpose();
     report.seconds_truth = watch.wall();
 
@@ -139,8 +138,8 @@ void learn_by_controls(const Animation& animation, std::span<const FrameRef> fra
     const Eigen::MatrixXf deviation = deviations(samples.attributes, task.means);
     task.scales = error_scales(deviation);
     const std::vector<bool> varies = varying(options.attributes, deviation);
-    const std::vector<InfluenceGroup> possible = possible_influences(animation, model.state, k_surrounding_rings);
-    task.groups = tested_influences(possible, model.state, samples.states, mean_curvature(samples), varies, {});
+    const std::vector<InfluenceGroup> possible = candidate_influences(animation, model.state, k_surrounding_rings);
+    task.groups = significant_influences(possible, model.state, samples.states, mean_curvature(samples), varies, {});
     report.seconds_influence = watch.wall();
 
     watch = Stopwatch();
@@ -156,7 +155,7 @@ void learn_by_controls(const Animation& animation, std::span<const FrameRef> fra
     report.kept_controls = mean_controls(task.groups, varies);
 }
 
-/// `real` of the frames, the first, are of the animation; the others are augmented.
+/// Trains on frames of which the first `real` are of the animation and the others augmented.
 CurvatureModel train_on(const Animation& animation, std::span<const FrameRef> frames, std::size_t real,
                         const CurvatureTraining& options, CurvatureTrainingReport& report) {
     CurvatureModel model = blank_model(animation, frames.front(), options);
@@ -167,7 +166,7 @@ CurvatureModel train_on(const Animation& animation, std::span<const FrameRef> fr
     return model;
 }
 
-/// The same with augmented poses beside the frames.
+/// Trains on the frames and augmented poses.
 CurvatureModel train_augmented(Animation animation, std::vector<FrameRef> frames, const CurvatureTraining& options,
                                CurvatureTrainingReport& report) {
     const auto clip = static_cast<std::uint32_t>(animation.clips.size());

@@ -10,14 +10,16 @@
 
 namespace exemplar {
 
-/// How curvature is predicted from the controls that matter to a vertex.
+/// How curvature is predicted from the controls that influence a vertex.
 ///
-/// additive: the sum of a polynomial of each control, fitted together; the control's share of all vertices is then
-/// reduced to a few components. averaged: the thesis' (Sec. 5.4): the attributes of the vertices that a control matters
-/// to are reduced first, each control predicts them alone from its joint's and its parent's angles, and predictions are
-/// averaged by their residuals (Eq. 5.11). network: the thesis' for faces (Sec. 5.6): one hidden layer from all inputs
-/// to the components. global: the thesis' for cloth (Sec. 5.5): a polynomial of all inputs. local: a linear map of each
-/// patch of the surface from its normals and heights (see learn_local), whatever moves it.
+/// additive: a sum of polynomials of the controls and of their pairs, fitted jointly; the part of each is then
+/// reduced to a few components.
+/// averaged (Sec. 5.4): the attributes of a control's vertices are reduced to components first. Each control
+/// predicts them alone from its joint's and its parent joint's angles; predictions are averaged by their residuals
+/// (Eq. 5.11).
+/// network (Sec. 5.6, faces): one hidden layer from all inputs to the components.
+/// global (Sec. 5.5, cloth): a polynomial of all inputs.
+/// local: a linear map per patch from its normals and heights (see learn_local), for any kind of animation.
 enum class Learner { additive, averaged, network, global, local };
 std::string_view name_of(Learner learner);
 
@@ -25,26 +27,27 @@ struct CurvatureTraining {
     AttributeSet attributes = AttributeSet::tensor;
     Learner learner = Learner::local;
     bool independent = true;            ///< ICA bases, else PCA
-    double variance = 0.99;             ///< kept by the bases of each control
-    SequenceStateOptions sequence{};    ///< the state of mesh sequences; `global` takes the whole surface as one patch
+    double variance = 0.99;             ///< share of the variance that bases keep
+    SequenceStateOptions sequence{};    ///< state of mesh sequences; `global` takes the whole surface as one patch
     double dropped_variance = 0.001;    ///< left out by sparsity (see TilingOptions)
-    std::size_t augmented_poses = 300;  ///< of rigs, beside the frames (see augmented_poses)
+    std::size_t augmented_poses = 300;  ///< of rigs, in addition to the frames (see augmented_poses)
     CurvatureOptions truth{.derivatives = true, .smoothing = 1};
     std::uint64_t seed = 1;
 };
 
 struct CurvatureTrainingReport {
-    std::size_t poses = 0;  ///< augmented ones included
+    std::size_t poses = 0;  ///< including augmented ones
     std::size_t vertices = 0, varying_vertices = 0, segments = 0, controls = 0, inputs = 0, components = 0;
     double possible_controls = 0, kept_controls = 0;  ///< per varying vertex: before and after the F-test
     std::size_t model_bytes = 0;                      ///< of the tiles
     double seconds_truth = 0, seconds_influence = 0, seconds_fit = 0;
 };
 
-/// The fewest poses that can be learned from: one more than the features of a cubic polynomial of one joint.
-constexpr std::size_t k_fewest_poses = 20;
+/// Minimum number of poses to learn from: one more than the features of one joint's cubic polynomial
+/// (learn_averaged).
+constexpr std::size_t k_min_poses = 20;
 
-/// Learns a model from frames of an animation. Throws UsageError for too few frames or if nothing moves.
+/// Learns a model from frames of an animation. Throws UsageError if there are too few frames or nothing moves.
 CurvatureModel train_curvature(const Animation& animation, std::span<const FrameRef> frames,
                                const CurvatureTraining& options, CurvatureTrainingReport& report);
 

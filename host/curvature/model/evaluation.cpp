@@ -6,6 +6,7 @@
 
 #include "host/core/parallel.h"
 #include "host/core/progress.h"
+#include "host/core/statistics.h"
 #include "host/lines/extraction/face_types.h"
 
 namespace exemplar {
@@ -16,8 +17,8 @@ constexpr std::array<LineType, 6> k_compared{
     LineType::suggestive_contours, LineType::suggestive_highlights, LineType::ridges, LineType::valleys,
     LineType::apparent_ridges,     LineType::principal_highlights};
 
-/// Errors of one attribute, collected. Percentiles are taken of some of them, so that memory does not grow with the
-/// length of a motion.
+/// The accumulated errors of one attribute. Percentiles are over a sample of them, so that memory does not grow with
+/// the length of a motion.
 struct ErrorSum {
     double squares = 0, count = 0;
     std::vector<float> magnitudes;
@@ -32,12 +33,7 @@ struct ErrorSum {
         magnitudes.insert(magnitudes.end(), other.magnitudes.begin(), other.magnitudes.end());
     }
     double rms() const { return count > 0 ? std::sqrt(squares / count) : 0; }
-    double percentile_95() {
-        if (magnitudes.empty()) return 0;
-        const auto place = magnitudes.begin() + static_cast<std::ptrdiff_t>(0.95 * double(magnitudes.size() - 1));
-        std::nth_element(magnitudes.begin(), place, magnitudes.end());
-        return *place;
-    }
+    double percentile_95() { return quantile(magnitudes, 0.95); }
 };
 
 constexpr std::array<const char*, 7> k_names{"k1", "k2", "direction", "C111", "C112", "C122", "C222"};
@@ -64,13 +60,13 @@ struct LineDifferences {
     LineDifference learned{k_compared}, zero_order{k_compared};
 };
 
-void compare_lines(const std::vector<Face>& faces, const SurfaceMoment& moment, const VertexCurvature& learned,
+void compare_lines(const std::vector<Face>& faces, const SurfaceSnapshot& snapshot, const VertexCurvature& learned,
                    const VertexCurvature& zero_order, float feature_size, LineDifferences& differences) {
     std::vector<LineType> seen, fixed;
     for (const LineType type : k_compared) (depends_on_view(type) ? seen : fixed).push_back(type);
-    const std::array<const VertexCurvature*, 3> curvatures{&moment.curvature, &learned, &zero_order};
+    const std::array<const VertexCurvature*, 3> curvatures{&snapshot.curvature, &learned, &zero_order};
     const auto add = [&](std::size_t i, std::span<const LineType> types, const Vec3& eye, FaceTypes& of) {
-        add_face_types({faces, moment.vertices, moment.normals, *curvatures[i]}, types,
+        add_face_types({faces, snapshot.vertices, snapshot.normals, *curvatures[i]}, types,
                        {.eye = eye, .feature_size = feature_size, .thresholds = {}}, of);
     };
     std::array<FaceTypes, 3> from_anywhere, from_eye;
@@ -78,7 +74,7 @@ void compare_lines(const std::vector<Face>& faces, const SurfaceMoment& moment, 
         from_anywhere[i].resize(faces.size());
         add(i, fixed, Vec3::Zero(), from_anywhere[i]);
     }
-    for (const Vec3& eye : eyes_around(moment.vertices)) {
+    for (const Vec3& eye : eyes_around(snapshot.vertices)) {
         from_eye = from_anywhere;
         for (std::size_t i = 0; i < curvatures.size(); ++i) add(i, seen, eye, from_eye[i]);
         differences.learned.add(from_eye[0], from_eye[1]);
@@ -86,7 +82,7 @@ void compare_lines(const std::vector<Face>& faces, const SurfaceMoment& moment, 
     }
 }
 
-/// What is known after some frames.
+/// Accumulated results of some frames.
 struct Tally {
     Errors learned, zero_order, truth;
     LineDifferences lines;
@@ -107,22 +103,22 @@ struct Tally {
 };
 
 const VertexCurvature& evaluate_frame(CurvatureEvaluator& evaluator, const Animation& animation, FrameRef frame,
-                                      const SurfaceMoment& moment) {
-    if (animation.kind == AnimationKind::sequence) return evaluator.evaluate(moment.vertices, moment.normals);
-    return evaluator.evaluate(animation.rig, animation.clips[frame.clip].poses[frame.frame], moment.vertices,
-                              moment.normals);
+                                      const SurfaceSnapshot& snapshot) {
+    if (animation.kind == AnimationKind::sequence) return evaluator.evaluate(snapshot.vertices, snapshot.normals);
+    return evaluator.evaluate(animation.rig, animation.clips[frame.clip].poses[frame.frame], snapshot.vertices,
+                              snapshot.normals);
 }
 
-/// With all components at their mean.
-void predict_zero_order(const CurvatureModel& model, const SurfaceMoment& moment, VertexCurvature& curvature) {
+/// Computes the curvature with all components at their mean.
+void predict_zero_order(const CurvatureModel& model, const SurfaceSnapshot& snapshot, VertexCurvature& curvature) {
     const std::vector<float> nothing(model.regression.components.size(), 0.0f);
-    reproject_curvature(model.tiles, nothing, moment.surface(), curvature);
+    reproject_curvature(model.tiles, nothing, snapshot.surface(), curvature);
 }
 
 /// Compares frame after frame, on one thread.
 class FrameComparison {
   public:
-    /// Keeps the errors of every stride-th vertex.
+    /// Percentiles are over the errors of every stride-th vertex.
     FrameComparison(const CurvatureModel& model, const Animation& animation, std::size_t stride)
         : model_(model),
           animation_(animation),
@@ -131,19 +127,19 @@ class FrameComparison {
           stride_(stride) {}
 
     void compare(FrameRef frame, Tally& tally) {
-        const SurfaceMoment moment = reader_.read(frame);
-        const VertexCurvature& learned = evaluate_frame(evaluator_, animation_, frame, moment);
-        predict_zero_order(model_, moment, mean_);
-        add_errors(moment.curvature, learned, stride_, tally.learned);
-        add_errors(moment.curvature, mean_, stride_, tally.zero_order);
-        for (std::size_t v = 0; v < moment.curvature.k1.size(); ++v) {
-            tally.truth[0].squares += double(moment.curvature.k1[v]) * moment.curvature.k1[v];
-            tally.truth[1].squares += double(moment.curvature.k2[v]) * moment.curvature.k2[v];
+        const SurfaceSnapshot snapshot = reader_.read(frame);
+        const VertexCurvature& learned = evaluate_frame(evaluator_, animation_, frame, snapshot);
+        predict_zero_order(model_, snapshot, mean_);
+        add_errors(snapshot.curvature, learned, stride_, tally.learned);
+        add_errors(snapshot.curvature, mean_, stride_, tally.zero_order);
+        for (std::size_t v = 0; v < snapshot.curvature.k1.size(); ++v) {
+            tally.truth[0].squares += double(snapshot.curvature.k1[v]) * snapshot.curvature.k1[v];
+            tally.truth[1].squares += double(snapshot.curvature.k2[v]) * snapshot.curvature.k2[v];
             for (std::size_t k = 0; k < 4; ++k)
                 tally.truth[3 + k].squares +=
-                    double(moment.curvature.derivative[v][k]) * moment.curvature.derivative[v][k];
+                    double(snapshot.curvature.derivative[v][k]) * snapshot.curvature.derivative[v][k];
         }
-        compare_lines(animation_.rest.faces, moment, learned, mean_, model_.feature_size, tally.lines);
+        compare_lines(animation_.rest.faces, snapshot, learned, mean_, model_.feature_size, tally.lines);
         const PoseRange::Farthest farthest = evaluator_.farthest();
         if (farthest.distance > tally.farthest.distance) tally.farthest = farthest;
         tally.far_frames += farthest.distance > k_far_pose;
@@ -152,7 +148,7 @@ class FrameComparison {
   private:
     const CurvatureModel& model_;
     const Animation& animation_;
-    MomentReader reader_;
+    SnapshotReader reader_;
     CurvatureEvaluator evaluator_;
     std::size_t stride_;
     VertexCurvature mean_;
@@ -174,7 +170,7 @@ std::array<Vec3, 6> eyes_around(std::span<const Vec3> vertices) {
     const float distance = 1.5f * (high - low).norm();
     std::array<Vec3, 6> eyes;
     for (std::size_t i = 0; i < eyes.size(); ++i) {
-        // Off the axes, along which models tend to be symmetric.
+        // Off the axes, since models tend to be symmetric along them.
         Vec3 direction(0.31f, 0.22f, -0.27f);
         direction[static_cast<Eigen::Index>(i / 2)] = i % 2 ? -1.0f : 1.0f;
         eyes[i] = center + distance * direction.normalized();
@@ -183,18 +179,18 @@ std::array<Vec3, 6> eyes_around(std::span<const Vec3> vertices) {
 }
 
 FrameCurvature curvature_at(const CurvatureModel& model, const Animation& animation, FrameRef frame) {
-    require_fit(model, animation);
-    FrameCurvature result{MomentReader(animation, model.segments, model.truth).read(frame), {}, {}};
+    require_compatible(model, animation);
+    FrameCurvature result{SnapshotReader(animation, model.segments, model.truth).read(frame), {}, {}};
     CurvatureEvaluator evaluator(model);
-    result.learned = evaluate_frame(evaluator, animation, frame, result.moment);
-    predict_zero_order(model, result.moment, result.zero_order);
+    result.learned = evaluate_frame(evaluator, animation, frame, result.snapshot);
+    predict_zero_order(model, result.snapshot, result.zero_order);
     return result;
 }
 
 CurvatureEvaluation evaluate_curvature(const CurvatureModel& model, const Animation& animation,
                                        std::span<const FrameRef> frames) {
-    require_fit(model, animation);
-    // Chunks of frames, so that sums do not depend on the number of threads.
+    require_compatible(model, animation);
+    // Fixed chunks of frames, so that sums do not depend on the number of threads.
     constexpr std::size_t k_chunk = 8, k_most_kept = 4'000'000;
     const std::size_t stride = 1 + frames.size() * model.vertex_count / k_most_kept;
     std::vector<Tally> tallies((frames.size() + k_chunk - 1) / k_chunk);

@@ -4,8 +4,8 @@ namespace exemplar {
 
 namespace {
 
-/// Memory serves fastest what is read in its own order, and patches and tiles then find it in the cache; asking for it
-/// ahead without waiting (a prefetch) helps less than half as much.
+/// Reads vectors in memory order, which is fastest, so that patches and tiles then find them in the cache. A
+/// prefetch instruction helps less than half as much.
 void bring_to_cache(std::span<const Vec3> vectors) {
     constexpr std::size_t k_in_cache_line = 64 / sizeof(Vec3);
     for (std::size_t v = 0; v < vectors.size(); v += k_in_cache_line)
@@ -16,7 +16,7 @@ void bring_to_cache(std::span<const Vec3> vectors) {
 
 CurvatureEvaluator::CurvatureEvaluator(const CurvatureModel& model)
     : model_(&model),
-      copies_inputs_(model.regression.copies_inputs()),
+      is_identity_(model.regression.is_identity()),
       x_(model.state.input_count),
       features_(model.regression.feature_count()),
       z_(model.regression.components.size()) {
@@ -47,7 +47,7 @@ const VertexCurvature& CurvatureEvaluator::evaluate(std::span<const Vec3> vertic
 
 const VertexCurvature& CurvatureEvaluator::reproject(std::span<const Vec3> vertices, std::span<const Vec3> normals) {
     farthest_ = model_->range.prepare(model_->state, x_);
-    if (copies_inputs_)
+    if (is_identity_)
         z_ = x_;
     else
         model_->regression.evaluate(x_, features_, z_);

@@ -153,12 +153,12 @@ void add_tiles(TensorFile& file, const BasisTiles& tiles) {
     file.add("tiles.reference", {tensor ? 0 : count, 3, lanes}, tiles.reference);
 }
 
-// Reading: every number that leads somewhere is checked to lead there.
+// Reading. Every index is checked to be in range.
 
-/// A file that is being read.
+/// A file being read, with checks that throw ModelError.
 struct Reading {
     const TensorFile& file;
-    mutable std::size_t arrays = 0;  ///< that were read, each once
+    mutable std::size_t arrays = 0;  ///< number of arrays read, each once
 
     [[noreturn]] void damaged(const std::string& what) const {
         throw ModelError(fmt::format("{}: damaged file: {}; train it again", file.path, what));
@@ -198,7 +198,7 @@ struct Reading {
     }
 };
 
-/// The library would turn what is no whole number (-1, 1e300, true) into one.
+/// Returns a whole number of at most `most`. The JSON library would silently convert -1, 1e300 or true.
 std::uint64_t whole_number(const Reading& reading, const Json& value, std::uint64_t most) {
     if (!value.is_number_unsigned() || value.get<std::uint64_t>() > most)
         reading.damaged("its description has another value where a whole number should be");
@@ -234,7 +234,7 @@ void read_description(const Reading& reading, CurvatureModel& model) {
         reading.require(value >= 0 && std::isfinite(value), "a length in its description is negative");
 }
 
-/// The unmixing matrices of all controls, one after the other; `columns` tells how wide each is.
+/// Splits the concatenated unmixing matrices of all controls; columns(c) is the width of that of control c.
 template <typename Columns>
 void split_unmixing(const Reading& reading, const Floats& unmixing, StateReader& state, Columns&& columns) {
     std::size_t at = 0;
@@ -455,7 +455,7 @@ CurvatureModel load_curvature_model(const std::filesystem::path& path) {
     return model;
 }
 
-void require_fit(const CurvatureModel& model, const Animation& animation) {
+void require_compatible(const CurvatureModel& model, const Animation& animation) {
     const auto refuse = [&](const std::string& why) {
         throw ModelError(fmt::format("the model does not fit {}: {}; train one for it", animation.name, why));
     };

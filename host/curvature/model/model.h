@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "host/animation/animation.h"
-#include "host/curvature/state/local_shape.h"
 #include "host/curvature/model/predictor.h"
+#include "host/curvature/state/local_shape.h"
 #include "host/curvature/state/segments.h"
 #include "host/curvature/state/state.h"
 #include "host/mesh/curvature/curvature_estimator.h"
@@ -20,41 +20,41 @@ namespace exemplar {
 /// A learned map from the pose of one surface to its curvature.
 struct CurvatureModel {
     AnimationKind kind = AnimationKind::sequence;
-    std::uint64_t topology = 0;  ///< of the faces and the vertex count it was learned on (see topology_hash)
+    std::uint64_t topology = 0;  ///< topology_hash of the surface it was learned on
     std::size_t vertex_count = 0;
-    CurvatureOptions truth;  ///< how the curvature it learned was measured; smoothing_unit in mesh units
-    float feature_size = 0;  ///< of the surface in training (see lines)
+    CurvatureOptions truth;  ///< how training curvature was measured; smoothing_unit in mesh units
+    float feature_size = 0;  ///< mean over the training poses (see host/lines)
     StateReader state;
     PoseRange range;
-    Segments segments;  ///< of principal attributes and local shape; the tiles tell which vertices are of which
+    Segments segments;  ///< for principal attributes and local shape; the tiles list their vertices
     ComponentRegression regression;
     BasisTiles tiles;
-    std::map<std::string, std::string> training;  ///< remarks: animation, clips, options, in words
+    std::map<std::string, std::string> training;  ///< remarks in words: animation, clips, options
 };
 
-/// A fingerprint of faces and vertex count.
+/// Returns a hash of faces and vertex count.
 std::uint64_t topology_hash(std::span<const Face> faces, std::size_t vertex_count);
 
-/// Writes and reads model files (docs/formats.md). Reading checks everything: ModelError names the path and what is
-/// wrong.
+/// Write and read model files (docs/formats.md). Reading checks everything and throws a ModelError that names the
+/// path and what is wrong.
 void save_curvature_model(const std::filesystem::path& path, const CurvatureModel& model);
 CurvatureModel load_curvature_model(const std::filesystem::path& path);
 
-/// Throws ModelError if the model was learned on another surface or rig: other faces, or joints or shapes it needs are
-/// not there.
-void require_fit(const CurvatureModel& model, const Animation& animation);
+/// Throws ModelError if the model was learned on another surface or rig: another kind of animation, other faces, or
+/// missing joints, blend shapes or bones.
+void require_compatible(const CurvatureModel& model, const Animation& animation);
 
-/// Evaluates a model for one surface, frame after frame, on one thread; keeps its work space.
+/// Evaluates a model for one surface, frame after frame, on one thread. Keeps its work space.
 class CurvatureEvaluator {
   public:
     explicit CurvatureEvaluator(const CurvatureModel& model);
-    /// Curvature at a pose of the rig, given vertices and unit vertex normals of the posed surface; valid until the
-    /// next call.
+    /// Returns the curvature in a pose of the rig, given vertices and unit vertex normals of the posed surface. The
+    /// result is valid until the next call.
     const VertexCurvature& evaluate(const Rig& rig, const Pose& pose, std::span<const Vec3> vertices,
                                     std::span<const Vec3> normals);
-    /// The same of a mesh sequence.
+    /// Does the same for a mesh sequence or a model of local shape.
     const VertexCurvature& evaluate(std::span<const Vec3> vertices, std::span<const Vec3> normals);
-    /// The control of the last call that was farthest from the training poses.
+    /// Returns the control that was farthest from the training poses in the last call.
     PoseRange::Farthest farthest() const { return farthest_; }
     std::span<const float> components() const { return z_; }
     std::span<const Eigen::Matrix3f> rotations() const { return rotations_; }
@@ -63,7 +63,7 @@ class CurvatureEvaluator {
     const VertexCurvature& reproject(std::span<const Vec3> vertices, std::span<const Vec3> normals);
     const CurvatureModel* model_;
     std::optional<LocalShapeReader> local_;
-    bool copies_inputs_;
+    bool is_identity_;
     std::vector<float> x_, features_, z_;
     PoseRange::Farthest farthest_;
     std::vector<Eigen::Matrix3f> rotations_;

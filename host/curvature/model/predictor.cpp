@@ -2,7 +2,7 @@
 
 namespace exemplar {
 
-bool ComponentRegression::copies_inputs() const {
+bool ComponentRegression::is_identity() const {
     const auto one = static_cast<std::uint32_t>(input_count);
     if (components.size() != input_count || monomials.size() < input_count) return false;
     for (std::uint32_t i = 0; i < components.size(); ++i) {

@@ -1,5 +1,5 @@
-// reproject_curvature, which every frame runs: sixteen vertices at a time, in eights. What it computes is written
-// plainly in reproject() and AttributeFrames::decode().
+// reproject_curvature, which every frame runs: tiles of sixteen vertices, in SIMD vectors of eight. reproject() and
+// AttributeFrames::decode() are its plain reference.
 
 #include <array>
 #include <cstring>
@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t k_lanes = BasisTiles::k_lanes, k_eight = 8;
 static_assert(k_lanes == 2 * k_eight);
 
-/// A vector of each of eight vertices.
+/// One vector for each of eight vertices.
 struct EightVectors {
     EightFloats x, y, z;
 };
@@ -54,7 +54,7 @@ EightVectors gathered(std::span<const Vec3> vectors, const std::uint32_t* at) {
     return {m.a, m.b, m.c};
 }
 
-/// What is known of eight vertices.
+/// The curvature of eight vertices.
 struct EightCurvatures {
     EightFloats k1, k2;
     EightVectors e1;
@@ -82,13 +82,13 @@ void store(const std::uint32_t* at, const EightCurvatures& eight, const EightVec
     store_two(3, first.d, second.d, derivative.d);
 }
 
-/// An attribute of the vertices of a tile.
+/// One attribute of the sixteen vertices of a tile.
 struct Sixteen {
     std::array<EightFloats, 2> eights;
 };
 
 /// The attributes of eight vertices.
-using EightAttributes = std::array<EightFloats, k_most_attributes>;
+using EightAttributes = std::array<EightFloats, k_max_attributes>;
 
 Sixteen sixteen_from_halves(const Half* halves) {
     return {{eight_from_halves(halves), eight_from_halves(halves + k_eight)}};
@@ -98,7 +98,7 @@ void add_product(float factor, const std::int8_t* basis, Sixteen& sum) {
     sum.eights[1] += factor * eight_from_bytes(basis + k_eight);
 }
 
-/// One row: an attribute of a tile. In two sums that take turns, since an addition waits for the one before.
+/// Computes a row, one attribute of a tile. Two alternating sums shorten the chain of dependent additions.
 Sixteen reprojected(const BasisTiles& tiles, std::span<const float> z, std::size_t row, float scale) {
     Sixteen even = sixteen_from_halves(tiles.mean.data() + row * k_lanes), odd{};
     even.eights[0] *= scale;
@@ -127,21 +127,21 @@ std::array<EightAttributes, 2> tile_attributes(const BasisTiles& tiles, std::spa
     return y;
 }
 
-/// any_frame(n).tangent
+/// Computes frame_of_normal(n).tangent.
 EightVectors any_tangent(const EightVectors& n) {
     const EightFloats sign = n.z >= 0 ? eight_of(1) : eight_of(-1), a = -1 / (sign + n.z);
     return {1 + sign * n.x * n.x * a, sign * n.x * n.y * a, -sign * n.x};
 }
 
-/// edge_tangent
+/// Computes edge_tangent.
 EightVectors edge_tangents(const EightVectors& edge, const EightVectors& normal) {
     const EightVectors flat = edge - dot(normal, edge) * normal;
     const EightFloats squared = dot(flat, flat);
-    return chosen(squared > k_least_flat * dot(edge, edge), (1 / square_root(squared)) * flat, any_tangent(normal));
+    return chosen(squared > k_min_flatness * dot(edge, edge), (1 / square_root(squared)) * flat, any_tangent(normal));
 }
 
-/// principal_turn. The half of the angle of (x, y) is that of (length + x, y), or of (y, length - x), whichever does
-/// not cancel.
+/// Computes principal_rotation. Half the angle of (x, y) is the angle of (length + x, y) and of (y, length - x); the
+/// one without cancellation is used.
 void principal_turns(EightFloats f11, EightFloats f12, EightFloats f22, EightCurvatures& out, EightFloats& cosine,
                      EightFloats& sine) {
     const EightFloats difference = 0.5f * (f11 - f22), mean = 0.5f * (f11 + f22),
@@ -155,8 +155,8 @@ void principal_turns(EightFloats f11, EightFloats f12, EightFloats f22, EightCur
     sine = is_bent ? (is_right ? smaller : larger) : EightFloats{};
 }
 
-/// turned(derivative, turn)
-FourEights turned(const FourEights& d, EightFloats c, EightFloats s) {
+/// Computes turned(derivative, turn).
+FourEights in_rotated_frame(const FourEights& d, EightFloats c, EightFloats s) {
     const EightFloats cc = c * c, ss = s * s, ccc = cc * c, ccs = cc * s, css = c * ss, sss = ss * s;
     return {ccc * d.a + 3 * ccs * d.b + 3 * css * d.c + sss * d.d,
             -ccs * d.a + (ccc - 2 * css) * d.b + (2 * ccs - sss) * d.c + css * d.d,
@@ -164,25 +164,25 @@ FourEights turned(const FourEights& d, EightFloats c, EightFloats s) {
             -sss * d.a + 3 * css * d.b - 3 * ccs * d.c + ccc * d.d};
 }
 
-/// The tensor set: seven attributes of eight vertices, in the frame of an edge.
+/// Decodes the tensor set: seven attributes of eight vertices, in the frame of an edge.
 EightCurvatures decode_tensor(const EightAttributes& y, const EightVectors& edge, const EightVectors& normal) {
     EightCurvatures result;
     EightFloats cosine, sine;
     principal_turns(y[0], y[1], y[2], result, cosine, sine);
     const EightVectors tangent = edge_tangents(edge, normal);
     result.e1 = cosine * tangent + sine * cross(normal, tangent);
-    result.derivative = turned({y[3], y[4], y[5], y[6]}, cosine, sine);
+    result.derivative = in_rotated_frame({y[3], y[4], y[5], y[6]}, cosine, sine);
     return result;
 }
 
-/// e1 of eight vertices from its two kept coordinates (see AttributeFrames): the third makes it orthogonal to the
-/// normal.
+/// Computes e1 of eight vertices from its two kept coordinates (see AttributeFrames): the third one makes it
+/// orthogonal to the normal.
 EightVectors completed_direction(EightFloats first, EightFloats second, const EightVectors& n,
                                  const EightVectors& reference) {
     const EightFloats rx = magnitude(reference.x), ry = magnitude(reference.y), rz = magnitude(reference.z), zero{};
     const EightBits drop_x = (rx >= ry) & (rx >= rz), drop_y = ~drop_x & (ry >= rz), keep_z = drop_x | drop_y;
     EightVectors e{drop_x ? zero : first, drop_x ? first : (drop_y ? zero : second), keep_z ? second : zero};
-    const EightFloats dropped = drop_x ? n.x : (drop_y ? n.y : n.z), least = eight_of(k_least_divisor);
+    const EightFloats dropped = drop_x ? n.x : (drop_y ? n.y : n.z), least = eight_of(k_min_divisor);
     const EightFloats size = magnitude(dropped) > least ? magnitude(dropped) : least;
     const EightFloats missing = -dot(n, e) / (dropped >= 0 ? size : -size);
     e = {drop_x ? missing : e.x, drop_y ? missing : e.y, keep_z ? e.z : missing};
@@ -195,7 +195,7 @@ EightVectors vectors_from_halves(const Half* x, std::size_t stride) {
     return {eight_from_halves(x), eight_from_halves(x + stride), eight_from_halves(x + 2 * stride)};
 }
 
-/// The thesis' eight attributes of eight vertices, given normals in the world.
+/// Decodes the principal set: the thesis' eight attributes of eight vertices, given normals in world space.
 EightCurvatures decode_principal(const EightAttributes& y, const EightVectors& reference, const EightVectors& normal,
                                  const Eigen::Matrix3f& rotation) {
     const EightVectors e1 = completed_direction(y[2], y[3], turned_by(rotation.transpose(), normal), reference);

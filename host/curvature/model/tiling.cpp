@@ -12,7 +12,7 @@ namespace exemplar {
 
 namespace {
 
-constexpr std::size_t k_lanes = BasisTiles::k_lanes;
+constexpr std::size_t k_tile_lanes = BasisTiles::k_lanes;
 
 /// Spreads the lower ten bits of `value` to every third bit.
 std::uint32_t spread_bits(std::uint32_t value) {
@@ -33,22 +33,22 @@ void lay_out_vertices(const AttributeFrames& frames, std::span<const Vec3> rest,
     });
     for (std::size_t i = 0; i < order.size(); ++i) {
         const std::uint32_t segment = segment_of(order[i]);
-        if (tiles.vertex.size() % k_lanes == 0) tiles.segment.push_back(segment);
+        if (tiles.vertex.size() % k_tile_lanes == 0) tiles.segment.push_back(segment);
         tiles.vertex.push_back(order[i]);
         const bool ends = i + 1 == order.size() || segment_of(order[i + 1]) != segment;
-        while (ends && tiles.vertex.size() % k_lanes != 0) tiles.vertex.push_back(order[i]);
+        while (ends && tiles.vertex.size() % k_tile_lanes != 0) tiles.vertex.push_back(order[i]);
     }
 }
 
-/// The part of a component that lies in one tile.
+/// The part of a component's basis that lies in one tile.
 struct TileEntry {
     std::uint32_t tile;
     std::uint16_t component;
     float variance;  ///< summed over the lanes
-    std::array<float, k_lanes> basis;
+    std::array<float, k_tile_lanes> basis;
 };
 
-/// All entries of an attribute that are not zero, by tile and component.
+/// Returns all nonzero entries of an attribute, sorted by tile.
 std::vector<TileEntry> entries_of(const BasisTiles& tiles, std::size_t attribute, const std::vector<VertexBasis>& bases,
                                   const Eigen::MatrixXf& scales) {
     std::vector<TileEntry> entries;
@@ -64,10 +64,10 @@ std::vector<TileEntry> entries_of(const BasisTiles& tiles, std::size_t attribute
             for (Eigen::Index c = 0; c < basis.basis.cols(); ++c) {
                 TileEntry entry{
                     t, static_cast<std::uint16_t>(basis.first_component + static_cast<std::uint32_t>(c)), 0, {}};
-                for (std::size_t lane = 0; lane < k_lanes; ++lane) {
-                    const Eigen::Index row = row_of_vertex[tiles.vertex[t * k_lanes + lane]];
+                for (std::size_t lane = 0; lane < k_tile_lanes; ++lane) {
+                    const Eigen::Index row = row_of_vertex[tiles.vertex[t * k_tile_lanes + lane]];
                     entry.basis[lane] = row < 0 ? 0.0f : basis.basis(row, c);
-                    const float scaled = entry.basis[lane] / scale_of(tiles.vertex[t * k_lanes + lane]);
+                    const float scaled = entry.basis[lane] / scale_of(tiles.vertex[t * k_tile_lanes + lane]);
                     entry.variance += scaled * scaled;
                 }
                 if (entry.variance > 0) entries.push_back(entry);
@@ -98,8 +98,8 @@ void drop_weakest(std::vector<TileEntry>& entries, double share) {
         entries.end());
 }
 
-/// What halves are multiplied with so that the largest mean of an attribute is 1024, which leaves the small ones their
-/// precision.
+/// Returns the factor of half-precision means for which the largest one is stored as 1024, so that small ones keep
+/// their precision.
 float half_scale(const Eigen::Ref<const Eigen::RowVectorXf>& mean) {
     const float largest = mean.size() ? mean.cwiseAbs().maxCoeff() : 0.0f;
     return largest > 0 ? largest / 1024.0f : 1.0f;
@@ -159,16 +159,16 @@ BasisTiles make_tiles(const AttributeFrames& frames, std::span<const Vec3> rest,
             for (; next[a] < entries[a].size() && entries[a][next[a]].tile == t; ++next[a])
                 append_entry(entries[a][next[a]], tiles);
             tiles.entry_begin.push_back(static_cast<std::uint32_t>(tiles.entry.size()));
-            for (std::size_t lane = 0; lane < k_lanes; ++lane)
-                tiles.mean.push_back(
-                    to_half(means(static_cast<Eigen::Index>(a), tiles.vertex[t * k_lanes + lane]) / tiles.scale[a]));
+            for (std::size_t lane = 0; lane < k_tile_lanes; ++lane)
+                tiles.mean.push_back(to_half(
+                    means(static_cast<Eigen::Index>(a), tiles.vertex[t * k_tile_lanes + lane]) / tiles.scale[a]));
         }
     if (frames.set == AttributeSet::tensor)
         for (const std::uint32_t v : tiles.vertex) tiles.neighbor.push_back(frames.neighbor[v]);
     for (std::uint32_t t = 0; frames.set == AttributeSet::principal && t < tiles.tile_count(); ++t)
         for (Eigen::Index i = 0; i < 3; ++i)
-            for (std::size_t lane = 0; lane < k_lanes; ++lane)
-                tiles.reference.push_back(to_half(frames.reference_normal[tiles.vertex[t * k_lanes + lane]][i]));
+            for (std::size_t lane = 0; lane < k_tile_lanes; ++lane)
+                tiles.reference.push_back(to_half(frames.reference_normal[tiles.vertex[t * k_tile_lanes + lane]][i]));
     return tiles;
 }
 

@@ -12,8 +12,8 @@ constexpr std::array<std::string_view, 8> k_principal_names{"k1",   "k2",   "e1 
                                                             "C111", "C112", "C122",     "C222"};
 constexpr std::array<std::string_view, 7> k_tensor_names{"II11", "II12", "II22", "C111", "C112", "C122", "C222"};
 
-/// The two coordinates of e1 that are kept: all but the one that the normal is longest along, which follows from e1
-/// being orthogonal to the normal and would be the least certain to be left out.
+/// The two coordinates of e1 that are kept. The third, where |normal| has its largest coordinate, follows from e1
+/// being orthogonal to the normal; dropping that one makes the division by the normal's coordinate most stable.
 struct KeptAxes {
     int first, second, dropped;
 };
@@ -23,8 +23,8 @@ KeptAxes kept_axes(const Vec3& normal) {
     return dropped == 0 ? KeptAxes{1, 2, 0} : dropped == 1 ? KeptAxes{0, 2, 1} : KeptAxes{0, 1, 2};
 }
 
-/// The turn of the principal frame against the tangent frame with first axis `tangent`.
-Turn turn_between(const Vec3& tangent, const Vec3& normal, const Vec3& e1) {
+/// Returns the rotation from the tangent frame with first axis `tangent` to the principal frame.
+TangentRotation turn_between(const Vec3& tangent, const Vec3& normal, const Vec3& e1) {
     return {tangent.dot(e1), normal.cross(tangent).dot(e1)};
 }
 
@@ -45,7 +45,8 @@ bool is_derivative(AttributeSet set, std::size_t attribute) {
 Vec3 edge_tangent(const Vec3& edge, const Vec3& normal) {
     const Vec3 flat = edge - normal * normal.dot(edge);
     const float squared = flat.squaredNorm();
-    return squared > k_least_flat * edge.squaredNorm() ? Vec3(flat / std::sqrt(squared)) : any_frame(normal).tangent;
+    return squared > k_min_flatness * edge.squaredNorm() ? Vec3(flat / std::sqrt(squared))
+                                                         : frame_of_normal(normal).tangent;
 }
 
 void AttributeFrames::encode(const VertexCurvature& curvature, const PosedSurface& surface,
@@ -66,9 +67,9 @@ void AttributeFrames::encode(const VertexCurvature& curvature, const PosedSurfac
         }
         const Vec3& normal = surface.normals[v];
         const Vec3 tangent = edge_tangent(surface.vertices[neighbor[v]] - surface.vertices[v], normal);
-        const Turn back = turn_between(tangent, normal, curvature.e1[v]).inverse();
-        const Form form = turned(Form{curvature.k1[v], 0.0f, curvature.k2[v]}, back);
-        const FormDerivative derivative = turned(curvature.derivative[v], back);
+        const TangentRotation back = turn_between(tangent, normal, curvature.e1[v]).inverse();
+        const Form form = in_rotated_frame(Form{curvature.k1[v], 0.0f, curvature.k2[v]}, back);
+        const FormDerivative derivative = in_rotated_frame(curvature.derivative[v], back);
         for (std::size_t k = 0; k < 3; ++k) out(k, v) = form[k];
         for (std::size_t k = 0; k < 4; ++k) out(3 + k, v) = derivative[k];
     }
@@ -92,9 +93,10 @@ void AttributeFrames::decode(std::span<const float> attributes, const PosedSurfa
         } else {
             const Vec3& normal = surface.normals[v];
             const Vec3 tangent = edge_tangent(surface.vertices[neighbor[v]] - surface.vertices[v], normal);
-            const Turn turn = principal_turn({in(0, v), in(1, v), in(2, v)}, curvature.k1[v], curvature.k2[v]);
+            const TangentRotation turn =
+                principal_rotation({in(0, v), in(1, v), in(2, v)}, curvature.k1[v], curvature.k2[v]);
             curvature.e1[v] = turn.cosine * tangent + turn.sine * normal.cross(tangent);
-            curvature.derivative[v] = turned(FormDerivative{in(3, v), in(4, v), in(5, v), in(6, v)}, turn);
+            curvature.derivative[v] = in_rotated_frame(FormDerivative{in(3, v), in(4, v), in(5, v), in(6, v)}, turn);
         }
         curvature.e2[v] = surface.normals[v].cross(curvature.e1[v]);
     }
@@ -108,11 +110,11 @@ Vec3 AttributeFrames::completed_direction(float first, float second, std::size_t
     e1[axes.first] = first;
     e1[axes.second] = second;
     const float along = normal[axes.dropped];
-    const float divisor = along >= 0 ? std::max(along, k_least_divisor) : std::min(along, -k_least_divisor);
+    const float divisor = along >= 0 ? std::max(along, k_min_divisor) : std::min(along, -k_min_divisor);
     e1[axes.dropped] = -(normal[axes.first] * first + normal[axes.second] * second) / divisor;
     e1 -= normal * normal.dot(e1);
     const float length = e1.norm();
-    return rotation * (length > 1e-6f ? Vec3(e1 / length) : any_frame(normal).tangent);
+    return rotation * (length > 1e-6f ? Vec3(e1 / length) : frame_of_normal(normal).tangent);
 }
 
 }  // namespace exemplar

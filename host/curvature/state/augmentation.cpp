@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Quaternionf;
 
-/// How often a blend shape takes any weight in [0, 1] in place of one that it has in a frame.
+/// Probability that a blend shape takes a random weight in [0, 1] instead of its weight in a frame.
 constexpr double k_free_weight = 0.08;
 
 Vec3 random_direction(Random& random) {
@@ -22,7 +22,7 @@ Vec3 random_direction(Random& random) {
     return v.normalized();
 }
 
-/// The rotation by `factor` times the angle of the short way from `from` to `to`, from there.
+/// Extrapolates from `from` towards `to`, by `factor` times the shortest rotation between them.
 Quaternionf stretched(const Quaternionf& from, const Quaternionf& to, float factor) {
     Eigen::AngleAxisf turn(from.conjugate() * to);
     if (turn.angle() > std::numbers::pi_v<float>) turn.angle() -= 2 * std::numbers::pi_v<float>;
@@ -44,10 +44,12 @@ Clip augmented_poses(const Animation& animation, std::span<const FrameRef> frame
     for (std::size_t i = 0; i < count; ++i) {
         Pose pose = any_pose();
         for (std::size_t node = 0; node < pose.nodes.size(); ++node) {
-            const auto factor = static_cast<float>(random.uniform(spread.least_stretch, spread.most_stretch));
-            const Eigen::AngleAxisf stray(static_cast<float>(spread.stray * random.normal()), random_direction(random));
+            const auto factor = static_cast<float>(random.uniform(spread.min_stretch, spread.max_stretch));
+            const Eigen::AngleAxisf perturbation(static_cast<float>(spread.perturbation * random.normal()),
+                                                 random_direction(random));
             pose.nodes[node].rotation =
-                (stretched(middle.nodes[node].rotation, any_pose().nodes[node].rotation, factor) * Quaternionf(stray))
+                (stretched(middle.nodes[node].rotation, any_pose().nodes[node].rotation, factor) *
+                 Quaternionf(perturbation))
                     .normalized();
         }
         for (std::size_t target = 0; target < pose.weights.size(); ++target)

@@ -9,20 +9,20 @@
 
 namespace exemplar {
 
-/// How far augmented poses go beyond the frames they are made of.
+/// How far augmented poses deviate from the frames they are made from.
 struct PoseSpread {
-    double least_stretch = 0.6, most_stretch = 1.4;  ///< how much of a joint's turn in a frame it makes
-    double stray = 0.105;                            ///< deviation of its turn about a random axis, in radians
+    double min_stretch = 0.6, max_stretch = 1.4;  ///< range of the factor on a joint's rotation angle
+    double perturbation = 0.105;                  ///< standard deviation of an added random rotation, in radians
 };
-/// For maps that are linear in the shape of the surface: they gain from any bend, where polynomials of angles that
-/// follow far ones lose the near.
+/// For maps that are linear in the shape of the surface, which gain from any bend. Polynomials of angles would fit
+/// these far poses at the expense of near ones.
 constexpr PoseSpread k_wide_spread{0.6, 1.6, 0.3};
 
-/// Poses of a rig that no clip has, but that are made of what the given frames have: each joint turns as it does in
-/// some frame of its own, somewhat more or less and a little astray; each blend shape has the weight of some frame, now
-/// and then any. In a clip joints move together, and what one of them does to the surface cannot be told from what
-/// another does; here they move apart, and joints that a clip holds still move, too. The rig poses the surface, so the
-/// curvature of such poses can be measured like any other.
+/// Returns a clip of `count` random poses of a rig that recombine the given frames. Each joint takes its rotation
+/// from a frame of its own, scaled and perturbed as `spread` says; each blend shape takes the weight of a random
+/// frame or, rarely, any weight in [0, 1]. In clips joints move together, so their effects on the surface cannot be
+/// told apart; here they move independently, including joints that a clip holds still. The curvature of such poses
+/// is measured like that of any other.
 Clip augmented_poses(const Animation& animation, std::span<const FrameRef> frames, std::size_t count,
                      std::uint64_t seed, const PoseSpread& spread = {});
 

@@ -72,7 +72,7 @@ void LocalShapeReader::read_block(const Block& block, std::size_t numbers, std::
     std::memcpy(&low, &bias_[bias], sizeof(low));
     std::memcpy(&high, &bias_[bias + 8], sizeof(high));
     const Half* map = map_.data() + block.map;
-    for (std::size_t i = 0; i < numbers; i += 2, map += 2 * k_lanes) {  // four sums, as each waits for its last product
+    for (std::size_t i = 0; i < numbers; i += 2, map += 2 * k_lanes) {  // four sums, which do not wait for each other
         low += eight_from_halves(map) * shape_[i];
         high += eight_from_halves(map + 8) * shape_[i];
         low_odd += eight_from_halves(map + 16) * shape_[i + 1];

@@ -9,8 +9,8 @@
 
 namespace exemplar {
 
-/// StateReader::read_surface of a state of local shape as a frame runs it: the maps in halves, sixteen inputs at a
-/// time. Sums are rounded in another order. Keeps its work space: one thread at a time may use it.
+/// Fast StateReader::read_surface for a state of local shape: half-precision maps, sixteen inputs at a time. Sums
+/// are in another order, so rounding differs. Keeps its work space, so only one thread at a time may use it.
 class LocalShapeReader {
   public:
     explicit LocalShapeReader(const StateReader& state);
@@ -21,10 +21,10 @@ class LocalShapeReader {
     static constexpr std::size_t k_lanes = 16;
     struct Block {
         std::uint32_t control, first_input, inputs;  ///< at most k_lanes
-        std::size_t map;                             ///< its first half: k_lanes for each number of the shape
+        std::size_t map;                             ///< start in map_: k_lanes values per number of the shape
     };
     void append_blocks(std::uint32_t control);
-    /// StateReader::read_local into shape_.
+    /// Does what StateReader::read_local does, into shape_.
     void read_shape(std::uint32_t control, std::span<const Vec3> vertices, std::span<const Vec3> normals,
                     const Eigen::Matrix3f& rotation);
     void read_block(const Block& block, std::size_t numbers, std::span<float> x) const;
@@ -32,7 +32,7 @@ class LocalShapeReader {
     const StateReader& state_;
     std::vector<Block> blocks_;
     std::vector<Half> map_;
-    std::vector<float> bias_;  ///< k_lanes for each block: what the mean shape takes away
+    std::vector<float> bias_;  ///< k_lanes per block: minus the map of the mean shape
     std::vector<float> shape_;
 };
 

@@ -16,7 +16,7 @@ namespace exemplar {
 namespace {
 
 constexpr float k_far = std::numeric_limits<float>::infinity();
-/// A part that makes at most so many patches is nearly flat: its length is along its principal axis. Distances over
+/// A piece of at most this many patches is taken as nearly flat and is cut across its principal axis. Distances over
 /// edges would cut a square along a diagonal.
 constexpr std::size_t k_flat = 8;
 
@@ -50,7 +50,7 @@ class PatchCutter {
         float length;
     };
     using Vertices = std::span<std::uint32_t>;
-    using Place = std::pair<float, std::uint32_t>;  ///< of a vertex along the length of its piece
+    using Place = std::pair<float, std::uint32_t>;  ///< position along the length of the piece, vertex
 
     std::size_t patches_of(std::size_t vertices) const { return (vertices + most_ - 1) / most_; }
 
@@ -68,7 +68,8 @@ class PatchCutter {
         cut(part.subspan(middle));
     }
 
-    /// Between two pieces if that takes no more patches, near the middle; otherwise so that the first half is full.
+    /// Returns the cut between two pieces that is nearest to the middle and takes no more patches than necessary, or
+    /// a cut that fills all patches of the first half if there is none.
     std::size_t place_of_cut(std::size_t count, const std::vector<std::size_t>& piece_ends) const {
         const std::size_t needed = patches_of(count), full = needed / 2 * most_;
         const auto from_middle = [&](std::size_t at) { return at > count / 2 ? at - count / 2 : count / 2 - at; };
@@ -78,7 +79,7 @@ class PatchCutter {
         return best > 0 ? best : full;
     }
 
-    /// Orders a part piece by piece, each along its length. Returns where pieces end, but for the last.
+    /// Orders a part piece by piece, each along its length. Returns where the pieces end, except the last.
     std::vector<std::size_t> lay_out(Vertices part) {
         std::vector<std::size_t> ends;
         for (const std::uint32_t v : part) distance_[v] = k_far;
@@ -94,7 +95,7 @@ class PatchCutter {
         return ends;
     }
 
-    /// The piece of the part that a vertex is in, from one end to the other.
+    /// Returns the connected piece of the part that contains a vertex, ordered from one end to the other.
     std::vector<std::uint32_t> along_length(std::uint32_t seed) {
         std::vector<std::uint32_t> piece = measure(seed);
         std::vector<Place> places = piece.size() <= k_flat * most_ ? along_axis(piece) : over_edges(piece);
@@ -115,7 +116,7 @@ class PatchCutter {
         return places;
     }
 
-    /// By how much farther a vertex is from one end than from the other. `piece` is as it was measured.
+    /// Returns the distance to one end minus the distance to the other. `piece` is in the order measure() returns.
     std::vector<Place> over_edges(const std::vector<std::uint32_t>& piece) {
         std::vector<Place> places;
         const std::uint32_t first = piece.back();
@@ -130,7 +131,7 @@ class PatchCutter {
         return places;
     }
 
-    /// Distances from a vertex over the edges of its part. Returns what is reached, the nearest first.
+    /// Computes distances from a vertex over the edges of its part. Returns the reached vertices, nearest first.
     std::vector<std::uint32_t> measure(std::uint32_t from) {
         std::vector<std::uint32_t> reached;
         std::priority_queue<Place, std::vector<Place>, std::greater<>> queue;
@@ -153,7 +154,7 @@ class PatchCutter {
     std::size_t most_;
     std::vector<std::vector<Neighbor>> neighbors_;
     const std::vector<Vec3>& vertices_;
-    std::vector<std::uint32_t> part_;  // that a vertex is in
+    std::vector<std::uint32_t> part_;  // of each vertex
     std::vector<float> distance_;
     std::vector<std::uint32_t> patch_;
     std::uint32_t parts_ = 0, patches_ = 0;

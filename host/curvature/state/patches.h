@@ -8,10 +8,10 @@
 
 namespace exemplar {
 
-/// Cuts a surface into the fewest patches of at most `vertices` vertices each, compact and nearly all of them full: in
-/// halves along its length, as it is measured over edges, and the halves in halves. Patches that follow each other
-/// mostly lie near each other. A patch has vertices of several pieces of the surface only where it would not be full
-/// otherwise. 0 makes the whole surface one patch. Returns the patch of each vertex, numbered from 0.
+/// Cuts a surface into the minimum number of patches of at most `vertices` vertices each, by recursive halving across
+/// its longest extent (measured over edges, except in small parts). Patches are compact, and nearly all are full.
+/// Patches with consecutive numbers mostly lie near each other. A patch spans several connected components only where
+/// it would not be full otherwise. 0 makes the whole surface one patch. Returns the patch of each vertex, from 0.
 std::vector<std::uint32_t> surface_patches(const TriangleMesh& mesh, std::size_t vertices);
 
 }  // namespace exemplar

@@ -11,6 +11,7 @@
 #include "host/core/half.h"
 #include "host/core/parallel.h"
 #include "host/core/progress.h"
+#include "host/core/statistics.h"
 #include "host/core/text.h"
 #include "host/lines/extraction/lines.h"
 #include "host/mesh/topology.h"
@@ -43,16 +44,15 @@ Vec3 unit_or(const Vec3& sum, const Vec3& fallback) {
     return length > 1e-6f ? Vec3(sum / length) : fallback;
 }
 
-/// As a model file keeps it, so that training and use agree about the tangent that follows from it. No zero is
-/// negative.
+/// Rounds as a model file does, so that training and use derive the same tangent from it. No zero is negative.
 Vec3 as_halves(const Vec3& v) {
     return v.unaryExpr([](float value) { return from_half(to_half(value)); });
 }
 
-/// Sums over poses, per vertex, that the frames of attributes are made from.
+/// Per-vertex sums over poses from which the frames of attributes are computed.
 struct FrameSums {
     std::vector<Vec3> normal;
-    std::vector<Eigen::Matrix3f> direction;  ///< of e1 e1^T, which knows no sign
+    std::vector<Eigen::Matrix3f> direction;  ///< of e1 e1^T, which does not depend on the sign
 };
 
 AttributeFrames make_principal_frames(const Segments& segments, const FrameSums& sums) {
@@ -66,17 +66,17 @@ AttributeFrames make_principal_frames(const Segments& segments, const FrameSums&
     return frames;
 }
 
-FrameSums sum_frames(const std::vector<SurfaceMoment>& moments, const Segments& segments) {
+FrameSums sum_frames(const std::vector<SurfaceSnapshot>& snapshots, const Segments& segments) {
     const std::size_t count = segments.segment_of_vertex.size();
     FrameSums sums{std::vector<Vec3>(count, Vec3::Zero()),
                    std::vector<Eigen::Matrix3f>(count, Eigen::Matrix3f::Zero())};
     parallel_for(
         count,
         [&](std::size_t v) {
-            for (const SurfaceMoment& moment : moments) {
-                const Eigen::Matrix3f to_segment = moment.rotations[segments.segment_of_vertex[v]].transpose();
-                const Vec3 e1 = to_segment * moment.curvature.e1[v];
-                sums.normal[v] += to_segment * moment.normals[v];
+            for (const SurfaceSnapshot& snapshot : snapshots) {
+                const Eigen::Matrix3f to_segment = snapshot.rotations[segments.segment_of_vertex[v]].transpose();
+                const Vec3 e1 = to_segment * snapshot.curvature.e1[v];
+                sums.normal[v] += to_segment * snapshot.normals[v];
                 sums.direction[v] += e1 * e1.transpose();
             }
         },
@@ -84,21 +84,22 @@ FrameSums sum_frames(const std::vector<SurfaceMoment>& moments, const Segments& 
     return sums;
 }
 
-/// For each vertex the neighbor whose edge stays flattest in the tangent plane: the largest least share of its length
-/// there, over all moments. An edge that stands up, as in a fold, has a direction that means nothing. The vertex itself
-/// if it has no neighbors.
-std::vector<std::uint32_t> steadiest_neighbors(const TriangleMesh& rest, const std::vector<SurfaceMoment>& moments) {
+/// Returns for each vertex the neighbor whose edge stays closest to the tangent plane: the minimum over all frames
+/// of the tangential share of its squared length is largest. An edge nearly parallel to the normal, as in a fold,
+/// has no reliable tangent direction. Returns the vertex itself if it has no neighbors.
+std::vector<std::uint32_t> steadiest_neighbors(const TriangleMesh& rest,
+                                               const std::vector<SurfaceSnapshot>& snapshots) {
     const Topology topology = build_topology(rest);
     std::vector<float> flatness(topology.edges.size() * 2, 1.0f);  // from either end
     parallel_for(
         topology.edges.size(),
         [&](std::size_t e) {
             const auto [a, b] = topology.edges[e].vertex;
-            for (const SurfaceMoment& moment : moments) {
-                const Vec3 edge = moment.vertices[b] - moment.vertices[a];
+            for (const SurfaceSnapshot& snapshot : snapshots) {
+                const Vec3 edge = snapshot.vertices[b] - snapshot.vertices[a];
                 const float squared = std::max(edge.squaredNorm(), std::numeric_limits<float>::min());
                 const auto flat = [&](std::uint32_t v) {
-                    const float upright = edge.dot(moment.normals[v]);
+                    const float upright = edge.dot(snapshot.normals[v]);
                     return 1 - upright * upright / squared;
                 };
                 flatness[2 * e] = std::min(flatness[2 * e], flat(a));
@@ -138,7 +139,7 @@ std::vector<FrameRef> select_frames(const Animation& animation, const FrameSelec
     return frames;
 }
 
-MomentReader::MomentReader(const Animation& animation, const Segments& segments, const CurvatureOptions& truth)
+SnapshotReader::SnapshotReader(const Animation& animation, const Segments& segments, const CurvatureOptions& truth)
     : animation_(&animation),
       segments_(&segments),
       truth_(truth),
@@ -146,17 +147,17 @@ MomentReader::MomentReader(const Animation& animation, const Segments& segments,
     if (truth_.smoothing_unit <= 0) truth_.smoothing_unit = estimator_.median_edge_length(animation.rest.vertices);
 }
 
-SurfaceMoment MomentReader::read(FrameRef frame) {
-    SurfaceMoment moment;
+SurfaceSnapshot SnapshotReader::read(FrameRef frame) {
+    SurfaceSnapshot snapshot;
     const Clip& clip = animation_->clips[frame.clip];
-    moment.vertices = frame_vertices(*animation_, clip, frame.frame);
+    snapshot.vertices = frame_vertices(*animation_, clip, frame.frame);
     if (segments_->influence_begin.empty())
-        segments_->rotations_of_sequence(moment.vertices, moment.rotations);
+        segments_->rotations_of_sequence(snapshot.vertices, snapshot.rotations);
     else
-        segments_->rotations_of_rig(bone_transforms(animation_->rig, clip.poses[frame.frame]), moment.rotations);
-    moment.curvature = estimator_.estimate(moment.vertices, truth_);
-    moment.normals = estimator_.normals();
-    return moment;
+        segments_->rotations_of_rig(bone_transforms(animation_->rig, clip.poses[frame.frame]), snapshot.rotations);
+    snapshot.curvature = estimator_.estimate(snapshot.vertices, truth_);
+    snapshot.normals = estimator_.normals();
+    return snapshot;
 }
 
 TriangleMesh layout_shape(const Animation& animation, FrameRef frame) {
@@ -197,41 +198,39 @@ StateReader make_state(const Animation& animation, std::span<const FrameRef> fra
     return make_rig_state(animation, poses);
 }
 
-void read_state(const StateReader& reader, const Animation& animation, FrameRef frame, const SurfaceMoment& moment,
+void read_state(const StateReader& reader, const Animation& animation, FrameRef frame, const SurfaceSnapshot& snapshot,
                 std::span<float> x) {
     if (animation.kind == AnimationKind::sequence)
-        reader.read_surface(moment.vertices, moment.normals, moment.rotations, x);
+        reader.read_surface(snapshot.vertices, snapshot.normals, snapshot.rotations, x);
     else
         reader.read_pose(animation.clips[frame.clip].poses[frame.frame], x);
 }
 
-std::vector<SurfaceMoment> read_moments(const Animation& animation, const Segments& segments,
-                                        std::span<const FrameRef> frames, const CurvatureOptions& truth) {
-    std::vector<SurfaceMoment> moments(frames.size());
+std::vector<SurfaceSnapshot> read_snapshots(const Animation& animation, const Segments& segments,
+                                            std::span<const FrameRef> frames, const CurvatureOptions& truth) {
+    std::vector<SurfaceSnapshot> snapshots(frames.size());
     Progress progress("measuring curvature", frames.size());
     parallel_ranges(frames.size(), 8, [&](std::size_t begin, std::size_t end) {
-        MomentReader reader(animation, segments, truth);
+        SnapshotReader reader(animation, segments, truth);
         for (std::size_t i = begin; i < end; ++i) {
-            moments[i] = reader.read(frames[i]);
+            snapshots[i] = reader.read(frames[i]);
             progress.advance();
         }
     });
-    return moments;
+    return snapshots;
 }
 
 AttributeFrames make_attribute_frames(AttributeSet set, const TriangleMesh& rest, const Segments& segments,
-                                      const std::vector<SurfaceMoment>& moments) {
-    if (set == AttributeSet::principal) return make_principal_frames(segments, sum_frames(moments, segments));
+                                      const std::vector<SurfaceSnapshot>& snapshots) {
+    if (set == AttributeSet::principal) return make_principal_frames(segments, sum_frames(snapshots, segments));
     AttributeFrames frames;
-    frames.neighbor = steadiest_neighbors(rest, moments);
+    frames.neighbor = steadiest_neighbors(rest, snapshots);
     return frames;
 }
 
-double largest_but_outliers(const Eigen::VectorXd& values) {
+double percentile_99(const Eigen::VectorXd& values) {
     std::vector<double> sorted(values.begin(), values.end());
-    const auto place = sorted.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sorted.size() - 1));
-    std::nth_element(sorted.begin(), place, sorted.end());
-    return *place;
+    return quantile(sorted, 0.99);
 }
 
 Eigen::MatrixXf deviations(const std::vector<Eigen::MatrixXf>& attributes, const Eigen::MatrixXf& means) {
@@ -245,34 +244,34 @@ Eigen::MatrixXf deviations(const std::vector<Eigen::MatrixXf>& attributes, const
 }
 
 Eigen::MatrixXf error_scales(Eigen::MatrixXf deviations) {
-    constexpr double k_least_share = 0.0005;
+    constexpr double k_min_share = 0.0005;
     for (Eigen::Index a = 0; a < deviations.rows(); ++a) {
-        const double most = largest_but_outliers(deviations.row(a).transpose().cast<double>());
-        deviations.row(a) = deviations.row(a).cwiseMax(static_cast<float>(std::max(k_least_share * most, 1e-20)));
+        const double most = percentile_99(deviations.row(a).transpose().cast<double>());
+        deviations.row(a) = deviations.row(a).cwiseMax(static_cast<float>(std::max(k_min_share * most, 1e-20)));
     }
     return deviations;
 }
 
 TrainingSamples collect_samples(const Animation& animation, const Segments& segments, const StateReader& reader,
                                 std::span<const FrameRef> frames, AttributeSet set, const CurvatureOptions& truth) {
-    const std::vector<SurfaceMoment> moments = read_moments(animation, segments, frames, truth);
+    const std::vector<SurfaceSnapshot> snapshots = read_snapshots(animation, segments, frames, truth);
     TrainingSamples samples;
-    samples.frames = make_attribute_frames(set, animation.rest, segments, moments);
+    samples.frames = make_attribute_frames(set, animation.rest, segments, snapshots);
     const std::size_t count = animation.rest.vertex_count();
     const auto poses = static_cast<Eigen::Index>(frames.size());
     samples.attributes.assign(attribute_count(set), Eigen::MatrixXf(poses, static_cast<Eigen::Index>(count)));
     samples.states.resize(poses, static_cast<Eigen::Index>(reader.input_count));
     std::vector<float> attributes(count * attribute_count(set)), x(reader.input_count);
     for (std::size_t i = 0; i < frames.size(); ++i) {
-        const SurfaceMoment& moment = moments[i];
+        const SurfaceSnapshot& snapshot = snapshots[i];
         const auto row = static_cast<Eigen::Index>(i);
-        samples.frames.encode(moment.curvature, moment.surface(), attributes);
+        samples.frames.encode(snapshot.curvature, snapshot.surface(), attributes);
         for (std::size_t a = 0; a < samples.attributes.size(); ++a)
             samples.attributes[a].row(row) =
                 Eigen::Map<const Eigen::RowVectorXf>(attributes.data() + a * count, static_cast<Eigen::Index>(count));
-        read_state(reader, animation, frames[i], moment, x);
+        read_state(reader, animation, frames[i], snapshot, x);
         samples.states.row(row) = Eigen::Map<const Eigen::RowVectorXf>(x.data(), static_cast<Eigen::Index>(x.size()));
-        samples.feature_size += feature_size(moment.vertices, moment.curvature) / static_cast<float>(frames.size());
+        samples.feature_size += feature_size(snapshot.vertices, snapshot.curvature) / static_cast<float>(frames.size());
     }
     return samples;
 }

@@ -14,37 +14,38 @@
 
 namespace exemplar {
 
-/// One moment of an animation.
+/// One frame of a clip of an animation.
 struct FrameRef {
     std::uint32_t clip = 0, frame = 0;
 };
 
-/// What is taken of an animation.
+/// Which frames of an animation are used.
 struct FrameSelection {
-    std::vector<std::string> clips;  ///< by name; empty takes all
-    std::size_t begin = 0;           ///< frames [begin, end) of each clip, cut to its length
+    std::vector<std::string> clips;  ///< by name; empty: all
+    std::size_t begin = 0;           ///< frames [begin, end) of each clip, clamped to its length
     std::size_t end = static_cast<std::size_t>(-1);
-    std::size_t most = static_cast<std::size_t>(-1);  ///< evenly taken, if there are more
+    std::size_t most = static_cast<std::size_t>(-1);  ///< maximum number of frames; evenly spaced if there are more
 };
-/// The selected frames, in order. Throws UsageError naming the clips there are if one is not known, or if none is left.
+/// Returns the selected frames in order. Throws UsageError listing the clips if a clip is unknown or no frame is
+/// left.
 std::vector<FrameRef> select_frames(const Animation& animation, const FrameSelection& selection);
 
-/// The surface at one moment, and its measured curvature.
-struct SurfaceMoment {
+/// The surface in one frame, with its measured curvature.
+struct SurfaceSnapshot {
     std::vector<Vec3> vertices, normals;
     VertexCurvature curvature;
-    std::vector<Eigen::Matrix3f> rotations;  ///< of the segments
+    std::vector<Eigen::Matrix3f> rotations;  ///< per segment
 
     PosedSurface surface() const { return {vertices, normals, rotations}; }
 };
 
-/// Reads moments of an animation. One thread at a time may use a reader.
-class MomentReader {
+/// Reads frames of an animation and measures their curvature. Only one thread at a time may use a reader.
+class SnapshotReader {
   public:
     /// truth: how curvature is measured.
-    MomentReader(const Animation& animation, const Segments& segments, const CurvatureOptions& truth);
-    /// The surface at a frame.
-    SurfaceMoment read(FrameRef frame);
+    SnapshotReader(const Animation& animation, const Segments& segments, const CurvatureOptions& truth);
+    /// Returns the surface in a frame.
+    SurfaceSnapshot read(FrameRef frame);
 
   private:
     const Animation* animation_;
@@ -53,42 +54,44 @@ class MomentReader {
     CurvatureEstimator estimator_;
 };
 
-/// The shape that patches and tiles are laid out on: of a rig the pose at a frame, as its bind space may be no shape at
-/// all.
+/// Returns the shape that patches and tiles are laid out on. For a rig it is the pose at `frame`, since bind space
+/// need not be a meaningful shape; for a sequence it is the shape at rest.
 TriangleMesh layout_shape(const Animation& animation, FrameRef frame);
-/// The shape at the first frame, or of the pose at rest if there is none: what the scale of a surface and nearness on
-/// it are taken from, as frames may be far from the shape at rest.
+/// Returns the shape at the first frame, or in the rest pose if there are no frames. Scale and proximity are
+/// measured on it, since frames may be far from the shape at rest.
 TriangleMesh first_shape(const Animation& animation);
-/// The segments of an animation: by weights, or by motion in the given frames of a sequence.
+/// Computes the segments of an animation: of a rig by weights, of a sequence by its motion in the given frames.
 Segments segment_animation(const Animation& animation, std::span<const FrameRef> frames);
-/// The reader of its state, made from the given frames.
+/// Builds the reader of an animation's state from the given frames.
 StateReader make_state(const Animation& animation, std::span<const FrameRef> frames,
                        const SequenceStateOptions& options);
-/// x of a frame, read before as a moment.
-void read_state(const StateReader& reader, const Animation& animation, FrameRef frame, const SurfaceMoment& moment,
+/// Computes the inputs x of a frame; `moment` is the surface in that frame.
+void read_state(const StateReader& reader, const Animation& animation, FrameRef frame, const SurfaceSnapshot& snapshot,
                 std::span<float> x);
-/// Moments of an animation with their curvature, on all cores.
-std::vector<SurfaceMoment> read_moments(const Animation& animation, const Segments& segments,
-                                        std::span<const FrameRef> frames, const CurvatureOptions& truth);
-/// The frames of attributes that suit some moments with curvature.
+/// Reads frames of an animation with their measured curvature, in parallel.
+std::vector<SurfaceSnapshot> read_snapshots(const Animation& animation, const Segments& segments,
+                                            std::span<const FrameRef> frames, const CurvatureOptions& truth);
+/// Chooses the frames of attributes from measured surfaces. tensor: per vertex the edge that stays closest to the
+/// tangent plane; principal: mean normals and directions.
 AttributeFrames make_attribute_frames(AttributeSet set, const TriangleMesh& rest, const Segments& segments,
-                                      const std::vector<SurfaceMoment>& moments);
+                                      const std::vector<SurfaceSnapshot>& snapshots);
 
-/// Training poses: inputs and attributes.
+/// Training data: inputs and attributes of all poses.
 struct TrainingSamples {
     AttributeFrames frames;
     Eigen::MatrixXf states;                   ///< poses x inputs
-    std::vector<Eigen::MatrixXf> attributes;  ///< of each attribute: poses x vertices
+    std::vector<Eigen::MatrixXf> attributes;  ///< per attribute: poses x vertices
     float feature_size = 0;                   ///< mean over the poses (see lines)
 };
-/// Standard deviation of each attribute at each vertex over the poses, about `means` (attributes x vertices): of the
-/// same size.
+/// Returns the standard deviation of each attribute at each vertex over the poses, about `means`. Result and
+/// `means`: attributes x vertices.
 Eigen::MatrixXf deviations(const std::vector<Eigen::MatrixXf>& attributes, const Eigen::MatrixXf& means);
-/// What errors are counted in, so that gentle surfaces, where suggestive contours run, count as much as creases:
-/// deviations, but at least a two-thousandth of the largest of the attribute: what changes less is rounding.
+/// Returns the units in which errors are measured: the deviations, but at least 1/2000 of the attribute's largest
+/// one (without outliers), since smaller changes are rounding. In these units gentle surfaces, where suggestive
+/// contours run, count as much as creases.
 Eigen::MatrixXf error_scales(Eigen::MatrixXf deviations);
-/// The largest value, but for the hundredth that are even larger: one crumpled face should not stand for a surface.
-double largest_but_outliers(const Eigen::VectorXd& values);
+/// Returns the 99th percentile, so that one crumpled face does not set the scale of a surface.
+double percentile_99(const Eigen::VectorXd& values);
 
 TrainingSamples collect_samples(const Animation& animation, const Segments& segments, const StateReader& reader,
                                 std::span<const FrameRef> frames, AttributeSet set, const CurvatureOptions& truth);

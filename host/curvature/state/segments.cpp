@@ -6,8 +6,8 @@
 
 #include "host/core/eight.h"
 #include "host/core/parallel.h"
-#include "host/learn/mean_shift.h"
 #include "host/learn/components/pca.h"
+#include "host/learn/mean_shift.h"
 
 namespace exemplar {
 
@@ -15,12 +15,12 @@ namespace {
 
 using Eigen::Matrix3f;
 
-/// Two weights that differ by this much belong to different segments: halfway between a vertex that a bone holds alone
-/// and one that it shares evenly.
+/// Distance of weight vectors above which vertices belong to different segments: half that between a vertex of one
+/// bone and one shared evenly by two bones.
 constexpr float k_weight_bandwidth = 0.35f;
 /// For rotation matrices, root mean square over frames: about twelve degrees.
 constexpr float k_rotation_bandwidth = 0.3f;
-/// A segment's frame is read from vertices, so it must have some.
+/// Minimum vertices of a segment: its frame is computed from their positions.
 constexpr std::size_t k_smallest_patch = 40;
 constexpr std::size_t k_most_rotation_frames = 24, k_rotation_dimensions = 12;
 
@@ -36,17 +36,17 @@ TriangleEdges triangle_edges(const Segments::Triangle& triangle, std::span<const
     return {{first[0], first[1], first[2]}, {second[0], second[1], second[2]}};
 }
 
-/// How wide a triangle is: 0 if its corners are on a line. Squared.
+/// Returns the squared width of a triangle: 0 if its corners are on a line.
 float squared_width(const TriangleEdges& edges) {
     const float longest = std::max(edges.first.squaredNorm(), edges.second.squaredNorm());
     return longest > 0 ? (edges.first.cross(edges.second) / longest).squaredNorm() : 0;
 }
 
-/// The identity if the corners are on a line.
+/// Returns the axes of a triangle, or the identity if its corners are on a line.
 Matrix3f triangle_frame(const Segments::Triangle& triangle, std::span<const Vec3> vertices) {
-    constexpr float k_least_width = 1e-4f;  // far more than rounding makes of a line
+    constexpr float k_min_width = 1e-4f;  // far more than rounding makes of a line
     const TriangleEdges edges = triangle_edges(triangle, vertices);
-    if (!(squared_width(edges) > k_least_width * k_least_width)) return Matrix3f::Identity();
+    if (!(squared_width(edges) > k_min_width * k_min_width)) return Matrix3f::Identity();
     Matrix3f frame;
     frame.col(0) = edges.first.normalized();
     frame.col(2) = edges.first.cross(edges.second).normalized();
@@ -54,7 +54,7 @@ Matrix3f triangle_frame(const Segments::Triangle& triangle, std::span<const Vec3
     return frame;
 }
 
-/// So many of the vertices among `candidates` as are nearest to `at`, repeated to make k_patch.
+/// Returns the `wanted` vertices among `candidates` nearest to `at`, repeated until there are k_patch.
 std::array<std::uint32_t, Segments::Triangle::k_patch> patch_around(const std::vector<std::uint32_t>& candidates,
                                                                     std::span<const Vec3> vertices, const Vec3& at,
                                                                     std::size_t wanted) {
@@ -69,8 +69,8 @@ std::array<std::uint32_t, Segments::Triangle::k_patch> patch_around(const std::v
     return patch;
 }
 
-/// Three patches far from each other and from one line; of fewer vertices where larger ones would lie on a line, as
-/// they do in a part that is small or a narrow crescent.
+/// Chooses three patches far from each other and not on a line. Patches are smaller where large ones would lie on a
+/// line, as in a part that is small or a narrow crescent.
 Segments::Triangle spread_triangle(const std::vector<std::uint32_t>& members, std::span<const Vec3> rest) {
     const auto farthest = [&](auto&& distance) {
         return *std::max_element(members.begin(), members.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -86,7 +86,7 @@ Segments::Triangle spread_triangle(const std::vector<std::uint32_t>& members, st
     constexpr float k_good_width = 0.2f;
     Segments::Triangle best;
     float best_width = -1;
-    // Of a quarter of the vertices at most: those around the ends differ then.
+    // At most a quarter of the vertices, so that the patches at the ends differ.
     for (std::size_t size = std::clamp<std::size_t>(members.size() / 4, 1, k_patch); size > 0; size /= 2) {
         const auto around = [&](const Vec3& at) { return patch_around(members, rest, at, size); };
         const Segments::Triangle triangle{{around(a), around(b), around(c)}};
@@ -100,7 +100,7 @@ Segments::Triangle spread_triangle(const std::vector<std::uint32_t>& members, st
     return best;
 }
 
-/// Rotation of the edges around each vertex from rest to a frame (Kabsch), as nine numbers a row.
+/// Computes the rotation of the edges around each vertex from rest to a frame (Kabsch), as rows of nine numbers.
 void vertex_rotations(const TriangleMesh& rest, std::span<const Vec3> frame, Eigen::Ref<Eigen::MatrixXf> out) {
     std::vector<Matrix3f> moment(rest.vertex_count(), Matrix3f::Zero());
     const auto add = [&](std::uint32_t v, std::uint32_t w) {
@@ -126,10 +126,10 @@ void vertex_rotations(const TriangleMesh& rest, std::span<const Vec3> frame, Eig
 }  // namespace
 
 Matrix3f nearest_rotation(const Matrix3f& linear) {
-    constexpr int k_most_steps = 30;
+    constexpr int k_max_steps = 30;
     if (!(linear.determinant() > 1e-12f * std::pow(linear.norm(), 3.0f))) return Matrix3f::Identity();
     Matrix3f q = linear;
-    for (int step = 0; step < k_most_steps; ++step) {
+    for (int step = 0; step < k_max_steps; ++step) {
         const Matrix3f next = 0.5f * (q + q.inverse().transpose());
         const float change = (next - q).norm();
         q = next;

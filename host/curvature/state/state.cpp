@@ -7,6 +7,7 @@
 #include "host/core/parallel.h"
 #include "host/curvature/state/patches.h"
 #include "host/learn/components/fast_ica.h"
+#include "host/learn/decompositions.h"
 #include "host/mesh/topology.h"
 
 namespace exemplar {
@@ -15,11 +16,11 @@ namespace {
 
 using Eigen::Quaternionf;
 
-/// A joint that turns less than this (radians, about a degree) does not move the surface to speak of.
-constexpr float k_least_turn = 0.02f;
-constexpr float k_least_weight = 1e-3f;
+/// A joint that turns less than this (radians, about a degree) is no control: it hardly moves the surface.
+constexpr float k_min_turn = 0.02f;
+constexpr float k_min_joint_weight = 1e-3f;
 
-/// The mean of rotations: the main axis of their quaternions as points of four dimensions.
+/// Returns the mean rotation of a node: the principal axis of its quaternions as points in four dimensions.
 Quaternionf mean_rotation(std::span<const Pose* const> poses, std::size_t node) {
     Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
     for (const Pose* pose : poses) {
@@ -42,11 +43,11 @@ void add_control(StateReader& reader, const std::string& name, std::uint32_t inp
     reader.input_count += inputs;
 }
 
-/// The nodes whose rotation can bend the surface: bones and what lies between them.
+/// Returns which nodes can bend the surface by their rotation: the nodes of bones and their ancestors.
 std::vector<bool> nodes_above_bones(const Rig& rig) {
     std::vector<bool> used(rig.nodes.size(), false);
     for (const Bone& bone : rig.bones)
-        for (std::uint32_t node = bone.node; node != k_none && !used[node]; node = rig.nodes[node].parent)
+        for (std::uint32_t node = bone.node; node != k_invalid_index && !used[node]; node = rig.nodes[node].parent)
             used[node] = true;
     return used;
 }
@@ -57,7 +58,7 @@ void add_joints(const Rig& rig, std::span<const Pose* const> poses, StateReader&
         if (!used[node]) continue;
         const Quaternionf reference = mean_rotation(poses, node);
         const bool turns = std::any_of(poses.begin(), poses.end(), [&](const Pose* pose) {
-            return 2 * vector_part(reference, pose->nodes[node].rotation).norm() > k_least_turn;
+            return 2 * vector_part(reference, pose->nodes[node].rotation).norm() > k_min_turn;
         });
         if (!turns) continue;
         add_control(reader, rig.nodes[node].name, 3);
@@ -70,7 +71,7 @@ void add_targets(const Rig& rig, std::span<const Pose* const> poses, StateReader
     for (std::uint32_t target = 0; target < rig.targets.size(); ++target) {
         const float first = poses.front()->weights[target];
         const bool changes = std::any_of(poses.begin(), poses.end(), [&](const Pose* pose) {
-            return std::abs(pose->weights[target] - first) > k_least_weight;
+            return std::abs(pose->weights[target] - first) > k_min_joint_weight;
         });
         if (!changes) continue;
         add_control(reader, rig.targets[target].name, 1);
@@ -83,7 +84,7 @@ std::vector<StateReader::Hinge> all_hinges(const TriangleMesh& mesh) {
     std::vector<StateReader::Hinge> hinges;
     for (const Edge& edge : topology.edges) {
         if (edge.is_boundary()) continue;
-        StateReader::Hinge hinge{edge.vertex[0], edge.vertex[1], k_none, k_none};
+        StateReader::Hinge hinge{edge.vertex[0], edge.vertex[1], k_invalid_index, k_invalid_index};
         for (std::size_t side = 0; side < 2; ++side) {
             const Face& face = mesh.faces[edge.face[side]];
             for (std::size_t i = 0; i < 3; ++i) {
@@ -92,12 +93,12 @@ std::vector<StateReader::Hinge> all_hinges(const TriangleMesh& mesh) {
                 if (from == hinge.b && to == hinge.a) hinge.right = third;
             }
         }
-        if (hinge.left != k_none && hinge.right != k_none) hinges.push_back(hinge);
+        if (hinge.left != k_invalid_index && hinge.right != k_invalid_index) hinges.push_back(hinge);
     }
     return hinges;
 }
 
-/// For each patch the hinges that have a vertex in it, at most so many.
+/// Returns for each patch the hinges that have a vertex in it, at most `most`, evenly spaced.
 std::vector<std::vector<StateReader::Hinge>> hinges_of_patches(const std::vector<StateReader::Hinge>& all,
                                                                const std::vector<std::uint32_t>& patch_of_vertex,
                                                                std::size_t most) {
@@ -131,11 +132,11 @@ Eigen::MatrixXf angles_of(const std::vector<StateReader::Hinge>& hinges, std::sp
 /// Makes the inputs of a control uncorrelated and of unit variance. centered: poses x inputs.
 Eigen::MatrixXf whitening_of(const Eigen::MatrixXd& centered) {
     const Eigen::MatrixXd covariance = centered.transpose() * centered / static_cast<double>(centered.rows());
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-    // A direction that hardly varied in training still has some slack: a hundredth of the largest variance.
-    const double floor = std::max(1e-2 * solver.eigenvalues().maxCoeff(), 1e-8);
-    const Eigen::VectorXd scale = solver.eigenvalues().cwiseMax(floor).cwiseSqrt().cwiseInverse();
-    return (scale.asDiagonal() * solver.eigenvectors().transpose()).cast<float>();
+    const SymmetricEigen eigen = symmetric_eigen(covariance);
+    // A direction that hardly varied in training gets a minimum variance: a hundredth of the largest.
+    const double floor = std::max(1e-2 * eigen.values.maxCoeff(), 1e-8);
+    const Eigen::VectorXd scale = eigen.values.cwiseMax(floor).cwiseSqrt().cwiseInverse();
+    return (scale.asDiagonal() * eigen.vectors.transpose()).cast<float>();
 }
 
 }  // namespace
@@ -218,14 +219,14 @@ StateReader make_sequence_state(const TriangleMesh& rest, std::span<const std::v
     reader.kind = AnimationKind::sequence;
     reader.control_of_vertex = surface_patches(rest, options.patch_vertices);
     const std::vector<std::vector<StateReader::Hinge>> hinges =
-        hinges_of_patches(all_hinges(rest), reader.control_of_vertex, options.most_hinges);
+        hinges_of_patches(all_hinges(rest), reader.control_of_vertex, options.max_hinges);
     const bool is_whole = hinges.size() == 1;
     std::vector<Ica> components(hinges.size());
     parallel_for(hinges.size(), [&](std::size_t patch) {
         if (hinges[patch].empty()) return;
         components[patch] = fit_ica(
             angles_of(hinges[patch], frames),
-            {.share = options.share, .most = is_whole ? k_unlimited : options.most_inputs, .seed = options.seed});
+            {.share = options.share, .most = is_whole ? k_unlimited : options.max_inputs, .seed = options.seed});
     });
     reader.hinge_begin.push_back(0);
     for (std::size_t patch = 0; patch < hinges.size(); ++patch) {
@@ -266,7 +267,7 @@ float PoseRange::distance(const Control& control, std::size_t index, std::span<c
     const Eigen::Map<const Eigen::VectorXf> here(x.data() + control.first_input, control.input_count);
     const auto middle = mean.segment(control.first_input, control.input_count);
     if (whitening.empty()) return (here - middle).norm() / largest[index];
-    // Many controls are small, and none of those should ask for memory.
+    // Most controls are small: fixed maximum sizes avoid allocations.
     constexpr int k_small = 32;
     if (control.input_count > k_small) return (whitening[index] * (here - middle)).norm() / largest[index];
     using Small = Eigen::Matrix<float, Eigen::Dynamic, 1, Eigen::ColMajor, k_small, 1>;

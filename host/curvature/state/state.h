@@ -12,27 +12,27 @@
 
 namespace exemplar {
 
-/// A group of inputs that belong together: a joint (three inputs), a blend shape (one), a patch of a cloth.
+/// A group of inputs that belong together: a joint (three inputs), a blend shape (one), or a patch of a surface.
 struct Control {
     std::string name;
     std::uint32_t first_input = 0, input_count = 0;
 };
 
-/// From a pose to the numbers x that curvature is predicted from.
+/// Computes the inputs x, from which curvature is predicted, of a pose.
 ///
-/// Skeleton (Sec. 5.4.1): of each joint the rotation against its mean in training, as sin(theta / 2) times the axis:
-/// the vector part of the unit quaternion. For a hinge this is the thesis' cos(theta / 2) with the angle counted, as a
-/// dihedral angle is, from pi at rest; in that form it tells the two directions of bending apart and has no gimbal
-/// lock. Blend shapes (Sec. 5.6): the weights. Mesh sequence: independent components of the dihedral angles (Sec.
-/// 5.5.1), or what a linear map makes of the normals and heights of a patch's vertices in the frame of the patch (see
-/// learn_local), which takes no angle and follows the curvature more closely.
+/// Skeleton (Sec. 5.4.1): per joint the rotation relative to its mean in training, as the vector part of its unit
+/// quaternion, sin(theta / 2) times the axis. For a hinge this is the thesis' cos(theta / 2) if the angle is
+/// measured as a dihedral angle, pi at rest; the vector part distinguishes both directions of bending and has no
+/// gimbal lock. Blend shapes (Sec. 5.6): the weights. Mesh sequence: independent components of the dihedral angles
+/// (Sec. 5.5.1). Local shape, for any animation: a linear map of the normals and heights of a patch's vertices in
+/// the frame of the patch (see learn_local). It takes no angle and follows the curvature more closely.
 struct StateReader {
-    AnimationKind kind = AnimationKind::sequence;  ///< rigs are read as sequences are if by local shape
+    AnimationKind kind = AnimationKind::sequence;  ///< sequence also for a rig with local shape
     std::vector<Control> controls;
     std::size_t input_count = 0;
 
     // skeleton
-    std::vector<std::uint32_t> nodes;  ///< of each control
+    std::vector<std::uint32_t> nodes;  ///< per control
     std::vector<Eigen::Quaternionf> reference;
 
     // mesh sequence
@@ -41,32 +41,32 @@ struct StateReader {
             right;  ///< an edge a-b and the third vertices of its faces; a-b-left runs around a face
     };
     std::vector<Hinge> hinges;
-    std::vector<std::uint32_t> hinge_begin;        ///< those of control c are [hinge_begin[c], hinge_begin[c + 1])
-    Eigen::VectorXf mean_angles;                   ///< of each hinge
-    std::vector<Eigen::MatrixXf> unmixing;         ///< of each control: inputs x hinges, or x local shape
+    std::vector<std::uint32_t> hinge_begin;        ///< control c has the hinges [hinge_begin[c], hinge_begin[c + 1])
+    Eigen::VectorXf mean_angles;                   ///< per hinge
+    std::vector<Eigen::MatrixXf> unmixing;         ///< per control: inputs x hinges, or inputs x local_size
     std::vector<std::uint32_t> control_of_vertex;  ///< in training: the patch of each vertex
 
-    // any surface by local shape; then there are no hinges, and control c is segment c
+    // local shape, for any animation: there are no hinges, and control c is segment c
     std::vector<std::uint32_t> local_begin;   ///< the vertices of control c: [local_begin[c], local_begin[c + 1])
-    std::vector<std::uint32_t> local_vertex;  ///< some of a patch and of what surrounds it
-    std::vector<Eigen::VectorXf> local_mean;  ///< of each control, in training: local shape
+    std::vector<std::uint32_t> local_vertex;  ///< a subset of each patch and its surroundings
+    std::vector<Eigen::VectorXf> local_mean;  ///< per control: mean local shape in training
     float local_unit = 1;                     ///< mesh units that positions are divided by
 
     bool is_local() const { return !local_begin.empty(); }
-    /// Length of the local shape of a control: four numbers per vertex.
+    /// Returns the length of a control's local shape: four numbers per vertex.
     std::size_t local_size(std::size_t control) const {
         return k_local_numbers * (local_begin[control + 1] - local_begin[control]);
     }
-    /// The local shape of a control, local_size numbers: of each vertex its normal in the frame of the patch,
-    /// `rotation`, and its height over the center of all along the third axis, divided by local_unit.
+    /// Computes the local shape of a control, local_size numbers: per vertex its normal in the frame of the patch,
+    /// `rotation`, and its height above the mean position along the third axis, divided by local_unit.
     void read_local(std::size_t control, std::span<const Vec3> vertices, std::span<const Vec3> normals,
                     const Eigen::Matrix3f& rotation, std::span<float> shape) const;
     static constexpr std::size_t k_local_numbers = 4;
 
-    /// x of a rig's pose. `x` has input_count numbers.
+    /// Computes the inputs of a rig's pose. `x` has input_count numbers.
     void read_pose(const Pose& pose, std::span<float> x) const;
-    /// x of a mesh sequence's vertices and their unit normals; `rotations` are those of the segments. Normals and
-    /// rotations matter to local shape only.
+    /// Computes the inputs from a surface's vertices, unit normals and segment rotations. Normals and rotations are
+    /// used for local shape only.
     void read_surface(std::span<const Vec3> vertices, std::span<const Vec3> normals,
                       std::span<const Eigen::Matrix3f> rotations, std::span<float> x) const;
 
@@ -74,47 +74,49 @@ struct StateReader {
     void read_hinges(std::span<const Vec3> vertices, std::span<float> x) const;
 };
 
-/// Signed angle that a hinge is bent by, in radians: zero where flat, positive where convex.
+/// Returns the signed bending angle of a hinge in radians: zero where flat, positive where convex.
 float bend(const StateReader::Hinge& hinge, std::span<const Vec3> vertices);
 
-/// Reader of a rig: a control per joint that turns in some of `poses` (skeleton), or per target that changes.
+/// Builds the reader of a rig: a control per joint that turns in `poses` (skeleton) or per blend shape that changes.
 StateReader make_rig_state(const Animation& animation, std::span<const Pose* const> poses);
 
 struct SequenceStateOptions {
-    std::size_t patch_vertices = 32;  ///< at most; 0 makes the whole surface one patch
-    double share = 0.95;              ///< of the variance of a patch' angles
-    std::size_t most_inputs = 16;     ///< of a patch, if there is more than one
-    std::size_t most_hinges = 3000;   ///< of a patch that are measured; evenly taken
+    std::size_t patch_vertices = 32;  ///< maximum; 0 makes the whole surface one patch
+    double share = 0.95;              ///< of the variance of a patch' angles that its inputs keep
+    std::size_t max_inputs = 16;      ///< of a patch, if there are several
+    std::size_t max_hinges = 3000;    ///< of a patch that are measured; evenly spaced if there are more
     std::uint64_t seed = 1;
 };
-/// Reader of a mesh sequence: a control per patch, whose inputs are the components of its angles in `frames`.
+/// Builds the reader of a mesh sequence: a control per patch, whose inputs are the components of its dihedral
+/// angles, learned from `frames`.
 StateReader make_sequence_state(const TriangleMesh& rest, std::span<const std::vector<Vec3>> frames,
                                 const SequenceStateOptions& options);
 
-/// How far a pose is from those a model has seen, control by control: the Mahalanobis distance over the largest that a
-/// training pose has. Up to 1 is within the training poses. Inputs read from local shape are white as they are:
+/// The range of the training poses, per control. The distance of a pose is its Mahalanobis distance divided by the
+/// largest one of a training pose; up to 1 is within training. Inputs from local shape need no whitening, since
 /// learning makes them uncorrelated and of unit variance.
 struct PoseRange {
     Eigen::VectorXf mean;                    ///< of the inputs
-    std::vector<Eigen::MatrixXf> whitening;  ///< of each control: inputs x inputs; none of local shape
-    std::vector<float> largest;              ///< of each control, over the training poses
+    std::vector<Eigen::MatrixXf> whitening;  ///< per control: inputs x inputs; none for local shape
+    std::vector<float> largest;              ///< per control, over the training poses
     struct Farthest {
         std::size_t control = 0;
         float distance = 0;
     };
-    /// The control that is farthest from training.
+    /// Returns the control that is farthest from training.
     Farthest farthest(const StateReader& reader, std::span<const float> x) const;
-    /// Pulls the inputs of controls beyond their largest distance back to it, towards the mean: polynomials that fit
-    /// within run away beyond. Returns what farthest() says of x as it was.
+    /// Scales the inputs of each control with a distance above 1 towards the mean, to distance 1, since polynomials
+    /// extrapolate badly. Returns farthest() of the unchanged x.
     Farthest bound(const StateReader& reader, std::span<float> x) const;
-    /// Makes of a state what components are predicted from: bound(), unless it is of local shape, whose map is linear
-    /// and stays right beyond training; then less the mean. Returns what bound() returns.
+    /// Prepares a state for the regression: calls bound(), except for local shape, whose linear map extrapolates
+    /// well, and subtracts the mean. Returns farthest() of the unchanged x.
     Farthest prepare(const StateReader& reader, std::span<float> x) const;
 
   private:
     float distance(const Control& control, std::size_t index, std::span<const float> x) const;
 };
-/// Of states of training (poses x inputs). Distances are from the mean of the first `real` of them, or of all.
+/// Computes the range of training states (poses x inputs). Distances are from the mean of the first `real` rows, or
+/// of all.
 PoseRange make_pose_range(const StateReader& reader, const Eigen::Ref<const Eigen::MatrixXf>& states,
                           std::size_t real = static_cast<std::size_t>(-1));
 

@@ -17,9 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t k_application = 0x45584350;  ///< tells an Exemplar catalog from other SQLite files
-constexpr std::int64_t k_format = 1;
-constexpr std::size_t k_longest_part = 200;  ///< bytes; file systems take 255, and endings follow
+constexpr std::int64_t k_application = 0x45584350;  ///< distinguishes an Exemplar catalog from other SQLite files
+constexpr std::int64_t k_catalog_format = 1;
+constexpr std::size_t k_longest_part = 200;  ///< bytes; file systems allow 255, and endings are appended
 constexpr std::size_t k_longest_name = 1000;
 
 // Times are seconds since 1970. Rows of `labels` are claims until their state is no longer 'claimed'.
@@ -80,7 +80,8 @@ void make_tables(Database& database) {
     database.transaction([&] {
         if (pragma(database, "application_id") != 0 || !is_empty(database)) return;
         database.execute(k_tables);
-        database.execute(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", k_application, k_format));
+        database.execute(
+            fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}", k_application, k_catalog_format));
     });
 }
 
@@ -88,10 +89,10 @@ void check_tables(Database& database) {
     if (pragma(database, "application_id") != k_application)
         throw DataError(fmt::format("{}: is {}, no catalog", database.name(),
                                     is_empty(database) ? "empty" : "an SQLite file of something else"));
-    if (const std::int64_t format = pragma(database, "user_version"); format != k_format)
-        throw DataError(fmt::format("{}: is a catalog of format {}, this program knows {}; {}", database.name(), format,
-                                    k_format,
-                                    format > k_format ? "get a newer Exemplar" : "add the shapes to a new one"));
+    if (const std::int64_t format = pragma(database, "user_version"); format != k_catalog_format)
+        throw DataError(fmt::format(
+            "{}: is a catalog of format {}, this program knows {}; {}", database.name(), format, k_catalog_format,
+            format > k_catalog_format ? "get a newer Exemplar" : "add the shapes to a new one"));
 }
 
 bool is_plain(char c) {
@@ -103,16 +104,16 @@ bool is_output_part(std::string_view part) {
     return !part.empty() && part.front() != '.' && part.size() <= k_longest_part && std::ranges::all_of(part, is_plain);
 }
 
-/// The first bytes of a text, no letter of which is cut in two.
+/// Returns the first bytes of a text without cutting a character in two.
 std::string cut_to(std::string text, std::size_t most) {
     if (text.size() <= most) return text;
-    const std::size_t letter = 4;  // bytes at most
+    const std::size_t letter = 4;  // maximum bytes of a character
     text.resize(most);
     while (!text.empty() && !is_utf8(text) && text.size() + letter > most) text.pop_back();
     return text;
 }
 
-/// A part of a path as an output part; empty if nothing is to be made of it.
+/// Turns a part of a path into an output part; returns an empty string if that is impossible.
 std::string output_part(std::string part) {
     if (part == "." || part == ".." || part == "/") return {};
     for (char& c : part)
@@ -121,29 +122,30 @@ std::string output_part(std::string part) {
     return cut_to(std::move(part), k_longest_part);
 }
 
-/// What the files of a shape's results end in, after its name.
+/// The endings of a shape's result files, after its name.
 constexpr std::array<std::string_view, 5> k_result_endings{".json", ".seg", ".ply", ".glb", "_labels.txt"};
 
-/// Whether a folder of that name may be where a shape has results: a.ply lies where those of a.off do.
+/// Returns whether a folder of that name could clash with a result file: a.ply lies where the results of a.off do.
 bool is_result(std::string_view part) {
     return std::ranges::any_of(k_result_endings, [&](std::string_view ending) { return part.ends_with(ending); });
 }
 
-/// A folder as an output part that is no name of a shape's results.
+/// Turns the name of a folder into an output part that is not the name of a result file.
 std::string output_folder_part(std::string part) {
     std::string safe = output_part(std::move(part));
     if (is_result(safe)) safe[safe.rfind('.')] = '_';
     return safe;
 }
 
-/// An output name that ends in `suffix`, for which its last part may be cut.
+/// Appends `suffix` to an output name, cutting its last part if need be.
 std::string with_suffix(const std::string& name, const std::string& suffix) {
     const std::size_t begin = name.rfind('/') + 1;  // 0 without a slash
     const std::size_t most = std::min(k_longest_part, k_longest_name - begin);
     return name.substr(0, begin) + cut_to(name.substr(begin), most - std::min(most, suffix.size())) + suffix;
 }
 
-/// The number after one for which `is_taken` holds, if it does for 1: in few steps, however many are taken.
+/// Returns a number n for which `is_taken` is false, but true for n - 1; assumes it is true for 1. Takes few steps
+/// however many are taken.
 std::size_t first_free(const std::function<bool(std::size_t)>& is_taken) {
     std::size_t taken = 1, free = 2;
     while (is_taken(free)) taken = std::exchange(free, 2 * free);
@@ -194,7 +196,7 @@ std::string output_name(const fs::path& path) {
         if (const std::string safe = output_folder_part(part.string()); !safe.empty()) name += safe + '/';
     std::string last = output_part(path.stem().string());
     if (last.empty()) last = "shape";
-    // A little room is left for what makes names unique.
+    // Some bytes are left for a suffix that makes the name unique.
     return name.size() + k_longest_part <= k_longest_name ? name + last : last;
 }
 
@@ -213,7 +215,7 @@ std::string Catalog::free_name(const std::string& wanted, const fs::path& path) 
     if (!is_output_name(wanted))
         throw UsageError(fmt::format("{}: no file can be called '{}' in an output folder", path.string(), wanted));
     if (is_free(wanted)) return wanted;
-    // a.off and a.obj: the second is a.obj
+    // Of a.off and a.obj the second becomes a.obj.
     constexpr std::size_t k_longest_extension = 5;
     std::string extension = output_part(path.extension().string());
     if (!extension.empty()) extension.front() = '.';

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// content_of in SQL.
+// content_of as an SQL expression.
 constexpr const char* k_content =
     "(shapes.hash || CASE WHEN shapes.category = '' THEN '' ELSE ' ' || shapes.category END)";
 
@@ -22,7 +22,7 @@ std::string dump(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// Columns `first`, ... of a row: those of a record, as for_each asks for them.
+/// Reads a record from the columns `first`, ... of a row, as for_each selects them.
 ShapeRecord record_of_row(const Statement& row, int first) {
     ShapeRecord record;
     record.content = row.text(first);
@@ -39,8 +39,9 @@ ShapeRecord record_of_row(const Statement& row, int first) {
     return record;
 }
 
-/// Whether a record is older than a file that is as the catalog knows it: then its content need not be looked at.
-bool is_outlived(const ShapeRecord& record, const CatalogShape& shape) {
+/// Returns whether a record is older than the file and the file is as the catalog knows it; then its content need
+/// not be read.
+bool is_older_than_file(const ShapeRecord& record, const CatalogShape& shape) {
     using std::chrono::file_clock, std::chrono::nanoseconds;
     const auto changed = file_clock::to_sys(file_clock::time_point(nanoseconds(shape.modified)));
     if (!(record.finished < std::chrono::duration<double>(changed.time_since_epoch()).count())) return false;
@@ -52,8 +53,8 @@ bool is_outlived(const ShapeRecord& record, const CatalogShape& shape) {
     }
 }
 
-/// The shapes that a query for those above `after` gives, in order of number. Throws DataError where it does not, as in
-/// a file that somebody has made up: to ask for those above the last one would never end.
+/// Returns the shapes of a query for those above `after`, in order of number. Throws DataError if numbers do not
+/// increase, as in a forged file: asking for those above the last one would then never end.
 std::vector<CatalogShape> shapes_above(std::int64_t after, Statement& query, const std::string& catalog) {
     std::vector<CatalogShape> shapes;
     while (query.step()) {
@@ -207,8 +208,8 @@ std::size_t CatalogRun::merge_records(const std::function<void(std::size_t)>& lo
 
 bool CatalogRun::merge(const CatalogShape& shape, const ShapeRecord& record) {
     if (record.content == content_of(shape)) return finish(shape.id, record);
-    if (is_outlived(record, shape)) return false;
-    // Elsewhere the file was found to have changed; the record counts if it is about the file as it is now.
+    if (is_older_than_file(record, shape)) return false;
+    // The process that labeled the file had found it changed; the record counts if it fits the current file.
     CatalogShape now = describe_shape(shape.path, usable_memory() / 2);
     now.name = shape.name;
     now.category = shape.category;

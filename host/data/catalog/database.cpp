@@ -17,10 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int k_patience_ms = 60'000;      ///< how long another's changes are waited for
-constexpr int k_longest_value = 64 << 20;  ///< bytes of a text: far more than any of ours
+constexpr int k_busy_timeout_ms = 60'000;  ///< how long to wait for the changes of another process
+constexpr int k_longest_value = 64 << 20;  ///< maximum bytes of a text: far more than any of ours
 
-[[noreturn]] void fail(const std::string& name, sqlite3* database, int code) {
+[[noreturn]] void throw_sqlite_error(const std::string& name, sqlite3* database, int code) {
     const int kind = code & 0xff;
     const char* const what = database ? sqlite3_errmsg(database) : sqlite3_errstr(code);
     if (kind == SQLITE_FULL) throw DataError(fmt::format("{}: the disk is full; make room and start again", name));
@@ -32,16 +32,16 @@ constexpr int k_longest_value = 64 << 20;  ///< bytes of a text: far more than a
     throw DataError(fmt::format("{}: {}", name, what));
 }
 
-/// Of several programs that open a new file at once, or one whose user was killed, one changes it, and SQLite tells the
-/// others at once that it is busy, whatever its time to wait.
+/// Switches to a write-ahead log. If several programs open a new file at once, or the last user was killed, one of
+/// them makes the change; SQLite reports busy to the others at once, whatever their timeout.
 void use_write_ahead_log(const std::string& name, sqlite3* database) {
     constexpr int k_pause_ms = 10;
     int code = SQLITE_BUSY;
-    for (int waited = 0; (code & 0xff) == SQLITE_BUSY && waited < k_patience_ms; waited += k_pause_ms) {
+    for (int waited = 0; (code & 0xff) == SQLITE_BUSY && waited < k_busy_timeout_ms; waited += k_pause_ms) {
         if (waited > 0) std::this_thread::sleep_for(std::chrono::milliseconds(k_pause_ms));
         code = sqlite3_exec(database, "PRAGMA journal_mode = WAL", nullptr, nullptr, nullptr);
     }
-    if (code != SQLITE_OK) fail(name, database, code);
+    if (code != SQLITE_OK) throw_sqlite_error(name, database, code);
 }
 
 }  // namespace
@@ -54,14 +54,15 @@ Statement::Statement(std::shared_ptr<sqlite3> database, std::string_view sql, st
 }
 
 void Statement::check(int code) const {
-    if (code != SQLITE_OK && code != SQLITE_ROW && code != SQLITE_DONE) fail(name_, database_.get(), code);
+    if (code != SQLITE_OK && code != SQLITE_ROW && code != SQLITE_DONE)
+        throw_sqlite_error(name_, database_.get(), code);
 }
 
 bool Statement::step() {
     const int code = sqlite3_step(statement_.get());
     check(code);
     if (code == SQLITE_ROW) return true;
-    reset();  // ends the read that others' changes may wait for
+    reset();  // ends the read transaction, which the changes of others may wait for
     return false;
 }
 
@@ -78,7 +79,7 @@ void Statement::bind_one(int index, std::int64_t value) {
 }
 
 void Statement::bind_one(int index, double value) {
-    check(sqlite3_bind_double(statement_.get(), index, value));  // which makes NULL of NaN
+    check(sqlite3_bind_double(statement_.get(), index, value));  // SQLite stores NaN as NULL
 }
 
 void Statement::bind_one(int index, std::string_view value) {
@@ -117,17 +118,17 @@ Database::Database(const fs::path& path, Open open) : name_(path.string()) {
     sqlite3* database = nullptr;
     const int code = sqlite3_open_v2(path.c_str(), &database, flags, nullptr);
     database_ = std::shared_ptr<sqlite3>(database, sqlite3_close_v2);
-    if (code != SQLITE_OK) fail(name_, database, code);
+    if (code != SQLITE_OK) throw_sqlite_error(name_, database, code);
     sqlite3_extended_result_codes(database, 1);
-    sqlite3_busy_timeout(database, k_patience_ms);
-    // A file from elsewhere must not run anything through its views and triggers.
+    sqlite3_busy_timeout(database, k_busy_timeout_ms);
+    // A foreign file must not run anything through its views and triggers.
     sqlite3_db_config(database, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
     sqlite3_db_config(database, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
     sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
     sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
     sqlite3_limit(database, SQLITE_LIMIT_LENGTH, k_longest_value);
     use_write_ahead_log(name_, database);
-    execute("PRAGMA synchronous = NORMAL");  // survives a killed program; after a power cut the last changes may lack
+    execute("PRAGMA synchronous = NORMAL");  // survives a killed program; a power cut may lose the last changes
     execute("PRAGMA foreign_keys = ON");
 }
 
@@ -137,7 +138,7 @@ Statement Database::prepare(std::string_view sql) {
 
 void Database::execute(const std::string& sql) {
     const int code = sqlite3_exec(database_.get(), sql.c_str(), nullptr, nullptr, nullptr);
-    if (code != SQLITE_OK) fail(name_, database_.get(), code);
+    if (code != SQLITE_OK) throw_sqlite_error(name_, database_.get(), code);
 }
 
 void Database::transaction(const std::function<void()>& work) {
@@ -146,7 +147,7 @@ void Database::transaction(const std::function<void()>& work) {
         work();
         execute("COMMIT");
     } catch (...) {
-        // An error may have ended it already.
+        // An error may have ended the transaction already.
         if (sqlite3_get_autocommit(database_.get()) == 0)
             sqlite3_exec(database_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
         throw;

@@ -13,11 +13,11 @@ struct sqlite3_stmt;
 
 namespace exemplar {
 
-/// A prepared SQL statement. Values are bound in order by bind(); texts are bytes, in any encoding.
+/// A prepared SQL statement. Texts are bytes in any encoding.
 class Statement {
   public:
-    /// Binds these values to the parameters 1, 2, ...: whole numbers, floating-point numbers (NaN is NULL), texts, or
-    /// optionals of them (nothing is NULL). Forgets earlier rows.
+    /// Binds these values to the parameters 1, 2, ...: integers, floating-point numbers (NaN is NULL), texts, or
+    /// optionals of them (nullopt is NULL). Discards earlier rows.
     template <typename... Values>
     Statement& bind(const Values&... values) {
         reset();
@@ -25,9 +25,9 @@ class Statement {
         (bind_one(++index, values), ...);
         return *this;
     }
-    /// Moves to the next row; false after the last. Throws DataError.
+    /// Moves to the next row; returns false after the last. Throws DataError.
     bool step();
-    /// Runs to the end.
+    /// Steps through all rows.
     void run();
 
     bool is_null(int column) const;
@@ -54,22 +54,23 @@ class Statement {
     std::string name_;
 };
 
-/// An SQLite database file. One thread at a time uses an object; several objects, in several processes of one machine,
-/// may use one file. Waits up to a minute for another's changes.
+/// An SQLite database file. Each object is for one thread at a time; several objects, in several processes of one
+/// machine, may use one file. Waits up to a minute for the changes of others.
 class Database {
   public:
     enum class Open { existing, create };
 
-    /// Opens the file, with a write-ahead log. Throws DataError naming it: missing, no database, not writable.
+    /// Opens the file with a write-ahead log. Throws DataError naming it if it is missing, no database or not
+    /// writable.
     Database(const std::filesystem::path& path, Open open);
 
-    /// Throws DataError: wrong SQL, a damaged file.
+    /// Prepares a statement. Throws DataError if the SQL is wrong or the file is damaged.
     Statement prepare(std::string_view sql);
     /// Runs statements without parameters.
     void execute(const std::string& sql);
-    /// Makes all changes of `work` in one step, or none of them if it throws; others change nothing meanwhile.
+    /// Makes all changes of `work` in one step, or none if it throws; nobody else changes anything meanwhile.
     void transaction(const std::function<void()>& work);
-    /// How many rows the last statement changed.
+    /// Returns how many rows the last statement changed.
     std::int64_t changes() const;
     const std::string& name() const { return name_; }
 
@@ -78,7 +79,7 @@ class Database {
     std::shared_ptr<sqlite3> database_;
 };
 
-/// Whether the file begins as an SQLite database does.
+/// Returns whether the file begins as an SQLite database does.
 bool is_database(const std::filesystem::path& path);
 
 }  // namespace exemplar

@@ -18,8 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr int k_deepest = 8;                       ///< of lists in lists: a record has three
-constexpr std::uintmax_t k_most_bytes = 16 << 20;  ///< of a record: far more than it ever has
+constexpr int k_deepest = 8;                       ///< maximum nesting: a record has three levels
+constexpr std::uintmax_t k_most_bytes = 16 << 20;  ///< maximum size of a record: far more than it ever has
 
 Json number(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -32,7 +32,8 @@ double number_of(const Json& json) {
 ShapeRecord from_json(const Json& json) {
     ShapeRecord record;
     json.at("run").get_to(record.run);
-    record.content = to_bytes(json.at("content").get<std::string>());  // has the category, of any encoding
+    record.content = to_bytes(json.at("content").get<std::string>());  // contains the category, which may have any
+                                                                       // encoding
     json.at("worker").get_to(record.worker);
     json.at("error").get_to(record.error);
     json.at("model").get_to(record.model);
@@ -119,13 +120,13 @@ std::optional<ShapeRecord> read_record(const fs::path& path) {
     } catch (const Json::exception&) {
         return {};
     } catch (const DataError&) {
-        return {};  // it is just being replaced
+        return {};  // it is being replaced at this moment
     }
 }
 
 bool commit_file(const fs::path& written, const fs::path& path) {
-    // A link, unlike a rename, does not replace; on network file systems, too, only one of several succeeds. Some have
-    // no links, and know a rename of that kind instead.
+    // Creating a link, unlike renaming, never replaces a file, and only one of several processes succeeds, on
+    // network file systems, too. Some file systems have no links, but a rename that does not replace.
     int failed = link(written.c_str(), path.c_str());
     if (failed != 0 && errno != EEXIST)
         failed = renameat2(AT_FDCWD, written.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE);

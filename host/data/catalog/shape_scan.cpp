@@ -15,25 +15,25 @@
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/text.h"
-#include "host/data/corpus.h"
 #include "host/data/catalog/worker_folder.h"
-#include "host/mesh/io/io.h"
+#include "host/data/corpus.h"
 #include "host/mesh/editing/validate.h"
 #include "host/mesh/editing/weld.h"
+#include "host/mesh/io/io.h"
 
 namespace exemplar {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Text takes more memory as numbers and while it is read than as a file; binary files take less.
+/// Text takes more memory while it is parsed than as a file; binary files take less.
 constexpr std::size_t k_memory_per_byte = 12;
 
 bool is_hidden(const fs::path& path) {
     return path.filename().string().starts_with('.');
 }
 
-/// Whether a link in `root` or below leads to a file there.
+/// Returns whether a link in `root` or below leads to a file there.
 bool stays_inside(const fs::path& link, const fs::path& root) {
     std::error_code error;
     const fs::path target = fs::canonical(link, error);
@@ -42,7 +42,7 @@ bool stays_inside(const fs::path& link, const fs::path& root) {
     return !error && !relative.empty() && *relative.begin() != "..";
 }
 
-/// What batch labeling has written is no shape to label.
+/// Returns whether batch labeling has written to a folder: its results are no shapes to label.
 bool is_output_folder(const fs::path& folder) {
     std::error_code ignored;
     return fs::exists(folder / k_output_mark, ignored);
@@ -56,8 +56,9 @@ std::vector<fs::directory_entry> entries_of(const fs::path& folder, std::error_c
     return entries;
 }
 
-/// Whether an entry of a folder is a mesh to read. A link to a folder is not followed: it may lead in circles.
-bool is_shape(const fs::directory_entry& entry, const fs::path& root, const LeftOut& left_out) {
+/// Returns whether an entry of a folder is a mesh to read. Does not follow links to folders, which may lead in
+/// circles.
+bool is_shape(const fs::directory_entry& entry, const fs::path& root, const SkipHandler& left_out) {
     std::error_code ignored;
     if (!is_mesh_file(entry.path()) || !entry.is_regular_file(ignored)) return false;
     if (!entry.is_symlink(ignored) || stays_inside(entry.path(), root)) return true;
@@ -65,7 +66,7 @@ bool is_shape(const fs::directory_entry& entry, const fs::path& root, const Left
     return false;
 }
 
-/// Names come from the file system; a catalog's names of them are for people.
+/// Fills in everything that is known only from reading the mesh.
 void describe(const fs::path& path, CatalogShape& shape) {
     const MeshFile file = read_mesh(path);
     shape.vertices = static_cast<std::int64_t>(file.mesh.vertex_count());
@@ -79,7 +80,8 @@ void describe(const fs::path& path, CatalogShape& shape) {
 
 }  // namespace
 
-void find_shapes(const fs::path& folder, const std::function<void(const FoundShape&)>& found, const LeftOut& left_out) {
+void find_shapes(const fs::path& folder, const std::function<void(const FoundShape&)>& found,
+                 const SkipHandler& left_out) {
     const fs::path root = fs::absolute(folder).lexically_normal();
     if (is_output_folder(root))
         throw DataError(
@@ -105,7 +107,7 @@ void find_shapes(const fs::path& folder, const std::function<void(const FoundSha
             else if (is_shape(entry, root, left_out))
                 found({entry.path(), entry.path().lexically_relative(root)});
         }
-        open.insert(open.end(), below.rbegin(), below.rend());  // the first is the next
+        open.insert(open.end(), below.rbegin(), below.rend());  // the first is searched next
     }
 }
 
@@ -130,13 +132,13 @@ std::size_t reading_memory(std::uint64_t file_bytes) {
     return k_memory_per_byte * file_bytes;
 }
 
-std::uint64_t bytes_to_read(const fs::path& path, std::size_t most_memory) {
+std::uint64_t bytes_to_read(const fs::path& path, std::size_t max_memory) {
     auto bytes = static_cast<std::uint64_t>(stat_shape(path).bytes);
-    if (reading_memory(bytes) <= most_memory) bytes += bytes_beside(path);
-    if (reading_memory(bytes) > most_memory)
+    if (reading_memory(bytes) <= max_memory) bytes += external_buffer_bytes(path);
+    if (reading_memory(bytes) > max_memory)
         throw MeshError(
             fmt::format("{}: {:.1f} GB are more than can be read in {:.1f} GB of memory; --memory allows more",
-                        path.string(), 1e-9 * static_cast<double>(bytes), 1e-9 * static_cast<double>(most_memory)));
+                        path.string(), 1e-9 * static_cast<double>(bytes), 1e-9 * static_cast<double>(max_memory)));
     return bytes;
 }
 
@@ -154,12 +156,12 @@ CatalogShape stat_shape(const fs::path& path) {
     return shape;
 }
 
-CatalogShape describe_shape(const fs::path& path, std::size_t most_memory) {
+CatalogShape describe_shape(const fs::path& path, std::size_t max_memory) {
     CatalogShape shape;
     shape.path = path;
     try {
         shape = stat_shape(path);
-        bytes_to_read(path, most_memory);
+        bytes_to_read(path, max_memory);
         shape.hash = file_hash(path);
         describe(path, shape);
     } catch (const std::bad_alloc&) {

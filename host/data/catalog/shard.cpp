@@ -18,11 +18,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr int k_format = 1;
+constexpr int k_shard_format = 1;
 constexpr std::string_view k_begin = R"({"exemplar_shard":)";
 
 Json to_json(const BatchPlan& plan) {
-    return {{"exemplar_shard", k_format},
+    return {{"exemplar_shard", k_shard_format},
             {"models", to_text(plan.models.string())},
             {"out", to_text(plan.out.string())},
             {"run", plan.key},
@@ -40,7 +40,7 @@ Json to_json(const CatalogShape& shape) {
             {"category", to_text(shape.category)}};
 }
 
-/// The library would turn what is no whole number (1e300, true) into one.
+/// Returns a whole number; throws for anything else (1e300, true), which the library would convert.
 std::int64_t whole_number(const Json& json) {
     constexpr std::uint64_t k_most = std::numeric_limits<std::int64_t>::max();
     if (!json.is_number_integer() || (json.is_number_unsigned() && json.get<std::uint64_t>() > k_most))
@@ -48,13 +48,13 @@ std::int64_t whole_number(const Json& json) {
     return json.get<std::int64_t>();
 }
 
-/// A number that is not below 0; what is none of a file's own size is found out when it is read.
+/// Returns a number, at least 0. A wrong file size is noticed when the file is read.
 std::int64_t count_from(const Json& json) {
     return std::max<std::int64_t>(whole_number(json), 0);
 }
 
 BatchPlan plan_from(const Json& json) {
-    if (json.at("exemplar_shard") != k_format)
+    if (json.at("exemplar_shard") != k_shard_format)
         throw DataError("is a shard of another version of Exemplar; write the shards again");
     return {.models = to_bytes(json.at("models").get<std::string>()),
             .out = to_bytes(json.at("out").get<std::string>()),
@@ -77,7 +77,7 @@ CatalogShape shape_from(const Json& json) {
     return shape;
 }
 
-/// Calls `use` for every line; the text may be as large as memory allows, and is not copied.
+/// Calls `use` for every line, without copying the text, which may be large.
 template <typename Use>
 void for_each_line(std::string_view text, Use&& use) {
     while (!text.empty()) {

@@ -23,14 +23,14 @@ namespace fs = std::filesystem;
 constexpr const char* k_lock = ".lock";
 constexpr const char* k_work = ".work";
 
-[[noreturn]] void fail(const fs::path& path, int reason) {
+[[noreturn]] void throw_lock_error(const fs::path& path, int reason) {
     throw DataError(fmt::format("{}: cannot be written: {}", path.string(), std::strerror(reason)));
 }
 
-/// Opens a file that only has to be there, or makes it. Where links lead, nothing is made.
+/// Opens a lock or marker file, or creates it. Does not create anything at the target of a link.
 int open_or_make(const fs::path& path) {
     const int file = open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
-    if (file < 0) fail(path, errno);
+    if (file < 0) throw_lock_error(path, errno);
     return file;
 }
 
@@ -43,13 +43,13 @@ std::string host_name() {
     return host;
 }
 
-/// Process numbers come again, on one machine and on many.
+/// Returns a new id. The process number alone would not do: it is reused, and occurs on many machines.
 std::string new_id() {
     std::random_device random;
     return fmt::format("{}-{}-{:08x}", host_name(), getpid(), random());
 }
 
-/// Whether somebody holds the lock. Where the system cannot lock, somebody may.
+/// Returns whether somebody holds the lock; true if the system cannot tell.
 bool is_held(const fs::path& lock) {
     const int file = open(lock.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC);
     if (file < 0) return errno != ENOENT;
@@ -58,8 +58,8 @@ bool is_held(const fs::path& lock) {
     return held;
 }
 
-/// Whether a worker ran on this machine: its name, as new_id made it, less the last two parts. Where locks do not reach
-/// other machines, theirs look free while they are held.
+/// Returns whether a worker ran on this machine, by its name from new_id without the last two parts. Locks held on
+/// other machines may look free here.
 bool is_of_this_host(const fs::path& lock) {
     std::string host = lock.stem().string();
     for (int part = 0; part < 2; ++part) host.resize(std::min(host.rfind('-'), host.size()));
@@ -73,7 +73,7 @@ bool is_old(const fs::path& path) {
     return error || fs::file_time_type::clock::now() - changed > k_long;
 }
 
-/// Removes the folders and locks of workers that are dead.
+/// Removes the folders and locks of dead workers.
 void remove_dead(const fs::path& work) {
     std::vector<fs::path> locks;
     std::error_code error;
@@ -89,7 +89,7 @@ void remove_dead(const fs::path& work) {
 }  // namespace
 
 FileLock::FileLock(const fs::path& path) : file_(open_or_make(path)) {
-    // Where the system cannot lock, what the lock is for (removing leftovers) is left undone by is_held.
+    // If the system cannot lock, is_held returns true, and leftovers are not removed.
     while (flock(file_, LOCK_EX) != 0 && errno == EINTR) continue;
 }
 
@@ -101,8 +101,8 @@ WorkerFolder::WorkerFolder(const fs::path& output) : id_(new_id()) {
     const fs::path work = output / k_work;
     std::error_code error;
     fs::create_directories(work, error);
-    if (error) fail(work, error.value());
-    // Between making a lock and holding it nobody may find it free.
+    if (error) throw_lock_error(work, error.value());
+    // Nobody may find the lock free between its creation and its locking.
     const FileLock making(work / k_lock);
     remove_dead(work);
     path_ = work / id_;
@@ -110,7 +110,7 @@ WorkerFolder::WorkerFolder(const fs::path& output) : id_(new_id()) {
     lock_ = open_or_make(lock_path_);
     flock(lock_, LOCK_EX | LOCK_NB);
     fs::create_directory(path_, error);
-    if (error) fail(path_, error.value());
+    if (error) throw_lock_error(path_, error.value());
 }
 
 WorkerFolder::~WorkerFolder() {
@@ -138,7 +138,7 @@ void refuse_links(const fs::path& output) {
 void mark_output_folder(const fs::path& output) {
     std::error_code error;
     fs::create_directories(output, error);
-    if (error) fail(output, error.value());
+    if (error) throw_lock_error(output, error.value());
     close(open_or_make(output / k_output_mark));
 }
 
@@ -148,7 +148,7 @@ fs::path make_output_folder(const fs::path& output, const std::string& name) {
     fs::path folder = output;
     std::error_code error;
     fs::create_directories(output, error);
-    if (error) fail(output, error.value());
+    if (error) throw_lock_error(output, error.value());
     for (const fs::path& part : fs::path(name).parent_path()) {
         folder /= part;
         const fs::file_status status = fs::symlink_status(folder, error);
@@ -158,7 +158,7 @@ fs::path make_output_folder(const fs::path& output, const std::string& name) {
                 fmt::format("{}: is no folder, so that nothing can be written there; remove it", folder.string()));
         error.clear();
         fs::create_directory(folder, error);
-        if (error) fail(folder, error.value());
+        if (error) throw_lock_error(folder, error.value());
     }
     return folder;
 }

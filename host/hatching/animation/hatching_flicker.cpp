@@ -20,7 +20,7 @@ float distance_to_segment(const Vec2& point, const Vec2& a, const Vec2& b) {
     return (a + t * way - point).norm();
 }
 
-/// The segments of the strokes of a layer, by the cells of the picture that they come near.
+/// The segments of a layer's strokes, in all cells of the picture that they come near.
 class SegmentCells {
   public:
     void add(const HatchStroke& stroke) {
@@ -48,7 +48,7 @@ class SegmentCells {
     std::unordered_map<std::uint64_t, std::vector<std::array<Vec2, 2>>> cells_;
 };
 
-/// Ends of strokes from left to right.
+/// Ends of strokes, sorted by x.
 class StrokeEnds {
   public:
     void add(const HatchStroke& stroke) {
@@ -74,7 +74,7 @@ class StrokeEnds {
     std::vector<Vec2> ends_;
 };
 
-/// How long strokes are, and what of that is somewhere else.
+/// Total length of strokes, and the length of what has no counterpart in the other frame.
 struct Length {
     double all = 0, elsewhere = 0;
     void add(const HatchStroke& stroke, const SegmentCells& others) {
@@ -89,14 +89,14 @@ struct Length {
 
 }  // namespace
 
-HatchingFlicker measure_flicker(std::span<const HatchStroke> strokes, std::span<const CarriedStroke> before) {
+HatchingFlicker measure_flicker(std::span<const HatchStroke> strokes, std::span<const AdvectedStroke> before) {
     std::array<SegmentCells, k_hatch_layers> now_at, then_at;
     std::array<StrokeEnds, k_hatch_layers> ends;
     for (const HatchStroke& stroke : strokes) {
         now_at[stroke.layer].add(stroke);
         ends[stroke.layer].add(stroke);
     }
-    for (const CarriedStroke& carried : before) then_at[carried.stroke.layer].add(carried.stroke);
+    for (const AdvectedStroke& carried : before) then_at[carried.stroke.layer].add(carried.stroke);
     for (StrokeEnds& some : ends) some.sort();
     Length now, then;
     double slip = 0, count = 0;

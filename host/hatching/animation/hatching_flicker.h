@@ -2,25 +2,26 @@
 
 #include <span>
 
-#include "host/hatching/animation/carried_strokes.h"
+#include "host/hatching/animation/advected_strokes.h"
 #include "host/hatching/fields/hatch_stroke.h"
 
 namespace exemplar {
 
-/// Strokes are the same as far as their center lines are no farther apart, in pixels.
+/// Parts of strokes count as the same if their center lines are no farther apart, in pixels.
 constexpr float k_same_stroke = 0.5f;
 
-/// How the strokes of a picture differ from those of the picture before, on the surface: what moves with it stays.
+/// How the strokes of a frame differ from those of the previous frame, on the surface: strokes that move with it do
+/// not count as changed.
 struct HatchingFlicker {
-    float drawn = 0;     ///< pixels of length that are drawn
-    float appeared = 0;  ///< the share of them that no stroke of the same layer was at before
-    float vanished = 0;  ///< the share of what was drawn, and still could be seen, that no stroke of its layer is at
-    float slip = 0;      ///< pixels, the mean: from an end of a stroke to where the nearest end of its layer is now
+    float drawn = 0;     ///< total length of strokes, pixels
+    float appeared = 0;  ///< share of it without a stroke of the same layer in the previous frame
+    float vanished = 0;  ///< share of the previous length, still visible, without a stroke of its layer now
+    float slip = 0;      ///< mean distance, pixels, from an end of a previous stroke to the nearest of its layer
 };
 
-/// `before`: the strokes of the picture before, carried to this one.
-HatchingFlicker measure_flicker(std::span<const HatchStroke> strokes, std::span<const CarriedStroke> before);
-/// The mean over pictures, those with more strokes counting more.
+/// Measures the flicker of a frame. `before`: the strokes of the previous frame, advected to this one.
+HatchingFlicker measure_flicker(std::span<const HatchStroke> strokes, std::span<const AdvectedStroke> before);
+/// Returns the mean over frames, weighted by their length of strokes.
 HatchingFlicker mean_flicker(std::span<const HatchingFlicker> pictures);
 
 }  // namespace exemplar

@@ -7,16 +7,16 @@
 
 namespace exemplar {
 
-/// A drawing of a view: how it lies over the view, and its strokes where they lie there.
+/// A drawing aligned with a view: its alignment, and its strokes measured in the view.
 struct AlignedDrawing {
     DrawingAlignment alignment;
     StrokeMeasurements strokes;
 };
-/// Aligns a drawing (dark on light; of any resolution) with the view that `pixels` are of, and measures its strokes.
-/// Throws DataError if it is blank or does not fit the view.
+/// Aligns a drawing (dark on light, of any resolution) with the view of `pixels`, and measures its strokes. Throws
+/// DataError if it is blank or does not fit the view.
 AlignedDrawing align_and_measure(const Image& drawing, const PixelFeatures& pixels);
 
-/// The shaded view on white, light enough to draw on: one channel.
+/// Renders the shaded view on white, light enough to draw on: one channel.
 Image drawing_template(PixelFeatures& pixels);
 
 }  // namespace exemplar

@@ -13,17 +13,17 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_points = 48;  ///< that stand for a border, and for the inside
-constexpr float k_outside_weight = 4;
-constexpr float k_search_reach = 0.08f;  ///< of the object's size: distance from which everything is as bad
-constexpr float k_least_scale = 0.45f, k_largest_scale = 1.5f, k_scale_step = 0.06f;
-constexpr float k_tilt_step = 0.035f;  ///< radians, two degrees
-constexpr float k_shift_step = 0.04f;  ///< of the object's size
-constexpr int k_shifts = 8;            ///< steps either way
-constexpr float k_tilt_cost = 0.02f;   ///< per radian: of equal places the one turned least
+constexpr std::size_t k_points = 48;  ///< samples of a border, and of the inside
+constexpr float k_search_outside_weight = 4;
+constexpr float k_search_reach = 0.08f;  ///< of the object's size: distance at which misfit is truncated
+constexpr float k_min_scale = 0.45f, k_max_scale = 1.5f, k_scale_step = 0.06f;
+constexpr float k_tilt_step = 0.035f;        ///< radians, two degrees
+constexpr float k_shift_step = 0.04f;        ///< of the object's size
+constexpr int k_shifts = 8;                  ///< steps to either side
+constexpr float k_search_tilt_cost = 0.02f;  ///< per radian: prefers the least rotated of equal placements
 constexpr int k_evaluations = 250;
 
-/// Scales and turns about `center`, which then moves to `to`.
+/// Scales and rotates about `center`, then moves it to `to`.
 Similarity about(const Vec2& center, double scale, double rotation, const Vec2& to) {
     const Similarity turned(scale, rotation);
     const Vec2 shift = to - turned.apply(center);
@@ -44,10 +44,10 @@ struct Place {
 
 float badness_of(const RegionShape& drawing, const RegionShape& object, const Similarity& to_object) {
     return misfit(drawing, object, to_object, k_search_reach * object.size) +
-           k_tilt_cost * static_cast<float>(std::abs(to_object.rotation()));
+           k_search_tilt_cost * static_cast<float>(std::abs(to_object.rotation()));
 }
 
-/// The best place of those with the same scale and rotation.
+/// Returns the best placement of those with the same scale and rotation.
 Place best_shift(const RegionShape& drawing, const RegionShape& object, double scale, double rotation) {
     Place best;
     const float step = k_shift_step * object.size;
@@ -60,7 +60,7 @@ Place best_shift(const RegionShape& drawing, const RegionShape& object, double s
     return best;
 }
 
-/// How far two places put the drawing's border apart at most, roughly.
+/// Returns roughly the max distance between the drawing's border in two placements.
 float apart(const Similarity& a, const Similarity& b, const RegionShape& drawing) {
     float most = 0;
     for (std::size_t i = 0; i < drawing.border.size(); i += std::max<std::size_t>(1, drawing.border.size() / 8))
@@ -70,11 +70,11 @@ float apart(const Similarity& a, const Similarity& b, const RegionShape& drawing
 
 std::vector<std::array<double, 2>> scales_and_rotations(const SearchRange& range) {
     std::vector<std::array<double, 2>> all;
-    const int tilts = static_cast<int>(std::ceil(range.largest_tilt / k_tilt_step));
-    const double tilt_step = tilts > 0 ? static_cast<double>(range.largest_tilt) / tilts : 0;
+    const int tilts = static_cast<int>(std::ceil(range.max_tilt / k_tilt_step));
+    const double tilt_step = tilts > 0 ? static_cast<double>(range.max_tilt) / tilts : 0;
     for (int turn = 0; turn < (range.quarter_turns ? 4 : 1); ++turn)
         for (int tilt = -tilts; tilt <= tilts; ++tilt)
-            for (float scale = k_least_scale; scale < k_largest_scale; scale *= 1 + k_scale_step)
+            for (float scale = k_min_scale; scale < k_max_scale; scale *= 1 + k_scale_step)
                 all.push_back({static_cast<double>(scale), turn * std::numbers::pi / 2 + tilt * tilt_step});
     return all;
 }
@@ -110,7 +110,7 @@ float misfit(const RegionShape& drawing, const RegionShape& object, const Simila
         return points.empty() ? 0 : sum / (reach * static_cast<float>(points.size()));
     };
     return mean(there, drawing.border) + mean(back_again, object.border) +
-           k_outside_weight * mean(outside, drawing.inside);
+           k_search_outside_weight * mean(outside, drawing.inside);
 }
 
 std::vector<Similarity> best_places(const RegionShape& drawing, const RegionShape& object, const SearchRange& range,
@@ -174,7 +174,7 @@ Similarity refined(const Similarity& start, const Vec2& center, float radius, fl
     try {
         optimizer.optimize(v, value);
     } catch (const nlopt::roundoff_limited&) {
-        // No smaller step changes anything: this is the place.
+        // Smaller steps change nothing: the search has converged.
     }
     return problem.at(v);
 }

@@ -9,34 +9,34 @@
 
 namespace exemplar {
 
-/// A region as matching sees it, in pixels of a small image.
+/// A region in the form that matching uses, in pixels of a small image.
 struct RegionShape {
     std::vector<Vec2> border;
-    std::vector<Vec2> inside;    ///< places that are to be covered
+    std::vector<Vec2> inside;    ///< places that the other region is to cover
     FloatImage distance;         ///< signed_distance
     Vec2 center = Vec2::Zero();  ///< of its bounding box
-    float size = 0;              ///< the longer side of that
+    float size = 0;              ///< longer side of its bounding box
 };
-/// The shape of a region that is not empty; `inside` are pixels of `ink`, which is within it.
+/// Returns the shape of a region that is not empty; `inside` samples the pixels of `ink`, which lies within it.
 RegionShape region_shape(const PixelMask& region, const PixelMask& ink);
 
-/// How badly one region lies in another: the mean truncated distances of the first's border to the second's and of the
-/// second's to the first's, and how far the first reaches out of the second, all in units of `reach` pixels; 0 if they
-/// are the same, 2 if nothing fits.
+/// Returns how badly one region lies in another: the mean truncated distances of the first's border to the second's
+/// and of the second's to the first's, and four times how far the first reaches out of the second. Distances are in
+/// units of `reach` pixels, where they are truncated; 0 if both are the same, 6 if nothing fits.
 float misfit(const RegionShape& drawing, const RegionShape& object, const Similarity& to_object, float reach);
 
 struct SearchRange {
-    float largest_tilt = 0;
+    float max_tilt = 0;
     bool quarter_turns = true;
 };
-/// The places where the drawing lies best in the object, best first, by a search of all scales between about half and
-/// one and a half times what makes them equally large, refined: at most `count`, different from each other. Both shapes
-/// have about the same size.
+/// Finds the placements in which the drawing lies best in the object: at most `count`, different from each other,
+/// best first. Searches all scales between about half and one and a half times what makes both equally large, then
+/// refines. Both shapes have about the same size.
 std::vector<Similarity> best_places(const RegionShape& drawing, const RegionShape& object, const SearchRange& range,
                                     std::size_t count);
 
-/// Minimizes a function of a similarity near `start` by Subplex; steps move places a radius from the center of the
-/// object by about `step` pixels.
+/// Minimizes a function of a similarity near `start` by Subplex. The initial steps move places at a distance of
+/// `radius` from the center of the object by about `step` pixels.
 Similarity refined(const Similarity& start, const Vec2& center, float radius, float step,
                    const std::function<double(const Similarity&)>& badness);
 

@@ -20,26 +20,26 @@
 namespace exemplar {
 namespace {
 
-constexpr float k_faintest = 0.1f;      ///< darkness of ink, after smoothing
-constexpr float k_smoothing = 0.7f;     ///< pixels
-constexpr float k_overview = 256;       ///< longer side of the image in which the drawing is looked for, pixels
-constexpr float k_search_size = 96;     ///< longer side of drawing and object in the search, pixels
-constexpr float k_closing = 0.04f;      ///< of the size: half of the widest gap between strokes
-constexpr float k_least_piece = 0.05f;  ///< of the largest: smaller pieces of ink are dust, or a signature
+constexpr float k_min_darkness = 0.1f;      ///< darkness of ink, after smoothing
+constexpr float k_border_smoothing = 0.7f;  ///< pixels
+constexpr float k_overview = 256;           ///< longer side of the image in which the drawing is searched, pixels
+constexpr float k_search_size = 96;         ///< longer side of drawing and object in the search, pixels
+constexpr float k_closing = 0.04f;          ///< of the size: radius that closes gaps between strokes
+constexpr float k_min_piece = 0.05f;        ///< of the largest: smaller pieces of ink are dust, or a signature
 constexpr std::size_t k_candidates = 5;
 constexpr std::size_t k_border_points = 800;
 constexpr std::array<float, 4> k_losses{0.03f, 0.015f, 0.0075f,
                                         0.003f};  ///< distance that counts half, of the object's size
-constexpr float k_least_loss = 1;                 ///< pixels
+constexpr float k_min_loss_scale = 1;             ///< pixels
 constexpr double k_end_weight = 3;
 constexpr double k_quarter = std::numbers::pi / 2;
-constexpr double k_tilt_cost = 0.3, k_quarter_cost = 0.1;  ///< per radian, and per quarter turn
-constexpr float k_hull_weight = 0.25f, k_outside_weight = 2;
-constexpr float k_explained = 0.02f;  ///< of the object's size: borders nearer than this lie on each other
+constexpr double k_fit_tilt_cost = 0.3, k_quarter_cost = 0.1;  ///< per radian, and per quarter turn
+constexpr float k_hull_weight = 0.25f, k_fit_outside_weight = 2;
+constexpr float k_border_tolerance = 0.02f;  ///< of the object's size: borders nearer than this lie on each other
 constexpr float k_same_aspect = 0.01f;
-constexpr float k_clearly_better = 0.8f, k_slack = 0.02f;  ///< what another place's loss must be below, of the frame's
+constexpr float k_clearly_better = 0.8f, k_slack = 0.02f;  ///< max loss of another placement, relative to the frame's
 
-/// A corner and the longer side of what is set in a mask.
+/// The bounding box of the set pixels of a mask.
 struct Box {
     Vec2 low = Vec2::Zero(), high = Vec2::Zero();
     float size() const { return (high - low).maxCoeff(); }
@@ -58,15 +58,15 @@ Box box_of(const PixelMask& mask) {
     return box;
 }
 
-/// A mask of what at least `share` of a pixel is set in an image of zeros and ones, moved and scaled.
-PixelMask scaled(const FloatImage& image, const Similarity& to, int width, int height, float share) {
+/// Transforms an image of zeros and ones, and sets the pixels of which at least `share` is covered by ones.
+PixelMask resampled(const FloatImage& image, const Similarity& to, int width, int height, float share) {
     const FloatImage warped = warp_drawing(image, to, width, height);
     PixelMask mask(width, height, 1);
     for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] = warped.data[i] >= share;
     return mask;
 }
 
-/// Brings a box into the middle of a square image, its longer side k_search_size pixels.
+/// Maps a box to the middle of a square image, its longer side to k_search_size pixels.
 struct SearchFrame {
     Similarity to_frame;
     int size;
@@ -85,9 +85,9 @@ FloatImage zeros_and_ones(const Image& mask) {
     return image;
 }
 
-/// The region that strokes fill: gaps between them closed, dust left out.
+/// Returns the region that strokes fill: closes gaps between them, removes dust, fills holes.
 PixelMask inked_region(const PixelMask& ink, float size) {
-    return without_holes(without_small_pieces(closed_region(ink, k_closing * size), k_least_piece));
+    return without_holes(without_small_pieces(closed_region(ink, k_closing * size), k_min_piece));
 }
 
 PixelMask both(PixelMask first, const PixelMask& second) {
@@ -95,19 +95,19 @@ PixelMask both(PixelMask first, const PixelMask& second) {
     return first;
 }
 
-/// The ink of a drawing, 1 or 0, and where in it the drawing is.
+/// The ink of a drawing, 1 or 0, and the bounding box of the drawing in it.
 struct FoundInk {
     FloatImage ink;
     Box box;
 };
 
 FoundInk find_ink(const FloatImage& darkness) {
-    FoundInk found{gaussian_blur(darkness, k_smoothing), {}};
-    for (float& value : found.ink.data) value = value >= k_faintest ? 1.0f : 0.0f;
+    FoundInk found{gaussian_blur(darkness, k_border_smoothing), {}};
+    for (float& value : found.ink.data) value = value >= k_min_darkness ? 1.0f : 0.0f;
     const double scale = std::min(1.0, static_cast<double>(k_overview) / std::max(darkness.width, darkness.height));
     const int width = std::max(1, static_cast<int>(std::lround(scale * darkness.width)));
     const int height = std::max(1, static_cast<int>(std::lround(scale * darkness.height)));
-    const PixelMask overview = scaled(found.ink, Similarity(scale, 0), width, height, 1e-3f);
+    const PixelMask overview = resampled(found.ink, Similarity(scale, 0), width, height, 1e-3f);
     const PixelMask region = inked_region(overview, static_cast<float>(std::max(width, height)));
     found.box = box_of(region);
     if (!(found.box.size() > 0))
@@ -125,21 +125,21 @@ struct ViewObject {
     float size;
 };
 
-/// Places on one border that are to lie on another. Only those vote where the two run alike: where the hatching ends in
-/// the midst of the object, because the rest is lit, its border crosses the object's, and would draw it along.
+/// Places on one border that are to lie on another. Only places where the two borders run alike vote: where hatching
+/// ends in the middle of the object, because the rest is lit, its border crosses the object's and would attract it.
 struct Votes {
     struct Vote {
         Vec2 place;
-        float inset;  ///< how far inside of the object ink is to be expected, give or take as much
+        float inset;  ///< how far inside of the object to expect ink, give or take as much
     };
     std::vector<Vote> cast;
-    std::size_t all = 0;  ///< places, those that do not vote included: each counts as one that fits nowhere
+    std::size_t all = 0;  ///< number of places; those without a vote count as fitting nowhere
 };
 
-/// The drawing in the view as some place puts it.
+/// The drawing in the view, under some placement.
 struct ViewDrawing {
     Votes ends;      ///< of strokes
-    Votes contacts;  ///< ink at the border of the inked region: where strokes end, and the outermost ones
+    Votes contacts;  ///< ink at the inked region's border: ends of strokes, and outermost strokes
     Votes hull;      ///< the border of the object
     std::vector<Vec2> ink;
     FloatImage distance;  ///< to the border of the inked region, signed
@@ -162,21 +162,21 @@ float mean_width(const FloatImage& darkness, const TracedDrawing& drawing) {
     return length > 0 && center > 0 ? std::max(1.0f, static_cast<float>(ink * count / center) / length) : 1;
 }
 
-/// Where the center lines of strokes end: half a width before their tips. Ends at other strokes are left out.
+/// Returns where the center lines of strokes end: half a width before their tips. Leaves out ends at other strokes.
 std::vector<Vec2> ends_of(const FloatImage& darkness, const TracedDrawing& drawing) {
     const float width = mean_width(darkness, drawing);
     std::vector<Vec2> ends;
     for (const TracedStroke& stroke : drawing.strokes)
         for (const bool back : {false, true}) {
             if (stroke.closed) continue;
-            const std::optional<float> tip = way_to_tip(darkness, stroke, back, width);
+            const std::optional<float> tip = distance_to_tip(darkness, stroke, back, width);
             const Vec2& end = back ? stroke.points.back().center : stroke.points.front().center;
-            if (tip) ends.emplace_back(end + (*tip - 0.5f * width) * way_out(stroke, back));
+            if (tip) ends.emplace_back(end + (*tip - 0.5f * width) * end_direction(stroke, back));
         }
     return ends;
 }
 
-/// The way out of a region, of length 1; zero where all is equally far from its border.
+/// Returns the unit direction out of a region; zero where the distance to its border does not change.
 Vec2 way_out_of(const FloatImage& distance, const Vec2& place) {
     constexpr float k_step = 3;  // pixels: wider than the notches between strokes
     const Vec2 x(k_step, 0), y(0, k_step);
@@ -194,7 +194,8 @@ Votes votes_of(const std::vector<Vec2>& places, const FloatImage& drawing, const
     return votes;
 }
 
-/// Strokes end at the object's border, but where they run along it the outermost is anywhere up to a spacing inside.
+/// Sets the insets to expect. Strokes end at the object's border; but where they run along it, the outermost one
+/// lies anywhere up to a spacing inside.
 void expect_insets(Votes& votes, const std::vector<Vec2>& ends, float spacing) {
     for (Votes::Vote& vote : votes.cast) {
         const auto near = [&](const Vec2& end) { return (vote.place - end).squaredNorm() < spacing * spacing; };
@@ -223,10 +224,10 @@ ViewDrawing drawing_in_view(const FloatImage& darkness, const Similarity& to_vie
     std::vector<Vec2> ends, contacts, inside;
     std::optional<TracedDrawing> traced;
     if (with_ends) {
-        traced = trace_drawing(view, PixelMask(view.width, view.height, 1, 1), k_faintest);
+        traced = trace_drawing(view, PixelMask(view.width, view.height, 1, 1), k_min_darkness);
         ends = ends_of(view, *traced);
     }
-    const PixelMask all = traced ? traced->ink : ink_pixels(gaussian_blur(view, 0.5f), k_faintest);
+    const PixelMask all = traced ? traced->ink : ink_pixels(gaussian_blur(view, 0.5f), k_min_darkness);
     const PixelMask region = inked_region(all, object.size), ink = both(all, region);
     drawing.distance = signed_distance(region);
     for (int y = 0; y < ink.height; ++y)
@@ -246,7 +247,7 @@ ViewDrawing drawing_in_view(const FloatImage& darkness, const Similarity& to_vie
     return drawing;
 }
 
-/// A loss that grows with the square of small distances and no longer with large ones.
+/// A robust loss: quadratic for small distances, constant for large ones.
 float robust(float distance, float half) {
     return distance * distance / (distance * distance + half * half);
 }
@@ -258,8 +259,8 @@ double mean_loss(const Votes& votes, const auto& loss) {
     return sum / static_cast<double>(votes.all);
 }
 
-/// How badly the drawing lies over the object after a small change: ink at its border is to be at the object's, and the
-/// object's border to have ink, but neither where they are far apart; ink is not to be outside.
+/// Returns the loss of a placement after a small change. Ink at the drawing's border should lie at the object's, and
+/// the object's border should have ink, but neither counts where they are far apart; ink should not lie outside.
 double loss_of(const ViewDrawing& drawing, const ViewObject& object, const Similarity& change, float half) {
     const Similarity back = change.inverse();
     const auto away = [&](const Vec2& p) { return distance_at(object.distance, change.apply(p)); };
@@ -275,26 +276,26 @@ double loss_of(const ViewDrawing& drawing, const ViewObject& object, const Simil
     for (const Vec2& p : drawing.ink) outside += static_cast<double>(std::clamp(away(p) / (4 * half), 0.0f, 1.0f));
     return (drawing.ends.all == 0 ? 0 : k_end_weight * mean_loss(drawing.ends, at_end)) +
            mean_loss(drawing.contacts, at_contact) + k_hull_weight * mean_loss(drawing.hull, at_hull) +
-           k_outside_weight * (drawing.ink.empty() ? 1 : outside / static_cast<double>(drawing.ink.size()));
+           k_fit_outside_weight * (drawing.ink.empty() ? 1 : outside / static_cast<double>(drawing.ink.size()));
 }
 
-/// A place in the view and its loss.
-struct Candidate {
+/// A placement in the view and its loss.
+struct DrawingPlace {
     Similarity to_view;
     double loss = std::numeric_limits<double>::max();
 };
 
 float loss_scale(std::size_t stage, const ViewObject& object) {
-    return std::max(k_least_loss, k_losses[stage] * object.size);
+    return std::max(k_min_loss_scale, k_losses[stage] * object.size);
 }
 
-/// Of places that fit alike, the one turned least.
+/// Returns a cost of rotation, so that the least rotated of equally good placements wins.
 double turn_cost(const Similarity& to_view) {
     const double turn = std::abs(to_view.rotation()), quarters = std::round(turn / k_quarter);
-    return k_quarter_cost * quarters + k_tilt_cost * std::abs(turn - quarters * k_quarter);
+    return k_quarter_cost * quarters + k_fit_tilt_cost * std::abs(turn - quarters * k_quarter);
 }
 
-Candidate judged(const FloatImage& darkness, const Similarity& to_view, const ViewObject& object) {
+DrawingPlace judged(const FloatImage& darkness, const Similarity& to_view, const ViewObject& object) {
     return {to_view, loss_of(drawing_in_view(darkness, to_view, object, false), object, {}, loss_scale(1, object)) +
                          turn_cost(to_view)};
 }
@@ -306,61 +307,62 @@ Similarity refined_in_view(const FloatImage& darkness, const Similarity& to_view
                                 [&](const Similarity& s) { return loss_of(drawing, object, s, half); }));
 }
 
-/// What the search over all places finds, in the view.
+/// Returns the placements that the coarse search finds, in the view.
 std::vector<Similarity> likely_places(const FoundInk& found, const Image& object_mask,
                                       const AlignmentOptions& options) {
     const SearchFrame drawing_frame(found.box), object_frame(box_of(object_mask));
-    const PixelMask ink = scaled(found.ink, drawing_frame.to_frame, drawing_frame.size, drawing_frame.size, 0.02f);
+    const PixelMask ink = resampled(found.ink, drawing_frame.to_frame, drawing_frame.size, drawing_frame.size, 0.02f);
     const PixelMask region = inked_region(ink, k_search_size);
     const PixelMask object =
-        scaled(zeros_and_ones(object_mask), object_frame.to_frame, object_frame.size, object_frame.size, 0.5f);
+        resampled(zeros_and_ones(object_mask), object_frame.to_frame, object_frame.size, object_frame.size, 0.5f);
     if (box_of(region).size() <= 0 || box_of(object).size() <= 0) return {};
     std::vector<Similarity> places = best_places(region_shape(region, both(ink, region)), region_shape(object, object),
-                                                 {options.largest_tilt, options.quarter_turns}, k_candidates);
+                                                 {options.max_tilt, options.quarter_turns}, k_candidates);
     for (Similarity& place : places) place = drawing_frame.to_frame.then(place).then(object_frame.to_frame.inverse());
     return places;
 }
 
-/// The same turned about the object's center to the nearest quarter.
+/// Returns the placement rotated about the object's center to the nearest quarter turn.
 Similarity straightened(const Similarity& to_view, const Vec2& center) {
     const Similarity turn(1, -std::remainder(to_view.rotation(), k_quarter));
     const Vec2 shift = center - turn.apply(center);
     return to_view.then(turn.moved(static_cast<double>(shift.x()), static_cast<double>(shift.y())));
 }
 
-/// The best of the likely places, refined. A border without corners fits turned by any angle, and where the search ends
-/// is chance then; so the straightened place is tried as well.
-Candidate best_likely(const FloatImage& darkness, const std::vector<Similarity>& places, const ViewObject& object) {
-    Candidate best;
+/// Refines the likely placements and returns the best. A border without corners fits in any rotation, and the search
+/// ends at an arbitrary one; so the straightened placement is tried as well.
+DrawingPlace best_likely(const FloatImage& darkness, const std::vector<Similarity>& places, const ViewObject& object) {
+    DrawingPlace best;
     const auto consider = [&](Similarity to_view, std::size_t first_stage) {
         for (const std::size_t stage : {0u, 1u})
             if (stage >= first_stage)
                 to_view = refined_in_view(darkness, to_view, object, loss_scale(stage, object), false);
-        if (const Candidate candidate = judged(darkness, to_view, object); candidate.loss < best.loss) best = candidate;
+        if (const DrawingPlace candidate = judged(darkness, to_view, object); candidate.loss < best.loss)
+            best = candidate;
     };
     for (const Similarity& place : places) consider(place, 0);
     if (places.empty()) return best;
     consider(straightened(best.to_view, object.center), 1);
-    // Who votes, and what insets are expected, is told better from a better place: so the first stage is repeated.
+    // A better placement gives better votes and insets: so the first stage is repeated.
     for (const std::size_t stage : {1u, 1u, 1u, 2u, 3u})
         best.to_view = refined_in_view(darkness, best.to_view, object, loss_scale(stage, object), true);
     best = judged(darkness, best.to_view, object);
-    const Candidate straight = judged(darkness, straightened(best.to_view, object.center), object);
+    const DrawingPlace straight = judged(darkness, straightened(best.to_view, object.center), object);
     return straight.loss <= best.loss ? straight : best;
 }
 
-/// The drawing scaled to the view's size, if it has its aspect ratio.
-Candidate same_frame(const FloatImage& darkness, const ViewObject& object) {
+/// Returns the drawing scaled to the view's size, if it has the view's aspect ratio.
+DrawingPlace same_frame(const FloatImage& darkness, const ViewObject& object) {
     const double across = static_cast<double>(object.distance.width) / darkness.width;
     const double down = static_cast<double>(object.distance.height) / darkness.height;
     if (std::abs(across / down - 1) > static_cast<double>(k_same_aspect)) return {};
     return judged(darkness, Similarity(std::sqrt(across * down), 0), object);
 }
 
-/// What the alignment says about itself.
+/// Measures residual, explained and outside of an alignment.
 void measure(const FloatImage& darkness, const ViewObject& object, DrawingAlignment& alignment) {
     const ViewDrawing drawing = drawing_in_view(darkness, alignment.to_view, object, false);
-    const float near = std::max(2.0f, k_explained * object.size);
+    const float near = std::max(2.0f, k_border_tolerance * object.size);
     double squares = 0, explained = 0, outside = 0;
     for (const Vec2& p : object.border) {
         const float distance = std::abs(distance_at(drawing.distance, p) + 0.5f);
@@ -374,7 +376,7 @@ void measure(const FloatImage& darkness, const ViewObject& object, DrawingAlignm
     alignment.outside = drawing.ink.empty() ? 1 : static_cast<float>(outside / static_cast<double>(drawing.ink.size()));
 }
 
-void check(const FloatImage& darkness, const Image& object) {
+void check_drawing(const FloatImage& darkness, const Image& object) {
     if (darkness.channels != 1 || object.channels != 1)
         throw UsageError(fmt::format("images of one channel are aligned; the drawing has {}, the object's mask {}",
                                      darkness.channels, object.channels));
@@ -384,28 +386,33 @@ void check(const FloatImage& darkness, const Image& object) {
 }
 
 void refuse_misfits(const DrawingAlignment& alignment, const AlignmentOptions& options) {
-    if (alignment.explained >= options.least_explained && alignment.outside <= options.most_outside) return;
+    if (alignment.explained >= options.min_explained && alignment.outside <= options.max_outside) return;
     throw DataError(
         fmt::format("the drawing does not fit the view: at best its border lies on {:.0f}% of the object's ({:.0f}% "
                     "needed), with a "
                     "residual of {:.1f} pixels, and {:.0f}% of its ink outside ({:.0f}% allowed); draw over this view, "
                     "crop the scan "
                     "to the drawing, or give where it lies",
-                    100 * static_cast<double>(alignment.explained), 100 * static_cast<double>(options.least_explained),
+                    100 * static_cast<double>(alignment.explained), 100 * static_cast<double>(options.min_explained),
                     static_cast<double>(alignment.residual), 100 * static_cast<double>(alignment.outside),
-                    100 * static_cast<double>(options.most_outside)));
+                    100 * static_cast<double>(options.max_outside)));
 }
 
 }  // namespace
 
+// The loss measures how well the border of the inked region lies on the object's where it is near it, how much of
+// the object's border has ink at it, and how much ink is outside. A coarse grid covers all scales, tilts and places;
+// the best of them are refined, the very best at the view's full resolution. There the loss tolerates strokes that
+// end short of the border: only parts where the two borders run alike attract each other, and strokes along the
+// border are expected half a spacing inside.
 DrawingAlignment align_drawing(const FloatImage& darkness, const Image& object_mask, const AlignmentOptions& options) {
-    check(darkness, object_mask);
+    check_drawing(darkness, object_mask);
     const Box box = box_of(object_mask);
     const ViewObject object{signed_distance(object_mask), border_points(object_mask, k_border_points), box.center(),
                             box.size()};
     const FoundInk found = find_ink(darkness);
-    const Candidate frame = same_frame(darkness, object);
-    const Candidate best = best_likely(darkness, likely_places(found, object_mask, options), object);
+    const DrawingPlace frame = same_frame(darkness, object);
+    const DrawingPlace best = best_likely(darkness, likely_places(found, object_mask, options), object);
     DrawingAlignment alignment;
     alignment.same_frame =
         frame.loss < std::numeric_limits<double>::max() &&

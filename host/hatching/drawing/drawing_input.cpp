@@ -10,17 +10,18 @@
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
+#include "host/core/statistics.h"
 
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_samples = 60000;  ///< pixels that the paper is fitted to
-constexpr int k_fits = 12;                ///< rounds of fitting and leaving out what is no paper
-constexpr float k_least_noise = 0.006f;   ///< of paper: one and a half steps of 8 bits
-constexpr float k_darkest_paper = 0.25f;  ///< gray below which nothing counts as paper
-constexpr float k_least_contrast = 0.1f;  ///< darkness from which a pixel is ink
-constexpr float k_most_ink = 0.85f;       ///< share of the image
-constexpr double k_least_ink = 4;         ///< pixels
+constexpr std::size_t k_paper_samples = 60000;  ///< pixels that the paper is fitted to
+constexpr int k_fits = 12;                      ///< rounds of fitting and of removing outliers
+constexpr float k_min_noise = 0.006f;           ///< of paper: one and a half steps of 8 bits
+constexpr float k_darkest_paper = 0.25f;        ///< gray below which nothing counts as paper
+constexpr float k_min_ink_darkness = 0.1f;      ///< min darkness of ink
+constexpr float k_max_ink_share = 0.85f;        ///< max share of the image
+constexpr double k_min_ink_pixels = 4;          ///< pixels
 
 using Terms = Eigen::Matrix<double, 6, 1>;
 
@@ -57,9 +58,9 @@ struct PaperSamples {
     std::vector<float> gray;
 };
 
-PaperSamples sample(const FloatImage& gray) {
-    // A stride prime to most periods, lest all samples fall on the strokes of one regular hatching.
-    const std::size_t stride = gray.data.size() > k_samples ? (gray.data.size() / k_samples) | 1u : 1;
+PaperSamples sample_paper(const FloatImage& gray) {
+    // An odd stride, so that the samples do not all fall on the strokes of one regular hatching.
+    const std::size_t stride = gray.data.size() > k_paper_samples ? (gray.data.size() / k_paper_samples) | 1u : 1;
     PaperSamples samples;
     for (std::size_t i = 0; i < gray.data.size(); i += stride) {
         samples.terms.push_back(terms_at(i, gray));
@@ -68,29 +69,23 @@ PaperSamples sample(const FloatImage& gray) {
     return samples;
 }
 
-float percentile(std::vector<float> values, double share) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
-}
-
 /// The paper's level as a function of Terms, and its noise (standard deviation).
 struct Paper {
     Terms level = Terms::Zero();
-    float noise = k_least_noise;
+    float noise = k_min_noise;
 };
 
-/// Noise from the samples lighter than the paper: only the darker side has strokes.
+/// Estimates noise from the samples lighter than the paper: only the darker side has strokes.
 float noise_above(const PaperSamples& samples, const Terms& level, float band) {
     std::vector<float> above;
     for (std::size_t i = 0; i < samples.gray.size(); ++i) {
         const float rest = samples.gray[i] - static_cast<float>(level.dot(samples.terms[i]));
         if (rest >= 0 && rest < band) above.push_back(rest);
     }
-    return above.empty() ? k_least_noise : std::max(k_least_noise, 1.4826f * percentile(std::move(above), 0.5));
+    return above.empty() ? k_min_noise : std::max(k_min_noise, 1.4826f * quantile(above, 0.5));
 }
 
-/// Least squares over the samples within `band` of the level before.
+/// Fits the level by least squares to the samples within `band` of the previous level.
 Terms fit_level(const PaperSamples& samples, const Terms& before, float band) {
     Eigen::Matrix<double, 6, 6> normal = Eigen::Matrix<double, 6, 6>::Zero();
     Terms right = Terms::Zero();
@@ -100,7 +95,7 @@ Terms fit_level(const PaperSamples& samples, const Terms& before, float band) {
         normal += t * t.transpose();
         right += t * static_cast<double>(samples.gray[i]);
     }
-    // A little weight on what was before keeps tiny images, and corners without paper, from extrapolating.
+    // A little weight on the previous level keeps tiny images, and corners without paper, from extrapolating.
     const double hold = 1e-3 * (1 + normal(0, 0));
     normal.diagonal().array() += hold;
     right += hold * before;
@@ -108,9 +103,10 @@ Terms fit_level(const PaperSamples& samples, const Terms& before, float band) {
 }
 
 Paper estimate_paper(const FloatImage& gray) {
-    const PaperSamples samples = sample(gray);
+    const PaperSamples samples = sample_paper(gray);
     Paper paper;
-    paper.level[0] = static_cast<double>(percentile(samples.gray, 0.9));
+    std::vector<float> values = samples.gray;
+    paper.level[0] = static_cast<double>(quantile(values, 0.9));
     float band = 0.2f;
     for (int round = 0; round < k_fits; ++round) {
         paper.level = fit_level(samples, paper.level, band);
@@ -122,15 +118,15 @@ Paper estimate_paper(const FloatImage& gray) {
 }
 
 void check_ink(const FloatImage& darkness, float noise) {
-    const float least = std::max(k_least_contrast, 6 * noise);
+    const float least = std::max(k_min_ink_darkness, 6 * noise);
     const auto inked = static_cast<double>(
         std::count_if(darkness.data.begin(), darkness.data.end(), [&](float d) { return d > least; }));
-    if (inked < k_least_ink)
+    if (inked < k_min_ink_pixels)
         throw DataError(
             fmt::format("the drawing is blank: nothing on its {} x {} pixels is darker than the paper; give "
                         "an image with dark strokes",
                         darkness.width, darkness.height));
-    if (inked > k_most_ink * static_cast<double>(darkness.data.size()))
+    if (inked > k_max_ink_share * static_cast<double>(darkness.data.size()))
         throw DataError(
             fmt::format("{:.0f}% of the drawing is dark, so there is no paper to see strokes on; give dark "
                         "strokes on light paper, not a negative",

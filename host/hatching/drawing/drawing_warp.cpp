@@ -10,10 +10,10 @@
 namespace exemplar {
 namespace {
 
-constexpr int k_most_samples = 64;  ///< per view pixel and axis
+constexpr int k_max_samples = 64;  ///< samples per view pixel and axis
 
 /// Linear interpolation between pixels; paper beyond the border.
-float sample(const FloatImage& image, const Vec2& place) {
+float sample_darkness(const FloatImage& image, const Vec2& place) {
     const float left = std::floor(place.x() - 0.5f), top = std::floor(place.y() - 0.5f);
     if (!(left >= -1 && top >= -1 && left < static_cast<float>(image.width) && top < static_cast<float>(image.height)))
         return 0;
@@ -68,8 +68,8 @@ FloatImage warp_drawing(const FloatImage& darkness, const Similarity& to_view, i
         throw UsageError(fmt::format("a drawing of {} channels; give its darkness", darkness.channels));
     if (width <= 0 || height <= 0) throw UsageError(fmt::format("a view of {} x {} pixels", width, height));
     const Similarity back = to_view.inverse();
-    // Samples less than a pixel of the drawing apart, each interpolated, together weigh all pixels they cover alike.
-    const int samples = std::clamp(static_cast<int>(std::ceil(back.scale() - 1e-6)), 1, k_most_samples);
+    // Interpolated samples that are at most a pixel of the drawing apart weigh all pixels they cover alike.
+    const int samples = std::clamp(static_cast<int>(std::ceil(back.scale() - 1e-6)), 1, k_max_samples);
     const float part = 1 / static_cast<float>(samples);
     FloatImage view(width, height, 1);
     parallel_for(static_cast<std::size_t>(height), [&](std::size_t row) {
@@ -79,7 +79,7 @@ FloatImage warp_drawing(const FloatImage& darkness, const Similarity& to_view, i
                 for (int i = 0; i < samples; ++i) {
                     const Vec2 place(static_cast<float>(column) + (static_cast<float>(i) + 0.5f) * part,
                                      static_cast<float>(row) + (static_cast<float>(j) + 0.5f) * part);
-                    sum += sample(darkness, back.apply(place));
+                    sum += sample_darkness(darkness, back.apply(place));
                 }
             view.pixel(column, static_cast<int>(row))[0] = sum / static_cast<float>(samples * samples);
         }

@@ -12,7 +12,7 @@
 namespace exemplar {
 namespace {
 
-/// An image at some scale; elements are shorter the less is known of them, and zero where nothing is.
+/// A level of the image pyramid. The less is known of an element, the shorter it is; zero if nothing is known.
 struct Level {
     int width, height;
     std::vector<DoubledAngle> values;
@@ -20,7 +20,7 @@ struct Level {
     DoubledAngle& at(int x, int y) {
         return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
     }
-    /// The nearest one, beside the image.
+    /// Returns the nearest element if (x, y) is outside of the image.
     const DoubledAngle& at(int x, int y) const {
         x = std::clamp(x, 0, width - 1);
         y = std::clamp(y, 0, height - 1);
@@ -37,7 +37,7 @@ void add(DoubledAngle& sum, float weight, const DoubledAngle& v) {
     sum[1] += weight * v[1];
 }
 
-/// Sums of two by two elements, of unit length where they come to more.
+/// Sums blocks of two by two elements; sums longer than 1 are scaled to unit length.
 Level pulled(const Level& fine) {
     Level coarse{(fine.width + 1) / 2, (fine.height + 1) / 2, {}};
     coarse.values.resize(static_cast<std::size_t>(coarse.width) * static_cast<std::size_t>(coarse.height));
@@ -55,7 +55,7 @@ Level pulled(const Level& fine) {
     return coarse;
 }
 
-/// What a coarse image has at the middle of a fine element, bilinear.
+/// Interpolates a coarse level bilinearly at the center of a fine element.
 DoubledAngle between(const Level& coarse, int x, int y) {
     const int left = (x - 1) >> 1, top = (y - 1) >> 1;
     const float right_share = x % 2 ? 0.25f : 0.75f, low_share = y % 2 ? 0.25f : 0.75f;
@@ -67,7 +67,7 @@ DoubledAngle between(const Level& coarse, int x, int y) {
     return sum;
 }
 
-/// What is missing to unit length comes from the coarse image.
+/// Adds to elements shorter than 1 what they lack, from the coarse level.
 void push(const Level& coarse, Level& fine) {
     parallel_for(static_cast<std::size_t>(fine.height), [&](std::size_t row) {
         const int y = static_cast<int>(row);

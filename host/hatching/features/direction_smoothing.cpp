@@ -24,7 +24,7 @@ double clamped_cotangent(const Vec3d& apex, const Vec3d& a, const Vec3d& b) {
 }
 
 /// The doubled angle of a vector in a frame: unit, or zero.
-Complex doubled(const TangentFrame& frame, const Vec3& vector) {
+Complex doubled_in_frame(const TangentFrame& frame, const Vec3& vector) {
     const Complex z(static_cast<double>(frame.tangent.dot(vector)), static_cast<double>(frame.bitangent.dot(vector)));
     const double square = std::norm(z);
     return square > 0 ? z * z / square : Complex();
@@ -41,13 +41,13 @@ struct DirectionSmoother::Parts {
 DirectionSmoother::DirectionSmoother(const TriangleMesh& mesh, std::span<const Vec3> normals)
     : parts_(std::make_unique<Parts>()) {
     const auto count = static_cast<Eigen::Index>(mesh.vertex_count());
-    for (const Vec3& normal : normals) parts_->frames.push_back(any_frame(normal));
+    for (const Vec3& normal : normals) parts_->frames.push_back(frame_of_normal(normal));
     parts_->diagonal = Eigen::VectorXd::Zero(count);
     std::vector<Eigen::Triplet<Complex>> entries;
     const auto add = [&](std::uint32_t i, std::uint32_t j, double weight) {
-        // What the direction of j is in the frame of i.
+        // The rotation that transports a direction from the frame of j to the frame of i.
         const TangentFrame &to = parts_->frames[i], &from = parts_->frames[j];
-        const Turn turn = turn_to(to, from.tangent, from.normal);
+        const TangentRotation turn = rotation_to(to, from.tangent, from.normal);
         const Complex z(static_cast<double>(turn.cosine), static_cast<double>(turn.sine));
         entries.emplace_back(i, j, -weight * z * z / std::max(std::norm(z), 1e-12));
         parts_->diagonal[i] += weight;
@@ -76,15 +76,15 @@ std::vector<Vec3> DirectionSmoother::complete(std::span<const Vec3> directions,
     if (directions.size() != count || confidence.size() != count)
         throw UsageError("directions to complete: one direction and one confidence per vertex are needed");
     // A trace of regularization keeps parts without any direction solvable; it is too weak to be seen elsewhere.
-    constexpr double k_trace = 1e-7, k_firmest = 1e4;
+    constexpr double k_trace = 1e-7, k_max_weight = 1e4;
     Matrix system = parts_->laplacian;
     Eigen::VectorXcd right(static_cast<Eigen::Index>(count));
     for (std::size_t v = 0; v < count; ++v) {
         const auto i = static_cast<Eigen::Index>(v);
-        const Complex direction = doubled(parts_->frames[v], directions[v]);
+        const Complex direction = doubled_in_frame(parts_->frames[v], directions[v]);
         const double c = direction == Complex() ? 0 : std::clamp(static_cast<double>(confidence[v]), 0.0, 1.0);
         const double scale = std::max(parts_->diagonal[i], 1e-12);
-        const double weight = scale * std::min(c / std::max(1 - c, 1e-12), k_firmest);
+        const double weight = scale * std::min(c / std::max(1 - c, 1e-12), k_max_weight);
         system.coeffRef(i, i) += weight + scale * k_trace;
         right[i] = weight * direction;
     }

@@ -8,19 +8,20 @@
 
 namespace exemplar {
 
-/// Completes fields of tangent directions without sign where they are not defined (thesis App. B.3, after Hertzmann and
-/// Zorin 2000): the field that changes least over the surface among those that follow the reliable directions.
-/// Directions are angles in vertex frames, doubled, as in Knoeppel et al. 2013, so that the best field is a linear
-/// system.
+/// Completes fields of unsigned tangent directions where they are undefined (thesis App. B.3, after Hertzmann and
+/// Zorin 2000): finds the smoothest field on the surface that follows the reliable directions. Directions are
+/// represented by doubled angles in vertex frames, as in Knoeppel et al. 2013, so that the best field solves a
+/// linear system.
 class DirectionSmoother {
   public:
     /// `normals`: unit, per vertex. Keeps no reference.
     DirectionSmoother(const TriangleMesh& mesh, std::span<const Vec3> normals);
     ~DirectionSmoother();
 
-    /// The completed field: V unit tangent vectors (zero where no reliable direction can be reached). `directions`: V
-    /// vectors, any length, laid into the tangent plane; zero: none. `confidence`: V values in [0, 1]; at 1 a direction
-    /// stays, at 0 it does not count, at 1/2 it counts as much as all its neighbors. Safe to call from many threads.
+    /// Returns the completed field: V unit tangent vectors, zero where no reliable direction can be reached.
+    /// `directions`: V vectors of any length, which are projected into the tangent plane; zero: none. `confidence`:
+    /// V values in [0, 1]: at 1 a direction stays, at 0 it is ignored, at 1/2 it weighs as much as all its
+    /// neighbors. Safe to call from many threads.
     std::vector<Vec3> complete(std::span<const Vec3> directions, std::span<const float> confidence) const;
 
   private:

@@ -12,19 +12,20 @@
 
 namespace exemplar {
 
-/// Features with the powers that a stump can tell apart, and which expanded feature (see powers.h) each column is. x^2
-/// and 1/x are there only where x changes its sign, and 1/x^2 never: else they split the rows as x or x^2 does.
+/// Features and those of their powers that give a stump other splits. x^2 and 1/x are included only for features
+/// that take both signs, 1/x^2 never: the others split the rows as x or x^2 does.
 struct StumpFeatures {
     FeatureMatrix matrix;
-    std::vector<std::uint32_t> expanded;  ///< of each column
+    std::vector<std::uint32_t> expanded;  ///< per column: its number in the expanded set, see powers.h
 };
 StumpFeatures stump_features(const FeatureMatrix& base);
 
-/// The base features that stumps over expanded features use, by rising number.
+/// Returns the base features that stumps over expanded features use, in increasing order.
 std::vector<std::uint32_t> used_features(const BoostedStumps& classifier);
 
-/// Columns named by stumps over expanded features, from a matrix that holds the base features `which`; the stumps are
-/// renumbered to them. Throws UsageError if one is missing.
+/// A classifier, and only the columns that its stumps use; the stumps are renumbered to these columns.
+/// compact_stumps() computes the columns from `base`, which holds the base features `which`. It throws UsageError if
+/// one is missing.
 struct CompactStumps {
     BoostedStumps classifier;
     FeatureMatrix features;

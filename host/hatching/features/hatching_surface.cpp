@@ -22,10 +22,10 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_samples = 1000;
+constexpr std::size_t k_surface_samples = 1000;
 constexpr std::size_t k_pca_scales = 3;
 
-/// Means over the faces around each vertex, weighted by area: of columns of values per face.
+/// Computes means of values per face over the faces around a vertex, weighted by area.
 class FacesToVertices {
   public:
     FacesToVertices(const PreparedMesh& prepared) : prepared_(prepared) {}
@@ -44,7 +44,7 @@ class FacesToVertices {
     const PreparedMesh& prepared_;
 };
 
-/// Appends columns of `faces`, those whose name `keep` takes, as means per vertex.
+/// Appends those columns of `faces` whose names `keep` accepts, as means per vertex.
 template <typename Keep>
 void append_at_vertices(const PreparedMesh& prepared, const FeatureMatrix& faces, Keep&& keep, FeatureMatrix& out) {
     const FacesToVertices to_vertices(prepared);
@@ -58,8 +58,8 @@ void append_at_vertices(const PreparedMesh& prepared, const FeatureMatrix& faces
     }
 }
 
-/// Of shape diameter and medial distance the thesis takes the means in cones of 60, 90 and 120 degrees, and their
-/// logarithms to 1, 2 and 4.
+/// Whether the thesis uses a column of shape diameter or medial distance: the means in cones of 60, 90 and 120
+/// degrees, and their logarithms to 1, 2 and 4.
 bool is_cone_column(const std::string& name) {
     const std::size_t at = name.find(".mean@");
     if (at == std::string::npos) return false;
@@ -73,8 +73,8 @@ struct TensorAxes {
     float first_confidence, second_confidence;
 };
 
-/// Axes of largest and second largest extent, laid into the tangent plane; how far they are from arbitrary decides how
-/// far they are to be trusted.
+/// Axes of largest and second largest extent, projected into the tangent plane. An axis is the more reliable, the
+/// more its extent differs from the others.
 TensorAxes tensor_axes(const std::array<float, 6>& c, const Vec3& normal) {
     Eigen::Matrix3f covariance;
     covariance << c[0], c[1], c[2], c[1], c[3], c[4], c[2], c[4], c[5];
@@ -91,7 +91,7 @@ TensorAxes tensor_axes(const std::array<float, 6>& c, const Vec3& normal) {
             direction_confidence(second_gap) * second.squaredNorm()};
 }
 
-/// Curvature at all scales; the feature size, too, unless it is known (not 0).
+/// Measures curvature at all scales, and the feature size unless it is known (not 0).
 void measure_curvature(HatchingSurface& surface, float known_feature_size) {
     CurvatureEstimator estimator(surface.mesh.faces, surface.mesh.vertex_count());
     CurvatureOptions options;
@@ -111,7 +111,7 @@ void complete_principal(const DirectionSmoother& smoother, std::size_t scale, Ha
     const VertexCurvature& c = surface.curvature[scale];
     std::vector<float> confidence(c.k1.size());
     for (std::size_t v = 0; v < confidence.size(); ++v) {
-        // What is flatter than a radius of twice the median distance is flat.
+        // Radii of curvature above twice the median distance count as flat.
         const float largest = std::max({std::abs(c.k1[v]), std::abs(c.k2[v]), 0.5f / surface.unit});
         confidence[v] = direction_confidence((c.k1[v] - c.k2[v]) / (2 * largest));
     }
@@ -122,21 +122,21 @@ void complete_principal(const DirectionSmoother& smoother, std::size_t scale, Ha
     for (std::size_t v = 0; v < k_max.size(); ++v) k_min[v] = surface.normals[v].cross(k_max[v]);
 }
 
-/// Fields that follow from how the surface bends: k_max of each scale (k_min is that turned), ridges and valleys.
+/// Direction fields that follow from curvature: k_max of each scale (k_min is perpendicular to it), ridges, valleys.
 constexpr std::size_t k_bending_fields = k_hatching_scales.size() + 2;
 void complete_bending(const DirectionSmoother& smoother, std::size_t field, HatchingSurface& surface) {
     if (field < k_hatching_scales.size()) complete_principal(smoother, field, surface);
     if (field == k_hatching_scales.size())
-        surface.directions.ridges = complete_lines(smoother, surface, LineType::ridges);
+        surface.directions.ridges = complete_line_directions(smoother, surface, LineType::ridges);
     if (field == k_hatching_scales.size() + 1)
-        surface.directions.valleys = complete_lines(smoother, surface, LineType::valleys);
+        surface.directions.valleys = complete_line_directions(smoother, surface, LineType::valleys);
 }
 
 class Measurement {
   public:
-    explicit Measurement(const TriangleMesh& mesh) : prepared_(prepare_mesh(mesh, k_samples)) {
+    explicit Measurement(const TriangleMesh& mesh) : prepared_(prepare_mesh(mesh, k_surface_samples)) {
         surface_.mesh = mesh;
-        // Turned outward, if need be, as the prepared mesh is.
+        // Faces of the prepared mesh are turned outward if need be.
         surface_.mesh.faces = prepared_.mesh.faces;
         surface_.normals = vertex_normals(surface_.mesh);
         const double prepared_size = bounding_box(prepared_.mesh).diagonal();
@@ -173,7 +173,7 @@ class Measurement {
         PcaFamily pca(prepared_, k_pca_scales);
         pca.keep_covariances();
         ShapeContextFamily contexts(prepared_);
-        for_each_neighborhood(prepared_, std::max(pca.radius(), contexts.radius()), k_least_region,
+        for_each_neighborhood(prepared_, std::max(pca.radius(), contexts.radius()), k_min_region_faces,
                               [&](std::uint32_t face, Neighborhood neighborhood) {
                                   pca.measure(face, neighborhood);
                                   contexts.measure(face, neighborhood);
@@ -251,8 +251,8 @@ class Measurement {
     std::vector<std::vector<std::array<float, 6>>> covariances_;
 };
 
-/// Tangent directions carried along: each is a sum of edges of a face before, and then of the same edges now; the mean
-/// over the faces around a vertex.
+/// Rotates tangent directions with the faces: in each face around a vertex, expresses the direction by two edges
+/// before the move, and combines the same edges after it; then takes the mean over the faces.
 class TurningDirections {
   public:
     TurningDirections(const TriangleMesh& mesh, std::span<const Vec3> before) : mesh_(mesh), before_(before) {
@@ -275,7 +275,7 @@ class TurningDirections {
     }
 
   private:
-    /// Counts by the area that the face had.
+    /// Returns the direction after the move, weighted by the area that the face had before.
     Vec3 turned(std::uint32_t f, const Vec3& direction) const {
         const auto& [a, b, c] = mesh_.faces[f];
         const Vec3 p = before_[b] - before_[a], q = before_[c] - before_[a], normal = p.cross(q);
@@ -295,7 +295,7 @@ class TurningDirections {
 }  // namespace
 
 std::vector<std::string> descriptor_names() {
-    // Those of any mesh.
+    // All meshes have the same columns.
     TriangleMesh mesh;
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     mesh.faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};

@@ -21,7 +21,7 @@ struct VertexState {
     ViewVector view;
 };
 
-/// In units of the median distance, bounded by `limit` (its square for second-order values).
+/// Values are in units of the median distance, clamped to `limit` (second-order values to its square).
 std::array<float, k_curvature_functions> curvature_functions(const VertexState& at, float limit) {
     const auto first = [&](float value) { return std::clamp(value, -limit, limit); };
     const auto second = [&](float value) { return std::clamp(value, -limit * limit, limit * limit); };
@@ -51,7 +51,7 @@ Vec3 light_from(const Camera& camera, const Vec3& direction) {
     return (camera.view.topLeftCorner<3, 3>().transpose() * direction).normalized();
 }
 
-Vec3 usual_light(const Camera& camera) {
+Vec3 default_light(const Camera& camera) {
     return light_from(camera, {-0.45f, 0.55f, 0.7f});
 }
 

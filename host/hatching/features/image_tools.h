@@ -6,7 +6,7 @@
 
 namespace exemplar {
 
-/// What measures pictures: on the host, or on a device.
+/// The implementations that compute image features, each on the CPU or on a device.
 struct ImageTools {
     GBufferRenderer& gbuffers;
     ImageFilters& filters;

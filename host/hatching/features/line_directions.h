@@ -9,20 +9,22 @@
 
 namespace exemplar {
 
-/// How far a direction is to be trusted whose extent exceeds that across it by `gap` (a share of the larger, in [0,
-/// 1]): not at all at 0, fully from 0.3 on.
+/// Returns the confidence, in [0, 1], of a direction whose extent exceeds that across it by `gap` (a share of the
+/// larger, in [0, 1]): 0 at a gap of 0, 1 from 0.3 on.
 inline float direction_confidence(float gap) {
     const float x = gap / 0.3f;
     return x >= 1 ? 1.0f : x > 0 ? x * x : 0.0f;
 }
 
-/// The surface as lines are found on it.
+/// Returns the surface in the form that extract_lines takes.
 LineSurface line_surface(const HatchingSurface& surface);
 
-/// Directions along lines on a surface, completed between them: V unit tangents, or zeros if there are no lines.
-std::vector<Vec3> complete_lines(const DirectionSmoother& smoother, const HatchingSurface& surface,
-                                 std::span<const LineSegment> segments);
-/// The same of ridges or valleys.
-std::vector<Vec3> complete_lines(const DirectionSmoother& smoother, const HatchingSurface& surface, LineType type);
+/// Returns directions along lines on a surface, completed between them: V unit tangents, or zeros if there are no
+/// lines.
+std::vector<Vec3> complete_line_directions(const DirectionSmoother& smoother, const HatchingSurface& surface,
+                                           std::span<const LineSegment> segments);
+/// Returns the same for the surface's ridges or valleys.
+std::vector<Vec3> complete_line_directions(const DirectionSmoother& smoother, const HatchingSurface& surface,
+                                           LineType type);
 
 }  // namespace exemplar

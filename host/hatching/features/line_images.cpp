@@ -21,7 +21,8 @@ Vec3 point_in(const TriangleMesh& mesh, std::uint32_t face, const std::array<flo
     return point;
 }
 
-/// Adds the length of a straight line, in steps of half a pixel, each shared by the four pixels around it.
+/// Adds length times opacity of a straight line, in steps of half a pixel, each distributed bilinearly to four
+/// pixels.
 void deposit(const Vec2& from, const Vec2& to, float opacity, FloatImage& image) {
     const float length = (to - from).norm();
     const int steps = std::max(1, static_cast<int>(std::ceil(2 * length)));

@@ -16,19 +16,20 @@ namespace exemplar {
 /// valleys, apparent ridges.
 constexpr std::size_t k_line_kinds = 4, k_line_thresholds = 4;
 
-/// Its name, e.g. "contours".
+/// Returns the name of a kind, e.g. "contours".
 const char* line_kind_name(std::size_t kind);
-/// The threshold of a kind, dimensionless: from 0.001 (contours, valleys) or 0.01 to 0.1, evenly in the logarithm.
+/// Returns threshold `step` of a kind, dimensionless: from 0.001 (contours, valleys) or 0.01 to 0.1, evenly in the
+/// logarithm.
 float line_threshold(std::size_t kind, std::size_t step);
 
 /// Draws images of the visible feature lines of a view. Keeps references.
 class LineImages {
   public:
     LineImages(const HatchingSurface& surface, const HatchingView& view);
-    /// How much line there is in each pixel, in pixels of length times opacity: one channel. Safe to call from many
-    /// threads.
+    /// Returns the amount of line in each pixel as one channel: length in pixels times opacity. Safe to call from
+    /// many threads.
     FloatImage draw(std::size_t kind, std::size_t step) const;
-    /// All lines of a type at a threshold, hidden ones too.
+    /// Returns all lines of a type at a threshold, including hidden ones.
     std::vector<LineSegment> segments(LineType type, float threshold) const;
 
   private:

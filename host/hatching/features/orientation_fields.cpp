@@ -14,6 +14,11 @@ DoubledAngle doubled_angle(float angle) {
     return {std::cos(2 * angle), std::sin(2 * angle)};
 }
 
+DoubledAngle doubled_angle(const Vec2& direction) {
+    return normalized(
+        {direction.x() * direction.x() - direction.y() * direction.y(), 2 * direction.x() * direction.y()});
+}
+
 float angle_of(const DoubledAngle& v) {
     const float angle = 0.5f * std::atan2(v[1], v[0]);
     return angle < 0 ? angle + std::numbers::pi_v<float> : angle;

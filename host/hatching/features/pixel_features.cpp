@@ -102,12 +102,12 @@ const std::vector<std::string>& orientation_feature_names() {
     return k_names;
 }
 
-/// What is computed when it is first asked for.
+/// Results that are computed on first use.
 struct PixelFeatures::Parts {
     ImageStack shading;
     std::array<std::optional<ImageDerivatives>, k_sigmas.size()> derivatives;
     std::optional<LineImages> lines;
-    // Of all thresholds, which cost little more than one: filters take that many images side by side.
+    // One image per threshold: filters process all of them side by side, for little more than the cost of one.
     std::array<std::optional<ImageStack>, k_line_kinds> drawn;
     std::array<std::array<std::optional<ImageStack>, k_line_sigmas.size()>, k_line_kinds> line_images;
     std::optional<std::array<std::vector<Vec3>, k_vertex_fields>> fields;  // per vertex
@@ -122,7 +122,7 @@ Source source_of(std::size_t feature) {
     return feature < k_first_image ? Source::descriptors : Source::picture;
 }
 
-/// The first features of some, as many as come from where the first does.
+/// Returns the longest run of leading features that share the source of the first.
 std::span<const std::uint32_t> same_source(std::span<const std::uint32_t> features) {
     const auto other =
         std::ranges::find_if(features, [&](std::uint32_t k) { return source_of(k) != source_of(features.front()); });
@@ -135,7 +135,7 @@ std::vector<std::uint32_t> descriptors_of(std::span<const std::uint32_t> feature
     return columns;
 }
 
-/// Fills columns of a matrix with what pictures show at some of the pixels.
+/// Fills columns of a feature matrix from images at some of the pixels.
 class Gatherer {
   public:
     Gatherer(const PixelFeatures& pixels, std::span<const std::uint32_t> rows)
@@ -155,7 +155,7 @@ class Gatherer {
     std::size_t count_;
 };
 
-/// The fields of App. B.3 that live on the surface, in their order.
+/// Computes the fields of App. B.3 that are defined on the surface, in their order.
 std::array<std::vector<Vec3>, k_vertex_fields> vertex_fields(const HatchingSurface& surface, const HatchingView& view,
                                                              const LineImages& lines) {
     std::array<std::vector<Vec3>, k_vertex_fields> fields;
@@ -184,7 +184,7 @@ std::array<std::vector<Vec3>, k_vertex_fields> vertex_fields(const HatchingSurfa
             const std::vector<LineSegment> suggestive =
                 lines.segments(LineType::suggestive_contours, LineThresholds{}.suggestive_contours);
             segments.insert(segments.end(), suggestive.begin(), suggestive.end());
-            fields[16] = complete_lines(smoother, surface, segments);
+            fields[16] = complete_line_directions(smoother, surface, segments);
         }
     });
     fields[14].assign(count, view.light);
@@ -192,11 +192,6 @@ std::array<std::vector<Vec3>, k_vertex_fields> vertex_fields(const HatchingSurfa
     fields[17] = surface.directions.ridges;
     fields[18] = surface.directions.valleys;
     return fields;
-}
-
-DoubledAngle doubled(const Vec2& direction) {
-    return normalized(
-        {direction.x() * direction.x() - direction.y() * direction.y(), 2 * direction.x() * direction.y()});
 }
 
 }  // namespace
@@ -281,7 +276,8 @@ void PixelFeatures::picture_column(std::size_t feature, std::span<const std::uin
     static const std::vector<ImageFeature> k_features = image_features();
     const auto [quantity, image, sigma] = k_features[feature - k_first_image];
     if (quantity == ImageFeature::depth) {
-        // In units of the object's size, from its middle: the same for a mesh of any size, seen from anywhere.
+        // Relative to the object's center, in units of its radius: so it depends on neither mesh scale nor eye
+        // distance.
         const BoundingBox box = bounding_box(surface_.mesh);
         const Vec3 middle = (0.5 * (box.low + box.high)).cast<float>();
         const float away = -(view_.camera.view * middle.homogeneous()).z();
@@ -303,7 +299,7 @@ std::vector<DoubledAngle> PixelFeatures::gradient_directions(std::span<const flo
         const Vec2 gradient(x[pixel], y[pixel]);
         // A picture that is flat to a millionth has no gradient.
         if (gradient.norm() > 1e-6f)
-            directions[pixel] = doubled(gradient.normalized());
+            directions[pixel] = doubled_angle(gradient.normalized());
         else
             complete = false;
     };

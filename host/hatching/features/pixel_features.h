@@ -20,12 +20,14 @@ constexpr std::size_t k_curvature_features = k_view_curvature_columns, k_descrip
 constexpr std::size_t k_pixel_features =
     k_curvature_features + k_descriptor_features + k_image_features + k_line_features;  // 301
 
-/// Their names, in order; e.g. "curvature.mean@0.01", "image.L.N@2", "lines.ridges>0.01@5".
+/// Returns the names of the scalar features, in order; e.g. "curvature.mean@0.01", "image.L.N@2",
+/// "lines.ridges>0.01@5".
 const std::vector<std::string>& pixel_feature_names();
-/// Names of the k_orientation_features, as in the legend of thesis Fig. 4.3; e.g. "k_max,1", "perp k_max,1".
+/// Returns the names of the k_orientation_features, as in the legend of thesis Fig. 4.3: for example "k_max,1" and
+/// "perp k_max,1".
 const std::vector<std::string>& orientation_feature_names();
 
-/// What is known of each pixel of a view that shows the surface. What nobody asks for is not computed.
+/// The features of the pixels of a view that show the surface. Images and fields are computed on first use.
 class PixelFeatures {
   public:
     /// Keeps references to all three. Throws DataError if the view does not show the surface.
@@ -39,9 +41,11 @@ class PixelFeatures {
     const CoveredPixels& pixels() const { return pixels_; }
     std::size_t size() const { return pixels_.pixel.size(); }
 
-    /// The scalar features `which` of pixels_.pixel[rows[i]]; no rows: of all pixels.
+    /// Returns the scalar features `which` of the pixels pixels().pixel[rows[i]]; of all pixels if there are no
+    /// rows.
     FeatureMatrix scalars(std::span<const std::uint32_t> which, std::span<const std::uint32_t> rows);
-    /// All orientation features of those pixels. Where an image has no gradient, its direction is as around there.
+    /// Returns all orientation features of those pixels. Where an image has no gradient, the direction is completed
+    /// from its surroundings.
     OrientationFields orientations(std::span<const std::uint32_t> rows);
 
   private:

@@ -21,7 +21,7 @@ void check_columns(std::size_t columns, const FacePoints& points, std::span<cons
             fmt::format("{} columns of {} points do not fit into {} values", which.size(), points.size(), out.size()));
 }
 
-/// A direction without sign at a point: those of the corners turned to the first that has one.
+/// Interpolates unsigned directions at a point, with the signs of the first that is not zero.
 Vec3 interpolate_direction(const TriangleMesh& mesh, const FacePoints& points, std::size_t i,
                            std::span<const Vec3> values) {
     const Face& face = mesh.faces[points.face[i]];
@@ -32,11 +32,6 @@ Vec3 interpolate_direction(const TriangleMesh& mesh, const FacePoints& points, s
     };
     const Vec3& leading = first.squaredNorm() > 0 ? first : second;
     return (1 - b - c) * first + turned(b, leading, second) + turned(c, leading, third);
-}
-
-DoubledAngle doubled(const Vec2& direction) {
-    return normalized(
-        {direction.x() * direction.x() - direction.y() * direction.y(), 2 * direction.x() * direction.y()});
 }
 
 }  // namespace
@@ -116,7 +111,7 @@ void CpuPixelProjection::directions(const TriangleMesh& mesh, const HatchingView
             for (std::size_t k = 0; k < fields.size(); ++k) {
                 const Vec3 direction = interpolate_direction(mesh, points, i, fields[k]);
                 out[k * points.size() + i] =
-                    doubled(projected_direction(view, view_projection, point, direction).stableNormalized());
+                    doubled_angle(projected_direction(view, view_projection, point, direction).stableNormalized());
             }
         },
         512);

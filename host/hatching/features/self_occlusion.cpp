@@ -22,7 +22,8 @@ std::vector<float> edge_lengths(const TriangleMesh& mesh) {
     return length;
 }
 
-/// Directions and their harmonics: the same for all vertices, so that what differs between them is the surface.
+/// Sampling directions and their harmonics. They are the same for all vertices, so that results differ only by the
+/// surface.
 struct Sky {
     std::vector<Vec3> direction;
     std::vector<Harmonics> harmonics;
@@ -41,7 +42,7 @@ SelfOcclusion measure_self_occlusion(const TriangleMesh& mesh, std::span<const V
                       std::vector<Harmonics>(mesh.vertex_count())};
     const float share = 4 * std::numbers::pi_v<float> / static_cast<float>(rays);
     const auto measure = [&](std::size_t v) {
-        // A little above the surface: rays along it are not to end in the faces around the vertex.
+        // Rays start a little above the surface, so that grazing rays do not hit the faces around the vertex.
         const Vec3 origin = mesh.vertices[v] + 0.02f * edge[v] * normals[v];
         float open = 0, all = 0;
         for (std::size_t k = 0; k < sky.direction.size(); ++k) {

@@ -12,17 +12,17 @@ namespace exemplar {
 constexpr std::size_t k_harmonic_bands = 5, k_harmonics = k_harmonic_bands * k_harmonic_bands;
 using Harmonics = std::array<float, k_harmonics>;
 
-/// Y_lm of a unit direction, orthonormal over the sphere; coefficient l (l + 1) + m.
+/// Evaluates the harmonics at a unit direction, orthonormal over the sphere; Y_lm is coefficient l (l + 1) + m.
 Harmonics spherical_harmonics(const Vec3& direction);
 
-/// The coefficients of a distant light from that unit direction, which lights a surface that it meets at a right angle
-/// to about 1: a delta function through a Hann window, so that what it lights does not ring (Sloan 2008).
+/// Returns the coefficients of a distant light from a unit direction: a delta function through a Hann window, so
+/// that the light does not ring (Sloan 2008). A surface that faces the light has a brightness of about 1.
 Harmonics distant_light(const Vec3& direction);
 
-/// Sum of the products: the integral over the sphere of the product of both functions.
+/// Returns the sum of products: the integral over the sphere of the product of both functions.
 float dot(std::span<const float, k_harmonics> first, std::span<const float, k_harmonics> second);
 
-/// `count` directions, evenly spread over the sphere (a Fibonacci spiral).
+/// Returns `count` directions, evenly spread over the sphere (a Fibonacci spiral).
 std::vector<Vec3> sphere_directions(std::size_t count);
 
 }  // namespace exemplar

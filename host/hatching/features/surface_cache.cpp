@@ -20,11 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-// Ranges of distances are most of a surface; as digits of a number, three of them fit into a byte.
+// Ranges of distances take up most of an entry. As digits of a number, three of them fit into a byte.
 constexpr std::uint32_t k_range_values = k_context_ranges + 1;
 constexpr std::size_t k_ranges_per_byte = 3;
 static_assert(k_range_values * k_range_values * k_range_values <= 256);
-constexpr std::size_t k_block = 1 << 16;  // bytes that are packed at once
+constexpr std::size_t k_block = 1 << 16;  // bytes per task
 
 std::size_t packed_size(std::size_t ranges) {
     return (ranges + k_ranges_per_byte - 1) / k_ranges_per_byte;
@@ -60,7 +60,7 @@ std::vector<std::uint8_t> unpacked_ranges(std::span<const std::uint8_t> packed, 
     return ranges;
 }
 
-/// Numbers that a row holds, one after the other: a vector, an array, or a number itself.
+/// The type of the numbers that a row holds: a vector, an array, or a number itself.
 template <typename Row>
 struct Components {
     using Type = Row;
@@ -76,7 +76,7 @@ struct Components<std::array<T, N>> {
 template <typename Row>
 constexpr std::size_t k_width = sizeof(Row) / sizeof(typename Components<Row>::Type);
 
-/// Puts arrays into an entry.
+/// Adds arrays to an entry.
 struct EntryWriter {
     template <typename Row>
     void rows(const std::string& name, const std::vector<Row>& values, std::size_t /*count*/) {
@@ -87,7 +87,7 @@ struct EntryWriter {
     TensorFile& file;
 };
 
-/// Takes arrays of so many rows out of an entry; throws ModelError if one has not as many.
+/// Reads arrays of `count` rows from an entry; throws ModelError if one has another number of rows.
 struct EntryReader {
     template <typename Row>
     void rows(const std::string& name, std::vector<Row>& values, std::size_t count) {
@@ -108,7 +108,8 @@ void transfer_curvature(Entry& entry, const std::string& name, Curvature& c, std
     entry.rows(name + ".derivative", c.derivative, vertices);
 }
 
-/// All arrays but the ranges of distances, in the same words for both ways, so that none is forgotten on one.
+/// Transfers all arrays but the ranges of distances. Writing and reading share this code, so that neither forgets
+/// one.
 template <typename Entry, typename Surface>
 void transfer_arrays(Entry& entry, Surface& surface, std::size_t faces, std::size_t vertices) {
     entry.rows("faces", surface.mesh.faces, faces);
@@ -148,7 +149,7 @@ TensorFile to_file(const HatchingSurface& surface) {
     return file;
 }
 
-/// Vertices are those of the mesh that was asked for, as the entry's name says.
+/// Takes the vertices from `mesh`, whose hash is in the entry's name.
 HatchingSurface from_file(const TensorFile& file, const TriangleMesh& mesh) {
     HatchingSurface surface;
     surface.mesh = mesh;

@@ -15,7 +15,8 @@ namespace {
 
 /// Rows of pixels that are drawn together.
 constexpr int k_band = 16;
-/// Places of a pixel. No two are in line with an axis: strokes along axes are measured as finely as others.
+/// Samples per pixel along each axis. No two samples share a row or a column: so strokes along the axes are sampled
+/// as finely as others.
 constexpr int k_places = 4;
 Vec2 place_of(int x, int y) {
     constexpr float k_part = 1.0f / k_places;
@@ -23,7 +24,7 @@ Vec2 place_of(int x, int y) {
             (static_cast<float>(y) + (static_cast<float>(x) + 0.5f) * k_part) * k_part};
 }
 
-void check(const HatchStroke& stroke) {
+void check_stroke(const HatchStroke& stroke) {
     bool valid = stroke.points.size() == stroke.widths.size() && std::isfinite(stroke.darkness);
     for (const Vec2& point : stroke.points) valid &= point.allFinite();
     for (const float width : stroke.widths) valid &= std::isfinite(width);
@@ -39,12 +40,12 @@ struct Range {
 };
 
 /// A piece of a stroke's center line.
-struct Piece {
+struct InkPiece {
     Vec2 from, way;
     float half_from, half_to;  ///< of its widths
     float inverse;             ///< of the squared length
 
-    Piece(const HatchStroke& stroke, std::size_t i)
+    InkPiece(const HatchStroke& stroke, std::size_t i)
         : from(stroke.points[i]),
           way(stroke.points[i + 1] - from),
           half_from(stroke.widths[i] / 2),
@@ -61,7 +62,7 @@ struct Piece {
     }
 };
 
-/// Some rows of the picture while strokes are drawn.
+/// A band of rows while strokes are drawn into it.
 class Band {
   public:
     Band(int top, int width, int height)
@@ -71,7 +72,7 @@ class Band {
 
     void draw(const HatchStroke& stroke, std::uint32_t name) {
         for (std::size_t i = 0; i + 1 < stroke.points.size(); ++i) {
-            const Piece piece(stroke, i);
+            const InkPiece piece(stroke, i);
             const Range rows = piece.along(1, height_), columns = piece.along(0, width_);
             for (int y = std::max(rows.begin, top_); y < std::min(rows.end, top_ + k_band); ++y)
                 for (int x = columns.begin; x < columns.end; ++x) draw(piece, x, y, 1 - stroke.darkness, name);
@@ -91,15 +92,15 @@ class Band {
   private:
     static constexpr int k_per_pixel = k_places * k_places;
     struct Place {
-        float light = 1;         ///< what is left of it
-        std::uint32_t name = 0;  ///< of the last stroke over it
+        float light = 1;         ///< light that is left
+        std::uint32_t name = 0;  ///< of the last stroke drawn over it
     };
 
     std::size_t first_of(int x, int y) const {
         return k_per_pixel *
                (static_cast<std::size_t>(y - top_) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x));
     }
-    void draw(const Piece& piece, int x, int y, float lets_through, std::uint32_t name) {
+    void draw(const InkPiece& piece, int x, int y, float lets_through, std::uint32_t name) {
         Place* const places = places_.data() + first_of(x, y);
         const Vec2 corner(static_cast<float>(x), static_cast<float>(y));
         for (int i = 0; i < k_per_pixel; ++i) {
@@ -114,11 +115,11 @@ class Band {
     std::vector<Place> places_;
 };
 
-/// The strokes that each band has a part of.
+/// Returns the strokes that overlap each band.
 std::vector<std::vector<std::uint32_t>> strokes_by_band(std::span<const HatchStroke> strokes, int height) {
     std::vector<std::vector<std::uint32_t>> bands(static_cast<std::size_t>((height + k_band - 1) / k_band));
     for (std::size_t i = 0; i < strokes.size(); ++i) {
-        check(strokes[i]);
+        check_stroke(strokes[i]);
         if (strokes[i].points.size() < 2) continue;
         const auto by_y = [](const Vec2& a, const Vec2& b) { return a.y() < b.y(); };
         const auto [low, high] = std::ranges::minmax_element(strokes[i].points, by_y);
@@ -132,7 +133,7 @@ std::vector<std::vector<std::uint32_t>> strokes_by_band(std::span<const HatchStr
 
 }  // namespace
 
-std::vector<float> drawn_ink(std::span<const HatchStroke> strokes, int width, int height) {
+std::vector<float> render_ink(std::span<const HatchStroke> strokes, int width, int height) {
     std::vector<float> ink(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     const auto bands = strokes_by_band(strokes, height);
     parallel_for(bands.size(), [&](std::size_t i) {

@@ -8,26 +8,26 @@
 
 namespace exemplar {
 
-/// The share of each pixel that strokes darken, row by row: measured at 16 places of it. A stroke covers what is within
-/// half of its width from its center line, once; ink that lies over ink lets through what both do, so that places
-/// covered by strokes of darkness a and b are 1 - (1 - a)(1 - b) dark. The result does not depend on the number of
-/// threads. Throws UsageError for strokes whose points and widths are not as many, or not finite.
-std::vector<float> drawn_ink(std::span<const HatchStroke> strokes, int width, int height);
+/// Renders strokes: returns the darkness of each pixel, row by row, as the mean over 16 samples in the pixel. A
+/// stroke covers the samples within half of its width of its center line, each once; a sample covered by strokes of
+/// darkness a and b gets 1 - (1 - a)(1 - b). The result does not depend on the number of threads. Throws UsageError
+/// for strokes with different numbers of points and widths, or with values that are not finite.
+std::vector<float> render_ink(std::span<const HatchStroke> strokes, int width, int height);
 
-/// The tone that strokes are to have (the same measure): thickness x intensity / spacing, at most the intensity, of one
-/// layer; 1 - (1 - t)^2 where there are two.
+/// Returns the target tone of each pixel, in the measure of render_ink(): t = thickness x intensity / spacing, at
+/// most the intensity, where one layer is hatched; 1 - (1 - t)^2 where two are.
 std::vector<float> target_tone(const HatchingFields& fields);
 
-/// Means over square windows of an image, cut off at its borders.
+/// Means over square windows of an image, clipped at its borders; uses a summed-area table.
 class WindowMeans {
   public:
     WindowMeans(std::span<const float> values, int width, int height);
-    /// Of the pixels no further than `reach` from (x, y) along both axes; 0 <= reach.
+    /// Returns the mean of the pixels at most `reach` (not negative) from (x, y) along both axes.
     double mean(int x, int y, int reach) const;
 
   private:
     int width_, height_;
-    std::vector<double> sums_;  // of all above and left of a pixel's upper left corner
+    std::vector<double> sums_;  // sums of the pixels above and left of each pixel's upper left corner
 };
 
 }  // namespace exemplar

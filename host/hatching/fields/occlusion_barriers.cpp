@@ -13,7 +13,7 @@
 namespace exemplar {
 namespace {
 
-constexpr float k_explained = 2, k_least_jump = 1.0f / 200;
+constexpr float k_explained_slope = 2, k_min_jump = 1.0f / 200;
 
 /// Depths along a row or a column.
 struct DepthLine {
@@ -22,7 +22,7 @@ struct DepthLine {
     int count;
 
     float operator[](int i) const { return first[static_cast<std::size_t>(i) * step]; }
-    /// How much depth grows from i to i + 1; 0 where either is nothing or beyond the picture.
+    /// Change of depth from i to i + 1; 0 where either is background or outside of the image.
     float slope(int i) const {
         if (i < 0 || i + 1 >= count) return 0;
         const float slope = (*this)[i + 1] - (*this)[i];
@@ -34,7 +34,7 @@ struct DepthLine {
         if (!here || !there) return here != there;
         const float step_there = slope(i), sign = step_there < 0 ? -1.0f : 1.0f;
         const float beside = std::max({0.0f, sign * slope(i - 1), sign * slope(i + 1)});
-        return std::abs(step_there) > k_explained * beside + least;
+        return std::abs(step_there) > k_explained_slope * beside + least;
     }
 };
 
@@ -54,7 +54,7 @@ std::vector<std::uint8_t> occlusion_barriers(std::span<const float> depth, int w
     if (width < 0 || height < 0 || depth.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
         throw UsageError(fmt::format("{} depths are not those of {} x {} pixels", depth.size(), width, height));
     std::vector<std::uint8_t> barriers(depth.size());
-    const float least = k_least_jump * depth_range(depth);
+    const float least = k_min_jump * depth_range(depth);
     const auto row = static_cast<std::size_t>(width);
     parallel_for(
         static_cast<std::size_t>(height),

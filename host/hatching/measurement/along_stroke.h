@@ -6,16 +6,16 @@
 
 namespace exemplar {
 
-/// For each of some points along a line the nearest measured ones before and behind it, and how far between it is.
-struct BetweenMeasured {
+/// The measured points nearest to a point along a line, before and behind it, and its place between them.
+struct MeasuredNeighbors {
     std::size_t before = 0, behind = 0;
     float share = 0;  ///< 0: at `before`, 1: at `behind`
 };
 
-/// Calls body(i, between) for each point that was not measured; beyond the outermost measured ones `before` is
-/// `behind`. Calls nothing if none was measured.
+/// Calls body(i, between) for each point that was not measured. Beyond the outermost measured points, `before`
+/// equals `behind`. Does nothing if none was measured.
 template <typename Body>
-void between_measured(const std::vector<bool>& measured, Body&& body) {
+void for_each_unmeasured(const std::vector<bool>& measured, Body&& body) {
     std::optional<std::size_t> before;
     for (std::size_t i = 0; i < measured.size(); ++i) {
         if (measured[i]) {
@@ -30,8 +30,8 @@ void between_measured(const std::vector<bool>& measured, Body&& body) {
         const std::size_t far = last ? start : end;
         for (; i < end; ++i)
             body(i,
-                 BetweenMeasured{start, far,
-                                 far == start ? 0 : static_cast<float>(i - start) / static_cast<float>(far - start)});
+                 MeasuredNeighbors{start, far,
+                                   far == start ? 0 : static_cast<float>(i - start) / static_cast<float>(far - start)});
         --i;
     }
 }

@@ -12,26 +12,26 @@ namespace exemplar {
 /// The real-valued properties of strokes (thesis Sec. 4.3.3).
 enum class StrokeProperty { thickness, intensity, spacing, length };
 constexpr std::size_t k_stroke_properties = 4;
-/// "thickness" and so on.
+/// Returns "thickness" and so on.
 const char* name_of(StrokeProperty property);
-/// The image of that property.
+/// Returns the image of a property.
 std::vector<float>& property_of(HatchingFields& fields, StrokeProperty property);
 const std::vector<float>& property_of(const HatchingFields& fields, StrokeProperty property);
 
-/// What a drawing says of each pixel of the view that it shows; images of the size of the view.
+/// The properties of a drawing at each pixel of the view that it shows; all are images of the view's size.
 struct DrawingProperties {
     int width = 0, height = 0;
-    std::vector<std::uint8_t> center;    ///< 1: on the center line of a stroke of hatching: where properties are known
-    std::vector<std::uint8_t> crossing;  ///< 1: where strokes cross: the direction is not known
-    std::vector<std::uint8_t> crossed;   ///< 1: on a stroke that crosses another: its length is not sure
+    std::vector<std::uint8_t> center;    ///< 1: on the center line of a hatching stroke, where properties are known
+    std::vector<std::uint8_t> crossing;  ///< 1: where strokes cross, so that the direction is unknown
+    std::vector<std::uint8_t> crossed;   ///< 1: on a stroke that crosses another, so its length is uncertain
     std::vector<float> orientation;      ///< radians in [0, pi)
     std::array<std::vector<float>, k_stroke_properties> property;  ///< positive where known
     std::vector<std::uint8_t> level;                               ///< of every pixel of the object
     std::vector<std::uint8_t> boundary;                            ///< 1: on a boundary of hatching regions
 };
 
-/// What measure_strokes found, in the form that styles are learned from. Strokes that no other runs along are no
-/// hatching, and left out.
+/// Returns measurements in the form that styles are learned from. Strokes without a neighbor along them are no
+/// hatching and left out.
 DrawingProperties drawing_properties(const StrokeMeasurements& measurements);
 
 }  // namespace exemplar

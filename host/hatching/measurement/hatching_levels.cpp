@@ -6,22 +6,23 @@
 #include <numbers>
 
 #include "host/core/parallel.h"
-#include "host/hatching/tracing/drawing_filters.h"
 #include "host/hatching/fields/hatching_fields.h"
+#include "host/hatching/tracing/drawing_filters.h"
 #include "host/hatching/tracing/thinning.h"
 
 namespace exemplar {
 namespace {
 
-/// Strokes are sorted by orientation into overlapping sectors, a sector's width twice the way to the next: so the
-/// strokes of one family are together in at least one, and those of sectors two or more apart are different ones.
+/// Strokes are sorted by orientation into overlapping sectors, each twice as wide as the step to the next. So the
+/// strokes of one family are together in at least one sector, and sectors two or more steps apart hold different
+/// families.
 constexpr std::size_t k_sectors = 12;
-constexpr std::size_t k_apart = 2;
+constexpr std::size_t k_sectors_apart = 2;
 constexpr float k_sector_step = std::numbers::pi_v<float> / static_cast<float>(k_sectors);
 constexpr float k_along = 0.5f;  ///< minor radius of a point's mask, in spacings, and how far the masks' union shrinks
-constexpr float k_intersection_reach = 2;  ///< spacings: strokes that cross each other do so in every one
-constexpr float k_least_region = 4;        ///< area of the smallest region, in squared spacings
-constexpr int k_absorptions = 4;           ///< for small regions inside of small regions
+constexpr float k_intersection_reach = 2;  ///< max distance to an intersection, spacings: hatches cross in each
+constexpr float k_min_region_area = 4;     ///< area of the smallest region, in squared spacings
+constexpr int k_absorptions = 4;           ///< rounds, for small regions inside of small regions
 
 std::size_t pixel_at(const Vec2& at, const PixelMask& mask) {
     const int x = std::clamp(static_cast<int>(at.x()), 0, mask.width - 1);
@@ -29,7 +30,7 @@ std::size_t pixel_at(const Vec2& at, const PixelMask& mask) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(mask.width) + static_cast<std::size_t>(x);
 }
 
-/// Sets the pixels of the ellipse around a point that reaches a spacing across the stroke.
+/// Sets the pixels of the ellipse around a point, which reaches a spacing across the stroke.
 void add_ellipse(const TracedPoint& point, PixelMask& mask) {
     const float major = point.spacing, minor = k_along * point.spacing;
     const float cosine = std::cos(point.orientation), sine = std::sin(point.orientation);
@@ -46,9 +47,10 @@ void add_ellipse(const TracedPoint& point, PixelMask& mask) {
         }
 }
 
-/// What the strokes of one sector hatch: the union of their ellipses, which reaches a spacing beyond the outermost
-/// strokes and half of one beyond ends, shrunk by half a spacing from within `mask`. So it ends half a spacing beyond
-/// the outermost strokes, at the ends of strokes, and at the border of the mask; gaps narrower than two spacings close.
+/// Returns what the strokes of one sector hatch: the union of their ellipses, which reaches a spacing beyond the
+/// outermost strokes and half a spacing beyond ends, shrunk by half a spacing within `mask` (closed, not dilated as
+/// in the thesis). So it ends half a spacing beyond the outermost strokes, at the ends of strokes, and at the border
+/// of the mask; gaps narrower than two spacings close.
 std::vector<std::uint8_t> hatched_by_sector(std::span<const TracedStroke> strokes, std::size_t sector,
                                             const PixelMask& mask) {
     PixelMask covered(mask.width, mask.height, 1), lines(mask.width, mask.height, 1);
@@ -78,7 +80,7 @@ std::vector<std::uint8_t> hatched_by_sector(std::span<const TracedStroke> stroke
     return std::move(covered.data);
 }
 
-/// Level by the number of families there: what sectors far enough apart hatch both is crossed.
+/// Returns the level by the number of families: pixels that two sectors far enough apart hatch are cross-hatched.
 std::vector<std::uint8_t> crossed_level(const std::array<std::vector<std::uint8_t>, k_sectors>& sectors,
                                         const PixelMask& mask) {
     std::vector<std::uint8_t> level(mask.data.size(), k_no_hatching);
@@ -89,7 +91,7 @@ std::vector<std::uint8_t> crossed_level(const std::array<std::vector<std::uint8_
             for (std::size_t a = 0; a < k_sectors; ++a) {
                 if (!sectors[a][i]) continue;
                 level[i] = std::max(level[i], k_single_hatching);
-                for (std::size_t b = a + k_apart; b < k_sectors && b + k_apart <= a + k_sectors; ++b)
+                for (std::size_t b = a + k_sectors_apart; b < k_sectors && b + k_sectors_apart <= a + k_sectors; ++b)
                     if (sectors[b][i]) level[i] = k_cross_hatching;
             }
         },
@@ -97,8 +99,9 @@ std::vector<std::uint8_t> crossed_level(const std::array<std::vector<std::uint8_
     return level;
 }
 
-/// Strokes of two families that pass beside each other, or meet at an angle, do not cross: cross-hatching is where
-/// intersections are near.
+/// Turns cross-hatching far from intersections into single hatching: strokes of two families that pass beside each
+/// other, or meet at an angle, do not cross. The thesis unites discs around intersections; these leave gaps between
+/// them at small angles, and reach too far beyond them.
 void demote_far(std::span<const Vec2> intersections, float reach, const PixelMask& mask,
                 std::vector<std::uint8_t>& level) {
     std::vector<std::uint8_t> crossed(level.size(), 0);
@@ -111,7 +114,7 @@ void demote_far(std::span<const Vec2> intersections, float reach, const PixelMas
     }
 }
 
-/// Connected pixels of one level, and how often others are beside them.
+/// Connected pixels of one level, and the number of neighbors of each other level.
 struct Region {
     std::vector<std::size_t> pixels;
     std::array<std::size_t, 3> beside{};
@@ -123,14 +126,14 @@ class RegionFinder {
     RegionFinder(const std::vector<std::uint8_t>& level, const PixelMask& mask)
         : level_(level), mask_(mask), seen_(level.size(), 0) {}
 
-    /// The region around a pixel of the mask; empty if it was found before.
+    /// Returns the region around a pixel of the mask; empty if it was found before.
     Region take(std::size_t start) {
         Region region;
         if (!mask_.data[start] || seen_[start]) return region;
         region.pixels.push_back(start);
         seen_[start] = 1;
         for (std::size_t k = 0; k < region.pixels.size(); ++k)
-            for (const auto& step : k_ring) look(region.pixels[k], step, region);
+            for (const auto& step : k_neighbor_offsets) look(region.pixels[k], step, region);
         return region;
     }
 
@@ -154,8 +157,8 @@ class RegionFinder {
     std::vector<std::uint8_t> seen_;
 };
 
-/// Cross-hatching with no more than so many intersections is single hatching.
-void demote_regions(std::span<const Vec2> intersections, std::size_t most_of_single, const PixelMask& mask,
+/// Turns cross-hatching with at most `max_single_intersections` intersections into single hatching.
+void demote_regions(std::span<const Vec2> intersections, std::size_t max_single_intersections, const PixelMask& mask,
                     std::vector<std::uint8_t>& level) {
     std::vector<std::uint32_t> at(level.size(), 0);
     for (const Vec2& place : intersections) ++at[pixel_at(place, mask)];
@@ -166,13 +169,13 @@ void demote_regions(std::span<const Vec2> intersections, std::size_t most_of_sin
         const Region region = finder.take(start);
         std::size_t count = 0;
         for (const std::size_t i : region.pixels) count += at[i];
-        if (count > most_of_single) continue;
+        if (count > max_single_intersections) continue;
         for (const std::size_t i : region.pixels) level[i] = k_single_hatching;
     }
 }
 
-/// Regions of fewer pixels take the level that most of those beside them have: one stroke too short is no region.
-/// Returns whether there was one; what it went to may be small, too.
+/// Gives regions of fewer than `least` pixels the most frequent level of their neighbors: one stroke that is too
+/// short is no region. Returns whether there were any; the regions they join may be small, too.
 bool absorb_small_regions(std::size_t least, const PixelMask& mask, std::vector<std::uint8_t>& level) {
     const std::vector<std::uint8_t> before = level;
     RegionFinder finder(before, mask);
@@ -190,13 +193,14 @@ bool absorb_small_regions(std::size_t least, const PixelMask& mask, std::vector<
 }  // namespace
 
 std::vector<std::uint8_t> hatching_levels(std::span<const TracedStroke> strokes, std::span<const Vec2> intersections,
-                                          const PixelMask& mask, std::size_t most_of_single, float usual_spacing) {
+                                          const PixelMask& mask, std::size_t max_single_intersections,
+                                          float usual_spacing) {
     std::array<std::vector<std::uint8_t>, k_sectors> sectors;
     parallel_for(k_sectors, [&](std::size_t c) { sectors[c] = hatched_by_sector(strokes, c, mask); });
     std::vector<std::uint8_t> level = crossed_level(sectors, mask);
     demote_far(intersections, k_intersection_reach * usual_spacing, mask, level);
-    demote_regions(intersections, most_of_single, mask, level);
-    const auto least = static_cast<std::size_t>(k_least_region * usual_spacing * usual_spacing);
+    demote_regions(intersections, max_single_intersections, mask, level);
+    const auto least = static_cast<std::size_t>(k_min_region_area * usual_spacing * usual_spacing);
     for (int round = 0; round < k_absorptions && absorb_small_regions(least, mask, level);) ++round;
     return level;
 }
@@ -207,8 +211,8 @@ std::vector<std::uint8_t> level_boundaries(std::span<const std::uint8_t> level, 
         for (int x = 0; x < mask.width; ++x) {
             const std::size_t i = static_cast<std::size_t>(y) * mask.width + x;
             if (!mask.data[i]) continue;
-            for (std::size_t k = 0; k < k_ring.size(); k += 2) {
-                const int px = x + k_ring[k][0], py = y + k_ring[k][1];
+            for (std::size_t k = 0; k < k_neighbor_offsets.size(); k += 2) {
+                const int px = x + k_neighbor_offsets[k][0], py = y + k_neighbor_offsets[k][1];
                 if (px < 0 || py < 0 || px >= mask.width || py >= mask.height) continue;
                 const std::size_t other = static_cast<std::size_t>(py) * mask.width + px;
                 if (mask.data[other] && level[other] != level[i]) boundary[i] = 1;

@@ -10,7 +10,7 @@
 
 namespace exemplar {
 
-/// The points of strokes by the square cell of the image they lie in, to find those near a place.
+/// A grid of square cells over the points of strokes, to find those near a place.
 class PointCells {
   public:
     PointCells(std::span<const TracedStroke> strokes, float cell_size);
@@ -20,7 +20,7 @@ class PointCells {
     int columns() const { return columns_; }
     int rows() const { return rows_; }
     float cell_size() const { return size_; }
-    /// The points of a cell by stroke and point; none if there is no such cell.
+    /// Returns the points in a cell, in the order of strokes and points; none if there is no such cell.
     std::span<const PointId> cell(int column, int row) const;
 
   private:

@@ -4,21 +4,22 @@
 #include <vector>
 
 #include "host/core/disjoint_sets.h"
-#include "host/hatching/tracing/drawing_filters.h"
+#include "host/core/statistics.h"
 #include "host/hatching/measurement/hatching_levels.h"
+#include "host/hatching/tracing/drawing_filters.h"
 
 namespace exemplar {
 namespace {
 
-constexpr float k_corner = 0.03f;       ///< least det / trace^2 of the structure tensor of a corner; at most 1/4
-constexpr float k_flat = 1e-4f;         ///< trace below which there is nothing
-constexpr float k_gradient_scale = 1;   ///< pixels
-constexpr float k_least_window = 1.5f;  ///< pixels
+constexpr float k_corner = 0.03f;            ///< min det / trace^2 of a corner's structure tensor; 1/4 is the limit
+constexpr float k_flat = 1e-4f;              ///< min trace: below it the image is flat
+constexpr float k_corner_scale = 1;          ///< pixels
+constexpr float k_min_corner_window = 1.5f;  ///< pixels
 
 /// det / trace^2 of the structure tensor in a Gaussian window: Harris and Stephens' measure without its scale. Zero
 /// along straight edges, 1/4 where edges run in all directions.
 FloatImage cornerness(const FloatImage& image, float window) {
-    const ImageGradient gradient = gaussian_gradient(image, k_gradient_scale);
+    const ImageGradient gradient = gaussian_gradient(image, k_corner_scale);
     FloatImage xx = gradient.x, xy = gradient.x, yy = gradient.y;
     for (std::size_t i = 0; i < xx.data.size(); ++i) {
         xx.data[i] *= gradient.x.data[i];
@@ -46,16 +47,14 @@ float thickness_at(const StrokeCrossing& crossing, std::span<const TracedStroke>
     return std::max(strokes[crossing.strokes[0]].width, strokes[crossing.strokes[1]].width);
 }
 
-float median_width(std::span<const TracedStroke> strokes) {
+float median_stroke_width(std::span<const TracedStroke> strokes) {
     std::vector<float> widths;
     for (const TracedStroke& stroke : strokes) widths.push_back(stroke.width);
-    if (widths.empty()) return 0;
-    const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-    std::nth_element(widths.begin(), middle, widths.end());
-    return *middle;
+    return upper_median(widths);
 }
 
-/// Centroids of the places that are linked by pairs nearer to each other than the larger of their thicknesses.
+/// Returns the centroids of groups of places, linked if they are nearer to each other than the larger of their
+/// thicknesses.
 std::vector<Vec2> merged(const std::vector<Vec2>& places, const std::vector<float>& thickness) {
     std::vector<std::size_t> by_x(places.size());
     std::iota(by_x.begin(), by_x.end(), 0);
@@ -80,7 +79,7 @@ std::vector<Vec2> merged(const std::vector<Vec2>& places, const std::vector<floa
 std::vector<Vec2> confirmed_intersections(std::span<const StrokeCrossing> crossings, const FloatImage& darkness,
                                           const PixelMask& skeleton, std::span<const TracedStroke> strokes) {
     if (crossings.empty()) return {};
-    const float window = std::max(k_least_window, median_width(strokes));
+    const float window = std::max(k_min_corner_window, median_stroke_width(strokes));
     FloatImage lines(skeleton.width, skeleton.height, 1);
     std::copy(skeleton.data.begin(), skeleton.data.end(), lines.data.begin());
     const FloatImage in_drawing = cornerness(darkness, window);

@@ -7,10 +7,12 @@
 namespace exemplar {
 namespace {
 
-/// How much longer the stroke is than its points say, at its front or back; negative if they go too far.
+/// Returns how far the center line continues beyond the stroke's front or back point; negative if it ends before
+/// that point.
 float beyond_end(const FloatImage& darkness, const TracedStroke& stroke, bool back) {
     const TracedPoint& end = back ? stroke.points.back() : stroke.points.front();
-    const std::optional<float> tip = end.at_crossing ? std::nullopt : way_to_tip(darkness, stroke, back, end.thickness);
+    const std::optional<float> tip =
+        end.at_crossing ? std::nullopt : distance_to_tip(darkness, stroke, back, end.thickness);
     return tip ? *tip - 0.5f * end.thickness : 0;
 }
 

@@ -5,16 +5,16 @@
 #include <tuple>
 
 #include "host/core/parallel.h"
-#include "host/hatching/tracing/drawing_filters.h"
 #include "host/hatching/fields/hatching_fields.h"
+#include "host/hatching/tracing/drawing_filters.h"
 
 namespace exemplar {
 namespace {
 
-constexpr int k_meeting_reach = 2;       ///< pixels between the center lines of strokes that meet
-constexpr std::int32_t k_least_gap = 4;  ///< points between two crossings of the same strokes
-constexpr float k_soft_edge = 1;         ///< pixels by which ink reaches beyond its width
-constexpr float k_widest_overlap = 4;    ///< of crossings at small angles, in widths
+constexpr int k_meeting_reach = 2;           ///< max distance between the center lines of strokes that meet, pixels
+constexpr std::int32_t k_max_point_gap = 4;  ///< max gap within one crossing of two strokes, points
+constexpr float k_ink_edge = 1;              ///< pixels by which ink reaches beyond its width
+constexpr float k_widest_overlap = 4;        ///< max radius of crossings at small angles, in widths
 
 Pixel pixel_within(const Vec2& at, int width, int height) {
     return {std::clamp(static_cast<int>(std::floor(at.x())), 0, width - 1),
@@ -62,7 +62,7 @@ class PointGrid {
     std::vector<PointId> points_;
 };
 
-void find_meetings(std::span<const TracedStroke> strokes, std::int32_t stroke, const PointGrid& grid, float least_angle,
+void find_meetings(std::span<const TracedStroke> strokes, std::int32_t stroke, const PointGrid& grid, float min_angle,
                    std::vector<Meeting>& out) {
     for (std::size_t p = 0; p < strokes[stroke].points.size(); ++p) {
         const TracedPoint& point = strokes[stroke].points[p];
@@ -74,13 +74,13 @@ void find_meetings(std::span<const TracedStroke> strokes, std::int32_t stroke, c
                     if (other.stroke <= stroke) continue;
                     const TracedPoint& second = strokes[other.stroke].points[other.point];
                     if ((second.center - point.center).norm() <= k_meeting_reach &&
-                        orientation_difference(second.orientation, point.orientation) >= least_angle)
+                        orientation_difference(second.orientation, point.orientation) >= min_angle)
                         out.push_back({stroke, other.stroke, static_cast<std::int32_t>(p), other.point});
                 }
     }
 }
 
-/// The mean direction of some points, each taken without sign.
+/// Returns the mean unsigned direction of some points.
 template <typename Range, typename PointOf>
 Vec2 mean_direction(const Range& range, PointOf point_of) {
     Vec2 doubled = Vec2::Zero();
@@ -136,17 +136,17 @@ Pixel StrokeMap::pixel_of(const TracedPoint& point) const {
 }
 
 std::vector<StrokeCrossing> find_crossings(std::span<const TracedStroke> strokes, int width, int height,
-                                           float least_angle) {
+                                           float min_angle) {
     const PointGrid grid(strokes, width, height);
     std::vector<Meeting> meetings;
     for (std::size_t s = 0; s < strokes.size(); ++s)
-        find_meetings(strokes, static_cast<std::int32_t>(s), grid, least_angle, meetings);
+        find_meetings(strokes, static_cast<std::int32_t>(s), grid, min_angle, meetings);
     std::sort(meetings.begin(), meetings.end());
     std::vector<StrokeCrossing> crossings;
     for (std::size_t begin = 0, end = 0; begin < meetings.size(); begin = end) {
         const auto belongs = [&](const Meeting& m, const Meeting& before) {
             return m.first_stroke == before.first_stroke && m.second_stroke == before.second_stroke &&
-                   m.first_point - before.first_point <= k_least_gap;
+                   m.first_point - before.first_point <= k_max_point_gap;
         };
         for (end = begin + 1; end < meetings.size() && belongs(meetings[end], meetings[end - 1]);) ++end;
         crossings.push_back(crossing_of(std::span(meetings).subspan(begin, end - begin), strokes));
@@ -155,7 +155,7 @@ std::vector<StrokeCrossing> find_crossings(std::span<const TracedStroke> strokes
 }
 
 float StrokeCrossing::radius() const {
-    const float widest = std::max(widths[0], widths[1]) + 2 * k_soft_edge;
+    const float widest = std::max(widths[0], widths[1]) + 2 * k_ink_edge;
     const float sine = std::abs(cross_product(directions[0], directions[1]));
     const float cosine = std::abs(directions[0].dot(directions[1]));
     return std::min(0.5f * widest * std::sqrt(2 * (1 + cosine)) / sine, k_widest_overlap * widest);
@@ -164,7 +164,7 @@ float StrokeCrossing::radius() const {
 bool StrokeCrossing::covers(const Vec2& place) const {
     const Vec2 way = place - center;
     for (const std::size_t k : {0u, 1u})
-        if (std::abs(cross_product(directions[k], way)) > 0.5f * widths[k] + k_soft_edge) return false;
+        if (std::abs(cross_product(directions[k], way)) > 0.5f * widths[k] + k_ink_edge) return false;
     return way.norm() <= radius();
 }
 

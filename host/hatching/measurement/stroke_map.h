@@ -10,24 +10,25 @@
 
 namespace exemplar {
 
-/// A stroke, and one of its points.
+/// A point of a stroke.
 struct PointId {
     std::int32_t stroke = -1;  ///< -1: none
     std::int32_t point = 0;
 };
 
-/// The pixels of an image by the stroke whose center line is nearest. It knows the strokes as they were when it was
-/// made.
+/// Assigns each pixel of an image to the nearest point of all center lines. Keeps the state of the strokes at its
+/// construction.
 class StrokeMap {
   public:
     StrokeMap(std::span<const TracedStroke> strokes, int width, int height);
 
-    /// The point whose pixel is nearest to a pixel; none if there are no strokes. Of points in one pixel the first.
+    /// Returns the point whose pixel is nearest to a pixel; none if there are no strokes. Of several points in one
+    /// pixel it is the first.
     PointId nearest(int x, int y) const { return owner_[nearest_[index(x, y)]]; }
-    /// Distance between the pixel and that of the nearest point.
+    /// Returns the distance between the pixel and that of the nearest point.
     float distance(int x, int y) const;
     bool empty() const { return empty_; }
-    /// The pixel that a point lies in.
+    /// Returns the pixel in which a point lies.
     Pixel pixel_of(const TracedPoint& point) const;
 
   private:
@@ -43,21 +44,23 @@ class StrokeMap {
 /// Where the center lines of two strokes meet or cross.
 struct StrokeCrossing {
     Vec2 center = Vec2::Zero();
-    std::array<std::int32_t, 2> strokes{};  ///< the smaller first
+    std::array<std::int32_t, 2> strokes{};  ///< indices, the smaller first
     std::array<Vec2, 2> directions{Vec2::UnitX(), Vec2::UnitY()};
     std::array<float, 2> widths{};
 
-    /// Half of the longest way across the rhombus that the ink of both covers, pixels.
+    /// Returns half of the longer diagonal of the rhombus that the ink of both strokes covers, pixels; bounded for
+    /// small angles.
     float radius() const;
     /// Whether a place is in that rhombus.
     bool covers(const Vec2& place) const;
 };
 
-/// All places where two strokes come within two pixels of each other at an angle of at least `least_angle`.
+/// Finds all places where two strokes come within two pixels of each other at an angle of at least `min_angle`
+/// radians.
 std::vector<StrokeCrossing> find_crossings(std::span<const TracedStroke> strokes, int width, int height,
-                                           float least_angle);
+                                           float min_angle);
 
-/// 1 where the ink of two strokes overlaps.
+/// Returns 1 where the ink of two strokes overlaps.
 PixelMask crossing_pixels(std::span<const StrokeCrossing> crossings, int width, int height);
 /// Marks the points in those pixels as at crossings.
 void mark_crossings(const PixelMask& crossing_pixels, std::span<TracedStroke> strokes);

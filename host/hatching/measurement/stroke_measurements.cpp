@@ -8,24 +8,25 @@
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
-#include "host/hatching/tracing/drawing_filters.h"
+#include "host/core/statistics.h"
 #include "host/hatching/measurement/hatching_levels.h"
-#include "host/hatching/tracing/ink_mask.h"
 #include "host/hatching/measurement/stroke_map.h"
 #include "host/hatching/measurement/stroke_properties.h"
+#include "host/hatching/tracing/drawing_filters.h"
+#include "host/hatching/tracing/ink_mask.h"
 #include "host/hatching/tracing/traced_drawing.h"
 #include "host/hatching/tracing/traced_strokes.h"
 
 namespace exemplar {
 namespace {
 
-constexpr float k_least_crossing_angle = std::numbers::pi_v<float> / 12;
-constexpr float k_paper_distance = 3;  ///< pixels from ink from which there is nothing but paper
-constexpr std::size_t k_least_paper = 100;
-constexpr float k_spacings_per_thickness = 20, k_least_largest_spacing = 24;
-constexpr float k_soft_edge = 1.5f;  ///< pixels that a stroke's pixels may lie beyond its width
+constexpr float k_min_crossing_angle = std::numbers::pi_v<float> / 12;
+constexpr float k_paper_distance = 3;  ///< min distance of paper from ink, pixels
+constexpr std::size_t k_min_paper_pixels = 100;
+constexpr float k_spacings_per_thickness = 20, k_min_max_spacing = 24;
+constexpr float k_owned_edge = 1.5f;  ///< max distance of a stroke's pixels beyond half of its width, pixels
 
-void check(const FloatImage& darkness, const Image& mask) {
+void check_drawing_and_mask(const FloatImage& darkness, const Image& mask) {
     if (darkness.channels != 1 || mask.channels != 1)
         throw UsageError(fmt::format("strokes are measured in images of one channel; the drawing has {}, the mask {}",
                                      darkness.channels, mask.channels));
@@ -35,7 +36,7 @@ void check(const FloatImage& darkness, const Image& mask) {
                         darkness.width, darkness.height, mask.width, mask.height));
 }
 
-/// Mean darkness of what is far from ink: not quite zero in a noisy scan.
+/// Returns the mean darkness far from ink: not quite zero in a noisy scan.
 float paper_darkness(const FloatImage& darkness, const PixelMask& ink) {
     const std::vector<std::int32_t> nearest = nearest_sites(darkness.width, darkness.height, ink.data);
     double sum = 0;
@@ -47,19 +48,16 @@ float paper_darkness(const FloatImage& darkness, const PixelMask& ink) {
         sum += darkness.data[i];
         ++count;
     }
-    return count < k_least_paper ? 0 : static_cast<float>(sum / static_cast<double>(count));
+    return count < k_min_paper_pixels ? 0 : static_cast<float>(sum / static_cast<double>(count));
 }
 
 template <typename Value>
-float median_of(std::span<const TracedStroke> strokes, Value value) {
+float median_over_points(std::span<const TracedStroke> strokes, Value value) {
     std::vector<float> values;
     for (const TracedStroke& stroke : strokes)
         for (const TracedPoint& point : stroke.points)
             if (value(point) > 0) values.push_back(value(point));
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return upper_median(values);
 }
 
 /// Gives each pixel of ink in the mask what was measured at the nearest point.
@@ -74,7 +72,7 @@ void spread(const PixelMask& ink, const Image& mask, const PixelMask& crossing, 
                 if (!ink.data[i] || !mask.data[i]) continue;
                 const PointId id = map.nearest(x, y);
                 const TracedPoint& point = strokes[id.stroke].points[id.point];
-                if (map.distance(x, y) > 0.5f * point.thickness + k_soft_edge) continue;
+                if (map.distance(x, y) > 0.5f * point.thickness + k_owned_edge) continue;
                 m.stroke[i] = 1;
                 m.stroke_id[i] = id.stroke;
                 m.intensity[i] = point.intensity;
@@ -107,11 +105,11 @@ StrokeMeasurements empty_measurements(int width, int height) {
     return m;
 }
 
-/// Everything about single points of strokes, before smoothing. Returns the crossings.
+/// Measures all properties of the strokes' points, without smoothing. Returns the crossings.
 std::vector<StrokeCrossing> measure_points(const FloatImage& darkness, const PixelMask& ink,
                                            const MeasuringOptions& options, std::vector<TracedStroke>& strokes,
                                            StrokeMeasurements& m) {
-    std::vector<StrokeCrossing> crossings = find_crossings(strokes, m.width, m.height, k_least_crossing_angle);
+    std::vector<StrokeCrossing> crossings = find_crossings(strokes, m.width, m.height, k_min_crossing_angle);
     const PixelMask crossing = crossing_pixels(crossings, m.width, m.height);
     mark_crossings(crossing, strokes);
     const StrokeMap map(strokes, m.width, m.height);
@@ -120,27 +118,27 @@ std::vector<StrokeCrossing> measure_points(const FloatImage& darkness, const Pix
     m.softness = estimate_softness(darkness, paper, map, crossing, strokes);
     measure_profiles(darkness, paper, m.softness, map, crossing, strokes);
     measure_lengths(darkness, strokes);
-    m.median_thickness = median_of(strokes, [](const TracedPoint& p) { return p.thickness; });
-    const float largest = options.largest_spacing > 0
-                              ? options.largest_spacing
-                              : std::max(k_least_largest_spacing, k_spacings_per_thickness * m.median_thickness);
+    m.median_thickness = median_over_points(strokes, [](const TracedPoint& p) { return p.thickness; });
+    const float largest = options.max_spacing > 0
+                              ? options.max_spacing
+                              : std::max(k_min_max_spacing, k_spacings_per_thickness * m.median_thickness);
     measure_spacings(crossings, options.similar, largest, strokes);
-    m.median_spacing = median_of(strokes, [](const TracedPoint& p) { return p.spacing; });
+    m.median_spacing = median_over_points(strokes, [](const TracedPoint& p) { return p.spacing; });
     return crossings;
 }
 
 }  // namespace
 
 StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask, const MeasuringOptions& options) {
-    check(darkness, mask);
+    check_drawing_and_mask(darkness, mask);
     StrokeMeasurements m = empty_measurements(darkness.width, darkness.height);
     if (m.size() == 0) return m;
-    TracedDrawing drawing = trace_drawing(darkness, mask, options.faintest);
+    TracedDrawing drawing = trace_drawing(darkness, mask, options.min_darkness);
     std::vector<TracedStroke>& strokes = drawing.strokes;
     if (strokes.empty()) return m;
     const std::vector<StrokeCrossing> crossings = measure_points(darkness, drawing.ink, options, strokes, m);
     m.intersections = confirmed_intersections(crossings, darkness, drawing.skeleton, strokes);
-    m.level = hatching_levels(strokes, m.intersections, mask, options.most_intersections_of_single, m.median_spacing);
+    m.level = hatching_levels(strokes, m.intersections, mask, options.max_single_intersections, m.median_spacing);
     m.boundary = level_boundaries(m.level, mask);
     if (options.smoothing > 0 && m.median_spacing > 0)
         smooth_properties(options.smoothing * m.median_spacing, 0.5f * options.similar, strokes);

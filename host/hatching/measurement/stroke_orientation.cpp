@@ -3,18 +3,17 @@
 #include <numbers>
 
 #include "host/core/parallel.h"
-#include "host/hatching/tracing/drawing_filters.h"
 #include "host/hatching/measurement/stroke_properties.h"
+#include "host/hatching/tracing/drawing_filters.h"
 
 namespace exemplar {
 namespace {
 
-constexpr float k_pi = std::numbers::pi_v<float>;
-constexpr float k_gradient_scale = 1;      ///< pixels
-constexpr float k_least_window = 1.5f;     ///< standard deviation of the tensor's window, pixels
-constexpr float k_edge = 1;                ///< pixels beside a stroke in which its edge has a gradient
-constexpr float k_least_own = 0.98f;       ///< of the window
-constexpr float k_least_coherence = 0.5f;  ///< of the tensor: 1 for parallel edges, 0 for all directions alike
+constexpr float k_tensor_scale = 1;          ///< pixels
+constexpr float k_min_tensor_window = 1.5f;  ///< standard deviation of the tensor's window, pixels
+constexpr float k_edge = 1;                  ///< width of the gradient beside a stroke's edge, pixels
+constexpr float k_min_own_share = 0.98f;     ///< min share of the window that is the stroke's own
+constexpr float k_min_coherence = 0.5f;      ///< min coherence of the tensor: 1 for parallel edges, 0 if isotropic
 
 struct Tensor {
     float xx = 0, xy = 0, yy = 0;
@@ -23,10 +22,11 @@ struct Tensor {
         const float sum = xx + yy;
         return sum > 0 ? std::hypot(xx - yy, 2 * xy) / sum : 0;
     }
-    /// Direction in which the image changes least, in [0, pi).
+    /// Returns the direction in which the image changes least, in [0, pi).
     float orientation() const {
         const float across = 0.5f * std::atan2(2 * xy, xx - yy);
-        return across + (across < k_pi / 2 ? k_pi / 2 : -k_pi / 2);
+        return across + (across < std::numbers::pi_v<float> / 2 ? std::numbers::pi_v<float> / 2
+                                                                : -std::numbers::pi_v<float> / 2);
     }
 };
 
@@ -38,7 +38,7 @@ struct OwnTensor {
 
 OwnTensor tensor_at(const ImageGradient& gradient, const StrokeMap& map, const PixelMask& crossing_pixels,
                     const TracedPoint& point, std::int32_t stroke, float width) {
-    const float scale = std::max(k_least_window, width);
+    const float scale = std::max(k_min_tensor_window, width);
     const int reach = static_cast<int>(std::ceil(2 * scale));
     const auto [cx, cy] = map.pixel_of(point);
     const Vec2 across(-std::sin(point.orientation), std::cos(point.orientation));
@@ -64,7 +64,7 @@ OwnTensor tensor_at(const ImageGradient& gradient, const StrokeMap& map, const P
 
 void measure_orientations(const FloatImage& darkness, const StrokeMap& map, const PixelMask& crossing_pixels,
                           std::span<TracedStroke> strokes) {
-    const ImageGradient gradient = gaussian_gradient(darkness, k_gradient_scale);
+    const ImageGradient gradient = gaussian_gradient(darkness, k_tensor_scale);
     parallel_for(
         strokes.size(),
         [&](std::size_t s) {
@@ -72,7 +72,7 @@ void measure_orientations(const FloatImage& darkness, const StrokeMap& map, cons
                 if (point.at_crossing) continue;
                 const OwnTensor own =
                     tensor_at(gradient, map, crossing_pixels, point, static_cast<std::int32_t>(s), strokes[s].width);
-                if (own.share < k_least_own || own.tensor.coherence() < k_least_coherence) continue;
+                if (own.share < k_min_own_share || own.tensor.coherence() < k_min_coherence) continue;
                 point.orientation = own.tensor.orientation();
                 point.oriented = true;
             }

@@ -6,27 +6,29 @@
 #include <vector>
 
 #include "host/core/parallel.h"
+#include "host/core/statistics.h"
 #include "host/hatching/measurement/along_stroke.h"
 #include "host/hatching/measurement/stroke_properties.h"
 
 namespace exemplar {
 namespace {
 
-constexpr float k_reach_along = 4;   ///< pixels before and behind a point whose profile it has
+constexpr float k_reach_along = 4;   ///< pixels before and behind a point that its profile takes in
 constexpr float k_paper_beside = 2;  ///< pixels of paper on either side that a profile takes in
-constexpr std::size_t k_least_inside = 4, k_least_outside = 3;  ///< samples in the stroke, and on either side
-constexpr float k_narrowest = 1;         ///< pixels: what is narrower looks like a lighter stroke of this width
-constexpr float k_narrowest_fit = 0.4f;  ///< pixels: keeps the fit from dividing by nothing
-constexpr int k_steps = 8;
-constexpr float k_noise = 0.03f;        ///< of darkness: weighs samples against what is likely
+constexpr std::size_t k_min_inside = 4, k_min_outside = 3;  ///< min samples in the stroke, and on either side
+constexpr float k_min_width = 1;         ///< pixels: narrower strokes look like lighter ones of this width
+constexpr float k_min_fit_width = 0.4f;  ///< pixels: keeps the fit from dividing by nothing
+constexpr int k_profile_steps = 8;
+constexpr float k_noise = 0.03f;        ///< of darkness: weighs samples against the priors below
 constexpr float k_likely_turn = 0.1f;   ///< radians by which a point's orientation may be wrong
 constexpr float k_likely_bend = 0.02f;  ///< 1 / pixels: half the curvature of an arc of radius 25
-constexpr float k_longest_bridge = 8;   ///< widths over which a center line is taken for straight
+constexpr float k_longest_bridge = 8;   ///< max gap, in widths, over which a center line is straight
 constexpr std::size_t k_softness_points = 400;
-constexpr float k_better = 0.98f;  ///< of the misfit of sharp edges, for softness to be believed
+constexpr float k_better = 0.98f;  ///< max misfit, relative to that of sharp edges, to accept softness
 constexpr std::array<float, 10> k_softnesses{0, 0.25f, 0.4f, 0.55f, 0.7f, 0.85f, 1, 1.25f, 1.5f, 2};
 
-/// A straight edge as pixels see it: how much of a pixel at a distance the inked side covers, blurred.
+/// The profile of a straight edge: the share of a pixel, at a distance from the edge, that the inked side covers,
+/// blurred.
 class SoftEdge {
   public:
     explicit SoftEdge(float softness) : reach_(0.5f + 4 * softness) {
@@ -68,12 +70,13 @@ class SoftEdge {
     std::vector<Value> table_;
 };
 
-/// A pixel as seen from a point of a stroke: along it, across it (to its right), and its darkness over the paper's.
+/// A pixel in the frame of a point of a stroke: along it, across it (to its right), and its darkness above the
+/// paper's.
 struct Sample {
     float along, across, darkness;
 };
 
-/// The drawing, and whose pixels are whose.
+/// The drawing, and the assignment of its pixels to strokes.
 struct Surroundings {
     const FloatImage& darkness;
     float paper;
@@ -108,10 +111,12 @@ bool enough(std::span<const Sample> samples, float width) {
         left += s.across < -0.5f * width - 0.3f;
         right += s.across > 0.5f * width + 0.3f;
     }
-    return inside >= k_least_inside && left >= k_least_outside && right >= k_least_outside;
+    return inside >= k_min_inside && left >= k_min_outside && right >= k_min_outside;
 }
 
-/// What a stroke is near one of its points. Its center line is offset + turn * along + bend * along^2 across.
+/// The model of a stroke near one of its points. Its center line is offset + turn * along + bend * along^2 across.
+/// The thesis takes the distance to the nearest lighter pixel: half of the thickness, give or take a pixel. And a
+/// pixel half covered is not a stroke half as dark.
 struct Profile {
     float ink = 0;  ///< darkness times width
     float width = 0, offset = 0, turn = 0, bend = 0;
@@ -122,7 +127,7 @@ struct Profile {
 
 using Parameters = Eigen::Matrix<float, 5, 1>;
 
-/// How dark a sample would be, and how that changes with (ink, width, offset, turn, bend).
+/// Returns the modeled darkness of a sample, and its derivatives by (ink, width, offset, turn, bend).
 float predict(const Profile& p, const Sample& s, const SoftEdge& edge, Parameters& change) {
     const float across = s.across - (p.offset + s.along * (p.turn + s.along * p.bend));
     const SoftEdge::Value right = edge.at(0.5f * p.width - across), left = edge.at(-0.5f * p.width - across);
@@ -133,7 +138,7 @@ float predict(const Profile& p, const Sample& s, const SoftEdge& edge, Parameter
     return dark * shape;
 }
 
-/// One step of Gauss and Newton; returns how far it went in pixels.
+/// Does one Gauss-Newton step; returns its length in pixels.
 float improve(std::span<const Sample> samples, const SoftEdge& edge, Profile& p) {
     Eigen::Matrix<float, 5, 5> normal = Eigen::Matrix<float, 5, 5>::Zero();
     Parameters right = Parameters::Zero(), change;
@@ -151,18 +156,18 @@ float improve(std::span<const Sample> samples, const SoftEdge& edge, Profile& p)
     const float most = 0.5f * p.width, size = std::max(std::abs(step[1]), std::abs(step[2]));
     if (size > most) step *= most / size;
     p.ink = std::max(p.ink + step[0], 1e-3f);
-    p.width = std::max(p.width + step[1], k_narrowest_fit);
+    p.width = std::max(p.width + step[1], k_min_fit_width);
     p.offset += step[2], p.turn += step[3], p.bend += step[4];
     return std::min(size, most);
 }
 
-Profile fit(std::span<const Sample> samples, const SoftEdge& edge, float width) {
+Profile fit_profile(std::span<const Sample> samples, const SoftEdge& edge, float width) {
     Profile profile;
-    profile.width = std::max(width, k_narrowest);
+    profile.width = std::max(width, k_min_width);
     float darkest = 0;
     for (const Sample& s : samples) darkest = std::max(darkest, s.darkness);
     profile.ink = darkest * profile.width;
-    for (int step = 0; step < k_steps; ++step)
+    for (int step = 0; step < k_profile_steps; ++step)
         if (improve(samples, edge, profile) < 0.01f) break;
     Parameters change;
     float sum = 0;
@@ -171,11 +176,12 @@ Profile fit(std::span<const Sample> samples, const SoftEdge& edge, float width) 
     return profile;
 }
 
-/// Takes over a profile if it is one of a stroke that is about as wide as its mask, and there.
+/// Stores a profile in its point if its width and offset are plausible for the stroke's mask. Returns whether they
+/// are.
 bool accept(const Profile& profile, float paper, const TracedStroke& stroke, TracedPoint& point) {
     if (profile.width > 2 * stroke.width + 2 || std::abs(profile.offset) > 0.5f * stroke.width + 1) return false;
     const float ink = profile.ink;
-    point.thickness = std::max(profile.width, k_narrowest);
+    point.thickness = std::max(profile.width, k_min_width);
     point.intensity = ink / point.thickness + paper;
     if (point.intensity > 1) point.intensity = 1, point.thickness = ink / (1 - paper);
     const Vec2 across(-std::sin(point.orientation), std::cos(point.orientation));
@@ -183,13 +189,13 @@ bool accept(const Profile& profile, float paper, const TracedStroke& stroke, Tra
     return true;
 }
 
-/// Thickness, intensity and, at crossings, center where they were not measured, from the nearest points of the stroke
-/// where they were. Returns whether there are any.
+/// Interpolates thickness, intensity and, at crossings, the center of points that were not measured between the
+/// nearest measured ones of the stroke. Returns whether there are any measured ones.
 bool fill_along(TracedStroke& stroke) {
     const auto longest = static_cast<std::size_t>(k_longest_bridge * std::max(stroke.width, 1.0f));
     std::vector<bool> measured;
     for (const TracedPoint& point : stroke.points) measured.push_back(point.profiled);
-    between_measured(measured, [&](std::size_t i, const BetweenMeasured& b) {
+    for_each_unmeasured(measured, [&](std::size_t i, const MeasuredNeighbors& b) {
         const TracedPoint &before = stroke.points[b.before], &behind = stroke.points[b.behind];
         stroke.points[i].thickness = std::lerp(before.thickness, behind.thickness, b.share);
         stroke.points[i].intensity = std::lerp(before.intensity, behind.intensity, b.share);
@@ -199,13 +205,8 @@ bool fill_along(TracedStroke& stroke) {
     return std::find(measured.begin(), measured.end(), true) != measured.end();
 }
 
-float median_of(std::vector<float>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-/// Strokes so crowded that no profile could be measured are as strokes of the drawing are; if all are, as their masks.
+/// Gives strokes too crowded for any profile the median values of the drawing, or, if there are none, values from
+/// masks and pixels.
 void fill_others(const FloatImage& darkness, const StrokeMap& map, const std::vector<std::uint8_t>& filled,
                  std::span<TracedStroke> strokes) {
     std::vector<float> thickness, intensity;
@@ -213,18 +214,19 @@ void fill_others(const FloatImage& darkness, const StrokeMap& map, const std::ve
         for (const TracedPoint& point : stroke.points)
             if (point.profiled) thickness.push_back(point.thickness), intensity.push_back(point.intensity);
     const bool any = !thickness.empty();
-    const float usual_thickness = any ? median_of(thickness) : 0, usual_intensity = any ? median_of(intensity) : 0;
+    const float usual_thickness = any ? upper_median(thickness) : 0,
+                usual_intensity = any ? upper_median(intensity) : 0;
     for (std::size_t s = 0; s < strokes.size(); ++s) {
         if (filled[s]) continue;
         for (TracedPoint& point : strokes[s].points) {
             const auto [x, y] = map.pixel_of(point);
-            point.thickness = any ? usual_thickness : std::max(strokes[s].width, k_narrowest);
+            point.thickness = any ? usual_thickness : std::max(strokes[s].width, k_min_width);
             point.intensity = any ? usual_intensity : std::clamp(darkness.pixel(x, y)[0], 1.0f / 255, 1.0f);
         }
     }
 }
 
-/// Every so many points, such that there are about as many as are needed.
+/// Selects about k_softness_points points, evenly over all strokes.
 std::vector<PointId> spread_points(std::span<const TracedStroke> strokes) {
     std::vector<PointId> all, some;
     for (std::size_t s = 0; s < strokes.size(); ++s)
@@ -236,16 +238,16 @@ std::vector<PointId> spread_points(std::span<const TracedStroke> strokes) {
     return some;
 }
 
-/// Mean misfit of profiles under a softness.
+/// Returns the median misfit of profiles under a softness.
 double misfit_of(const std::vector<std::vector<Sample>>& profiles, std::span<const float> widths, float softness) {
     const SoftEdge edge(softness);
     std::vector<float> misfits(profiles.size(), 0);
     parallel_for(
-        profiles.size(), [&](std::size_t i) { misfits[i] = fit(profiles[i], edge, widths[i]).misfit; }, 8);
-    return median_of(misfits);
+        profiles.size(), [&](std::size_t i) { misfits[i] = fit_profile(profiles[i], edge, widths[i]).misfit; }, 8);
+    return upper_median(misfits);
 }
 
-/// The lowest point of the parabola through three.
+/// Returns the x of the lowest point of the parabola through three points.
 float lowest(const std::array<float, 3>& x, const std::array<double, 3>& y) {
     const double a = (y[1] - y[0]) / (x[1] - x[0]), b = (y[2] - y[1]) / (x[2] - x[1]);
     const double curvature = (b - a) / (x[2] - x[0]);
@@ -292,7 +294,7 @@ void measure_profiles(const FloatImage& darkness, float paper, float softness, c
                 collect(around, point, {static_cast<std::int32_t>(s), static_cast<std::int32_t>(i)}, stroke.width,
                         samples);
                 if (enough(samples, stroke.width))
-                    point.profiled = accept(fit(samples, edge, stroke.width), paper, stroke, point);
+                    point.profiled = accept(fit_profile(samples, edge, stroke.width), paper, stroke, point);
             }
             filled[s] = fill_along(stroke);
             orient_along(stroke);

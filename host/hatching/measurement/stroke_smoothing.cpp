@@ -10,8 +10,7 @@
 namespace exemplar {
 namespace {
 
-constexpr float k_pi = std::numbers::pi_v<float>;
-constexpr float k_reach = 2.5f;  ///< standard deviations
+constexpr float k_smoothing_reach = 2.5f;  ///< standard deviations
 
 /// Weighted sums of properties around a point.
 struct Sums {
@@ -29,7 +28,7 @@ class Smoothing {
     TracedPoint at(PointId id) const {
         const TracedPoint& point = strokes_[id.stroke].points[id.point];
         const int column = cells_.column(point.center.x()), row = cells_.row(point.center.y());
-        const int reach = static_cast<int>(std::ceil(k_reach));
+        const int reach = static_cast<int>(std::ceil(k_smoothing_reach));
         Sums sums;
         for (int r = row - reach; r <= row + reach; ++r)
             for (int c = column - reach; c <= column + reach; ++c)
@@ -41,7 +40,7 @@ class Smoothing {
     void add(const TracedPoint& point, PointId other, Sums& sums) const {
         const TracedPoint& near = strokes_[other.stroke].points[other.point];
         const float squared = (near.center - point.center).squaredNorm() / (sigma_ * sigma_);
-        if (near.at_crossing || squared > k_reach * k_reach) return;
+        if (near.at_crossing || squared > k_smoothing_reach * k_smoothing_reach) return;
         const double weight = static_cast<double>(near.thickness * std::exp(-0.5f * squared));
         if (near.profiled) {
             sums.profiled += weight;
@@ -51,7 +50,7 @@ class Smoothing {
         sums.weight += weight;
         sums.length += weight * near.length;
         if (near.spacing > 0) sums.spaced += weight, sums.spacing += weight * near.spacing;
-        const float turn = std::remainder(near.orientation - point.orientation, k_pi);
+        const float turn = std::remainder(near.orientation - point.orientation, std::numbers::pi_v<float>);
         if (std::abs(turn) > similar_) return;
         sums.cosine += weight * std::cos(2 * turn);
         sums.sine += weight * std::sin(2 * turn);
@@ -65,8 +64,8 @@ class Smoothing {
         if (sums.weight > 0) point.length = static_cast<float>(sums.length / sums.weight);
         if (point.spacing > 0 && sums.spaced > 0) point.spacing = static_cast<float>(sums.spacing / sums.spaced);
         const float angle = point.orientation + 0.5f * static_cast<float>(std::atan2(sums.sine, sums.cosine));
-        const float wrapped = angle - k_pi * std::floor(angle / k_pi);
-        point.orientation = wrapped < k_pi ? wrapped : 0;
+        const float wrapped = angle - std::numbers::pi_v<float> * std::floor(angle / std::numbers::pi_v<float>);
+        point.orientation = wrapped < std::numbers::pi_v<float> ? wrapped : 0;
         return point;
     }
 

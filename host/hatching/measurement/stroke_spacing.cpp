@@ -6,19 +6,19 @@
 #include <vector>
 
 #include "host/core/parallel.h"
-#include "host/hatching/measurement/along_stroke.h"
 #include "host/hatching/fields/hatching_fields.h"
+#include "host/hatching/measurement/along_stroke.h"
 #include "host/hatching/measurement/point_cells.h"
 #include "host/hatching/measurement/stroke_properties.h"
 
 namespace exemplar {
 namespace {
 
-constexpr float k_cell = 8;               ///< pixels
-constexpr float k_farthest_side = 1.75f;  ///< of the nearer side's distance, for both sides to be neighbors
-constexpr float k_farthest_mutual = 2;    ///< of the neighbor's own spacing
-constexpr std::int32_t k_line_side = 3;   ///< points before and behind another that its line is measured at
-constexpr float k_around = 4;             ///< how much longer the way along a stroke is to a neighbor that is itself
+constexpr float k_spacing_cell = 8;       ///< pixels
+constexpr float k_farthest_side = 1.75f;  ///< max ratio of the farther to the nearer side for both to count
+constexpr float k_farthest_mutual = 2;    ///< max distance of a neighbor, in its own spacings
+constexpr std::int32_t k_line_side = 3;   ///< points before and behind another that define its line
+constexpr float k_min_loop_ratio = 4;     ///< min ratio of arc length to distance for a stroke to neighbor itself
 
 /// Which strokes cross which.
 class CrossingPairs {
@@ -40,10 +40,10 @@ class CrossingPairs {
 struct Neighbor {
     PointId id;
     float distance;    ///< to the point
-    float across = 0;  ///< to its line; 0: there is none
+    float across = 0;  ///< to its line; 0: no neighbor
 };
 
-/// The neighbors on both sides of a point.
+/// The neighbors of a point on its two sides.
 struct Neighbors {
     std::array<Neighbor, 2> side;
     explicit Neighbors(float largest) : side{Neighbor{{}, largest}, Neighbor{{}, largest}} {}
@@ -60,13 +60,15 @@ struct Neighbors {
     }
 };
 
+/// Searches the neighbors on both sides: the nearest alone is nearer than strokes are apart on average. The thesis
+/// grows a circle until pixels in it are not connected; but cross-hatches connect everything.
 class SpacingSearch {
   public:
     SpacingSearch(std::span<const StrokeCrossing> crossings, float similar, float largest,
                   std::span<const TracedStroke> strokes)
         : strokes_(strokes),
           crossing_(crossings, strokes.size()),
-          cells_(strokes, k_cell),
+          cells_(strokes, k_spacing_cell),
           similar_(similar),
           largest_(largest) {}
 
@@ -74,7 +76,7 @@ class SpacingSearch {
         const TracedPoint& point = strokes_[id.stroke].points[id.point];
         const int column = cells_.column(point.center.x()), row = cells_.row(point.center.y());
         Neighbors neighbors(largest_);
-        for (int ring = 0; static_cast<float>(ring - 1) * k_cell < neighbors.reach(); ++ring)
+        for (int ring = 0; static_cast<float>(ring - 1) * k_spacing_cell < neighbors.reach(); ++ring)
             for (int r = row - ring; r <= row + ring; ++r) {
                 const bool edge = r == row - ring || r == row + ring;
                 for (int c = column - ring; c <= column + ring; c += edge ? 1 : std::max(1, 2 * ring))
@@ -84,17 +86,17 @@ class SpacingSearch {
     }
 
   private:
-    /// Whether a point may be on a neighboring stroke: not on the own, unless it comes back from afar.
+    /// Whether a point may be a neighbor: one of another stroke, or of the own one if it returns from far along it.
     bool apart(PointId own, PointId other, float distance) const {
         if (own.stroke != other.stroke) return true;
         const auto count = static_cast<std::int32_t>(strokes_[own.stroke].points.size());
         std::int32_t steps = std::abs(own.point - other.point);
         if (strokes_[own.stroke].closed) steps = std::min(steps, count - steps);
-        return static_cast<float>(steps) > k_around * distance;
+        return static_cast<float>(steps) > k_min_loop_ratio * distance;
     }
 
-    /// Distance across a direction, to the right, of the line through the points around another: the nearest of them is
-    /// nearest by chance, too.
+    /// Returns the distance across a direction, to the right, to the line through the points around another. That
+    /// point alone is the nearest partly by chance, so its distance is biased.
     float across_to(const TracedPoint& point, PointId other, float direction) const {
         const std::vector<TracedPoint>& line = strokes_[other.stroke].points;
         const auto last = static_cast<std::int32_t>(line.size()) - 1;
@@ -126,18 +128,19 @@ class SpacingSearch {
     float similar_, largest_;
 };
 
-/// Without those that have much nearer neighbors themselves: to them, the stroke is not one of their family.
+/// Removes neighbors that have much nearer neighbors themselves: the stroke is not one of their family.
 Neighbors mutual(Neighbors of, const std::vector<std::vector<Neighbors>>& all) {
     for (Neighbor& n : of.side)
         if (n.across > k_farthest_mutual * (n.across > 0 ? all[n.id.stroke][n.id.point].spacing() : 0)) n.across = 0;
     return of;
 }
 
-/// Where a neighbor ends for less than the spacing, as at a crossing, it goes on as it was.
+/// Interpolates the spacing within one spacing of measured points: neighbors are interrupted at crossings, for
+/// instance.
 void bridge_short_gaps(TracedStroke& stroke) {
     std::vector<bool> measured;
     for (const TracedPoint& point : stroke.points) measured.push_back(point.spacing > 0);
-    between_measured(measured, [&](std::size_t i, const BetweenMeasured& b) {
+    for_each_unmeasured(measured, [&](std::size_t i, const MeasuredNeighbors& b) {
         const float before = stroke.points[b.before].spacing, behind = stroke.points[b.behind].spacing;
         const auto gap = [&](std::size_t end) { return static_cast<float>(i > end ? i - end : end - i); };
         if (gap(b.before) <= before || gap(b.behind) <= behind)

@@ -7,11 +7,11 @@ namespace exemplar {
 constexpr int k_way_bits = 11;
 constexpr std::int32_t k_way_offset = 1 << (k_way_bits - 1);
 
-std::int32_t near_reach(std::int32_t spacing) {
+std::int32_t clearance_radius(std::int32_t spacing) {
     return share_of_spacing(spacing, (1 << k_share_bits) * 5 / 4) + k_pixel;
 }
 
-std::uint32_t noted_stride(std::int32_t spacing) {
+std::uint32_t recorded_stride(std::int32_t spacing) {
     return static_cast<std::uint32_t>(std::max(1, spacing >> (k_spacing_bits + 2)));
 }
 
@@ -22,13 +22,14 @@ void Clearance::add(const FineStroke& stroke) {
     for (std::size_t i = 0; i < stroke.points.size(); ++i) {
         const FinePoint point = stroke.points[i];
         const std::int32_t spacing = grid_.at(point)->spacing();
-        if (!is_noted(i, stroke.points.size(), spacing)) continue;
-        for_pixels_within(grid_, point, near_reach(spacing), [&](std::size_t pixel, std::int32_t x, std::int32_t y) {
-            const auto squared = static_cast<std::uint32_t>(x * x + y * y);
-            lower(words[pixel], floor_sqrt(squared) << (2 * k_way_bits) |
-                                    static_cast<std::uint32_t>(x + k_way_offset) << k_way_bits |
-                                    static_cast<std::uint32_t>(y + k_way_offset));
-        });
+        if (!is_recorded(i, stroke.points.size(), spacing)) continue;
+        for_pixels_within(grid_, point, clearance_radius(spacing),
+                          [&](std::size_t pixel, std::int32_t x, std::int32_t y) {
+                              const auto squared = static_cast<std::uint32_t>(x * x + y * y);
+                              atomic_min(words[pixel], floor_sqrt(squared) << (2 * k_way_bits) |
+                                                           static_cast<std::uint32_t>(x + k_way_offset) << k_way_bits |
+                                                           static_cast<std::uint32_t>(y + k_way_offset));
+                          });
     }
 }
 

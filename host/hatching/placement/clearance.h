@@ -10,8 +10,8 @@
 
 namespace exemplar {
 
-/// Calls body(pixel, x, y) for the pixels whose centers are within `reach` of a point, with their index and the way
-/// from there to the point, in units of 2^near_shift.
+/// Calls body(pixel, x, y) for every pixel whose center is within `reach` of a point, with its index and the vector
+/// from its center to the point, in units of 2^near_shift.
 template <typename Body>
 void for_pixels_within(const PlacementGrid& grid, FinePoint point, std::int32_t reach, Body&& body) {
     const int shift = grid.rules.near_shift, pixels = (reach >> k_pixel_bits) + 1;
@@ -25,30 +25,30 @@ void for_pixels_within(const PlacementGrid& grid, FinePoint point, std::int32_t 
         }
 }
 
-/// How near the strokes of each layer are that have been placed: per pixel, the nearest of their points. A word has the
-/// pixel's distance to it (10 bits) and the way from the center of the pixel to it (11 bits each for x and y, offset by
-/// 1024), in units of 2^near_shift; so the nearest is the least, whatever the order in which they come.
+/// Clearance map: per layer and pixel, the nearest point of the placed strokes. A word packs its distance from the
+/// center of the pixel (10 bits, the highest) and the vector from the center to it (11 bits each for x and y, offset
+/// by 1024), in units of 2^near_shift. The nearest point has the smallest word, so the order of insertion does not
+/// matter.
 class Clearance {
   public:
     static constexpr std::uint32_t k_far = 0xffffffffU;
 
-    /// `grid` must live as long as this.
+    /// Keeps a reference to `grid`.
     explicit Clearance(const PlacementGrid& grid);
 
-    /// Notes the points of a stroke around all pixels within near_reach() of the spacing there. May be called from many
-    /// threads at once.
+    /// Records the points of a stroke at all pixels within clearance_radius() of the spacing there. Thread-safe.
     void add(const FineStroke& stroke);
 
-    /// The squared distance from a point in the picture to the nearest of the points that the four pixels around it
-    /// know, in squared units of 2^near_shift; k_far if they know none.
+    /// Returns the squared distance from a point in the picture to the nearest of the points recorded at the four
+    /// pixels around it, in squared units of 2^near_shift; k_far if there are none.
     std::uint32_t squared_distance(std::uint32_t layer, FinePoint point) const;
-    /// Whether a point of a spacing is so far from all strokes, in shares of it.
+    /// Returns whether a point is at least `share` of `spacing` away from all strokes of a layer.
     bool is_clear(std::uint32_t layer, FinePoint point, std::int32_t spacing, std::int32_t share) const {
         const auto least = static_cast<std::uint32_t>(share_of_spacing(spacing, share) >> grid_.rules.near_shift);
         return squared_distance(layer, point) >= least * least;
     }
 
-    /// The words, layer by layer.
+    /// Returns the words, layer by layer.
     const std::vector<std::uint32_t>& words() const { return words_; }
 
   private:
@@ -56,18 +56,18 @@ class Clearance {
     std::vector<std::uint32_t> words_;
 };
 
-/// How far points of strokes are noted: a quarter over the spacing, and a pixel; in the units of positions.
-std::int32_t near_reach(std::int32_t spacing);
-/// Of a stroke, only every so manieth point is noted and claimed: four to a spacing are enough.
-std::uint32_t noted_stride(std::int32_t spacing);
+/// Returns the radius in which stroke points are recorded, in units of positions: 1.25 spacings and a pixel.
+std::int32_t clearance_radius(std::int32_t spacing);
+/// Returns the stride of the stroke points that are recorded and claimed: four per spacing are enough.
+std::uint32_t recorded_stride(std::int32_t spacing);
 
-/// Whether the i-th of `count` points is: the last is always.
-inline bool is_noted(std::size_t i, std::size_t count, std::int32_t spacing) {
-    return i % noted_stride(spacing) == 0 || i + 1 == count;
+/// Returns whether the i-th of `count` points is recorded; the last one always is.
+inline bool is_recorded(std::size_t i, std::size_t count, std::int32_t spacing) {
+    return i % recorded_stride(spacing) == 0 || i + 1 == count;
 }
 
-/// The least of `word` and what is there remains; safe among threads.
-inline void lower(std::uint32_t& there, std::uint32_t word) {
+/// Sets `there` to the minimum of itself and `word`, atomically.
+inline void atomic_min(std::uint32_t& there, std::uint32_t word) {
     const std::atomic_ref<std::uint32_t> shared(there);
     std::uint32_t seen = shared.load(std::memory_order_relaxed);
     while (word < seen && !shared.compare_exchange_weak(seen, word, std::memory_order_relaxed)) {

@@ -9,22 +9,24 @@
 namespace exemplar {
 namespace {
 
-/// Directions of neighboring pixels that differ by more divide parts: the cosine of twice 30 degrees, times k_unit.
+/// Parts end where directions of neighboring pixels differ by over 30 degrees: the cosine of twice that, times
+/// k_unit.
 constexpr std::int32_t k_part_cosine = k_unit / 2;
-/// Parts of less than so many squares of one spacing are left to the holes.
+/// Minimum area of a part, in squares of one spacing; smaller ones are left to the search for holes.
 constexpr std::uint64_t k_least_squares = 9;
 
-Direction double_angle(std::uint32_t word) {
+Direction unpacked_direction(std::uint32_t word) {
     return {static_cast<std::int16_t>(word & 0xffffU), static_cast<std::int16_t>(word >> 16)};
 }
 
-/// The parts of a layer, as sets of pixels.
+/// Returns the parts of a layer as disjoint sets of pixels.
 DisjointSets find_parts(const PlacementGrid& grid, std::uint32_t layer) {
     DisjointSets parts(grid.size());
     const auto join = [&](std::size_t a, std::size_t b, std::uint32_t barrier) {
         const PlacementTexel &one = grid.texels[a], &other = grid.texels[b];
         if (one.hatched(layer) && other.hatched(layer) && !(one.flags & barrier) &&
-            dot(double_angle(one.directions[layer]), double_angle(other.directions[layer])) > k_part_cosine * k_unit)
+            dot(unpacked_direction(one.directions[layer]), unpacked_direction(other.directions[layer])) >
+                k_part_cosine * k_unit)
             parts.join(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
     };
     for (int y = 0; y < grid.height; ++y)
@@ -35,8 +37,8 @@ DisjointSets find_parts(const PlacementGrid& grid, std::uint32_t layer) {
     return parts;
 }
 
-/// Sums over the pixels of a part, and its pixel nearest to their middle.
-struct Part {
+/// Sums over the pixels of a part, and the pixel nearest to its centroid.
+struct DirectionPart {
     std::uint64_t pixels = 0, x = 0, y = 0;
     std::uint64_t nearest = ~std::uint64_t{0};
     std::uint32_t seed = 0;
@@ -75,7 +77,7 @@ class LayerSeeds {
                         static_cast<std::uint32_t>(grid_.index(point.x >> k_pixel_bits, point.y >> k_pixel_bits))));
     }
 
-    void append_to(std::vector<SeedList>& lists) {
+    void append_to(std::vector<SeedQueue>& lists) {
         for_pixels([&](std::uint32_t pixel, int, int) {
             const auto part = parts_.find(pixel);  // a set is named by its first pixel
             if (part == parts_.end()) return;
@@ -98,13 +100,13 @@ class LayerSeeds {
     const PlacementGrid& grid_;
     std::uint32_t layer_;
     DisjointSets sets_;
-    std::unordered_map<std::uint32_t, Part> parts_;
+    std::unordered_map<std::uint32_t, DirectionPart> parts_;
 };
 
 }  // namespace
 
-std::vector<SeedList> first_seeds(const PlacementGrid& grid, std::span<const FineStroke> kept) {
-    std::vector<SeedList> lists;
+std::vector<SeedQueue> first_seeds(const PlacementGrid& grid, std::span<const FineStroke> kept) {
+    std::vector<SeedQueue> lists;
     for (std::uint32_t layer = 0; layer < k_hatch_layers; ++layer) {
         LayerSeeds seeds(grid, layer);
         seeds.leave_out(kept);
@@ -113,8 +115,8 @@ std::vector<SeedList> first_seeds(const PlacementGrid& grid, std::span<const Fin
     return lists;
 }
 
-std::vector<SeedList> block_seeds(const PlacementGrid& grid) {
-    std::vector<SeedList> lists;
+std::vector<SeedQueue> block_seeds(const PlacementGrid& grid) {
+    std::vector<SeedQueue> lists;
     const int side = 1 << grid.rules.block_bits;
     const auto is_hatched = [&](int left, int top, std::uint32_t layer) {
         for (int y = top; y < std::min(top + side, grid.height); ++y)

@@ -9,9 +9,9 @@
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
-#include "host/hatching/placement/clearance.h"
 #include "host/hatching/fields/field_sample.h"
 #include "host/hatching/fields/occlusion_barriers.h"
+#include "host/hatching/placement/clearance.h"
 
 namespace exemplar {
 namespace {
@@ -21,10 +21,10 @@ constexpr float k_most_length = 1024;  // pixels
 constexpr std::size_t k_most_candidate_points = std::size_t{1} << 22;
 constexpr std::size_t k_least_candidates = 256, k_most_candidates = 16384;
 constexpr std::uint32_t k_least_block_bits = 5;
-/// Distances to strokes are kept in ten bits.
+/// Maximum distance in the clearance map, which stores ten bits.
 constexpr std::int32_t k_most_near = 1000;
 
-void check_sizes(const HatchingFields& fields, std::span<const std::uint8_t> barriers) {
+void check_field_sizes(const HatchingFields& fields, std::span<const std::uint8_t> barriers) {
     if (fields.width < 0 || fields.height < 0 || fields.width > k_largest_picture || fields.height > k_largest_picture)
         throw UsageError(fmt::format("strokes cannot be placed on {} x {} pixels; {} a side are the most", fields.width,
                                      fields.height, k_largest_picture));
@@ -45,13 +45,12 @@ void check_options(const StrokeOptions& o) {
         if (!valid) throw UsageError(fmt::format("{} is {}; give a number {}", name, value, range));
     };
     check(o.test_distance > 0 && o.test_distance < 1, "the test distance", o.test_distance, "between 0 and 1");
-    check(o.least_length >= 0 && o.least_length <= 1, "the least length", o.least_length, "from 0 to 1");
+    check(o.min_length >= 0 && o.min_length <= 1, "the least length", o.min_length, "from 0 to 1");
     check(o.length_jitter >= 0 && o.length_jitter <= 0.5f, "the jitter of lengths", o.length_jitter, "from 0 to 0.5");
-    check(o.sharpest_turn > 0 && o.sharpest_turn <= k_right_angle, "the sharpest turn", o.sharpest_turn,
-          "over 0, up to pi / 2");
+    check(o.max_turn > 0 && o.max_turn <= k_right_angle, "the sharpest turn", o.max_turn, "over 0, up to pi / 2");
     check(o.length_hysteresis >= 0 && std::isfinite(o.length_hysteresis), "the hysteresis of lengths",
           o.length_hysteresis, "that is finite and not negative");
-    check(o.most_deviation > 0 && o.most_deviation <= k_right_angle, "the deviation of kept strokes", o.most_deviation,
+    check(o.max_deviation > 0 && o.max_deviation <= k_right_angle, "the deviation of kept strokes", o.max_deviation,
           "over 0, up to pi / 2");
 }
 
@@ -77,12 +76,12 @@ void check_pixel(const HatchingFields& fields, std::size_t i) {
                                          fields.orientation[layer][i]));
 }
 
-/// A value in units of 1 / 2^bits.
+/// Clamps a value and rounds it to units of 1 / 2^bits.
 std::uint32_t rounded(float value, float low, float high, int bits) {
     return static_cast<std::uint32_t>(std::lround(std::clamp(value, low, high) * static_cast<float>(1 << bits)));
 }
 
-std::uint32_t double_angle(float orientation) {
+std::uint32_t packed_direction(float orientation) {
     const auto half_word = [](float value) {
         return static_cast<std::uint32_t>(std::lround(value * k_unit)) & 0xffffU;
     };
@@ -95,9 +94,9 @@ PlacementTexel texel_of(const HatchingFields& fields, std::size_t i, std::uint8_
     if (fields.level[i] == k_no_hatching) return texel;
     check_pixel(fields, i);
     for (std::size_t layer = 0; layer < fields.level[i]; ++layer)
-        texel.directions[layer] = double_angle(fields.orientation[layer][i]);
+        texel.directions[layer] = packed_direction(fields.orientation[layer][i]);
     const std::uint32_t length = rounded(fields.length[i], 0, k_most_length, k_length_bits);
-    texel.sizes = rounded(fields.spacing[i], 1, k_most_spacing, k_spacing_bits) | length << 16;
+    texel.sizes = rounded(fields.spacing[i], 1, k_max_spacing, k_spacing_bits) | length << 16;
     return texel;
 }
 
@@ -110,16 +109,16 @@ PlacementRules rules_of(const StrokeOptions& options) {
     rules.seed =
         scatter(static_cast<std::uint32_t>(options.seed) ^ scatter(static_cast<std::uint32_t>(options.seed >> 32)));
     rules.test_share = share(options.test_distance);
-    // A stroke fits into a gap of two test distances, its border is one from either side; a little more leaves it room
-    // to go on. Between that and one spacing gaps are as often too wide as others are too narrow.
+    // A stroke fits into a gap of two test distances, as its seed is one away from either side; the extra 7% let it
+    // go on. Gaps between that width and one spacing stay: they are as often too wide as others are too narrow.
     rules.hole_share = share(1.07f * options.test_distance);
-    rules.least_share = share(options.least_length);
+    rules.min_length_share = share(options.min_length);
     rules.jitter = share(options.length_jitter);
-    rules.least_turn_cosine = static_cast<std::int32_t>(std::lround(std::cos(options.sharpest_turn) * k_unit));
+    rules.min_turn_cosine = static_cast<std::int32_t>(std::lround(std::cos(options.max_turn) * k_unit));
     return rules;
 }
 
-/// What follows from the largest targets.
+/// Derives the limits from the largest targets.
 void set_limits(PlacementGrid& grid) {
     std::int32_t spacing = 0, length = 0;
     for (const PlacementTexel& texel : grid.texels) {
@@ -128,10 +127,10 @@ void set_limits(PlacementGrid& grid) {
     }
     PlacementRules& rules = grid.rules;
     rules.near_shift = 4;
-    while (near_reach(spacing) >> rules.near_shift > k_most_near) ++rules.near_shift;
+    while (clearance_radius(spacing) >> rules.near_shift > k_most_near) ++rules.near_shift;
     const std::int32_t longest = length * ((1 << k_share_bits) + rules.jitter) >> (k_share_bits + k_length_bits);
-    // A stroke looks ahead at both ends, over a gap and three spacings at most.
-    const std::int32_t ahead = 4 * (spacing >> k_spacing_bits) + k_least_steps + 6;
+    // Tracing looks ahead at both ends, over a gap and three spacings at most.
+    const std::int32_t ahead = 4 * (spacing >> k_spacing_bits) + k_min_steps + 6;
     rules.room = static_cast<std::uint32_t>(longest + 2 * ahead);
     rules.candidates = static_cast<std::uint32_t>(
         std::clamp(k_most_candidate_points / rules.room, k_least_candidates, k_most_candidates));
@@ -160,7 +159,7 @@ HatchStroke finished(const FineStroke& stroke, const HatchingFields& fields) {
 
 PlacementGrid make_placement_grid(const HatchingFields& fields, std::span<const std::uint8_t> barriers,
                                   const StrokeOptions& options) {
-    check_sizes(fields, barriers);
+    check_field_sizes(fields, barriers);
     check_options(options);
     PlacementGrid grid{.width = fields.width, .height = fields.height, .texels = {}, .rules = rules_of(options)};
     grid.texels.resize(fields.size());

@@ -6,7 +6,7 @@
 
 #include "host/core/parallel.h"
 #include "host/hatching/placement/clearance.h"
-#include "host/hatching/placement/kept_strokes.h"
+#include "host/hatching/placement/clipped_strokes.h"
 #include "host/hatching/placement/stroke_claims.h"
 #include "host/hatching/placement/stroke_front.h"
 #include "host/hatching/placement/stroke_tracing.h"
@@ -14,7 +14,7 @@
 namespace exemplar {
 namespace {
 
-/// What a list of places gives in a round: nothing more ever, nothing yet, or a stroke that loses or wins.
+/// Outcome of a seed list in a round: exhausted, no stroke yet, or a stroke that has lost or won.
 enum class TrialState { closed, pending, lost, won };
 struct Trial {
     TrialState state = TrialState::closed;
@@ -22,7 +22,7 @@ struct Trial {
     StrokeCandidate candidate;
 };
 
-/// Strokes that are placed round by round.
+/// Places strokes round by round.
 class Placement {
   public:
     Placement(const PlacementGrid& grid, std::vector<FineStroke> kept, Clearance& clearance)
@@ -34,16 +34,16 @@ class Placement {
         for (FineStroke& stroke : kept) add(std::move(stroke));
     }
 
-    /// Places strokes of the front or, when it is used up, in holes; returns whether there was anything to try.
+    /// Places strokes of the front or, if it is empty, in holes; returns whether there was anything to try.
     bool round() {
         const bool is_front = !front_.empty();
-        std::vector<SeedList>& lists = is_front ? front_ : blocks_;
+        std::vector<SeedQueue>& lists = is_front ? front_ : blocks_;
         trials_.resize(std::min<std::size_t>(lists.size(), grid_.rules.candidates));
         claims_.begin_round();
         parallel_for(
             trials_.size(), [&](std::size_t i) { try_next(lists[i], i); }, 8);
         parallel_for(
-            trials_.size(), [&](std::size_t i) { settle(trials_[i]); }, 8);
+            trials_.size(), [&](std::size_t i) { resolve(trials_[i]); }, 8);
         const bool any = std::ranges::any_of(trials_, [](const Trial& t) { return t.state != TrialState::closed; });
         leave_won(lists);
         if (is_front) drop_closed();
@@ -58,8 +58,8 @@ class Placement {
     const std::vector<FineStroke>& strokes() const { return strokes_; }
 
   private:
-    /// Tries the first place of a list, from where it was left on, that a stroke may begin at.
-    void try_next(SeedList& list, std::size_t place) {
+    /// Traces a stroke from the next place of a list at which one may begin.
+    void try_next(SeedQueue& list, std::size_t place) {
         Trial& trial = trials_[place];
         const auto seed = next_seed(list);
         trial.state = list.next < seed_count(grid_, list) ? TrialState::pending : TrialState::closed;
@@ -73,26 +73,27 @@ class Placement {
         claims_.claim(list.layer, trial.candidate.way, trial.claim);
     }
 
-    std::optional<StrokeSeed> next_seed(SeedList& list) const {
-        const std::uint32_t end = std::min(seed_count(grid_, list), list.next + k_most_places);
+    std::optional<StrokeSeed> next_seed(SeedQueue& list) const {
+        const std::uint32_t end = std::min(seed_count(grid_, list), list.next + k_max_seeds_per_round);
         for (; list.next < end; ++list.next)
             if (const auto seed = seed_at(grid_, clearance_, points_, list, list.next)) return seed;
         return {};
     }
 
-    void settle(Trial& trial) const {
+    void resolve(Trial& trial) const {
         if (trial.state == TrialState::lost &&
             claims_.wins(trial.candidate.stroke.layer, trial.candidate.way, trial.claim))
             trial.state = TrialState::won;
     }
 
-    /// Where strokes are a pixel apart, one may hide from the pixels around another: it would be placed again for ever.
-    void leave_won(std::vector<SeedList>& lists) const {
+    /// Advances the lists of winners. Where strokes are a pixel apart, the clearance map may miss a stroke at its
+    /// own seed: it would be placed again forever.
+    void leave_won(std::vector<SeedQueue>& lists) const {
         for (std::size_t i = 0; i < trials_.size(); ++i)
             if (trials_[i].state == TrialState::won) ++lists[i].next;
     }
 
-    /// Takes the lists that are used up out of the front, and those of parts that have their stroke.
+    /// Removes exhausted lists from the front, and those of parts that have their stroke.
     void drop_closed() {
         std::size_t kept = 0;
         for (std::size_t i = 0; i < front_.size(); ++i) {
@@ -115,7 +116,7 @@ class Placement {
     const PlacementGrid& grid_;
     Clearance& clearance_;
     StrokeClaims claims_;
-    std::vector<SeedList> front_, blocks_;
+    std::vector<SeedQueue> front_, blocks_;
     std::vector<FineStroke> strokes_;
     std::vector<FinePoint> points_;  // of all of them
     std::vector<Trial> trials_;
@@ -127,7 +128,7 @@ std::vector<HatchStroke> CpuStrokePlacer::place(const HatchingFields& fields, st
                                                 const StrokeOptions& options, std::span<const HatchStroke> kept) {
     const PlacementGrid grid = make_placement_grid(fields, barriers, options);
     Clearance clearance(grid);
-    Placement placement(grid, keep_strokes(grid, kept, options, clearance), clearance);
+    Placement placement(grid, clip_strokes(grid, kept, options, clearance), clearance);
     while (placement.round()) {
     }
     return finished_strokes(placement.strokes(), fields);

@@ -21,7 +21,7 @@ template <typename Body>
 void for_claimed_pixels(const PlacementGrid& grid, std::span<const FinePoint> way, Body&& body) {
     for (std::size_t i = 0; i < way.size(); ++i) {
         const std::int32_t spacing = grid.at(way[i])->spacing();
-        if (is_noted(i, way.size(), spacing))
+        if (is_recorded(i, way.size(), spacing))
             for_pixels_within(grid, way[i], claim_reach(grid, spacing),
                               [&](std::size_t pixel, std::int32_t, std::int32_t) { body(pixel); });
     }
@@ -32,7 +32,7 @@ void for_claimed_pixels(const PlacementGrid& grid, std::span<const FinePoint> wa
 StrokeClaims::StrokeClaims(const PlacementGrid& grid) : grid_(grid), words_(k_hatch_layers * grid.size(), ~0U) {}
 
 void StrokeClaims::begin_round() {
-    // Claims of a later round are less than all before, until rounds have been counted down.
+    // Claims of a later round are smaller than all earlier ones; words are reset when the round counter wraps.
     round_ = (round_ + 1) & ((1U << k_round_bits) - 1);
     if (round_ == 0) std::ranges::fill(words_, ~0U);
 }
@@ -47,7 +47,7 @@ std::uint32_t StrokeClaims::claim_of(std::uint32_t place, std::uint32_t shortnes
 
 void StrokeClaims::claim(std::uint32_t layer, std::span<const FinePoint> way, std::uint32_t claim) {
     std::uint32_t* const words = words_.data() + layer * grid_.size();
-    for_claimed_pixels(grid_, way, [&](std::size_t pixel) { lower(words[pixel], claim); });
+    for_claimed_pixels(grid_, way, [&](std::size_t pixel) { atomic_min(words[pixel], claim); });
 }
 
 bool StrokeClaims::wins(std::uint32_t layer, std::span<const FinePoint> way, std::uint32_t claim) const {

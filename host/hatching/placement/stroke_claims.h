@@ -9,24 +9,24 @@
 
 namespace exemplar {
 
-/// Which of the strokes that are tried at once may be placed. Each claims the pixels within half of the test distance
-/// of the way that it has looked at, and some more, so that two claims overlap if the ways are nearer to each other
-/// than that; a pixel goes to the least claim. A stroke that has all of its pixels wins: it would be the same if others
-/// that win had been placed before it.
+/// Resolves conflicts between the strokes tried in one round. A stroke claims all pixels within half the test
+/// distance, and half a pixel's diagonal, of its traced streamline, so that the claims of streamlines closer than
+/// the test distance overlap. A pixel goes to the smallest claim. A stroke that holds all of its pixels wins: it
+/// would be the same if the other winners had been placed before it.
 class StrokeClaims {
   public:
-    /// `grid` must live as long as this.
+    /// Keeps a reference to `grid`.
     explicit StrokeClaims(const PlacementGrid& grid);
 
-    /// Begins a round: what was claimed before counts no longer.
+    /// Begins a round: earlier claims become void.
     void begin_round();
-    /// The claim of the candidate at a place of the round's list, below 2^18: the shorter ones come last, else chance
-    /// decides.
+    /// Returns the claim of the candidate at a place of the round's list, below 2^18. Longer strokes get smaller
+    /// claims; ties are resolved pseudo-randomly.
     std::uint32_t claim_of(std::uint32_t place, std::uint32_t shortness) const;
 
-    /// May be called from many threads at once.
+    /// Claims the pixels of a streamline. Thread-safe.
     void claim(std::uint32_t layer, std::span<const FinePoint> way, std::uint32_t claim);
-    /// When all have claimed: whether all of the way's pixels are its own.
+    /// Returns whether a claim holds all pixels of its streamline. Call it after all claims of the round.
     bool wins(std::uint32_t layer, std::span<const FinePoint> way, std::uint32_t claim) const;
 
   private:

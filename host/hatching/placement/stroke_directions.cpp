@@ -7,14 +7,14 @@
 namespace exemplar {
 namespace {
 
-/// Directions between pixels count where their mean is at least so long, in shares of one of theirs.
+/// Directions cancel out if their mean is shorter than this share of a unit vector.
 constexpr std::int32_t k_least_agreement = 358;
 
 std::int32_t signed_half(std::uint32_t word) {
     return static_cast<std::int16_t>(static_cast<std::uint16_t>(word));
 }
 
-/// The four pixels around a point, [row][column], and which of them its own pixel reaches.
+/// The four pixels around a point, [row][column], and which of them are reachable from its own pixel.
 struct Corners {
     std::array<std::array<PlacementTexel, 2>, 2> texels;
     int home_x, home_y;
@@ -28,9 +28,9 @@ struct Corners {
     }
 };
 
-/// Half of the angle of (c, s), whose length is given, that is nearer to `heading`.
+/// Returns the direction at half the angle of (c, s), a vector of that length, with the sign nearer to `heading`.
 Direction half_angle(std::int32_t c, std::int32_t s, std::int32_t length, Direction heading) {
-    // Of the two formulas the one that does not cancel.
+    // The one of the two formulas without cancellation.
     const Direction half = c >= 0 ? direction_of(length + c, s) : direction_of(s, length - c);
     return dot(half, heading) < 0 ? -half : half;
 }

@@ -6,9 +6,10 @@
 
 namespace exemplar {
 
-/// The direction of a layer's strokes at a point, that one of both which is nearer to `heading`: bilinear, as cosine
-/// and sine of the double angle, between those of the four pixels around it that have strokes and that the point's own
-/// pixel reaches without a barrier. None if its pixel has none, or if they cancel out.
+/// Returns the direction of a layer's strokes at a point, with the sign nearer to `heading`. Vectors of the doubled
+/// angle are interpolated bilinearly between those of the four pixels around the point that are hatched and
+/// reachable from the point's own pixel without a barrier. Returns none if that pixel is not hatched or the
+/// directions cancel out.
 Direction direction_at(const PlacementGrid& grid, std::uint32_t layer, FinePoint point, Direction heading);
 
 }  // namespace exemplar

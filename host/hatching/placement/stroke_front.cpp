@@ -8,31 +8,31 @@
 namespace exemplar {
 namespace {
 
-/// Strokes beside each other differ in direction by 45 degrees at most: the cosine, times k_unit.
+/// Cosine of the maximum angle between a stroke and a seed beside it or in line with it (45 degrees), times k_unit.
 constexpr std::int32_t k_side_cosine = 11585;
-/// Every second point of a stroke has a place beside it.
+/// A stroke has seeds beside every second point.
 constexpr std::uint32_t k_side_stride = 2;
 
-/// The i-th of 2^bits numbers, the scattered one first; a bijection.
+/// Returns the i-th number of a permutation of [0, 2^bits): bit-reversed counting that starts at `chance`.
 std::uint32_t scattered(std::uint32_t i, int bits, std::uint32_t chance) {
     return reversed_bits(i, bits) ^ (chance & ((1U << bits) - 1));
 }
 
-/// Every second bit of a word of which the others do not count, side by side.
+/// Returns the even bits of a word, packed together.
 std::uint32_t every_second_bit(std::uint32_t word) {
     std::uint32_t result = 0;
     for (int i = 0; i < 16; ++i) result |= (word >> (2 * i) & 1U) << i;
     return result;
 }
 
-std::uint32_t sides_of(const SeedList& list) {
+std::uint32_t sides_of(const SeedQueue& list) {
     return (list.second + k_side_stride - 1) / k_side_stride;
 }
 int bits_of(std::uint32_t count) {
     return std::bit_width(count - 1);
 }
 
-/// The seed of a stroke at a place that has strokes and is so far from all, in shares of the spacing there.
+/// Returns a seed at a point that is hatched and at least `share` of the spacing there away from all strokes.
 std::optional<StrokeSeed> clear_seed(const PlacementGrid& grid, const Clearance& clearance, std::uint32_t layer,
                                      FinePoint at, std::int32_t share, Direction heading) {
     const PlacementTexel* texel = grid.at(at);
@@ -42,7 +42,7 @@ std::optional<StrokeSeed> clear_seed(const PlacementGrid& grid, const Clearance&
     return StrokeSeed{layer, at, way};
 }
 
-/// The same beside or behind a stroke that goes in some direction; strokes go about the same way there.
+/// Returns the same if the field there also runs in about the direction `heading` of a neighboring stroke.
 std::optional<StrokeSeed> parallel_seed(const PlacementGrid& grid, const Clearance& clearance, std::uint32_t layer,
                                         FinePoint at, Direction heading) {
     auto seed = clear_seed(grid, clearance, layer, at, grid.rules.test_share, heading);
@@ -50,16 +50,16 @@ std::optional<StrokeSeed> parallel_seed(const PlacementGrid& grid, const Clearan
     return seed;
 }
 
-/// A direction times a spacing, as a way.
+/// Returns the offset by a spacing along a direction.
 FinePoint times(Direction direction, std::int32_t spacing) {
     constexpr int k_shift = k_unit_bits - k_pixel_bits + k_spacing_bits;
     constexpr std::int32_t k_half = 1 << (k_shift - 1);
     return {(direction.x * spacing + k_half) >> k_shift, (direction.y * spacing + k_half) >> k_shift};
 }
 
-/// One spacing off a stroke, the mean of those at both ends of the way.
+/// A seed one spacing beside a stroke: the mean of the spacings at both ends of the offset.
 std::optional<StrokeSeed> side_seed(const PlacementGrid& grid, const Clearance& clearance,
-                                    std::span<const FinePoint> points, const SeedList& list, std::uint32_t i) {
+                                    std::span<const FinePoint> points, const SeedQueue& list, std::uint32_t i) {
     const std::uint32_t sides = sides_of(list);
     const std::uint32_t place = reversed_bits(i, bits_of(sides));
     if (place >= sides) return {};
@@ -76,9 +76,9 @@ std::optional<StrokeSeed> side_seed(const PlacementGrid& grid, const Clearance& 
     return parallel_seed(grid, clearance, list.layer, point + times(off, (here + there->spacing()) / 2), heading);
 }
 
-/// In line with a stroke, a little over the test distance from its end.
+/// A seed in line with a stroke, a little over the test distance from its end.
 std::optional<StrokeSeed> end_seed(const PlacementGrid& grid, const Clearance& clearance,
-                                   std::span<const FinePoint> points, const SeedList& list) {
+                                   std::span<const FinePoint> points, const SeedQueue& list) {
     constexpr std::int32_t k_margin = 1 << (k_spacing_bits - 1);
     const bool is_first = list.source == SeedSource::first_end;
     const std::uint32_t tip = is_first ? list.first : list.first + list.second - 1;
@@ -88,8 +88,8 @@ std::optional<StrokeSeed> end_seed(const PlacementGrid& grid, const Clearance& c
     return parallel_seed(grid, clearance, list.layer, points[tip] + times(heading, gap), heading);
 }
 
-/// The middle of a pixel of a block that is farther from all strokes than gaps between them are wide.
-std::optional<StrokeSeed> hole_seed(const PlacementGrid& grid, const Clearance& clearance, const SeedList& list,
+/// A seed at the center of a pixel of a block, farther from all strokes than regular gaps allow.
+std::optional<StrokeSeed> hole_seed(const PlacementGrid& grid, const Clearance& clearance, const SeedQueue& list,
                                     std::uint32_t i) {
     const auto bits = static_cast<int>(2 * grid.rules.block_bits);
     const std::uint32_t chance = scatter(list.first ^ scatter(list.second ^ grid.rules.seed));
@@ -100,9 +100,9 @@ std::optional<StrokeSeed> hole_seed(const PlacementGrid& grid, const Clearance& 
     return clear_seed(grid, clearance, list.layer, at, grid.rules.hole_share, {k_unit, 0});
 }
 
-/// The middle of a part of the picture; then, as that may be where directions cancel out, places that chance chooses in
-/// squares around it that grow by a spacing.
-std::optional<StrokeSeed> part_seed(const PlacementGrid& grid, const Clearance& clearance, const SeedList& list,
+/// A seed at the middle of a part; then, as directions may cancel out there, at random places in squares around it
+/// whose side grows by a spacing each time.
+std::optional<StrokeSeed> part_seed(const PlacementGrid& grid, const Clearance& clearance, const SeedQueue& list,
                                     std::uint32_t i) {
     const FinePoint middle{static_cast<std::int32_t>(list.first), static_cast<std::int32_t>(list.second)};
     const std::uint32_t chance = scatter(list.first ^ scatter(list.second ^ scatter(grid.rules.seed ^ i)));
@@ -117,15 +117,15 @@ std::optional<StrokeSeed> part_seed(const PlacementGrid& grid, const Clearance& 
 
 }  // namespace
 
-std::array<SeedList, 4> stroke_seeds(std::uint32_t layer, std::uint32_t first, std::uint32_t count) {
-    std::array<SeedList, 4> lists;
+std::array<SeedQueue, 4> stroke_seeds(std::uint32_t layer, std::uint32_t first, std::uint32_t count) {
+    std::array<SeedQueue, 4> lists;
     for (std::uint32_t i = 0; i < 4; ++i)
         lists[i] = {static_cast<SeedSource>(static_cast<std::uint32_t>(SeedSource::left_side) + i), layer, first, count,
                     0};
     return lists;
 }
 
-std::uint32_t seed_count(const PlacementGrid& grid, const SeedList& list) {
+std::uint32_t seed_count(const PlacementGrid& grid, const SeedQueue& list) {
     switch (list.source) {
         case SeedSource::left_side:
         case SeedSource::right_side:
@@ -140,7 +140,7 @@ std::uint32_t seed_count(const PlacementGrid& grid, const SeedList& list) {
 }
 
 std::optional<StrokeSeed> seed_at(const PlacementGrid& grid, const Clearance& clearance,
-                                  std::span<const FinePoint> points, const SeedList& list, std::uint32_t i) {
+                                  std::span<const FinePoint> points, const SeedQueue& list, std::uint32_t i) {
     switch (list.source) {
         case SeedSource::part:
             return part_seed(grid, clearance, list, i);

@@ -12,16 +12,16 @@ namespace exemplar {
 namespace {
 
 constexpr float k_widest_gap = 3;  // spacings
-constexpr float k_cell = 8;        // pixels
+constexpr float k_gap_cell = 8;    // pixels
 
 /// A piece of a center line, from a point of a stroke to the next.
-struct Piece {
+struct GapPiece {
     std::uint32_t stroke, point;
 };
 
 }  // namespace
 
-/// The pieces of the strokes of a layer, by square cells of the picture.
+/// The pieces of a layer's strokes in square cells of the picture.
 class PieceCells {
   public:
     PieceCells(std::span<const HatchStroke> strokes, std::size_t layer, int width, int height)
@@ -32,36 +32,38 @@ class PieceCells {
                 put({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)});
     }
 
-    /// How far a ray goes to the first stroke but its own; StrokeGaps::k_none if that is farther than `most`.
+    /// Returns the distance along a ray to the first stroke other than `own`; StrokeGaps::k_invalid_index if it is over
+    /// `most`.
     float hit(const Vec2& from, const Vec2& way, std::uint32_t own, float most) const {
-        float nearest = StrokeGaps::k_none;
-        // A step less than a cell, as pieces are in all cells that are so near.
+        float nearest = StrokeGaps::k_invalid_index;
+        // Steps are shorter than a cell, and pieces are in all cells within one step of them, so none is missed.
         for (float reached = 0; reached < most + k_step && nearest > reached; reached += k_step)
-            for_pieces(from + reached * way, [&](const Piece& piece) {
+            for_pieces(from + reached * way, [&](const GapPiece& piece) {
                 if (piece.stroke != own) nearest = std::min(nearest, crossing(from, way, piece));
             });
-        return nearest <= most ? nearest : StrokeGaps::k_none;
+        return nearest <= most ? nearest : StrokeGaps::k_invalid_index;
     }
 
-    /// How near strokes but its own come to a point; StrokeGaps::k_none if no nearer than `most`.
+    /// Returns the distance of a point to strokes other than `own`; StrokeGaps::k_invalid_index if it is not below
+    /// `most`.
     float distance(const Vec2& at, std::uint32_t own, float most) const {
         float nearest = most;
         for (float y = at.y() - most; y < at.y() + most + k_step; y += k_step)
             for (float x = at.x() - most; x < at.x() + most + k_step; x += k_step)
-                for_pieces(Vec2(x, y), [&](const Piece& piece) {
+                for_pieces(Vec2(x, y), [&](const GapPiece& piece) {
                     if (piece.stroke != own) nearest = std::min(nearest, distance(at, piece));
                 });
-        return nearest < most ? nearest : StrokeGaps::k_none;
+        return nearest < most ? nearest : StrokeGaps::k_invalid_index;
     }
 
   private:
     static constexpr float k_step = 4;  // pixels
-    static int cells(int pixels) { return static_cast<int>(static_cast<float>(pixels) / k_cell) + 1; }
+    static int cells(int pixels) { return static_cast<int>(static_cast<float>(pixels) / k_gap_cell) + 1; }
     static int cell(float at, int count) {
-        return static_cast<int>(std::clamp(std::floor(at / k_cell), 0.0f, static_cast<float>(count - 1)));
+        return static_cast<int>(std::clamp(std::floor(at / k_gap_cell), 0.0f, static_cast<float>(count - 1)));
     }
 
-    void put(const Piece& piece) {
+    void put(const GapPiece& piece) {
         const Vec2 &a = strokes_[piece.stroke].points[piece.point], &b = strokes_[piece.stroke].points[piece.point + 1];
         const Vec2 low = a.cwiseMin(b).array() - k_step, high = a.cwiseMax(b).array() + k_step;
         for (int y = cell(low.y(), rows_); y <= cell(high.y(), rows_); ++y)
@@ -73,17 +75,17 @@ class PieceCells {
     void for_pieces(const Vec2& at, Body&& body) const {
         const auto row = static_cast<std::size_t>(cell(at.y(), rows_)),
                    column = static_cast<std::size_t>(cell(at.x(), columns_));
-        for (const Piece& piece : pieces_[row * static_cast<std::size_t>(columns_) + column]) body(piece);
+        for (const GapPiece& piece : pieces_[row * static_cast<std::size_t>(columns_) + column]) body(piece);
     }
-    float crossing(const Vec2& from, const Vec2& way, const Piece& piece) const {
+    float crossing(const Vec2& from, const Vec2& way, const GapPiece& piece) const {
         const Vec2& a = strokes_[piece.stroke].points[piece.point];
         const Vec2 on = strokes_[piece.stroke].points[piece.point + 1] - a, to = a - from;
         const float slope = way.x() * on.y() - way.y() * on.x();
-        if (slope == 0) return StrokeGaps::k_none;
+        if (slope == 0) return StrokeGaps::k_invalid_index;
         const float t = (to.x() * on.y() - to.y() * on.x()) / slope, u = (to.x() * way.y() - to.y() * way.x()) / slope;
-        return t > 0 && u >= 0 && u <= 1 ? t : StrokeGaps::k_none;
+        return t > 0 && u >= 0 && u <= 1 ? t : StrokeGaps::k_invalid_index;
     }
-    float distance(const Vec2& at, const Piece& piece) const {
+    float distance(const Vec2& at, const GapPiece& piece) const {
         const Vec2& a = strokes_[piece.stroke].points[piece.point];
         const Vec2 on = strokes_[piece.stroke].points[piece.point + 1] - a;
         const float squared = on.squaredNorm(),
@@ -93,7 +95,7 @@ class PieceCells {
 
     std::span<const HatchStroke> strokes_;
     int columns_, rows_;
-    std::vector<std::vector<Piece>> pieces_;
+    std::vector<std::vector<GapPiece>> pieces_;
 };
 
 StrokeGaps::StrokeGaps(std::span<const HatchStroke> strokes, const HatchingFields& fields)
@@ -120,7 +122,8 @@ std::vector<StrokeGaps::Gaps> StrokeGaps::beside(std::uint32_t index) const {
         for (std::size_t side = 0; side < 2; ++side) {
             const Vec2 to = side ? Vec2(-gaps.across) : gaps.across;
             const float gap = cells_[stroke.layer]->hit(at, to, index, k_widest_gap * gaps.spacing);
-            if (gap != k_none && stays_hatched(at, to, gap, stroke.layer)) gaps.ratio[side] = gap / gaps.spacing;
+            if (gap != k_invalid_index && stays_hatched(at, to, gap, stroke.layer))
+                gaps.ratio[side] = gap / gaps.spacing;
         }
     }
     return all;
@@ -144,7 +147,7 @@ bool StrokeGaps::is_hatched(const Vec2& at, std::size_t layer) const {
 
 float StrokeGaps::spacing_at(const Vec2& at) const {
     const float spacing = fields_.spacing[fields_.index(static_cast<int>(at.x()), static_cast<int>(at.y()))];
-    return std::clamp(spacing, 1.0f, k_most_spacing);  // as strokes are placed
+    return std::clamp(spacing, 1.0f, k_max_spacing);  // the range that placement uses
 }
 
 bool StrokeGaps::stays_hatched(const Vec2& from, const Vec2& way, float distance, std::size_t layer) const {

@@ -14,19 +14,21 @@ namespace exemplar {
 
 class PieceCells;
 
-/// Gaps between strokes of a layer. It refers to both of its arguments; throws UsageError for a stroke of no layer.
+/// Measures gaps between strokes of the same layer. Keeps references to both arguments. Throws UsageError for a
+/// stroke whose layer does not exist.
 class StrokeGaps {
   public:
-    static constexpr float k_none = std::numeric_limits<float>::max();
+    static constexpr float k_invalid_index = std::numeric_limits<float>::max();
 
-    /// At a point of a stroke.
+    /// The gaps on both sides of a point of a stroke.
     struct Gaps {
-        /// Unit vector perpendicular to the stroke; zero where its layer has no strokes, or the stroke no direction.
+        /// Unit vector perpendicular to the stroke; zero where its layer is not hatched or the stroke has no
+        /// direction.
         Vec2 across{0, 0};
-        float spacing = 0;  ///< the target there, 1 pixel at least
-        /// How far it is along `across`, and the other way, to the next other stroke, in spacings; k_none where that
-        /// is over three, or leaves the layer on the way.
-        std::array<float, 2> ratio{k_none, k_none};
+        float spacing = 0;  ///< target spacing there, at least 1 pixel
+        /// Distance to the next other stroke, along `across` and against it, in spacings; k_invalid_index if it is over
+        /// three, or if the path leaves the hatched area of the layer.
+        std::array<float, 2> ratio{k_invalid_index, k_invalid_index};
     };
 
     StrokeGaps(std::span<const HatchStroke> strokes, const HatchingFields& fields);
@@ -34,11 +36,12 @@ class StrokeGaps {
     StrokeGaps(const StrokeGaps&) = delete;
     StrokeGaps& operator=(const StrokeGaps&) = delete;
 
-    /// Of each point of a stroke.
+    /// Returns the gaps at each point of a stroke.
     std::vector<Gaps> beside(std::uint32_t stroke) const;
-    /// How near other strokes come to the center line of one, in spacings; 1 if no nearer.
+    /// Returns the minimum distance from the points of a stroke to other strokes' center lines, in spacings; at most
+    /// 1.
     float least(std::uint32_t stroke) const;
-    /// Whether a layer has strokes at a point.
+    /// Returns whether a layer is hatched at a point.
     bool is_hatched(const Vec2& at, std::size_t layer) const;
 
   private:

@@ -5,12 +5,12 @@
 #include <cstdlib>
 #include <vector>
 
-#include "host/hatching/placement/stroke_way.h"
+#include "host/hatching/placement/streamline_steps.h"
 
 namespace exemplar {
 namespace {
 
-/// The points of strokes, by square cells of the picture.
+/// The points of strokes in square cells of the picture.
 class StrokePoints {
   public:
     struct Entry {
@@ -26,7 +26,7 @@ class StrokePoints {
     void add(std::uint32_t layer, const Entry& entry) {
         cells_[layer][index(cell(entry.point.x), cell(entry.point.y))].push_back(entry);
     }
-    /// Whether a point is within a distance that counts() for.
+    /// Returns whether a point with counts(entry) is within a distance.
     template <typename Counts>
     bool any_within(std::uint32_t layer, FinePoint point, std::int32_t distance, Counts&& counts) const {
         const std::int64_t square = std::int64_t{distance} * distance;
@@ -71,7 +71,8 @@ class Grower {
     }
 
   private:
-    /// At the back of its points, which is the one that counts as `place`; the next are `by` on.
+    /// Extends the end at the back of the points. That point has the index `place` along the stroke; indices of new
+    /// points go on in steps of `by`.
     void grow_end(std::size_t s, std::int32_t place, std::int32_t by) {
         std::vector<FinePoint>& points = strokes_[s].points;
         const FinePoint way = points.back() - points[points.size() - 2];
@@ -88,7 +89,7 @@ class Grower {
 
     bool is_short(const std::vector<FinePoint>& points) const {
         const std::int32_t share = (1 << k_share_bits) - grid_.rules.jitter;
-        return static_cast<std::int32_t>(points.size()) - 1 < StrokeWay::target_steps(*grid_.at(points.back()), share);
+        return static_cast<std::int32_t>(points.size()) - 1 < Streamline::target_steps(*grid_.at(points.back()), share);
     }
 
     bool is_crowded(std::size_t s, std::int32_t place, FinePoint point) const {

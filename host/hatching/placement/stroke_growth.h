@@ -6,10 +6,10 @@
 
 namespace exemplar {
 
-/// Lengthens strokes that are shorter than new strokes would be (their target less its jitter), one after the other, at
-/// their last point and then at their first: as far as new strokes would go, and no nearer to others of their layer, or
-/// to what is not near along themselves, than the test distance. So strokes that a border has cut follow it when it
-/// moves back.
+/// Extends strokes that are shorter than new strokes would be (their target length less its jitter), one after the
+/// other, at their last point and then at their first. A stroke grows as far as new strokes would go, and no nearer
+/// than the test distance to others of its layer or to distant parts of itself. Strokes that a border has cut thus
+/// follow it when it moves back.
 void grow_strokes(const PlacementGrid& grid, std::span<FineStroke> strokes);
 
 }  // namespace exemplar

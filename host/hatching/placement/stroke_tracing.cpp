@@ -5,23 +5,25 @@
 namespace exemplar {
 namespace {
 
-/// The nearest stroke is nearer than this share of the spacing beside a stroke, and than this beside its gap.
+/// Beside a stroke, the nearest stroke is closer than the first share of the spacing; beside the gap at its end,
+/// closer than the second.
 constexpr std::int32_t k_beside_stroke = 1032, k_beside_gap = 1250;
 
-/// A part of a way, in steps from its beginning.
+/// A part of a streamline, in steps from its beginning.
 struct Span {
     std::int32_t begin, end;
     std::int32_t steps() const { return end - begin; }
 };
 
-/// Finds the part of a way that becomes the stroke.
+/// Finds the part of a streamline that becomes the stroke.
 class Fitter {
   public:
-    Fitter(const PlacementGrid& grid, const Clearance& clearance, const StrokeWay& way, std::uint32_t layer)
+    Fitter(const PlacementGrid& grid, const Clearance& clearance, const Streamline& way, std::uint32_t layer)
         : grid_(grid), clearance_(clearance), way_(way), layer_(layer) {}
 
-    /// Where there is too little room for another stroke between the end of this and what ends the way, it is moved up
-    /// to that, or takes all of the way, or leaves half of it to another.
+    /// Returns the part that becomes the stroke. With too little room for another stroke at an end, it is moved up
+    /// to the obstacle there; with too little at both, it takes the whole streamline, or leaves half of it to
+    /// another stroke.
     Span fitted() const {
         const StrokeBranch &on = way_.on(), &back = way_.back();
         const std::int32_t steps = on.steps + back.steps, all = way_.last();
@@ -30,16 +32,17 @@ class Fitter {
             return out_of_line({back.reach() - back.steps, back.reach() + on.steps}, {1, 1});
         if (on_is_free) return out_of_line({0, steps}, {0, -1});
         if (back_is_free) return out_of_line({all - steps, all}, {1, 0});
-        const std::int32_t most = StrokeWay::target_steps(way_.texel(), (1 << k_share_bits) + grid_.rules.jitter);
+        const std::int32_t most = Streamline::target_steps(way_.texel(), (1 << k_share_bits) + grid_.rules.jitter);
         if (all <= most) return {0, all};
         const std::int32_t half =
-            std::min(all, std::max((all - way_.gap_steps()) / 2, least_steps(grid_, way_.texel(), 2)));
+            std::min(all, std::max((all - way_.gap_steps()) / 2, min_stroke_steps(grid_, way_.texel(), 2)));
         return on.steps == on.reach() ? Span{all - half, all} : Span{0, half};
     }
 
   private:
-    /// A part, or it moved by up to two gaps either way, or shortened by as much at its free end (both given as how its
-    /// ends move): the first of which the fewest free ends have their gap beside that of another stroke.
+    /// Avoids gaps side by side. Tries the part as it is and with its ends moved by one and two gaps either way,
+    /// where `move` tells how each end moves (both: shifted; one: shortened). Returns the first one whose free ends
+    /// have the fewest gaps beside the gap of another stroke.
     Span out_of_line(const Span& span, const Span& move) const {
         const std::int32_t gap = way_.gap_steps();
         Span best = span;
@@ -57,8 +60,8 @@ class Fitter {
         }
         return best;
     }
-    /// 1 if a place of the way is beside the gap at the end of a stroke: the nearest is over one spacing away, but not
-    /// as far as one that ends before that gap. Or if that is not known.
+    /// Returns 1 if a place of the streamline is beside the gap at the end of another stroke: the nearest stroke is
+    /// over one spacing away, but not as far as beyond that gap. Also 1 if the place is outside of the streamline.
     std::int32_t is_in_line(std::int32_t place) const {
         if (place < 0 || place > way_.last()) return 1;
         const FinePoint point = way_.point_at(place);
@@ -70,16 +73,16 @@ class Fitter {
 
     const PlacementGrid& grid_;
     const Clearance& clearance_;
-    const StrokeWay& way_;
+    const Streamline& way_;
     std::uint32_t layer_;
 };
 
-std::int32_t crowded_ends(const StrokeWay& way) {
+std::int32_t crowded_ends(const Streamline& way) {
     return (way.on().end == StrokeEnd::crowd ? 1 : 0) + (way.back().end == StrokeEnd::crowd ? 1 : 0);
 }
 
-std::uint32_t shortness_of(const StrokeWay& way, std::int32_t steps) {
-    const std::int32_t target = std::max(StrokeWay::target_steps(way.texel(), way.length_share()), 1);
+std::uint32_t shortness_of(const Streamline& way, std::int32_t steps) {
+    const std::int32_t target = std::max(Streamline::target_steps(way.texel(), way.length_share()), 1);
     return static_cast<std::uint32_t>(3 - std::clamp(4 * steps / target, 0, 3));
 }
 
@@ -87,9 +90,9 @@ std::uint32_t shortness_of(const StrokeWay& way, std::int32_t steps) {
 
 bool trace_stroke(const PlacementGrid& grid, const Clearance& clearance, const StrokeSeed& seed,
                   StrokeCandidate& candidate) {
-    const StrokeWay way(grid, clearance, seed);
+    const Streamline way(grid, clearance, seed);
     const Span span = Fitter(grid, clearance, way, seed.layer).fitted();
-    if (span.steps() < least_steps(grid, way.texel(), crowded_ends(way))) return false;
+    if (span.steps() < min_stroke_steps(grid, way.texel(), crowded_ends(way))) return false;
     candidate.way.clear();
     for (std::int32_t i = 0; i <= way.last(); ++i) candidate.way.push_back(way.point_at(i));
     candidate.stroke.layer = seed.layer;

@@ -13,18 +13,19 @@
 namespace exemplar {
 namespace {
 
-// All strokes move at once: by the whole way they would swing.
+// Damps the oscillation of neighbors, as all strokes move at once.
 constexpr float k_damping = 0.5f;
-// What is wider is a hole, or the view along a gap between strokes in line: nothing that moving strokes would mend.
+// In spacings. A wider gap is a hole, or the ray runs through the gap between two strokes in line; moving strokes
+// closes neither.
 constexpr float k_hole = 1.7f;
 
-/// A stroke's displacement across: an offset and a turn about its middle, in pixels and radians.
+/// A stroke's displacement across: an offset and a rotation about its middle, in pixels and radians.
 struct Move {
     float offset = 0, turn = 0;
 };
 
-/// How far a point would move towards `across`, in spacings; 0 if there is nothing beside it.
-float wish(const StrokeGaps::Gaps& gaps) {
+/// Returns the displacement of a point along `across` that balances its gaps, in spacings; 0 without neighbors.
+float balancing_offset(const StrokeGaps::Gaps& gaps) {
     const float ahead = gaps.ratio[0], behind = gaps.ratio[1];
     const bool to = ahead < k_hole, from = behind < k_hole;
     if (to && from) return (ahead - behind) / 2;
@@ -32,14 +33,14 @@ float wish(const StrokeGaps::Gaps& gaps) {
     return to ? (ahead - 1) / 2 : from ? (1 - behind) / 2 : 0;
 }
 
-/// The move that fits the wishes of a stroke's points best, by least squares.
-Move fit(const std::vector<StrokeGaps::Gaps>& gaps) {
-    // Points are about evenly apart.
+/// Fits a move to the displacements of a stroke's points by least squares.
+Move fit_gaps(const std::vector<StrokeGaps::Gaps>& gaps) {
+    // Points are spaced about evenly.
     const auto count = static_cast<float>(gaps.size());
     const float middle = (count - 1) / 2;
     float sum = 0, moment = 0, squares = 0;
     for (std::size_t i = 0; i < gaps.size(); ++i) {
-        const float t = static_cast<float>(i) - middle, pixels = wish(gaps[i]) * gaps[i].spacing;
+        const float t = static_cast<float>(i) - middle, pixels = balancing_offset(gaps[i]) * gaps[i].spacing;
         sum += pixels;
         moment += t * pixels;
         squares += t * t;
@@ -61,19 +62,19 @@ class Relaxation {
     }
 
   private:
-    /// Where the points of a stroke go.
+    /// Returns the moved points of a stroke.
     std::vector<Vec2> moved(std::uint32_t index, const StrokeGaps& gaps) {
         const HatchStroke& stroke = strokes_[index];
         std::vector<Vec2> points = stroke.points;
         const std::vector<StrokeGaps::Gaps> beside = gaps.beside(index);
         if (points.size() < 2) return points;
-        const Move step = fit(beside);
+        const Move step = fit_gaps(beside);
         const float spacing = beside[points.size() / 2].spacing, length = (points[1] - points[0]).norm();
         Move& all = moved_[index];
         const Move before = all;
-        const float most = k_most_relaxing * spacing;
+        const float most = k_max_relaxation_offset * spacing;
         all.offset = std::clamp(all.offset + step.offset, -most, most);
-        const float turn = k_most_relaxing_turn * length;  // across, from a point to the next
+        const float turn = k_max_relaxation_rotation * length;  // displacement from a point to the next
         all.turn = std::clamp(all.turn + step.turn, -turn, turn);
         const float middle = static_cast<float>(points.size() - 1) / 2;
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -88,7 +89,7 @@ class Relaxation {
 
     std::span<HatchStroke> strokes_;
     const HatchingFields& fields_;
-    std::vector<Move> moved_;  // of each stroke, since the beginning
+    std::vector<Move> moved_;  // total move of each stroke
 };
 
 }  // namespace

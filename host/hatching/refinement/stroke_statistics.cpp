@@ -5,20 +5,12 @@
 #include <vector>
 
 #include "host/core/parallel.h"
+#include "host/core/statistics.h"
 #include "host/hatching/fields/ink.h"
 #include "host/hatching/placement/stroke_gaps.h"
 
 namespace exemplar {
-namespace {
-
-double median(std::vector<double>& values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::ranges::nth_element(values, middle);
-    return *middle;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 SpacingMeasure measure_spacing(std::span<const HatchStroke> strokes, const HatchingFields& fields) {
     const StrokeGaps meter(strokes, fields);
@@ -32,20 +24,20 @@ SpacingMeasure measure_spacing(std::span<const HatchStroke> strokes, const Hatch
         },
         16);
 
-    SpacingMeasure result{.least_ratio = 1};
+    SpacingMeasure result{.min_ratio = 1};
     std::vector<double> errors;
     for (std::size_t i = 0; i < gaps.size(); ++i) {
-        result.least_ratio = std::min(result.least_ratio, static_cast<double>(least[i]));
+        result.min_ratio = std::min(result.min_ratio, static_cast<double>(least[i]));
         for (const StrokeGaps::Gaps& beside : gaps[i])
             for (const float ratio : beside.ratio) {
-                if (ratio == StrokeGaps::k_none) continue;
+                if (ratio == StrokeGaps::k_invalid_index) continue;
                 errors.push_back(std::abs(static_cast<double>(ratio) - 1));
                 result.mean_ratio += static_cast<double>(ratio);
             }
     }
     result.gaps = errors.size();
     if (result.gaps) result.mean_ratio /= static_cast<double>(result.gaps);
-    result.median_error = median(errors);
+    result.median_error = upper_median(errors);
     return result;
 }
 
@@ -54,7 +46,7 @@ int tone_reach(float spacing) {
 }
 
 ToneMeasure measure_tone(std::span<const HatchStroke> strokes, const HatchingFields& fields) {
-    const std::vector<float> ink = drawn_ink(strokes, fields.width, fields.height), target = target_tone(fields);
+    const std::vector<float> ink = render_ink(strokes, fields.width, fields.height), target = target_tone(fields);
     const WindowMeans inks(ink, fields.width, fields.height), targets(target, fields.width, fields.height);
     std::vector<double> errors;
     for (int y = 0; y < fields.height; ++y)
@@ -64,7 +56,7 @@ ToneMeasure measure_tone(std::span<const HatchStroke> strokes, const HatchingFie
             const int reach = tone_reach(fields.spacing[i]);
             errors.push_back(std::abs(inks.mean(x, y, reach) / targets.mean(x, y, reach) - 1));
         }
-    ToneMeasure result{.pixels = errors.size(), .median_error = median(errors), .mean_ratio = 0};
+    ToneMeasure result{.pixels = errors.size(), .median_error = upper_median(errors), .mean_ratio = 0};
     double drawn = 0, wanted = 0;
     for (std::size_t i = 0; i < ink.size(); ++i) {
         drawn += static_cast<double>(ink[i]);

@@ -15,10 +15,10 @@
 namespace exemplar {
 namespace {
 
-/// The pixel that a point is in, or the nearest of the picture.
-struct Pixel {
+/// The pixel that contains a point, or the nearest one of the picture.
+struct TonePixel {
     int x, y;
-    Pixel(const Vec2& at, const HatchingFields& fields)
+    TonePixel(const Vec2& at, const HatchingFields& fields)
         : x(static_cast<int>(std::clamp(at.x(), 0.0f, static_cast<float>(fields.width - 1)))),
           y(static_cast<int>(std::clamp(at.y(), 0.0f, static_cast<float>(fields.height - 1)))) {}
 };
@@ -45,7 +45,7 @@ class Matcher {
     }
 
     void iterate(std::span<HatchStroke> strokes) const {
-        const WindowMeans tone(drawn_ink(strokes, fields_.width, fields_.height), fields_.width, fields_.height);
+        const WindowMeans tone(render_ink(strokes, fields_.width, fields_.height), fields_.width, fields_.height);
         parallel_for(
             strokes.size(), [&](std::size_t i) { adapt(strokes[i], thickness_[i], tone); }, 16);
     }
@@ -55,21 +55,21 @@ class Matcher {
         if (stroke.points.empty()) return;
         std::vector<float> factors(stroke.points.size());
         for (std::size_t i = 0; i < factors.size(); ++i) {
-            const Pixel at(stroke.points[i], fields_);
+            const TonePixel at(stroke.points[i], fields_);
             const int reach = reach_at(at);
             const double is = tone.mean(at.x, at.y, reach), wanted = target_.mean(at.x, at.y, reach);
             const double ratio = is > 0 ? wanted / is : 1;
             factors[i] = static_cast<float>(ratio) * (thickness[i] > 0 ? stroke.widths[i] / thickness[i] : 1);
         }
         // Points are two pixels apart.
-        const int reach = reach_at(Pixel(stroke.points[factors.size() / 2], fields_)) / 2;
+        const int reach = reach_at(TonePixel(stroke.points[factors.size() / 2], fields_)) / 2;
         factors = smoothed(factors, static_cast<std::size_t>(reach));
         for (std::size_t i = 0; i < factors.size(); ++i)
-            stroke.widths[i] = thickness[i] * std::clamp(factors[i], k_least_width_factor, k_most_width_factor);
+            stroke.widths[i] = thickness[i] * std::clamp(factors[i], k_min_width_factor, k_max_width_factor);
     }
 
-    /// Three spacings: over less, strokes would swell at their ends beside every gap.
-    int reach_at(const Pixel& at) const { return 2 * tone_reach(fields_.spacing[fields_.index(at.x, at.y)]); }
+    /// Returns three spacings: in smaller windows, strokes would swell at their ends beside every gap.
+    int reach_at(const TonePixel& at) const { return 2 * tone_reach(fields_.spacing[fields_.index(at.x, at.y)]); }
 
     const HatchingFields& fields_;
     WindowMeans target_;

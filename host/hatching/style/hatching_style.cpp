@@ -7,9 +7,9 @@
 
 #include "host/core/errors.h"
 #include "host/data/model_file.h"
-#include "host/hatching/style/pixel_classifier.h"
 #include "host/hatching/features/pixel_features.h"
 #include "host/hatching/features/powers.h"
+#include "host/hatching/style/pixel_classifier.h"
 
 namespace exemplar {
 namespace {
@@ -87,7 +87,7 @@ PixelCrfParameters read_cut(const TensorFile& file, const Json& json) {
     return cut;
 }
 
-/// A number of something, 1 to `most`: read as a double, as not all that JSON calls numbers have an integer's value.
+/// Reads a count in 1 to `most`, as a double, since a JSON number need not be an integer.
 int read_count(const TensorFile& file, const Json& json, const char* key, int most) {
     const double count = json.at(key);
     if (!(count >= 1 && count <= most) || count != std::floor(count))
@@ -131,7 +131,7 @@ void save_hatching_style(const std::filesystem::path& path, const HatchingStyle&
                            {"segment_cut", described(style.segment_crf)},
                            {"level_cut", described(style.level_crf)},
                            {"stages", style.segments.size()}};
-    // The name of a drawing's file may be no text.
+    // A file name need not be valid UTF-8.
     file.metadata["style"] = description.dump(-1, ' ', false, Json::error_handler_t::replace);
     for (std::size_t c = 0; c < style.rules.size(); ++c) {
         for (std::size_t j = 0; j < k_hatch_layers; ++j)

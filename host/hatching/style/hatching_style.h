@@ -14,37 +14,38 @@
 
 namespace exemplar {
 
-/// A hatching style, learned from one drawing. Features are numbered as in powers.h; from 4 k_pixel_features on they
-/// are the contextual features of as many labels as there are rules.
+/// A hatching style learned from one drawing. Feature numbers are those of the expanded set (powers.h); numbers from
+/// 4 * k_pixel_features on are contextual features of as many labels as there are rules (see contextual_features()).
 struct HatchingStyle {
     std::string name;                        ///< of the drawing
-    int width = 0, height = 0;               ///< of the drawing: lengths are in its pixels
-    std::vector<OrientationRule> rules;      ///< of the segments
-    std::vector<double> share;               ///< of the drawing's strokes in each segment
-    std::vector<CalibratedStumps> segments;  ///< cascade: from the second on with contextual features
-    CalibratedStumps boundary;               ///< two classes: on a boundary of hatching regions or not
-    CalibratedStumps levels;                 ///< three classes
+    int width = 0, height = 0;               ///< of the drawing, in pixels; lengths are in these pixels
+    std::vector<OrientationRule> rules;      ///< one per segment
+    std::vector<double> share;               ///< per segment, its share of the drawing's strokes
+    std::vector<CalibratedStumps> segments;  ///< cascade; all but the first also see contextual features
+    CalibratedStumps boundary;               ///< class 1: on a boundary of hatching regions; class 0: not
+    CalibratedStumps levels;                 ///< three classes: the hatching levels
     PixelCrfParameters segment_crf, level_crf;
     std::array<PropertyModel, k_stroke_properties> properties;
 
-    std::size_t feature_count() const;  ///< base features, contextual ones included
+    std::size_t feature_count() const;  ///< number of base features, including contextual ones
 };
 
-/// Identifies the meaning of feature numbers; changes whenever it changes.
+/// Version of the feature numbering; changes whenever a number changes its meaning.
 constexpr int k_hatching_feature_version = 1;
 
-/// Writes and reads style files (safetensors; docs/formats.md). Reading checks everything and throws ModelError, naming
-/// the file, what is wrong, and the mend.
+/// Write and read style files (safetensors; docs/formats.md). Reading validates all contents and throws ModelError
+/// with the file, the fault and the remedy.
 void save_hatching_style(const std::filesystem::path& path, const HatchingStyle& style);
 HatchingStyle load_hatching_style(const std::filesystem::path& path);
-/// Whether a safetensors file says that it is a hatching style. Throws ModelError if it is no such file.
+/// Returns whether a safetensors file declares itself a hatching style. Throws ModelError if it is not a safetensors
+/// file.
 bool is_hatching_style(const std::filesystem::path& path);
 
-/// The style in words: which rule hatches which segment (as the legend of thesis Fig. 4.3) and which features drive
-/// each property (as Figs. 4.15, 4.16).
+/// Describes a style in words: the rule of each segment (like the legend of thesis Fig. 4.3) and the features that
+/// determine each property (like Figs. 4.15, 4.16).
 std::string describe_hatching_style(const HatchingStyle& style);
 
-/// The name of an expanded feature of a style, e.g. "1/image.L.N@2^2".
+/// Returns the name of an expanded feature of a style, e.g. "1/image.L.N@2^2".
 std::string feature_name(const HatchingStyle& style, std::uint32_t expanded);
 
 }  // namespace exemplar

@@ -6,32 +6,30 @@
 #include <numeric>
 
 #include "host/core/random.h"
+#include "host/core/statistics.h"
 
 namespace exemplar {
 namespace {
 
 constexpr std::uint32_t k_unassigned = 0xFFFFFFFF;
 
-/// Squared distance of doubled angles whose directions differ by so many radians.
+/// Returns the squared distance of doubled angles whose directions differ by `angle` radians.
 float squared_distance_of(float angle) {
     return 2 - 2 * std::cos(2 * angle);
 }
 
-/// The median difference between the directions of neighbors, as a squared distance.
+/// Returns the median difference between the directions of neighbors, at least 15 degrees, as a squared distance.
 float growth_threshold(const OrientationSamples& samples, const SampleNeighbors& neighbors) {
+    // A lower threshold splits noise-free curved hatching into slivers.
     constexpr float k_least = 15 * std::numbers::pi_v<float> / 180;
     std::vector<float> medians, differences;
     for (std::size_t i = 0; i < samples.size(); i += 7) {
         differences.clear();
         for (const std::uint32_t near : neighbors.of(i))
             differences.push_back(squared_distance(samples.direction[i], samples.direction[near]));
-        const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-        std::ranges::nth_element(differences, middle);
-        medians.push_back(*middle);
+        medians.push_back(upper_median(differences));
     }
-    const auto middle = medians.begin() + static_cast<std::ptrdiff_t>(medians.size() / 2);
-    std::ranges::nth_element(medians, middle);
-    return std::max(*middle, squared_distance_of(k_least));
+    return std::max(upper_median(medians), squared_distance_of(k_least));
 }
 
 /// A cluster that grows: its one or two mean directions.
@@ -72,11 +70,13 @@ class Growth {
   private:
     void grow(std::uint32_t seed) {
         const auto number = static_cast<std::uint32_t>(growing_.size());
+        // A cluster holds one level: otherwise two regions of single strokes could pass for the two directions of
+        // the cross-hatching between them, and no later step would separate them.
         Growing cluster{samples_.level[seed]};
         std::vector<std::uint32_t> open{seed};
         take(seed, number, 0, cluster);
         while (!open.empty()) {
-            // A random one, so that the cluster grows to all sides.
+            // A random member, so that the cluster grows to all sides.
             std::swap(open[random_.index(open.size())], open.back());
             const std::uint32_t at = open.back();
             open.pop_back();
@@ -91,12 +91,12 @@ class Growth {
         growing_.push_back(cluster);
     }
 
-    /// Which of the cluster's directions a sample follows; -1: none.
+    /// Returns which of the cluster's directions a sample follows; -1: none.
     int direction_for(std::uint32_t i, const Growing& cluster) const {
         const float first = cluster.difference(0, samples_.direction[i]);
         const float second = cluster.difference(1, samples_.direction[i]);
         if (std::min(first, second) < threshold_) return second < first ? 1 : 0;
-        // Cross-hatching that begins: a second direction, well apart from the first.
+        // Start of cross-hatching: a second direction, well apart from the first.
         constexpr float k_apart = 30 * std::numbers::pi_v<float> / 180;
         return samples_.level[i] == 2 && cluster.count[1] == 0 && first > squared_distance_of(k_apart) ? 1 : -1;
     }
@@ -107,13 +107,13 @@ class Growth {
         cluster.add(j, samples_.direction[i]);
     }
 
-    /// The largest clusters, by falling size; the rest join those.
+    /// Keeps the largest clusters by decreasing size; samples of the others join them.
     OrientationClusters sorted(std::size_t most) {
         std::vector<std::uint32_t> order(growing_.size());
         std::iota(order.begin(), order.end(), 0U);
         const auto size = [&](std::uint32_t c) { return growing_[c].count[0] + growing_[c].count[1]; };
         std::ranges::stable_sort(order, [&](std::uint32_t a, std::uint32_t b) { return size(a) > size(b); });
-        // What is less than a hundredth of the drawing is too little to learn a rule from.
+        // Less than 1% of the samples is too little to learn a rule from.
         while (order.size() > 1 && (order.size() > most || 100 * size(order.back()) < samples_.size()))
             order.pop_back();
         std::vector<std::uint32_t> place(growing_.size(), k_unassigned);
@@ -133,7 +133,7 @@ class Growth {
         for (std::uint32_t k = 0; k < kept.size(); ++k) {
             const Growing& cluster = growing_[kept[k]];
             for (std::size_t j = 0; j < 2; ++j) {
-                // One of the other level only if there is none of its own.
+                // The penalty of 4 prefers clusters of the sample's own level.
                 const float difference =
                     cluster.difference(j, samples_.direction[i]) + (cluster.level == samples_.level[i] ? 0.0f : 4.0f);
                 if (!(difference < best)) continue;
@@ -144,9 +144,9 @@ class Growth {
         }
     }
 
-    /// Tells cross-hatched clusters from others, and their dominant direction from the other.
+    /// Finds the cross-hatched clusters and which of their directions is dominant.
     void name_directions(OrientationClusters& out) const {
-        // All, cross-hatched, second direction; and, where strokes are single, those of the second direction.
+        // Counts of all, cross-hatched, second-direction, and second-direction single-stroke samples.
         std::vector<std::array<std::size_t, 4>> counts(out.count);
         for (std::size_t i = 0; i < samples_.size(); ++i) {
             auto& [all, crossed, seconds, single_seconds] = counts[out.cluster[i]];
@@ -161,7 +161,7 @@ class Growth {
             const std::uint32_t c = out.cluster[i];
             if (!out.cross[c]) out.second[i] = 0;
             const auto& [all, crossed, seconds, single_seconds] = counts[c];
-            // Single strokes decide, if there are any, else all.
+            // Single strokes decide if there are any, else all samples do.
             const bool swap = crossed < all ? 2 * single_seconds > all - crossed : 2 * seconds > all;
             if (out.cross[c] && swap) out.second[i] ^= 1;
         }

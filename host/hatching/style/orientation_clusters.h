@@ -8,22 +8,20 @@
 
 namespace exemplar {
 
-/// A first guess at the regions of a drawing that follow one rule.
+/// Initial segmentation of a drawing into regions that follow one rule.
 struct OrientationClusters {
     std::size_t count = 0;
-    std::vector<std::uint32_t> cluster;  ///< of each sample, by falling size
-    std::vector<std::uint8_t> second;    ///< of each sample: 1 if it follows the cluster's second direction
-    std::vector<std::uint8_t> cross;     ///< of each cluster: 1 if it is cross-hatched
+    std::vector<std::uint32_t> cluster;  ///< per sample; clusters are numbered by decreasing size
+    std::vector<std::uint8_t> second;    ///< per sample: 1 if it follows the cluster's second direction
+    std::vector<std::uint8_t> cross;     ///< per cluster: 1 if it is cross-hatched
 };
 
-/// Constrained mean-shift clustering with a flat kernel (thesis Sec. 4.4.1, "Initialization"): clusters grow from
-/// random seeds over neighbors whose direction differs from the mean direction of the cluster (of cross-hatching the
-/// nearer of two) by less than a threshold, the median difference between neighbors, but no less than 15 degrees, lest
-/// noise-free curved hatching fall into slivers. Beyond the thesis, single strokes and cross-hatching begin in clusters
-/// of their own: grown together, two regions of single strokes would pass for the two directions of the cross-hatching
-/// between them, and no later step parts them. More than 10% of cross-hatched pixels make a cluster cross-hatching;
-/// the first of its directions is the one that single strokes follow, or, if all cross, the one with more pixels. At
-/// most `most` clusters are kept; what belongs to none joins the one of its level whose direction fits best.
+/// Clusters samples by constrained mean shift with a flat kernel (thesis Sec. 4.4.1, "Initialization"). A cluster
+/// grows from a random seed over neighbors whose direction is within a threshold of its mean direction, or of the
+/// nearer of two for cross-hatching: the median difference between neighbors, at least 15 degrees. Beyond the
+/// thesis, single strokes and cross-hatching start in separate clusters. A cluster with more than 10% cross-hatched
+/// samples is cross-hatched; its first direction is that of its single strokes, or the more frequent one if it has
+/// none. At most `most` clusters are kept; other samples join the best-fitting cluster of their level.
 OrientationClusters grow_clusters(const OrientationSamples& samples, std::size_t most, std::uint64_t seed);
 
 }  // namespace exemplar

@@ -1,6 +1,5 @@
 #include "host/hatching/style/orientation_function.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -9,24 +8,26 @@
 #include <numeric>
 
 #include "host/core/parallel.h"
+#include "host/learn/decompositions.h"
 
 namespace exemplar {
 namespace {
 
-/// The weights of squared errors in [0, 4], as a histogram: what a line search sums up again and again.
+/// Histogram of the weights of squared errors in [0, 4], over which a line search sums repeatedly.
 class ErrorHistogram {
   public:
     void add(float error, double weight) {
         const auto bin = static_cast<std::size_t>(error * (static_cast<float>(k_bins) / 4));
         weight_[std::min(bin, k_bins - 1)] += weight;
     }
-    /// sum of w exp(r e) / sqrt(r), and the r in [k_least, k_most] that minimizes it.
+    /// Returns the sum of w exp(r e) / sqrt(r).
     double objective(double r) const {
         double sum = 0;
         for (std::size_t b = 0; b < k_bins; ++b) sum += weight_[b] * std::exp(r * center(b));
         return sum / std::sqrt(r);
     }
-    /// The objective is convex in log r: a sum of convex functions; so a golden section search finds its minimum.
+    /// Returns the r in [k_least, k_most] that minimizes the objective. The objective is convex in log r, as a sum
+    /// of convex functions, so golden-section search finds the minimum.
     double best_r() const {
         constexpr double k_golden = 0.6180339887498949, k_least = 0.05, k_most = 50;
         double low = std::log(k_least), high = std::log(k_most);
@@ -50,7 +51,7 @@ Eigen::Vector2d in_double(const DoubledAngle& v) {
 
 Eigen::VectorXd ridge_solution(Eigen::MatrixXd normal, const Eigen::VectorXd& right) {
     normal.diagonal() *= 1 + 1e-4;
-    return normal.ldlt().solve(right);
+    return solve_ldlt(normal, right);
 }
 
 class Boosting {
@@ -79,7 +80,7 @@ class Boosting {
         LearnedOrientation best;
         best.error = std::numeric_limits<double>::infinity();
         std::vector<OrientationFunction::Term> terms;
-        for (std::size_t round = 0; round < training_.most_terms; ++round) {
+        for (std::size_t round = 0; round < training_.max_terms; ++round) {
             const Choice choice = choose(round == 0);
             if (!std::isfinite(choice.objective)) break;
             add_term(terms, choice);
@@ -88,26 +89,27 @@ class Boosting {
             float sum = 0;
             for (const auto& term : averaged.terms) sum += term.weight;
             for (auto& term : averaged.terms) term.weight /= sum;
-            // Rounds that add weight to what is there may lead to a new feature.
+            // A round that only adds weight to a known feature may still lead to a new one.
             if (!keep_better(averaged, best) && terms.size() > best.function.terms.size()) break;
         }
         return best;
     }
 
-    /// Forward selection by least squares.
+    /// Forward selection by least squares. Averages, as boosting makes them, cannot tell which of two good features
+    /// is followed where they differ.
     void match(LearnedOrientation& best) const {
         std::vector<float> weight(training_.weight.begin(), training_.weight.end());
         for (std::size_t i = 0; i < weight.size(); ++i) weight[i] = training_.held_out[i] ? 0 : weight[i];
         const FieldProducts products = field_products(training_.fields, training_.target, weight);
-        const std::vector<Eigen::Index> order = select_fields(products, training_.most_terms);
+        const std::vector<Eigen::Index> order = select_fields(products, training_.max_terms);
         for (std::size_t count = 1; count <= order.size(); ++count) {
             const std::vector<Eigen::Index> chosen(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
             if (!keep_better(matched(products, chosen), best) && count > best.function.terms.size() + 1) return;
         }
     }
 
-    /// The function of these fields with the best weights: those of sums that are near the targets, then by
-    /// Gauss-Newton steps those of sums that have their directions, of whatever length.
+    /// Returns the function of these fields with the best weights: first linear least squares on the vectors, then
+    /// Gauss-Newton steps that fit the direction of the sum alone, whatever its length.
     OrientationFunction matched(const FieldProducts& products, const std::vector<Eigen::Index>& chosen) const {
         Eigen::VectorXd weights = ridge_solution(products.normal(chosen, chosen), products.right(chosen));
         if (chosen.size() > 1) {
@@ -124,8 +126,9 @@ class Boosting {
         return function;
     }
 
-    /// The change of weights that turns the function's directions to the targets, to first order; the weights' common
-    /// factor turns nothing and stays. A sum that is next to zero would count too much.
+    /// Returns the change of weights that turns the function's directions to the targets, to first order. A common
+    /// factor of the weights turns nothing and stays. Items with a sum near zero would count too much, so its length
+    /// is bounded from below.
     Eigen::VectorXd direction_step(const OrientationFunction& function, const Eigen::VectorXd& weights) const {
         constexpr double k_least_length = 0.1;
         Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(weights.size(), weights.size());
@@ -192,7 +195,7 @@ class Boosting {
         normalize_weights();
     }
 
-    /// Keeps a function that is better: of more features only if they pay.
+    /// Replaces the best function by a better one; more features must lower the error by 5%.
     bool keep_better(const OrientationFunction& function, LearnedOrientation& best) const {
         constexpr double k_worth = 0.95;
         const double e = error(function);
@@ -202,7 +205,7 @@ class Boosting {
         return true;
     }
 
-    /// Weighted mean of |u - f|^2 over the items that decide.
+    /// Returns the weighted mean of |u - f|^2 over the held-out items, or over all if none is held out.
     double error(const OrientationFunction& function) const {
         double sums[2][2] = {};
         for (std::size_t i = 0; i < weight_.size(); ++i) {
@@ -248,7 +251,7 @@ FieldProducts field_products(const OrientationFields& fields, std::span<const Do
     for (std::uint32_t i = 0; i < weight.size(); ++i) {
         if (weight[i] > 0) rows.push_back(i);
     }
-    // Items in blocks, as columns: a matrix product is many times as fast as single sums.
+    // Blocks of items as columns: one matrix product is many times faster than rank-one updates.
     Eigen::MatrixXd v(k_orientation_fields, 2 * k_block);
     Eigen::VectorXd u(2 * k_block);
     for (std::size_t first = 0; first < rows.size(); first += k_block) {

@@ -10,7 +10,8 @@
 
 namespace exemplar {
 
-/// A rule for the direction of strokes: f = sum of w_k v_k over a few features (thesis Eq. 4.7).
+/// Orientation function: the direction of strokes as f = sum of w_k v_k over a few orientation features (thesis Eq.
+/// 4.7).
 struct OrientationFunction {
     struct Term {
         std::uint32_t feature;
@@ -19,47 +20,48 @@ struct OrientationFunction {
     };
     std::vector<Term> terms;
 
-    /// f of item i, normalized.
+    /// Returns f of item i, normalized.
     DoubledAngle evaluate(const OrientationFields& fields, std::size_t i) const;
     bool operator==(const OrientationFunction&) const = default;
 };
 
-/// Weighted sums of products of all fields with each other and with target directions: all that least squares need, and
-/// sums of two sets of items are those of both.
+/// Normal equations of least squares over all fields: weighted sums of products of the fields with each other and
+/// with the target directions. They are additive over sets of items.
 struct FieldProducts {
     Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(k_orientation_fields, k_orientation_fields);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(k_orientation_fields);
-    double total = 0;  ///< of the weights
+    double total = 0;  ///< sum of the weights
 
     FieldProducts& operator+=(const FieldProducts& other);
 };
 FieldProducts field_products(const OrientationFields& fields, std::span<const DoubledAngle> target,
                              std::span<const float> weight);
-/// Forward selection: the fields, in the order in which each leaves the least squares, with all weights fitted anew.
+/// Selects at most `most` fields by forward selection, in the order of selection. Each step adds the field that
+/// gives the lowest least-squares error with all weights refitted.
 std::vector<Eigen::Index> select_fields(const FieldProducts& products, std::size_t most);
-/// The mean of |u - sum of w_k v_k|^2 over the items with the best weights of these fields.
+/// Returns the mean of |u - sum of w_k v_k|^2 over the items for the optimal weights of these fields.
 double least_squares_error(const FieldProducts& products, const std::vector<Eigen::Index>& fields);
 
-/// What learning an orientation function is told.
+/// Input of learn_orientation().
 struct OrientationTraining {
     const OrientationFields& fields;
     std::span<const DoubledAngle> target;    ///< u_i
-    std::span<const float> weight;           ///< of each item, not negative
-    std::span<const std::uint8_t> held_out;  ///< 1: not trained on, but decides when to stop
-    std::size_t most_terms = 6;
+    std::span<const float> weight;           ///< per item, not negative
+    std::span<const std::uint8_t> held_out;  ///< per item, 1: only for validation, to decide when to stop
+    std::size_t max_terms = 6;
 };
 
 struct LearnedOrientation {
     OrientationFunction function;
-    double error = 0;  ///< weighted mean of |u - f|^2 over the items held out (over all, if none is)
+    double error = 0;  ///< weighted mean of |u - f|^2 over held-out items, or over all if none is held out
 };
 
-/// Gradient-based boosting for regression (Zemel and Pitassi 2001; thesis Sec. 2.4.3, 4.4.1): each round adds the
-/// feature that minimizes sum of w_i r^-1/2 exp(r |u_i - v_i|^2), with r by line search (the first: r = 1), multiplies
-/// the weights by that term, and ends where the items held out are fitted best; weights are the r over their sum.
-/// Beyond the thesis, functions found by forward selection, whose weights are fitted by least squares, compete on the
-/// items held out: averages alone cannot tell which of two good features is followed where they differ. One more
-/// feature has to take 5% off the error. No weight or no feature that is defined anywhere: no terms.
+/// Learns an orientation function by gradient-based boosting (Zemel and Pitassi 2001; thesis Sec. 2.4.3, 4.4.1).
+/// Each round adds the feature that minimizes the sum of w_i r^-1/2 exp(r |u_i - v_i|^2), with r = 1 at first and by
+/// line search later, and multiplies the w_i by the exponential. Rounds stop at the best fit of the held-out items;
+/// term weights are r over the sum of r. Beyond the thesis, functions found by forward selection and least squares
+/// compete on the held-out items. A function with more features must lower the error by 5%. Returns no terms if all
+/// weights are zero or no feature is defined anywhere.
 LearnedOrientation learn_orientation(const OrientationTraining& training);
 
 }  // namespace exemplar

@@ -6,17 +6,18 @@
 
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
+#include "host/core/statistics.h"
 #include "host/hatching/style/orientation_clusters.h"
 
 namespace exemplar {
 namespace {
 
-constexpr double k_least_share = 0.04;
-constexpr float k_apart = 1;               // |u - v|^2 of directions that differ by 30 degrees: strokes that cross do
-constexpr double k_least_variance = 1e-3;  // of |u - f|^2: about a degree
+constexpr double k_min_share = 0.04;
+constexpr float k_crossing_distance = 1;   // |u - v|^2 of directions 30 degrees apart; crossing strokes exceed it
+constexpr double k_least_variance = 1e-3;  // of |u - f|^2: noise of about a degree
 constexpr float k_gate_radius = 2;         // in spacings
 
-/// An expert and what is thought of it: the columns of gamma and beta.
+/// An expert with its columns of gamma and beta.
 struct Expert {
     OrientationRule rule;
     bool cross = false;
@@ -39,7 +40,7 @@ class Mixture {
           progress_(progress),
           neighbors_(sample_neighbors(samples, 1)),
           gate_neighbors_(sample_neighbors(samples, k_gate_radius)) {
-        const OrientationClusters clusters = grow_clusters(samples, options.most_clusters, options.seed);
+        const OrientationClusters clusters = grow_clusters(samples, options.max_clusters, options.seed);
         held_out_ = held_out_rectangles(samples.x, samples.y, clusters.cluster, options.held_out, options.seed + 1);
         experts_.resize(clusters.count);
         for (std::size_t c = 0; c < clusters.count; ++c) {
@@ -54,8 +55,9 @@ class Mixture {
     }
 
     OrientationMixture run() {
-        // By place, as regions whose directions meet at a border would else take parts of each other. But a region may
-        // then keep a rule of its own only because its samples lie together: without place fewer rules may do.
+        // First with the spatial gate: without it, regions whose directions agree at a common border take parts of
+        // each other. But with it, a region may keep a rule of its own only because its samples lie together, so a
+        // second run without it may do with fewer rules.
         converge_and_merge();
         if (experts_.size() == 1) return result();
         const std::vector<Expert> told_by_place = experts_;
@@ -88,7 +90,7 @@ class Mixture {
         }
     }
 
-    /// Whether there is cross-hatching in a segment (more than 10%, as clusters have it) changes with its border.
+    /// Decides again whether a segment is cross-hatched (more than 10%, as for clusters), as its border has moved.
     void update_kind(Expert& expert) const {
         double all = 0, crossed = 0;
         for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -99,7 +101,7 @@ class Mixture {
         if (cross == expert.cross) return;
         expert.cross = cross;
         for (std::size_t i = 0; i < samples_.size(); ++i) {
-            const bool second = cross && samples_.level[i] == 2 && expert.errors[i][0] > k_apart;
+            const bool second = cross && samples_.level[i] == 2 && expert.errors[i][0] > k_crossing_distance;
             expert.beta[i] = second ? 0.0f : 1.0f;
         }
     }
@@ -129,8 +131,8 @@ class Mixture {
                             ? 4.0f
                             : squared_distance(samples_.direction[i], function.evaluate(samples_.fields, i));
                 }
-                // Single strokes follow the first direction; without that, a region with another rule may pass for the
-                // second direction of a cross-hatched one beside it.
+                // Single strokes follow the first direction. Otherwise a region with another rule could pass for the
+                // second direction of a cross-hatched neighbor.
                 expert.nearest[i] =
                     samples_.level[i] == 1 ? expert.errors[i][0] : std::min(expert.errors[i][0], expert.errors[i][1]);
             },
@@ -142,23 +144,21 @@ class Mixture {
         });
     }
 
-    /// The median of errors around a sample; where strokes cross, of each direction on its own, and the mean of the two
-    /// by their numbers: the median of all sees only the direction that more samples follow, so that a rule for one
-    /// direction would take the other along. `around` is room to work in.
+    /// Returns the median error of the neighbors of a sample's level. Where strokes cross, there is one median per
+    /// direction, averaged by count: a common median sees only the more frequent direction and would accept a rule
+    /// that ignores the other. `around` is scratch memory.
     float filtered(const std::vector<float>& errors, std::size_t i, std::array<std::vector<float>, 2>& around) const {
         for (auto& side : around) side.clear();
         for (const std::uint32_t near : neighbors_.of(i)) {
             if (samples_.level[near] != samples_.level[i]) continue;
-            const bool across =
-                samples_.level[i] == 2 && squared_distance(samples_.direction[i], samples_.direction[near]) > k_apart;
+            const bool across = samples_.level[i] == 2 &&
+                                squared_distance(samples_.direction[i], samples_.direction[near]) > k_crossing_distance;
             around[across ? 1 : 0].push_back(errors[near]);
         }
         float sum = 0;
         for (auto& side : around) {
             if (side.empty()) continue;
-            const auto middle = side.begin() + static_cast<std::ptrdiff_t>(side.size() / 2);
-            std::ranges::nth_element(side, middle);
-            sum += static_cast<float>(side.size()) * *middle;
+            sum += static_cast<float>(side.size()) * upper_median(side);
         }
         return sum / static_cast<float>(around[0].size() + around[1].size());
     }
@@ -186,15 +186,14 @@ class Mixture {
         variance_ = std::max(variance_, k_least_variance);
     }
 
-    /// In place of pi_c, how likely a sample is an expert's from those around it: the mean of their gamma, and pi_c as
-    /// if it were that of one more.
+    /// Returns the prior that replaces pi_c: the mean gamma of the neighbors, with pi_c as one more neighbor.
     double gate(const std::vector<float>& gamma, double share, std::size_t i) const {
         double sum = share;
         for (const std::uint32_t near : gate_neighbors_.of(i)) sum += static_cast<double>(gamma[near]);
         return sum / static_cast<double>(1 + gate_neighbors_.of(i).size());
     }
 
-    /// Eqs. 4.10, 4.11; returns the mean error under the new labels.
+    /// Updates gamma and beta (Eqs. 4.10, 4.11); returns the mean error under the new labels.
     double update_labels() {
         std::vector<std::vector<float>> before;
         for (const Expert& e : experts_) before.push_back(e.gamma);
@@ -207,7 +206,7 @@ class Mixture {
                 for (std::size_t c = 0; c < experts_.size(); ++c) {
                     Expert& e = experts_[c];
                     const double prior = by_place_ ? gate(before[c], e.share, i) : e.share;
-                    // Relative to the least error, so that the sum cannot vanish.
+                    // Relative to the smallest error, so that the sum cannot vanish.
                     const double above = static_cast<double>(e.error[i]) - least;
                     e.gamma[i] = static_cast<float>(prior * std::exp(-above / (2 * variance_)));
                     sum += static_cast<double>(e.gamma[i]);
@@ -237,7 +236,7 @@ class Mixture {
         for (Expert& expert : experts_) expert.share = share_of(expert);
         while (experts_.size() > 1) {
             const auto smallest = std::ranges::min_element(experts_, {}, &Expert::share);
-            if (smallest->share >= k_least_share) return;
+            if (smallest->share >= k_min_share) return;
             experts_.erase(smallest);
             for (std::size_t i = 0; i < samples_.size(); ++i) {
                 float sum = 0;
@@ -249,7 +248,7 @@ class Mixture {
         }
     }
 
-    /// One expert in place of two; `swapped`: the first direction of one is the second of the other.
+    /// Merges two experts; `swapped`: the first direction of one is the second of the other.
     Expert merged(const Expert& a, const Expert& b, bool swapped) const {
         Expert expert;
         expert.cross = a.cross || b.cross;
@@ -274,7 +273,8 @@ class Mixture {
         double loss;
     };
 
-    /// All pairs by how much a common rule loses, as least squares with three fields a direction have it.
+    /// Returns all pairs, sorted by the increase of error under a common rule as estimated by least squares with
+    /// three fields per direction.
     std::vector<Pair> promising_pairs() {
         parallel_for(experts_.size(), [&](std::size_t c) {
             Expert& e = experts_[c];
@@ -316,17 +316,19 @@ class Mixture {
         return pairs;
     }
 
-    /// Whether a rule explains the samples of two experts as well as they did, but for a tenth more than their errors
-    /// and what a degree of noise makes: errors of the same samples are compared, those held out (all, if none is).
-    /// What lies over a border, and any other expert fits better than the one rule, counts as the other's.
+    /// Returns whether one rule explains the samples of two experts: on the held-out samples (on all, if none is
+    /// held out), its error is at most 10% above theirs, plus noise of a degree. Where a third expert fits a sample
+    /// better than the one rule, that expert's error counts, as the sample lies across a border.
     bool explains_as_well(const Expert& one, const Expert& a, const Expert& b) const {
-        std::array<double, 2> together{}, apart{}, weight{};  // of samples trained on, and held out
+        std::array<double, 2> together{}, apart{}, weight{};  // training samples, held-out samples
         for (std::size_t i = 0; i < samples_.size(); ++i) {
             const Expert* best = &one;
             for (const Expert& e : experts_) {
                 if (&e != &a && &e != &b && e.error[i] < best->error[i]) best = &e;
             }
-            const auto capped = [i](const Expert& e) { return static_cast<double>(std::min(e.nearest[i], k_apart)); };
+            const auto capped = [i](const Expert& e) {
+                return static_cast<double>(std::min(e.nearest[i], k_crossing_distance));
+            };
             const auto of_a = static_cast<double>(a.gamma[i]), of_b = static_cast<double>(b.gamma[i]);
             const std::size_t set = held_out_[i] ? 1 : 0;
             together[set] += (of_a + of_b) * capped(*best);
@@ -337,7 +339,7 @@ class Mixture {
         return together[judge] <= 1.1 * apart[judge] + k_least_variance * weight[judge];
     }
 
-    /// Merges a pair that one rule explains as well as two; false if there is none.
+    /// Merges a pair that one rule explains as well as two; returns false if there is none.
     bool merge_best_pair() {
         constexpr std::size_t k_tried = 6;
         std::vector<Pair> pairs = promising_pairs();

@@ -12,7 +12,7 @@
 
 namespace exemplar {
 
-/// The rule of one segment of a drawing: how hatches run, and what crosses them (no terms: nothing does).
+/// Rule of one segment: the direction of hatches, and of the hatches that cross them (no terms: nothing crosses).
 struct OrientationRule {
     std::array<OrientationFunction, k_hatch_layers> function;
     bool crosses() const { return !function[1].terms.empty(); }
@@ -20,30 +20,26 @@ struct OrientationRule {
 };
 
 struct MixtureOptions {
-    std::size_t most_clusters = 16;  ///< that the search begins with
-    std::size_t iterations = 10;     ///< of expectation and maximization, between merges
-    double held_out = 0.25;          ///< share of each cluster
+    std::size_t max_clusters = 16;  ///< initial clusters, at most
+    std::size_t iterations = 10;    ///< of expectation maximization, between merges
+    double held_out = 0.25;         ///< share of each cluster that is held out
     std::uint64_t seed = 1;
 };
 
-/// What the mixture of experts found.
+/// Result of learn_mixture().
 struct OrientationMixture {
-    std::vector<OrientationRule> rules;  ///< of each segment, by falling share
-    std::vector<std::uint32_t> segment;  ///< of each sample: the likeliest
-    std::vector<double> share;           ///< pi_c
-    double error = 0;                    ///< mean over the samples of min |u - f|^2 in their segment
+    std::vector<OrientationRule> rules;  ///< per segment, by decreasing share
+    std::vector<std::uint32_t> segment;  ///< per sample: the most probable segment
+    std::vector<double> share;           ///< per segment: pi_c
+    double error = 0;                    ///< mean over samples of the smaller |u - f|^2 of their segment
 };
 
-/// Finds which regions of a drawing follow which rule, and the rules, at once (thesis Sec. 4.4.1, Eqs. 4.10-4.14): a
-/// mixture of experts by expectation maximization, from grow_clusters(). Beyond the thesis, segments of less than
-/// four hundredths are dissolved, and two segments become one where one rule explains both, on what is held out, with
-/// no more than a tenth more than the errors of the two and of what a degree of noise makes: clusters begin as regions
-/// of about one direction, while a rule may turn with the surface. A segment has a second direction if more than 10% of
-/// it is cross-hatched, whatever it began as. Also, where the drawing has single strokes (level 1), only the first
-/// direction of a segment counts in Eq. 4.12, and the medians of errors are of samples of the same level and, where
-/// strokes cross, of each direction on its own. A gate by place (Sec. 2.2.5) stands for pi_c in Eq. 4.10: the mean of
-/// gamma within two spacings; but where fewer segments are left if all goes on without it, those are the result. No
-/// samples give no rules. Deterministic. Throws Interrupted at Ctrl-C.
+/// Finds the segments of a drawing and their rules jointly (thesis Sec. 4.4.1, Eqs. 4.10-4.14): a mixture of
+/// experts, fitted by expectation maximization from the clusters of grow_clusters(). Beyond the thesis
+/// (docs/hatching.md), segments below 4% dissolve, segments that one rule explains on held-out samples merge, and a
+/// spatial gate (Sec. 2.2.5: the mean of gamma within two spacings) replaces pi_c in Eq. 4.10, unless fewer segments
+/// remain without it. A segment has a second direction if more than 10% of it is cross-hatched; single strokes count
+/// for the first direction only (Eq. 4.12). No samples give no rules. Deterministic. Throws Interrupted at Ctrl-C.
 OrientationMixture learn_mixture(
     const OrientationSamples& samples, const MixtureOptions& options = {},
     const std::function<void()>& progress = [] {});

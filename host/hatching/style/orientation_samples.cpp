@@ -101,7 +101,7 @@ std::vector<std::uint8_t> held_out_rectangles(std::span<const std::uint16_t> x, 
                 ++marked;
             }
         }
-        // Of a group in few far pieces none may be left: it is learned from as a whole then.
+        // If the rectangles cover the whole group, nothing is held out, as nothing would be left to learn from.
         if (marked == members.size())
             for (const std::uint32_t i : members) held[i] = 0;
     }

@@ -15,12 +15,12 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_rounds_between = 5;  // looks at the rows held out
+constexpr std::size_t k_rounds_between = 5;  // rounds between evaluations of the held-out rows
 constexpr std::size_t k_patience = 60;       // rounds without gain
-// A drawing's pixels are alike: full steps fit them in a few rounds, and generalize worse.
+// Pixels of a drawing are similar: full steps fit them in a few rounds and generalize worse.
 constexpr double k_shrinkage = 0.3;
 
-/// Sums of the stumps for the rows held out, brought up to date as stumps are added.
+/// Sums of the stumps for the held-out rows, updated as stumps are added.
 class HeldOutScores {
   public:
     HeldOutScores(const FeatureMatrix& features, std::span<const std::uint32_t> rows, std::size_t classes)
@@ -69,7 +69,7 @@ Booster booster_of(const ClassifierTraining& training, const TrainingSet& set) {
     return training.gentle ? Booster::gentle(set, options) : Booster(set, training.classes, options);
 }
 
-/// So many rounds with all rows: what was held out is a part of the drawing, too.
+/// Boosts `rounds` rounds on all rows, as the held-out ones are part of the drawing, too.
 BoostedStumps with_all_rows(const ClassifierTraining& training, const QuantizedFeatures& quantized,
                             std::span<const float> weights, std::size_t rounds, const std::function<void()>& progress) {
     std::vector<std::uint32_t> rows(training.features.rows);
@@ -106,7 +106,7 @@ LearnedClassifier learn_classifier(const ClassifierTraining& training, const std
     HeldOutScores scores(features.matrix, judges, training.classes);
     best.loss = std::numeric_limits<double>::infinity();
     std::size_t best_rounds = 0;
-    for (std::size_t round = 1; round <= training.most_rounds && round <= best_rounds + k_patience; ++round) {
+    for (std::size_t round = 1; round <= training.max_rounds && round <= best_rounds + k_patience; ++round) {
         check_interrupt();
         booster.add_stump();
         progress();
@@ -147,7 +147,7 @@ std::vector<std::string> contextual_feature_names(std::size_t labels) {
 FeatureMatrix contextual_features(const HatchingSurface& surface, const GBuffer& gbuffer, const CoveredPixels& pixels,
                                   std::span<const float> probabilities, std::size_t labels,
                                   std::span<const std::uint32_t> rows) {
-    // Pixels add up at the samples nearest to their faces.
+    // Pixels are accumulated at the surface samples nearest to their faces.
     const std::size_t samples = surface.sample_face.size(), faces = surface.mesh.face_count();
     std::vector<float> seen(samples), sums(samples * labels);
     for (std::size_t i = 0; i < pixels.pixel.size(); ++i) {

@@ -8,7 +8,7 @@
 namespace exemplar {
 namespace {
 
-/// Pairs of covered pixels that touch, also at corners: each once.
+/// Returns the pairs of covered pixels that touch at a side or a corner, each once.
 std::vector<std::array<std::uint32_t, 2>> neighbor_pairs(const CoveredPixels& pixels, int width) {
     constexpr std::array<std::array<int, 2>, 4> k_steps{{{1, 0}, {-1, 1}, {0, 1}, {1, 1}}};
     const int height = width > 0 ? static_cast<int>(pixels.row.size()) / width : 0;

@@ -1,6 +1,5 @@
 #include "host/hatching/style/property_model.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -11,7 +10,9 @@
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
+#include "host/core/statistics.h"
 #include "host/hatching/features/powers.h"
+#include "host/learn/decompositions.h"
 
 namespace exemplar {
 namespace {
@@ -21,15 +22,15 @@ struct BinSums {
     double weight = 0, target = 0, squares = 0;
 };
 
-/// A weak regressor while it is sought: log(a x + b).
-struct Candidate {
+/// A candidate for the next weak regressor log(a x + b).
+struct FactorCandidate {
     double error = std::numeric_limits<double>::infinity();  // weighted mean of squares, up to a constant
     PropertyModel::Term term;
 };
 
-class Learning {
+class PropertyLearning {
   public:
-    Learning(const PropertyTraining& training, const std::function<void()>& progress)
+    PropertyLearning(const PropertyTraining& training, const std::function<void()>& progress)
         : training_(training), progress_(progress), log_target_(training.target.size()), weight_(log_target_.size()) {
         for (std::size_t i = 0; i < log_target_.size(); ++i) log_target_[i] = std::log(training.target[i]);
         measure_bins();
@@ -51,18 +52,18 @@ class Learning {
         for (std::size_t i = 0; i < weight_.size(); ++i) weight_[i] = training_.held_out[i] ? 0 : 1;
     }
 
-    /// What the next term is to be: no less than a quarter of the least there is.
+    /// Sets the target of the next term, and the lower bound of its values: a quarter of the smallest target.
     void aim_at(std::vector<double> aim) {
         aim_ = std::move(aim);
         least_ = static_cast<float>(0.25 * std::exp(*std::ranges::min_element(aim_)));
     }
 
-    /// As the thesis has it: all terms aim at y.
+    /// Boosting as in the thesis: every term is fitted to y.
     void boost(LearnedProperty& best) {
         begin();
         aim_at(log_target_);
         std::size_t idle = 0;
-        for (std::size_t round = 0; round < training_.most_terms && idle < k_patience; ++round) {
+        for (std::size_t round = 0; round < training_.max_terms && idle < k_patience; ++round) {
             check_interrupt();
             normalize_weights();
             if (!add_boosted(round == 0)) break;
@@ -76,13 +77,14 @@ class Learning {
         }
     }
 
-    /// Forward selection: each term aims at what those before it leave.
+    /// Forward selection: each term is fitted to the residual of those before it. As boosting fits all terms to y,
+    /// it may never reach the second factor of a product.
     void select(LearnedProperty& best) {
         begin();
         normalize_weights();
         PropertyModel model = constant().model;
         std::size_t idle = 0;
-        for (std::size_t round = 0; round < training_.most_terms && idle < k_patience; ++round) {
+        for (std::size_t round = 0; round < training_.max_terms && idle < k_patience; ++round) {
             check_interrupt();
             std::vector<double> rest(log_target_.size());
             for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = log_target_[i] - log_value(model, i);
@@ -107,8 +109,8 @@ class Learning {
         return learned;
     }
 
-    /// Inverses of what is often next to nothing are but a sign of where it is, whatever its values: they fit one
-    /// drawing and say nothing of others.
+    /// Returns whether the inverses of a feature are usable. Inverses of a feature that is often near zero only mark
+    /// where it vanishes: they fit one drawing and do not generalize.
     static bool has_inverses(std::span<const float> column) {
         double sum = 0;
         for (const float x : column) sum += static_cast<double>(std::abs(x));
@@ -117,7 +119,7 @@ class Learning {
         return 100 * count < static_cast<std::ptrdiff_t>(column.size());
     }
 
-    /// What stands for all values in a bin: their median; and the range of all.
+    /// Computes the median of each bin, which represents its values, and which features have usable inverses.
     void measure_bins() {
         const std::size_t features = training_.features.cols();
         middle_.resize(features);
@@ -132,9 +134,7 @@ class Learning {
             }
             for (auto& values : members) {
                 if (values.empty()) values.push_back(middle_[f].empty() ? 0.0f : middle_[f].back());
-                const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-                std::ranges::nth_element(values, middle);
-                middle_[f].push_back(*middle);
+                middle_[f].push_back(upper_median(values));
             }
         });
     }
@@ -144,11 +144,11 @@ class Learning {
         for (double& w : weight_) w /= total;
     }
 
-    /// The best a and b for one power of a feature, from sums per bin: by regression of y, then by Gauss-Newton steps
-    /// on log y.
-    Candidate fit(std::uint32_t feature, std::span<const BinSums> sums, std::span<const double> exponents) const {
+    /// Fits a and b for one power of a feature to sums per bin: by regression of y, then by Gauss-Newton steps on
+    /// log y.
+    FactorCandidate fit(std::uint32_t feature, std::span<const BinSums> sums, std::span<const double> exponents) const {
         const std::vector<float>& middle = middle_[feature / k_powers];
-        Candidate candidate;
+        FactorCandidate candidate;
         candidate.term.feature = feature;
         candidate.term.least = least_;
         std::vector<double> x(sums.size());
@@ -167,8 +167,8 @@ class Learning {
             std::vector<BinSums> scaled(sums.begin(), sums.end());
             for (BinSums& bin : scaled) bin.target /= exponent;
             const auto [a, b, left] = fit_line(x, scaled, low, high);
-            // Beside what the line leaves of the bins' means there is what differs within bins: all there is, which is
-            // the same for all features, without the means' own squares.
+            // The squared error is that of the bin means plus the variation within bins. The latter is the sum of
+            // all squares, equal for all features, minus the squares of the bin means.
             const double error = exponent * exponent * left - squares;
             if (!(error < candidate.error)) continue;
             candidate.term.a = static_cast<float>(a);
@@ -221,10 +221,11 @@ class Learning {
         return {best_a * scale, best_b - best_a * scale * low, best};
     }
 
-    /// Of all expanded features, `count` at most: of those that fit best, the ones that hold best in other blocks.
-    std::vector<Candidate> candidates(std::span<const double> exponents, std::size_t count) const {
+    /// Returns at most `count` expanded features: of the k_checked that fit best, those with the lowest
+    /// cross-validation error over blocks, as many features fit one shape by chance.
+    std::vector<FactorCandidate> candidates(std::span<const double> exponents, std::size_t count) const {
         constexpr std::size_t k_checked = 64;
-        std::vector<Candidate> all(training_.features.cols() * k_powers);
+        std::vector<FactorCandidate> all(training_.features.cols() * k_powers);
         parallel_for(training_.features.cols(), [&](std::size_t f) {
             std::vector<BinSums> sums(middle_[f].size());
             const std::span<const std::uint8_t> bins = training_.quantized.column(f);
@@ -235,20 +236,21 @@ class Learning {
             for (std::size_t p = 0; p < (inverses_[f] ? k_powers : 2); ++p)
                 all[f * k_powers + p] = fit(static_cast<std::uint32_t>(f * k_powers + p), sums, exponents);
         });
-        std::erase_if(all, [](const Candidate& candidate) { return !std::isfinite(candidate.error); });
+        std::erase_if(all, [](const FactorCandidate& candidate) { return !std::isfinite(candidate.error); });
         keep_least(all, k_checked);
         parallel_for(all.size(), [&](std::size_t i) { all[i].error = error_of_blocks(all[i].term); });
         keep_least(all, count);
         return all;
     }
 
-    static void keep_least(std::vector<Candidate>& all, std::size_t count) {
+    static void keep_least(std::vector<FactorCandidate>& all, std::size_t count) {
         count = std::min(count, all.size());
-        std::ranges::partial_sort(all, all.begin() + static_cast<std::ptrdiff_t>(count), {}, &Candidate::error);
+        std::ranges::partial_sort(all, all.begin() + static_cast<std::ptrdiff_t>(count), {}, &FactorCandidate::error);
         all.resize(count);
     }
 
-    /// Squares of each block about the curve that is fitted to the others, with the exponent of the term.
+    /// Returns the cross-validation error of a term: squared errors of each block under the curve fitted to the
+    /// other blocks, with the exponent of the term.
     double error_of_blocks(const PropertyModel::Term& term) const {
         const std::size_t base = term.feature / k_powers, count = middle_[base].size();
         const double exponent = static_cast<double>(term.exponent);
@@ -275,7 +277,7 @@ class Learning {
         return exponent * exponent * total;
     }
 
-    /// Per block and bin of a feature, of what a term without its exponent aims at.
+    /// Returns sums, per block and bin of a feature, of the target of a term without its exponent.
     std::vector<BinSums> sums_by_block(std::size_t feature, double exponent) const {
         const std::size_t count = middle_[feature].size();
         std::vector<BinSums> sums(k_property_blocks * count);
@@ -296,7 +298,7 @@ class Learning {
         term.exponent = 1;
         return PropertyModel::log_value(term, power_of(x, term.feature % k_powers));
     }
-    /// log y of a row, by a model of the terms that there are.
+    /// Returns log y of a row for a model with the terms of `model_`.
     double log_value(const PropertyModel& model, std::size_t row) const {
         double log_y = std::log(static_cast<double>(model.factor));
         for (std::size_t k = 0; k < model.terms.size(); ++k)
@@ -304,11 +306,11 @@ class Learning {
         return log_y;
     }
 
-    /// Adds the term that leaves the least squares; false if there is none. Exponents are fitted anew later, but a and
-    /// b are those of about the right one.
+    /// Adds the term with the smallest squared error; returns false if there is none. Exponents are refitted later,
+    /// but a and b should suit about the right one, so several are tried.
     bool add_selected() {
         constexpr std::array k_exponents{1.0, 0.5, 2.0, -0.5, -1.0};
-        const std::vector<Candidate> best = candidates(k_exponents, 1);
+        const std::vector<FactorCandidate> best = candidates(k_exponents, 1);
         if (best.empty()) return false;
         const PropertyModel::Term& term = best[0].term;
         std::vector<float> values(weight_.size());
@@ -318,13 +320,13 @@ class Learning {
         return true;
     }
 
-    /// Adds the best weak regressor; false if there is none.
+    /// Adds the best weak regressor; returns false if there is none.
     bool add_boosted(bool first) {
         constexpr std::size_t k_finalists = 8;
         double best = std::numeric_limits<double>::infinity(), best_r = 1;
         std::vector<float> best_values;
         PropertyModel::Term term;
-        for (const Candidate& candidate : candidates(std::array{1.0}, k_finalists)) {
+        for (const FactorCandidate& candidate : candidates(std::array{1.0}, k_finalists)) {
             std::vector<float> values(weight_.size());
             for (std::size_t i = 0; i < values.size(); ++i) values[i] = log_value(candidate.term, i);
             const auto [objective, r] = line_search(values, first);
@@ -349,7 +351,7 @@ class Learning {
         double objective, r;
     };
     Search line_search(std::span<const float> values, bool first) const {
-        // Squared errors up to the largest, as a histogram.
+        // Histogram of the squared errors up to the largest.
         constexpr std::size_t k_bins = 256;
         std::vector<double> squares(values.size());
         double largest = 1e-12;
@@ -381,7 +383,8 @@ class Learning {
         return {objective(r), r};
     }
 
-    /// Mean squared error over the rows that decide, of a model of the terms that there are (or of none).
+    /// Returns the mean squared error over the held-out rows (over all, if none is held out) of a model with the
+    /// terms of `model_`, or with none.
     double error(const PropertyModel& model) const {
         double sums[2][2] = {};
         for (std::size_t i = 0; i < log_target_.size(); ++i) {
@@ -393,8 +396,8 @@ class Learning {
         return s[0] / std::max(s[1], 1.0);
     }
 
-    /// Fewer features carry over better to other shapes: a new one has to pay, and what is below a ten-thousandth of y
-    /// is nothing.
+    /// Replaces the best model if the error falls by 2%, as fewer features generalize better to other shapes. Gains
+    /// below 1e-8 (a root mean square error of a ten-thousandth of y) do not count.
     bool keep_better(const PropertyModel& model, LearnedProperty& best) const {
         constexpr double k_worth = 0.98, k_nothing = 1e-8;
         const double e = error(model);
@@ -415,13 +418,13 @@ class Learning {
             normal += row * row.transpose();
             right += log_target_[i] * row;
         }
-        // The ridge draws exponents to zero where terms say the same; the constant is free.
+        // The ridge shrinks the exponents of redundant terms to zero; the constant is not penalized.
         const double n = normal(count, count);
         for (Eigen::Index k = 0; k < count; ++k) {
             const double mean = normal(k, count) / n;
             normal(k, k) += 0.003 * (normal(k, k) - n * mean * mean) + 1e-9;
         }
-        const Eigen::VectorXd solution = normal.ldlt().solve(right);
+        const Eigen::VectorXd solution = solve_ldlt(normal, right);
         PropertyModel model = model_;
         for (Eigen::Index k = 0; k < count; ++k)
             model.terms[static_cast<std::size_t>(k)].exponent = static_cast<float>(solution[k]);
@@ -432,8 +435,8 @@ class Learning {
     const PropertyTraining& training_;
     const std::function<void()>& progress_;
     std::vector<double> log_target_, weight_;
-    std::vector<double> aim_;                 // what the next term is to be, in the logarithm
-    float least_ = 0;                         // of its values
+    std::vector<double> aim_;                 // logarithm of the target of the next term
+    float least_ = 0;                         // lower bound of its values
     std::vector<std::vector<float>> middle_;  // per base feature and bin
     std::vector<std::uint8_t> inverses_;      // per base feature: 1 if 1/x and 1/x^2 are used
     PropertyModel model_;                     // exponents of boosted terms are r
@@ -460,7 +463,7 @@ LearnedProperty learn_property(const PropertyTraining& training, const std::func
         if (!(y > 0) || !std::isfinite(y))
             throw DataError("a property is learned from values that are positive and finite");
     }
-    return Learning(training, progress).run();
+    return PropertyLearning(training, progress).run();
 }
 
 }  // namespace exemplar

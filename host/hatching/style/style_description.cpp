@@ -6,10 +6,10 @@
 #include <map>
 #include <utility>
 
-#include "host/hatching/style/hatching_style.h"
-#include "host/hatching/style/pixel_classifier.h"
 #include "host/hatching/features/pixel_features.h"
 #include "host/hatching/features/powers.h"
+#include "host/hatching/style/hatching_style.h"
+#include "host/hatching/style/pixel_classifier.h"
 
 namespace exemplar {
 namespace {

@@ -9,10 +9,11 @@
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/random.h"
+#include "host/core/statistics.h"
 #include "host/core/stopwatch.h"
 #include "host/hatching/features/expanded_features.h"
-#include "host/hatching/style/pixel_classifier.h"
 #include "host/hatching/features/powers.h"
+#include "host/hatching/style/pixel_classifier.h"
 
 namespace exemplar {
 namespace {
@@ -21,7 +22,7 @@ constexpr std::size_t k_least_samples = 200;
 constexpr double k_held_out = 0.25;
 
 /// A random subset of rows, in their order.
-std::vector<std::uint32_t> sample(std::vector<std::uint32_t> rows, std::size_t most, std::uint64_t seed) {
+std::vector<std::uint32_t> sample_rows(std::vector<std::uint32_t> rows, std::size_t most, std::uint64_t seed) {
     if (rows.size() <= most) return rows;
     Random random(seed);
     random.shuffle(rows);
@@ -36,10 +37,11 @@ std::vector<std::uint32_t> numbers(std::size_t first, std::size_t end) {
     return all;
 }
 
-class Learning {
+class StyleLearning {
   public:
-    Learning(PixelFeatures& pixels, const DrawingProperties& drawing, StumpScorer& scorer,
-             const StyleLearningOptions& options, StyleReport& report, const std::function<void(const char*)>& progress)
+    StyleLearning(PixelFeatures& pixels, const DrawingProperties& drawing, StumpScorer& scorer,
+                  const StyleLearningOptions& options, StyleReport& report,
+                  const std::function<void(const char*)>& progress)
         : pixels_(pixels),
           drawing_(drawing),
           scorer_(scorer),
@@ -96,7 +98,7 @@ class Learning {
         return held_out_rectangles(x, y, group, k_held_out, seed);
     }
 
-    /// Which quarter of the drawing each row is in: left or right, upper or lower half of the rows.
+    /// Returns the quarter of each row: left or right, upper or lower half, split at the medians of the rows.
     std::vector<std::uint8_t> quarters(std::span<const std::uint32_t> rows) const {
         const auto width = static_cast<std::uint32_t>(drawing_.width);
         std::vector<std::uint32_t> x, y;
@@ -104,11 +106,7 @@ class Learning {
             x.push_back(pixel(row) % width);
             y.push_back(pixel(row) / width);
         }
-        const auto middle = [](std::vector<std::uint32_t> values) {
-            const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-            std::ranges::nth_element(values, at);
-            return *at;
-        };
+        const auto middle = [](std::vector<std::uint32_t> values) { return upper_median(values); };
         const std::uint32_t middle_x = middle(x), middle_y = middle(y);
         std::vector<std::uint8_t> quarter(rows.size());
         for (std::size_t i = 0; i < rows.size(); ++i)
@@ -123,7 +121,7 @@ class Learning {
             throw DataError(
                 fmt::format("the drawing has strokes on only {} pixels of the object; is it of this view, and aligned?",
                             all.size()));
-        rule_rows_ = sample(all, options_.orientation_samples, options_.seed);
+        rule_rows_ = sample_rows(all, options_.orientation_samples, options_.seed);
         OrientationSamples samples;
         for (const std::uint32_t row : rule_rows_) {
             const std::uint32_t p = pixel(row);
@@ -141,7 +139,7 @@ class Learning {
         segment_.assign(mixture.segment.begin(), mixture.segment.end());
     }
 
-    /// Base features of rows; with the contextual features of the last stage if there are any.
+    /// Returns base features of rows and, with `context`, the contextual features of the last stage.
     FeatureMatrix features_of(std::span<const std::uint32_t> rows, bool context) {
         FeatureMatrix features = pixels_.scalars(numbers(0, k_pixel_features), rows);
         if (context)
@@ -151,7 +149,8 @@ class Learning {
     }
 
     void learn_segments() {
-        std::vector<std::uint32_t> chosen = sample(numbers(0, rule_rows_.size()), options_.samples, options_.seed + 2);
+        std::vector<std::uint32_t> chosen =
+            sample_rows(numbers(0, rule_rows_.size()), options_.samples, options_.seed + 2);
         std::vector<std::uint32_t> rows;
         std::vector<std::int32_t> labels;
         for (const std::uint32_t i : chosen) {
@@ -160,7 +159,7 @@ class Learning {
         }
         const std::vector<std::uint8_t> held = held_out(rows, labels, options_.seed + 3);
         double last_error = 2;
-        for (std::size_t stage = 0; stage < options_.most_stages; ++stage) {
+        for (std::size_t stage = 0; stage < options_.max_stages; ++stage) {
             const FeatureMatrix features = features_of(rows, stage > 0);
             const LearnedClassifier learned =
                 learn_classifier({features, labels, {}, held, style_.rules.size(), false, 500, options_.seed + stage},
@@ -199,13 +198,13 @@ class Learning {
         std::vector<std::uint32_t> off = rows_where([&](std::uint32_t p) { return drawing_.boundary[p] == 0; });
         style_.boundary.stumps.class_count = 2;
         if (on.size() < k_least_samples || off.size() < k_least_samples) return;
-        on = sample(std::move(on), options_.samples / 2, options_.seed + 4);
-        off = sample(std::move(off), options_.samples / 2, options_.seed + 5);
+        on = sample_rows(std::move(on), options_.samples / 2, options_.seed + 4);
+        off = sample_rows(std::move(off), options_.samples / 2, options_.seed + 5);
         std::vector<std::uint32_t> rows = on;
         rows.insert(rows.end(), off.begin(), off.end());
         std::vector<std::int32_t> labels(on.size(), 1);
         labels.resize(rows.size(), 0);
-        // As much weight on boundaries as beside them.
+        // Both classes get the same total weight.
         std::vector<float> weights(on.size(), static_cast<float>(off.size()) / static_cast<float>(on.size()));
         weights.resize(rows.size(), 1.0f);
         const std::size_t first = k_pixel_features - k_line_features;
@@ -219,7 +218,7 @@ class Learning {
         report_.boundary_error = learned.error;
     }
 
-    /// The label cuts of segments and of levels.
+    /// Learns the CRF parameters of segments and of levels.
     void learn_cuts() {
         const std::vector<float> both = view_probabilities(style_.boundary);
         std::vector<float> boundary(both.size() / 2);
@@ -232,16 +231,16 @@ class Learning {
                                      [&](std::span<const std::int32_t> labels) { return level_error(labels); });
     }
 
-    /// Eq. 4.16. The sum there grows with every boundary, so that noise would win; its mean over the boundary pixels
-    /// does not. `error`: the share of labels that are not those of the drawing.
+    /// Selects parameters by Eq. 4.16, as a mean over boundary pixels: the sum in the thesis grows with every
+    /// boundary, so that noise would win. `error` returns the share of labels that differ from the drawing.
     template <typename Error>
     PixelCrfParameters learn_crf(PixelCrf& crf, std::span<const float> probabilities, std::size_t classes,
                                  const Error& error) {
-        struct Trial {
+        struct CrfTrial {
             PixelCrfParameters parameters;
             double agreement, error;
         };
-        std::vector<Trial> trials;
+        std::vector<CrfTrial> trials;
         for (const float strength : {0.3f, 1.0f, 3.0f}) {
             for (const float offset : {-0.7f, -1.5f, -3.0f}) {
                 const auto labels = crf.solve(probabilities, classes, {strength, offset});
@@ -249,11 +248,10 @@ class Learning {
                 progress_("label cuts");
             }
         }
-        // Labels must stay what the drawing says; among those that do, boundaries are to be where boundaries are
-        // likely.
-        const double least = std::ranges::min(trials, {}, &Trial::error).error;
-        std::erase_if(trials, [&](const Trial& trial) { return trial.error > least + 0.01; });
-        return std::ranges::max(trials, {}, &Trial::agreement).parameters;
+        // Among the parameters whose label error is within 1% of the lowest, the best agreement of boundaries wins.
+        const double least = std::ranges::min(trials, {}, &CrfTrial::error).error;
+        std::erase_if(trials, [&](const CrfTrial& trial) { return trial.error > least + 0.01; });
+        return std::ranges::max(trials, {}, &CrfTrial::agreement).parameters;
     }
 
     double segment_error(std::span<const std::int32_t> labels) const {
@@ -270,7 +268,8 @@ class Learning {
     }
 
     void learn_levels() {
-        const std::vector<std::uint32_t> rows = sample(numbers(0, pixels_.size()), options_.samples, options_.seed + 8);
+        const std::vector<std::uint32_t> rows =
+            sample_rows(numbers(0, pixels_.size()), options_.samples, options_.seed + 8);
         std::vector<std::int32_t> labels;
         labels.reserve(rows.size());
         for (const std::uint32_t row : rows) labels.push_back(drawing_.level[pixel(row)]);
@@ -291,7 +290,7 @@ class Learning {
         if (rows.size() < k_least_samples)
             throw DataError(fmt::format("the {} of strokes is known at only {} pixels; the drawing has too few",
                                         name_of(property), rows.size()));
-        rows = sample(std::move(rows), options_.samples, options_.seed + 11);
+        rows = sample_rows(std::move(rows), options_.samples, options_.seed + 11);
         std::vector<float> target;
         target.reserve(rows.size());
         for (const std::uint32_t row : rows) target.push_back(values[pixel(row)]);
@@ -306,8 +305,8 @@ class Learning {
         report_.property[p] = std::sqrt(learned.error);
     }
 
-    /// Those of strokes that cross no other, if there are many: what crosses the gaps between strokes in line makes
-    /// them look like one.
+    /// Returns the rows of strokes that cross no other, or all rows if these are few (below 5% or k_least_samples).
+    /// A stroke across the gap between two collinear strokes makes them look like one.
     std::vector<std::uint32_t> rather_uncrossed(std::vector<std::uint32_t> rows) const {
         std::vector<std::uint32_t> uncrossed;
         for (const std::uint32_t row : rows)
@@ -315,7 +314,8 @@ class Learning {
         return uncrossed.size() < std::max(k_least_samples, rows.size() / 20) ? rows : uncrossed;
     }
 
-    /// Strokes are as long as they are meant to be, or as there is room: by how much the longer ones are over the mean.
+    /// Returns the 85th percentile of measured length over predicted length. Many strokes are cut short for lack of
+    /// room, so the longer ones tell the intended length.
     static float longest_share(const PropertyModel& model, const FeatureMatrix& features,
                                std::span<const float> target) {
         constexpr double k_quantile = 0.85;
@@ -324,9 +324,7 @@ class Learning {
             ratio[i] = target[i] / model.evaluate([&](std::uint32_t k) {
                 return power_of(features.column(k / k_powers)[i], k % k_powers);
             });
-        const auto at = ratio.begin() + static_cast<std::ptrdiff_t>(k_quantile * static_cast<double>(ratio.size() - 1));
-        std::ranges::nth_element(ratio, at);
-        return *at;
+        return quantile(ratio, k_quantile);
     }
 
     PixelFeatures& pixels_;
@@ -336,9 +334,9 @@ class Learning {
     StyleReport& report_;
     const std::function<void(const char*)>& progress_;
     HatchingStyle style_;
-    std::vector<std::uint32_t> rule_rows_;  // rows of the strokes that rules are learned from
-    std::vector<std::int32_t> segment_;     // of each of them
-    std::vector<float> probabilities_;      // of segments, of all pixels
+    std::vector<std::uint32_t> rule_rows_;  // rows of the stroke pixels that rules are learned from
+    std::vector<std::int32_t> segment_;     // segment of each of these rows
+    std::vector<float> probabilities_;      // of the segments, at all pixels
     Stopwatch watch_;
 };
 
@@ -350,7 +348,7 @@ HatchingStyle learn_hatching_style(PixelFeatures& pixels, const DrawingPropertie
     if (drawing.width != pixels.view().width || drawing.height != pixels.view().height)
         throw UsageError(fmt::format("the drawing has {} x {} pixels, the view {} x {}", drawing.width, drawing.height,
                                      pixels.view().width, pixels.view().height));
-    return Learning(pixels, drawing, scorer, options, report, progress).run();
+    return StyleLearning(pixels, drawing, scorer, options, report, progress).run();
 }
 
 }  // namespace exemplar

@@ -10,13 +10,13 @@
 #include "host/core/parallel.h"
 #include "host/core/stopwatch.h"
 #include "host/hatching/features/expanded_features.h"
-#include "host/hatching/style/pixel_classifier.h"
 #include "host/hatching/features/powers.h"
+#include "host/hatching/style/pixel_classifier.h"
 
 namespace exemplar {
 namespace {
 
-/// The base features that a style needs, contextual ones apart.
+/// Returns the base features that a style needs, without contextual ones.
 std::vector<std::uint32_t> needed_features(const HatchingStyle& style) {
     std::vector<std::uint32_t> needed;
     const auto add = [&](std::uint32_t base) {
@@ -68,7 +68,8 @@ class Prediction {
         check_interrupt();
     }
 
-    /// The cascade; leaves the contextual features of its last stage behind the others.
+    /// Evaluates the cascade of segment classifiers; appends the contextual features of the last stage to
+    /// `features_`.
     std::vector<float> segment_probabilities() {
         const std::size_t own = which_.size(), labels = style_.rules.size();
         std::vector<float> probabilities;
@@ -105,7 +106,7 @@ class Prediction {
             const std::uint32_t pixel = pixels_.pixels().pixel[i];
             const auto c = static_cast<std::size_t>(segment[i]);
             out_.segment[pixel] = static_cast<std::uint8_t>(c);
-            // Where nothing says how to cross, hatches stay single.
+            // A rule without a second direction limits the level to single hatching.
             const std::int32_t most = style_.rules[c].crosses() ? k_cross_hatching : k_single_hatching;
             out_.fields.level[pixel] = static_cast<std::uint8_t>(std::min(level[i], most));
         }
@@ -120,7 +121,7 @@ class Prediction {
             for (std::size_t i = 0; i < directions.size(); ++i) {
                 const std::uint32_t pixel = pixels_.pixels().pixel[i];
                 out_.fields.orientation[layer][pixel] = angle_of(directions[i]);
-                // Where there is no direction to hatch along, nothing is hatched.
+                // A layer without a direction is not hatched.
                 const auto most = static_cast<std::uint8_t>(layer);
                 if (directions[i] == DoubledAngle{})
                     out_.fields.level[pixel] = std::min(out_.fields.level[pixel], most);

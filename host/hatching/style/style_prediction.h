@@ -4,25 +4,25 @@
 #include <functional>
 #include <vector>
 
+#include "host/hatching/features/pixel_features.h"
 #include "host/hatching/fields/hatching_fields.h"
 #include "host/hatching/style/hatching_style.h"
-#include "host/hatching/features/pixel_features.h"
 #include "host/learn/boosting/boosted_stumps.h"
 
 namespace exemplar {
 
-/// Evaluates what a style says of pixels: the CPU implementation is the reference; gpu/hatching implements it in
-/// shaders.
+/// Evaluates the rules and properties of a style per pixel. The CPU implementation is the reference; gpu/hatching
+/// implements it in shaders.
 class HatchingEvaluator {
   public:
     virtual ~HatchingEvaluator() = default;
-    /// The direction of each row: f of the rule of its segment, normalized. Throws UsageError if there is not one
-    /// segment a row, or a function or field that is named does not exist.
+    /// Returns the direction of each row: f of its segment's function, normalized. Throws UsageError unless there is
+    /// one segment per row, and the functions and features referred to exist.
     virtual std::vector<DoubledAngle> orientations(std::span<const OrientationFunction> functions,
                                                    std::span<const std::int32_t> segment,
                                                    const OrientationFields& fields) = 0;
-    /// A property of each row, whose base features `which` are `base`. Throws UsageError if one that it depends on is
-    /// not among them.
+    /// Returns a property of each row. `base` holds the base features of the rows, numbered `which`. Throws
+    /// UsageError if the property depends on a feature that is not among them.
     virtual std::vector<float> property(const PropertyModel& model, std::span<const std::uint32_t> which,
                                         const FeatureMatrix& base) = 0;
 };
@@ -36,23 +36,23 @@ class CpuHatchingEvaluator final : public HatchingEvaluator {
                                 const FeatureMatrix& base) override;
 };
 
-/// What every HatchingEvaluator throws before it does anything.
+/// Checks the arguments of HatchingEvaluator::orientations(); throws UsageError as described there.
 void check_orientations(std::span<const OrientationFunction> functions, std::span<const std::int32_t> segment,
                         const OrientationFields& fields);
-/// The base features of the terms of a property; throws UsageError if one is not there.
+/// Returns the column of base features of each term of a property. Throws UsageError if one is missing.
 std::vector<std::span<const float>> property_columns(const PropertyModel& model, std::span<const std::uint32_t> which,
                                                      const FeatureMatrix& base);
 
 constexpr std::uint8_t k_no_segment = 255;
 
-/// How strokes are to look in a view, and why.
+/// The predicted targets of a view, and the segments that they follow from.
 struct HatchingPrediction {
     HatchingFields fields;
-    std::vector<std::uint8_t> segment;  ///< of each pixel; k_no_segment outside of the object
+    std::vector<std::uint8_t> segment;  ///< per pixel; k_no_segment outside of the object
     std::vector<std::pair<const char*, double>> seconds;
 };
 
-/// What a style says of a view (thesis Sec. 4.3.1-4.3.3).
+/// Predicts the targets of a view in a style (thesis Sec. 4.3.1-4.3.3).
 HatchingPrediction predict_hatching(const HatchingStyle& style, PixelFeatures& pixels, StumpScorer& scorer,
                                     HatchingEvaluator& evaluator);
 

@@ -24,7 +24,7 @@ std::vector<float> gaussian_weights(float sigma) {
     return weights;
 }
 
-/// Weights of the derivative, such that a ramp has its slope.
+/// Weights of the derivative of the Gaussian, scaled such that a ramp gets its slope.
 std::vector<float> derivative_weights(float sigma) {
     std::vector<float> weights = gaussian_weights(sigma);
     const int reach = static_cast<int>(weights.size() / 2);
@@ -74,7 +74,7 @@ FloatImage filtered(const FloatImage& image, std::span<const float> along_rows, 
     return result;
 }
 
-/// For each pixel the row of the nearest site in its column; beyond all if the column has none.
+/// Returns, for each pixel, the row of the nearest site in its column, or k_far if the column has none.
 std::vector<int> nearest_in_columns(int width, int height, std::span<const std::uint8_t> is_site) {
     std::vector<int> row(is_site.size(), k_far);
     const auto sweep = [&](int y, int before) {
@@ -98,7 +98,7 @@ struct Envelope {
     std::vector<int> column, from;
 };
 
-/// The first x from which the parabola of column `b` is lower than that of `a`; a < b.
+/// Returns the first x from which the parabola of column `b` is lower than that of `a`; a < b.
 int takes_over(int a, std::int64_t ga, int b, std::int64_t gb) {
     const std::int64_t above =
         (static_cast<std::int64_t>(b) * b - static_cast<std::int64_t>(a) * a) + gb * gb - ga * ga;

@@ -8,12 +8,12 @@
 namespace exemplar {
 namespace {
 
-constexpr int k_reach = 3;               ///< pixels around that a pixel is compared with
-constexpr float k_valley_depth = 0.2f;   ///< of the darkest pixel around, by which a valley's sides are darker
-constexpr float k_crest_height = 0.35f;  ///< of the own darkness, by which a crest's sides are lighter
+constexpr int k_comparison_reach = 3;    ///< radius of the surroundings of a pixel, pixels
+constexpr float k_valley_depth = 0.2f;   ///< min depth of a valley, in units of the darkest pixel around
+constexpr float k_crest_height = 0.35f;  ///< min height of a crest, in units of its own darkness
 constexpr std::array<std::array<int, 2>, 4> k_directions{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
 
-/// The largest value in the square of 2 k_reach + 1 pixels around each.
+/// Returns the largest value in the square of 2 k_comparison_reach + 1 pixels around each pixel.
 FloatImage largest_around(const FloatImage& image) {
     FloatImage along(image.width, image.height, 1), largest(image.width, image.height, 1);
     const auto rows = static_cast<std::size_t>(image.height);
@@ -23,7 +23,8 @@ FloatImage largest_around(const FloatImage& image) {
             const int y = static_cast<int>(row);
             for (int x = 0; x < image.width; ++x) {
                 float value = 0;
-                for (int k = std::max(0, x - k_reach); k <= std::min(image.width - 1, x + k_reach); ++k)
+                for (int k = std::max(0, x - k_comparison_reach);
+                     k <= std::min(image.width - 1, x + k_comparison_reach); ++k)
                     value = std::max(value, image.pixel(k, y)[0]);
                 along.pixel(x, y)[0] = value;
             }
@@ -33,7 +34,8 @@ FloatImage largest_around(const FloatImage& image) {
         rows,
         [&](std::size_t row) {
             const int y = static_cast<int>(row);
-            for (int k = std::max(0, y - k_reach); k <= std::min(image.height - 1, y + k_reach); ++k)
+            for (int k = std::max(0, y - k_comparison_reach); k <= std::min(image.height - 1, y + k_comparison_reach);
+                 ++k)
                 for (int x = 0; x < image.width; ++x)
                     largest.pixel(x, y)[0] = std::max(largest.pixel(x, y)[0], along.pixel(x, k)[0]);
         },
@@ -41,14 +43,14 @@ FloatImage largest_around(const FloatImage& image) {
     return largest;
 }
 
-/// The lightest and the darkest pixel on one side of another.
+/// The lightest and the darkest pixel on one side of a pixel, and the one next to it.
 struct Side {
     float lightest, darkest, next;
 };
 
 Side side_of(const FloatImage& image, int x, int y, int dx, int dy) {
     Side side{1e9f, 0, 0};
-    for (int k = 1; k <= k_reach; ++k) {
+    for (int k = 1; k <= k_comparison_reach; ++k) {
         const int px = std::clamp(x + k * dx, 0, image.width - 1), py = std::clamp(y + k * dy, 0, image.height - 1);
         const float value = image.pixel(px, py)[0];
         side.lightest = std::min(side.lightest, value);
@@ -73,7 +75,7 @@ bool is_ink(const FloatImage& darkness, int x, int y, float around) {
 
 }  // namespace
 
-PixelMask ink_pixels(const FloatImage& darkness, float faintest) {
+PixelMask ink_pixels(const FloatImage& darkness, float min_darkness) {
     PixelMask ink(darkness.width, darkness.height, 1);
     const FloatImage around = largest_around(darkness);
     parallel_for(
@@ -81,7 +83,7 @@ PixelMask ink_pixels(const FloatImage& darkness, float faintest) {
         [&](std::size_t row) {
             const int y = static_cast<int>(row);
             for (int x = 0; x < darkness.width; ++x)
-                if (darkness.pixel(x, y)[0] >= faintest)
+                if (darkness.pixel(x, y)[0] >= min_darkness)
                     ink.pixel(x, y)[0] = is_ink(darkness, x, y, around.pixel(x, y)[0]);
         },
         16);

@@ -9,7 +9,7 @@
 namespace exemplar {
 namespace {
 
-/// Distance from the center of each pixel to that of the nearest one that is set (or not set).
+/// Returns the distance from the center of each pixel to that of the nearest one that is set (or not set).
 FloatImage distance_to(const PixelMask& region, bool set) {
     std::vector<std::uint8_t> sites(region.data.size());
     for (std::size_t i = 0; i < sites.size(); ++i) sites[i] = (region.data[i] != 0) == set;
@@ -21,15 +21,16 @@ FloatImage distance_to(const PixelMask& region, bool set) {
     return distance;
 }
 
-/// The connected pixels (by four neighbors, or eight) around one that have its value; marks them in `seen`.
+/// Returns the component, connected by eight neighbors (step 1) or four (step 2), of the pixels with the value at
+/// `start`; marks them in `seen`.
 std::vector<std::size_t> piece_around(const PixelMask& region, std::size_t start, std::size_t step, PixelMask& seen) {
     std::vector<std::size_t> piece{start};
     seen.data[start] = 1;
     const auto width = static_cast<std::size_t>(region.width);
     for (std::size_t k = 0; k < piece.size(); ++k)
-        for (std::size_t n = 0; n < k_ring.size(); n += step) {
-            const int x = static_cast<int>(piece[k] % width) + k_ring[n][0];
-            const int y = static_cast<int>(piece[k] / width) + k_ring[n][1];
+        for (std::size_t n = 0; n < k_neighbor_offsets.size(); n += step) {
+            const int x = static_cast<int>(piece[k] % width) + k_neighbor_offsets[n][0];
+            const int y = static_cast<int>(piece[k] / width) + k_neighbor_offsets[n][1];
             if (x < 0 || y < 0 || x >= region.width || y >= region.height) continue;
             const std::size_t i = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
             if (seen.data[i] || (region.data[i] != 0) != (region.data[start] != 0)) continue;
@@ -48,7 +49,7 @@ bool at_image_border(std::size_t pixel, const PixelMask& region) {
 }  // namespace
 
 PixelMask closed_region(const PixelMask& region, float radius) {
-    // With room around, as the region may grow beyond the image.
+    // With a margin, as the dilated region may exceed the image.
     const int room = static_cast<int>(std::ceil(radius)) + 1;
     PixelMask grown(region.width + 2 * room, region.height + 2 * room, 1);
     for (int y = 0; y < region.height; ++y)
@@ -103,7 +104,7 @@ std::vector<Vec2> border_points(const PixelMask& region, std::size_t most) {
     for (int y = 0; y < region.height; ++y)
         for (int x = 0; x < region.width; ++x) {
             if (!region.pixel(x, y)[0]) continue;
-            const std::array<bool, 8> n = ring_around(region, x, y);
+            const std::array<bool, 8> n = ring_neighbors(region, x, y);
             if (!(n[0] && n[2] && n[4] && n[6]))
                 all.emplace_back(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
         }

@@ -8,21 +8,23 @@
 
 namespace exemplar {
 
-/// The region grown by a disc of `radius` pixels and shrunk again: gaps up to twice as wide are closed.
+/// Returns the region closed by a disc of `radius` pixels (dilated, then eroded): closes gaps up to twice as wide.
 PixelMask closed_region(const PixelMask& region, float radius);
-/// The region with what it surrounds.
+/// Returns the region with its holes filled.
 PixelMask without_holes(PixelMask region);
-/// The region without connected pieces smaller than a share of its largest.
+/// Returns the region without connected components smaller than `share` of the largest.
 PixelMask without_small_pieces(const PixelMask& region, float share);
 
-/// Signed distance to the border of a region at the centers of pixels, negative inside, in pixels. The border runs
-/// between the pixels of the region and the others; an image that is all or nothing has distances beyond its size.
+/// Returns the signed distance, in pixels, from each pixel's center to the border of a region, negative inside. The
+/// border runs between the pixels of the region and the others. If the region is empty or the whole image, distances
+/// exceed the image's size.
 FloatImage signed_distance(const PixelMask& region);
 
-/// Centers of the pixels of a region beside others, in rows from the top left, at most `most` of them evenly.
+/// Returns the centers of a region's pixels beside pixels outside, in rows from the top left; at most `most` of
+/// them, evenly selected.
 std::vector<Vec2> border_points(const PixelMask& region, std::size_t most);
 
-/// Linear interpolation between the pixels of an image; beyond its border the outermost one's, plus the distance to it.
+/// Interpolates a distance image linearly. Beyond its border, returns the outermost value plus the distance to it.
 float distance_at(const FloatImage& distance, const Vec2& place);
 
 }  // namespace exemplar

@@ -10,11 +10,11 @@
 namespace exemplar {
 namespace {
 
-constexpr int k_bend_reach = 5;                              ///< pixels before and behind a bend that show its angle
-constexpr float k_bend = std::numbers::pi_v<float> * 0.37f;  ///< how much a circle of radius 4 turns over the reach
-constexpr float k_spur = 1;                                  ///< longest spur, in widths, and a pixel more
+constexpr int k_bend_reach = 5;                              ///< reach of the bend's angle, pixels to both sides
+constexpr float k_bend = std::numbers::pi_v<float> * 0.37f;  ///< max turn, radians: that of a circle of radius 4
+constexpr float k_spur = 1;                                  ///< max length of a spur in widths, plus a pixel
 constexpr int k_prunings = 3;
-constexpr int k_line = -1, k_outside = -2;  ///< what is no junction
+constexpr int k_line = -1, k_outside = -2;  ///< labels of pixels outside of junctions
 
 /// Labels the pixels of each junction (connected pixels of three or more neighbors) with its number.
 class Junctions {
@@ -25,7 +25,7 @@ class Junctions {
             for (int x = 0; x < skeleton.width; ++x) {
                 if (!skeleton.pixel(x, y)[0]) continue;
                 label_.pixel(x, y)[0] = k_line;
-                const std::array<bool, 8> n = ring_around(skeleton, x, y);
+                const std::array<bool, 8> n = ring_neighbors(skeleton, x, y);
                 crowded.pixel(x, y)[0] = std::count(n.begin(), n.end(), true) >= 3;
             }
         for (int y = 0; y < skeleton.height; ++y)
@@ -44,7 +44,7 @@ class Junctions {
         std::vector<Pixel> found{start};
         label_.pixel(start[0], start[1])[0] = number;
         for (std::size_t i = 0; i < found.size(); ++i)
-            for (const auto& [dx, dy] : k_ring) {
+            for (const auto& [dx, dy] : k_neighbor_offsets) {
                 const int x = found[i][0] + dx, y = found[i][1] + dy;
                 if (at(x, y) != k_line || !crowded.pixel(x, y)[0]) continue;
                 label_.pixel(x, y)[0] = number;
@@ -79,7 +79,7 @@ class Walker {
   private:
     std::vector<Pixel> on_line(int x, int y) const {
         std::vector<Pixel> found;
-        for (const auto& [dx, dy] : k_ring)
+        for (const auto& [dx, dy] : k_neighbor_offsets)
             if (junctions_.at(x + dx, y + dy) == k_line) found.push_back({x + dx, y + dy});
         return found;
     }
@@ -87,7 +87,7 @@ class Walker {
     /// The junctions beside a pixel, each once.
     std::vector<int> junctions_beside(const Pixel& pixel) const {
         std::vector<int> found;
-        for (const auto& [dx, dy] : k_ring) {
+        for (const auto& [dx, dy] : k_neighbor_offsets) {
             const int label = junctions_.at(pixel[0] + dx, pixel[1] + dy);
             if (label >= 0 && std::find(found.begin(), found.end(), label) == found.end()) found.push_back(label);
         }
@@ -117,7 +117,7 @@ class Walker {
     PixelMask walked_;
 };
 
-/// By how much the line turns at pixel i, radians; zero nearer to the ends than one can tell.
+/// Returns the angle by which the line turns at pixel i, radians; zero where it is too near to an end to tell.
 float turn_at(const std::vector<Pixel>& pixels, std::size_t i) {
     if (i < k_bend_reach || i + k_bend_reach >= pixels.size()) return 0;
     const Vec2 here = center_of(pixels[i]);
@@ -125,7 +125,7 @@ float turn_at(const std::vector<Pixel>& pixels, std::size_t i) {
     return std::abs(std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out)));
 }
 
-/// Cuts a segment at its sharpest bend if there is one too sharp for a stroke, and the pieces again.
+/// Cuts a segment at its sharpest bend if that is too sharp for a stroke; cuts the pieces likewise.
 void cut_at_bends(const SkeletonSegment& segment, std::vector<SkeletonSegment>& out) {
     std::size_t sharpest = 0;
     float turn = k_bend;
@@ -166,7 +166,7 @@ void prune_spurs(PixelMask& skeleton, const FloatImage& width) {
             pruned = true;
         }
         if (!pruned) return;
-        take_out_corners(skeleton);
+        remove_stair_corners(skeleton);
     }
 }
 

@@ -10,24 +10,24 @@ namespace exemplar {
 
 constexpr int k_no_junction = -1;
 
-/// A line of the skeleton from one junction, free end or sharp bend to the next.
+/// A line of the skeleton between junctions, free ends or sharp bends.
 struct SkeletonSegment {
-    std::vector<Pixel> pixels;  ///< along the line, one at least; junctions' pixels are not among them
+    std::vector<Pixel> pixels;  ///< along the line, at least one; without the pixels of junctions
     std::array<int, 2> junction{k_no_junction, k_no_junction};  ///< at its front and back
     bool closed = false;                                        ///< a loop without junctions
 };
-/// A skeleton as its lines and where three or more of them meet.
+/// A skeleton: its lines, and the junctions where three or more of them meet.
 struct SkeletonGraph {
     std::vector<SkeletonSegment> segments;
     std::vector<Vec2> junctions;  ///< their centers
 };
 
-/// The graph of a thinned mask (see thinned). Segments are cut where they bend more sharply than a circle of four
-/// pixels' radius does, which is where a pen turned back.
+/// Returns the graph of a thinned mask (see thinned). Segments are cut where they bend more sharply than a circle
+/// with a radius of four pixels, as a pen turned back there.
 SkeletonGraph skeleton_graph(const PixelMask& skeleton);
 
-/// Takes away lines that end freely and are shorter than the strokes they grow from are wide: those that ragged edges
-/// and square ends leave. `width` is that of strokes, per pixel.
+/// Removes spurs, which ragged edges and square ends leave: lines with a free end that are shorter than the width of
+/// the stroke they branch from. `width`: of strokes, per pixel.
 void prune_spurs(PixelMask& skeleton, const FloatImage& width);
 
 }  // namespace exemplar

@@ -1,5 +1,7 @@
 #include "host/hatching/tracing/stroke_links.h"
 
+#include "host/core/statistics.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,30 +12,28 @@
 namespace exemplar {
 namespace {
 
-constexpr float k_most_turn = 0.6f;       ///< radians between what is linked: an arc of radius 20 over a crossing
-constexpr float k_direction_reach = 6;    ///< pixels that show a direction, at least
-constexpr std::size_t k_least_reach = 4;  ///< pixels; shorter segments take the direction between their junctions
-constexpr float k_pixel_error = 1;        ///< pixels across by which an end of a short segment may be off
-constexpr float k_most_slack = 0.35f;     ///< radians
-constexpr float k_ink_step = 0.5f;        ///< pixels between samples of a gap
+constexpr float k_max_turn = 0.6f;              ///< max turn of a link, radians: an arc of radius 20 over a crossing
+constexpr float k_direction_reach = 6;          ///< min length over which a direction is measured, pixels
+constexpr std::size_t k_min_segment_reach = 4;  ///< pixels; shorter segments take the direction between their junctions
+constexpr float k_pixel_error = 1;              ///< error of an end of a short segment across it, pixels
+constexpr float k_max_slack = 0.35f;            ///< radians
+constexpr float k_ink_step = 0.5f;              ///< pixels between samples of a gap
 
 float angle_between(const Vec2& a, const Vec2& b) {
     return std::abs(std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b)));
 }
 
-float median_width(const SkeletonSegment& segment, const FloatImage& width) {
+float median_segment_width(const SkeletonSegment& segment, const FloatImage& width) {
     std::vector<float> values;
     for (const auto& [x, y] : segment.pixels) values.push_back(width.pixel(x, y)[0]);
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return upper_median(values);
 }
 
-/// The end at the front (side 0) or back (side 1) of a segment.
-LooseEnd loose_end(const SkeletonGraph& graph, const SkeletonSegment& segment, std::size_t side, float width) {
+/// Returns the end at the front (side 0) or back (side 1) of a segment.
+SkeletonEnd skeleton_end(const SkeletonGraph& graph, const SkeletonSegment& segment, std::size_t side, float width) {
     const std::size_t last = segment.pixels.size() - 1;
     const auto at = [&](std::size_t i) { return center_of(segment.pixels[side == 0 ? i : last - i]); };
-    LooseEnd end;
+    SkeletonEnd end;
     end.width = width;
     end.junction = segment.junction[side];
     const float bent = end.junction == k_no_junction ? 1 : 0.5f * width + 1;
@@ -42,36 +42,41 @@ LooseEnd loose_end(const SkeletonGraph& graph, const SkeletonSegment& segment, s
     const auto wanted = static_cast<std::size_t>(std::lround(std::max(k_direction_reach, 2 * width)));
     const std::size_t reach = std::min(last, end.trim + wanted);
     Vec2 way = end.position - at(reach);
-    if (reach - end.trim < k_least_reach) {
+    if (reach - end.trim < k_min_segment_reach) {
         const int far = segment.junction[1 - side];
         way = (end.junction == k_no_junction ? at(0) : graph.junctions[end.junction]) -
               (far == k_no_junction ? at(last) : graph.junctions[far]);
     }
     const float length = way.norm();
-    if (length > 0) end.direction = way / length, end.slack = std::min(k_most_slack, k_pixel_error / length);
+    if (length > 0) end.direction = way / length, end.slack = std::min(k_max_slack, k_pixel_error / length);
     return end;
 }
 
-/// How far two ends are from continuing each other straight: radians summed over both bends; nothing if they do not.
-std::optional<float> bend_between(const LooseEnd& a, const LooseEnd& b) {
+/// Returns by how much a stroke that continues from one end to the other bends: radians, summed over both bends.
+/// Returns nothing if it bends too much.
+std::optional<float> bend_between(const SkeletonEnd& a, const SkeletonEnd& b) {
     if (a.direction.isZero() || b.direction.isZero()) return std::nullopt;
     const float turn = angle_between(a.direction, -b.direction);
-    if (turn > k_most_turn + a.slack + b.slack) return std::nullopt;
+    if (turn > k_max_turn + a.slack + b.slack) return std::nullopt;
     const Vec2 gap = b.position - a.position;
     if (gap.norm() < 2) return 2 * turn;
     const float first = angle_between(a.direction, gap), second = angle_between(b.direction, -gap);
-    if (first > k_most_turn + a.slack || second > k_most_turn + b.slack) return std::nullopt;
+    if (first > k_max_turn + a.slack || second > k_max_turn + b.slack) return std::nullopt;
     return turn + first + second;
 }
 
 class Linker {
   public:
-    Linker(const SkeletonGraph& graph, const FloatImage& width, const FloatImage& darkness, float faintest)
-        : graph_(graph), width_(width), darkness_(darkness), faintest_(faintest), at_junction_(graph.junctions.size()) {
+    Linker(const SkeletonGraph& graph, const FloatImage& width, const FloatImage& darkness, float min_darkness)
+        : graph_(graph),
+          width_(width),
+          darkness_(darkness),
+          faintest_(min_darkness),
+          at_junction_(graph.junctions.size()) {
         for (const SkeletonSegment& segment : graph.segments) {
-            const float own = median_width(segment, width);
+            const float own = median_segment_width(segment, width);
             for (const std::size_t side : {0u, 1u}) {
-                links_.ends.push_back(loose_end(graph, segment, side, own));
+                links_.ends.push_back(skeleton_end(graph, segment, side, own));
                 if (links_.ends.back().junction != k_no_junction)
                     at_junction_[links_.ends.back().junction].push_back(links_.ends.size() - 1);
             }
@@ -99,7 +104,7 @@ class Linker {
     bool free(std::size_t end) const { return links_.partner[end] == k_unlinked && !links_.shared[end / 2]; }
     void link(std::size_t a, std::size_t b) { links_.partner[a] = b, links_.partner[b] = a; }
 
-    /// The straightest pairs first.
+    /// Links the straightest pairs first.
     void link_best(std::vector<Pair> pairs) {
         std::sort(pairs.begin(), pairs.end());
         for (const Pair& pair : pairs)
@@ -115,8 +120,8 @@ class Linker {
         return pairs;
     }
 
-    /// Where two strokes cross at a small angle, or are wide, the skeleton has two junctions of three lines and one
-    /// line between them in place of one junction of four.
+    /// Links the strokes along shared segments: where two strokes cross at a small angle, or are wide, the skeleton
+    /// has two junctions of three lines, joined by one line, in place of one junction of four.
     void link_along_shared_segments() {
         std::vector<std::size_t> order(graph_.segments.size());
         std::iota(order.begin(), order.end(), 0);
@@ -126,7 +131,7 @@ class Linker {
         for (const std::size_t s : order) link_along(s);
     }
 
-    /// The two other ends at the junction where an end is; nothing if there are more, or they are not free.
+    /// Returns the two other ends at an end's junction; nothing unless there are exactly two and both are free.
     std::optional<std::array<std::size_t, 2>> others_at(std::size_t end) const {
         if (links_.ends[end].junction == k_no_junction) return std::nullopt;
         std::vector<std::size_t> others = at_junction_[links_.ends[end].junction];
@@ -140,7 +145,7 @@ class Linker {
         if (!free(front) || !free(back) || links_.ends[front].junction == links_.ends[back].junction) return;
         const auto in = others_at(front), out = others_at(back);
         if (!in || !out) return;
-        const std::vector<LooseEnd>& ends = links_.ends;
+        const std::vector<SkeletonEnd>& ends = links_.ends;
         const float widths =
             ends[(*in)[0]].width + ends[(*in)[1]].width + ends[(*out)[0]].width + ends[(*out)[1]].width;
         if (static_cast<float>(graph_.segments[segment].pixels.size()) > widths + 2) return;
@@ -157,7 +162,7 @@ class Linker {
         links_.shared[segment] = true;
     }
 
-    /// Whether there is ink all the way between two places, and its strokes are wide enough to account for the way.
+    /// Whether there is ink all the way between two places, wide enough for their distance (see reach_over).
     bool ink_between(const Vec2& a, const Vec2& b) const {
         float widest = 0;
         const int steps = std::max(1, static_cast<int>(std::ceil((b - a).norm() / k_ink_step)));
@@ -171,7 +176,7 @@ class Linker {
         return (b - a).norm() <= reach_over(widest);
     }
 
-    /// Ends that are still free and near each other, with ink all the way between.
+    /// Returns the pairs of free ends that are near each other, with ink all the way between.
     std::vector<Pair> pairs_across_ink() const {
         std::multimap<float, std::size_t> by_x;
         for (std::size_t e = 0; e < links_.ends.size(); ++e)
@@ -180,7 +185,7 @@ class Linker {
         std::vector<Pair> pairs;
         for (auto a = by_x.begin(); a != by_x.end(); ++a)
             for (auto b = std::next(a); b != by_x.end() && b->first - a->first <= reach; ++b) {
-                const LooseEnd &first = links_.ends[a->second], &second = links_.ends[b->second];
+                const SkeletonEnd &first = links_.ends[a->second], &second = links_.ends[b->second];
                 if (a->second / 2 == b->second / 2 || (first.position - second.position).norm() > reach) continue;
                 const auto bend = bend_between(first, second);
                 if (bend && ink_between(first.position, second.position))
@@ -189,7 +194,7 @@ class Linker {
         return pairs;
     }
 
-    /// How far ends may be apart across a stroke of some width.
+    /// Max distance of two ends across a stroke of some width, pixels.
     static float reach_over(float width) { return 2.5f * width + 8; }
 
     const SkeletonGraph& graph_;
@@ -203,8 +208,8 @@ class Linker {
 }  // namespace
 
 SegmentLinks link_segments(const SkeletonGraph& graph, const FloatImage& width, const FloatImage& darkness,
-                           float faintest) {
-    return Linker(graph, width, darkness, faintest).run();
+                           float min_darkness) {
+    return Linker(graph, width, darkness, min_darkness).run();
 }
 
 }  // namespace exemplar

@@ -11,7 +11,7 @@
 namespace exemplar {
 namespace {
 
-constexpr float k_smoothing = 0.5f;  ///< pixels, before what is ink is decided
+constexpr float k_ink_smoothing = 0.5f;  ///< standard deviation of the blur before ink is found, pixels
 
 FloatImage widths_of(const PixelMask& ink) {
     FloatImage width(ink.width, ink.height, 1, static_cast<float>(2 * std::max(ink.width, ink.height)));
@@ -26,17 +26,17 @@ FloatImage widths_of(const PixelMask& ink) {
 
 }  // namespace
 
-TracedDrawing trace_drawing(const FloatImage& darkness, const PixelMask& mask, float faintest) {
+TracedDrawing trace_drawing(const FloatImage& darkness, const PixelMask& mask, float min_darkness) {
     TracedDrawing drawing;
-    const FloatImage smooth = gaussian_blur(darkness, k_smoothing);
-    drawing.ink = ink_pixels(smooth, faintest);
+    const FloatImage smooth = gaussian_blur(darkness, k_ink_smoothing);
+    drawing.ink = ink_pixels(smooth, min_darkness);
     drawing.width = widths_of(drawing.ink);
     drawing.skeleton = drawing.ink;
     for (std::size_t i = 0; i < mask.data.size(); ++i)
         drawing.skeleton.data[i] = drawing.skeleton.data[i] && mask.data[i];
     drawing.skeleton = thinned(std::move(drawing.skeleton));
     prune_spurs(drawing.skeleton, drawing.width);
-    drawing.strokes = trace_strokes(drawing.skeleton, drawing.width, smooth, faintest);
+    drawing.strokes = trace_strokes(drawing.skeleton, drawing.width, smooth, min_darkness);
     return drawing;
 }
 

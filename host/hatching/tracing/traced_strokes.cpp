@@ -10,12 +10,11 @@
 namespace exemplar {
 namespace {
 
-constexpr float k_pi = std::numbers::pi_v<float>;
-constexpr std::size_t k_least_points = 3;
-constexpr std::size_t k_end_points = 4;  ///< points that show a stroke's darkness and direction at its end
+constexpr std::size_t k_min_points = 3;
+constexpr std::size_t k_end_points = 4;  ///< points over which darkness and direction at an end are measured
 constexpr float k_tip_step = 0.25f;      ///< pixels
-constexpr float k_least_aspect = 2;  ///< points per width: what is shorter is a dot, or what thinning left of an end
-constexpr float k_least_reach = 6, k_most_reach = 20;  ///< points of the center line that show its direction
+constexpr float k_min_aspect = 2;        ///< min points per width; shorter are dots, or remainders of thinning
+constexpr float k_min_end_reach = 6, k_max_end_reach = 20;  ///< points over which the direction is measured
 
 /// Builds strokes by walking from segment to segment.
 class Assembly {
@@ -28,7 +27,7 @@ class Assembly {
         const auto start_at = [&](std::size_t end) {
             if (used_[end / 2] || links_.shared[end / 2]) return;
             TracedStroke stroke = follow(end);
-            if (stroke.points.size() >= k_least_points) strokes.push_back(std::move(stroke));
+            if (stroke.points.size() >= k_min_points) strokes.push_back(std::move(stroke));
         };
         for (std::size_t end = 0; end < links_.ends.size(); ++end)
             if (links_.partner[end] == k_unlinked && !graph_.segments[end / 2].closed) start_at(end);
@@ -37,7 +36,7 @@ class Assembly {
     }
 
   private:
-    /// The stroke that enters a segment at `entry`.
+    /// Returns the stroke that enters a segment at `entry`.
     TracedStroke follow(std::size_t entry) {
         const std::size_t start = entry;
         std::size_t longest = 0;
@@ -71,7 +70,7 @@ class Assembly {
 
     std::size_t trim(std::size_t end) const { return links_.partner[end] == k_unlinked ? 0 : links_.ends[end].trim; }
 
-    /// Points a pixel apart between two ends.
+    /// Adds points a pixel apart between two ends.
     static void bridge(const Vec2& from, const Vec2& to, TracedStroke& stroke) {
         const auto steps = static_cast<int>(std::lround((to - from).norm()));
         for (int k = 1; k < steps; ++k) {
@@ -87,10 +86,10 @@ class Assembly {
     std::vector<bool> used_;
 };
 
-/// Replaces the last points before one end, which thinning bends, by the straight line through those before them.
+/// Replaces the last points at an end, which thinning bends, by the line fitted to the points before them.
 void straighten_end(std::span<TracedPoint> inward, float width) {
     const auto bent = static_cast<std::size_t>(std::lround(0.5f * width)) + 1;
-    const auto shown = static_cast<std::size_t>(std::lround(std::max(k_least_reach, 2 * width)));
+    const auto shown = static_cast<std::size_t>(std::lround(std::max(k_min_end_reach, 2 * width)));
     if (inward.size() < bent + shown) return;
     const std::span<const TracedPoint> straight = inward.subspan(bent, shown);
     Vec2 middle = Vec2::Zero(), slope = Vec2::Zero();
@@ -114,14 +113,14 @@ void straighten_ends(TracedStroke& stroke) {
     std::reverse(stroke.points.begin(), stroke.points.end());
 }
 
-/// Whether a stroke is no longer than twice its greatest width between crossings.
+/// Whether a stroke is shorter than twice its greatest width between crossings.
 bool is_dot(const TracedStroke& stroke, const FloatImage& width) {
     float widest = stroke.width;
     for (const TracedPoint& point : stroke.points) {
         const int x = static_cast<int>(point.center.x()), y = static_cast<int>(point.center.y());
         if (!point.at_crossing) widest = std::max(widest, width.pixel(x, y)[0]);
     }
-    return static_cast<float>(stroke.points.size()) < k_least_aspect * widest;
+    return static_cast<float>(stroke.points.size()) < k_min_aspect * widest;
 }
 
 float darkness_at(const FloatImage& image, const Vec2& at) {
@@ -134,7 +133,7 @@ float darkness_at(const FloatImage& image, const Vec2& at) {
                      std::lerp(image.pixel(left, bottom)[0], image.pixel(right, bottom)[0], sx), sy);
 }
 
-/// A point of a stroke as counted from its front or back, or the farthest one there is.
+/// Returns point i of a stroke, counted from its front or back, or the last one.
 const TracedPoint& point_from(const TracedStroke& stroke, bool back, std::size_t i) {
     const std::size_t last = stroke.points.size() - 1;
     return stroke.points[back ? last - std::min(i, last) : std::min(i, last)];
@@ -143,9 +142,9 @@ const TracedPoint& point_from(const TracedStroke& stroke, bool back, std::size_t
 }  // namespace
 
 std::vector<TracedStroke> trace_strokes(const PixelMask& skeleton, const FloatImage& width, const FloatImage& darkness,
-                                        float faintest) {
+                                        float min_darkness) {
     const SkeletonGraph graph = skeleton_graph(skeleton);
-    const SegmentLinks links = link_segments(graph, width, darkness, faintest);
+    const SegmentLinks links = link_segments(graph, width, darkness, min_darkness);
     std::vector<TracedStroke> strokes = Assembly(graph, links).run();
     std::erase_if(strokes, [&](const TracedStroke& stroke) { return is_dot(stroke, width); });
     for (TracedStroke& stroke : strokes) {
@@ -157,7 +156,7 @@ std::vector<TracedStroke> trace_strokes(const PixelMask& skeleton, const FloatIm
 
 void orient_along(TracedStroke& stroke) {
     const auto count = static_cast<std::ptrdiff_t>(stroke.points.size());
-    const auto reach = static_cast<std::ptrdiff_t>(std::clamp(2 * stroke.width, k_least_reach, k_most_reach));
+    const auto reach = static_cast<std::ptrdiff_t>(std::clamp(2 * stroke.width, k_min_end_reach, k_max_end_reach));
     for (std::ptrdiff_t i = 0; i < count; ++i) {
         if (stroke.points[i].oriented) continue;
         // The slope of the least-squares line through the points around, as many on either side.
@@ -170,18 +169,19 @@ void orient_along(TracedStroke& stroke) {
             slope += static_cast<float>(k) * stroke.points[at].center;
         }
         const float angle = std::atan2(slope.y(), slope.x());
-        stroke.points[i].orientation = angle < 0 ? angle + k_pi : (angle < k_pi ? angle : 0);
+        stroke.points[i].orientation =
+            angle < 0 ? angle + std::numbers::pi_v<float> : (angle < std::numbers::pi_v<float> ? angle : 0);
     }
 }
 
-Vec2 way_out(const TracedStroke& stroke, bool back) {
+Vec2 end_direction(const TracedStroke& stroke, bool back) {
     const TracedPoint &end = point_from(stroke, back, 0), &inward = point_from(stroke, back, k_end_points);
     const Vec2 along(std::cos(inward.orientation), std::sin(inward.orientation));
     return along.dot(end.center - inward.center) < 0 ? Vec2(-along) : along;
 }
 
-std::optional<float> way_to_tip(const FloatImage& darkness, const TracedStroke& stroke, bool back, float width) {
-    const Vec2 out = way_out(stroke, back), end = point_from(stroke, back, 0).center;
+std::optional<float> distance_to_tip(const FloatImage& darkness, const TracedStroke& stroke, bool back, float width) {
+    const Vec2 out = end_direction(stroke, back), end = point_from(stroke, back, 0).center;
     float dark = 0;
     for (std::size_t i = 1; i <= k_end_points; ++i)
         dark = std::max(dark, darkness_at(darkness, point_from(stroke, back, i).center));

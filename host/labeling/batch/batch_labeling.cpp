@@ -22,12 +22,13 @@ namespace {
 
 using Item = std::unique_ptr<BatchShape>;
 
-/// What a face of the working mesh takes while its features are computed, and what each shape takes at least.
+/// Memory estimates, in bytes. Per face of the working mesh, while its features are computed:
 constexpr std::size_t k_bytes_per_face = 24'000;
-/// What more samples than usual add to a face: distances to them, and the bins these are in.
+/// Per face and sample beyond the usual number: a distance and its bin.
 constexpr std::size_t k_usual_samples = 1000, k_bytes_per_sample = 5;
-/// What a face of the mesh itself takes while the mesh is simplified.
+/// Per face of the original mesh, while it is simplified.
 constexpr std::size_t k_bytes_per_original_face = 160;
+/// Per shape, at least.
 constexpr std::size_t k_bytes_per_shape = 4 << 20;
 
 std::size_t bytes_of(const MeshFeatures& features) {
@@ -41,13 +42,13 @@ class Batch {
         : models_(models),
           backend_(backend),
           options_(options),
-          most_memory_(options.memory),
-          budget_(most_memory_),
+          max_memory_(options.memory),
+          budget_(max_memory_),
           threads_(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)),
           arena_(static_cast<int>(threads_)) {}
 
-    std::vector<StageLoad> run(const std::function<std::optional<CatalogShape>()>& next,
-                               const std::function<void(BatchShape&)>& write) {
+    std::vector<StageStatistics> run(const std::function<std::optional<CatalogShape>()>& next,
+                                     const std::function<void(BatchShape&)>& write) {
         const std::size_t group = std::max<std::size_t>(options_.group, 1), cuts = (threads_ + 1) / 2;
         Pipeline<Item> pipeline(
             [&] { return begin(next()); },
@@ -76,38 +77,39 @@ class Batch {
         return item;
     }
     void take_memory(BatchShape& item, std::size_t faces, std::uint64_t bytes) {
-        item.memory = {};  // who waits holds nothing
-        item.memory = budget_.take(std::min(memory_for(faces, bytes), most_memory_));
+        item.memory = {};  // a waiting shape must hold no memory
+        item.memory = budget_.take(std::min(memory_for(faces, bytes), max_memory_));
     }
-    /// Bytes of a file that has grown, or names others; 0 if it is not to be read, as reading it will tell.
+    /// Returns how many bytes there are to read now: more than cataloged if the file has grown or refers to other
+    /// files. Returns 0 on an error, which reading will report.
     std::uint64_t bytes_now(const std::filesystem::path& path) const {
         try {
-            return bytes_to_read(path, most_memory_);
+            return bytes_to_read(path, max_memory_);
         } catch (const Error&) {
             return 0;
         }
     }
     std::size_t memory_for(std::size_t faces, std::uint64_t file_bytes) const {
-        const std::size_t working = std::min<std::size_t>(faces, k_most_working_faces);
+        const std::size_t working = std::min<std::size_t>(faces, k_max_working_faces);
         const std::size_t samples = std::max(std::min(models_.features.samples, working), k_usual_samples);
         return k_bytes_per_shape + (k_bytes_per_face + k_bytes_per_sample * (samples - k_usual_samples)) * working +
                k_bytes_per_original_face * faces + reading_memory(file_bytes);
     }
-    /// What scoring adds to features: of each label a probability of two stages, and the columns of the context.
+    /// Memory that scoring adds: per label the probabilities of two stages, and the contextual columns.
     static std::size_t memory_of_scores(const BatchShape& item) {
         if (!item.model) return 0;
         const std::size_t columns = k_context_measures * k_context_bins + 2;
         return sizeof(float) * columns * item.model->model.class_count() * item.prepared.features.unary.rows;
     }
 
-    /// A stage that works on one shape at a time, unless an earlier stage gave it up.
+    /// Makes a stage that processes one shape at a time and skips those with an error.
     template <typename Work>
     std::function<void(std::span<Item>)> each(Work work) {
         return [this, work](std::span<Item> items) {
             for (Item& item : items) attempt(*item, [&] { work(*item); });
         };
     }
-    /// What is the shape's own fault is kept as its error.
+    /// Runs `work` on a shape; an error that concerns this shape alone is stored in its record.
     template <typename Work>
     void attempt(BatchShape& item, Work&& work) {
         if (!item.record.error.empty()) return;
@@ -115,7 +117,7 @@ class Batch {
             work();
         } catch (const MeshError& error) {
             item.record.error = error.what();
-        } catch (const UsageError& error) {  // numbers beyond all bounds, which a mesh may lead to
+        } catch (const UsageError& error) {  // extreme meshes can lead to values out of range
             item.record.error = fmt::format("{}: {}", item.shape.path.string(), error.what());
         } catch (const std::bad_alloc&) {
             item.record.error = item.shape.path.string() + ": there is not enough memory for it";
@@ -127,10 +129,10 @@ class Batch {
         CatalogShape& shape = item.shape;
         std::string hash;
         try {
-            const std::uint64_t bytes = bytes_to_read(shape.path, most_memory_);
+            const std::uint64_t bytes = bytes_to_read(shape.path, max_memory_);
             hash = file_hash(shape.path);
             item.memory.resize(memory_for(static_cast<std::size_t>(std::max<std::int64_t>(shape.faces, 0)), bytes));
-        } catch (const DataError& error) {  // it has vanished
+        } catch (const DataError& error) {  // the file has vanished
             throw MeshError(error.what());
         }
         if (hash != shape.hash) look_again(item);
@@ -140,9 +142,9 @@ class Batch {
         item.memory.resize(memory_for(item.mesh.face_count(), 0));
         item.record.seconds["read"] = watch.wall();
     }
-    /// The file was changed since it came into the catalog.
+    /// Describes the shape anew, as its file has changed since it was cataloged.
     void look_again(BatchShape& item) {
-        CatalogShape now = describe_shape(item.shape.path, most_memory_);
+        CatalogShape now = describe_shape(item.shape.path, max_memory_);
         now.id = item.shape.id;
         now.name = item.shape.name;
         now.category = item.shape.category;
@@ -159,11 +161,11 @@ class Batch {
                            100 * item.mesh.face_count());
         item.record.seconds["features"] = watch.wall();
     }
-    /// By the category that the user gave, or else by the one that is recognized.
+    /// Chooses the model by the category that the user gave, otherwise by the recognized one.
     void choose_model(BatchShape& item) {
         const std::string& given = item.shape.category;
         item.record.category = given;
-        if (models_.is_one_for_all) {
+        if (models_.is_single_model) {
             item.model = &models_.models.front();
         } else if (!given.empty()) {
             item.model = models_.of_category(given);
@@ -177,22 +179,22 @@ class Batch {
         }
     }
     void recognize_model(BatchShape& item) {
-        const CategoryOpinion opinion = recognize(*models_.recognizer, item.prepared.features);
-        const auto most = std::ranges::max_element(opinion.probability);
+        const CategoryPrediction prediction = recognize(*models_.recognizer, item.prepared.features);
+        const auto most = std::ranges::max_element(prediction.probability);
         const std::string& likely =
-            models_.recognizer->category_names[static_cast<std::size_t>(most - opinion.probability.begin())];
-        item.record.category_probability = opinion.confidence;
-        item.record.category = opinion.category < 0 ? k_unknown_category : likely;
-        if (opinion.category < 0) {
+            models_.recognizer->category_names[static_cast<std::size_t>(most - prediction.probability.begin())];
+        item.record.category_probability = prediction.confidence;
+        item.record.category = prediction.category < 0 ? k_unknown_category : likely;
+        if (prediction.category < 0) {
             item.record.error =
-                fmt::format("of no category that is known; most like '{}' ({:.2f})", likely, opinion.confidence);
+                fmt::format("of no category that is known; most like '{}' ({:.2f})", likely, prediction.confidence);
             return;
         }
         item.model = models_.of_category(likely);
         if (!item.model) item.record.error = fmt::format("there is no model of the category '{}'", likely);
     }
 
-    /// Those of one model together.
+    /// Scores the shapes, those of the same model together.
     void score(std::span<Item> items) {
         std::ranges::stable_sort(items, {}, [](const Item& item) { return item->model; });
         for (std::size_t first = 0; first < items.size();) {
@@ -224,7 +226,7 @@ class Batch {
             score_fewer(items, good);
         }
     }
-    /// There was not enough memory for all of them together.
+    /// Scores the shapes one by one, as memory did not suffice for all of them together.
     void score_fewer(std::span<Item> items, const std::vector<BatchShape*>& good) {
         if (good.size() == 1) good.front()->record.error = "there is not enough memory to score it";
         if (good.size() > 1)
@@ -249,7 +251,7 @@ class Batch {
     const BatchModels& models_;
     const LabelingBackend& backend_;
     const BatchOptions& options_;
-    std::size_t most_memory_;
+    std::size_t max_memory_;
     MemoryBudget budget_;
     std::size_t threads_;
     tbb::task_arena arena_;
@@ -257,9 +259,9 @@ class Batch {
 
 }  // namespace
 
-std::vector<StageLoad> label_batch(const std::function<std::optional<CatalogShape>()>& next,
-                                   const std::function<void(BatchShape&)>& write, const BatchModels& models,
-                                   const LabelingBackend& backend, const BatchOptions& options) {
+std::vector<StageStatistics> label_batch(const std::function<std::optional<CatalogShape>()>& next,
+                                         const std::function<void(BatchShape&)>& write, const BatchModels& models,
+                                         const LabelingBackend& backend, const BatchOptions& options) {
     return Batch(models, backend, options).run(next, write);
 }
 

@@ -18,32 +18,32 @@
 namespace exemplar {
 
 struct BatchOptions {
-    std::filesystem::path cache;  ///< folder that remembers features; empty: none are remembered
-    std::size_t memory = 0;       ///< bytes that shapes on their way may take
-    std::size_t group = 8;        ///< meshes per submission to the device at most
+    std::filesystem::path cache;  ///< folder of the feature cache; empty: no cache
+    std::size_t memory = 0;       ///< bytes that the shapes in the pipeline may take together
+    std::size_t group = 8;        ///< maximum meshes per submission to the device
 };
 
-/// A shape on its way through the stages. Once record.error says why it cannot be labeled, later stages let it pass.
+/// A shape in the pipeline. If a stage sets record.error, the later stages skip the shape.
 struct BatchShape {
     CatalogShape shape;
-    bool changed = false;  ///< the file is no longer what the catalog knew; `shape` tells what it is
+    bool changed = false;  ///< the file differs from its catalog entry; `shape` describes the new content
     MemoryBudget::Share memory;
     TriangleMesh mesh;                  ///< as read
-    WorkingFeatures prepared;           ///< its features, until it is scored
-    const BatchModel* model = nullptr;  ///< what labels it
+    WorkingFeatures prepared;           ///< its features, until its labels are cut
+    const BatchModel* model = nullptr;  ///< the model that labels it
     FaceScores scores;
     FaceLabeling labeling;  ///< per triangle of `mesh`
-    ShapeRecord record;     ///< all but run, worker and labels, which the writer knows
+    ShapeRecord record;     ///< complete except run, worker and labels, which the writer sets
 };
 
-/// Labels shapes as they come, each independently of the others: read, features (on all cores, a mesh per core while
-/// there are as many), device scores (several meshes per submission), graph cuts, writing, all at the same time.
-/// `next` gives the shapes, called by one thread; `write` keeps the results, called by one thread, errors included.
-/// A shape that cannot be read or labeled is an error in its record. What else goes wrong (the device, the disk,
-/// Ctrl-C, what `next` and `write` throw) ends the work, and is thrown once nothing is at work any longer. Returns what
-/// the stages did.
-std::vector<StageLoad> label_batch(const std::function<std::optional<CatalogShape>()>& next,
-                                   const std::function<void(BatchShape&)>& write, const BatchModels& models,
-                                   const LabelingBackend& backend, const BatchOptions& options);
+/// Labels a stream of shapes, independently of each other. The stages run concurrently: read, features (on all cores,
+/// one mesh per core while enough are waiting), scores (several meshes per submission to the device), cuts, writing.
+/// `next` supplies the shapes and `write` stores the results, including failed shapes; each is called by one thread.
+/// If a shape cannot be read or labeled, its record holds the error. Any other failure (device, disk, Ctrl-C, an
+/// exception of `next` or `write`) ends the run and is thrown after all stages have stopped. Returns the load of each
+/// stage.
+std::vector<StageStatistics> label_batch(const std::function<std::optional<CatalogShape>()>& next,
+                                         const std::function<void(BatchShape&)>& write, const BatchModels& models,
+                                         const LabelingBackend& backend, const BatchOptions& options);
 
 }  // namespace exemplar

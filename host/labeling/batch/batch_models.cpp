@@ -7,8 +7,8 @@
 
 #include "host/core/errors.h"
 #include "host/core/text.h"
-#include "host/data/safetensors.h"
 #include "host/data/catalog/shape_scan.h"
+#include "host/data/safetensors.h"
 
 namespace exemplar {
 namespace {
@@ -20,7 +20,8 @@ bool same_letters(const std::string& a, const std::string& b) {
     return std::ranges::equal(a, b, {}, lower, lower);
 }
 
-/// Whether a model recognizes categories; what is no model at all is left to the reader of models.
+/// Returns whether a file holds a model that recognizes categories. False if it holds no model at all: load_model
+/// reports that.
 bool is_category_model(const fs::path& path) {
     try {
         const auto metadata = map_safetensors(path).metadata;
@@ -77,7 +78,7 @@ const BatchModel* BatchModels::of_category(const std::string& category) const {
 }
 
 std::string BatchModels::key() const {
-    std::string key = is_one_for_all ? "all" : recognizer_hash;
+    std::string key = is_single_model ? "all" : recognizer_hash;
     for (const BatchModel& model : models) key += fmt::format(" {}:{}", model.name, model.hash);
     return key;
 }
@@ -86,7 +87,7 @@ BatchModels load_batch_models(const fs::path& path) {
     BatchModels models;
     std::error_code ignored;
     const bool folder = fs::is_directory(path, ignored);
-    models.is_one_for_all = !folder;
+    models.is_single_model = !folder;
     for (const fs::path& file : folder ? model_files(path) : std::vector{path}) {
         if (folder && is_category_model(file))
             add_recognizer(models, file);

@@ -10,31 +10,31 @@
 
 namespace exemplar {
 
-/// A labeling model and where it is from.
+/// A labeling model and its file.
 struct BatchModel {
-    std::string name;  ///< of its file, without extension: the category that it labels
-    std::string hash;  ///< of its file's content
+    std::string name;  ///< name of the file without extension: the category that the model labels
+    std::string hash;  ///< hash of the file's content
     LabelingModel model;
 };
 
-/// The models of a batch run: one that labels everything, or one per category, with or without one that recognizes the
-/// category.
+/// The models of a batch run: one model for all shapes, or one model per category, optionally with a model that
+/// recognizes the category.
 struct BatchModels {
     std::vector<BatchModel> models;
     std::optional<CategoryModel> recognizer;
-    std::string recognizer_hash;  ///< empty without
-    FeatureOptions features;      ///< that all of them want
-    bool is_one_for_all = false;  ///< the only model labels every shape, whatever its category
+    std::string recognizer_hash;   ///< empty without a recognizer
+    FeatureOptions features;       ///< the options that all models share
+    bool is_single_model = false;  ///< the only model labels every shape, whatever its category
 
-    /// The model for a category that was given or recognized, whose case does not matter; null if there is none.
+    /// Returns the model of a category, ignoring case; null if there is none.
     const BatchModel* of_category(const std::string& category) const;
-    /// Equal for models of equal content.
+    /// Returns a text that identifies the models by their names and contents.
     std::string key() const;
 };
 
-/// Reads a labeling model, or all models of a folder (.safetensors): labeling models, each named after its category,
-/// and at most one that recognizes categories. Throws DataError where there is none, ModelError naming a model that is
-/// damaged or wants other features than the rest.
+/// Reads one labeling model, or all models of a folder (.safetensors): labeling models, each named after its
+/// category, and at most one that recognizes categories. Throws DataError if there is none, ModelError naming a model
+/// that is damaged or uses other feature options than the rest.
 BatchModels load_batch_models(const std::filesystem::path& path);
 
 }  // namespace exemplar

@@ -7,7 +7,7 @@
 namespace exemplar {
 namespace {
 
-/// The shapes `chosen` without those of category `left_out` (-1: none), with categories numbered from 0 again.
+/// Returns the shapes `chosen` except those of category `left_out` (-1: none), with categories renumbered from 0.
 CategorizedShapes subset(const CategorizedShapes& all, const std::vector<std::size_t>& chosen, std::int32_t left_out) {
     CategorizedShapes part;
     part.category_names = all.category_names;
@@ -24,14 +24,14 @@ CategorizedShapes subset(const CategorizedShapes& all, const std::vector<std::si
 
 RecognizedShape recognized(const CategoryModel& model, const CategorizedShapes& all, std::size_t shape,
                            std::int32_t left_out) {
-    const CategoryOpinion opinion = recognize(model, all.shapes[shape]);
+    const CategoryPrediction prediction = recognize(model, all.shapes[shape]);
     const auto of_all = [&](std::int32_t category) { return category + (left_out >= 0 && category >= left_out); };
-    const auto most = std::ranges::max_element(opinion.probability) - opinion.probability.begin();
-    return {shape, opinion.category < 0 ? -1 : of_all(opinion.category), of_all(static_cast<std::int32_t>(most)),
-            opinion.confidence};
+    const auto most = std::ranges::max_element(prediction.probability) - prediction.probability.begin();
+    return {shape, prediction.category < 0 ? -1 : of_all(prediction.category), of_all(static_cast<std::int32_t>(most)),
+            prediction.confidence};
 }
 
-/// Whether the others can be learned.
+/// Returns whether the other categories can be learned without this one.
 bool can_be_left_out(std::vector<std::string> names, std::vector<std::size_t> counts, std::int32_t category) {
     names.erase(names.begin() + category);
     counts.erase(counts.begin() + category);
@@ -45,8 +45,8 @@ bool can_be_left_out(std::vector<std::string> names, std::vector<std::size_t> co
 
 }  // namespace
 
-std::vector<std::int32_t> categories_needed(std::span<const std::string> names, std::span<const std::int32_t> category,
-                                            const Split& split) {
+std::vector<std::int32_t> indispensable_categories(std::span<const std::string> names,
+                                                   std::span<const std::int32_t> category, const Split& split) {
     std::vector<std::size_t> counts(names.size(), 0);
     for (const std::size_t i : split.train) ++counts[static_cast<std::size_t>(category[i])];
     require_category_sizes(names, counts);
@@ -58,7 +58,7 @@ std::vector<std::int32_t> categories_needed(std::span<const std::string> names, 
 
 CategoryTest test_categories(const CategorizedShapes& all, const Split& split, const CategoryTrainingOptions& options) {
     CategoryTest test;
-    const std::vector<std::int32_t> needed = categories_needed(all.category_names, all.category, split);
+    const std::vector<std::int32_t> needed = indispensable_categories(all.category_names, all.category, split);
     const CategoryModel model = train_categories(subset(all, split.train, -1), options, test.training);
     for (const std::size_t i : split.test) test.shapes.push_back(recognized(model, all, i, -1));
     for (std::int32_t c = 0; c < static_cast<std::int32_t>(all.category_names.size()); ++c) {

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-Json describe(const CategoryModel& model) {
+Json describe_category(const CategoryModel& model) {
     return {{"categories", model.category_names},
             {"samples", model.feature_options.samples},
             {"orientation", model.feature_options.orientation},
@@ -31,33 +31,33 @@ Json describe(const CategoryModel& model) {
             {"provenance", model.provenance}};
 }
 
-/// The library would turn what is no whole number (-1, 1e300, true) into one.
-std::uint64_t whole_number(const TensorFile& file, const Json& value) {
+/// Reads a whole number. The JSON library alone would convert other values (-1, 1e300, true) to one.
+std::uint64_t whole_value(const TensorFile& file, const Json& value) {
     if (!value.is_number_unsigned()) inconsistent(file, "its description has no whole number where one should be");
     return value.get<std::uint64_t>();
 }
 
-void read_description(const TensorFile& file, CategoryModel& model) {
+void read_category_description(const TensorFile& file, CategoryModel& model) {
     const Json json = Json::parse(file.meta("model"));
     model.category_names = json.at("categories").get<std::vector<std::string>>();
-    model.feature_options.samples = whole_number(file, json.at("samples"));
+    model.feature_options.samples = whole_value(file, json.at("samples"));
     model.feature_options.orientation = json.at("orientation").get<bool>();
     model.features = json.at("features").get<std::vector<std::string>>();
     model.sharpness = json.at("sharpness").get<double>();
     model.evidence_slope = json.at("evidence_slope").get<double>();
     model.evidence_offset = json.at("evidence_offset").get<double>();
     model.least_confidence = json.at("least_confidence").get<double>();
-    model.seed = whole_number(file, json.at("seed"));
+    model.seed = whole_value(file, json.at("seed"));
     model.provenance = json.at("provenance").get<std::vector<std::string>>();
 }
 
-void check_description(const TensorFile& file, const CategoryModel& model) {
+void check_category_description(const TensorFile& file, const CategoryModel& model) {
     try {
         require_category_names(model.category_names);
     } catch (const UsageError& error) {
         inconsistent(file, error.what());
     }
-    if (model.feature_options.samples == 0 || model.feature_options.samples > k_most_samples)
+    if (model.feature_options.samples == 0 || model.feature_options.samples > k_max_samples)
         inconsistent(file, fmt::format("its features are of {} samples", model.feature_options.samples));
     if (model.features.empty()) inconsistent(file, "it has no features");
     if (!(model.sharpness > 0) || !std::isfinite(model.sharpness)) inconsistent(file, "its sharpness is not positive");
@@ -80,8 +80,8 @@ void require_category_names(std::span<const std::string> names) {
     if (names.size() < 2)
         throw UsageError(fmt::format("{}: a category is recognized beside others; give meshes of two at least",
                                      names.empty() ? "no categories" : "one category"));
-    if (names.size() > k_most_categories)
-        throw UsageError(fmt::format("{} categories; {} at most", names.size(), k_most_categories));
+    if (names.size() > k_max_categories)
+        throw UsageError(fmt::format("{} categories; {} at most", names.size(), k_max_categories));
     for (auto name = names.begin(); name != names.end(); ++name) {
         if (!mesh_io::is_label_name(*name) || *name == k_unknown_category)
             throw UsageError(fmt::format("no category can be called {}; rename it", mesh_io::quote(*name)));
@@ -96,7 +96,7 @@ void save_category_model(const std::filesystem::path& path, const CategoryModel&
     file.metadata["format_version"] = std::to_string(k_category_format_version);
     file.metadata["feature_version"] = std::to_string(k_feature_version);
     file.metadata["descriptor_version"] = std::to_string(k_shape_descriptor_version);
-    file.metadata["model"] = describe(model).dump(-1, ' ', false, Json::error_handler_t::replace);
+    file.metadata["model"] = describe_category(model).dump(-1, ' ', false, Json::error_handler_t::replace);
     const std::size_t values = k_shape_statistics * model.features.size();
     file.add("mean", {values}, model.scores.mean);
     file.add("inverse_deviation", {values}, model.scores.inverse_deviation);
@@ -117,11 +117,11 @@ CategoryModel load_category_model(const std::filesystem::path& path) {
                     "its descriptors have changed: train it again");
     CategoryModel model;
     try {
-        read_description(file, model);
+        read_category_description(file, model);
     } catch (const Json::exception&) {
         inconsistent(file, "its description cannot be read");
     }
-    check_description(file, model);
+    check_category_description(file, model);
     const std::size_t values = k_shape_statistics * model.features.size();
     model.scores.mean = finite_array(file, "mean", {values});
     model.scores.inverse_deviation = finite_array(file, "inverse_deviation", {values});

@@ -39,22 +39,22 @@ double category_evidence(std::span<const double> scores) {
     return 2 * sorted[0] - sorted[1];
 }
 
-CategoryOpinion recognize(const CategoryModel& model, const ShapeDescriptor& shape) {
+CategoryPrediction recognize(const CategoryModel& model, const ShapeDescriptor& shape) {
     if (shape.features != model.features || shape.values.size() != model.scores.mean.size())
         throw UsageError(
             "a shape's category cannot be recognized by other features than those learned from; compute them with the "
             "options of the model");
     const std::vector<double> scores = model.scores.of(shape.values);
-    CategoryOpinion opinion;
-    opinion.probability = softmax(scores, model.sharpness);
+    CategoryPrediction prediction;
+    prediction.probability = softmax(scores, model.sharpness);
     const double log_odds = model.evidence_slope * category_evidence(scores) + model.evidence_offset;
-    opinion.confidence = static_cast<float>(1 / (1 + std::exp(-log_odds)));
-    if (static_cast<double>(opinion.confidence) >= model.least_confidence)
-        opinion.category = static_cast<std::int32_t>(std::ranges::max_element(scores) - scores.begin());
-    return opinion;
+    prediction.confidence = static_cast<float>(1 / (1 + std::exp(-log_odds)));
+    if (static_cast<double>(prediction.confidence) >= model.least_confidence)
+        prediction.category = static_cast<std::int32_t>(std::ranges::max_element(scores) - scores.begin());
+    return prediction;
 }
 
-CategoryOpinion recognize(const CategoryModel& model, const MeshFeatures& features) {
+CategoryPrediction recognize(const CategoryModel& model, const MeshFeatures& features) {
     return recognize(model, compute_shape_descriptor(features));
 }
 

@@ -14,6 +14,7 @@
 #include "host/core/parallel.h"
 #include "host/core/random.h"
 #include "host/learn/boosting/calibration.h"
+#include "host/learn/decompositions.h"
 #include "host/mesh/io/io_text.h"
 
 namespace exemplar {
@@ -22,16 +23,16 @@ namespace {
 using Indices = std::vector<std::size_t>;
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Of the ridge, in units in which the mean squared value of a squashed descriptor is at most 1.
+/// Ridge penalty; the mean squared value of a squashed descriptor is at most 1.
 constexpr double k_ridge = 0.05;
-constexpr std::size_t k_most_folds = 10;
-/// The share of strangers among the shapes that the confidence is for.
+constexpr std::size_t k_max_category_folds = 10;
+/// Assumed share of strangers among the shapes, for the confidence.
 constexpr double k_stranger_share = 0.2;
-/// A stranger is made up of a shape and each of so many others: two parameters learn nothing from more.
+/// With two categories: how many strangers are made from each shape. More would not help to fit the two parameters.
 constexpr std::size_t k_most_pairs = 20;
 /// A deviation below this share of the mean is rounding.
-constexpr double k_least_variation = 1e-6;
-/// The scale that is searched for scores reaches from 0.02 to 10 times this.
+constexpr double k_min_variation = 1e-6;
+/// Factor on the scores before `calibrate`, which searches scales in [0.02, 10].
 constexpr float k_score_unit = 10;
 
 struct Problem {
@@ -41,7 +42,7 @@ struct Problem {
     std::size_t category(std::size_t shape) const { return static_cast<std::size_t>(training->category[shape]); }
 };
 
-/// What each of the shapes weighs, so that all categories weigh the same; the mean is 1.
+/// Returns weights of the shapes with which all categories weigh the same; their mean is 1.
 Eigen::VectorXd balanced_weights(const Problem& problem, const Indices& shapes) {
     std::vector<double> count(problem.categories(), 0);
     for (const std::size_t i : shapes) ++count[problem.category(i)];
@@ -62,7 +63,7 @@ Rows matrix_of(const Problem& problem, const Indices& shapes) {
     return matrix;
 }
 
-/// The squashing of CategoryScores, from weighted means and deviations; applies it to `matrix`.
+/// Sets the squashing of CategoryScores to weighted means and deviations, and applies it to `matrix`.
 void squash(Rows& matrix, const Eigen::VectorXd& weights, CategoryScores& scores) {
     const auto rows = static_cast<double>(matrix.rows());
     const Eigen::RowVectorXd mean = weights.transpose() * matrix / rows;
@@ -71,7 +72,7 @@ void squash(Rows& matrix, const Eigen::VectorXd& weights, CategoryScores& scores
     for (Eigen::Index k = 0; k < matrix.cols(); ++k) {
         const double deviation = std::sqrt(variance[k]);
         const float inverse =
-            deviation > k_least_variation * std::abs(mean[k]) ? static_cast<float>(1 / deviation) : 0.0F;
+            deviation > k_min_variation * std::abs(mean[k]) ? static_cast<float>(1 / deviation) : 0.0F;
         const bool usable = std::isfinite(inverse);
         scores.mean.push_back(static_cast<float>(mean[k]));
         scores.inverse_deviation.push_back(usable ? inverse : 0.0F);
@@ -79,11 +80,11 @@ void squash(Rows& matrix, const Eigen::VectorXd& weights, CategoryScores& scores
     }
 }
 
-/// Ridge regression in its dual form, as descriptors mostly have more values than there are shapes:
+/// Ridge regression in its dual form, as descriptors usually have more values than there are shapes:
 ///
 ///     (Z Z^T / D + ridge diag(1 / w)) A = Y - b,   weights = A^T Z / D
 ///
-/// with a target per category, of which b is the weighted mean; or with more shapes the same in its primal form:
+/// Y has one target per category, b is their weighted mean. With more shapes than values, the same in primal form:
 ///
 ///     (Z^T diag(w) Z / D + ridge 1) weights^T = Z^T diag(w) (Y - b) / D
 Rows ridge_weights(const Rows& z, const Eigen::VectorXd& weights, const Eigen::MatrixXd& target) {
@@ -91,14 +92,12 @@ Rows ridge_weights(const Rows& z, const Eigen::VectorXd& weights, const Eigen::M
     if (z.rows() <= z.cols()) {
         Eigen::MatrixXd kernel = z * z.transpose() / values;
         kernel.diagonal() += k_ridge * weights.cwiseInverse();
-        const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(kernel);
-        return in_place.solve(target).transpose() * z / values;
+        return solve_cholesky(std::move(kernel), target).transpose() * z / values;
     }
     const Rows weighted = weights.asDiagonal() * z;
     Eigen::MatrixXd normal = weighted.transpose() * z / values;
     normal.diagonal().array() += k_ridge;
-    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(normal);
-    return in_place.solve(weighted.transpose() * target / values).transpose();
+    return solve_cholesky(std::move(normal), weighted.transpose() * target / values).transpose();
 }
 
 CategoryScores fit(const Problem& problem, const Indices& shapes) {
@@ -119,10 +118,10 @@ CategoryScores fit(const Problem& problem, const Indices& shapes) {
     return scores;
 }
 
-/// What a model said of a shape that it had not seen.
-struct HeldOut {
+/// Scores of a shape that the model had not seen.
+struct HeldOutShape {
     std::size_t category = 0;
-    bool stranger = false;  ///< of no category of that model
+    bool stranger = false;  ///< of no category that the model knows
     std::vector<double> scores;
     double evidence = 0;
 
@@ -130,8 +129,8 @@ struct HeldOut {
     bool right() const { return !stranger && best() == category; }
 };
 
-HeldOut held_out(std::size_t category, bool stranger, std::vector<double> scores) {
-    HeldOut item{category, stranger, std::move(scores), 0};
+HeldOutShape held_out(std::size_t category, bool stranger, std::vector<double> scores) {
+    HeldOutShape item{category, stranger, std::move(scores), 0};
     item.evidence = category_evidence(item.scores);
     return item;
 }
@@ -140,7 +139,7 @@ bool are_equal(const Problem& problem, std::size_t a, std::size_t b) {
     return std::ranges::equal(problem.descriptor(a), problem.descriptor(b));
 }
 
-/// The shapes of a category, copies of one mesh together.
+/// Returns the shapes of a category, grouped into copies of the same mesh.
 std::vector<Indices> distinct_shapes(const Problem& problem, std::size_t category) {
     std::vector<Indices> distinct;
     for (std::size_t i = 0; i < problem.training->category.size(); ++i) {
@@ -155,27 +154,28 @@ std::vector<Indices> distinct_shapes(const Problem& problem, std::size_t categor
     return distinct;
 }
 
-/// The fold of each shape, copies in the same; none (k_most_folds) where a category has but one.
-Indices make_folds(const Problem& problem, std::uint64_t seed) {
-    Indices fold(problem.training->category.size(), k_most_folds);
+/// Returns the fold of each shape; copies are in the same fold. Shapes of a category with one distinct mesh are in
+/// none (k_max_category_folds).
+Indices make_category_folds(const Problem& problem, std::uint64_t seed) {
+    Indices fold(problem.training->category.size(), k_max_category_folds);
     for (std::size_t c = 0; c < problem.categories(); ++c) {
         std::vector<Indices> members = distinct_shapes(problem, c);
         Random random = Random(seed).fork(c);
         random.shuffle(members);
         if (members.size() < 2) continue;
         for (std::size_t rank = 0; rank < members.size(); ++rank)
-            for (const std::size_t i : members[rank]) fold[i] = rank % k_most_folds;
+            for (const std::size_t i : members[rank]) fold[i] = rank % k_max_category_folds;
     }
     return fold;
 }
 
-std::vector<float> mean_of(std::span<const float> a, std::span<const float> b) {
+std::vector<float> mean_vector(std::span<const float> a, std::span<const float> b) {
     std::vector<float> mean;
     for (std::size_t k = 0; k < a.size(); ++k) mean.push_back((a[k] + b[k]) / 2);
     return mean;
 }
 
-/// Shapes of other categories than that of `shape`, at most k_most_pairs.
+/// Returns shapes of categories other than that of `shape`, at most k_most_pairs.
 Indices some_others(const Problem& problem, std::size_t shape, std::uint64_t seed) {
     Indices others;
     for (std::size_t j = 0; j < problem.training->category.size(); ++j)
@@ -187,59 +187,62 @@ Indices some_others(const Problem& problem, std::size_t shape, std::uint64_t see
     return others;
 }
 
-/// Holds a fold out: its shapes, and with two categories their means with shapes of the other one.
-std::vector<HeldOut> hold_fold_out(const Problem& problem, const Indices& fold, std::size_t k, std::uint64_t seed) {
+/// Scores a held-out fold: its shapes and, with two categories, their means with shapes of the other one as
+/// strangers.
+std::vector<HeldOutShape> hold_fold_out(const Problem& problem, const Indices& fold, std::size_t k,
+                                        std::uint64_t seed) {
     Indices rest, out;
     for (std::size_t i = 0; i < fold.size(); ++i) (fold[i] == k ? out : rest).push_back(i);
     if (out.empty()) return {};
     const CategoryScores scores = fit(problem, rest);
-    std::vector<HeldOut> items;
+    std::vector<HeldOutShape> items;
     for (const std::size_t i : out)
         items.push_back(held_out(problem.category(i), false, scores.of(problem.descriptor(i))));
     if (problem.categories() > 2) return items;
     for (const std::size_t i : out)
         for (const std::size_t j : some_others(problem, i, seed))
-            items.push_back(
-                held_out(problem.category(i), true, scores.of(mean_of(problem.descriptor(i), problem.descriptor(j)))));
+            items.push_back(held_out(problem.category(i), true,
+                                     scores.of(mean_vector(problem.descriptor(i), problem.descriptor(j)))));
     return items;
 }
 
-/// Holds a category out with all of its shapes, but for copies of what is learned as another category.
-std::vector<HeldOut> hold_category_out(const Problem& problem, std::size_t category) {
+/// Scores a category that is held out as a whole, except copies of shapes of other categories.
+std::vector<HeldOutShape> hold_category_out(const Problem& problem, std::size_t category) {
     Indices rest, out;
     for (std::size_t i = 0; i < problem.training->category.size(); ++i)
         (problem.category(i) == category ? out : rest).push_back(i);
     const CategoryScores scores = fit(problem, rest);
-    std::vector<HeldOut> items;
+    std::vector<HeldOutShape> items;
     for (const std::size_t i : out) {
         if (std::ranges::any_of(rest, [&](std::size_t j) { return are_equal(problem, i, j); })) continue;
         std::vector<double> of_shape = scores.of(problem.descriptor(i));
-        of_shape.erase(of_shape.begin() + static_cast<std::ptrdiff_t>(category));  // that model knows none of it
+        of_shape.erase(of_shape.begin() + static_cast<std::ptrdiff_t>(category));  // the model does not know it
         items.push_back(held_out(category, true, std::move(of_shape)));
     }
     return items;
 }
 
-std::vector<HeldOut> hold_all_out(const Problem& problem, std::uint64_t seed) {
-    const Indices fold = make_folds(problem, seed);
+std::vector<HeldOutShape> hold_all_out(const Problem& problem, std::uint64_t seed) {
+    const Indices fold = make_category_folds(problem, seed);
     const std::size_t whole = problem.categories() > 2 ? problem.categories() : 0;
-    std::vector<std::vector<HeldOut>> parts(k_most_folds + whole);
+    std::vector<std::vector<HeldOutShape>> parts(k_max_category_folds + whole);
     parallel_for(parts.size(), [&](std::size_t p) {
-        parts[p] =
-            p < k_most_folds ? hold_fold_out(problem, fold, p, seed) : hold_category_out(problem, p - k_most_folds);
+        parts[p] = p < k_max_category_folds ? hold_fold_out(problem, fold, p, seed)
+                                            : hold_category_out(problem, p - k_max_category_folds);
     });
-    std::vector<HeldOut> items;
-    for (std::vector<HeldOut>& part : parts) std::ranges::move(part, std::back_inserter(items));
+    std::vector<HeldOutShape> items;
+    for (std::vector<HeldOutShape>& part : parts) std::ranges::move(part, std::back_inserter(items));
     return items;
 }
 
-/// What each item weighs: the shapes of the categories and strangers the same in all, and so each category in them.
-std::vector<double> item_weights(const std::vector<HeldOut>& items, std::size_t categories) {
+/// Returns the weights of the items: known shapes and strangers have the same total, and in each group so do its
+/// categories.
+std::vector<double> item_weights(const std::vector<HeldOutShape>& items, std::size_t categories) {
     std::array<std::vector<double>, 2> count;
     for (auto& group : count) group.assign(categories, 0);
-    for (const HeldOut& item : items) ++count[item.stranger ? 1 : 0][item.category];
+    for (const HeldOutShape& item : items) ++count[item.stranger ? 1 : 0][item.category];
     std::vector<double> weights;
-    for (const HeldOut& item : items) {
+    for (const HeldOutShape& item : items) {
         const std::vector<double>& group = count[item.stranger ? 1 : 0];
         const auto present = static_cast<double>(std::ranges::count_if(group, [](double n) { return n > 0; }));
         weights.push_back(1 / (present * group[item.category]));
@@ -251,7 +254,7 @@ double sigmoid(double x) {
     return 1 / (1 + std::exp(-x));
 }
 
-/// -log sigmoid(x), also where the sigmoid is 0.
+/// Returns -log sigmoid(x), also where the sigmoid underflows to 0.
 double loss_of(double x) {
     return x > 0 ? std::log1p(std::exp(-x)) : std::log1p(std::exp(x)) - x;
 }
@@ -260,7 +263,7 @@ double loss_of(double x) {
 struct LogisticProblem {
     std::vector<double> value, target, weight;
 
-    /// Of the mean target: the best line without a slope.
+    /// Returns the log odds of the mean target: the best line without a slope.
     double log_odds() const {
         double sum = 0, all = 0;
         for (std::size_t i = 0; i < target.size(); ++i) sum += weight[i] * target[i], all += weight[i];
@@ -285,7 +288,7 @@ struct LogisticProblem {
         }
         return -curvature.ldlt().solve(gradient);
     }
-    /// Newton's method, with steps that are halved until they help.
+    /// Newton's method, with steps that are halved until the loss falls.
     Eigen::Vector2d solve() const {
         Eigen::Vector2d line = Eigen::Vector2d::Zero();
         double least = loss(line);
@@ -300,10 +303,10 @@ struct LogisticProblem {
     }
 };
 
-/// Being right on the evidence, with the targets of Platt (1999), which keep the slope finite where the evidence tells
-/// all right answers from all others.
-void fit_confidence(const std::vector<HeldOut>& items, const std::vector<double>& weights, CategoryModel& model) {
-    const auto right = static_cast<double>(std::ranges::count_if(items, &HeldOut::right));
+/// Fits the confidence: a logistic regression of being right on the evidence. The targets of Platt (1999) keep the
+/// slope finite if the evidence separates the right answers from all others.
+void fit_confidence(const std::vector<HeldOutShape>& items, const std::vector<double>& weights, CategoryModel& model) {
+    const auto right = static_cast<double>(std::ranges::count_if(items, &HeldOutShape::right));
     const double yes = (right + 1) / (right + 2), no = 1 / (static_cast<double>(items.size()) - right + 2);
     LogisticProblem problem;
     for (std::size_t i = 0; i < items.size(); ++i) {
@@ -312,15 +315,15 @@ void fit_confidence(const std::vector<HeldOut>& items, const std::vector<double>
         problem.weight.push_back(weights[i] * (items[i].stranger ? k_stranger_share : 1 - k_stranger_share));
     }
     Eigen::Vector2d line = problem.solve();
-    if (line[0] <= 0) line = {0, problem.log_odds()};  // evidence that tells nothing
+    if (line[0] <= 0) line = {0, problem.log_odds()};  // the evidence is not informative
     model.evidence_slope = line[0];
     model.evidence_offset = line[1];
 }
 
-void fit_sharpness(const std::vector<HeldOut>& items, CategoryModel& model) {
+void fit_sharpness(const std::vector<HeldOutShape>& items, CategoryModel& model) {
     std::vector<float> scores, weights;
     std::vector<std::int32_t> labels;
-    for (const HeldOut& item : items) {
+    for (const HeldOutShape& item : items) {
         if (item.stranger) continue;
         for (const double score : item.scores) scores.push_back(k_score_unit * static_cast<float>(score));
         labels.push_back(static_cast<std::int32_t>(item.category));
@@ -331,7 +334,7 @@ void fit_sharpness(const std::vector<HeldOut>& items, CategoryModel& model) {
     model.sharpness = static_cast<double>(k_score_unit * found.scale);
 }
 
-CategoryReport report_of(const std::vector<HeldOut>& items, const std::vector<double>& weights,
+CategoryReport report_of(const std::vector<HeldOutShape>& items, const std::vector<double>& weights,
                          const CategoryModel& model) {
     CategoryReport report;
     report.strangers_made_up = model.category_count() == 2;
@@ -404,7 +407,7 @@ CategoryModel train_categories(const CategorizedShapes& training, const Category
     Indices all(training.shapes.size());
     std::iota(all.begin(), all.end(), 0);
     model.scores = fit(problem, all);
-    const std::vector<HeldOut> items = hold_all_out(problem, options.seed);
+    const std::vector<HeldOutShape> items = hold_all_out(problem, options.seed);
     const std::vector<double> weights = item_weights(items, model.category_count());
     fit_confidence(items, weights, model);
     fit_sharpness(items, model);

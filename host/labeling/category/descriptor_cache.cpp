@@ -22,14 +22,14 @@ fs::path descriptor_path(const TriangleMesh& mesh, const FeatureOptions& options
                                 options.samples, options.orientation ? "-oriented" : "", k_shape_descriptor_version);
 }
 
-ShapeDescriptor from_file(const TensorFile& file) {
+ShapeDescriptor descriptor_from_file(const TensorFile& file) {
     ShapeDescriptor shape;
     shape.features = Json::parse(file.meta("features")).get<std::vector<std::string>>();
     shape.values = file.get<float>("values", {k_shape_statistics, shape.features.size()});
     return shape;
 }
 
-TensorFile to_file(const ShapeDescriptor& shape) {
+TensorFile descriptor_to_file(const ShapeDescriptor& shape) {
     TensorFile file;
     file.metadata["features"] = Json(shape.features).dump();
     file.add("values", {k_shape_statistics, shape.features.size()}, shape.values);
@@ -44,11 +44,11 @@ ShapeDescriptor cached_shape_descriptor(const TriangleMesh& mesh, const FeatureO
     if (folder.empty()) return compute_shape_descriptor(compute_features(working, options));
     const fs::path path = descriptor_path(working, options, folder);
     ShapeDescriptor shape;
-    if (read_cache_entry(path, k_feature_version, [&](const TensorFile& file) { shape = from_file(file); }))
+    if (read_cache_entry(path, k_feature_version, [&](const TensorFile& file) { shape = descriptor_from_file(file); }))
         return shape;
-    const std::optional<MeshFeatures> known = remembered_features(working, options, folder);
+    const std::optional<MeshFeatures> known = find_cached_features(working, options, folder);
     shape = compute_shape_descriptor(known ? *known : compute_features(working, options));
-    write_cache_entry(path, k_feature_version, to_file(shape));
+    write_cache_entry(path, k_feature_version, descriptor_to_file(shape));
     return shape;
 }
 

@@ -6,9 +6,9 @@
 
 namespace exemplar {
 
-/// The descriptor of a mesh of any size, taken as it is labeled (see working_mesh), with a memory on disk: `folder`
-/// keeps the descriptor, not the features, which take ten thousand times the room; but features that are there are
-/// used. An empty folder turns the memory off. Throws what compute_features throws.
+/// Returns the descriptor of a mesh of any size, computed on its working mesh (see working_mesh), and caches it in
+/// `folder`. Only the descriptor is cached, as features take ten thousand times the space; but cached features are
+/// used if they exist. An empty `folder` turns the cache off. Throws what compute_features throws.
 ShapeDescriptor cached_shape_descriptor(const TriangleMesh& mesh, const FeatureOptions& options,
                                         const std::filesystem::path& folder);
 

@@ -14,9 +14,9 @@ namespace {
 
 constexpr const char* k_centrality = "geodesic.mean";
 /// A deviation below this share of the mean is rounding.
-constexpr double k_least_variation = 1e-6;
+constexpr double k_min_descriptor_variation = 1e-6;
 
-/// What each face weighs, with the sum 1.
+/// Returns the weight of each face; they sum to 1.
 std::vector<double> face_weights(const std::vector<float>& area) {
     double sum = 0;
     for (const float a : area) sum += static_cast<double>(a);
@@ -28,7 +28,7 @@ std::vector<double> face_weights(const std::vector<float>& area) {
     return weights;
 }
 
-/// A feature's values over the surface.
+/// Statistics of a feature's values over the surface.
 struct Spread {
     double mean = 0, deviation = 0;
 };
@@ -42,7 +42,7 @@ Spread spread_of(std::span<const float> values, std::span<const double> weights)
         variance += weights[f] * difference * difference;
     }
     const double deviation = std::sqrt(variance);
-    spread.deviation = deviation > k_least_variation * std::abs(spread.mean) ? deviation : 0;
+    spread.deviation = deviation > k_min_descriptor_variation * std::abs(spread.mean) ? deviation : 0;
     return spread;
 }
 

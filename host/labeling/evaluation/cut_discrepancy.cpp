@@ -12,7 +12,7 @@
 namespace exemplar {
 namespace {
 
-/// Mean distance of the surface's points from its centroid; of the face centers if no face has an area.
+/// Returns the mean distance of the surface's points from its centroid; of the face centers if no face has area.
 double mean_radius(const TriangleMesh& mesh) {
     const std::vector<float> areas = face_areas(mesh);
     const std::vector<Vec3> centers = face_centers(mesh);
@@ -30,8 +30,8 @@ double mean_radius(const TriangleMesh& mesh) {
     return sum / total;
 }
 
-/// Calls visit(a, b) for each pair of nodes with a straight way between them on the surface: the ends and the middle of
-/// an edge, the middles of two edges of a face, a corner of a face and the middle of the edge across.
+/// Calls visit(a, b) for each pair of nodes with a straight path between them on the surface: an end and the midpoint
+/// of an edge, the midpoints of two edges of a face, a corner of a face and the midpoint of the opposite edge.
 template <typename Visit>
 void visit_links(const TriangleMesh& mesh, const Topology& topology, Visit&& visit) {
     const auto vertices = static_cast<std::uint32_t>(mesh.vertex_count());
@@ -88,7 +88,7 @@ std::vector<float> CutDiscrepancy::distances_to(const std::vector<std::uint32_t>
             relax(node, 0);
     while (!queue.empty()) {
         const auto [reached, node] = queue.pop();
-        if (reached > distance[node]) continue;  // a shorter way has been found since
+        if (reached > distance[node]) continue;  // a shorter path has been found since
         for (std::uint32_t i = link_begin_[node]; i != link_begin_[node + 1]; ++i)
             relax(links_[i].node, reached + links_[i].length);
     }

@@ -10,29 +10,30 @@ namespace exemplar {
 
 /// The cuts of a segmentation: the interior edges between faces of different segments.
 struct SegmentCuts {
-    std::vector<std::uint32_t> edge;  ///< indices into the mesh's edges
-    std::vector<float> distance;      ///< from every node of the mesh (see CutDiscrepancy) to the nearest cut
+    std::vector<std::uint32_t> edge;  ///< indices into the interior edges
+    std::vector<float> distance;      ///< of each node (the vertices, then the edge midpoints) to the nearest cut
 };
 
-/// Cut discrepancy of segmentations of one mesh (Chen, Golovinskiy, Funkhouser 2009): how far apart along the
-/// surface their cuts lie. With C(S) the set of all points on the cuts of S and d(p, C) the length of the shortest way
-/// on the surface from p to the nearest point of C,
+/// Cut discrepancy of segmentations of one mesh (Chen, Golovinskiy, Funkhouser 2009): how far apart along the surface
+/// their cuts lie. C(S) is the set of all points on the cuts of S, and d(p, C) the length of the shortest path on the
+/// surface from p to C:
 ///
 ///     DCD(S1 => S2) = mean of d(p, C(S2)) over the points p of C(S1)
 ///     CD(S1, S2) = (DCD(S1 => S2) + DCD(S2 => S1)) / r,   r = mean distance of the surface's points from its centroid
 ///
-/// It is symmetric, 0 for equal cuts, and does not change with scale. The mean over points is one over length: cuts are
-/// curves. Ways run straight across faces between vertices and edge midpoints, which overestimates distances by at most
-/// 4 % on regular triangles. A point from which no cut of the other segmentation can be reached (on another component)
-/// counts as being r away from it.
+/// It is symmetric, 0 for equal cuts, and does not change with scale. The mean over points is weighted by length.
+/// Paths run straight across faces between vertices and edge midpoints, which overestimates distances by at most 4 %
+/// on regular triangles. A point from which no cut of the other segmentation can be reached (on another component)
+/// counts as r away.
 class CutDiscrepancy {
   public:
     explicit CutDiscrepancy(const TriangleMesh& mesh);
 
-    /// `segments`: one per face, any numbers. Throws UsageError if their number is another.
+    /// Returns the cuts of a segmentation: one segment per face, any numbers. Throws UsageError for another count.
     SegmentCuts cuts_of(std::span<const std::int32_t> segments) const;
 
-    /// CD >= 0 of two segmentations; 0 if neither has a cut, NaN (undefined) if only one has, or the mesh is a point.
+    /// Returns CD >= 0 of two segmentations: 0 if neither has a cut, NaN (undefined) if only one has, or if the mesh
+    /// is a single point.
     double between(const SegmentCuts& a, const SegmentCuts& b) const;
 
   private:

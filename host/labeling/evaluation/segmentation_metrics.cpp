@@ -12,7 +12,7 @@
 namespace exemplar {
 namespace {
 
-/// The segments' numbers in rising order, and for each face the position of its own.
+/// The distinct segment numbers in rising order, and for each face the index of its own.
 struct Renumbered {
     std::vector<std::int32_t> numbers;
     std::vector<std::uint32_t> of_face;
@@ -42,7 +42,7 @@ double pairs_within(const std::vector<double>& counts) {
 }
 
 /// Mean of one measure over all results where it is known.
-double mean_of(const std::vector<SegmentationErrors>& errors, double SegmentationErrors::*measure) {
+double mean_measure(const std::vector<SegmentationErrors>& errors, double SegmentationErrors::*measure) {
     double sum = 0, known = 0;
     for (const SegmentationErrors& error : errors)
         if (!std::isnan(error.*measure)) sum += error.*measure, ++known;
@@ -92,7 +92,7 @@ double rand_index_error(const SegmentOverlap& overlap) {
 }
 
 HammingDistance hamming_distance(const SegmentOverlap& overlap) {
-    std::vector<double> first(overlap.first_area.size()), second(overlap.second_area.size());  // best matches' shares
+    std::vector<double> first(overlap.first_area.size()), second(overlap.second_area.size());  // of the best matches
     for (const SegmentOverlap::Cell& cell : overlap.cells) {
         first[cell.first] = std::max(first[cell.first], cell.area);
         second[cell.second] = std::max(second[cell.second], cell.area);
@@ -142,7 +142,7 @@ SegmentationErrors SegmentationMetrics::mean_errors(std::span<const std::int32_t
          {&SegmentationErrors::rand_index, &SegmentationErrors::cut_discrepancy, &SegmentationErrors::missing_rate,
           &SegmentationErrors::false_alarm_rate, &SegmentationErrors::hamming_distance,
           &SegmentationErrors::global_consistency, &SegmentationErrors::local_consistency})
-        mean.*measure = mean_of(errors, measure);
+        mean.*measure = mean_measure(errors, measure);
     return mean;
 }
 

@@ -9,12 +9,12 @@
 namespace exemplar {
 namespace {
 
-// Geodesic ranges are sample-major: neighboring faces share cache lines of every sample.
-constexpr std::size_t k_face_block = 16;
+// Geodesic ranges are sample-major: neighboring faces share cache lines.
+constexpr std::size_t k_reference_face_block = 16;
 
 // The mass that each sample adds for each class: a_j P(l | j), samples x classes.
-std::vector<double> sample_masses(const ContextGeometry& geometry, std::span<const float> probabilities,
-                                  std::size_t classes) {
+std::vector<double> reference_masses(const ContextGeometry& geometry, std::span<const float> probabilities,
+                                     std::size_t classes) {
     std::vector<double> masses;
     masses.reserve(geometry.sample_face.size() * classes);
     for (std::size_t j = 0; j < geometry.sample_face.size(); ++j)
@@ -34,8 +34,8 @@ std::size_t bin_of(const ContextGeometry& geometry, std::size_t measure, std::si
 }
 
 // One face's histograms of all measures: measures x bins x classes.
-void add_samples(const ContextGeometry& geometry, std::span<const double> masses, std::size_t classes, std::size_t face,
-                 std::span<double> histograms) {
+void add_sample_masses(const ContextGeometry& geometry, std::span<const double> masses, std::size_t classes,
+                       std::size_t face, std::span<double> histograms) {
     for (std::size_t j = 0; j < geometry.sample_face.size(); ++j) {
         const double* mass = masses.data() + j * classes;
         for (std::size_t measure = 0; measure < k_context_measures; ++measure) {
@@ -56,15 +56,15 @@ void check_geometry(const ContextGeometry& geometry) {
     if (!consistent) throw UsageError("the sizes of a ContextGeometry contradict each other; compute it again");
 }
 
-void accumulate_mesh(const ContextMesh& mesh, std::size_t classes) {
+void accumulate_reference(const ContextMesh& mesh, std::size_t classes) {
     const ContextGeometry& geometry = *mesh.geometry;
-    const std::vector<double> masses = sample_masses(geometry, mesh.probabilities, classes);
+    const std::vector<double> masses = reference_masses(geometry, mesh.probabilities, classes);
     const std::size_t columns = k_context_measures * k_context_bins * classes;
-    parallel_ranges(geometry.faces, k_face_block, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(geometry.faces, k_reference_face_block, [&](std::size_t begin, std::size_t end) {
         std::vector<double> histograms(columns);
         for (std::size_t face = begin; face < end; ++face) {
             std::ranges::fill(histograms, 0.0);
-            add_samples(geometry, masses, classes, face, histograms);
+            add_sample_masses(geometry, masses, classes, face, histograms);
             for (std::size_t column = 0; column < columns; ++column)
                 mesh.out[column * geometry.faces + face] = static_cast<float>(histograms[column]);
         }
@@ -84,7 +84,7 @@ void check_context(const ContextMesh& mesh, std::size_t classes) {
 
 void CpuContextHistograms::accumulate_all(std::span<const ContextMesh> meshes, std::size_t classes) {
     for (const ContextMesh& mesh : meshes) check_context(mesh, classes);
-    for (const ContextMesh& mesh : meshes) accumulate_mesh(mesh, classes);
+    for (const ContextMesh& mesh : meshes) accumulate_reference(mesh, classes);
 }
 
 }  // namespace exemplar

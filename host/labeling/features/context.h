@@ -14,34 +14,35 @@ constexpr std::size_t k_context_axes = 6;  ///< 3 principal axes, 3 symmetry axe
 constexpr std::uint8_t k_no_bin = 255;
 constexpr std::size_t k_context_measures = 7;  ///< geodesic distance and the axes
 
-/// What the contextual label features of one mesh need of its geometry; fixed while the cascade runs.
+/// Geometry of one mesh for the contextual label features; it is fixed while the cascade runs.
 struct ContextGeometry {
     std::size_t faces = 0;
-    std::vector<std::uint32_t> sample_face;  ///< S faces that stand for the surface
+    std::vector<std::uint32_t> sample_face;  ///< S faces that represent the surface
     std::vector<float> sample_area;          ///< S area shares, summing to 1 (a_j of Eq. A.1)
-    /// S x faces: the geodesic distance range of each face seen from each sample, 0 .. k_context_bins - 1, or k_no_bin
-    /// where there is no path. Only the range matters, so a byte replaces the distance: a quarter of the traffic.
+    /// S x faces: the range of the geodesic distance from each sample to each face, 0 .. k_context_bins - 1, or
+    /// k_no_bin where there is no path. Only the range matters, so a byte replaces the distance: a quarter of the
+    /// memory traffic.
     std::vector<std::uint8_t> geodesic_bin;
-    /// k_context_axes x faces: position x along a principal axis, centered, whose sign is arbitrary as only distances
-    /// count; distance |x| from a symmetry plane, as its two sides are alike.
+    /// k_context_axes x faces. Principal axes: the centered position x, whose sign is arbitrary as only distances
+    /// count. Symmetry planes: the distance |x|, as both sides are alike.
     std::vector<float> axis_position;
-    /// k_context_axes x (k_context_bins - 1): the inner range edges of each difference of positions, rising.
+    /// k_context_axes x (k_context_bins - 1): inner range edges of the differences of positions, rising.
     /// Range = number of edges <= distance.
     std::array<std::array<float, k_context_bins - 1>, k_context_axes> axis_edges{};
 };
 
-/// One of the meshes whose histograms are taken together; see ContextHistograms.
+/// A mesh and the output of its histograms; see ContextHistograms.
 struct ContextMesh {
     const ContextGeometry* geometry;
     std::span<const float> probabilities;
     std::span<float> out;
 };
 
-/// Contextual label histograms (Eq. A.1): for each face i, class l, measure t and bin b the sum over samples j with
-/// dist_t(i, j) in bin b of sample_area[j] * P(l | j). Column order: (measure * bins + bin) * classes + class.
+/// Contextual label histograms (Eq. A.1): for each face i, class l, measure t and bin b, the sum of sample_area[j] *
+/// P(l | j) over the samples j with dist_t(i, j) in bin b. Column order: (measure * bins + bin) * classes + class.
 /// `probabilities` is faces x classes, item-major; `out` is (k_context_measures * k_context_bins * classes) x faces,
-/// feature-major. The CPU implementation is the reference; gpu/labeling implements it in a shader. Throws UsageError if
-/// the sizes of a geometry and its spans contradict each other.
+/// feature-major. The CPU implementation is the reference; gpu/labeling implements it in a shader. Throws UsageError
+/// if the sizes of a geometry and its spans contradict each other.
 class ContextHistograms {
   public:
     virtual ~ContextHistograms() = default;
@@ -50,8 +51,8 @@ class ContextHistograms {
         const ContextMesh one{&geometry, probabilities, out};
         accumulate_all(std::span(&one, 1), classes);
     }
-    /// The same of several meshes, in less time than one by one: each gets what it would get alone, bit for bit on one
-    /// device. Nothing is computed if one of them is refused.
+    /// Computes the histograms of several meshes, faster than one by one. Each mesh gets the result that it would get
+    /// alone, bit for bit on one device. Computes nothing if the sizes of one mesh are wrong.
     virtual void accumulate_all(std::span<const ContextMesh> meshes, std::size_t classes) = 0;
 };
 

@@ -10,9 +10,9 @@ CubicPatch::CubicPatch(const Vec3& origin, const Vec3& normal, float unit)
     : origin_(origin), x_(normal.unitOrthogonal()), y_(normal.cross(x_)), z_(normal), unit_(unit) {}
 
 void CubicPatch::add(const Vec3& position, const Vec3& normal, float weight) {
-    constexpr float k_least_cosine = 0.1F;
+    constexpr float k_min_cosine = 0.1F;
     const float nz = normal.dot(z_);
-    if (nz < k_least_cosine || !(weight > 0.0F)) return;
+    if (nz < k_min_cosine || !(weight > 0.0F)) return;
     const Vec3 offset = (position - origin_) / unit_;
     const double x = static_cast<double>(offset.dot(x_)), y = static_cast<double>(offset.dot(y_));
     const double slope_x = static_cast<double>(-normal.dot(x_) / nz),
@@ -38,7 +38,8 @@ PatchCurvature CubicPatch::solve() const {
     Eigen::Matrix<double, 7, 7> matrix = sums.topLeftCorner<7, 7>();
     const double scale = matrix.trace();
     if (!(scale > 0.0)) return {};
-    // Few or collinear points leave some coefficients open; a slight preference for small ones decides them.
+    // Few or collinear points leave some coefficients undetermined; a slight preference for small ones determines
+    // them.
     constexpr double k_ridge = 1e-5, k_least = 1e-14;
     matrix.diagonal().array() += k_ridge * matrix.diagonal().array() + k_least * scale;
     const Eigen::Matrix<double, 7, 1> h = matrix.ldlt().solve(sums.topRightCorner<7, 1>());

@@ -13,14 +13,14 @@ struct PatchCurvature {
 };
 
 /// Least-squares fit of the height field h = a/2 x^2 + b xy + c/2 y^2 + d x^3 + e x^2 y + f x y^2 + g y^3 over the
-/// tangent plane at a point, from positions and normals (Goldfeather & Interrante 2004). Samples may be added and the
-/// fit solved again, so that growing neighborhoods share their sums.
+/// tangent plane at a point, from positions and normals (Goldfeather & Interrante 2004). Samples can be added after
+/// solving, so that growing neighborhoods share their sums.
 class CubicPatch {
   public:
     /// `normal` is a unit vector; `unit` is a length of the order of the patch's radius (it conditions the sums).
     CubicPatch(const Vec3& origin, const Vec3& normal, float unit);
-    /// Adds a surface point. Points whose normal turns away from the patch's by more than 84 degrees are left out: no
-    /// height field passes there.
+    /// Adds a surface point. Ignores points whose normal deviates from the patch's by more than 84 degrees: no height
+    /// field passes there.
     void add(const Vec3& position, const Vec3& normal, float weight);
     /// Solves for the curvature; zeros if nothing was added.
     PatchCurvature solve() const;

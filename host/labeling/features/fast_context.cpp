@@ -14,29 +14,30 @@
 namespace exemplar {
 namespace {
 
-// Faces that are worked on together: as many as there are geodesic ranges in a cache line. Their sums stay in the
+// Faces that are processed together: as many as there are geodesic ranges in a cache line. Their sums stay in the
 // first-level cache.
 constexpr std::size_t k_face_block = 64;
-// Samples whose ranges are copied together: with the faces of a block they stay in the second-level cache.
+// Samples whose ranges are copied together: with the faces of a block they fit into the second-level cache.
 constexpr std::size_t k_sample_block = 1024;
-// A face's bins, and one for the samples that are in none of them.
+// Bins of a face, plus one for the samples that are in none of them.
 constexpr std::size_t k_slots = k_context_bins + 1;
 constexpr std::size_t k_edges = k_context_bins - 1;
 
-// Classes lie in panels of `width` lanes.
+// Classes are stored in panels of `width` lanes.
 std::size_t panel_count(std::size_t classes, std::size_t width) {
     return (classes + width - 1) / width;
 }
 
-// Samples sorted along an axis, so that those between two distances are two runs, whose masses are differences of
-// prefix sums.
+// Samples sorted along an axis. Those between two distances form two runs, whose masses are differences of prefix
+// sums.
 struct SortedAxis {
-    // Rising, then infinity: one less than a power of two in all, so that a search takes the same steps for all faces.
+    // Rising, then padded with infinity to one less than a power of two, so that a search takes the same steps for all
+    // faces.
     std::vector<float> position;
     AlignedFloats prefix;  // panels x (samples + 1) x width: the masses of the first samples
 };
 
-// What the histograms of one mesh's faces are made of.
+// Inputs of the histograms of one mesh.
 struct Tables {
     const ContextMesh& mesh;
     std::size_t classes;
@@ -56,7 +57,7 @@ void for_each_mass(const Tables& tables, std::size_t sample, Use&& use) {
 }
 
 template <int width>
-AlignedFloats sample_masses(const Tables& tables) {
+AlignedFloats fast_masses(const Tables& tables) {
     AlignedFloats mass(panel_count(tables.classes, width) * tables.samples * width);
     for (std::size_t j = 0; j < tables.samples; ++j)
         for_each_mass<width>(tables, j, [&](std::size_t panel, std::size_t lane, double value) {
@@ -94,8 +95,8 @@ SortedAxis sort_axis(const Tables& tables, std::size_t axis) {
     return sorted;
 }
 
-// Adds the masses of samples to the bins that they are in for the faces of a block; `ranges` is samples x faces, `sums`
-// faces x slots. The sums of different faces do not wait for each other.
+// Adds the masses of samples to their bins, for the faces of a block; `ranges` is samples x faces, `sums` faces x
+// slots. The sums of different faces are independent, so that the additions overlap.
 template <int width>
 void add_masses(const LaneFloats<width>* masses, std::size_t samples, const std::uint8_t* ranges,
                 LaneFloats<width>* sums) {
@@ -105,11 +106,11 @@ void add_masses(const LaneFloats<width>* masses, std::size_t samples, const std:
     }
 }
 
-// Per face of a block a count of samples.
+// A number of samples per face of a block.
 using Counts = std::array<std::int32_t, k_face_block>;
 using Positions = std::array<float, k_face_block>;
 
-// How many of the sorted samples, the first ones, `pass` for each face's position: a binary search without branches.
+// Counts, for each face's position, the leading sorted samples that `pass`: a binary search without branches.
 template <typename Pass>
 void count_first(const SortedAxis& axis, std::size_t samples, const Positions& positions, Pass&& pass, Counts& counts) {
     const float* sorted = axis.position.data();
@@ -119,18 +120,17 @@ void count_first(const SortedAxis& axis, std::size_t samples, const Positions& p
             const std::int32_t next = counts[f] + step;
             counts[f] = pass(positions[f], sorted[next - 1]) ? next : counts[f];
         }
-    // Of positions that are no number, all pass, and so does what stands behind the last.
+    // For NaN positions all samples pass, and so does the padding.
     for (std::int32_t& count : counts) count = std::min(count, static_cast<std::int32_t>(samples));
 }
 
-// The samples [before[b], behind[b]) are nearer than edge b - 1; bounds 0 and k_context_bins are those of no sample and
-// of all.
+// Samples [before[b], behind[b]) are nearer than edge b - 1. Bound 0 contains no sample, bound k_context_bins all.
 struct Bounds {
     std::array<Counts, k_context_bins + 1> before, behind;
 };
 
-// The searches repeat the reference's float expression |p - s|, which is monotonic on either side of p: a sample on a
-// bin's edge falls into the same bin.
+// The searches evaluate the same float expression |p - s| as the reference. It is monotonic on either side of p, so a
+// sample on a bin's edge falls into the same bin.
 void find_bounds(const Tables& tables, std::size_t axis, const Positions& positions, Bounds& bounds) {
     const SortedAxis& sorted = tables.axes[axis];
     const std::size_t samples = tables.samples;
@@ -142,7 +142,7 @@ void find_bounds(const Tables& tables, std::size_t axis, const Positions& positi
             sorted, samples, positions, [&](float p, float s) { return p - s >= edge; }, bounds.before[b]);
         count_first(
             sorted, samples, positions, [&](float p, float s) { return !(s - p >= edge); }, bounds.behind[b]);
-        for (std::size_t f = 0; f < k_face_block; ++f)  // of edge 0 nothing is nearer
+        for (std::size_t f = 0; f < k_face_block; ++f)  // nothing is nearer than an edge at 0
             bounds.behind[b][f] = std::max(bounds.behind[b][f], bounds.before[b][f]);
     }
     bounds.before[0] = bounds.behind[0] = bounds.before[1];
@@ -235,10 +235,10 @@ class FaceBlock {
 };
 
 template <int width>
-void accumulate_mesh(const ContextMesh& mesh, std::size_t classes) {
+void accumulate_fast(const ContextMesh& mesh, std::size_t classes) {
     const std::size_t faces = mesh.geometry->faces;
     Tables tables{mesh, classes, mesh.geometry->sample_face.size(), {}, {}};
-    tables.mass = sample_masses<width>(tables);
+    tables.mass = fast_masses<width>(tables);
     parallel_for(k_context_axes, [&](std::size_t axis) { tables.axes[axis] = sort_axis<width>(tables, axis); });
     parallel_ranges((faces + k_face_block - 1) / k_face_block, 4, [&](std::size_t first, std::size_t end) {
         FaceBlock<width> block(tables);
@@ -253,11 +253,11 @@ void FastContextHistograms::accumulate_all(std::span<const ContextMesh> meshes, 
     for (const ContextMesh& mesh : meshes) check_context(mesh, classes);
     for (const ContextMesh& mesh : meshes) {
         if (classes <= 4)
-            accumulate_mesh<4>(mesh, classes);
+            accumulate_fast<4>(mesh, classes);
         else if (classes <= 8)
-            accumulate_mesh<8>(mesh, classes);
+            accumulate_fast<8>(mesh, classes);
         else
-            accumulate_mesh<16>(mesh, classes);
+            accumulate_fast<16>(mesh, classes);
     }
 }
 

@@ -22,7 +22,7 @@ std::vector<T> flatten(const std::vector<std::array<T, 2>>& pairs) {
     return flat;
 }
 
-TensorFile to_file(const MeshFeatures& features) {
+TensorFile features_to_file(const MeshFeatures& features) {
     TensorFile file;
     file.metadata["unary"] = Json(features.unary.names).dump();
     file.metadata["pairwise"] = Json(features.pairwise.names).dump();
@@ -46,7 +46,8 @@ TensorFile to_file(const MeshFeatures& features) {
     return file;
 }
 
-/// Contextual features that later stages add without moving the others; with more labels they are moved once.
+/// Room for the contextual features that later stages append without moving the others; with more labels they are
+/// moved once.
 constexpr std::size_t k_unary_room = 16 * k_context_measures * k_context_bins;
 constexpr std::size_t k_pairwise_room = EdgeNeighborhood::k_bins;
 
@@ -58,7 +59,7 @@ FeatureMatrix matrix_from(const TensorFile& file, const std::string& name, std::
     return matrix;
 }
 
-MeshFeatures from_file(const TensorFile& file, std::size_t faces) {
+MeshFeatures features_from_file(const TensorFile& file, std::size_t faces) {
     MeshFeatures features;
     features.face_area = file.get<float>("face_area", {faces});
     const auto edges = file.get<std::uint32_t>("edges", {TensorFile::k_any, 2});
@@ -98,10 +99,10 @@ std::string feature_entry_name(const TriangleMesh& mesh, const FeatureOptions& o
                        options.orientation ? "-oriented" : "");
 }
 
-std::optional<MeshFeatures> remembered_features(const TriangleMesh& mesh, const FeatureOptions& options,
-                                                const fs::path& folder) {
+std::optional<MeshFeatures> find_cached_features(const TriangleMesh& mesh, const FeatureOptions& options,
+                                                 const fs::path& folder) {
     MeshFeatures features;
-    const auto parse = [&](const TensorFile& file) { features = from_file(file, mesh.face_count()); };
+    const auto parse = [&](const TensorFile& file) { features = features_from_file(file, mesh.face_count()); };
     if (folder.empty() || !read_cache_entry(folder / feature_entry_name(mesh, options), k_feature_version, parse))
         return {};
     return features;
@@ -109,9 +110,9 @@ std::optional<MeshFeatures> remembered_features(const TriangleMesh& mesh, const 
 
 MeshFeatures cached_features(const TriangleMesh& mesh, const FeatureOptions& options, const fs::path& folder) {
     if (folder.empty()) return compute_features(mesh, options);
-    if (std::optional<MeshFeatures> known = remembered_features(mesh, options, folder)) return std::move(*known);
+    if (std::optional<MeshFeatures> known = find_cached_features(mesh, options, folder)) return std::move(*known);
     MeshFeatures features = compute_features(mesh, options);
-    write_cache_entry(folder / feature_entry_name(mesh, options), k_feature_version, to_file(features));
+    write_cache_entry(folder / feature_entry_name(mesh, options), k_feature_version, features_to_file(features));
     return features;
 }
 

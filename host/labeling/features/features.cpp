@@ -8,6 +8,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
+#include "host/core/statistics.h"
 #include "host/core/stopwatch.h"
 #include "host/labeling/features/feature_families.h"
 #include "host/mesh/editing/validate.h"
@@ -35,8 +36,7 @@ std::vector<float> in_median_units(std::span<const float> values) {
     std::vector<float> result(values.begin(), values.end());
     if (result.empty()) return result;
     std::vector<float> sorted = result;
-    std::ranges::nth_element(sorted, sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2));
-    double unit = static_cast<double>(sorted[sorted.size() / 2]);
+    double unit = static_cast<double>(upper_median(sorted));
     if (!(unit > 0.0)) {
         for (const float value : values) unit += static_cast<double>(value) / static_cast<double>(values.size());
     }
@@ -44,7 +44,7 @@ std::vector<float> in_median_units(std::span<const float> values) {
     return result;
 }
 
-/// The families that look around each face share one search per face.
+/// Computes the families that use the neighborhood of each face, with one search per face for all.
 CurvatureFamily::FaceValues add_neighborhood_families(const PreparedMesh& prepared, FeatureMatrix& curvature,
                                                       FeatureMatrix& pca, FeatureMatrix& shape_context,
                                                       StepClock& clock) {
@@ -52,7 +52,7 @@ CurvatureFamily::FaceValues add_neighborhood_families(const PreparedMesh& prepar
     PcaFamily regions(prepared);
     ShapeContextFamily contexts(prepared);
     const float radius = std::max({curvatures.radius(), regions.radius(), contexts.radius()});
-    for_each_neighborhood(prepared, radius, std::max(k_least_patch, k_least_region),
+    for_each_neighborhood(prepared, radius, std::max(k_min_patch_faces, k_min_region_faces),
                           [&](std::uint32_t face, Neighborhood neighborhood) {
                               curvatures.measure(face, neighborhood);
                               regions.measure(face, neighborhood);
@@ -86,9 +86,9 @@ void add_pairwise(const PreparedMesh& prepared, const CurvatureFamily::FaceValue
 
 MeshFeatures compute_features(const TriangleMesh& mesh, const FeatureOptions& options) {
     require_usable(mesh, "mesh");
-    if (options.samples == 0 || options.samples > k_most_samples)
+    if (options.samples == 0 || options.samples > k_max_samples)
         throw UsageError(fmt::format("features of {} samples; FeatureOptions::samples takes 1 to {}", options.samples,
-                                     k_most_samples));
+                                     k_max_samples));
     MeshFeatures features;
     StepClock clock(features);
     const PreparedMesh prepared = prepare_mesh(mesh, options.samples);

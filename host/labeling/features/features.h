@@ -13,20 +13,20 @@
 
 namespace exemplar {
 
-/// So many samples stand for any surface; more would only cost memory.
-constexpr std::size_t k_most_samples = 1'000'000;
+/// Maximum of FeatureOptions::samples; more would only cost memory.
+constexpr std::size_t k_max_samples = 1'000'000;
 
 struct FeatureOptions {
-    /// Faces that stand for the surface in distance statistics, shape contexts, spin images and contextual features;
-    /// all faces if the mesh has fewer. Sums converge as it grows.
+    /// Number of faces that represent the surface in distance statistics, shape contexts, spin images and contextual
+    /// features; all faces if the mesh has fewer. Sums converge as it grows.
     std::size_t samples = 1000;
-    /// Adds the face centers' coordinates (App. A.1h), for data sets whose shapes share an orientation.
+    /// Adds the face centers' coordinates (App. A.1h), for data sets whose shapes are oriented alike.
     bool orientation = false;
 };
 
-/// For each interior edge the interior edges near it, itself included (at distance 0), by rising geodesic distance
-/// between midpoints, for the pairwise contextual features (A.2e). Range b of B = k_bins begins at (10^(b / B) - 1) / 9
-/// of 5% of the median geodesic distance.
+/// For each interior edge, the interior edges near it, itself included (at distance 0), by rising geodesic distance
+/// between midpoints. Used by the pairwise contextual features (A.2e). Range b of B = k_bins begins at (10^(b / B) -
+/// 1) / 9 of 5% of the median geodesic distance.
 struct EdgeNeighborhood {
     static constexpr std::size_t k_bins = 5;  ///< logarithmic distance ranges up to 5% of the median geodesic distance
     std::vector<std::uint32_t> begin;         ///< E + 1 offsets
@@ -34,7 +34,7 @@ struct EdgeNeighborhood {
     std::vector<std::uint8_t> bin;            ///< its distance range
 };
 
-/// Everything labeling needs to know of a mesh: computed once, cached on disk, then used by training and inference.
+/// All that labeling uses of a mesh: computed once, cached on disk, then read by training and inference.
 struct MeshFeatures {
     FeatureMatrix unary;     ///< per face (App. A.1a-h): 678 features, 681 with orientation
     FeatureMatrix pairwise;  ///< per interior edge (App. A.2a-d): 186 features
@@ -47,16 +47,17 @@ struct MeshFeatures {
     std::vector<std::pair<std::string, double>> seconds;  ///< wall time per family
 };
 
-/// Computes all features of a mesh, on all cores; the result does not depend on their number. Lengths are in units of
-/// the 30th percentile of all geodesic distances, so values do not change when the mesh is moved, turned or scaled; a
-/// mesh that is inside out, closed or with small holes, is turned outward. Sums over all faces are taken over
-/// options.samples cells of the surface, and over all faces where few samples are near. feature_families.h documents
-/// each family. Errors: UsageError if options.samples is out of range, Interrupted at Ctrl-C. Unusable meshes (empty or
-/// non-finite) throw MeshError. Any other defect degrades gracefully: distances stay inside components, boundary edges
-/// are left out, degenerate faces take their neighbors' geometry; every value is finite.
+/// Computes all features of a mesh, on all cores; the result does not depend on their number. feature_families.h
+/// documents the families. The unit of length is the 30th percentile of all geodesic distances, so values do not
+/// change when the mesh is moved, rotated or scaled. Inside-out meshes, closed or with small holes, are turned
+/// outward. Sums over all faces run over options.samples cells of the surface, and over all faces where few samples
+/// are near. Every value is finite, also for defective meshes: distances stay inside components, boundary edges are
+/// left out, degenerate faces take their neighbors' geometry.
+/// Throws UsageError if options.samples is out of range, MeshError for an unusable mesh (empty or non-finite),
+/// Interrupted at Ctrl-C.
 MeshFeatures compute_features(const TriangleMesh& mesh, const FeatureOptions& options = {});
 
-/// Identifies the meaning of the values; changes whenever they change. Part of model files and cache keys.
+/// Version of the feature values, part of model files and cache keys; changes whenever the values change.
 constexpr int k_feature_version = 6;
 
 }  // namespace exemplar

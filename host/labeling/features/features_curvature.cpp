@@ -31,12 +31,13 @@ float CurvatureFamily::radius() const {
 
 void CurvatureFamily::measure(std::uint32_t face, Neighborhood neighborhood) {
     const float median = prepared_->median_distance;
-    // No patch resolves radii of curvature far below its own; such values come from folds, and would dwarf all others.
+    // No patch resolves radii of curvature far below its own radius. Such values come from folds and would dwarf all
+    // others.
     const float limit = 2.0F / (static_cast<float>(k_radii.front()) * median);
     CubicPatch patch(prepared_->center[face], prepared_->normal[face], radius());
     std::size_t added = 0;
     const auto patch_of = [&](double share) {
-        const std::size_t end = count_within(neighborhood, static_cast<float>(share) * median, k_least_patch);
+        const std::size_t end = count_within(neighborhood, static_cast<float>(share) * median, k_min_patch_faces);
         for (; added < end; ++added) {
             const std::uint32_t near = neighborhood[added].face;
             patch.add(prepared_->center[near], prepared_->normal[near], prepared_->area_share[near]);

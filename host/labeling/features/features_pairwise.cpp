@@ -17,7 +17,7 @@ constexpr int k_exponents = 10;
 constexpr double k_context_radius = 0.05;
 constexpr std::size_t k_block = 1024;  ///< edges whose neighbors are collected together
 
-/// The graph of edge midpoints; edge_of[e] is the interior edge of topology edge e, or k_none.
+/// The graph of edge midpoints; edge_of[e] is the interior edge of topology edge e, or k_invalid_index.
 DualGraph midpoint_graph(const PreparedMesh& prepared, const InteriorEdges& edges,
                          const std::vector<std::uint32_t>& edge_of) {
     const auto midpoint = [&](std::uint32_t e) -> Vec3 {
@@ -29,7 +29,7 @@ DualGraph midpoint_graph(const PreparedMesh& prepared, const InteriorEdges& edge
         for (const std::uint32_t face : edges.face[e]) {
             for (const std::uint32_t other : prepared.topology.edges_of_face(face)) {
                 const std::uint32_t near = edge_of[other];
-                if (near == k_none || near == e) continue;
+                if (near == k_invalid_index || near == e) continue;
                 graph.arcs.push_back({near, (midpoint(e) - midpoint(near)).norm()});
             }
         }
@@ -56,7 +56,7 @@ std::array<float, k_scales> mean_dihedrals(const PreparedMesh& prepared, const I
     return means;
 }
 
-/// The neighbors of one block of edges, before they are put together.
+/// Neighbors of one block of edges, before the blocks are joined.
 struct NeighborBlock {
     std::vector<std::uint32_t> count, edge;
     std::vector<std::uint8_t> bin;
@@ -104,7 +104,7 @@ std::array<float, 4> vertex_value(const PreparedMesh& prepared, const std::vecto
 InteriorEdges interior_edges(const PreparedMesh& prepared) {
     const std::vector<float> angles = exterior_dihedral_angles(prepared.mesh, prepared.topology);
     InteriorEdges edges;
-    std::vector<std::uint32_t> edge_of(prepared.topology.edges.size(), k_none);
+    std::vector<std::uint32_t> edge_of(prepared.topology.edges.size(), k_invalid_index);
     for (std::size_t e = 0; e < edge_of.size(); ++e) {
         const Edge& edge = prepared.topology.edges[e];
         if (edge.is_boundary()) continue;

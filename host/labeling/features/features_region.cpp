@@ -15,7 +15,7 @@ bool is_averaged(const std::string& name) {
            name == "curvature.k1@0.1" || name == "curvature.k2@0.1";
 }
 
-/// The columns' values at the samples, samples x columns: a sample's own face stands for its cell.
+/// Returns the columns' values at the samples, samples x columns: the face of a sample represents its cell.
 std::vector<float> values_at_samples(const PreparedMesh& prepared, const FeatureMatrix& unary,
                                      const std::vector<std::size_t>& source) {
     std::vector<float> values;
@@ -32,8 +32,9 @@ struct RegionSums {
 };
 
 /// Adds the samples near a face to the sums of all radii.
-void add_samples(const PreparedMesh& prepared, std::span<const float> distance, std::span<const float> cell_radius,
-                 std::span<const float> values, std::array<RegionSums, k_radii.size()>& regions) {
+void add_region_samples(const PreparedMesh& prepared, std::span<const float> distance,
+                        std::span<const float> cell_radius, std::span<const float> values,
+                        std::array<RegionSums, k_radii.size()>& regions) {
     const std::size_t columns = regions[0].values.size();
     for (std::size_t s = 0; s < distance.size(); ++s) {
         SampleCell cell;
@@ -41,7 +42,7 @@ void add_samples(const PreparedMesh& prepared, std::span<const float> distance, 
         for (std::size_t r = k_radii.size(); r-- > 0;) {
             const float limit = static_cast<float>(k_radii[r]) * prepared.median_distance;
             const float share = cell.share_within(distance[s], limit);
-            if (!(share > 0.0F)) break;  // the smaller regions lie inside
+            if (!(share > 0.0F)) break;  // the smaller regions are inside this one
             const double weight = static_cast<double>(share * prepared.samples.area_share[s]);
             regions[r].weight += weight;
             for (std::size_t k = 0; k < columns; ++k)
@@ -73,7 +74,7 @@ FeatureMatrix region_features(const PreparedMesh& prepared, const FeatureMatrix&
         for (std::size_t f = begin; f < end; ++f) {
             for (RegionSums& region : regions) region = {0.0, std::vector<double>(source.size(), 0.0)};
             const std::span<const float> of_face(distance.data() + (f - begin) * samples, samples);
-            add_samples(prepared, of_face, cell_radius, values, regions);
+            add_region_samples(prepared, of_face, cell_radius, values, regions);
             std::size_t column = 0;
             for (const RegionSums& region : regions)
                 for (std::size_t k = 0; k < source.size(); ++k) {

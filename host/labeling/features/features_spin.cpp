@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t k_side = 10;            ///< bins along each coordinate (thesis App. A.1g)
 constexpr float k_bin_size = 0.3F;            ///< normalized units
-constexpr std::size_t k_padded = k_side + 2;  ///< a margin takes what falls outside
+constexpr std::size_t k_padded = k_side + 2;  ///< with a margin for points outside
 
 using SpinImage = std::array<float, k_padded * k_padded>;
 
@@ -32,9 +32,9 @@ inline void splat(SpinImage& image, float alpha, float beta, float weight) {
 
 }  // namespace
 
-/// alpha covers [0, 3], beta [-1.5, 1.5]. A sample counts by its area share times the cosine between the normals, and
-/// not at all where they disagree: a soft form of the support angle, so that walls at right angles do not come and go
-/// with rounding.
+/// alpha covers [0, 3], beta [-1.5, 1.5]. A sample's weight is its area share times the cosine between the normals, or
+/// 0 if the cosine is negative: a soft form of the support angle, so that rounding does not add or remove walls at
+/// right angles.
 FeatureMatrix spin_features(const PreparedMesh& prepared) {
     FeatureMatrix matrix;
     matrix.rows = prepared.face_count();
@@ -53,7 +53,7 @@ FeatureMatrix spin_features(const PreparedMesh& prepared) {
             const float alpha = std::sqrt(std::max(offset.squaredNorm() - beta * beta, 0.0F));
             splat(image, alpha, beta, prepared.samples.area_share[s] * agreement);
         }
-        // What the first bin's margin caught lies within half a bin of the line: there is nothing beyond alpha = 0.
+        // alpha is never negative: the margin before the first bin holds points within half a bin of the axis.
         for (std::size_t i = 0; i < k_side; ++i) {
             for (std::size_t j = 0; j < k_side; ++j) {
                 const float inner = i == 0 ? image[j + 1] : 0.0F;

@@ -10,14 +10,14 @@
 namespace exemplar {
 namespace {
 
-constexpr float k_least_probability = 1e-6F;  ///< keeps -log P finite
-constexpr float k_epsilon = 1e-3F;            ///< the epsilon of Eq. 3.4
+constexpr float k_min_unary_probability = 1e-6F;  ///< keeps -log P finite
+constexpr float k_epsilon = 1e-3F;                ///< the epsilon of Eq. 3.4
 
 float negative_log(float probability) {
-    return -std::log(std::max(probability, k_least_probability));
+    return -std::log(std::max(probability, k_min_unary_probability));
 }
 
-/// For one piece the neighboring label with the longest common border; -1 if it has no neighbors.
+/// Returns the neighboring label with the longest common border of one piece; -1 if it has no neighbors.
 std::int32_t most_touched_label(const std::map<std::int32_t, float>& border) {
     std::int32_t best = -1;
     float longest = 0;
@@ -87,7 +87,7 @@ void merge_small_components(const MeshFeatures& features, const CrfParameters& p
     std::stable_sort(small.begin(), small.end(),
                      [&](std::uint32_t a, std::uint32_t b) { return pieces.area_share[a] < pieces.area_share[b]; });
 
-    // A piece that was merged takes its new label into account when its neighbors look around.
+    // A merged piece counts with its new label when its neighbors are merged.
     std::vector<std::int32_t> piece_label = pieces.label;
     std::vector<std::vector<std::pair<std::uint32_t, float>>> borders(pieces.label.size());
     for (std::size_t e = 0; e < features.edges.size(); ++e) {

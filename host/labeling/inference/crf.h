@@ -17,15 +17,15 @@ struct CrfTerms {
     std::vector<float> boundary;  ///< per edge: -log P(c != c' | y)
     std::vector<float> dihedral;  ///< per edge: -log(1 - min(omega / pi, 1) + epsilon), at least 0
 };
-/// `probabilities`: faces x classes; `boundary_probability`: one per edge of `features`.
+/// Computes the terms. `probabilities`: faces x classes; `boundary_probability`: one per edge of `features`.
 CrfTerms make_crf_terms(const MeshFeatures& features, std::span<const float> probabilities, std::size_t classes,
                         std::span<const float> boundary_probability);
 
-/// The labels of lowest energy that alpha-expansion finds, one per face.
+/// Returns the labels of the lowest energy that alpha-expansion finds, one per face.
 std::vector<std::int32_t> solve_crf(const MeshFeatures& features, const CrfTerms& terms,
                                     const CrfParameters& parameters);
 
-/// The connected pieces of equal label: for each face its piece, and per piece its label and share of the total area.
+/// Connected pieces of equal label: the piece of each face, and the label and share of the total area of each piece.
 struct LabelComponents {
     std::vector<std::uint32_t> of_face;
     std::vector<std::int32_t> label;
@@ -34,9 +34,9 @@ struct LabelComponents {
 LabelComponents label_components(std::span<const std::array<std::uint32_t, 2>> edges, std::span<const float> face_area,
                                  std::span<const std::int32_t> labels);
 
-/// Gives every piece whose area share is below `parameters.merge_fraction` times the smallest training piece of its
-/// label to the neighboring label it shares the longest border with, smallest pieces first. A piece without neighbors
-/// stays.
+/// Relabels every piece whose area share is below `parameters.merge_fraction` times the smallest training piece of its
+/// label: it takes the neighboring label with the longest common border. Smallest pieces come first. A piece without
+/// neighbors stays.
 void merge_small_components(const MeshFeatures& features, const CrfParameters& parameters,
                             std::span<const float> smallest_component, std::vector<std::int32_t>& labels);
 

@@ -9,9 +9,9 @@
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/stopwatch.h"
-#include "host/labeling/inference/cascade_opinion.h"
-#include "host/labeling/inference/crf.h"
 #include "host/labeling/features/edge_context.h"
+#include "host/labeling/inference/cascade_prediction.h"
+#include "host/labeling/inference/crf.h"
 
 namespace exemplar {
 namespace {
@@ -26,8 +26,8 @@ using Meshes = std::span<MeshFeatures* const>;
 /// Probabilities of each mesh.
 using Scores = std::vector<std::vector<float>>;
 
-/// Scores one stage of a cascade for all meshes together; stage 0 must not see contextual columns, which the model
-/// guarantees.
+/// Scores one stage of a cascade for all meshes together. The model guarantees that stage 0 uses no contextual
+/// columns.
 Scores score(const CalibratedStumps& stage, Meshes meshes, FeatureMatrix MeshFeatures::*matrix, StumpScorer& scorer) {
     Scores scores;
     scores.reserve(meshes.size());
@@ -41,7 +41,7 @@ Scores score(const CalibratedStumps& stage, Meshes meshes, FeatureMatrix MeshFea
     return scores;
 }
 
-/// One stage of the unary cascade, with the linear classifier that it is pooled with.
+/// Scores one stage of the unary cascade, combined with its linear classifier.
 Scores score_unary_stage(const LabelingModel& model, std::size_t stage, Meshes meshes, StumpScorer& scorer) {
     Scores scores = score(model.unary[stage], meshes, &MeshFeatures::unary, scorer);
     if (stage < model.linear.size())
@@ -54,8 +54,8 @@ Scores score_unary_stage(const LabelingModel& model, std::size_t stage, Meshes m
 Scores score_unary(const LabelingModel& model, Meshes meshes, const LabelingBackend& backend) {
     for (const MeshFeatures* mesh : meshes) require_features(mesh->unary, model.unary_names, "face");
     Scores scores = score_unary_stage(model, 0, meshes, backend.scorer);
-    std::vector<CascadeOpinion> opinions(meshes.size(), {model.averaged_labels, model.class_count()});
-    for (std::size_t m = 0; m < meshes.size(); ++m) opinions[m].add_stage(scores[m]);
+    std::vector<CascadePrediction> predictions(meshes.size(), {model.averaged_labels, model.class_count()});
+    for (std::size_t m = 0; m < meshes.size(); ++m) predictions[m].add_stage(scores[m]);
     const std::vector<std::string> names = context_names(model.label_names);
     for (std::size_t stage = 1; stage < model.unary.size(); ++stage) {
         check_interrupt();
@@ -65,7 +65,7 @@ Scores score_unary(const LabelingModel& model, Meshes meshes, const LabelingBack
                 {&meshes[m]->context, scores[m], context_columns(meshes[m]->unary, model.unary_names.size(), names)});
         backend.context.accumulate_all(contexts, model.class_count());
         scores = score_unary_stage(model, stage, meshes, backend.scorer);
-        for (std::size_t m = 0; m < meshes.size(); ++m) opinions[m].add_stage(scores[m]);
+        for (std::size_t m = 0; m < meshes.size(); ++m) predictions[m].add_stage(scores[m]);
     }
     return scores;
 }
@@ -74,7 +74,8 @@ Scores score_unary(const LabelingModel& model, Meshes meshes, const LabelingBack
 Scores score_boundary(const LabelingModel& model, Meshes meshes, const LabelingBackend& backend) {
     Scores boundaries;
     if (model.pairwise.empty()) {
-        for (const MeshFeatures* mesh : meshes) boundaries.emplace_back(mesh->edges.size(), k_even_odds);
+        for (const MeshFeatures* mesh : meshes)
+            boundaries.emplace_back(mesh->edges.size(), k_unknown_boundary_probability);
         return boundaries;
     }
     for (const MeshFeatures* mesh : meshes) require_features(mesh->pairwise, model.pairwise_names, "edge");
@@ -89,7 +90,7 @@ Scores score_boundary(const LabelingModel& model, Meshes meshes, const LabelingB
     return boundaries;
 }
 
-/// Notes for each mesh its share of the seconds that all took, by their numbers of faces.
+/// Adds to each mesh its share of the seconds that all took together, by number of faces.
 void add_seconds(const char* stage, double seconds, std::span<FaceScores> scores) {
     std::size_t all = 0;
     for (const FaceScores& mesh : scores) all += mesh.probabilities.size();

@@ -15,7 +15,7 @@
 namespace exemplar {
 namespace {
 
-/// Values per working face, `width` each, handed to the faces of the original.
+/// Copies values per working face, `width` each, to the faces of the original.
 template <typename T>
 std::vector<T> per_original_face(const std::vector<T>& values, const std::vector<std::uint32_t>& face_of,
                                  std::size_t width = 1) {
@@ -25,8 +25,7 @@ std::vector<T> per_original_face(const std::vector<T>& values, const std::vector
     return result;
 }
 
-/// Labels of the simplified faces: of all labels (and none, -1) of the faces they stand for, the one with the most
-/// area.
+/// Returns, for each simplified face, the label (or none, -1) that has the most area among the faces it replaces.
 std::vector<std::int32_t> labels_by_area(const LabeledMesh& original, const SimplifiedMesh& simple,
                                          std::size_t classes) {
     const std::vector<float> area = face_areas(original.mesh);
@@ -54,13 +53,13 @@ std::vector<std::string> labeling_warnings(const TriangleMesh& mesh, const std::
     return warnings;
 }
 
-SimplifiedMesh working_mesh(const TriangleMesh& mesh, std::size_t most_faces) {
-    return simplify_mesh(welded(mesh), most_faces);
+SimplifiedMesh working_mesh(const TriangleMesh& mesh, std::size_t max_faces) {
+    return simplify_mesh(welded(mesh), max_faces);
 }
 
-LabeledCorpus working_corpus(LabeledCorpus corpus, std::size_t most_faces) {
+LabeledCorpus working_corpus(LabeledCorpus corpus, std::size_t max_faces) {
     for (LabeledMesh& mesh : corpus.meshes) {
-        SimplifiedMesh working = working_mesh(mesh.mesh, most_faces);
+        SimplifiedMesh working = working_mesh(mesh.mesh, max_faces);
         if (working.mesh.face_count() < mesh.mesh.face_count())
             mesh.label = labels_by_area(mesh, working, corpus.names.size());
         mesh.mesh = std::move(working.mesh);
@@ -69,9 +68,9 @@ LabeledCorpus working_corpus(LabeledCorpus corpus, std::size_t most_faces) {
 }
 
 WorkingFeatures working_features(const FeatureOptions& options, const TriangleMesh& mesh,
-                                 const std::filesystem::path& cache, std::size_t most_faces) {
+                                 const std::filesystem::path& cache, std::size_t max_faces) {
     const Stopwatch watch;
-    SimplifiedMesh working = working_mesh(mesh, most_faces);
+    SimplifiedMesh working = working_mesh(mesh, max_faces);
     WorkingFeatures prepared;
     prepared.cache_entry = feature_entry_name(working.mesh, options);
     prepared.features = cached_features(working.mesh, options, cache);
@@ -97,8 +96,8 @@ FaceLabeling finish_labeling(const LabelingModel& model, const WorkingFeatures& 
 }
 
 FaceLabeling label_mesh(const LabelingModel& model, const TriangleMesh& mesh, const std::filesystem::path& cache,
-                        const LabelingBackend& backend, std::size_t most_faces) {
-    WorkingFeatures prepared = working_features(model.feature_options, mesh, cache, most_faces);
+                        const LabelingBackend& backend, std::size_t max_faces) {
+    WorkingFeatures prepared = working_features(model.feature_options, mesh, cache, max_faces);
     WorkingFeatures* const one = &prepared;
     return finish_labeling(model, prepared, std::move(score_meshes(model, std::span(&one, 1), backend).front()));
 }

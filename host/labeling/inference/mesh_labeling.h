@@ -9,48 +9,49 @@
 
 #include "host/data/corpus.h"
 #include "host/labeling/inference/labeler.h"
-#include "host/mesh/mesh.h"
 #include "host/mesh/editing/simplify.h"
+#include "host/mesh/mesh.h"
 
 namespace exemplar {
 
-/// The most faces that features are computed on. Larger meshes are simplified to about so many: part borders are found
-/// to a hundredth of the shape's size long before, and time and memory stay bounded (see simplify_mesh).
-constexpr std::size_t k_most_working_faces = 40'000;
+/// Maximum number of faces that features are computed on. Larger meshes are simplified to about this many. Far fewer
+/// suffice to find part borders to a hundredth of the shape's size, and time and memory stay bounded (see
+/// simplify_mesh).
+constexpr std::size_t k_max_working_faces = 40'000;
 
-/// What is unusual about a mesh as it is labeled, vertices at the same place being one: a line each, with what is done
-/// about it. Throws MeshError naming `name` if it cannot be labeled.
+/// Returns one line per defect of a mesh, after joining vertices at the same place, and what is done about it. Throws
+/// MeshError naming `name` if the mesh cannot be labeled.
 std::vector<std::string> labeling_warnings(const TriangleMesh& mesh, const std::string& name);
 
-/// The mesh that features are computed on: vertices at the same place made one, as distances run along shared edges,
-/// and large meshes simplified.
-SimplifiedMesh working_mesh(const TriangleMesh& mesh, std::size_t most_faces = k_most_working_faces);
+/// Returns the mesh that features are computed on: vertices at the same place are joined, as distances run along
+/// shared edges, and large meshes are simplified.
+SimplifiedMesh working_mesh(const TriangleMesh& mesh, std::size_t max_faces = k_max_working_faces);
 
-/// The working meshes of a corpus with their labels; of the simplified ones a face takes the label that has the most
-/// area among the faces it stands for.
-LabeledCorpus working_corpus(LabeledCorpus corpus, std::size_t most_faces = k_most_working_faces);
+/// Returns the working meshes of a corpus with their labels. A simplified face takes the label that has the most area
+/// among the faces it replaces.
+LabeledCorpus working_corpus(LabeledCorpus corpus, std::size_t max_faces = k_max_working_faces);
 
-/// A mesh on its way to its labels: what its labels are computed on.
+/// Features of a mesh's working mesh, from which its labels are computed.
 struct WorkingFeatures {
     MeshFeatures features;               ///< of the working mesh
-    std::vector<std::uint32_t> face_of;  ///< for each face of the original the face of the working mesh
-    std::string cache_entry;             ///< where a cache of features keeps them
-    double seconds = 0;                  ///< wall time that this took
+    std::vector<std::uint32_t> face_of;  ///< per original face: the face of the working mesh
+    std::string cache_entry;             ///< file name of the features in the cache
+    double seconds = 0;                  ///< wall time to compute all of this
 };
 
-/// The first step of labeling a mesh of any size: the features (remembered in `cache`, see cached_features) of its
-/// working mesh. Throws what compute_features throws.
+/// Step 1 of labeling a mesh of any size: returns the features of its working mesh, cached in `cache` (see
+/// cached_features). Throws what compute_features throws.
 WorkingFeatures working_features(const FeatureOptions& options, const TriangleMesh& mesh,
-                                 const std::filesystem::path& cache, std::size_t most_faces = k_most_working_faces);
-/// The second, of several meshes together: score_faces of their working meshes.
+                                 const std::filesystem::path& cache, std::size_t max_faces = k_max_working_faces);
+/// Step 2, for several meshes together: score_faces of their working meshes.
 std::vector<FaceScores> score_meshes(const LabelingModel& model, std::span<WorkingFeatures* const> meshes,
                                      const LabelingBackend& backend);
-/// The last: cut_faces, brought back to the original's triangles. `seconds` of the result begin with "features".
+/// Step 3: cut_faces, mapped back to the original's triangles. `seconds` of the result begin with "features".
 /// Threads may do this for different meshes at once.
 FaceLabeling finish_labeling(const LabelingModel& model, const WorkingFeatures& mesh, FaceScores scores);
 
 /// Labels a mesh of any size (thesis Sec. 3.2): the three steps, one after the other.
 FaceLabeling label_mesh(const LabelingModel& model, const TriangleMesh& mesh, const std::filesystem::path& cache,
-                        const LabelingBackend& backend, std::size_t most_faces = k_most_working_faces);
+                        const LabelingBackend& backend, std::size_t max_faces = k_max_working_faces);
 
 }  // namespace exemplar

@@ -21,7 +21,7 @@ constexpr const char* k_kind = "exemplar mesh labeling";
 constexpr std::size_t k_most_stages = 64;  ///< bounds against absurd files
 constexpr float k_largest_score = 1e30F;
 
-Json describe(const LabelingModel& model) {
+Json describe_model(const LabelingModel& model) {
     Json colors = Json::array();
     for (const Color& color : model.label_colors) colors.push_back({color[0], color[1], color[2]});
     return {{"labels", model.label_names},
@@ -42,7 +42,7 @@ Json describe(const LabelingModel& model) {
             {"provenance", model.provenance}};
 }
 
-/// The library would turn what is no whole number (-1, 1e300, true) into one.
+/// Reads a whole number. The JSON library alone would convert other values (-1, 1e300, true) to one.
 std::uint64_t whole_number(const TensorFile& file, const Json& value, std::uint64_t most = ~std::uint64_t{0}) {
     if (!value.is_number_unsigned() || value.get<std::uint64_t>() > most)
         inconsistent(file, "its description has another value where a whole number should be");
@@ -56,7 +56,7 @@ Color color_of(const TensorFile& file, const Json& channels) {
     return color;
 }
 
-void read_description(const TensorFile& file, LabelingModel& model) {
+void read_model_description(const TensorFile& file, LabelingModel& model) {
     const Json json = Json::parse(file.meta("model"));
     model.label_names = json.at("labels").get<std::vector<std::string>>();
     for (const Json& color : json.at("colors")) model.label_colors.push_back(color_of(file, color));
@@ -66,7 +66,7 @@ void read_description(const TensorFile& file, LabelingModel& model) {
     model.pairwise_names = json.at("pairwise_features").get<std::vector<std::string>>();
     model.unary.resize(std::min<std::size_t>(whole_number(file, json.at("unary_stages")), k_most_stages));
     model.pairwise.resize(std::min<std::size_t>(whole_number(file, json.at("pairwise_stages")), k_most_stages));
-    const Json averaged = json.value("averaged_labels", Json::array());  // models of before have none
+    const Json averaged = json.value("averaged_labels", Json::array());  // older models have none
     if (!averaged.is_array()) inconsistent(file, "its averaged labels are no list");
     for (const Json& label : averaged)
         model.averaged_labels.push_back(static_cast<std::uint32_t>(whole_number(file, label, model.class_count() - 1)));
@@ -79,7 +79,7 @@ void read_description(const TensorFile& file, LabelingModel& model) {
     model.provenance = json.at("provenance").get<std::vector<std::string>>();
 }
 
-void check_description(const TensorFile& file, const LabelingModel& model) {
+void check_model_description(const TensorFile& file, const LabelingModel& model) {
     const std::size_t classes = model.class_count();
     if (classes == 0 || classes > k_max_classes) inconsistent(file, fmt::format("it has {} labels", classes));
     for (const std::string& name : model.label_names)
@@ -94,32 +94,32 @@ void check_description(const TensorFile& file, const LabelingModel& model) {
         if (!(value >= 0)) inconsistent(file, "the label compatibility is negative");
     for (const double weight : {model.crf.kappa, model.crf.lambda, model.crf.mu, model.crf.merge_fraction})
         if (!(weight >= 0) || !std::isfinite(weight)) inconsistent(file, "a weight of the label cut is negative");
-    if (model.feature_options.samples == 0 || model.feature_options.samples > k_most_samples)
+    if (model.feature_options.samples == 0 || model.feature_options.samples > k_max_samples)
         inconsistent(file, fmt::format("its features are of {} samples", model.feature_options.samples));
     if (model.unary.empty()) inconsistent(file, "it has no classifier");
 }
 
 /// Arrays NAME.mean, .inverse, .weight, .constant and .ratio_scale (docs/formats.md).
-void add_linear(TensorFile& file, const std::string& name, const LinearOpinion& opinion) {
-    const LinearClassifier& linear = opinion.classifier;
+void add_linear(TensorFile& file, const std::string& name, const LinearExpert& expert) {
+    const LinearClassifier& linear = expert.classifier;
     file.add(name + ".mean", {linear.feature_count()}, linear.mean);
     file.add(name + ".inverse", {linear.feature_count()}, linear.inverse);
     file.add(name + ".weight", {linear.feature_count(), linear.class_count}, linear.weight);
     file.add(name + ".constant", {linear.class_count}, linear.constant);
-    file.add(name + ".ratio_scale", {2}, std::vector<float>{opinion.ratio, opinion.scale});
+    file.add(name + ".ratio_scale", {2}, std::vector<float>{expert.ratio, expert.scale});
 }
 
-/// A bound of |L|, whatever the features are.
+/// Returns an upper bound of |L| for any features.
 float largest_score(const LinearClassifier& linear) {
     float sum = 0;
-    for (const float weight : linear.weight) sum += LinearClassifier::k_furthest * std::abs(weight);
+    for (const float weight : linear.weight) sum += LinearClassifier::k_max_deviations * std::abs(weight);
     for (const float constant : linear.constant) sum += std::abs(constant);
     return sum;
 }
 
-LinearOpinion get_linear(const TensorFile& file, const std::string& name, std::size_t classes, std::size_t features) {
-    LinearOpinion opinion;
-    LinearClassifier& linear = opinion.classifier;
+LinearExpert get_linear(const TensorFile& file, const std::string& name, std::size_t classes, std::size_t features) {
+    LinearExpert expert;
+    LinearClassifier& linear = expert.classifier;
     linear.class_count = static_cast<std::uint32_t>(classes);
     linear.mean = file.get<float>(name + ".mean", {features});
     linear.inverse = file.get<float>(name + ".inverse", {features});
@@ -129,11 +129,11 @@ LinearOpinion get_linear(const TensorFile& file, const std::string& name, std::s
     for (const auto* values : {&std::as_const(linear.mean), &std::as_const(linear.inverse),
                                &std::as_const(linear.weight), &std::as_const(linear.constant), &ratio_scale})
         require_finite(file, name, *values);
-    opinion.ratio = ratio_scale[0], opinion.scale = ratio_scale[1];
-    if (!(opinion.ratio >= 0) || !(opinion.scale > 0)) inconsistent(file, name + ".ratio_scale is negative");
-    if (!(opinion.scale * (opinion.ratio * largest_score(linear) + 1) < k_largest_score))
+    expert.ratio = ratio_scale[0], expert.scale = ratio_scale[1];
+    if (!(expert.ratio >= 0) || !(expert.scale > 0)) inconsistent(file, name + ".ratio_scale is negative");
+    if (!(expert.scale * (expert.ratio * largest_score(linear) + 1) < k_largest_score))
         inconsistent(file, name + " has weights so large that scores are not finite");
-    return opinion;
+    return expert;
 }
 
 }  // namespace
@@ -143,7 +143,7 @@ void save_model(const std::filesystem::path& path, const LabelingModel& model) {
     file.metadata["kind"] = k_kind;
     file.metadata["format_version"] = std::to_string(k_model_format_version);
     file.metadata["feature_version"] = std::to_string(k_feature_version);
-    file.metadata["model"] = describe(model).dump(-1, ' ', false, Json::error_handler_t::replace);
+    file.metadata["model"] = describe_model(model).dump(-1, ' ', false, Json::error_handler_t::replace);
     for (std::size_t s = 0; s < model.unary.size(); ++s)
         add_classifier(file, fmt::format("unary.{}", s), model.unary[s]);
     for (std::size_t s = 0; s < model.linear.size(); ++s)
@@ -162,11 +162,11 @@ LabelingModel load_model(const std::filesystem::path& path) {
     require_version(file, "feature_version", k_feature_version, "its features have changed: train it again");
     LabelingModel model;
     try {
-        read_description(file, model);
+        read_model_description(file, model);
     } catch (const Json::exception& error) {
         inconsistent(file, "its description cannot be read");
     }
-    check_description(file, model);
+    check_model_description(file, model);
 
     const std::size_t classes = model.class_count();
     const std::size_t context = k_context_measures * k_context_bins * classes;

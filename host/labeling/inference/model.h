@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "host/labeling/features/features.h"
-#include "host/labeling/inference/linear_opinion.h"
+#include "host/labeling/inference/linear_expert.h"
 #include "host/learn/boosting/boosted_stumps.h"
 #include "host/mesh/labels.h"
 
@@ -19,7 +19,7 @@ struct CrfParameters {
     /// L(c, c'), classes x classes, symmetric, zero diagonal, >= 0.
     std::vector<double> compatibility;
     /// A connected component is merged into a neighbor if its share of the surface is below this fraction of the
-    /// smallest training component of its label; 0 turns merging off.
+    /// smallest training component of its label. 0 turns merging off.
     double merge_fraction = 0.2;
 };
 
@@ -32,11 +32,13 @@ struct LabelingModel {
     std::vector<std::string> pairwise_names;  ///< base features, in column order
     /// The cascade: stage 0 sees the base features, later stages also the contextual features of the stage before.
     std::vector<CalibratedStumps> unary;
-    /// What each stage of the unary cascade is pooled with; stages without an entry are stumps alone.
-    std::vector<LinearOpinion> linear;
-    /// Labels of one fold alone: their probabilities are the mean of all stages' (CascadeOpinion), not pooled.
+    /// The linear classifier that each stage of the unary cascade is combined with; stages without an entry are stumps
+    /// alone.
+    std::vector<LinearExpert> linear;
+    /// Labels that training saw in one fold only: their probabilities are the mean over all stages (CascadePrediction),
+    /// without the linear classifiers.
     std::vector<std::uint32_t> averaged_labels;
-    /// The same for boundaries (classes: 0 = same label, 1 = boundary).
+    /// The cascade for boundaries (classes: 0 = same label, 1 = boundary).
     std::vector<CalibratedStumps> pairwise;
     CrfParameters crf;
     std::vector<float>
@@ -49,10 +51,10 @@ struct LabelingModel {
 
 constexpr int k_model_format_version = 2;  ///< 1 had no linear classifiers; both are read
 
-/// Writes a safetensors file with all of the model; equal models give equal bytes.
+/// Writes the whole model to a safetensors file; equal models give equal bytes.
 void save_model(const std::filesystem::path& path, const LabelingModel& model);
-/// Reads and checks a model completely. Throws ModelError: damaged, truncated, newer than this program, made for
-/// features of another version, or not a labeling model.
+/// Reads a model and checks all of it. Throws ModelError if the file is damaged, truncated, newer than this program,
+/// made for features of another version, or no labeling model.
 LabelingModel load_model(const std::filesystem::path& path);
 
 }  // namespace exemplar

@@ -16,7 +16,7 @@ constexpr std::array<double, 5> k_grid{0.01, 0.04, 0.17, 0.7, 3.0};  ///< per we
 constexpr double k_least = 0.002, k_largest = 30;                    ///< bounds of the continuous search
 constexpr std::array<double, 3> k_prohibitive{100.0, 10.0, 2.0};     ///< tried for labels that never touch
 constexpr std::array<double, 4> k_merge_fractions{0.0, 0.1, 0.2, 0.5};
-constexpr double k_pair_cost = 0.002;     ///< a compatibility of 2 for every pair must save a tenth of a percent
+constexpr double k_pair_cost = 0.002;     ///< of the penalty: a compatibility of 2 for every pair must save 0.1 %
 constexpr int k_weight_evaluations = 40;  ///< of the search over kappa, lambda, mu
 constexpr int k_pair_evaluations = 12;    ///< per touching pair, of the search over everything
 
@@ -50,7 +50,7 @@ std::vector<std::int32_t> most_probable(const CrfTerms& terms, std::size_t faces
     return labels;
 }
 
-/// Evaluates parameter settings and remembers the best one.
+/// Evaluates parameter settings and keeps the best one.
 class Search {
   public:
     Search(std::span<const CrfExample> examples, std::size_t classes, const std::vector<bool>& touching,
@@ -72,7 +72,7 @@ class Search {
         return sum / static_cast<double>(examples_.size());
     }
 
-    /// The grid over kappa, lambda, mu: the last is searched more coarsely, as the first two matter most.
+    /// Searches the grid over kappa, lambda, mu; mu more coarsely, as the first two matter most.
     void search_grid() {
         for (const double kappa : k_grid)
             for (const double lambda : k_grid)
@@ -148,7 +148,8 @@ class Search {
         return parameters;
     }
 
-    /// Mean of log^2 L over the touching pairs: a few meshes cannot tell every pair's compatibility from noise.
+    /// Returns the penalty, the mean of log^2 L over the touching pairs: a few meshes cannot tell every pair's
+    /// compatibility from noise.
     double spread_of_pairs(const CrfParameters& parameters) const {
         double sum = 0;
         for (const auto& [a, b] : pairs_) sum += std::pow(std::log(parameters.compatibility[a * classes_ + b]), 2);

@@ -9,7 +9,7 @@
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
 #include "host/core/random.h"
-#include "host/labeling/inference/cascade_opinion.h"
+#include "host/labeling/inference/cascade_prediction.h"
 #include "host/learn/boosting/calibration.h"
 #include "host/learn/boosting/jointboost.h"
 #include "host/learn/boosting/quantize.h"
@@ -17,21 +17,22 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_judged_rounds = 10;   // after the first ten, held-out rows are judged every so many rounds
-constexpr std::size_t k_linear_rows = 32768;  // most that a linear classifier looks at: neighboring faces are alike
-constexpr std::size_t k_blind_rounds = 50;    // where nothing can be held out
-/// Share of the scale that scores keep where the classifier has learned from the very items: it is too sure of them.
+constexpr std::size_t k_evaluation_interval =
+    10;                                       // after the first ten, held-out rows are evaluated every so many rounds
+constexpr std::size_t k_linear_rows = 32768;  // maximum for a linear classifier, as neighboring faces are alike
+constexpr std::size_t k_max_unvalidated_rounds = 50;  // maximum if nothing can be held out
+/// Factor on the link's scale for items that the classifier was trained on, where it is overconfident.
 constexpr float k_seen_scale = 0.5F;
 
-/// The rows of all meshes that boosting uses, side by side.
-struct Pool {
+/// The rows of all meshes that boosting uses, concatenated.
+struct TrainingRows {
     FeatureMatrix features;
     std::vector<std::int32_t> label;
     std::vector<float> weight;
     std::vector<std::uint8_t> fold;
 };
 
-/// The labeled items of a mesh, or a random part of them in rising order.
+/// Returns the labeled items of a mesh, or a random part of them, in rising order.
 std::vector<std::uint32_t> chosen_rows(const BoostingItems& mesh, std::size_t limit, Random random) {
     std::vector<std::uint32_t> rows;
     for (std::uint32_t i = 0; i < mesh.label.size(); ++i)
@@ -44,7 +45,7 @@ std::vector<std::uint32_t> chosen_rows(const BoostingItems& mesh, std::size_t li
     return rows;
 }
 
-Pool make_pool(std::span<const BoostingItems> meshes, const FoldBoostingOptions& options) {
+TrainingRows collect_training_rows(std::span<const BoostingItems> meshes, const FoldBoostingOptions& options) {
     std::vector<std::vector<std::uint32_t>> rows;
     std::vector<std::size_t> offset{0};
     const Random random(options.seed);
@@ -52,7 +53,7 @@ Pool make_pool(std::span<const BoostingItems> meshes, const FoldBoostingOptions&
         rows.push_back(chosen_rows(meshes[m], options.rows_per_mesh, random.fork(m)));
         offset.push_back(offset.back() + rows.back().size());
     }
-    Pool pool;
+    TrainingRows pool;
     pool.features.rows = offset.back();
     const auto& names = meshes.front().features->names;
     pool.features.names.assign(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(options.features));
@@ -73,7 +74,7 @@ Pool make_pool(std::span<const BoostingItems> meshes, const FoldBoostingOptions&
     return pool;
 }
 
-Booster start(const Pool& pool, const QuantizedFeatures& quantized, std::span<const std::uint32_t> rows,
+Booster start(const TrainingRows& pool, const QuantizedFeatures& quantized, std::span<const std::uint32_t> rows,
               const FoldBoostingOptions& options) {
     BoostOptions boost;
     boost.seed = options.seed;
@@ -93,7 +94,7 @@ void grow(Booster& booster, std::size_t rounds, const std::function<void()>& rou
 /// One classifier per fold, trained on the rows of the others; none where one side of the split has no rows.
 class FoldBoosters {
   public:
-    FoldBoosters(const Pool& pool, const QuantizedFeatures& quantized, const FoldBoostingOptions& options)
+    FoldBoosters(const TrainingRows& pool, const QuantizedFeatures& quantized, const FoldBoostingOptions& options)
         : of_fold_(options.folds) {
         for (std::size_t fold = 0; fold < options.folds; ++fold) {
             std::vector<std::uint32_t> inside;
@@ -103,16 +104,16 @@ class FoldBoosters {
             of_fold_[fold] = start(pool, quantized, inside, options);
         }
     }
-    /// Grows all classifiers to so many rounds.
+    /// Grows all classifiers to `rounds` rounds.
     void grow_to(std::size_t rounds, const std::function<void()>& round_done) {
         for (std::optional<Booster>& booster : of_fold_)
             if (booster) grow(*booster, rounds, round_done);
     }
-    /// The classifier that never saw a fold; null if there is none.
+    /// Returns the classifier trained without a fold; null if there is none.
     const BoostedStumps* without(std::size_t fold) const {
         return of_fold_[fold] ? &of_fold_[fold]->classifier() : nullptr;
     }
-    /// The first rounds of all classifiers; without any class where there is none.
+    /// Returns the first rounds of all classifiers; one without classes where there is none.
     std::vector<BoostedStumps> truncated(std::size_t rounds) const {
         std::vector<BoostedStumps> stumps;
         for (const std::optional<Booster>& booster : of_fold_)
@@ -124,21 +125,22 @@ class FoldBoosters {
     std::vector<std::optional<Booster>> of_fold_;
 };
 
-/// Where the rows of each label lie: what occurs in one fold only, the classifier of the others cannot know.
+/// Counts the rows of each label per fold. If a label occurs in one fold only, the classifier of the others cannot
+/// know it.
 class FoldLabels {
   public:
-    FoldLabels(const Pool& pool, const FoldBoostingOptions& options)
+    FoldLabels(const TrainingRows& pool, const FoldBoostingOptions& options)
         : classes_(options.classes), folds_(options.folds), rows_(folds_ * classes_, 0), total_(classes_, 0) {
         for (std::size_t i = 0; i < pool.label.size(); ++i) {
             const auto label = static_cast<std::size_t>(pool.label[i]);
             ++rows_[pool.fold[i] * classes_ + label], ++total_[label];
         }
     }
-    /// Whether rows of this label lie outside of the fold.
+    /// Returns whether this label has rows outside of the fold.
     bool known_without(std::size_t fold, std::size_t label) const {
         return total_[label] > rows_[fold * classes_ + label];
     }
-    /// The labels all of whose rows lie in the fold.
+    /// Returns the labels that have all their rows in the fold.
     std::vector<std::uint32_t> of_fold_alone(std::size_t fold) const {
         std::vector<std::uint32_t> alone;
         for (std::uint32_t label = 0; label < classes_; ++label)
@@ -154,7 +156,7 @@ class FoldLabels {
 /// H of every row from the classifier of the fold that held it out, grown round by round.
 class HeldOutScores {
   public:
-    HeldOutScores(const Pool& pool, const FoldBoosters& boosters, const FoldBoostingOptions& options)
+    HeldOutScores(const TrainingRows& pool, const FoldBoosters& boosters, const FoldBoostingOptions& options)
         : pool_(pool), boosters_(boosters), classes_(options.classes), scores_(pool.label.size() * classes_, 0.0F) {
         const FoldLabels labels(pool, options);
         for (std::size_t i = 0; i < pool.label.size(); ++i) {
@@ -179,17 +181,17 @@ class HeldOutScores {
         return calibrate(scores_, pool_.label, weight_, classes_, links);
     }
     const std::vector<float>& scores() const { return scores_; }
-    /// Of each row in the loss: none where its label is known to its fold alone.
+    /// Weight of each row in the loss: 0 if its label occurs in its fold only.
     const std::vector<float>& weight() const { return weight_; }
 
   private:
-    const Pool& pool_;
+    const TrainingRows& pool_;
     const FoldBoosters& boosters_;
     std::size_t classes_;
     std::vector<float> scores_, weight_;
 };
 
-/// The number of rounds after which the held-out rows are labeled best, and their calibration there.
+/// The number of rounds after which the held-out rows are labeled best, with their calibration.
 struct RoundChoice {
     std::size_t rounds = 0;
     Calibration calibration;
@@ -198,7 +200,7 @@ struct RoundChoice {
 };
 
 /// Grows the classifiers until the held-out loss has not fallen for `patience` rounds, or to the end.
-RoundChoice choose_rounds(const Pool& pool, FoldBoosters& boosters, const FoldBoostingOptions& options,
+RoundChoice choose_rounds(const TrainingRows& pool, FoldBoosters& boosters, const FoldBoostingOptions& options,
                           const std::function<void()>& round_done) {
     constexpr std::array<Link, 2> k_links{Link::softmax, Link::sigmoid};
     // GentleBoost's class 0 has no score of its own, so sigmoids do not apply.
@@ -208,7 +210,7 @@ RoundChoice choose_rounds(const Pool& pool, FoldBoosters& boosters, const FoldBo
     for (std::size_t round = 1; round <= options.rounds; ++round) {
         boosters.grow_to(round, round_done);
         scores.add_round(round - 1);
-        if (round > 10 && round % k_judged_rounds != 0 && round != options.rounds) continue;
+        if (round > 10 && round % k_evaluation_interval != 0 && round != options.rounds) continue;
         const Calibration now = scores.judge(usable);
         choice.curve.push_back({round, now.loss, now.error});
         if (options.patience == 0 || choice.rounds == 0 || now.loss < choice.calibration.loss)
@@ -216,14 +218,14 @@ RoundChoice choose_rounds(const Pool& pool, FoldBoosters& boosters, const FoldBo
         if (options.linear && choice.rounds == round) choice.scores = scores.scores();
         if (options.patience > 0 && round >= choice.rounds + options.patience) break;
     }
-    if (std::isnan(choice.calibration.loss))  // nothing could be held out: stay cautious
-        choice.rounds = std::min(options.rounds, k_blind_rounds), choice.curve.clear();
+    if (std::isnan(choice.calibration.loss))  // nothing could be held out: use few rounds
+        choice.rounds = std::min(options.rounds, k_max_unvalidated_rounds), choice.curve.clear();
     choice.weight = scores.weight();
     return choice;
 }
 
-/// Fits the linear classifier that is pooled with the stumps, if that helps.
-std::optional<FoldedLinear> fit_beside(const Pool& pool, const RoundChoice& choice, const FoldLabels& labels,
+/// Fits the linear classifier that is combined with the stumps, if that helps.
+std::optional<FoldedLinear> fit_beside(const TrainingRows& pool, const RoundChoice& choice, const FoldLabels& labels,
                                        const FoldBoostingOptions& options) {
     if (std::isnan(choice.calibration.loss)) return std::nullopt;
     std::vector<float> stumps = choice.scores;
@@ -231,21 +233,22 @@ std::optional<FoldedLinear> fit_beside(const Pool& pool, const RoundChoice& choi
     const std::size_t step = std::max<std::size_t>(1, (pool.label.size() + k_linear_rows - 1) / k_linear_rows);
     std::vector<std::uint32_t> rows;
     for (std::size_t row = 0; row < pool.label.size(); row += step) rows.push_back(static_cast<std::uint32_t>(row));
-    std::vector<bool> silent;
-    for (std::size_t fold = 0; fold < options.folds; ++fold) silent.push_back(!labels.of_fold_alone(fold).empty());
+    std::vector<bool> excluded_folds;
+    for (std::size_t fold = 0; fold < options.folds; ++fold)
+        excluded_folds.push_back(!labels.of_fold_alone(fold).empty());
     return fit_linear({pool.features, rows, pool.label, pool.weight, pool.fold, options.classes, options.folds}, stumps,
-                      choice.weight, silent);
+                      choice.weight, excluded_folds);
 }
 
-/// Probabilities of every item of every mesh from the classifier of the fold that held it out. Labels that it cannot
-/// know, as all their items are held out with this one, have those of the final classifier at a reduced scale: else a
-/// later stage, for which this is the context, would learn that the surroundings never show such a label.
+/// Returns the probabilities of every item of every mesh, from the classifier trained without its fold. Labels that
+/// this classifier cannot know, because they occur in the fold only, get those of the final classifier at a reduced
+/// scale: otherwise the next stage, for which this is the context, would learn that such a label never occurs nearby.
 std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems> meshes,
                                                   const std::vector<BoostedStumps>& of_fold,
                                                   const CalibratedStumps& everywhere,
                                                   const std::optional<FoldedLinear>& linear,
-                                                  std::span<const std::uint32_t> of_one_fold, const FoldLabels& labels,
-                                                  std::size_t classes, StumpScorer& scorer) {
+                                                  std::span<const std::uint32_t> single_fold_labels,
+                                                  const FoldLabels& labels, std::size_t classes, StumpScorer& scorer) {
     std::vector<std::vector<float>> result;
     for (const BoostingItems& mesh : meshes) {
         const std::size_t size = mesh.fold.size() * classes;
@@ -255,7 +258,7 @@ std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems>
             if (std::none_of(mesh.fold.begin(), mesh.fold.end(), holds)) continue;
             const BoostedStumps& classifier = of_fold[fold].class_count ? of_fold[fold] : everywhere.stumps;
             scorer.probabilities(classifier, *mesh.features, everywhere.link, everywhere.scale, from_fold);
-            if (linear) pool(linear->without_fold[fold], *mesh.features, of_one_fold, from_fold);
+            if (linear) pool(linear->without_fold[fold], *mesh.features, single_fold_labels, from_fold);
             const std::vector<std::uint32_t> alone = labels.of_fold_alone(fold);
             if (!alone.empty())
                 scorer.probabilities(everywhere.stumps, *mesh.features, everywhere.link,
@@ -264,7 +267,7 @@ std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems>
                 if (mesh.fold[i] != fold) continue;
                 const std::span<float> item = std::span(scores).subspan(i * classes, classes);
                 for (std::size_t c = 0; c < classes; ++c) item[c] = from_fold[i * classes + c];
-                take_classes(alone, classes, std::span(seen).subspan(i * classes, classes), item);
+                copy_class_probabilities(alone, classes, std::span(seen).subspan(i * classes, classes), item);
             }
         }
         result.push_back(std::move(scores));
@@ -276,7 +279,7 @@ std::vector<std::vector<float>> score_out_of_fold(std::span<const BoostingItems>
 
 FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const FoldBoostingOptions& options,
                                     StumpScorer& scorer, const std::function<void()>& round_done) {
-    const Pool pool = make_pool(meshes, options);
+    const TrainingRows pool = collect_training_rows(meshes, options);
     if (pool.label.empty()) throw DataError("no face of the training meshes has a label");
     QuantizeOptions quantize_options;
     quantize_options.bins = options.bins;
@@ -296,7 +299,7 @@ FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const
     const FoldLabels labels(pool, options);
     for (std::size_t fold = 0; fold < of_fold.size(); ++fold) {
         const std::vector<std::uint32_t> alone = labels.of_fold_alone(fold);
-        result.of_one_fold.insert(result.of_one_fold.end(), alone.begin(), alone.end());
+        result.single_fold_labels.insert(result.single_fold_labels.end(), alone.begin(), alone.end());
         if (of_fold[fold].class_count > 0 && alone.empty()) all.push_back(of_fold[fold]);
     }
     result.classifier.stumps = mean_classifier(all);
@@ -310,8 +313,8 @@ FoldBoostingResult boost_with_folds(std::span<const BoostingItems> meshes, const
         result.linear = linear->mean;
         result.loss = linear->loss, result.error = linear->error, result.stumps_loss = linear->stumps_loss;
     }
-    result.out_of_fold = score_out_of_fold(meshes, of_fold, result.classifier, linear, result.of_one_fold, labels,
-                                           options.classes, scorer);
+    result.out_of_fold = score_out_of_fold(meshes, of_fold, result.classifier, linear, result.single_fold_labels,
+                                           labels, options.classes, scorer);
     return result;
 }
 

@@ -14,21 +14,22 @@
 #include "host/core/random.h"
 #include "host/core/stopwatch.h"
 #include "host/data/result_cache.h"
-#include "host/labeling/inference/cascade_opinion.h"
 #include "host/labeling/features/edge_context.h"
+#include "host/labeling/inference/cascade_prediction.h"
 #include "host/labeling/training/fold_boosting.h"
 
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_most_folds = 5;       ///< one in five held out: the thesis' 4 : 1
+constexpr std::size_t k_max_folds = 5;        ///< one in five held out: the thesis' 4 : 1
 constexpr std::size_t k_patches = 25;         ///< of a single training mesh, dealt to the folds
 constexpr std::size_t k_pairwise_stages = 2;  ///< base features, then with the contextual ones (App. A.2e)
-/// A unary stage may be so much worse than the one before it, out of fold, and still be kept: with few meshes the
-/// classifiers of the folds learn less from the context, which differs from mesh to mesh, than the one that sees all.
-constexpr double k_kept_unary_loss = 1.05, k_kept_pairwise_loss = 1;
-constexpr float k_sliver = 0.02F;  ///< of a label's largest piece in the mesh
-constexpr std::size_t k_none = static_cast<std::size_t>(-1);
+/// A stage is kept if its out-of-fold loss is below this factor times that of the stage before it. A unary stage may
+/// be slightly worse: with few meshes the classifiers of the folds learn less from the context, which differs from
+/// mesh to mesh, than the classifier of all meshes.
+constexpr double k_max_unary_loss_ratio = 1.05, k_max_pairwise_loss_ratio = 1;
+constexpr float k_sliver = 0.02F;  ///< share of a label's largest piece in the mesh
+constexpr std::size_t k_invalid_index = static_cast<std::size_t>(-1);
 constexpr std::uint64_t k_unary_task = 1000, k_pairwise_task = 2000, k_fold_task = 1;
 
 using PerMesh = std::vector<std::vector<float>>;
@@ -43,7 +44,7 @@ void require_trainable(const LabeledCorpus& corpus, std::size_t feature_sets) {
                                     k_max_classes));
 }
 
-/// Patch of each face: the nearest of the first samples, counted in faces along the dual graph.
+/// Returns the fold of each face: that of its patch, the nearest of the first samples, in faces along the dual graph.
 std::vector<std::uint8_t> patches_as_folds(const MeshFeatures& features, std::size_t folds) {
     std::vector<std::vector<std::uint32_t>> neighbors(features.face_area.size());
     for (const auto& [a, b] : features.edges) neighbors[a].push_back(b), neighbors[b].push_back(a);
@@ -79,12 +80,12 @@ Folds make_folds(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& f
     const std::size_t meshes = corpus.meshes.size();
     Folds folds;
     if (meshes == 1) {
-        folds.count = std::clamp<std::size_t>(features[0].context.sample_face.size(), 1, k_most_folds);
+        folds.count = std::clamp<std::size_t>(features[0].context.sample_face.size(), 1, k_max_folds);
         folds.of_face = {patches_as_folds(features[0], folds.count)};
         report.folds.assign(folds.count, {corpus.meshes[0].name + " (patches)"});
         return folds;
     }
-    folds.count = std::min(meshes, k_most_folds);
+    folds.count = std::min(meshes, k_max_folds);
     std::vector<std::size_t> order(meshes);
     std::iota(order.begin(), order.end(), std::size_t{0});
     Random(seed).fork(k_fold_task).shuffle(order);
@@ -98,7 +99,7 @@ Folds make_folds(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& f
     return folds;
 }
 
-/// Scales weights so that every mesh counts the same, however large or finely meshed it is.
+/// Scales weights to a sum of 1, so that every mesh counts the same, however large or finely meshed it is.
 std::vector<float> normalized(std::vector<float> weight) {
     const double total = std::accumulate(weight.begin(), weight.end(), 0.0);
     if (total > 0)
@@ -106,8 +107,8 @@ std::vector<float> normalized(std::vector<float> weight) {
     return weight;
 }
 
-/// Weighs each label by the root of its area in place of its area: boosting would give up small parts, and labels that
-/// few meshes have, where many stumps are needed to tell them from the large ones.
+/// Weights each label by the square root of its area instead of its area. With areas, boosting would give up small
+/// parts and labels that few meshes have, as many stumps are needed to separate them from the large ones.
 void favor_rare_labels(const LabeledCorpus& corpus, std::vector<std::vector<float>>& weights) {
     std::vector<double> total(corpus.names.size(), 0);
     for (std::size_t m = 0; m < weights.size(); ++m)
@@ -120,7 +121,7 @@ void favor_rare_labels(const LabeledCorpus& corpus, std::vector<std::vector<floa
                 weights[m][f] /= static_cast<float>(std::sqrt(total[static_cast<std::size_t>(label)]));
 }
 
-/// One boosting task over all meshes, with its progress and its row of the report.
+/// Runs one boosting task over all meshes, shows its progress and adds it to the report.
 FoldBoostingResult run_stage(const std::string& what, std::span<const BoostingItems> items, FoldBoostingOptions options,
                              const TrainOptions& train, StumpScorer& scorer, TrainReport& report) {
     options.rounds = train.rounds, options.bins = train.bins;
@@ -135,12 +136,12 @@ FoldBoostingResult run_stage(const std::string& what, std::span<const BoostingIt
     return result;
 }
 
-/// A cascade to train: classifiers of which each later one also sees what the one before it said about the
-/// surroundings.
+/// A cascade to train. Each stage after the first also sees contextual features, computed from the predictions of the
+/// stage before.
 struct Cascade {
     std::string name;
-    std::size_t most_stages;
-    double kept_loss;          ///< a stage is kept if its loss is below so many times that of the stage before it
+    std::size_t max_cascade_stages;
+    double max_loss_ratio;     ///< a stage is kept if its loss is below this factor times that of the stage before
     FoldBoostingOptions task;  ///< its number of features and seed are set per stage
     std::size_t base_features, context_features;
     std::vector<BoostingItems> items;  ///< per mesh
@@ -149,31 +150,32 @@ struct Cascade {
 };
 
 /// Trains stage after stage until the out-of-fold loss rises; returns the out-of-fold probabilities of the last kept
-/// one. `averaged`, if any: set to the labels of one fold, for which all stages count (see CascadeOpinion).
+/// one. If `averaged` is given, sets it to the labels of one fold only, which are averaged over the stages (see
+/// CascadePrediction).
 PerMesh train_cascade(Cascade cascade, const TrainOptions& options, StumpScorer& scorer,
-                      std::vector<CalibratedStumps>& classifiers, std::vector<LinearOpinion>& linear,
+                      std::vector<CalibratedStumps>& classifiers, std::vector<LinearExpert>& linear,
                       std::vector<std::uint32_t>* averaged, TrainReport& report) {
     PerMesh kept;
-    std::vector<CascadeOpinion> opinions;
+    std::vector<CascadePrediction> predictions;
     double last_loss = std::numeric_limits<double>::infinity();
     const std::uint64_t first_seed = cascade.task.seed;
-    for (std::size_t stage = 0; stage < cascade.most_stages; ++stage) {
+    for (std::size_t stage = 0; stage < cascade.max_cascade_stages; ++stage) {
         for (std::size_t m = 0; m < kept.size(); ++m) cascade.add_context(m, kept[m]);
         cascade.task.features = cascade.base_features + (stage > 0 ? cascade.context_features : 0);
         cascade.task.seed = first_seed + stage;
         FoldBoostingResult result =
             run_stage(fmt::format("{} {}", cascade.name, stage), cascade.items, cascade.task, options, scorer, report);
-        if (stage > 0 && !(result.loss < cascade.kept_loss * last_loss)) {
+        if (stage > 0 && !(result.loss < cascade.max_loss_ratio * last_loss)) {
             report.stages.back().kept = false;
             break;
         }
         last_loss = result.loss;
         kept = std::move(result.out_of_fold);
         if (averaged && stage == 0) {
-            *averaged = result.of_one_fold;
-            opinions.assign(kept.size(), CascadeOpinion(*averaged, cascade.task.classes));
+            *averaged = result.single_fold_labels;
+            predictions.assign(kept.size(), CascadePrediction(*averaged, cascade.task.classes));
         }
-        for (std::size_t m = 0; m < opinions.size(); ++m) opinions[m].add_stage(kept[m]);
+        for (std::size_t m = 0; m < predictions.size(); ++m) predictions[m].add_stage(kept[m]);
         classifiers.push_back(std::move(result.classifier));
         linear.push_back(std::move(result.linear));
     }
@@ -191,11 +193,11 @@ PerMesh train_unary(const LabeledCorpus& corpus, std::vector<MeshFeatures>& feat
     for (const MeshFeatures& mesh : features) weights.push_back(normalized(mesh.face_area));
     favor_rare_labels(corpus, weights);
 
-    Cascade cascade{"unary", options.max_stages, k_kept_unary_loss, {}, model.unary_names.size(), context.size(), {},
-                    {}};
+    Cascade cascade{
+        "unary", options.max_stages, k_max_unary_loss_ratio, {}, model.unary_names.size(), context.size(), {}, {}};
     cascade.task.classes = classes;
     cascade.task.linear = options.linear;
-    cascade.task.patience = 0;  // the error falls on when the loss rises: see docs/labeling.md
+    cascade.task.patience = 0;  // the error keeps falling when the loss rises: see docs/labeling.md
     cascade.task.folds = folds.count;
     cascade.task.seed = options.seed + k_unary_task;
     for (std::size_t m = 0; m < features.size(); ++m)
@@ -208,13 +210,13 @@ PerMesh train_unary(const LabeledCorpus& corpus, std::vector<MeshFeatures>& feat
                          report);
 }
 
-/// What the boundary classifiers learn from: per mesh and edge 0 = same label, 1 = boundary, -1 = unknown, and a weight
-/// that balances the few boundary edges against the many others (thesis Sec. 3.3.1).
+/// Training data of the boundary classifiers: per mesh and edge 0 = same label, 1 = boundary, -1 = unknown, and a
+/// weight that balances the few boundary edges against the many others (thesis Sec. 3.3.1).
 struct EdgeTargets {
     std::vector<std::vector<std::int32_t>> label;
     std::vector<std::vector<float>> weight;
     std::vector<std::vector<std::uint8_t>> fold;
-    bool both = false;  ///< whether there are boundaries and edges that are none
+    bool both = false;  ///< whether both boundaries and other edges occur
 };
 
 EdgeTargets make_edge_targets(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& features,
@@ -244,21 +246,21 @@ EdgeTargets make_edge_targets(const LabeledCorpus& corpus, const std::vector<Mes
     return targets;
 }
 
-/// Trains the boundary classifiers; returns the out-of-fold boundary probability per edge. Where the parts of all
-/// meshes lie in separate pieces there is nothing to learn about boundaries: no classifier, and even odds as in
-/// label_faces.
+/// Trains the boundary classifiers; returns the out-of-fold boundary probability per edge. If the parts of all meshes
+/// are separate pieces, there is nothing to learn: the model gets no classifier, and all probabilities are
+/// k_unknown_boundary_probability.
 PerMesh train_pairwise(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features, const Folds& folds,
                        const TrainOptions& options, const LabelingBackend& backend, LabelingModel& model,
                        TrainReport& report) {
     const EdgeTargets targets = make_edge_targets(corpus, features, folds);
     if (!targets.both) {
         PerMesh even;
-        for (const MeshFeatures& mesh : features) even.emplace_back(mesh.edges.size(), k_even_odds);
+        for (const MeshFeatures& mesh : features) even.emplace_back(mesh.edges.size(), k_unknown_boundary_probability);
         return even;
     }
     Cascade cascade{"pairwise",
                     k_pairwise_stages,
-                    k_kept_pairwise_loss,
+                    k_max_pairwise_loss_ratio,
                     {},
                     model.pairwise_names.size(),
                     EdgeNeighborhood::k_bins,
@@ -275,15 +277,15 @@ PerMesh train_pairwise(const LabeledCorpus& corpus, std::vector<MeshFeatures>& f
             features[m], boundary_column(probabilities),
             context_columns(features[m].pairwise, model.pairwise_names.size(), edge_context_names()));
     };
-    std::vector<LinearOpinion> none;
+    std::vector<LinearExpert> none;
     PerMesh boundary =
         train_cascade(std::move(cascade), options, backend.scorer, model.pairwise, none, nullptr, report);
     for (std::vector<float>& probabilities : boundary) probabilities = boundary_column(probabilities);
     return boundary;
 }
 
-/// Area share of the smallest connected piece of each label in one mesh; 0 for labels that do not occur. Slivers of a
-/// label, far smaller than its largest piece, are slips of the annotator: they say nothing about its size.
+/// Returns the area share of the smallest connected piece of each label in one mesh; 0 for labels that do not occur.
+/// Ignores slivers, far smaller than a label's largest piece: they are annotation errors.
 std::vector<float> smallest_pieces(const MeshFeatures& features, std::span<const std::int32_t> labels,
                                    std::size_t classes) {
     const LabelComponents pieces = label_components(features.edges, features.face_area, labels);
@@ -298,7 +300,7 @@ std::vector<float> smallest_pieces(const MeshFeatures& features, std::span<const
     return smallest;
 }
 
-/// Per label the smallest over all meshes but `left_out`.
+/// Returns the smallest piece per label over all meshes except `left_out`.
 std::vector<float> smallest_of_others(const PerMesh& of_mesh, std::size_t left_out) {
     std::vector<float> smallest(of_mesh.front().size(), 0);
     for (std::size_t m = 0; m < of_mesh.size(); ++m)
@@ -318,7 +320,8 @@ std::vector<bool> touching_labels(const LabeledCorpus& corpus, const std::vector
     return touching;
 }
 
-/// The labels that out-of-fold probabilities can be judged by: -1 where no other fold has a face of that label.
+/// Returns the labels that out-of-fold probabilities can be compared with: -1 where no other fold has a face of the
+/// label.
 std::vector<std::vector<std::int32_t>> learnable_labels(const LabeledCorpus& corpus, const Folds& folds) {
     const std::size_t classes = corpus.names.size();
     std::vector<std::vector<bool>> occurs(classes, std::vector<bool>(folds.count, false));  // per label and fold
@@ -341,13 +344,13 @@ void train_crf(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& fea
     PerMesh smallest;
     for (std::size_t m = 0; m < features.size(); ++m)
         smallest.push_back(smallest_pieces(features[m], corpus.meshes[m].label, classes));
-    model.smallest_component = smallest_of_others(smallest, k_none);
+    model.smallest_component = smallest_of_others(smallest, k_invalid_index);
 
     const std::vector<std::vector<std::int32_t>> truth = learnable_labels(corpus, folds);
     std::vector<CrfExample> examples;
     for (std::size_t m = 0; m < features.size(); ++m)
         examples.push_back({&features[m], make_crf_terms(features[m], probabilities[m], classes, boundary[m]), truth[m],
-                            smallest_of_others(smallest, features.size() > 1 ? m : k_none)});
+                            smallest_of_others(smallest, features.size() > 1 ? m : k_invalid_index)});
     const std::vector<bool> touching = touching_labels(corpus, features);
     Progress progress("searching CRF parameters", crf_search_evaluations(classes, touching));
     const Stopwatch watch;

@@ -13,9 +13,9 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_block = 256;  // rows scored together: H of a block stays in the first-level cache
+constexpr std::size_t k_scoring_block = 256;  // rows scored together: H of a block stays in the first-level cache
 
-/// A classifier as it is summed: the stumps that the same classes share give one sum for all of them.
+/// A classifier prepared for summation: the stumps that share the same classes give one sum for all of them.
 struct Sum {
     std::uint32_t class_count;
     GroupedStumps grouped;
@@ -25,11 +25,12 @@ struct Sum {
         : class_count(classifier.class_count), grouped(classifier), constant(classifier.constant()) {}
 };
 
-/// H of rows [begin, begin + count), class-major with stride k_block.
+/// Computes H of rows [begin, begin + count), class-major with stride k_scoring_block.
 void sum_stumps(const Sum& sum, const FeatureMatrix& features, std::size_t begin, std::size_t count,
                 std::span<float> h) {
-    for (std::size_t c = 0; c < sum.class_count; ++c) std::fill_n(h.data() + c * k_block, count, sum.constant[c]);
-    std::array<float, k_block> response;
+    for (std::size_t c = 0; c < sum.class_count; ++c)
+        std::fill_n(h.data() + c * k_scoring_block, count, sum.constant[c]);
+    std::array<float, k_scoring_block> response;
     for (const GroupedStumps::Group& group : sum.grouped.groups) {
         response.fill(0.0f);
         for (std::size_t m = group.first; m < group.end; ++m) {
@@ -38,20 +39,20 @@ void sum_stumps(const Sum& sum, const FeatureMatrix& features, std::size_t begin
             for (std::size_t i = 0; i < count; ++i) response[i] += x[i] > stump.threshold ? stump.above : stump.below;
         }
         for (std::uint64_t left = group.classes; left != 0; left &= left - 1) {
-            float* of_class = h.data() + static_cast<std::size_t>(std::countr_zero(left)) * k_block;
+            float* of_class = h.data() + static_cast<std::size_t>(std::countr_zero(left)) * k_scoring_block;
             for (std::size_t i = 0; i < count; ++i) of_class[i] += response[i];
         }
     }
 }
 
-/// Log of the unnormalized probability: s H for the softmax, log sigma(s H) for the sigmoid (which stays finite where
-/// sigma itself underflows).
+/// Returns the log of the unnormalized probability: s H for the softmax, log sigma(s H) for the sigmoid (which stays
+/// finite where sigma itself underflows).
 float log_weight(float scaled, Link link) {
     if (link == Link::softmax) return scaled;
     return std::min(scaled, 0.0f) - std::log1p(std::exp(-std::abs(scaled)));
 }
 
-/// Probabilities from their unnormalized logarithms.
+/// Turns unnormalized log probabilities into probabilities.
 void normalize(std::span<float> row) {
     const float largest = *std::max_element(row.begin(), row.end());
     float sum = 0.0f;
@@ -61,15 +62,16 @@ void normalize(std::span<float> row) {
 
 void score_rows(const Sum& sum, const FeatureMatrix& features, Link link, float scale, std::span<float> out) {
     const std::size_t classes = sum.class_count;
-    const std::size_t blocks = (features.rows + k_block - 1) / k_block;
+    const std::size_t blocks = (features.rows + k_scoring_block - 1) / k_scoring_block;
     parallel_ranges(blocks, 1, [&](std::size_t first, std::size_t last) {
-        std::vector<float> h(classes * k_block);
-        for (std::size_t begin = first * k_block; begin < std::min(last * k_block, features.rows); begin += k_block) {
-            const std::size_t count = std::min(k_block, features.rows - begin);
+        std::vector<float> h(classes * k_scoring_block);
+        for (std::size_t begin = first * k_scoring_block; begin < std::min(last * k_scoring_block, features.rows);
+             begin += k_scoring_block) {
+            const std::size_t count = std::min(k_scoring_block, features.rows - begin);
             sum_stumps(sum, features, begin, count, h);
             for (std::size_t i = 0; i < count; ++i) {
                 const std::span<float> row = out.subspan((begin + i) * classes, classes);
-                for (std::size_t c = 0; c < classes; ++c) row[c] = log_weight(scale * h[c * k_block + i], link);
+                for (std::size_t c = 0; c < classes; ++c) row[c] = log_weight(scale * h[c * k_scoring_block + i], link);
                 normalize(row);
             }
         }
@@ -86,7 +88,7 @@ void scores_to_probabilities(std::span<float> scores, std::size_t classes, Link 
             for (float& h : row) h = log_weight(scale * h, link);
             normalize(row);
         },
-        k_block);
+        k_scoring_block);
 }
 
 BoostedStumps mean_classifier(std::span<const BoostedStumps> classifiers) {

@@ -27,15 +27,15 @@ struct BoostedStumps {
     std::vector<Stump> stumps;
     std::vector<float> elsewhere;  ///< stumps x class_count: k_c, zero for classes in the stump's set
 
-    /// Sum of the k_c over all stumps, per class: the constant part of H.
+    /// Returns the sum of the k_c over all stumps, per class: the constant part of H.
     std::vector<float> constant() const;
 };
 
-/// The classifier whose H is the mean of the H of several (at least one, all of the same classes): bagging (Breiman
-/// 1996). It has all their stumps, in order.
+/// Returns the classifier whose H is the mean of the H of several (at least one, all of the same classes): bagging
+/// (Breiman 1996). It has all their stumps, in order.
 BoostedStumps mean_classifier(std::span<const BoostedStumps> classifiers);
 
-/// How H becomes a probability.
+/// The function that turns H into a probability.
 enum class Link : std::uint32_t {
     softmax = 0,  ///< exp(s H_c) / sum exp(s H) (Eq. 2.66)
     sigmoid = 1,  ///< sigma(s H_c) / sum sigma(s H)
@@ -51,7 +51,7 @@ struct CalibratedStumps {
     float scale = 1;  ///< s of the link, > 0
 };
 
-/// One of the matrices that a classifier scores together, and where its probabilities go: rows x class_count.
+/// A matrix to score, and the output of its probabilities: rows x class_count.
 struct ScoredMatrix {
     const FeatureMatrix* features;
     std::span<float> out;
@@ -61,21 +61,21 @@ struct ScoredMatrix {
 class StumpScorer {
   public:
     virtual ~StumpScorer() = default;
-    /// Class probabilities, rows x class_count, item-major. A NaN feature compares as not above.
-    /// `scale` is the link's s (> 0). Throws ModelError if a stump names a feature that the matrix lacks or a class
-    /// that the classifier lacks, UsageError if `out` has another size or the scale is not above zero.
+    /// Computes class probabilities, rows x class_count, item-major. A NaN feature is above no threshold. `scale` is
+    /// the link's s (> 0). Throws ModelError if a stump uses a feature that the matrix lacks or a class that the
+    /// classifier lacks, UsageError if `out` has another size or the scale is not above zero.
     void probabilities(const BoostedStumps& classifier, const FeatureMatrix& features, Link link, float scale,
                        std::span<float> out) {
         const ScoredMatrix one{&features, out};
         probabilities_of_all(classifier, link, scale, std::span(&one, 1));
     }
-    /// The same of several matrices, in less time than one by one: each gets what it would get alone, bit for bit on
-    /// one device. Nothing is scored if one of them is refused.
+    /// Scores several matrices, faster than one by one. Each gets the result that it would get alone, bit for bit on
+    /// one device. Scores nothing if one of them is refused.
     virtual void probabilities_of_all(const BoostedStumps& classifier, Link link, float scale,
                                       std::span<const ScoredMatrix> matrices) = 0;
 };
 
-/// Throws what StumpScorer::probabilities says of arguments that do not fit together: ModelError or UsageError.
+/// Throws ModelError or UsageError, as StumpScorer::probabilities does, for arguments that do not fit together.
 void check_scoring(const BoostedStumps& classifier, const FeatureMatrix& features, float scale,
                    std::span<const float> out);
 

@@ -15,12 +15,12 @@ constexpr std::int32_t k_no_lane = -1;
 /// A run of rows of the same class.
 struct RowChunk {
     std::uint32_t begin, end;
-    std::int32_t lane;  ///< the rows' own class, k_no_lane if it has no lane
+    std::int32_t lane;  ///< lane of the rows' class, or k_no_lane
 };
 
-/// The training rows in the order that boosting reads them: sorted by class, shuffled within a class (so that neighbors
-/// on a surface, which share bins, do not follow each other: adding to one bin again and again stalls the processor).
-/// Sorting by class makes the sum over the rows with z = +1 a by-product: it is the chunk's own lane.
+/// The training rows in the order in which boosting reads them: sorted by class, and shuffled within a class.
+/// Neighbors on a surface share bins, and adding to the same bin again and again would stall the processor. Sorting
+/// by class makes the sum over the rows with z = +1 a by-product: it is the chunk's own lane.
 struct BoostingRows {
     LaneLayout layout;
     std::size_t count = 0;
@@ -33,19 +33,19 @@ struct BoostingRows {
     const float* panel(std::size_t index) const { return weights.data() + index * count * layout.width; }
 };
 
-/// Collects `rows` of `features`. `lane`: own lane of each entry of `rows`; `weight(entry, lane)`: its weight.
-/// Chunks have at most `chunk_rows` rows.
+/// Collects `rows` of `features`. `lane`: the lane of the class of each entry of `rows`; `weight(entry, lane)`: its
+/// weight. Chunks have at most `chunk_rows` rows.
 template <typename Weight>
 BoostingRows collect_rows(const QuantizedFeatures& features, std::span<const std::uint32_t> rows,
                           std::span<const std::int32_t> lane, std::size_t lanes, std::uint64_t seed,
                           std::size_t chunk_rows, Weight&& weight);
 
-/// The order of collect_rows: indices into `lane`.
+/// Returns the row order of collect_rows: indices into `lane`.
 std::vector<std::uint32_t> class_order(std::span<const std::int32_t> lane, std::uint64_t seed);
 /// Splits the sorted rows into chunks of one class.
 std::vector<RowChunk> make_chunks(std::span<const std::int32_t> lane, std::span<const std::uint32_t> order,
                                   std::size_t chunk_rows);
-/// Bins of the chosen rows, features x order.size().
+/// Returns the bins of the chosen rows, features x order.size().
 std::vector<std::uint8_t> gather_bins(const QuantizedFeatures& features, std::span<const std::uint32_t> rows,
                                       std::span<const std::uint32_t> order);
 

@@ -9,8 +9,8 @@
 namespace exemplar {
 namespace {
 
-constexpr double k_tiny = 1e-300;  // keeps an empty side's 0 / 0 at 0
-/// Weights end here: one that became zero or denormal could not grow again, and denormals are slow.
+constexpr double k_tiny_weight = 1e-300;  // keeps an empty side's 0 / 0 at 0
+/// Minimum weight: one that became zero or denormal could not grow again, and denormals are slow.
 constexpr float k_least_weight = 1e-30f;
 
 /// Sum of the weights of a chunk's rows, per lane, below and above the split.
@@ -45,10 +45,11 @@ struct Sums {
     double w = 0, s = 0;
 
     void add(double weight, bool own) { w += weight, s += own ? weight : -weight; }
-    double mean() const { return s / (w + k_tiny); }
+    double mean() const { return s / (w + k_tiny_weight); }
 };
 
-/// exp(-z h) of all lanes on one side, times 2^exponent, as floats (which the weights are). Padding lanes get 1.
+/// Returns exp(-z h) of all lanes on one side, times 2^exponent, rounded to float like the weights. Padding lanes
+/// get 1.
 LaneFactors make_factors(const LaneLayout& layout, const SplitCandidate& split, float shared_response,
                          const std::vector<float>& elsewhere, int exponent) {
     LaneFactors factors{std::vector<double>(layout.padded(), 1.0), std::vector<double>(layout.padded(), 1.0)};
@@ -60,7 +61,7 @@ LaneFactors make_factors(const LaneLayout& layout, const SplitCandidate& split, 
     return factors;
 }
 
-/// The factors of a chunk's rows: z is -1 but for the chunk's own lane.
+/// Returns the factors of a chunk's rows: z is -1 except in the chunk's own lane.
 AlignedFloats chunk_factors(const RowChunk& chunk, const LaneFactors& factors) {
     AlignedFloats out(factors.other.begin(), factors.other.end());
     if (chunk.lane != k_no_lane) {

@@ -9,7 +9,7 @@ namespace exemplar {
 
 /// A split of one feature and the lanes that share it.
 struct SplitCandidate {
-    float gain = 0;  ///< how much Eq. 3.6 falls below that of constants k_c alone
+    float gain = 0;  ///< by how much Eq. 3.6 falls below that of constants k_c alone
     std::uint32_t feature = 0;
     std::uint32_t threshold = 0;  ///< index: "above" is bin > threshold
     std::uint64_t lanes = 0;      ///< bit l: lane l shares the split; zero if no split gains anything
@@ -23,29 +23,29 @@ struct StumpResponse {
     StumpResponse scaled(float factor) const;
 };
 
-/// a, b and k_l in closed form (the minimum of Eq. 3.6 for a given split), over all rows.
+/// Computes a, b and k_l in closed form (the minimum of Eq. 3.6 for a given split), over all rows.
 StumpResponse fit_response(const BoostingRows& rows, const SplitCandidate& split);
 
-/// What the weights on both sides of a split are multiplied with.
+/// Factors on the weights below and above a split.
 struct WeightFactors {
     LaneFactors below, above;
 };
 
-/// Keeps the training weights: scales them to a total near one, so that a separable problem, whose loss falls without
-/// bound, neither underflows nor loses accuracy.
+/// Updates the training weights. Scales them to a total near one, so that weights neither underflow nor lose
+/// accuracy in separable problems, whose loss falls without bound.
 class WeightUpdate {
   public:
     /// Scales the weights of `rows` to a total of one.
     explicit WeightUpdate(BoostingRows& rows);
-    /// Multiplies each weight by exp(-z h) (Eq. 3.7) and returns the loss (Eq. 3.5) over its initial value.
+    /// Multiplies each weight by exp(-z h) (Eq. 3.7) and returns the loss (Eq. 3.5) relative to its initial value.
     double apply(BoostingRows& rows, const SplitCandidate& split, const StumpResponse& response);
     /// The factors of the last update.
     const WeightFactors& factors() const { return factors_; }
 
   private:
     WeightFactors factors_;
-    double total_ = 1.0;  ///< sum of the weights as they are stored
-    int exponent_ = 0;    ///< they are stored times 2^exponent
+    double total_ = 1.0;  ///< sum of the stored weights
+    int exponent_ = 0;    ///< stored weights are scaled by 2^exponent
 };
 
 }  // namespace exemplar

@@ -13,7 +13,7 @@ namespace {
 constexpr float k_label_noise = 0.01F;
 constexpr double k_least_scale = 0.02, k_largest_scale = 10;
 constexpr int k_steps = 16;  // golden sections of the scale's logarithm: to about a thousandth of its range
-constexpr std::size_t k_block = 4096;
+constexpr std::size_t k_calibration_block = 4096;
 
 struct Scored {
     std::span<const float> scores;
@@ -22,12 +22,13 @@ struct Scored {
     std::size_t classes;
 };
 
-/// Sums of two measures over all rows; block by block in a fixed order, so that threads make no difference.
+/// Sums two measures over all rows, block by block in a fixed order, so that the result does not depend on threads.
 template <typename Measure>
 std::pair<double, double> sum_rows(std::size_t rows, const Measure& measure) {
-    std::vector<std::pair<double, double>> of_block((rows + k_block - 1) / k_block);
+    std::vector<std::pair<double, double>> of_block((rows + k_calibration_block - 1) / k_calibration_block);
     parallel_for(of_block.size(), [&](std::size_t b) {
-        for (std::size_t i = b * k_block; i < std::min(rows, (b + 1) * k_block); ++i) measure(i, of_block[b]);
+        for (std::size_t i = b * k_calibration_block; i < std::min(rows, (b + 1) * k_calibration_block); ++i)
+            measure(i, of_block[b]);
     });
     std::pair<double, double> sum{0, 0};
     for (const auto& [first, second] : of_block) sum.first += first, sum.second += second;

@@ -8,7 +8,7 @@
 
 namespace exemplar {
 
-/// How held-out scores H become probabilities, and how good those are.
+/// The link that turns scores H into probabilities, and its quality on held-out rows.
 struct Calibration {
     Link link = Link::softmax;
     float scale = 1;   ///< the link's s
@@ -16,12 +16,12 @@ struct Calibration {
     double error = 0;  ///< weighted share of rows whose largest H is not their label, in [0, 1]
 };
 
-/// Finds the link (of `links`) and its scale, in [0.02, 10], that give held-out rows the lowest weighted log loss
-/// -log P', P' = 0.99 P + 0.01 / classes: one label in a hundred is taken to be noise, or a few rows that are
-/// confidently wrong would decide (a class that a fold never saw has P = 0).
+/// Finds the link (of `links`) and its scale, in [0.02, 10], with the lowest weighted log loss of held-out rows:
+/// -log P' with P' = 0.99 P + 0.01 / classes. This treats one label in a hundred as noise; otherwise a few rows that
+/// are confidently wrong would decide (a class that a fold never saw has P = 0).
 ///
-/// `scores`: H, rows x classes, item-major; `labels`, `weights`: one per row. Rows of weight zero do not count; if all
-/// are zero, or there is no row, loss and error are NaN. The result does not depend on the number of threads.
+/// `scores`: H, rows x classes, item-major; `labels`, `weights`: one per row. Rows of weight zero are ignored; if
+/// there are no others, loss and error are NaN. The result does not depend on the number of threads.
 Calibration calibrate(std::span<const float> scores, std::span<const std::int32_t> labels,
                       std::span<const float> weights, std::size_t classes, std::span<const Link> links);
 

@@ -6,7 +6,7 @@
 namespace exemplar {
 namespace {
 
-/// Whether one of the stumps can answer for both.
+/// Returns whether two stumps can be merged into one.
 bool asks_the_same(const Stump& a, const Stump& b) {
     return a.classes == b.classes && a.feature == b.feature && a.threshold == b.threshold;
 }

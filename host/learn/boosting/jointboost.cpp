@@ -18,18 +18,19 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_chunk_rows = 8192;
+constexpr std::size_t k_row_chunk = 8192;
 constexpr std::uint64_t k_order_task = 0, k_round_task = 1;
 
-void check_options(const TrainingSet& training, std::size_t class_count, const BoostOptions& options) {
+void check_boost_options(const TrainingSet& training, std::size_t class_count, const BoostOptions& options) {
     if (class_count < 2 || class_count > k_max_classes) {
         throw UsageError("boosting was asked for " + std::to_string(class_count) + " classes; it takes 2 to " +
                          std::to_string(k_max_classes));
     }
     if (training.features.cols() == 0) throw UsageError("there are no features to learn from");
-    if (options.exhaustive_classes > k_most_exhaustive) {
+    if (options.exhaustive_classes > k_max_exhaustive_classes) {
         throw UsageError("an exhaustive search over subsets of " + std::to_string(options.exhaustive_classes) +
-                         " classes takes too long; at most " + std::to_string(k_most_exhaustive) + " are possible");
+                         " classes takes too long; at most " + std::to_string(k_max_exhaustive_classes) +
+                         " are possible");
     }
     for (const double fraction : {options.shrinkage, options.feature_fraction}) {
         if (!(fraction > 0.0 && fraction <= 1.0)) {
@@ -39,7 +40,7 @@ void check_options(const TrainingSet& training, std::size_t class_count, const B
     }
 }
 
-/// Collects the rows that weigh anything. Lanes are the classes from `first_class` on.
+/// Collects the rows with a weight above zero. Lanes are the classes from `first_class` on.
 BoostingRows prepare_rows(const TrainingSet& training, std::size_t class_count, std::size_t first_class,
                           const BoostOptions& options) {
     const std::size_t row_count = training.features.rows;
@@ -62,11 +63,11 @@ BoostingRows prepare_rows(const TrainingSet& training, std::size_t class_count, 
         lane.push_back(std::max(training.labels[row] - static_cast<std::int32_t>(first_class), k_no_lane));
     }
     return collect_rows(training.features, rows, lane, class_count - first_class,
-                        Random(options.seed).fork(k_order_task).next(), k_chunk_rows,
+                        Random(options.seed).fork(k_order_task).next(), k_row_chunk,
                         [&](std::uint32_t entry, std::size_t l) { return weight_of(rows[entry], l + first_class); });
 }
 
-/// `share` of `count` indices (at least one), drawn at random, in rising order.
+/// Returns a `share` of `count` indices (at least one), drawn at random, in rising order.
 std::vector<std::uint32_t> draw(std::size_t count, double share, Random& random) {
     std::vector<std::uint32_t> indices(count);
     std::iota(indices.begin(), indices.end(), 0u);
@@ -78,9 +79,9 @@ std::vector<std::uint32_t> draw(std::size_t count, double share, Random& random)
     return indices;
 }
 
-/// The lanes that have rows of their own: only they may share a split.
-SubsetSearch subsets_of(const BoostingRows& rows, std::size_t exhaustive_classes) {
-    SubsetSearch subsets;
+/// Returns the lanes that have rows of their own: only they may share a split.
+SubsetOptions subsets_of(const BoostingRows& rows, std::size_t exhaustive_classes) {
+    SubsetOptions subsets;
     for (const RowChunk& chunk : rows.chunks) {
         if (chunk.lane == k_no_lane) continue;
         const auto lane = static_cast<std::uint32_t>(chunk.lane);
@@ -155,7 +156,7 @@ BoostResult train(Booster booster, std::size_t rounds) {
 
 Booster::Booster(std::unique_ptr<Run> run) : run_(std::move(run)) {}
 Booster::Booster(const TrainingSet& training, std::size_t class_count, const BoostOptions& options) {
-    check_options(training, class_count, options);
+    check_boost_options(training, class_count, options);
     run_ = std::make_unique<Run>(training, class_count, 0, options);
 }
 Booster::Booster(Booster&&) noexcept = default;
@@ -163,7 +164,7 @@ Booster& Booster::operator=(Booster&&) noexcept = default;
 Booster::~Booster() = default;
 
 Booster Booster::gentle(const TrainingSet& training, const BoostOptions& options) {
-    check_options(training, 2, options);
+    check_boost_options(training, 2, options);
     return Booster(std::make_unique<Run>(training, 2, 1, options));
 }
 

@@ -9,7 +9,7 @@
 
 namespace exemplar {
 
-/// Short vectors of the compiler's: the weights of one row for up to eight classes ("lanes") are added as one value.
+/// Vector types of the compiler: the weights of one row for up to eight classes ("lanes") are added as one value.
 /// They work on every instruction set; with AVX an operation on eight floats is one instruction.
 template <int width>
 struct LaneTypes {
@@ -21,13 +21,13 @@ using LaneFloats = typename LaneTypes<width>::Floats;
 template <int width>
 using LaneDoubles = typename LaneTypes<width>::Doubles;
 
-constexpr std::size_t k_most_lanes = 8;
+constexpr std::size_t k_max_lanes = 8;
 
 /// Floats that start on a cache line, as LaneFloats need.
 using AlignedFloats = std::vector<float, tbb::cache_aligned_allocator<float>>;
 using AlignedDoubles = std::vector<double, tbb::cache_aligned_allocator<double>>;
 
-/// Factors per lane (padded), for rows whose own lane it is and for others.
+/// Factors per lane (padded): `own` for rows of the lane's class, `other` for all others.
 struct LaneFactors {
     std::vector<double> own, other;
 };
@@ -40,12 +40,12 @@ struct LaneLayout {
 
     explicit LaneLayout(std::size_t lane_count)
         : lanes(lane_count),
-          width(lane_count < k_most_lanes ? std::bit_ceil(lane_count) : k_most_lanes),
+          width(lane_count < k_max_lanes ? std::bit_ceil(lane_count) : k_max_lanes),
           panels((lane_count + width - 1) / width) {}
     std::size_t padded() const { return width * panels; }
 };
 
-/// Calls the body with the layout's width as a template argument, so that it is a constant there.
+/// Calls the body with the layout's width as a template argument, that is as a compile-time constant.
 template <typename Body>
 void with_width(const LaneLayout& layout, Body&& body) {
     switch (layout.width) {

@@ -19,7 +19,8 @@ std::uint64_t sort_key(float value) {
     return static_cast<std::uint64_t>(bits >> 31 ? ~bits : bits | 0x80000000u) << 32;
 }
 
-/// Sorts by the upper half of the keys: a radix sort of four passes of 8 bits, few enough to write to at a time.
+/// Sorts by the upper half of the keys: a radix sort with four passes of 8 bits, so that few places are written to
+/// at once.
 void sort_keys(std::vector<std::uint64_t>& keys) {
     std::array<std::array<std::size_t, 257>, 4> start{};
     for (const std::uint64_t key : keys) {
@@ -68,8 +69,8 @@ void check_bins(std::size_t bins) {
     }
 }
 
-/// The thresholds of a feature, filled up with infinity, which no value is above: a search of a fixed number of steps
-/// without branches lets the processor work on several values at a time.
+/// The thresholds of a feature, padded with infinity, which no value exceeds. A branchless search with a fixed
+/// number of steps lets the processor work on several values at once.
 struct PaddedThresholds {
     std::array<float, k_max_bins> values;
 
@@ -117,7 +118,8 @@ std::vector<float> quantile_thresholds(std::span<const float> values, std::span<
         in_bin += distinct[i].weight;
         const std::size_t bins_left = bins - thresholds.size();
         if (bins_left == 1) break;
-        // The share is taken anew for each bin, so a frequent value that fills a bin leaves the others well divided.
+        // The share is recomputed for each bin: if a frequent value fills one bin, the others are still divided
+        // well.
         if (!keep_all && in_bin * static_cast<double>(bins_left) < left) continue;
         thresholds.push_back(between(distinct[i].value, distinct[i + 1].value));
         left -= in_bin;

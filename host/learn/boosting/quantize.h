@@ -28,10 +28,10 @@ struct QuantizedFeatures {
     std::span<const std::uint8_t> column(std::size_t feature) const { return {bins.data() + feature * rows, rows}; }
 };
 
-/// Thresholds of one feature: between every two neighboring distinct values where these fit into `bins` bins, else at
-/// weighted quantiles, so that bins hold about equal weight. Each is a midpoint between two values that occur (or the
-/// lower one, where no float lies between). NaNs are ignored. `weights`: one per value, not negative; empty means
-/// equal.
+/// Returns the thresholds of one feature: between every two neighboring distinct values if these fit into `bins`
+/// bins, otherwise at weighted quantiles, so that bins have about equal weight. Each is a midpoint between two
+/// values that occur (or the lower one, if no float lies between). NaNs are ignored. `weights`: one per value, not
+/// negative; empty means equal.
 std::vector<float> quantile_thresholds(std::span<const float> values, std::span<const float> weights, std::size_t bins);
 
 /// Quantizes all features, in parallel. `weights`: one per row (e.g. its area); empty means equal.

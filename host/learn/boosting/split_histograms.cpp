@@ -6,11 +6,11 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_chunk_rows = 8192;
-constexpr float k_tiny = 1e-30f;
+constexpr std::size_t k_histogram_chunk = 8192;
+constexpr float k_tiny_sum = 1e-30f;
 
-/// Adds the weights of `count` entries to the histograms of four features: bins x width each. Not inlined, because here
-/// all must stay in registers: this loop is most of the training time.
+/// Adds the weights of `count` entries to the histograms of four features: bins x width each. Not inlined, so that
+/// all of it stays in registers: this loop is most of the training time.
 template <int width, bool indexed>
 [[gnu::noinline]] void add_rows(const LaneFloats<width>* weights, const std::uint32_t* rows, std::size_t count,
                                 const std::array<const std::uint8_t*, 4>& bins, float* histograms, std::size_t stride) {
@@ -50,7 +50,8 @@ RowSelection::RowSelection(const BoostingRows& rows, const SplitCandidate& split
         for (std::uint32_t row = chunk.begin; row < chunk.end; ++row) {
             if ((bins[row] > split.threshold) != above_) continue;
             const auto entry = static_cast<std::uint32_t>(row_.size());
-            if (chunks_.empty() || chunks_.back().lane != chunk.lane || entry - chunks_.back().begin == k_chunk_rows) {
+            if (chunks_.empty() || chunks_.back().lane != chunk.lane ||
+                entry - chunks_.back().begin == k_histogram_chunk) {
                 chunks_.push_back({entry, entry, chunk.lane});
             }
             ++chunks_.back().end;
@@ -147,7 +148,7 @@ void SplitHistograms::flush(const RowChunk& chunk, std::size_t panel, const Lane
     }
 }
 
-void SplitHistograms::follow(const WeightedRows& few, const LaneFactors& small, const LaneFactors& large) {
+void SplitHistograms::update_after_split(const WeightedRows& few, const LaneFactors& small, const LaneFactors& large) {
     LaneFactors rest{large.own, large.other};  // of N: 1 - large / small
     for (std::size_t l = 0; l < rest.own.size(); ++l) {
         rest.own[l] = 1.0 - large.own[l] / small.own[l];
@@ -173,7 +174,7 @@ void SplitHistograms::scale(const LaneFactors& factors) {
     });
 }
 
-/// A sum that rounding made negative would let a split of no weight gain.
+/// Raises sums that rounding made negative to zero: with them, a split without weight would gain.
 void SplitHistograms::forget_rounding() {
     for (Group& group : groups_) {
         for (AlignedDoubles* sums : {&group.own, &group.other}) {
@@ -193,7 +194,7 @@ void SplitHistograms::split_sums(std::size_t index, std::span<const std::uint32_
         double all_own = 0.0, all_other = 0.0;
         for (std::size_t b = 0; b <= thresholds; ++b) all_own += own[b * width], all_other += other[b * width];
         const double all_s = all_own - all_other, all_w = all_own + all_other;
-        out.constant_gain[c] = static_cast<float>(all_s * all_s / (all_w + static_cast<double>(k_tiny)));
+        out.constant_gain[c] = static_cast<float>(all_s * all_s / (all_w + static_cast<double>(k_tiny_sum)));
         double below_own = 0.0, below_other = 0.0;
         for (std::size_t t = 0; t < thresholds; ++t) {
             below_own += own[t * width], below_other += other[t * width];

@@ -10,7 +10,7 @@
 
 namespace exemplar {
 
-/// Rows whose weights are to be added up: all rows in their order, or chosen ones with copies of their weights.
+/// Rows whose weights are summed: all rows in order, or chosen ones with copies of their weights.
 struct WeightedRows {
     std::span<const std::uint32_t> row;  ///< row of each entry; empty: entry i is row i
     std::span<const float> weights;      ///< panels x entries x width
@@ -20,7 +20,7 @@ struct WeightedRows {
 /// The rows of one side of a split, with copies of their weights.
 class RowSelection {
   public:
-    /// Of the two sides of `split` the one with fewer rows.
+    /// Selects the side of `split` with fewer rows.
     RowSelection(const BoostingRows& rows, const SplitCandidate& split);
 
     bool is_above() const { return above_; }
@@ -33,23 +33,24 @@ class RowSelection {
     std::vector<RowChunk> chunks_;
 };
 
-/// Histograms of the weights for a few features: per bin and lane the sums over the rows whose own lane it is and over
-/// the others.
+/// Histograms of the weights for a few features: per bin and lane, the sum over the rows of the lane's class (own),
+/// and the sum over all others (other).
 class SplitHistograms {
   public:
-    static constexpr std::size_t k_features = 16;  ///< at most; their bins are read while the weights are in cache
+    static constexpr std::size_t k_features = 16;  ///< maximum; their bins are read while the weights are in cache
 
     SplitHistograms(const BoostingRows& rows, const QuantizedFeatures& features, std::span<const std::uint32_t> list);
 
     void clear();
-    /// Adds the weights of `added`, times the factors.
+    /// Adds the weights of `added`, multiplied by the factors.
     void add(const WeightedRows& added, const LaneFactors& factors);
-    /// Follows a change of weights: `large` are the factors of most rows, `small` those of `few`, which have their new
-    /// weights. With N the new sum of the few, the old sum H becomes (H - N / small) large + N.
-    void follow(const WeightedRows& few, const LaneFactors& small, const LaneFactors& large);
+    /// Updates the sums after a change of weights. Most rows were multiplied by `large`, `few` rows, which hold
+    /// their new weights, by `small`. With N the new sum of the few, the old sum H becomes (H - N / small) large +
+    /// N.
+    void update_after_split(const WeightedRows& few, const LaneFactors& small, const LaneFactors& large);
 
     std::span<const std::uint32_t> features() const { return list_; }
-    /// The sums of the splits of feature number `index` of the list, for these lanes.
+    /// Computes the sums of the splits of feature number `index` of the list, for these lanes.
     void split_sums(std::size_t index, std::span<const std::uint32_t> candidates, SplitSums& out) const;
 
   private:
@@ -57,11 +58,12 @@ class SplitHistograms {
 
     /// Sums of four features: panels x four x bins x width.
     struct Group {
-        std::size_t bins = 0;  ///< most bins of the four
+        std::size_t bins = 0;  ///< maximum bins of the four
         AlignedDoubles own, other;
     };
 
-    /// The last group repeats the last feature; what that adds up is not read.
+    /// Returns the feature in a slot. The last group is filled up with the last feature, whose extra sums are not
+    /// read.
     std::uint32_t feature(std::size_t group, std::size_t slot) const;
     template <int width>
     void add_chunk(const WeightedRows& added, const RowChunk& chunk, std::size_t panel, const LaneFactors& factors,

@@ -9,7 +9,7 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_carried_rounds = 16;
+constexpr std::size_t k_rebuild_interval = 16;
 
 SplitCandidate better_of(const std::vector<SplitCandidate>& of_task) {
     SplitCandidate best;
@@ -30,11 +30,11 @@ std::vector<std::span<const std::uint32_t>> tasks_of(std::span<const std::uint32
 
 }  // namespace
 
-StumpSearch::StumpSearch(const BoostingRows& rows, const QuantizedFeatures& features, SubsetSearch subsets, bool carry)
+StumpSearch::StumpSearch(const BoostingRows& rows, const QuantizedFeatures& features, SubsetOptions subsets, bool carry)
     : rows_(rows),
       features_(features),
       subsets_(std::move(subsets)),
-      carry_(carry),
+      incremental_(carry),
       ones_{std::vector<double>(rows.layout.padded(), 1.0), std::vector<double>(rows.layout.padded(), 1.0)} {
     for (std::uint32_t f = 0; f < features.cols(); ++f) {
         if (!features.thresholds[f].empty()) usable_.push_back(f);
@@ -57,8 +57,8 @@ SplitCandidate StumpSearch::best(std::span<const std::uint32_t> list) const {
 }
 
 SplitCandidate StumpSearch::best() {
-    if (!carry_) return best(usable_);
-    const bool anew = kept_.empty() || carried_ >= k_carried_rounds;
+    if (!incremental_) return best(usable_);
+    const bool anew = kept_.empty() || rounds_since_rebuild_ >= k_rebuild_interval;
     if (kept_.empty()) {
         for (const std::span<const std::uint32_t> task : tasks_of(usable_)) kept_.emplace_back(rows_, features_, task);
     }
@@ -68,17 +68,17 @@ SplitCandidate StumpSearch::best() {
         refresh(kept_[t], changed.get());
         of_task[t] = best_of(kept_[t]);
     });
-    if (anew) carried_ = 0;
+    if (anew) rounds_since_rebuild_ = 0;
     return better_of(of_task);
 }
 
-/// Brings histograms up to date: from the rows that changed otherwise than most, or (null) from all rows.
+/// Updates histograms from the rows of the smaller side of the last split, or (null) rebuilds them from all rows.
 void StumpSearch::refresh(SplitHistograms& histograms, const RowSelection* selection) const {
     if (selection) {
         const LaneFactors& above = last_factors_.above;
         const LaneFactors& below = last_factors_.below;
         const bool is_above = selection->is_above();
-        histograms.follow(selection->view(), is_above ? above : below, is_above ? below : above);
+        histograms.update_after_split(selection->view(), is_above ? above : below, is_above ? below : above);
     } else {
         histograms.clear();
         histograms.add(all_rows(), ones_);
@@ -88,7 +88,7 @@ void StumpSearch::refresh(SplitHistograms& histograms, const RowSelection* selec
 void StumpSearch::weights_changed(const SplitCandidate& split, const WeightFactors& factors) {
     last_split_ = split;
     last_factors_ = factors;
-    ++carried_;
+    ++rounds_since_rebuild_;
 }
 
 SplitCandidate StumpSearch::best_of(const SplitHistograms& histograms) const {

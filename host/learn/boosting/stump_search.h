@@ -11,7 +11,7 @@
 namespace exemplar {
 
 /// Which subsets of lanes the search may share a split between.
-struct SubsetSearch {
+struct SubsetOptions {
     std::vector<std::uint32_t> candidates;  ///< lanes that may share
     bool exhaustive = true;                 ///< all subsets, else greedily grown (Torralba et al. 2007)
 };
@@ -20,18 +20,18 @@ struct SubsetSearch {
 /// the lower feature, threshold and subset, so the result does not depend on threads.
 class StumpSearch {
   public:
-    /// Keeps references to the data, and searches the features that have a threshold. Where every round reads all rows
-    /// and features (`carry`), it keeps the histograms: after a split only the rows of its smaller side are read, as
-    /// the weights of all others change by one factor per lane. Every few rounds they are made anew, so that rounding
-    /// does not build up.
-    StumpSearch(const BoostingRows& rows, const QuantizedFeatures& features, SubsetSearch subsets, bool carry);
+    /// Keeps references to the data. Searches the features that have a threshold. With `carry`, for when every round
+    /// reads all rows and features, it keeps the histograms: after a split it reads only the rows of the smaller
+    /// side, as the weights of all others change by one factor per lane. It rebuilds them every few rounds, so that
+    /// rounding does not build up.
+    StumpSearch(const BoostingRows& rows, const QuantizedFeatures& features, SubsetOptions subsets, bool carry);
 
     const std::vector<std::uint32_t>& features() const { return usable_; }
-    /// The best split over all features and rows.
+    /// Returns the best split over all features and rows.
     SplitCandidate best();
-    /// The best split over the features of `list`.
+    /// Returns the best split over the features of `list`.
     SplitCandidate best(std::span<const std::uint32_t> list) const;
-    /// The weights of the rows changed by `factors`, by this split.
+    /// Notes that the weights of the rows have changed by `factors`, on the sides of `split`.
     void weights_changed(const SplitCandidate& split, const WeightFactors& factors);
 
   private:
@@ -41,12 +41,12 @@ class StumpSearch {
 
     const BoostingRows& rows_;
     const QuantizedFeatures& features_;
-    SubsetSearch subsets_;
+    SubsetOptions subsets_;
     std::vector<std::uint32_t> usable_;
-    bool carry_;
+    bool incremental_;
     LaneFactors ones_;
     std::vector<SplitHistograms> kept_;
-    std::size_t carried_ = 0;  // rounds since the histograms were made anew
+    std::size_t rounds_since_rebuild_ = 0;  // rounds since the histograms were rebuilt
     SplitCandidate last_split_;
     WeightFactors last_factors_;
 };

@@ -12,7 +12,7 @@ constexpr std::size_t k_step = 8;  // thresholds handled together
 using Floats = LaneFloats<k_step>;
 using Mask [[gnu::vector_size(k_step * 4)]] = std::int32_t;
 
-constexpr float k_tiny = 1e-30f;  // keeps an empty side's 0 / 0 at 0
+constexpr float k_tiny_subset = 1e-30f;  // keeps an empty side's 0 / 0 at 0
 
 /// Sums of one subset for k_step thresholds.
 struct StepSums {
@@ -21,7 +21,9 @@ struct StepSums {
     StepSums plus(const StepSums& other) const {
         return {below_s + other.below_s, below_w + other.below_w, above_s + other.above_s, above_w + other.above_w};
     }
-    Floats gain() const { return below_s * below_s / (below_w + k_tiny) + above_s * above_s / (above_w + k_tiny); }
+    Floats gain() const {
+        return below_s * below_s / (below_w + k_tiny_subset) + above_s * above_s / (above_w + k_tiny_subset);
+    }
 };
 
 Floats load(const std::vector<float>& values, std::size_t at) {
@@ -57,7 +59,7 @@ struct GrowingSubset {
     Floats gain{};
     Mask last{};  // the class it grew by last
 
-    /// This subset and the class, among those not taken, that gains most.
+    /// Returns this subset with one more class: the one that gains most among those not taken.
     GrowingSubset grown(const std::vector<StepSums>& of_class, const std::vector<float>& constant_gain,
                         const std::vector<Mask>& taken) const {
         GrowingSubset best = *this;
@@ -100,7 +102,7 @@ SubsetChoice best_subset_exhaustive(const SplitSums& sums, float floor) {
     for (std::uint32_t s = 1; s < subsets; ++s) {
         constant[s] = constant[s & (s - 1)] + sums.constant_gain[static_cast<std::size_t>(std::countr_zero(s))];
     }
-    // A subset's sums are those of the subset without its lowest class, plus that class.
+    // The sums of a subset are those of the subset without its lowest class, plus those of that class.
     std::vector<StepSums> of_subset(subsets), of_class(sums.classes);
     SubsetChoice best{floor, 0, 0};
     for (std::size_t threshold = 0; threshold < sums.stride; threshold += k_step) {

@@ -7,8 +7,9 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_block = 512;  // values ranked together: these and their ranks stay in the first-level cache
-// Up to as many thresholds, comparing with each, many values at once, is faster than searching.
+constexpr std::size_t k_ranking_block =
+    512;  // values ranked together: these and their ranks stay in the first-level cache
+// Up to this many thresholds, comparing every value with each threshold (vectorized) is faster than searching.
 constexpr std::size_t k_most_compared = 128;
 
 template <typename Rank>
@@ -20,15 +21,16 @@ void rank_block(std::span<const float> values, std::span<const float> thresholds
     }
     std::ranges::fill(ranks, Rank{0});
     for (const float threshold : thresholds)
-        for (std::size_t i = 0; i < values.size(); ++i) ranks[i] += values[i] > threshold ? 1 : 0;
+        for (std::size_t i = 0; i < values.size(); ++i)
+            ranks[i] = static_cast<Rank>(ranks[i] + (values[i] > threshold ? 1 : 0));
 }
 
-// Ranks may go to memory that is slow to read: each is written once.
+// The output may be memory that is slow to read, so each rank is written once.
 template <typename Rank>
 void rank_all(std::span<const float> values, std::span<const float> thresholds, std::span<Rank> ranks) {
-    std::array<Rank, k_block> block;
-    for (std::size_t begin = 0; begin < values.size(); begin += k_block) {
-        const std::size_t count = std::min(k_block, values.size() - begin);
+    std::array<Rank, k_ranking_block> block;
+    for (std::size_t begin = 0; begin < values.size(); begin += k_ranking_block) {
+        const std::size_t count = std::min(k_ranking_block, values.size() - begin);
         rank_block(values.subspan(begin, count), thresholds, std::span(block).first(count));
         std::copy_n(block.begin(), count, ranks.begin() + static_cast<std::ptrdiff_t>(begin));
     }

@@ -8,21 +8,21 @@
 
 namespace exemplar {
 
-/// What stumps compare a feature with.
+/// The thresholds that stumps compare one feature with.
 struct FeatureThresholds {
     std::uint32_t feature;
     std::vector<float> thresholds;  ///< distinct, rising
 
-    /// Which one of them this is; it is one.
+    /// Returns the index of `threshold`, which must be one of them.
     std::uint32_t index_of(float threshold) const;
 };
 
-/// Of each feature that a stump names, by rising number. Thresholds are numbers.
+/// Returns the thresholds of each feature that a stump uses, by rising feature number. No threshold may be NaN.
 std::vector<FeatureThresholds> thresholds_of(std::span<const Stump> stumps);
 
-/// Ranks of values: how many of `thresholds` (distinct, rising) lie below each. All that stumps ask of a value is in
-/// it: value > thresholds[i] holds exactly where rank > i, of NaN nowhere. As many ranks as values; each is at most
-/// thresholds.size(), which must fit.
+/// Computes the ranks of values: the number of `thresholds` (distinct, rising) below each. A rank answers every
+/// stump: value > thresholds[i] holds exactly where rank > i, and NaN has rank 0. `ranks` has one entry per value;
+/// thresholds.size() must fit its type.
 void rank(std::span<const float> values, std::span<const float> thresholds, std::span<std::uint8_t> ranks);
 void rank(std::span<const float> values, std::span<const float> thresholds, std::span<std::uint16_t> ranks);
 

@@ -7,10 +7,11 @@
 
 namespace exemplar {
 
-/// The rows named, or all of them. Throws UsageError for an index out of range.
+/// Returns `rows`, or all rows if it is empty. Throws UsageError for an index out of range.
 std::vector<std::uint32_t> used_rows(std::span<const std::uint32_t> rows, std::size_t row_count);
 
-/// Checks labels and weights of the rows used: UsageError for sizes and labels, DataError for weights.
+/// Checks labels and weights of the used rows. Throws UsageError for wrong sizes and labels, DataError for wrong
+/// weights.
 void check_pairs(std::span<const std::uint32_t> rows, std::size_t row_count, std::span<const std::int32_t> labels,
                  std::span<const float> weights, std::size_t class_count);
 

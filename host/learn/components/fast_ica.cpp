@@ -19,7 +19,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Samples = Eigen::Ref<const Eigen::MatrixXf>;
 
-/// Samples along the first D principal directions, in double: a float would lose the weak directions in the strong.
+/// Samples along the first D principal directions, in double: floats would lose weak directions beside strong ones.
 struct Projection {
     MatrixXd basis;       // M x D
     MatrixXd components;  // N x D, zero mean
@@ -34,7 +34,7 @@ struct Mixture {
     IcaRotation rotation;
 };
 
-void check_options(const IcaOptions& options) {
+void check_ica_options(const IcaOptions& options) {
     if (options.iterations < 1) throw UsageError("independent components take at least one iteration");
     if (!(options.tolerance > 0)) throw UsageError("the tolerance of independent components must be above 0");
 }
@@ -122,22 +122,22 @@ Ica in_order(const Mixture& mixture, const Eigen::VectorXf& mean) {
 }  // namespace
 
 Ica fit_ica(const Samples& samples, const IcaOptions& options) {
-    check_options(options);
+    check_ica_options(options);
     return rotate_to_independent(fit_pca(samples, options.share, options.most), samples, options);
 }
 
 Ica rotate_to_independent(const Pca& pca, const Samples& samples, const IcaOptions& options) {
-    check_options(options);
+    check_ica_options(options);
     return in_order(rotate_sources(project_samples(pca, samples, options), options), pca.mean);
 }
 
 Ica fit_spatial_ica(const Samples& samples, const IcaOptions& options) {
-    check_options(options);
+    check_ica_options(options);
     return rotate_to_sparse(fit_pca(samples, options.share, options.most), samples, options);
 }
 
 Ica rotate_to_sparse(const Pca& pca, const Samples& samples, const IcaOptions& options) {
-    check_options(options);
+    check_ica_options(options);
     return in_order(rotate_basis(project_samples(pca, samples, options), options), pca.mean);
 }
 

@@ -8,7 +8,7 @@
 
 namespace exemplar {
 
-/// The function G whose mean over a component says how far from Gaussian it is (Hyvarinen 1999).
+/// The contrast function G, whose mean over a component measures how far from Gaussian it is (Hyvarinen 1999).
 enum class IcaContrast {
     log_cosh,  ///< log cosh u: for most data
     gauss,     ///< -exp(-u^2 / 2): for very heavy tails
@@ -21,12 +21,12 @@ enum class IcaScheme {
 };
 
 struct IcaOptions {
-    double share = 0.95;             ///< of the variance that the components carry, in (0, 1]
-    std::size_t most = k_unlimited;  ///< components
+    double share = 0.95;             ///< share of the variance that the components carry, in (0, 1]
+    std::size_t most = k_unlimited;  ///< maximum number of components
     IcaContrast contrast = IcaContrast::log_cosh;
     IcaScheme scheme = IcaScheme::symmetric;
-    std::uint64_t seed = 1;   ///< of the rotation that the search starts from
-    int iterations = 200;     ///< at most, per component under deflation
+    std::uint64_t seed = 1;   ///< of the initial rotation
+    int iterations = 200;     ///< maximum, per component under deflation
     double tolerance = 1e-5;  ///< a component has converged when the cosine of its change is this close to 1
 };
 
@@ -37,29 +37,30 @@ struct Ica {
     Eigen::MatrixXf unmixing;  ///< D x M: z = unmixing (y - mean)
     Eigen::MatrixXf sources;   ///< N x D: z of the samples, of zero mean and unit variance
     bool converged = true;     ///< if not, the components are still a basis of the same subspace
-    int iterations = 0;        ///< the most that a component took
+    int iterations = 0;        ///< maximum over the components
 };
 
-/// FastICA (Hyvarinen 1999, the thesis' [56]) of `samples` (N x M, a sample per row): whitens them to the principal
-/// components that carry options.share of the variance, and rotates these to where they are least Gaussian, so that
-/// the sources are as independent over the samples as can be. They are uncorrelated, and the third moment of each is
-/// positive. Where the fixed-point iteration swings, its steps are shortened; Gaussian data may not converge. The same
-/// seed gives the same result on any number of threads. Samples that do not vary have no components.
+/// FastICA (Hyvarinen 1999, the thesis' [56]) of `samples` (N x M, one sample per row). Whitens them to the
+/// principal components that carry options.share of the variance, and rotates these to be least Gaussian, so that
+/// the sources are as independent over the samples as possible. Sources are uncorrelated, and the third moment of
+/// each is positive. If the fixed-point iteration oscillates, its steps are shortened; Gaussian data may not
+/// converge. The same seed gives the same result on any number of threads. Samples that do not vary have no
+/// components.
 /// Throws what fit_pca throws, and UsageError for a tolerance or a number of iterations that is not above 0.
 Ica fit_ica(const Eigen::Ref<const Eigen::MatrixXf>& samples, const IcaOptions& options = {});
 
-/// The same where `pca`, the principal components of these samples, is already there; of its components it uses those
-/// that options.share and options.most ask for. Throws UsageError if they are not of samples of this size.
+/// The same for known principal components `pca` of these samples, of which it uses those that options.share and
+/// options.most select. Throws UsageError if `pca` is of samples of another size.
 Ica rotate_to_independent(const Pca& pca, const Eigen::Ref<const Eigen::MatrixXf>& samples,
                           const IcaOptions& options = {});
 
-/// FastICA the other way around, for local bases (thesis Fig. 2.6): rotates the orthonormal basis of the principal
-/// subspace so that the columns of the mixing matrix are as independent over the M values as can be, which for local
+/// Spatial FastICA, for local bases (thesis Fig. 2.6): rotates the orthonormal basis of the principal subspace so
+/// that the columns of the mixing matrix are as independent over the M values as possible, which for local
 /// deformations means sparse. The columns are orthogonal; the third moment of each over its entries is positive. The
 /// sources are the projections of the samples, scaled to unit variance; unlike those of fit_ica they may correlate.
-/// Otherwise as fit_ica.
+/// Otherwise like fit_ica.
 Ica fit_spatial_ica(const Eigen::Ref<const Eigen::MatrixXf>& samples, const IcaOptions& options = {});
-/// The same where `pca` is already there, as rotate_to_independent.
+/// The same for known principal components, see rotate_to_independent.
 Ica rotate_to_sparse(const Pca& pca, const Eigen::Ref<const Eigen::MatrixXf>& samples, const IcaOptions& options = {});
 
 }  // namespace exemplar

@@ -1,13 +1,12 @@
 #include "host/learn/components/ica_rotation.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "host/core/parallel.h"
 #include "host/core/random.h"
+#include "host/learn/decompositions.h"
 
 namespace exemplar {
 namespace {
@@ -16,7 +15,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// The first two derivatives of the contrast function at every component, g = G' in place; returns the mean of g' per
+/// Replaces the components `u` by the derivative g = G' of the contrast function, and returns the mean of g' per
 /// column, times the number of rows.
 Eigen::RowVectorXd derivatives(MatrixXd& u, IcaContrast contrast) {
     auto g = u.array();
@@ -58,14 +57,14 @@ MatrixXd fixed_point_step(const MatrixXd& white, const MatrixXd& rows, IcaContra
 /// singular.
 MatrixXd nearest_rotation(const MatrixXd& rows) {
     constexpr double k_singular = 1e-8;
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> squared(rows * rows.transpose());
-    const auto& values = squared.eigenvalues();
-    if (values(0) > k_singular * values(values.size() - 1)) return squared.operatorInverseSqrt() * rows;
-    const Eigen::BDCSVD<MatrixXd> svd(rows, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    return svd.matrixU() * svd.matrixV().transpose();
+    const SymmetricEigen squared = symmetric_eigen(rows * rows.transpose());
+    if (squared.values(0) > k_singular * squared.values(squared.values.size() - 1))
+        return squared.inverse_sqrt() * rows;
+    const SingularValues svd = singular_values(rows);
+    return svd.u * svd.v.transpose();
 }
 
-/// Decides when to shorten the steps: when for a while the changes have not become much smaller.
+/// Halves the step length when the changes have not become much smaller for a while, as the iteration oscillates.
 class StepLength {
   public:
     double after(double change) {
@@ -102,7 +101,7 @@ IcaRotation rotate_together(const MatrixXd& white, MatrixXd rows, const IcaOptio
     return {rows, false, options.iterations};
 }
 
-/// `row` without its part along the first `count` rows, of unit length; false if nothing is left.
+/// Makes `row` orthogonal to the first `count` rows and of unit length; returns false if nothing is left of it.
 bool make_orthogonal(Eigen::RowVectorXd& row, const MatrixXd& rows, Index count) {
     constexpr double k_vanished = 1e-10;
     const double before = row.norm();
@@ -118,7 +117,7 @@ struct DeflationEnd {
     int iterations;
 };
 
-/// Finds row number `d`, orthogonal to those before; rows.row(d) is where it starts.
+/// Finds row number `d`, orthogonal to those before, starting from rows.row(d).
 DeflationEnd rotate_one(const MatrixXd& white, MatrixXd& rows, Index d, const IcaOptions& options) {
     StepLength step_length;
     Eigen::RowVectorXd row = rows.row(d);
@@ -142,7 +141,7 @@ IcaRotation rotate_in_turn(const MatrixXd& white, MatrixXd rows, const IcaOption
     IcaRotation out{std::move(rows), true, 0};
     for (Index d = 0; d < out.rows.rows(); ++d) {
         Eigen::RowVectorXd start = out.rows.row(d);
-        // Any direction that is still free will do where the start is not.
+        // If the start depends on the rows before, any free axis will do.
         for (Index axis = 0; !make_orthogonal(start, out.rows, d); ++axis) {
             start = Eigen::RowVectorXd::Unit(out.rows.cols(), axis);
         }

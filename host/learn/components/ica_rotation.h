@@ -6,15 +6,16 @@
 
 namespace exemplar {
 
-/// Where the fixed-point iteration of FastICA ended.
+/// Result of FastICA's fixed-point iteration.
 struct IcaRotation {
     Eigen::MatrixXd rows;  ///< D x D orthogonal: component d of a white sample w is rows.row(d) * w
     bool converged = true;
     int iterations = 0;
 };
 
-/// The rotation that makes the components of `white` (samples x D, second moments = the identity) least Gaussian:
-/// FastICA's fixed-point iteration by the contrast, scheme, seed, iterations and tolerance of the options.
+/// Finds the rotation that makes the components of `white` (samples x D, second moments = the identity) least
+/// Gaussian: FastICA's fixed-point iteration with the contrast, scheme, seed, iterations and tolerance of the
+/// options.
 IcaRotation find_rotation(const Eigen::MatrixXd& white, const IcaOptions& options);
 
 }  // namespace exemplar

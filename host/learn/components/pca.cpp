@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
+#include "host/learn/decompositions.h"
 #include "host/learn/regression/gram.h"
 
 namespace exemplar {
@@ -59,7 +59,7 @@ Eigen::MatrixXd centered_columns(const Samples& samples, const Eigen::VectorXd& 
     return samples.middleCols(begin, count).cast<double>().rowwise() - mean.segment(begin, count).transpose();
 }
 
-/// Centered samples times their transpose, or the other way around where that is smaller.
+/// Returns the smaller Gram matrix of the centered samples: by sample or by value.
 Eigen::MatrixXd smaller_gram(const Samples& samples, const Eigen::VectorXd& mean, bool by_sample) {
     if (by_sample) {
         return gram_of_chunks(samples.rows(), samples.cols(),
@@ -72,9 +72,9 @@ Eigen::MatrixXd smaller_gram(const Samples& samples, const Eigen::VectorXd& mean
 
 Spectrum spectrum_of(const Eigen::MatrixXd& gram, Index samples) {
     if (gram.size() == 0) return {};
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(gram);
-    Spectrum out{solver.eigenvalues().reverse() / static_cast<double>(samples),
-                 solver.eigenvectors().rowwise().reverse(), gram.trace() / static_cast<double>(samples)};
+    const SymmetricEigen eigen = symmetric_eigen(gram);
+    Spectrum out{eigen.values.reverse() / static_cast<double>(samples), eigen.vectors.rowwise().reverse(),
+                 gram.trace() / static_cast<double>(samples)};
     out.variance = out.variance.cwiseMax(0.0);
     return out;
 }
@@ -86,8 +86,8 @@ Index varying(const Spectrum& spectrum, double mean_square) {
     return (spectrum.variance.array() > floor).count();
 }
 
-/// Unit directions from the eigenvectors of the samples' Gram matrix. Those of small variance come out less than
-/// orthogonal; the Cholesky factor of their own Gram matrix straightens them (as Gram-Schmidt would, largest first).
+/// Returns unit directions from the eigenvectors of the samples' Gram matrix. Those of small variance are not quite
+/// orthogonal; the Cholesky factor of their own Gram matrix corrects that (as Gram-Schmidt would, largest first).
 Eigen::MatrixXd directions_from_samples(const Samples& samples, const Eigen::VectorXd& mean, const Spectrum& spectrum,
                                         Index count) {
     if (count == 0) return Eigen::MatrixXd(samples.cols(), 0);
@@ -139,7 +139,7 @@ Eigen::MatrixXf Pca::restore(const Samples& components) const {
 std::size_t components_for_variance(const Eigen::Ref<const Eigen::VectorXd>& variance, double total, double share) {
     check_share(share);
     if (total <= 0) return 0;
-    // Adding up would lose the last ones in rounding.
+    // Summing up would lose the last ones in rounding.
     if (share == 1) return static_cast<std::size_t>((variance.array() > 0).count());
     double sum = 0;
     for (Index d = 0; d < variance.size(); ++d) {

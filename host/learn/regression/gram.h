@@ -9,9 +9,9 @@
 
 namespace exemplar {
 
-/// A A^T in double (rows x rows, both triangles), for an A of `columns` columns that is never held as a whole:
-/// `chunk(begin, end)` gives its columns [begin, end) as a MatrixXd. Runs on all cores; the columns are always summed
-/// in the same order.
+/// Computes A A^T in double (rows x rows, both triangles) for a matrix A of `columns` columns that is never stored
+/// as a whole: `chunk(begin, end)` returns its columns [begin, end) as a MatrixXd. Runs on all cores; the columns
+/// are always summed in the same order.
 template <typename Chunk>
 Eigen::MatrixXd gram_of_chunks(Eigen::Index rows, Eigen::Index columns, const Chunk& chunk) {
     constexpr Eigen::Index k_groups = 8, k_chunk = 512;

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +9,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
+#include "host/learn/decompositions.h"
 #include "host/learn/regression/gram.h"
 
 namespace exemplar {
@@ -19,12 +18,12 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using Matrix = Eigen::Ref<const MatrixXd>;
+using DoubleRef = Eigen::Ref<const MatrixXd>;
 
 constexpr double k_constant = 1e-10;   // standard deviation over magnitude: below, a feature is its mean and rounding
 constexpr double k_dependent = 1e-12;  // of the largest singular value: below, features depend on each other
 
-void check_finite(const Matrix& values, const char* what) {
+void check_finite_values(const DoubleRef& values, const char* what) {
     if (values.allFinite()) return;
     for (Index i = 0; i < values.rows(); ++i) {
         if (values.row(i).allFinite()) continue;
@@ -32,19 +31,19 @@ void check_finite(const Matrix& values, const char* what) {
     }
 }
 
-void check_features(const Matrix& features) {
+void check_features(const DoubleRef& features) {
     if (features.size() == 0) throw UsageError("there are no samples or no features to fit; give at least one");
     if ((features.col(0).array() != 1.0).any()) {
         throw UsageError("the first feature must be the constant 1, as of polynomial_features");
     }
-    check_finite(features, "feature");
+    check_finite_values(features, "feature");
 }
 
-void check_targets(const Matrix& targets, Index samples) {
+void check_targets(const DoubleRef& targets, Index samples) {
     if (targets.rows() != samples) {
         throw UsageError(fmt::format("there are targets of {} samples, but features of {}", targets.rows(), samples));
     }
-    check_finite(targets, "target");
+    check_finite_values(targets, "target");
 }
 
 void check_ridge(double ridge) {
@@ -52,15 +51,16 @@ void check_ridge(double ridge) {
     throw UsageError(fmt::format("a ridge of {} is not a number from 0 up", ridge));
 }
 
-/// Sum of the squared errors of the samples [begin, end) when they are left out: their residuals r become
-/// (I - H_BB)^-1 r. `residual` is I - H, `gram` targets times their transpose; infinite where the others say nothing.
+/// Returns the sum of the squared errors of the samples [begin, end) when they are left out: their residuals r
+/// become (I - H_BB)^-1 r. `residual` is I - H, `gram` is targets times their transpose. Infinite if the other
+/// samples do not determine the prediction.
 double left_out_error(const MatrixXd& residual, const MatrixXd& gram, Index begin, Index end) {
     constexpr double k_undetermined = 1e-10;
     const Index count = end - begin;
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> block(residual.block(begin, begin, count, count));
-    if (block.eigenvalues()(0) < k_undetermined) return std::numeric_limits<double>::infinity();
-    const MatrixXd rows = block.eigenvalues().cwiseInverse().asDiagonal() * block.eigenvectors().transpose() *
-                          residual.middleRows(begin, count);
+    const SymmetricEigen block = symmetric_eigen(residual.block(begin, begin, count, count));
+    if (block.values(0) < k_undetermined) return std::numeric_limits<double>::infinity();
+    const MatrixXd rows =
+        block.values.cwiseInverse().asDiagonal() * block.vectors.transpose() * residual.middleRows(begin, count);
     return std::max(0.0, (rows * gram).cwiseProduct(rows).sum());
 }
 
@@ -112,7 +112,7 @@ MatrixXd polynomial_features(const Eigen::Ref<const Eigen::MatrixXf>& x, int deg
     return phi;
 }
 
-FeatureDecomposition::FeatureDecomposition(const Matrix& features) {
+FeatureDecomposition::FeatureDecomposition(const DoubleRef& features) {
     check_features(features);
     mean_ = features.colwise().mean();
     inverse_ = VectorXd::Zero(features.cols());
@@ -133,13 +133,13 @@ FeatureDecomposition::FeatureDecomposition(const Matrix& features) {
         left_.resize(features.rows(), 0), right_.resize(features.cols(), 0);
         return;
     }
-    const Eigen::BDCSVD<MatrixXd> svd(standardized, Eigen::ComputeThinU | Eigen::ComputeThinV);
-    const Index rank = (svd.singularValues().array() > k_dependent * svd.singularValues()(0)).count();
-    singular_ = svd.singularValues().head(rank);
-    left_ = svd.matrixU().leftCols(rank);
+    const SingularValues svd = singular_values(standardized);
+    const Index rank = (svd.values.array() > k_dependent * svd.values(0)).count();
+    singular_ = svd.values.head(rank);
+    left_ = svd.u.leftCols(rank);
     right_ = MatrixXd::Zero(features.cols(), rank);
     for (std::size_t v = 0; v < varying.size(); ++v) {
-        right_.row(varying[v]) = svd.matrixV().row(static_cast<Index>(v)).head(rank);
+        right_.row(varying[v]) = svd.v.row(static_cast<Index>(v)).head(rank);
     }
 }
 
@@ -151,13 +151,13 @@ VectorXd FeatureDecomposition::shrinkage(double ridge) const {
 MatrixXd FeatureDecomposition::solution_operator(double ridge) const {
     const VectorXd gain = shrinkage(ridge).cwiseQuotient(singular_);
     MatrixXd out = inverse_.asDiagonal() * right_ * gain.asDiagonal() * left_.transpose();
-    // What the centering took away comes back in the constant: the mean target less the mean prediction.
+    // The constant makes up for the centering: the mean target minus the mean prediction.
     out.row(0) = -mean_.transpose() * out;
     out.row(0).array() += 1.0 / static_cast<double>(samples());
     return out;
 }
 
-LeastSquares::LeastSquares(const Matrix& features, double ridge)
+LeastSquares::LeastSquares(const DoubleRef& features, double ridge)
     : LeastSquares(FeatureDecomposition(features), ridge) {}
 
 LeastSquares::LeastSquares(const FeatureDecomposition& features, double ridge) {
@@ -167,7 +167,7 @@ LeastSquares::LeastSquares(const FeatureDecomposition& features, double ridge) {
     leverage_.array() += 1.0 / static_cast<double>(features.samples());
 }
 
-MatrixXd LeastSquares::solve(const Matrix& targets) const {
+MatrixXd LeastSquares::solve(const DoubleRef& targets) const {
     check_targets(targets, operator_.cols());
     MatrixXd out(operator_.rows(), targets.cols());
     constexpr Index k_block = 256;
@@ -178,11 +178,11 @@ MatrixXd LeastSquares::solve(const Matrix& targets) const {
     return out;
 }
 
-RidgeChoice leave_one_out(const Matrix& features, const Matrix& targets, std::span<const double> candidates) {
+RidgeChoice leave_one_out(const DoubleRef& features, const DoubleRef& targets, std::span<const double> candidates) {
     return leave_blocks_out(features, targets, candidates, static_cast<std::size_t>(features.rows()));
 }
 
-RidgeChoice leave_blocks_out(const Matrix& features, const Matrix& targets, std::span<const double> candidates,
+RidgeChoice leave_blocks_out(const DoubleRef& features, const DoubleRef& targets, std::span<const double> candidates,
                              std::size_t blocks) {
     if (candidates.empty()) throw UsageError("there are no candidates for the ridge; give at least one");
     for (const double candidate : candidates) check_ridge(candidate);

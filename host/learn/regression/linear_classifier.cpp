@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -10,6 +9,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
+#include "host/learn/decompositions.h"
 #include "host/learn/regression/gram.h"
 
 namespace exemplar {
@@ -17,15 +17,15 @@ namespace {
 
 using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr std::size_t k_block = 256;        // rows that are standardized together
-constexpr double k_least_variance = 1e-12;  // of the mean square, below which a feature does not vary
+constexpr std::size_t k_standardized_block = 256;  // rows that are standardized together
+constexpr double k_least_variance = 1e-12;         // of the squared mean; below, a feature does not vary
 
 float standardized(float value, float mean, float inverse) {
     const float z = (value - mean) * inverse;
-    return std::isnan(z) ? 0 : std::clamp(z, -LinearClassifier::k_furthest, LinearClassifier::k_furthest);
+    return std::isnan(z) ? 0 : std::clamp(z, -LinearClassifier::k_max_deviations, LinearClassifier::k_max_deviations);
 }
 
-/// Weighted mean and one over the deviation of a feature; (0, 0) where it does not vary or is not finite.
+/// Returns the weighted mean of a feature and one over its deviation; (0, 0) if it does not vary or is not finite.
 std::pair<float, float> measure(const LinearRows& data, std::size_t feature, double total) {
     const std::span<const float> column = data.features.column(feature);
     double sum = 0, squares = 0;
@@ -40,7 +40,7 @@ std::pair<float, float> measure(const LinearRows& data, std::size_t feature, dou
     return {static_cast<float>(mean), inverse};
 }
 
-/// L of `count` rows, row_of(i) the i-th.
+/// Computes L of `count` rows, of which row_of(i) is the i-th.
 template <typename RowOf>
 void score(const LinearClassifier& classifier, const FeatureMatrix& features, std::size_t count, const RowOf& row_of,
            std::span<float> out) {
@@ -52,8 +52,8 @@ void score(const LinearClassifier& classifier, const FeatureMatrix& features, st
     const Eigen::Map<const RowMajor> weight(classifier.weight.data(), static_cast<Eigen::Index>(inputs),
                                             static_cast<Eigen::Index>(classes));
     const Eigen::Map<const Eigen::RowVectorXf> constant(classifier.constant.data(), static_cast<Eigen::Index>(classes));
-    parallel_for((count + k_block - 1) / k_block, [&](std::size_t block) {
-        const std::size_t first = block * k_block, rows = std::min(k_block, count - first);
+    parallel_for((count + k_standardized_block - 1) / k_standardized_block, [&](std::size_t block) {
+        const std::size_t first = block * k_standardized_block, rows = std::min(k_standardized_block, count - first);
         Eigen::MatrixXf z(rows, inputs);
         for (std::size_t f = 0; f < inputs; ++f) {
             const std::span<const float> column = features.column(f);
@@ -143,12 +143,13 @@ LinearClassifier LinearTraining::solve(double ridge, std::size_t without_fold) c
     result.constant.assign(classes_, 0.0F);
     const double total = sums(inputs, inputs);
     if (!(total > 0)) return result;
-    // Less the means of these rows, so that the constant falls out of the equations.
+    // Centered on the means of these rows, so that the constant drops out of the equations.
     const Eigen::VectorXd mean = sums.col(inputs).head(inputs) / total;
     const Eigen::RowVectorXd target = sums.row(inputs).tail(classes) / total;
     Eigen::MatrixXd gram = sums.topLeftCorner(inputs, inputs) - total * mean * mean.transpose();
     gram.diagonal().array() += ridge * total;
-    const Eigen::MatrixXd weight = gram.llt().solve(sums.topRightCorner(inputs, classes) - total * mean * target);
+    const Eigen::MatrixXd weight =
+        solve_cholesky(std::move(gram), sums.topRightCorner(inputs, classes) - total * mean * target);
     for (Eigen::Index u = 0; u < inputs; ++u)
         for (Eigen::Index c = 0; c < classes; ++c)
             result.weight[used_[static_cast<std::size_t>(u)] * classes_ + static_cast<std::size_t>(c)] =

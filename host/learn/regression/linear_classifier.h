@@ -10,9 +10,9 @@
 namespace exemplar {
 
 /// A linear classifier of standardized features: L(x, c) = constant_c + sum over f of weight_fc z_f, where z_f is
-/// (x_f - mean_f) * inverse_f held in [-k_furthest, k_furthest]. A feature that is not a number counts as its mean.
+/// (x_f - mean_f) * inverse_f, clamped to [-k_max_deviations, k_max_deviations]. A NaN feature counts as its mean.
 struct LinearClassifier {
-    static constexpr float k_furthest = 5;  ///< of z_f: strange faces would decide otherwise
+    static constexpr float k_max_deviations = 5;  ///< bound of |z_f|, so that outliers do not decide
 
     std::uint32_t class_count = 0;  ///< 0: there is no classifier
     std::vector<float> mean;        ///< per feature
@@ -23,30 +23,30 @@ struct LinearClassifier {
     std::size_t feature_count() const { return mean.size(); }
 };
 
-/// L of every row: rows x classes, item-major, on all cores; the result does not depend on their number. Throws
-/// ModelError if `features` has fewer columns than the classifier, UsageError if `out` has another size.
+/// Computes L of every row: rows x classes, item-major, on all cores; the result does not depend on their number.
+/// Throws ModelError if `features` has fewer columns than the classifier, UsageError if `out` has another size.
 void linear_scores(const LinearClassifier& classifier, const FeatureMatrix& features, std::span<float> out);
-/// The same of some rows, in the order of `rows`.
+/// The same for some rows, in the order of `rows`.
 void linear_scores(const LinearClassifier& classifier, const FeatureMatrix& features,
                    std::span<const std::uint32_t> rows, std::span<float> out);
 
-/// What a linear classifier is fitted to.
+/// Training data of a linear classifier.
 struct LinearRows {
     const FeatureMatrix& features;
-    std::span<const std::uint32_t> rows;  ///< those of `features` that count
+    std::span<const std::uint32_t> rows;  ///< the rows of `features` to train on
     std::span<const std::int32_t> label;  ///< per row of `features`: 0 .. classes - 1
     std::span<const float> weight;        ///< likewise: >= 0
     std::span<const std::uint8_t> fold;   ///< likewise: 0 .. fold_count - 1
     std::size_t classes, fold_count;
 };
 
-/// Ridge regression (thesis Eq. 2.19) as a discriminant function (Sec. 2.3.1): the target is 1 where a row has the
-/// label and 0 elsewhere. Fits all rows or all but those of one fold; the rows are read once, as their sums of products
+/// Ridge regression (thesis Eq. 2.19) as a discriminant function (Sec. 2.3.1): the target is 1 if a row has the
+/// label, otherwise 0. Fits all rows, or all except those of one fold. Reads the rows once: their sums of products
 /// per fold serve any ridge.
 class LinearTraining {
   public:
-    /// Means and deviations are those of all rows, weighted; features that do not vary are left out. Throws UsageError
-    /// for sizes that differ or without rows of any weight.
+    /// Takes weighted means and deviations over all rows; leaves out features that do not vary. Throws UsageError
+    /// for sizes that differ, or if no row has a weight.
     explicit LinearTraining(const LinearRows& data);
 
     static constexpr std::size_t k_no_fold = static_cast<std::size_t>(-1);
@@ -64,7 +64,8 @@ class LinearTraining {
     std::vector<Eigen::MatrixXd> of_fold_;  // products of [z of used features, 1, targets]
 };
 
-/// The classifier whose L is the mean of those of several, at least one, of the same features and deviations.
+/// Returns the classifier whose L is the mean of those of `classifiers`: at least one, all with the same features,
+/// means and deviations.
 LinearClassifier mean_linear(std::span<const LinearClassifier> classifiers);
 
 }  // namespace exemplar

@@ -21,9 +21,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::MatrixXf;
 using Eigen::VectorXd;
-using Matrix = Eigen::Ref<const MatrixXf>;
+using FloatRef = Eigen::Ref<const MatrixXf>;
 
-void check_finite(const Matrix& values, const char* what) {
+void check_finite_data(const FloatRef& values, const char* what) {
     if (values.allFinite()) return;
     for (Index i = 0; i < values.rows(); ++i) {
         if (values.row(i).allFinite()) continue;
@@ -31,17 +31,17 @@ void check_finite(const Matrix& values, const char* what) {
     }
 }
 
-void check_samples(const Matrix& x, const Matrix& z) {
+void check_data(const FloatRef& x, const FloatRef& z) {
     if (x.rows() == 0 || x.rows() != z.rows()) {
         throw UsageError(
             fmt::format("there are {} samples of inputs and {} of outputs; give as many of both, at least one",
                         x.rows(), z.rows()));
     }
-    check_finite(x, "input");
-    check_finite(z, "output");
+    check_finite_data(x, "input");
+    check_finite_data(z, "output");
 }
 
-void check_options(const NeuralNetOptions& options) {
+void check_net_options(const NeuralNetOptions& options) {
     if (options.neurons < 1) throw UsageError("a neural net needs at least one neuron");
     if (options.iterations < 1) throw UsageError("training a neural net takes at least one iteration");
     if (!(options.lambda >= 0 && std::isfinite(options.lambda))) {
@@ -49,8 +49,8 @@ void check_options(const NeuralNetOptions& options) {
     }
 }
 
-/// The objective over its scale as a function of weights in their units, so that the size of the outputs does not
-/// matter. Remembers the best weights it has seen.
+/// The objective divided by its scale, as a function of the weights in their units, so that the size of the outputs
+/// does not matter. Remembers the best weights seen.
 struct Descent {
     NeuralNetObjective& objective;
     double scale;
@@ -67,8 +67,8 @@ struct Descent {
     }
 };
 
-/// The line search of Nocedal and Wright (the thesis' [100]); counts iterations, and fails where it found nothing
-/// better, as the solver would go on from there with curvatures that are no numbers.
+/// The line search of Nocedal and Wright (the thesis' [100]). Counts iterations, and throws if it finds no
+/// improvement: the solver would continue with NaN curvatures.
 template <typename Scalar>
 struct CountedLineSearch {
     using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
@@ -99,7 +99,7 @@ LBFGSpp::LBFGSParam<double> descent_parameters(int iterations) {
     return parameters;
 }
 
-/// False if the line search failed: near the minimum rounding can leave nothing to find along a direction.
+/// Returns false if the line search failed: near the minimum, rounding can hide any improvement along a direction.
 bool descend(Descent& descent, VectorXd weights, int iterations) {
     const auto parameters = descent_parameters(iterations);
     LBFGSpp::LBFGSSolver<double, CountedLineSearch> solver(parameters);
@@ -116,14 +116,14 @@ bool descend(Descent& descent, VectorXd weights, int iterations) {
     }
 }
 
-MatrixXf without_rows(const Matrix& all, Index begin, Index end) {
+MatrixXf without_rows(const FloatRef& all, Index begin, Index end) {
     MatrixXf out(all.rows() - (end - begin), all.cols());
     out.topRows(begin) = all.topRows(begin);
     out.bottomRows(all.rows() - end) = all.bottomRows(all.rows() - end);
     return out;
 }
 
-double held_out_error(const Matrix& x, const Matrix& z, Index begin, Index end, const NeuralNetOptions& options) {
+double held_out_error(const FloatRef& x, const FloatRef& z, Index begin, Index end, const NeuralNetOptions& options) {
     const NeuralNet net = fit_neural_net(without_rows(x, begin, end), without_rows(z, begin, end), options).net;
     const MatrixXf predicted = net.evaluate(x.middleRows(begin, end - begin));
     return (predicted - z.middleRows(begin, end - begin)).cast<double>().squaredNorm();
@@ -135,7 +135,7 @@ std::vector<NeuralNetOptions> all_candidates(std::span<const std::size_t> neuron
     for (const std::size_t count : neurons) {
         for (const double lambda : lambdas) {
             options.neurons = count, options.lambda = lambda;
-            check_options(options);
+            check_net_options(options);
             out.push_back(options);
         }
     }
@@ -156,7 +156,7 @@ void NeuralNet::evaluate(std::span<const float> x, std::span<float> z) const {
     out = output * (hidden * in + hidden_bias).array().tanh().matrix() + output_bias;
 }
 
-MatrixXf NeuralNet::evaluate(const Matrix& x) const {
+MatrixXf NeuralNet::evaluate(const FloatRef& x) const {
     if (x.cols() != hidden.cols()) {
         throw UsageError(fmt::format("there are {} inputs, but the neural net has {}", x.cols(), hidden.cols()));
     }
@@ -164,15 +164,16 @@ MatrixXf NeuralNet::evaluate(const Matrix& x) const {
     return (active * output.transpose()).rowwise() + output_bias.transpose();
 }
 
-NeuralNetFit fit_neural_net(const Matrix& x, const Matrix& z, const NeuralNetOptions& options) {
-    check_options(options);
-    check_samples(x, z);
+NeuralNetFit fit_neural_net(const FloatRef& x, const FloatRef& z, const NeuralNetOptions& options) {
+    check_net_options(options);
+    check_data(x, z);
     NeuralNetObjective objective(x.cast<double>(), z.cast<double>(), options);
     const VectorXd units = objective.units();
     Descent descent{objective, objective.scale(), units, objective.start(options.seed).cwiseQuotient(units)};
     constexpr double k_worth_a_restart = 1e-6;
     double before = std::numeric_limits<double>::infinity();
-    // After a failure, steepest descent from the best weights may go on where the old curvatures led astray.
+    // After a failure, restarts with steepest descent from the best weights: the old curvatures may have been
+    // misleading.
     while (!descend(descent, descent.best, options.iterations - descent.iterations)) {
         if (descent.iterations >= options.iterations || descent.least > (1 - k_worth_a_restart) * before) break;
         before = descent.least;
@@ -180,10 +181,10 @@ NeuralNetFit fit_neural_net(const Matrix& x, const Matrix& z, const NeuralNetOpt
     return {objective.net(descent.best.cwiseProduct(units)), descent.least * descent.scale, descent.iterations};
 }
 
-NeuralNetOptions choose_neural_net(const Matrix& x, const Matrix& z, std::span<const std::size_t> neurons,
+NeuralNetOptions choose_neural_net(const FloatRef& x, const FloatRef& z, std::span<const std::size_t> neurons,
                                    std::span<const double> lambdas, std::size_t folds,
                                    const NeuralNetOptions& options) {
-    check_samples(x, z);
+    check_data(x, z);
     const auto samples = static_cast<std::size_t>(x.rows());
     if (folds < 2 || folds > samples) {
         throw UsageError(

@@ -1,18 +1,17 @@
 #include "host/learn/regression/reduced_rank.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "host/core/errors.h"
+#include "host/learn/decompositions.h"
 
 namespace exemplar {
 
 namespace {
 
 /// Below this share of the strongest, a component is rounding.
-constexpr double k_least_explained = 1e-10;
+constexpr double k_min_explained = 1e-10;
 
 }  // namespace
 
@@ -23,22 +22,22 @@ ReducedRank fit_reduced_rank(const Eigen::Ref<const Eigen::MatrixXf>& x, const E
     if (!(ridge > 0)) throw UsageError("the ridge of a reduced-rank regression must be positive");
     ReducedRank result{Eigen::MatrixXf(0, x.cols()), Eigen::MatrixXf(y.cols(), 0), {}};
 
-    // In the space of samples, of which there are fewer than inputs.
+    // Computed in the space of samples, which are fewer than inputs.
     Eigen::MatrixXd gram = x.cast<double>() * x.cast<double>().transpose();
     const double penalty = ridge * gram.trace() / static_cast<double>(x.rows());
     if (!(penalty > 0)) return result;
     gram.diagonal().array() += penalty;
     const Eigen::MatrixXd targets = y.cast<double>();
-    const Eigen::MatrixXd dual = gram.ldlt().solve(targets);
+    const Eigen::MatrixXd dual = solve_ldlt(gram, targets);
     const Eigen::MatrixXd fitted = targets - penalty * dual;
 
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(fitted * fitted.transpose());
-    const Eigen::VectorXd variance = solver.eigenvalues().reverse() / static_cast<double>(x.rows());
+    const SymmetricEigen eigen = symmetric_eigen(fitted * fitted.transpose());
+    const Eigen::VectorXd variance = eigen.values.reverse() / static_cast<double>(x.rows());
     Eigen::Index count = 0;
     while (count < variance.size() && count < static_cast<Eigen::Index>(most) &&
-           variance[count] > k_least_explained * variance[0])
+           variance[count] > k_min_explained * variance[0])
         ++count;
-    const Eigen::MatrixXd samples = solver.eigenvectors().rightCols(count).rowwise().reverse();
+    const Eigen::MatrixXd samples = eigen.vectors.rightCols(count).rowwise().reverse();
     const Eigen::VectorXd deviation = variance.head(count).cwiseSqrt();
     // Directions of the outputs, of unit length; the scores of the samples along them are `samples`, up to their scale.
     const Eigen::MatrixXd directions =

@@ -10,9 +10,9 @@ namespace exemplar {
 
 namespace {
 
-constexpr std::size_t k_grain = 4096;  // vertices that one thread takes at a time
+constexpr std::size_t k_ridge_grain = 4096;  // vertices that one thread takes at a time
 
-/// Sum and number of the differences quotients of q along the direction of a vertex.
+/// Sum and number of the difference quotients of q along the direction of a vertex.
 struct Slope {
     float sum = 0;
     int count = 0;
@@ -22,8 +22,8 @@ float cross(const Vec2& a, const Vec2& b) {
     return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Adds the quotient in the face of a vertex with these other corners, seen from it in (e1, e2), if the direction of
-/// the vertex, forward or backward, leads into it.
+/// Adds the quotient in one face at a vertex if the direction of the vertex, forward or backward, leads into the
+/// face. to_a, to_b: edges from the vertex to the other corners, in (e1, e2).
 void add_slope(const ViewCurvature& here, const Vec2& to_a, const Vec2& to_b, float q_a, float q_b, Slope& slope) {
     const float length = here.direction.norm();
     for (const float sign : {1.0f, -1.0f}) {
@@ -51,7 +51,7 @@ std::vector<LineField> apparent_ridge_field(const LineSurface& surface, const Li
             const Vec3 w = options.to_eye(surface.vertices[i]);
             view[i] = view_curvature(c.k1[i], c.k2[i], {c.e1[i].dot(w), c.e2[i].dot(w), surface.normals[i].dot(w)});
         },
-        k_grain);
+        k_ridge_grain);
 
     std::vector<Slope> slopes(count);
     for (const Face& face : surface.faces)

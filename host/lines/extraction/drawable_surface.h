@@ -12,35 +12,37 @@
 
 namespace exemplar {
 
-/// A mesh as it is drawn: with one vertex per place, and faces that look outward.
+/// A mesh prepared for drawing: coincident vertices are merged, and faces are oriented outwards.
 struct DrawableMesh {
     TriangleMesh mesh;
-    bool turned = false;  ///< it was inside out
+    bool turned = false;  ///< whether the mesh was inside out
 };
-/// Throws MeshError naming `name` if the mesh is empty or not finite.
+/// Prepares a mesh for drawing. Throws MeshError naming `name` if the mesh is empty or not finite.
 DrawableMesh drawable_mesh(const TriangleMesh& mesh, const std::string& name);
 
 /// How a surface is measured for drawing.
 struct DrawableOptions {
-    double smoothing = 1;     ///< of curvature, in median edge lengths of the first shape
-    bool derivatives = true;  ///< of curvature: some type of lines needs them
-    /// Radians: curvature and normals know nothing of what is across edges of a larger angle; none: they do.
+    double smoothing = 1;     ///< of curvature, in median edge lengths of the first measured shape
+    bool derivatives = true;  ///< whether to compute derivatives of curvature, which some line types need
+    /// Edges with a larger angle (radians) are cut, so that curvature and normals are not smoothed across them;
+    /// none: nothing is cut.
     std::optional<float> split_angle;
 };
 
-/// A surface of measured curvature that lines are drawn of, for one shape after the other: the faces stay.
+/// A surface with measured curvature to draw lines of, for one shape after the other with the same faces.
 class DrawableSurface {
   public:
-    /// `first` is the shape that is cut open along edges of the split angle. Faces must outlive this.
+    /// `first`: the shape whose edges above the split angle are cut open. Faces must outlive this.
     DrawableSurface(std::span<const Face> faces, std::span<const Vec3> first, const DrawableOptions& options);
     DrawableSurface(const DrawableSurface&) = delete;
     DrawableSurface& operator=(const DrawableSurface&) = delete;
 
-    /// Measures the surface with these vertices, which must stay until the next call.
+    /// Measures the surface with these vertices, which must stay valid until the next call.
     void measure(std::span<const Vec3> vertices);
-    /// As it was measured, cut open along edges of the split angle.
+    /// Returns the measured surface, cut open along edges above the split angle.
     LineSurface surface() const;
-    /// The same as it is, without normals and curvature: what creases and boundaries are of; null if it was not cut.
+    /// Returns the uncut surface without meaningful normals and curvature, to find creases and boundaries on; null
+    /// if the surface was not cut.
     const LineSurface* edges() const { return edges_ ? &*edges_ : nullptr; }
     const std::vector<FaceNeighbors>& neighbors() const { return neighbors_; }
 
@@ -50,7 +52,7 @@ class DrawableSurface {
     std::vector<FaceNeighbors> neighbors_;
     std::optional<SplitSurface> split_;
     std::optional<CurvatureEstimator> estimator_;
-    double smoothing_unit_ = 0;  ///< the median edge length of the first shape
+    double smoothing_unit_ = 0;  ///< median edge length of the first measured shape
     std::span<const Vec3> vertices_;
     std::vector<Vec3> split_vertices_, no_normals_;
     VertexCurvature no_curvature_;

@@ -10,14 +10,14 @@ namespace exemplar {
 
 namespace {
 
-/// A side of a face: its edge's vertices in order, and its code (4 * face + side).
+/// A side of a face: the higher vertex of its edge, and its code (4 * face + side).
 struct Side {
     std::uint32_t high, code;
     bool operator<(const Side& other) const { return high != other.high ? high < other.high : code < other.code; }
 };
 
-void check(std::span<const Face> faces, std::size_t vertex_count) {
-    if (faces.size() >= k_last_neighbor / 4)
+void check_faces(std::span<const Face> faces, std::size_t vertex_count) {
+    if (faces.size() >= k_max_neighbor_code / 4)
         throw MeshError(fmt::format("{} faces are more than lines can be found on; simplify the mesh", faces.size()));
     for (std::size_t f = 0; f < faces.size(); ++f)
         for (const std::uint32_t v : faces[f])
@@ -28,8 +28,8 @@ void check(std::span<const Face> faces, std::size_t vertex_count) {
 }  // namespace
 
 std::vector<FaceNeighbors> build_face_neighbors(std::span<const Face> faces, std::size_t vertex_count) {
-    check(faces, vertex_count);
-    // All sides in rows by the lower vertex of their edge.
+    check_faces(faces, vertex_count);
+    // All sides, grouped by the lower vertex of their edge.
     std::vector<std::uint32_t> begin(vertex_count + 1, 0);
     const auto for_each_side = [&](auto&& use) {
         for (std::uint32_t f = 0; f < faces.size(); ++f)
@@ -51,7 +51,7 @@ std::vector<FaceNeighbors> build_face_neighbors(std::span<const Face> faces, std
         for (std::uint32_t first = begin[v], last = first; first < begin[v + 1]; first = last) {
             while (last < begin[v + 1] && sides[last].high == sides[first].high) ++last;
             if (last - first == 1) set(sides[first], k_no_neighbor);
-            if (last - first > 2) set(sides[first], k_many_neighbors);
+            if (last - first > 2) set(sides[first], k_nonmanifold_neighbors);
             if (last - first != 2) continue;
             set(sides[first], sides[first + 1].code);
             set(sides[first + 1], sides[first].code);

@@ -10,34 +10,34 @@
 
 namespace exemplar {
 
-/// The types of lines that each face carries: bit_of() each.
+/// The types of lines on each face, as a bit set of bit_of().
 using FaceTypes = std::vector<std::uint16_t>;
 constexpr std::uint16_t bit_of(LineType type) {
     return static_cast<std::uint16_t>(1u << static_cast<unsigned>(type));
 }
 
-/// Adds what classify_faces finds of these types; `faces` has an entry per face. Throws as that does.
+/// Adds the bits of the types that classify_faces finds; `faces` has an entry per face. Throws the same errors.
 void add_face_types(const LineSurface& surface, std::span<const LineType> types, const LineOptions& options,
                     FaceTypes& faces);
 
-/// Misclassified faces: those that carry a line by one curvature but not by the other. Summed up over pictures of any
+/// Counts misclassified faces, which have a line with one curvature but not with the other, over any number of
 /// surfaces, views and frames.
 class LineDifference {
   public:
-    /// Other types than these do not count.
+    /// Other types than these are ignored.
     explicit LineDifference(std::span<const LineType> types);
 
-    /// Throws UsageError unless both are of as many faces.
+    /// Adds one comparison. Throws UsageError if the numbers of faces differ.
     void add(std::span<const std::uint16_t> truth, std::span<const std::uint16_t> guess);
     void add(const LineDifference& other);
 
-    /// As shares of all faces; zeros without any.
+    /// Shares of all faces; zero if there are none.
     struct Shares {
-        double truth = 0;  ///< carry a line
+        double truth = 0;  ///< faces with a line
         double misclassified = 0;
     };
     Shares of(LineType type) const { return shares(static_cast<std::size_t>(type)); }
-    /// Of faces with a line of any type, and of those that differ in any.
+    /// Counts faces with a line of any type, and faces that differ in any type.
     Shares of_any() const { return shares(k_any); }
 
   private:

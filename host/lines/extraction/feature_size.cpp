@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "host/core/errors.h"
+#include "host/core/statistics.h"
 #include "host/lines/extraction/lines.h"
 
 namespace exemplar {
@@ -14,11 +15,11 @@ namespace {
 struct Ball {
     Vec3d center = Vec3d::Zero();
     double radius = -1;  ///< negative: empty
-    /// With room for the rounding of points that lie on it.
+    /// Has a tolerance for rounding of points on the surface.
     bool contains(const Vec3d& p) const { return (p - center).norm() <= radius * (1 + 1e-9); }
 };
 
-/// The smallest ball with these points, at most four, on its surface.
+/// Returns the smallest ball with these points, at most four, on its surface.
 Ball ball_through(const std::vector<Vec3d>& points) {
     if (points.size() == 1) return {points[0], 0};
     // Its center is points[0] + sum of x_i (points[i] - points[0]), at the same distance from all.
@@ -31,8 +32,8 @@ Ball ball_through(const std::vector<Vec3d>& points) {
     return {points[0] + offset, offset.norm()};
 }
 
-/// The smallest ball around at most five points, all of which may touch it only if `last` does; `support` becomes those
-/// that touch it.
+/// Returns the smallest ball around `support` (at most four points) and `last`, with `last` on its surface.
+/// `support` becomes the points on its surface.
 Ball ball_around(std::vector<Vec3d>& support, const Vec3d& last) {
     Ball best;
     std::vector<Vec3d> best_support;
@@ -52,14 +53,14 @@ Ball ball_around(std::vector<Vec3d>& support, const Vec3d& last) {
     return best;
 }
 
-/// Radius of the smallest sphere around all points, by adding the farthest point to those that hold it until none is
-/// outside; the radius grows with each, so this ends.
+/// Returns the radius of the smallest sphere around all points. The farthest point is added to the supporting points
+/// until none is outside; each addition increases the radius, so this terminates.
 double bounding_radius(std::span<const Vec3> points) {
-    constexpr int k_most_steps = 1000;  // a few are needed
+    constexpr int k_max_steps = 1000;  // a few are needed
     if (points.empty()) return 0;
     std::vector<Vec3d> support = {points[0].cast<double>()};
     Ball ball{support[0], 0};
-    for (int step = 0; step < k_most_steps; ++step) {
+    for (int step = 0; step < k_max_steps; ++step) {
         double farthest = 0;
         Vec3d outside = ball.center;
         for (const Vec3& p : points) {
@@ -87,10 +88,9 @@ float feature_size(std::span<const Vec3> vertices, const VertexCurvature& curvat
     magnitudes.reserve(2 * vertices.size());
     for (const float k : curvature.k1) magnitudes.push_back(std::abs(k));
     for (const float k : curvature.k2) magnitudes.push_back(std::abs(k));
-    const auto tenth = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 10);
-    std::nth_element(magnitudes.begin(), tenth, magnitudes.end());
+    const float tenth = order_statistic(std::span<float>(magnitudes), magnitudes.size() / 10);
     const double by_extent = 0.05 * bounding_radius(vertices);
-    return static_cast<float>(*tenth > 0 ? std::min(0.01 / static_cast<double>(*tenth), by_extent) : by_extent);
+    return static_cast<float>(tenth > 0 ? std::min(0.01 / static_cast<double>(tenth), by_extent) : by_extent);
 }
 
 }  // namespace exemplar

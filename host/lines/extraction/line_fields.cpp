@@ -10,7 +10,7 @@ namespace exemplar {
 
 namespace {
 
-constexpr std::size_t k_grain = 4096;  // vertices that one thread takes at a time
+constexpr std::size_t k_field_grain = 4096;  // vertices that one thread takes at a time
 
 ViewVector view_at(const LineSurface& surface, std::size_t vertex, const LineOptions& options) {
     const Vec3 w = options.to_eye(surface.vertices[vertex]);
@@ -21,7 +21,7 @@ template <typename FieldAt>
 std::vector<LineField> field_of(const LineSurface& surface, FieldAt&& at) {
     std::vector<LineField> field(surface.vertices.size());
     parallel_for(
-        field.size(), [&](std::size_t i) { field[i] = at(i); }, k_grain);
+        field.size(), [&](std::size_t i) { field[i] = at(i); }, k_field_grain);
     return field;
 }
 
@@ -51,7 +51,7 @@ std::vector<LineField> radial_curvature_field(const LineSurface& surface, LineTy
         // Radial curvature times the squared sine has the same zeros and no pole.
         field.value = surface.curvature.k1[i] * view.u * view.u + surface.curvature.k2[i] * view.v * view.v;
         field.margin = derivative - threshold * view.cosine;
-        // Divided by the cosine only where that is not about to vanish.
+        // The cosine is bounded below, as it vanishes at contours.
         field.strength = derivative / std::max(view.cosine, 0.01f);
         field.front = view.cosine;
         return field;
@@ -64,9 +64,9 @@ std::vector<LineField> principal_highlight_field(const LineSurface& surface, int
         const ViewVector view = view_at(surface, i, options);
         const float k = axis == 0 ? c.k1[i] : c.k2[i], other = axis == 0 ? c.k2[i] : c.k1[i];
         const float across = axis == 0 ? view.v : view.u;
-        // Along e1, n.w changes by k1 u: its extrema are the zeros of u. There its second derivative is
-        // -k1^2 cos + k1 v g, with g = C112 / (k1 - k2) the turn of e1 along itself; likewise for e2. The test is of
-        // the part that is curvature alone: the other only tells maxima from minima, being large where e1 is noise.
+        // Along e1, the derivative of n.w is k1 u, so extrema are the zeros of u. There the second derivative is
+        // -k1^2 cos + k1 v g, with g = C112 / (k1 - k2) the rotation of e1 along itself; likewise for e2. Strength
+        // is the first term alone: the second only tells maxima from minima, as it is large where e1 is noise.
         const float turn = k == other ? 0.0f : c.derivative[i][axis == 0 ? 1 : 2] / (k - other);
         const float squared_unit = options.feature_size * options.feature_size;
         const float bend = k * k * view.cosine, maximum = bend - k * turn * across;
@@ -91,7 +91,7 @@ std::vector<LineField> crest_field(const LineSurface& surface, LineType type, co
         field.value = k;
         field.strength = k * options.feature_size;
         field.margin = field.strength - options.thresholds.ridges_valleys;
-        // Turning the axis around turns the sign of the derivative, so this does not depend on the choice of either.
+        // Flipping the axis flips the sign of the derivative, so their product does not depend on its sign.
         field.direction = sign * derivative * (first ? c.e1[i] : c.e2[i]);
         if (options.front_facing_only) field.front = surface.normals[i].dot(options.to_eye(surface.vertices[i]));
         return field;

@@ -36,7 +36,7 @@ std::optional<LineType> line_type_named(std::string_view name) {
     return std::nullopt;
 }
 
-std::optional<LineType> line_type_meant(std::string_view word) {
+std::optional<LineType> line_type_from_prefix(std::string_view word) {
     constexpr std::size_t k_fewest_letters = 3;
     std::string name(word);
     std::transform(name.begin(), name.end(), name.begin(),

@@ -16,7 +16,7 @@ namespace exemplar {
 
 namespace {
 
-constexpr std::size_t k_grain = 4096;  // faces that one thread takes at a time
+constexpr std::size_t k_face_grain = 4096;  // faces that one thread takes at a time
 
 using Barycentric = std::array<float, 3>;
 using Corners = std::array<const LineField*, 3>;
@@ -27,7 +27,7 @@ struct FaceLines {
     std::size_t count = 0;
 };
 
-/// The point at t on the way from corner `edge` to the next.
+/// Returns the point at t from corner `edge` (0) to the next (1).
 Barycentric on_edge(std::size_t edge, float t) {
     Barycentric point{};
     point[edge] = 1 - t;
@@ -39,8 +39,7 @@ float interpolated(const Corners& corners, float LineField::*member, const Baryc
     return at[0] * corners[0]->*member + at[1] * corners[1]->*member + at[2] * corners[2]->*member;
 }
 
-/// Cuts from the interval [from, to] the part where the function that runs from `first` (at 0) to `last` (at 1) is not
-/// positive.
+/// Shrinks the interval [from, to] to where the linear function with value `first` at 0 and `last` at 1 is positive.
 void clip(float first, float last, float& from, float& to) {
     if (first > 0 && last > 0) return;
     if (!(first > 0) && !(last > 0)) {
@@ -54,13 +53,13 @@ void clip(float first, float last, float& from, float& to) {
         from = std::max(from, zero);
 }
 
-/// A point of a face with its place in it.
+/// A point of a face with its SegmentEnd.
 struct PlacedPoint {
     Barycentric at;
     SegmentEnd place;
 };
 
-/// Adds the part of the segment that faces the eye and passes its test, if any.
+/// Adds the part of a segment that faces the eye and passes the threshold, if any.
 void add_segment(const Corners& corners, const PlacedPoint& first, const PlacedPoint& second, FaceLines& lines) {
     const Barycentric &a = first.at, &b = second.at;
     float from = 0, to = 1;
@@ -77,7 +76,7 @@ void add_segment(const Corners& corners, const PlacedPoint& first, const PlacedP
         segment.strength[end] = interpolated(corners, &LineField::strength, segment.ends[end]);
 }
 
-/// The zero set of `value` in a face.
+/// Adds the zero set of `value` in a face.
 void add_zero_set(const Corners& corners, FaceLines& lines) {
     std::array<float, 3> value;
     std::array<Vec3, 3> axis;
@@ -89,11 +88,11 @@ void add_zero_set(const Corners& corners, FaceLines& lines) {
         value[i] = -value[i];
     }
     if (axis[1].dot(axis[2]) < 0) return;  // around an umbilic no choice of signs is continuous
-    // Nor may the sign of the first axis matter, which decides where zeros at vertices count.
+    // The result must not depend on the sign of the first axis, which decides on which side zeros at vertices count.
     const auto by_size = [](float a, float b) { return std::abs(a) < std::abs(b); };
     if (axis[0] != Vec3::Zero() && *std::max_element(value.begin(), value.end(), by_size) < 0)
         for (float& v : value) v = -v;
-    // Around the face, values turn positive on one side and negative on another, or on none.
+    // Around the face, values become positive on one side and negative on another, or on none.
     std::optional<PlacedPoint> falls, rises;
     for (std::size_t i = 0; i < 3; ++i) {
         const float a = value[i], b = value[(i + 1) % 3];
@@ -103,8 +102,8 @@ void add_zero_set(const Corners& corners, FaceLines& lines) {
     if (falls && rises) add_segment(corners, *falls, *rises, lines);
 }
 
-/// The maxima along `direction` in a face (Ohtake et al. 2004): on an edge, where the directions at its ends are
-/// opposed, and point to each other rather than away.
+/// Adds the maxima along `direction` in a face (Ohtake et al. 2004): they cross an edge if the directions at its
+/// ends are opposed and point to each other.
 void add_extrema(const Corners& corners, const std::array<Vec3, 3>& points, FaceLines& lines) {
     std::array<PlacedPoint, 3> ends;
     std::size_t found = 0;
@@ -122,31 +121,31 @@ void add_extrema(const Corners& corners, const std::array<Vec3, 3>& points, Face
         for (const PlacedPoint& end : ends) add_segment(corners, end, k_center, lines);
 }
 
-/// Normal of a face, as long as twice its area.
+/// Returns the normal of a face, with twice its area as length.
 Vec3 face_cross(const LineSurface& surface, std::size_t face) {
     const auto& [a, b, c] = surface.faces[face];
     const Vec3& origin = surface.vertices[a];
     return (surface.vertices[b] - origin).cross(surface.vertices[c] - origin);
 }
 
-/// Between the normals of two faces; zero if one of them has none, where the mesh is to blame and not the surface.
+/// Returns the angle between the normals of two faces, or zero if one is degenerate and has no normal.
 float angle_between(const LineSurface& surface, std::size_t f, std::size_t g) {
     const Vec3 a = face_cross(surface, f), b = face_cross(surface, g);
     if (!(a.squaredNorm() > 0) || !(b.squaredNorm() > 0)) return 0;
     return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// The sides of face `f` that are creases, or boundaries.
+/// Adds the sides of face `f` that are creases or boundaries.
 void add_edges(const LineSurface& surface, std::size_t f, LineType type, float crease_angle, FaceLines& lines) {
     for (std::size_t i = 0; i < 3; ++i) {
         const std::uint32_t across = surface.neighbors[f][i];
         float strength = 1;
         if (type == LineType::boundaries) {
             if (across != k_no_neighbor) continue;
-        } else if (across == k_many_neighbors) {
+        } else if (across == k_nonmanifold_neighbors) {
             strength = std::numbers::pi_v<float>;
         } else {
-            if (across > k_last_neighbor || across / 4 < f) continue;
+            if (across > k_max_neighbor_code || across / 4 < f) continue;
             strength = angle_between(surface, f, across / 4);
             if (!(strength > crease_angle)) continue;
         }
@@ -164,7 +163,7 @@ bool is_extremum(LineType type) {
     return type == LineType::ridges || type == LineType::valleys || type == LineType::apparent_ridges;
 }
 
-/// One field per family of lines: principal highlights have two.
+/// Computes one field per family of lines; principal highlights have two.
 std::vector<std::vector<LineField>> fields_of(const LineSurface& surface, LineType type, const LineOptions& options) {
     switch (type) {
         case LineType::contours:
@@ -181,12 +180,12 @@ std::vector<std::vector<LineField>> fields_of(const LineSurface& surface, LineTy
             return {principal_highlight_field(surface, 0, options), principal_highlight_field(surface, 1, options)};
         case LineType::creases:
         case LineType::boundaries:
-            break;  // of no field
+            break;  // have no field
     }
     return {};
 }
 
-void check(const LineSurface& surface, LineType type, const LineOptions& options) {
+void check_line_type(const LineSurface& surface, LineType type, const LineOptions& options) {
     const std::size_t count = surface.vertices.size();
     const VertexCurvature& c = surface.curvature;
     const auto expect = [&](std::size_t have, const char* what) {
@@ -207,10 +206,10 @@ void check(const LineSurface& surface, LineType type, const LineOptions& options
         throw UsageError(fmt::format("a feature size of {}: give a positive length", options.feature_size));
 }
 
-/// Calls use(f, lines of face f) for all faces, on all cores.
+/// Calls use(f, lines of face f) for all faces, in parallel.
 template <typename Use>
 void for_each_face(const LineSurface& surface, LineType type, const LineOptions& options, Use&& use) {
-    check(surface, type, options);
+    check_line_type(surface, type, options);
     const std::vector<std::vector<LineField>> fields = fields_of(surface, type, options);
     const bool extremum = is_extremum(type);
     parallel_for(
@@ -232,7 +231,7 @@ void for_each_face(const LineSurface& surface, LineType type, const LineOptions&
             }
             use(f, lines);
         },
-        k_grain);
+        k_face_grain);
 }
 
 }  // namespace

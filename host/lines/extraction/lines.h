@@ -13,14 +13,14 @@
 
 namespace exemplar {
 
-/// Curves on a surface that a line drawing of it shows. With n the unit normal, w the unit vector to the eye, k1 and k2
-/// the principal curvatures and kr the curvature of the surface along w's projection into it:
+/// Curves on a surface that a line drawing shows. n is the unit normal, w the unit vector to the eye, k1 and k2 are
+/// the principal curvatures, and kr is the normal curvature along the projection of w into the surface.
 enum class LineType {
     contours,               ///< n.w = 0
-    suggestive_contours,    ///< kr = 0, growing towards the eye (DeCarlo et al. 2003, 2004)
-    suggestive_highlights,  ///< kr = 0, falling towards the eye (DeCarlo and Rusinkiewicz 2007)
-    ridges,                 ///< convex extremum of the curvature of largest magnitude along its direction
-    valleys,                ///< the same where it is hollow (Ohtake et al. 2004)
+    suggestive_contours,    ///< kr = 0, increasing towards the eye (DeCarlo et al. 2003, 2004)
+    suggestive_highlights,  ///< kr = 0, decreasing towards the eye (DeCarlo and Rusinkiewicz 2007)
+    ridges,                 ///< convex extremum of the larger-magnitude curvature along its direction
+    valleys,                ///< the concave counterpart (Ohtake et al. 2004)
     apparent_ridges,        ///< extremum of view-dependent curvature along its direction (Judd et al. 2007)
     principal_highlights,   ///< maximum of n.w along a principal direction (DeCarlo and Rusinkiewicz 2007)
     creases,                ///< edges whose faces meet at an angle; edges of more than two faces always
@@ -30,20 +30,20 @@ inline constexpr std::array k_line_types = {
     LineType::contours,  LineType::suggestive_contours, LineType::suggestive_highlights, LineType::ridges,
     LineType::valleys,   LineType::apparent_ridges,     LineType::principal_highlights,  LineType::creases,
     LineType::boundaries};
-/// "contours", "suggestive_contours" and so on.
+/// Returns "contours", "suggestive_contours" and so on.
 std::string_view name_of(LineType type);
-/// The type of that name; nothing for another word.
+/// Returns the type with exactly that name, if there is one.
 std::optional<LineType> line_type_named(std::string_view name);
-/// The type that a user's word means: its name or at least three letters that begin it ("suggestive" is the contours of
-/// that kind), in any case, with - for _; nothing for another word.
-std::optional<LineType> line_type_meant(std::string_view word);
-/// Whether the lines move over the surface with the eye: all but ridges, valleys, creases and boundaries.
+/// Returns the first type whose name starts with a user's word of at least three letters, ignoring case, with - for
+/// _. "suggestive" means the contours, and "highlights" suggestive_highlights.
+std::optional<LineType> line_type_from_prefix(std::string_view word);
+/// Returns whether the lines move over the surface with the eye: all but ridges, valleys, creases and boundaries.
 bool depends_on_view(LineType type);
-/// Whether finding the lines takes curvature with derivatives: all but contours, creases and boundaries.
+/// Returns whether the lines depend on curvature and its derivatives: all but contours, creases and boundaries.
 bool needs_curvature(LineType type);
 
-/// How strong a line must be to be drawn. Dimensionless: what bounds a curvature is divided by the feature size, what
-/// bounds a derivative of curvature or a product of two curvatures, by its square.
+/// Minimum strengths of drawn lines, dimensionless: curvatures are multiplied by the feature size, derivatives of
+/// curvature and products of two curvatures by its square.
 struct LineThresholds {
     float suggestive_contours = 0.01f;
     float suggestive_highlights = 0.02f;
@@ -51,74 +51,75 @@ struct LineThresholds {
     float ridges_valleys = 0.1f;
     float apparent_ridges = 0.1f;
     float crease_angle = 0.7f;  ///< radians between the normals of the faces
-    /// By how much the strength of lines that depend on the view is above the threshold where they are half opaque.
+    /// Excess over the threshold at which view-dependent lines have half their opacity.
     float fade = 0.03f;
 };
 
-/// The threshold of a type, and by how much a line of half its opacity is above it.
+/// The threshold of a type, and the excess over it at which a line has half its opacity.
 struct LineFading {
     float threshold, half;
 };
-/// Nothing for contours, creases and boundaries.
+/// Returns how lines of a type fade; nothing for contours, creases and boundaries.
 std::optional<LineFading> line_fading(LineType type, const LineThresholds& thresholds);
 
-/// How opaque a line is at a strength x above its threshold: x / (x + f) with f the fade, or of ridges and valleys the
-/// threshold itself, so that lines begin and end softly. In [0, 1]; 1 for contours, creases and boundaries.
+/// Returns the opacity in [0, 1] of a line, so that it begins and ends softly: x / (x + f), where x is the excess of
+/// `strength` over the threshold, and f the fade or, for ridges and valleys, the threshold. 1 for contours, creases
+/// and boundaries.
 float line_opacity(LineType type, float strength, const LineThresholds& thresholds);
 
-/// The unit of length of the thresholds: min(0.01 / q, 0.05 R), with q the 10th percentile of all |k1| and |k2| and R
-/// the radius of the smallest sphere around the vertices; in mesh units. Zero without vertices or extent. Throws
-/// UsageError if there are not as many curvatures as vertices.
+/// Returns the unit of length of the thresholds, in mesh units: min(0.01 / q, 0.05 R), where q is the 10th
+/// percentile of all |k1| and |k2| and R the radius of the smallest sphere around the vertices. Zero without
+/// vertices or extent. Throws UsageError if there are not as many curvatures as vertices.
 float feature_size(std::span<const Vec3> vertices, const VertexCurvature& curvature);
 
-/// A surface as lines are found on it; refers to data of others.
+/// Non-owning view of a surface on which lines are extracted.
 struct LineSurface {
     std::span<const Face> faces;
     std::span<const Vec3> vertices;
     std::span<const Vec3> normals;     ///< unit, per vertex
-    const VertexCurvature& curvature;  ///< with derivatives; may be empty for types that do without (needs_curvature)
-    /// Of the same faces; may be empty but for creases and boundaries.
+    const VertexCurvature& curvature;  ///< with derivatives; may be empty if no type needs it (needs_curvature)
+    /// Neighbors of the faces; only creases and boundaries need them.
     std::span<const FaceNeighbors> neighbors{};
 };
 
 struct LineOptions {
     Vec3 eye = Vec3::Zero();    ///< in mesh units
     bool parallel_eye = false;  ///< `eye` is the unit direction to an eye at infinity
-    float feature_size = 0;     ///< see feature_size(); positive but for types that do without curvature
+    float feature_size = 0;     ///< see feature_size(); must be positive for types that need curvature
     LineThresholds thresholds;
-    /// Cuts ridges and valleys off where n.w <= 0. The lines that depend on the view always are, but for contours.
+    /// Whether to cut off ridges and valleys where n.w <= 0. View-dependent lines other than contours always are.
     bool front_facing_only = false;
 
-    /// The unit vector from a point to the eye.
+    /// Returns the unit vector from a point to the eye.
     Vec3 to_eye(const Vec3& point) const { return parallel_eye ? eye : Vec3((eye - point).normalized()); }
 };
 
-/// Where in its face a segment ends: on a side (0 to 2: from corner i to the next), at a corner (3 + i), or inside.
+/// Where in its face a segment ends: on side i from corner i to the next (i), at corner i (3 + i), or inside (6).
 using SegmentEnd = std::uint8_t;
 constexpr SegmentEnd k_at_corner = 3, k_inside_face = 6;
 
 /// A straight piece of a line within one face.
 struct LineSegment {
     std::uint32_t face = 0;
-    /// Of principal highlights the principal direction, 0 or 1; else 0. Lines of two families do not continue each
-    /// other.
+    /// Principal highlights: the principal direction, 0 or 1; others: 0. Different families are never joined.
     std::uint8_t family = 0;
     std::array<SegmentEnd, 2> places{k_inside_face, k_inside_face};
-    /// Both ends in barycentric coordinates of the face, so that they move with its corners. Of contours and of
-    /// suggestive contours and highlights, what has n.w or kr positive is to the left on the way from the first to the
-    /// second, seen from outside.
+    /// Both ends in barycentric coordinates of the face, so that they move with its corners. For contours,
+    /// suggestive contours and highlights, the side with positive n.w or kr is to the left of the direction from the
+    /// first to the second end, seen from outside.
     std::array<std::array<float, 3>, 2> ends{};
-    /// What the threshold bounds, at both ends, in its units (dimensionless; creases: radians); 1 for contours and
+    /// Strength at both ends, in the units of the threshold (dimensionless; creases: radians); 1 for contours and
     /// boundaries.
     std::array<float, 2> strength{};
 };
 
-/// All lines of a type, by face. A face has at most one segment; of principal highlights two, one per principal
-/// direction, of ridges and the like three, which meet at its center, and of creases and boundaries one a side, in
-/// the first of the faces at an edge. Throws UsageError if the parts of the surface or the feature size do not fit.
+/// Returns the segments of all lines of a type, ordered by face. A face has at most one segment, except for
+/// principal highlights (two, one per direction), ridges, valleys and apparent ridges (three, which meet at its
+/// center), and creases and boundaries (one per side, in the first face of an edge). Throws UsageError if sizes of
+/// the surface's arrays differ, or the feature size is not positive where curvature is needed.
 std::vector<LineSegment> extract_lines(const LineSurface& surface, LineType type, const LineOptions& options);
 
-/// For each face 1 if it carries a line of that type, that is, a segment of extract_lines; else 0. Throws as that does.
+/// Returns for each face 1 if extract_lines finds a segment of that type in it, else 0. Throws the same errors.
 std::vector<std::uint8_t> classify_faces(const LineSurface& surface, LineType type, const LineOptions& options);
 
 }  // namespace exemplar

@@ -12,7 +12,7 @@ namespace exemplar {
 
 namespace {
 
-void check(std::span<const Face> faces, std::size_t vertex_count, std::span<const FaceNeighbors> neighbors) {
+void check_neighbors(std::span<const Face> faces, std::size_t vertex_count, std::span<const FaceNeighbors> neighbors) {
     if (neighbors.size() != faces.size())
         throw UsageError(fmt::format("neighbors of {} faces for {}: compute them for the same mesh", neighbors.size(),
                                      faces.size()));
@@ -20,7 +20,7 @@ void check(std::span<const Face> faces, std::size_t vertex_count, std::span<cons
         for (std::size_t i = 0; i < 3; ++i) {
             if (faces[f][i] >= vertex_count)
                 throw MeshError(fmt::format("face {} names vertex {}, but there are {}", f, faces[f][i], vertex_count));
-            if (neighbors[f][i] <= k_last_neighbor && neighbors[f][i] / 4 >= faces.size())
+            if (neighbors[f][i] <= k_max_neighbor_code && neighbors[f][i] / 4 >= faces.size())
                 throw UsageError(fmt::format("face {} has neighbor {}, but there are {} faces", f, neighbors[f][i] / 4,
                                              faces.size()));
         }
@@ -37,12 +37,12 @@ std::vector<Vec3> SplitSurface::positions(std::span<const Vec3> vertices) const 
 
 SplitSurface split_at_creases(std::span<const Face> faces, std::span<const Vec3> vertices,
                               std::span<const FaceNeighbors> neighbors, float crease_angle) {
-    check(faces, vertices.size(), neighbors);
+    check_neighbors(faces, vertices.size(), neighbors);
     const auto normal = [&](std::size_t f) -> Vec3 {
         const auto& [a, b, c] = faces[f];
         return (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]);
     };
-    // Faces without area have no normal; they belong to both sides, as creases do not show there either.
+    // Faces without area have no normal, so their edges are no creases.
     const auto is_crease = [&](std::size_t f, std::size_t g) {
         const Vec3 a = normal(f), b = normal(g);
         if (!(a.squaredNorm() > 0) || !(b.squaredNorm() > 0)) return false;
@@ -56,7 +56,7 @@ SplitSurface split_at_creases(std::span<const Face> faces, std::span<const Vec3>
     for (std::uint32_t f = 0; f < faces.size(); ++f)
         for (std::uint32_t i = 0; i < 3; ++i) {
             const std::uint32_t across = neighbors[f][i];
-            if (across > k_last_neighbor || is_crease(f, across / 4)) continue;
+            if (across > k_max_neighbor_code || is_crease(f, across / 4)) continue;
             join(f, i, across / 4);
             join(f, (i + 1) % 3, across / 4);
         }
@@ -64,7 +64,7 @@ SplitSurface split_at_creases(std::span<const Face> faces, std::span<const Vec3>
     split.faces.resize(faces.size());
     for (std::uint32_t f = 0; f < faces.size(); ++f)
         for (std::uint32_t i = 0; i < 3; ++i) {
-            // The smallest corner of a set stands for it, so it was numbered before all others.
+            // A set is represented by its smallest corner, which was numbered before all others.
             const std::uint32_t first = corners.find(3 * f + i);
             if (first == 3 * f + i) {
                 split.faces[f][i] = static_cast<std::uint32_t>(split.source.size());

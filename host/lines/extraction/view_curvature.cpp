@@ -7,13 +7,13 @@ namespace exemplar {
 
 namespace {
 
-constexpr float k_grazing = 1e-3f;  // least |n.w| that the foreshortening is computed with
+constexpr float k_grazing = 1e-3f;  // minimum |n.w| for foreshortening
 
 }  // namespace
 
 float radial_derivative(float k1, float k2, const std::array<float, 4>& derivative, const ViewVector& view) {
     const float u = view.u, v = view.v, squared_sine = u * u + v * v;
-    if (!(squared_sine > 0)) return 0;  // towards the eye there is no direction of its projection
+    if (!(squared_sine > 0)) return 0;  // w is along the normal, so it has no projection
     const auto& [c111, c112, c122, c222] = derivative;
     const float third = u * u * (u * c111 + 3 * v * c112) + v * v * (3 * u * c122 + v * c222);
     const float torsion = (k2 - k1) * u * v / squared_sine;
@@ -32,7 +32,7 @@ ViewCurvature view_curvature(float k1, float k2, const ViewVector& view) {
     const float half_difference = 0.5f * (squared(0, 0) - squared(1, 1)), off = squared(0, 1);
     const float radius = std::hypot(half_difference, off);
     result.q = 0.5f * squared.trace() + radius;
-    // By the determinant, k1 k2 step, as the difference of trace and radius cancels.
+    // From the determinant of Q, k1 k2 step, since the difference of trace and radius cancels.
     const float determinant = k1 * k2 * step;
     result.least = result.q > 0 ? std::min(determinant / result.q * determinant, result.q) : 0.0f;
     // Half the angle of (half_difference, off).

@@ -6,27 +6,29 @@
 
 namespace exemplar {
 
-/// The unit vector to the eye in the frame of a vertex.
+/// The unit vector w to the eye, in the principal frame of a vertex.
 struct ViewVector {
     float u, v;    ///< along e1 and e2
     float cosine;  ///< along the normal
 };
 
-/// Derivative of radial curvature along w's projection, times the sine between w and the normal: DeCarlo et al. 2004
-/// have C(w, w, w) + 2 K cot, where the radial curvature is zero, and there K is the negative square of the torsion.
+/// Returns the derivative of radial curvature along the projection of w, times the sine of the angle between w and
+/// the normal. DeCarlo et al. 2004 have C(w, w, w) + 2 K cot where the radial curvature is zero; there K is minus
+/// the squared torsion.
 float radial_derivative(float k1, float k2, const std::array<float, 4>& derivative, const ViewVector& view);
 
-/// View-dependent curvature (Judd et al. 2007): how much the normal turns over a step on the screen.
+/// View-dependent curvature (Judd et al. 2007): the change of the normal per unit step on the screen.
 struct ViewCurvature {
-    float q = 0;                     ///< the largest: squared, in 1 / squared mesh units
-    float least = 0;                 ///< the smallest, likewise
-    Vec2 direction = Vec2::UnitX();  ///< of it, on the surface, in (e1, e2); a step of length 1 on the screen
+    float q = 0;                     ///< the maximum, squared; in 1 / squared mesh units
+    float least = 0;                 ///< the minimum, likewise
+    Vec2 direction = Vec2::UnitX();  ///< of the maximum, in (e1, e2); has length 1 on the screen
     float cosine = 1;                ///< n.w
 };
 
-/// With S = diag(k1, k2) and a the unit projection of w into the surface, a step x on the screen is one of
-/// x + (1 / |n.w| - 1) a a^T x on the surface, so Q = S + (1 / |n.w| - 1) S a a^T turns it into the change of the
-/// normal. The largest eigenvalue of Q^T Q, and its eigenvector.
+/// Computes view-dependent curvature. With S = diag(k1, k2) and a the unit projection of w into the surface, a step
+/// x on the screen is the step x + (1 / |n.w| - 1) a a^T x on the surface, so Q = S + (1 / |n.w| - 1) S a a^T maps
+/// it to the change of the normal. q is the largest eigenvalue of Q^T Q; direction is its eigenvector as a step on
+/// the surface.
 ViewCurvature view_curvature(float k1, float k2, const ViewVector& view);
 
 }  // namespace exemplar

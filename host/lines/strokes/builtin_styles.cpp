@@ -110,25 +110,25 @@ constexpr std::string_view k_colored = R"({
 }
 )";
 
-constexpr std::array k_names = {std::string_view("ink"),       std::string_view("pencil"),
-                                std::string_view("charcoal"),  std::string_view("brush"),
-                                std::string_view("technical"), std::string_view("blueprint"),
-                                std::string_view("colored")};
+constexpr std::array k_style_names = {std::string_view("ink"),       std::string_view("pencil"),
+                                      std::string_view("charcoal"),  std::string_view("brush"),
+                                      std::string_view("technical"), std::string_view("blueprint"),
+                                      std::string_view("colored")};
 constexpr std::array k_texts = {k_ink, k_pencil, k_charcoal, k_brush, k_technical, k_blueprint, k_colored};
-static_assert(k_names.size() == k_texts.size());
+static_assert(k_style_names.size() == k_texts.size());
 
 }  // namespace
 
 std::span<const std::string_view> builtin_style_names() {
-    return k_names;
+    return k_style_names;
 }
 
 std::string_view builtin_style_text(std::string_view name) {
-    for (std::size_t i = 0; i < k_names.size(); ++i)
-        if (k_names[i] == name) return k_texts[i];
-    const std::vector<std::string> names(k_names.begin(), k_names.end());
+    for (std::size_t i = 0; i < k_style_names.size(); ++i)
+        if (k_style_names[i] == name) return k_texts[i];
+    const std::vector<std::string> names(k_style_names.begin(), k_style_names.end());
     throw UsageError(fmt::format("there is no style '{}'{}; the styles are {}", name, suggestion(name, names),
-                                 fmt::join(k_names, ", ")));
+                                 fmt::join(k_style_names, ", ")));
 }
 
 }  // namespace exemplar

@@ -16,7 +16,7 @@ namespace {
 using End = std::uint32_t;
 constexpr End k_no_end = std::numeric_limits<End>::max();
 
-/// An end where lines may continue: the edge or vertex it lies at, and from which side.
+/// An end at which a line may continue: its edge or vertex, and the side of the edge.
 struct Junction {
     std::uint8_t family;
     bool at_vertex;
@@ -31,8 +31,8 @@ struct Junction {
     }
 };
 
-void check(std::span<const Face> faces, std::span<const FaceNeighbors> neighbors,
-           std::span<const LineSegment> segments) {
+void check_segments(std::span<const Face> faces, std::span<const FaceNeighbors> neighbors,
+                    std::span<const LineSegment> segments) {
     if (neighbors.size() != faces.size())
         throw UsageError(fmt::format("neighbors of {} faces for {}: compute them for the same mesh", neighbors.size(),
                                      faces.size()));
@@ -44,7 +44,7 @@ void check(std::span<const Face> faces, std::span<const FaceNeighbors> neighbors
                                          s, segments[s].face, faces.size()));
 }
 
-/// All ends where lines may continue, those of one edge or vertex beside each other.
+/// Returns all ends at which lines may continue, sorted so that those at one edge or vertex are adjacent.
 std::vector<Junction> sorted_junctions(std::span<const Face> faces, std::span<const FaceNeighbors> neighbors,
                                        std::span<const LineSegment> segments) {
     std::vector<Junction> junctions;
@@ -60,14 +60,14 @@ std::vector<Junction> sorted_junctions(std::span<const Face> faces, std::span<co
                 continue;
             }
             const std::uint32_t own = 4 * segment.face + place, across = neighbors[segment.face][place];
-            if (across > k_last_neighbor) continue;
+            if (across > k_max_neighbor_code) continue;
             junctions.push_back({segment.family, false, std::min(own, across), own, 2 * s + e});
         }
     std::sort(junctions.begin(), junctions.end());
     return junctions;
 }
 
-/// For each end the one that continues it, or k_no_end.
+/// Returns for each end the one that continues it, or k_no_end.
 std::vector<End> joined_ends(std::span<const Face> faces, std::span<const FaceNeighbors> neighbors,
                              std::span<const LineSegment> segments) {
     const std::vector<Junction> junctions = sorted_junctions(faces, neighbors, segments);
@@ -83,8 +83,8 @@ std::vector<End> joined_ends(std::span<const Face> faces, std::span<const FaceNe
     return joined;
 }
 
-/// The links from the segment that `entry` is an end of, entered there, until a line ends or comes back to `stop`.
-/// Returns whether it came back.
+/// Appends the links from the segment of the end `entry`, traversed from there, until the line ends or returns to
+/// the segment `stop`. Returns whether it returned.
 bool follow(End entry, std::uint32_t stop, const std::vector<End>& joined, std::vector<ChainLink>& links) {
     while (true) {
         links.push_back({entry / 2, (entry & 1u) != 0});
@@ -99,7 +99,7 @@ bool follow(End entry, std::uint32_t stop, const std::vector<End>& joined, std::
 
 std::vector<Chain> chain_segments(std::span<const Face> faces, std::span<const FaceNeighbors> neighbors,
                                   std::span<const LineSegment> segments) {
-    check(faces, neighbors, segments);
+    check_segments(faces, neighbors, segments);
     const std::vector<End> joined = joined_ends(faces, neighbors, segments);
     std::vector<Chain> chains;
     std::vector<bool> used(segments.size(), false);

@@ -26,7 +26,7 @@ Vec2 in_picture(const StrokeView& view, const Vec3& at) {
     return view.camera.project(at, view.width, view.height).head<2>();
 }
 
-/// A trace where it would be in the picture.
+/// A trace projected into the current picture.
 struct SeenTrace {
     std::uint32_t face;
     std::uint8_t family;
@@ -50,15 +50,15 @@ std::vector<SeenTrace> seen_traces(const LineSurface& surface, std::span<const L
     return seen;
 }
 
-/// What was near a piece of a chain in the frame before.
+/// The line of the previous frame nearest to a piece of a chain.
 struct Match {
     float away = k_nowhere;  ///< pixels
     float texture = 0;
     bool along = true;
 };
 
-/// The way of a link, in the picture and by itself.
-struct Piece {
+/// A link in the picture: its segment, middle and vector.
+struct TracePiece {
     const LineSegment& segment;
     Vec2 middle, way;
 };
@@ -67,7 +67,7 @@ class TraceFinder {
   public:
     TraceFinder(const LineSurface& surface, std::vector<SeenTrace> seen) : surface_(surface), seen_(std::move(seen)) {}
 
-    Match find(const Piece& piece) const {
+    Match find(const TracePiece& piece) const {
         Match best;
         look_in(piece.segment.face, piece, best);
         if (best.away == k_nowhere) look_beside(piece, best);
@@ -75,17 +75,17 @@ class TraceFinder {
     }
 
   private:
-    void look_in(std::uint32_t face, const Piece& piece, Match& best) const {
+    void look_in(std::uint32_t face, const TracePiece& piece, Match& best) const {
         const auto by_face = [](const SeenTrace& a, std::uint32_t b) { return a.face < b; };
         for (auto i = std::lower_bound(seen_.begin(), seen_.end(), face, by_face); i != seen_.end() && i->face == face;
              ++i)
             if (i->family == piece.segment.family) compare(*i, piece, best);
     }
 
-    static void compare(const SeenTrace& trace, const Piece& piece, Match& best) {
+    static void compare(const SeenTrace& trace, const TracePiece& piece, Match& best) {
         const Vec2 on = trace.ends[1] - trace.ends[0];
         const float squared = on.squaredNorm();
-        // A little beyond its ends it is taken to go on.
+        // Texture coordinates are extrapolated by up to its length beyond its ends.
         const float t = squared > 0 ? std::clamp((piece.middle - trace.ends[0]).dot(on) / squared, -1.0f, 2.0f) : 0.5f;
         const float away = (piece.middle - trace.ends[0] - std::clamp(t, 0.0f, 1.0f) * on).norm();
         if (away >= best.away) return;
@@ -93,7 +93,7 @@ class TraceFinder {
                 on.dot(piece.way) * (trace.texture[1] - trace.texture[0]) >= 0};
     }
 
-    void look_beside(const Piece& piece, Match& best) const {
+    void look_beside(const TracePiece& piece, Match& best) const {
         const LineSegment& segment = piece.segment;
         const Face& face = surface_.faces[segment.face];
         const Vec3 a = surface_.vertices[face[0]], b = surface_.vertices[face[1]], c = surface_.vertices[face[2]];
@@ -112,13 +112,13 @@ class TraceFinder {
         }
     }
 
-    /// The face across the side that lies farthest that way: the one opposite to the corner that lies farthest back.
+    /// Returns the neighbor in a direction: across the side opposite to the corner that lies farthest back.
     std::optional<std::uint32_t> face_towards(std::uint32_t face, const Vec3& way) const {
         std::array<float, 3> at{};
         for (std::size_t i = 0; i < 3; ++i) at[i] = surface_.vertices[surface_.faces[face][i]].dot(way);
         const auto back = static_cast<std::size_t>(std::min_element(at.begin(), at.end()) - at.begin());
         const std::uint32_t across = surface_.neighbors[face][(back + 1) % 3];
-        if (across > k_last_neighbor) return std::nullopt;
+        if (across > k_max_neighbor_code) return std::nullopt;
         return across / 4;
     }
 
@@ -128,7 +128,8 @@ class TraceFinder {
 
 constexpr float k_turn = 2 * std::numbers::pi_v<float>;
 
-/// What a link wants: a direction for the turn of the texture at which the chain would begin, as long as its weight.
+/// The vote of a link: the phase of the texture at the chain's start as an angle, in a vector with the weight as
+/// length.
 struct Vote {
     Vec2 turn = Vec2::Zero();
     bool along = true;
@@ -139,10 +140,10 @@ Vote vote_of(const Match& match, float at, float size, float period) {
     if (match.away == k_nowhere) return {.at = at};
     const float begin = (match.texture + (match.along ? -at : at)) / period;
     const float angle = k_turn * (begin - std::floor(begin));
-    return {std::min(size, k_most_vote) * Vec2(std::cos(angle), std::sin(angle)), match.along, at};
+    return {std::min(size, k_max_vote) * Vec2(std::cos(angle), std::sin(angle)), match.along, at};
 }
 
-/// The links of a chain in the picture.
+/// A link of a chain in the picture.
 struct PictureLink {
     const LineSegment& segment;
     bool reversed;
@@ -167,7 +168,7 @@ std::vector<PictureLink> picture_links(const LineSurface& surface, std::span<con
     return links;
 }
 
-/// The mean of the votes for that way that are near a point, links before it and after it.
+/// Returns the sum of the votes for a direction around a point, over links before and after it.
 Vec2 votes_around(const std::vector<Vote>& votes, bool along, std::size_t point, float at) {
     Vec2 sum = Vec2::Zero();
     const auto add_side = [&](auto begin, auto end) {
@@ -196,14 +197,14 @@ ChainTexture laid_by(const std::vector<Vote>& votes, const std::vector<PictureLi
         const float at = i < links.size() ? links[i].along : links.back().along + links.back().size();
         const Vec2 around = votes_around(votes, runs_along, i, at);
         Vec2 turn = all.normalized();
-        if (around != Vec2::Zero()) turn += (k_calling - 1) * around.normalized();
+        if (around != Vec2::Zero()) turn += (k_whole_chain_divisor - 1) * around.normalized();
         const float turns = std::atan2(turn.y(), turn.x()) / k_turn;
         texture.phases[i] = period * (turns - std::floor(turns));
     }
     return texture;
 }
 
-void check(const LineSurface& surface, std::span<const LineTrace> traces) {
+void check_traces(const LineSurface& surface, std::span<const LineTrace> traces) {
     if (surface.neighbors.size() != surface.faces.size())
         throw UsageError(fmt::format("neighbors of {} faces for {}: compute them for the same mesh",
                                      surface.neighbors.size(), surface.faces.size()));
@@ -242,7 +243,7 @@ std::vector<ChainTexture> follow_traces(const LineSurface& surface, std::span<co
                                         std::span<const Chain> chains, std::span<const LineTrace> before,
                                         const StrokeView& view, float period) {
     if (!(period > 0)) throw UsageError(fmt::format("a texture of {} pixels; give a positive length", period));
-    check(surface, before);
+    check_traces(surface, before);
     const TraceFinder finder(surface, seen_traces(surface, before, view));
     std::vector<ChainTexture> textures;
     for (const Chain& chain : chains) {

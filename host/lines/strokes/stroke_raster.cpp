@@ -12,13 +12,13 @@ namespace exemplar {
 
 namespace {
 
-/// What a piece of a stroke does to a pixel.
+/// How a piece of a stroke covers a pixel.
 struct Covered {
     float inside = -1;  ///< pixels from the stroke's border; negative: outside
     float opacity = 0;
 };
 
-/// What one stroke covers of each pixel, and which pixels.
+/// How one stroke covers each pixel, and the list of covered pixels.
 struct Coverage {
     BasicImage<Covered> pixels;
     std::vector<std::pair<int, int>> touched;

@@ -13,9 +13,10 @@ namespace exemplar {
 namespace {
 
 constexpr int k_length = 256, k_breadth = 32;
-constexpr std::array k_names = {std::string_view("pencil"), std::string_view("charcoal"), std::string_view("brush")};
+constexpr std::array k_texture_names = {std::string_view("pencil"), std::string_view("charcoal"),
+                                        std::string_view("brush")};
 
-/// Smooth noise in [0, 1] of cells cell_x x cell_y pixels; its right end fits its left.
+/// Smooth noise in [0, 1] with cells of cell_x x cell_y pixels, periodic in x.
 class Noise {
   public:
     Noise(int cell_x, int cell_y, std::uint64_t seed)
@@ -71,7 +72,7 @@ Image pencil() {
     });
 }
 
-/// Coarser grain, gaps along the way, and a ragged edge.
+/// Coarser grain, gaps along the stroke, and a ragged edge.
 Image charcoal() {
     const Noise grain(2, 2, 21), coarse(4, 4, 22), patches(32, 8, 23), edge(4, 32, 24);
     return make_texture([&](int x, int y, float across) {
@@ -81,7 +82,7 @@ Image charcoal() {
     });
 }
 
-/// Bristles leave streaks along the way, more of them at the sides.
+/// Bristles leave streaks along the stroke, more of them at the sides.
 Image brush() {
     const Noise bristles(128, 1, 31), streaks(32, 2, 32), edge(16, 32, 33);
     return make_texture([&](int x, int y, float across) {
@@ -107,7 +108,7 @@ Image opacity_of(const Image& image) {
 }  // namespace
 
 std::span<const std::string_view> stroke_texture_names() {
-    return k_names;
+    return k_texture_names;
 }
 
 Image load_stroke_texture(const std::string& name) {

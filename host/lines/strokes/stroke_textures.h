@@ -8,17 +8,17 @@
 
 namespace exemplar {
 
-/// Names of the textures that need no file.
+/// Returns the names of the built-in textures.
 std::span<const std::string_view> stroke_texture_names();
 
-/// A texture by the name of a style: how opaque a stroke is, as a gray image (255 is opaque) whose x runs along the
-/// stroke, a pixel of the image a pixel of the picture, again and again, and whose y runs across it, from its left
-/// side to its right. Of "none" an empty image. Built-in ones are 256 x 32 and always the same; else the name is the
-/// path of a PNG file: its alpha, or how dark it is if it has none. Throws DataError as read_png.
+/// Returns the texture with the name that a style gives: the opacity of a stroke as a gray image (255 is opaque). x
+/// runs along the stroke, one texel per pixel of the picture, and repeats; y runs across, from left to right. "none"
+/// is an empty image; built-in textures are 256 x 32. Other names are paths of PNG files, of which alpha or, without
+/// alpha, darkness is taken. Throws DataError as read_png does.
 Image load_stroke_texture(const std::string& name);
 
-/// The opacity, in [0, 1], at a parameter (pixels along the stroke) and a place across it (-1 left to 1 right):
-/// interpolated between pixels, around the ends of x and not beyond those of y. 1 for an empty image.
+/// Returns the opacity in [0, 1] at a parameter (pixels along the stroke) and a position across it (-1 left to 1
+/// right), by bilinear interpolation that repeats in x and clamps in y. 1 for an empty image.
 float sample_stroke_texture(const Image& texture, float parameter, float across);
 
 }  // namespace exemplar

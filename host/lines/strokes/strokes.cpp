@@ -11,12 +11,12 @@ namespace exemplar {
 
 namespace {
 
-constexpr std::size_t k_grain = 16;     // chains that one thread takes at a time
-constexpr float k_taper_step = 0.2f;    // the longest way between two points, of a taper
-constexpr float k_most_pieces = 10000;  // of a link
+constexpr std::size_t k_chain_grain = 16;  // chains that one thread takes at a time
+constexpr float k_taper_step = 0.2f;       // maximum distance of two points, in tapers
+constexpr float k_most_pieces = 10000;     // maximum pieces of a link
 
-void check(const LineSurface& surface, std::span<const LineSegment> segments, std::span<const Chain> chains,
-           const VisibleParts* visible) {
+void check_stroke_input(const LineSurface& surface, std::span<const LineSegment> segments,
+                        std::span<const Chain> chains, const VisibleParts* visible) {
     const VertexCurvature& c = surface.curvature;
     if (!c.k1.empty())
         for (const std::size_t have : {c.k1.size(), c.k2.size(), c.e1.size(), c.e2.size()})
@@ -37,7 +37,7 @@ void check(const LineSurface& surface, std::span<const LineSegment> segments, st
                                              link.segment, segments.size()));
 }
 
-void check(const StrokeView& view, const StrokeThickness& t) {
+void check_stroke_input(const StrokeView& view, const StrokeThickness& t) {
     if (view.width <= 0 || view.height <= 0 || !(view.unit_depth > 0))
         throw UsageError(fmt::format("a view of {} x {} pixels with a unit of depth of {}: give positive numbers",
                                      view.width, view.height, view.unit_depth));
@@ -53,13 +53,13 @@ Vec2 across(const Vec2& tangent) {
     return Vec2(-tangent.y(), tangent.x()).normalized();
 }
 
-/// Moves the points of a chain to the mean of what is around them (see make_strokes), and gives them normals.
-class Calming {
+/// Smooths the points of a chain (see make_strokes) and sets their normals.
+class ChainSmoother {
   public:
-    Calming(const std::vector<StrokePoint>& points, bool closed, bool tapers)
+    ChainSmoother(const std::vector<StrokePoint>& points, bool closed, bool tapers)
         : points_(points), closed_(closed), tapers_(tapers) {}
 
-    std::vector<StrokePoint> calmed() const {
+    std::vector<StrokePoint> smoothed_points() const {
         std::vector<StrokePoint> result = points_;
         const auto last = static_cast<std::ptrdiff_t>(points_.size()) - 1;
         for (std::ptrdiff_t i = 0; i <= last; ++i) {
@@ -76,13 +76,14 @@ class Calming {
     }
 
   private:
-    /// What is to one side of a point: its integral over the length, the length, and where it ends.
+    /// The window on one side of a point: integral of the position over its length, length, and end.
     struct Side {
         Vec2 sum = Vec2::Zero();
         float length = 0;
         Vec2 end;
     };
-    /// Around on a closed chain, whose last point is its first; else no further than the end.
+    /// Returns the next point in a direction. Wraps around on closed chains, whose last point is the first; stays at
+    /// the end of others.
     std::ptrdiff_t step(std::ptrdiff_t i, std::ptrdiff_t way) const {
         const auto last = static_cast<std::ptrdiff_t>(points_.size()) - 1;
         const std::ptrdiff_t next = i + way;
@@ -93,16 +94,16 @@ class Calming {
     Side side(std::ptrdiff_t i, std::ptrdiff_t way) const {
         float reach = 0;
         std::ptrdiff_t here = i;
-        for (int k = 0; k < k_calm_reach; ++k) {
+        for (int k = 0; k < k_smoothing_window_reach; ++k) {
             const std::ptrdiff_t next = step(here, way);
             reach += (at(next) - at(here)).norm();
             here = next;
         }
-        reach = std::clamp(reach, k_least_calm, k_most_calm);
+        reach = std::clamp(reach, k_min_smoothing_window, k_max_smoothing_window);
         Side result;
         result.end = at(i);
         here = i;
-        for (int k = 0; k < k_calm_points && result.length < reach; ++k) {
+        for (int k = 0; k < k_smoothing_window_points && result.length < reach; ++k) {
             const std::ptrdiff_t next = step(here, way);
             const Vec2 on = at(next) - at(here);
             const float length = on.norm(), part = std::min(length, reach - result.length);
@@ -146,7 +147,7 @@ class StrokeMaker {
         if (type_ == LineType::creases || type_ == LineType::boundaries)
             set_normals(chain.closed, own);
         else
-            own = Calming(own, chain.closed, thickness_.taper > 0).calmed();
+            own = ChainSmoother(own, chain.closed, thickness_.taper > 0).smoothed_points();
         Stroke stroke;
         stroke.closed = chain.closed;
         for (std::size_t i = 0; i < chain.links.size(); ++i)
@@ -158,7 +159,7 @@ class StrokeMaker {
     }
 
   private:
-    /// The point at t on the way along a link, but for its normal and parameter.
+    /// Returns the point at t along a link, without normal and parameter.
     StrokePoint point_of(const ChainLink& link, float t) const {
         const LineSegment& segment = segments_[link.segment];
         const float s = link.reversed ? 1 - t : t;
@@ -189,7 +190,8 @@ class StrokeMaker {
         if (!(squared_sine > 0)) return 0.5f * (c.k1[vertex] + c.k2[vertex]);
         return (c.k1[vertex] * u * u + c.k2[vertex] * v * v) / squared_sine;
     }
-    /// In the plane of the eye there is no projection; such points are never visible, but should not spoil others.
+    /// Replaces positions of points in the plane of the eye, which have no projection. Such points are never
+    /// visible, but must not spoil their neighbors.
     static void replace_lost_positions(std::vector<StrokePoint>& points) {
         for (std::size_t i = 0; i < points.size(); ++i)
             if (!points[i].position.allFinite()) points[i].position = i > 0 ? points[i - 1].position : Vec2::Zero();
@@ -213,7 +215,7 @@ class StrokeMaker {
                 break;
             }
     }
-    /// Adds the point a link begins with, those where its visibility changes, and so many that tapers show.
+    /// Adds the first point of a link, those where visibility changes, and enough others for tapers.
     void add_link(const ChainLink& link, const StrokePoint& first, const StrokePoint& last,
                   std::vector<StrokePoint>& points) const {
         const std::size_t begin = points.size();
@@ -260,7 +262,8 @@ class StrokeMaker {
         point.normal = normal.squaredNorm() > 0 ? Vec2(normal.normalized()) : first.normal;
         return point;
     }
-    /// There is no way on from the last point of an open chain; that of a closed one is that of the first.
+    /// Sets the last point: in an open chain it is as visible as the last piece; in a closed one it equals the
+    /// first.
     static void finish_last_point(Stroke& stroke) {
         if (stroke.points.empty()) return;
         StrokePoint& last = stroke.points.back();
@@ -277,7 +280,7 @@ class StrokeMaker {
         std::vector<StrokePoint>& points = stroke.points;
         if (points.size() < 2) return;
         const float length = points.back().parameter;
-        // Behind and ahead, the ends of visible runs nearest to each point. Once more around for closed chains.
+        // Distances to the nearest ends of visible runs behind and ahead; closed chains take two rounds.
         std::vector<float> distance(points.size(), k_far);
         float end = stroke.closed ? -k_far : 0;
         const auto is_end = [&](std::size_t i) {
@@ -318,12 +321,12 @@ class StrokeMaker {
 std::vector<Stroke> make_strokes(const LineSurface& surface, LineType type, std::span<const LineSegment> segments,
                                  std::span<const Chain> chains, const VisibleParts* visible, const StrokeView& view,
                                  const LineThresholds& thresholds, const StrokeThickness& thickness) {
-    check(surface, segments, chains, visible);
-    check(view, thickness);
+    check_stroke_input(surface, segments, chains, visible);
+    check_stroke_input(view, thickness);
     const StrokeMaker maker(surface, type, segments, visible, view, thresholds, thickness);
     std::vector<Stroke> strokes(chains.size());
     parallel_for(
-        chains.size(), [&](std::size_t i) { strokes[i] = maker.stroke_of(chains[i]); }, k_grain);
+        chains.size(), [&](std::size_t i) { strokes[i] = maker.stroke_of(chains[i]); }, k_chain_grain);
     return strokes;
 }
 

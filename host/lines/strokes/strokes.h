@@ -7,46 +7,47 @@
 #include <vector>
 
 #include "host/imaging/camera.h"
-#include "host/lines/strokes/chains.h"
 #include "host/lines/extraction/lines.h"
+#include "host/lines/strokes/chains.h"
 #include "host/lines/strokes/visibility.h"
 
 namespace exemplar {
 
-/// How thick the strokes of a line type are (thesis Sec. 5.7, after Goodwin et al. 2007): with z the depth along the
-/// camera's axis in units of StrokeView::unit_depth (1 in parallel projection), kr the radial curvature times the
-/// feature size, both at the point: T = clamp(c / (z (max(kr, 0) + epsilon))), c = width * epsilon.
+/// Thickness T = clamp(c / (z (max(kr, 0) + epsilon))), c = width * epsilon, of the strokes of a line type (thesis
+/// Sec. 5.7, after Goodwin et al. 2007). z is the depth along the camera's axis in units of StrokeView::unit_depth
+/// (1 in parallel projection), kr the radial curvature times the feature size, both at the point.
 struct StrokeThickness {
-    float width = 2.5f;  ///< pixels, where kr is zero at unit depth
+    float width = 2.5f;  ///< pixels, for kr = 0 at unit depth
     float epsilon = 0.25f;
     float least = 0.6f, most = 6;  ///< pixels
-    float taper = 12;              ///< pixels over which a stroke grows from nothing at its ends; 0: blunt
+    float taper = 12;              ///< pixels over which a stroke widens from zero at its ends; 0: blunt ends
 };
-/// T at a point of a radial curvature (times the feature size) and a depth (in units): pixels, not tapered.
+/// Returns T in pixels, without taper, for a radial curvature (times the feature size) and a depth (in unit depths).
 inline float stroke_width(const StrokeThickness& thickness, float radial_curvature, float depth) {
     const float width =
         thickness.width * thickness.epsilon / (depth * (std::max(radial_curvature, 0.0f) + thickness.epsilon));
     return std::clamp(width, thickness.least, thickness.most);
 }
-/// The share of its width that a stroke has `distance` pixels from the end of what is visible of it: a quarter of an
-/// ellipse, sqrt(x (2 - x)) with x = min(1, distance / taper).
+/// Returns the factor of the width at `distance` pixels from the end of a visible run: a quarter of an ellipse,
+/// sqrt(x (2 - x)) with x = min(1, distance / taper).
 inline float stroke_taper(float distance, float taper) {
     if (!(distance < taper)) return 1;
     const float x = std::max(distance, 0.0f) / taper;
     return std::sqrt(x * (2 - x));
 }
 
-/// The share of its width that a stroke has where a piece of it `length` pixels long leads only `across` pixels on: 1
-/// up to a turn by 120 degrees or so, less towards a cusp, where the way back covers the way there.
+/// Returns the factor of the width of a piece of a stroke with arc length `length` and chord `across`, both in
+/// pixels: 1 for turns of up to about 120 degrees, less towards a cusp, where the stroke would overlap itself.
 inline float straightness(float across, float length) {
     return length > 0 ? std::min(1.0f, 2 * across / length) : 1;
 }
 
-/// See make_strokes: how far points are moved, in pixels, and within how many points to each side.
-constexpr float k_least_calm = 3, k_most_calm = 10;
-constexpr int k_calm_points = 8, k_calm_reach = 2;
+/// Smoothing window of make_strokes on each side of a point: minimum and maximum length in pixels, maximum number of
+/// points, and the number of points whose distance is the length.
+constexpr float k_min_smoothing_window = 3, k_max_smoothing_window = 10;
+constexpr int k_smoothing_window_points = 8, k_smoothing_window_reach = 2;
 
-/// Where strokes are seen from.
+/// Camera, picture and units that strokes are made for.
 struct StrokeView {
     Camera camera;
     int width = 0, height = 0;  ///< pixels
@@ -57,34 +58,34 @@ struct StrokeView {
 /// A point of a chain in the picture.
 struct StrokePoint {
     Vec2 position = Vec2::Zero();  ///< pixels; x right, y down, (0, 0) the image's upper left corner
-    Vec2 normal = Vec2::UnitY();   ///< unit, across the stroke: to the right of the way on
-    float depth = 0;               ///< in [0, 1], as Camera::project has it
-    float width = 0;               ///< pixels; tapered towards the ends of what is visible
+    Vec2 normal = Vec2::UnitY();   ///< unit, across the stroke, to the right of its direction
+    float depth = 0;               ///< in [0, 1], as in Camera::project
+    float width = 0;               ///< pixels; tapered towards the ends of visible runs
     float opacity = 1;             ///< line_opacity() of its strength
-    float parameter = 0;           ///< pixels from the chain's start, along it
-    bool visible = true;           ///< the way on to the next point is not hidden
+    float parameter = 0;           ///< arc length from the chain's start, in pixels
+    bool visible = true;           ///< whether the piece to the next point is visible
 };
 
-/// A chain as it is drawn: the points where its links begin and the last one's end, and points between them where
-/// visibility changes; links longer than a fifth of the taper are cut into even pieces, so that it shows on them. Of a
-/// closed one the last point is the first.
+/// A chain as it is drawn. Points are the starts of its links, the end of the last one, and the places where
+/// visibility changes. Links longer than a fifth of the taper are subdivided evenly, so that it shows on them. In a
+/// closed stroke the last point equals the first.
 struct Stroke {
     std::vector<StrokePoint> points;
     bool closed = false;
 };
 
-/// The strokes of chains, in their order. Zero sets and extrema wind a little from face to face; so a point of theirs
-/// is moved to the mean of the chain around it, in the picture: to each side as far as the second next point, but no
-/// less than 3 and no more than 10 pixels, and no further than 8 points or the chain's end (its end points stay). The
-/// normal is perpendicular to the way between the ends of that part; of creases and boundaries, to that from the second
-/// point before to the second after. The parameter is the sum of the pixel distances up to a point before it is moved,
-/// the width stroke_width() of the depth and the radial curvature there (at a vertex (k1 u^2 + k2 v^2) / (u^2 + v^2),
-/// or the mean curvature where the eye is along the normal; zero if the surface has no curvature). With tapers it is
-/// multiplied by the straightness() of the part that the point is the mean of, and by stroke_taper() of the distance
-/// along the chain to the nearest end of the visible run that the point is in. Where a closed chain's
-/// first point is visible, its runs go on over it, and if all is visible nothing is tapered. `visible` has the visible
-/// parts of each segment; null: all are. Throws UsageError if sizes do not fit, or a thickness is out of range (width,
-/// epsilon and most positive, least in [0, most], taper not negative).
+/// Makes the strokes of chains, in their order. `visible`: the visible parts of each segment; null: all are visible.
+/// Position: zero sets and extrema zigzag from face to face, so each point, except the ends of open chains, moves to
+/// the mean of the chain in a window around it: to each side up to the second next point, but 3 to 10 pixels and at
+/// most 8 points, within the chain. Creases and boundaries are not moved. Normal: perpendicular to the chord of the
+/// window, or of creases and boundaries, to that from the second point before to the second after. Parameter: arc
+/// length in pixels before points are moved. Width: stroke_width() of the depth and the radial curvature,
+/// interpolated from the vertices ((k1 u^2 + k2 v^2) / (u^2 + v^2), the mean curvature where the eye is along the
+/// normal, or 0 without curvature). With a taper it is multiplied by the straightness() of the window and by
+/// stroke_taper() of the distance along the chain to the nearest end of the point's visible run. Runs of closed
+/// chains continue across their first point; if everything is visible, they are not tapered.
+/// Throws UsageError if sizes do not fit, or a thickness is out of range (width, epsilon and most positive, least in
+/// [0, most], taper not negative).
 std::vector<Stroke> make_strokes(const LineSurface& surface, LineType type, std::span<const LineSegment> segments,
                                  std::span<const Chain> chains, const VisibleParts* visible, const StrokeView& view,
                                  const LineThresholds& thresholds, const StrokeThickness& thickness);

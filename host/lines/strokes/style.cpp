@@ -49,7 +49,7 @@ std::optional<Color> color_named(std::string_view text) {
     return color;
 }
 
-/// What messages may hold of text from a file: printable ASCII, not too much of it.
+/// Returns text from a file as messages may show it: printable ASCII of limited length.
 std::string shown(std::string_view text) {
     constexpr std::size_t k_longest = 60;
     std::string result(text.substr(0, k_longest));
@@ -62,7 +62,7 @@ std::vector<std::string> words(std::initializer_list<const char*> list) {
     return {list.begin(), list.end()};
 }
 
-/// Reads the parts of a style, with the way to each for messages.
+/// Reads the parts of a style, with their JSON pointers for messages.
 class StyleReader {
   public:
     StyleReader(const std::string& name, const std::filesystem::path& folder) : name_(name), folder_(folder) {}
@@ -95,7 +95,7 @@ class StyleReader {
     }
 
     Json parse(std::string_view text) const {
-        // Of each open object the keys so far: a second one would silently replace the first.
+        // The keys so far of each open object: the parser would silently replace the value of a repeated key.
         std::vector<std::set<std::string>> keys;
         std::string repeated;
         const auto watch = [&](int, Json::parse_event_t event, Json& value) {
@@ -166,7 +166,7 @@ class StyleReader {
                                                  suggestion(shading, known), fmt::join(known, ", ")));
         style.shading = static_cast<SurfaceShading>(at - known.begin());
     }
-    /// `type`: none for what all types begin with.
+    /// `type`: none for the defaults of all types.
     void read_line(const Json& json, const std::string& pointer, std::optional<LineType> type, LineStyle& line) const {
         std::vector<std::string> known =
             words({"color", "opacity", "width", "epsilon", "least", "most", "taper", "texture"});

@@ -72,14 +72,14 @@ Camera placed_camera(const ViewPoint& point, const std::vector<Vec3>& points, fl
 }
 
 Camera fitted_camera(const ViewPoint& point, const TriangleMesh& extent, float aspect) {
-    // "front" is turned along with what is up.
+    // Named views are rotated along with `up`.
     const Vec3 direction = Eigen::Quaternionf::FromTwoVectors(Vec3::UnitY(), point.up) *
                            view_direction(point.view).value_or(Vec3::UnitZ());
     FitOptions options;
     options.vertical_fov = radians(point.field_of_view);
     options.up = point.up;
     Camera camera = fit_camera(extent, direction, aspect, options);
-    // Frames that were not looked at may reach farther.
+    // Other frames than those of `extent` may reach farther.
     const Range range = depths(camera, extent.vertices);
     const float size = std::max(range.high - range.low, 1e-3f * range.high);
     const float near = std::max(range.low - 0.5f * size, 0.05f * range.low), far = range.high + 0.5f * size;

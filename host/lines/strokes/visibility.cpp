@@ -15,13 +15,13 @@ namespace exemplar {
 
 namespace {
 
-constexpr std::size_t k_grain = 64;           // segments that one thread takes at a time
-constexpr float k_near_edges = 3;             // how far faces nearby may be overlooked, in edges of the point's face
-constexpr float k_touching_edges = 1e-3f;     // the same for faces that touch that of the point, of any line
-constexpr float k_precision = 0.05f;          // pixels to which changes of visibility are found
-constexpr std::size_t k_most_samples = 4096;  // of one segment
-constexpr float k_same_pixels = 0.01f;        // apart, two points along a chain are one
-constexpr int k_most_hits = 64;               // that are overlooked on one ray
+constexpr std::size_t k_segment_grain = 64;  // segments that one thread takes at a time
+constexpr float k_near_edges = 3;            // reach of ignored nearby faces, in edges of the point's face
+constexpr float k_touching_edges = 1e-3f;    // the same for faces that touch the point's face, for any line
+constexpr float k_precision = 0.05f;         // precision of changes of visibility, in pixels
+constexpr std::size_t k_max_samples = 4096;  // of one segment
+constexpr float k_same_pixels = 0.01f;       // points of a chain closer than this are one
+constexpr int k_max_hits = 64;               // ignored hits of one ray, at most
 
 TriangleMesh mesh_of(const LineSurface& surface) {
     TriangleMesh mesh;
@@ -37,12 +37,12 @@ const LineSurface& checked(const LineSurface& surface) {
     return surface;
 }
 
-/// For each face whether no face that it is connected with, across edges, has a free side.
+/// Returns for each face whether its edge-connected component has no boundary.
 std::vector<std::uint8_t> closed_components(std::span<const FaceNeighbors> neighbors) {
     DisjointSets sets(neighbors.size());
     for (std::uint32_t f = 0; f < neighbors.size(); ++f)
         for (const std::uint32_t across : neighbors[f])
-            if (across <= k_last_neighbor) sets.join(f, across / 4);
+            if (across <= k_max_neighbor_code) sets.join(f, across / 4);
     std::vector<std::uint8_t> closed_set(neighbors.size(), 1), closed(neighbors.size());
     for (std::uint32_t f = 0; f < neighbors.size(); ++f)
         for (const std::uint32_t across : neighbors[f])
@@ -84,7 +84,7 @@ bool LineVisibility::are_near(std::uint32_t face, std::uint32_t other) const {
     return false;
 }
 
-/// The points of one segment, tested against the eye of one camera.
+/// Tests points of one segment for visibility from one camera.
 class LineVisibility::Query {
   public:
     Query(const LineVisibility& scene, LineType type, const LineSegment& segment, const Camera& camera,
@@ -104,7 +104,7 @@ class LineVisibility::Query {
         contour_ = type == LineType::contours;
     }
 
-    /// The point at t on the way from the first end to the second.
+    /// Returns the point at t from the first end (0) to the second (1).
     Vec3 point(float t) const {
         Vec3 p = Vec3::Zero();
         for (std::size_t i = 0; i < 3; ++i) p += weight(i, t) * scene_.surface_.vertices[face_[i]];
@@ -124,8 +124,9 @@ class LineVisibility::Query {
         const float a = segment_.ends[0][corner], b = segment_.ends[1][corner];
         return a + t * (b - a);
     }
-    /// Whether the surface bends away from the ray at a contour, which then passes in front of it: radial curvature is
-    /// positive. Measured curvature says so more steadily than the normals of one face do.
+    /// Returns whether the surface at a contour bends away from the ray to the eye, i.e. radial curvature is
+    /// positive, so that it does not hide the contour. Measured curvature is more reliable here than a face's
+    /// normals.
     bool bends_away() const {
         const VertexCurvature& c = scene_.surface_.curvature;
         if (c.k1.size() != scene_.surface_.vertices.size()) return grows_to_eye();
@@ -138,7 +139,7 @@ class LineVisibility::Query {
         }
         return bend > 0;
     }
-    /// The same without curvature: n.w, which is linear in the face, grows towards the eye.
+    /// Returns the same without curvature: whether n.w, which is linear in the face, grows towards the eye.
     bool grows_to_eye() const {
         // Its gradient, times the squared length of the cross product, which is positive.
         Vec3 gradient = Vec3::Zero();
@@ -150,7 +151,7 @@ class LineVisibility::Query {
         }
         return gradient.dot(camera_.to_eye(point(0.5f))) > 0;
     }
-    /// Whether faces nearby may lie in front of the point without hiding it; see visible_parts.
+    /// Returns whether nearby faces may lie in front of the point without hiding it; see visible_parts.
     bool overlooks_near_faces(const Vec3& to_eye, float t) const {
         if (edge_) return false;
         if (contour_) return contour_bends_away_ || !scene_.closed_[segment_.face];
@@ -161,10 +162,10 @@ class LineVisibility::Query {
     bool hidden(const Vec3& p, float t) const {
         const Vec3 to_eye = camera_.to_eye(p);
         const bool overlooks = overlooks_near_faces(to_eye, t);
-        // What is nearer to the eye than the near plane is not in the picture.
+        // Hits in front of the near plane do not count.
         const float to_near_plane = depth_from_near(p) / std::max(1e-6f, to_eye.dot(backward()));
         float near = scene_.rounding_;
-        for (int hits = 0; hits < k_most_hits; ++hits) {
+        for (int hits = 0; hits < k_max_hits; ++hits) {
             const auto hit = scene_.rays_.first_hit(p, to_eye, near);
             if (!hit || hit->distance > to_near_plane) return false;
             if (!is_overlooked(*hit, overlooks)) return true;
@@ -179,7 +180,7 @@ class LineVisibility::Query {
         return overlooks && scene_.are_near(segment_.face, hit.face);
     }
     Vec3 backward() const { return camera_.view.block<1, 3>(2, 0).transpose(); }
-    /// From the near plane to the point, along the camera's axis.
+    /// Returns the distance from the near plane to the point along the camera's axis.
     float depth_from_near(const Vec3& p) const {
         const Eigen::Matrix4f& projection = camera_.projection;
         return -backward().dot(p) - camera_.view(2, 3) - projection(2, 3) / projection(2, 2);
@@ -211,8 +212,8 @@ VisibleParts joined(const std::vector<std::vector<VisiblePart>>& parts) {
     return result;
 }
 
-/// What is visible along a chain, in pixels from its start, with short gaps closed.
-std::vector<VisiblePart> spans_without_gaps(const Chain& chain, float most_pixels, const VisibleParts& visible) {
+/// Returns the visible spans along a chain, in pixels from its start, with short gaps closed.
+std::vector<VisiblePart> spans_without_gaps(const Chain& chain, float max_pixels, const VisibleParts& visible) {
     std::vector<VisiblePart> spans;
     float start = 0;
     for (const ChainLink& link : chain.links) {
@@ -221,21 +222,21 @@ std::vector<VisiblePart> spans_without_gaps(const Chain& chain, float most_pixel
         for (std::size_t i = 0; i < own.size(); ++i) {
             const VisiblePart part = turned(own[link.reversed ? own.size() - 1 - i : i], link.reversed);
             const float from = start + part.from * length, to = start + part.to * length;
-            if (!spans.empty() && from - spans.back().to <= most_pixels)
+            if (!spans.empty() && from - spans.back().to <= max_pixels)
                 spans.back().to = to;
             else
                 spans.push_back({from, to});
         }
         start += length;
     }
-    if (chain.closed && !spans.empty() && start - spans.back().to + spans.front().from <= most_pixels) {
+    if (chain.closed && !spans.empty() && start - spans.back().to + spans.front().from <= max_pixels) {
         spans.front().from = 0;
         spans.back().to = start;
     }
     return spans;
 }
 
-/// The parts of a chain's segments that lie in the spans.
+/// Cuts spans along a chain into the parts of its segments.
 void cut_to_segments(const Chain& chain, std::span<const float> pixels, const std::vector<VisiblePart>& spans,
                      std::vector<std::vector<VisiblePart>>& parts) {
     float start = 0;
@@ -244,12 +245,12 @@ void cut_to_segments(const Chain& chain, std::span<const float> pixels, const st
         const float length = pixels[link.segment], end = start + length;
         while (first < spans.size() && spans[first].to < start) ++first;
         std::vector<VisiblePart> cut;
-        if (!(length > 0)) {  // a point, which should not break a span
+        if (!(length > 0)) {  // a point, which must not interrupt a span
             if (first < spans.size() && spans[first].from <= start) parts[link.segment] = {{0, 1}};
             continue;
         }
         for (std::size_t i = first; i < spans.size() && spans[i].from < end; ++i) {
-            // Ends of spans that are ends of segments must stay that, however pixels are rounded.
+            // Ends of spans at ends of segments are snapped to them, so that rounding does not open gaps.
             const float from = spans[i].from - k_same_pixels < start ? 0 : (spans[i].from - start) / length;
             const float to = spans[i].to + k_same_pixels > end ? 1 : (spans[i].to - start) / length;
             const VisiblePart part{std::min(from, 1.0f), std::max(to, 0.0f)};
@@ -261,7 +262,7 @@ void cut_to_segments(const Chain& chain, std::span<const float> pixels, const st
     }
 }
 
-/// Where between a and b, visible at exactly one of them, visibility changes.
+/// Finds where visibility changes between a and b, of which exactly one is visible, by bisection.
 template <typename Visible>
 float change_between(float a, float b, bool visible_at_a, float precision, const Visible& visible) {
     while (b - a > precision) {
@@ -272,10 +273,10 @@ float change_between(float a, float b, bool visible_at_a, float precision, const
     return 0.5f * (a + b);
 }
 
-/// The visible parts of a segment of so many pixels.
+/// Appends the visible parts of a segment with a length of `pixels`.
 template <typename Visible>
 void add_parts(float pixels, float spacing, const Visible& visible, std::vector<VisiblePart>& parts) {
-    const float wanted = std::ceil(std::min(pixels / spacing, static_cast<float>(k_most_samples)));
+    const float wanted = std::ceil(std::min(pixels / spacing, static_cast<float>(k_max_samples)));
     const std::size_t count = std::max<std::size_t>(1, static_cast<std::size_t>(wanted));
     const float step = 1 / static_cast<float>(count), precision = k_precision / std::max(pixels, k_precision);
     bool before = visible(0.5f * step);
@@ -313,7 +314,7 @@ VisibleParts LineVisibility::visible_parts(LineType type, std::span<const LineSe
         [&](std::size_t s) {
             const Query query(*this, type, segments[s], camera, matrix, width, height, options);
             const Eigen::Vector4f a = matrix * query.point(0).homogeneous(), b = matrix * query.point(1).homogeneous();
-            float pixels = std::numeric_limits<float>::max();  // of what passes the eye
+            float pixels = std::numeric_limits<float>::max();  // of segments that reach behind the eye
             if (a.w() > 0 && b.w() > 0)
                 pixels = (a.head<2>() / a.w() - b.head<2>() / b.w()).cwiseProduct(half_size).norm();
             if (!std::isfinite(pixels)) pixels = 0;
@@ -321,13 +322,13 @@ VisibleParts LineVisibility::visible_parts(LineType type, std::span<const LineSe
             add_parts(
                 pixels, options.spacing, [&](float t) { return query.visible(t); }, parts[s]);
         },
-        k_grain);
+        k_segment_grain);
     VisibleParts result = joined(parts);
     result.pixels = std::move(lengths);
     return result;
 }
 
-void close_gaps(std::span<const Chain> chains, float most_pixels, VisibleParts& visible) {
+void close_gaps(std::span<const Chain> chains, float max_pixels, VisibleParts& visible) {
     const std::size_t count = visible.segment_count();
     if (visible.pixels.size() != count)
         throw UsageError(
@@ -338,7 +339,7 @@ void close_gaps(std::span<const Chain> chains, float most_pixels, VisibleParts& 
         for (const ChainLink& link : chain.links)
             if (link.segment >= count)
                 throw UsageError(fmt::format("a chain names segment {}, but there are {}", link.segment, count));
-        cut_to_segments(chain, visible.pixels, spans_without_gaps(chain, most_pixels, visible), parts);
+        cut_to_segments(chain, visible.pixels, spans_without_gaps(chain, max_pixels, visible), parts);
     }
     std::vector<float> pixels = std::move(visible.pixels);
     visible = joined(parts);

@@ -17,9 +17,9 @@ struct VertexCurvature {
     /// C111 = dk1/de1, C112, C122, C222 = dk2/de2, in 1 / squared mesh units. Empty unless asked for.
     std::vector<std::array<float, 4>> derivative;
 };
-/// Rusinkiewicz 2004 ("Estimating Curvatures and Their Derivatives on Triangle Meshes"): per-face tensors by least
-/// squares from vertex normals, averaged to vertices with Voronoi areas. Degenerate faces (lower
-/// than 1e-7 of their longest edge) are left out.
+/// Estimates curvature after Rusinkiewicz 2004 ("Estimating Curvatures and Their Derivatives on Triangle Meshes"):
+/// fits a tensor per face to the vertex normals by least squares, and averages the tensors at each vertex, weighted
+/// by Voronoi areas. Leaves out degenerate faces (lower than 1e-7 of their longest edge).
 VertexCurvature estimate_curvature(const TriangleMesh& mesh, bool with_derivatives);
 
 }  // namespace exemplar

@@ -9,6 +9,7 @@
 #include "host/core/errors.h"
 #include "host/core/memory_budget.h"
 #include "host/core/parallel.h"
+#include "host/core/statistics.h"
 #include "host/mesh/curvature/face_fit.h"
 #include "host/mesh/curvature/tensor_diffusion.h"
 
@@ -16,7 +17,7 @@ namespace exemplar {
 
 namespace {
 
-constexpr std::size_t k_grain = 4096;  // faces or vertices that one thread takes at a time
+constexpr std::size_t k_estimator_grain = 4096;  // faces or vertices that one thread takes at a time
 
 /// The corners at each vertex (3 x face + corner), in increasing order, as compressed rows: sums over a row give the
 /// same bits on any number of threads.
@@ -46,35 +47,26 @@ CornerRows build_corner_rows(std::span<const Face> faces, std::size_t vertex_cou
     return rows;
 }
 
-Vec3 unit_or_up(const Vec3d& v) {
-    const double length = v.norm();
-    if (!(length > 0) || !std::isfinite(length)) return Vec3::UnitZ();
-    return (v / length).cast<float>();
-}
-
-/// What only smoothing and robust fits need.
-struct Surroundings {
+/// Data that only smoothing and robust fits need.
+struct SmoothingData {
     VertexNeighbors neighbors;
     TensorDiffusion diffusion;
     std::unique_ptr<RobustFits> robust;
     std::vector<float> lengths;
 
-    Surroundings(std::span<const Face> faces, std::size_t vertex_count)
+    SmoothingData(std::span<const Face> faces, std::size_t vertex_count)
         : neighbors(build_vertex_neighbors(faces, vertex_count)), diffusion(neighbors, usable_memory() / 4) {
         lengths.reserve(neighbors.vertex.size() / 2);
     }
     double median_edge_length(std::span<const Vec3> vertices);
 };
 
-double Surroundings::median_edge_length(std::span<const Vec3> vertices) {
+double SmoothingData::median_edge_length(std::span<const Vec3> vertices) {
     lengths.clear();
     for (std::size_t v = 0; v < vertices.size(); ++v)
         for (const std::uint32_t other : neighbors.of(v))
             if (other > v) lengths.push_back((vertices[other] - vertices[v]).squaredNorm());
-    if (lengths.empty()) return 0;
-    const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-    std::nth_element(lengths.begin(), middle, lengths.end());
-    return std::sqrt(static_cast<double>(*middle));
+    return std::sqrt(static_cast<double>(upper_median(lengths)));
 }
 
 }  // namespace
@@ -82,14 +74,14 @@ double Surroundings::median_edge_length(std::span<const Vec3> vertices) {
 struct CurvatureEstimator::Parts {
     std::vector<Face> faces;
     CornerRows rows;
-    std::unique_ptr<Surroundings> surroundings;  ///< made when first needed
+    std::unique_ptr<SmoothingData> surroundings;  ///< made when first needed
     std::vector<FaceFit> fits;
     std::vector<Form> face_forms;  ///< in the frames of the faces
     std::vector<FormDerivative> face_derivatives;
     std::vector<Vec3> normals;
     std::vector<TangentFrame> frames;
     std::vector<float> areas;
-    std::vector<Form> forms;  ///< per vertex, in its frame, as `derivatives`
+    std::vector<Form> forms;  ///< per vertex, in its frame; so are `derivatives`
     std::vector<FormDerivative> derivatives;
     VertexCurvature result;
 
@@ -109,7 +101,7 @@ struct CurvatureEstimator::Parts {
     }
 
     void check(std::span<const Vec3> vertices) const;
-    Surroundings& around();
+    SmoothingData& around();
     const RobustFits* robust_fits(const CurvatureOptions& options);
     TensorDiffusion* prepared_diffusion(std::span<const Vec3> vertices, const CurvatureOptions& options);
     void measure(std::span<const Vec3> vertices);
@@ -128,12 +120,12 @@ void CurvatureEstimator::Parts::check(std::span<const Vec3> vertices) const {
                         vertices.size(), normals.size()));
 }
 
-Surroundings& CurvatureEstimator::Parts::around() {
-    if (!surroundings) surroundings = std::make_unique<Surroundings>(faces, normals.size());
+SmoothingData& CurvatureEstimator::Parts::around() {
+    if (!surroundings) surroundings = std::make_unique<SmoothingData>(faces, normals.size());
     return *surroundings;
 }
 
-/// Faces, then areas, normals and frames of the vertices, then the turns between them.
+/// Measures the faces, then the areas, normals and frames of the vertices.
 void CurvatureEstimator::Parts::measure(std::span<const Vec3> vertices) {
     parallel_for(
         faces.size(),
@@ -141,7 +133,7 @@ void CurvatureEstimator::Parts::measure(std::span<const Vec3> vertices) {
             const auto& [a, b, c] = faces[f];
             measure_face({vertices[a], vertices[b], vertices[c]}, fits[f]);
         },
-        k_grain);
+        k_estimator_grain);
     parallel_for(
         vertices.size(),
         [&](std::size_t v) {
@@ -153,10 +145,10 @@ void CurvatureEstimator::Parts::measure(std::span<const Vec3> vertices) {
                 area += fit.corner_area[corner % 3];
             }
             normals[v] = unit_or_up(normal);
-            frames[v] = any_frame(normals[v]);
+            frames[v] = frame_of_normal(normals[v]);
             areas[v] = area;
         },
-        k_grain);
+        k_estimator_grain);
 }
 
 void CurvatureEstimator::Parts::fit_forms() {
@@ -169,10 +161,10 @@ void CurvatureEstimator::Parts::fit_forms() {
             face_forms[f] = fit_form(fit, {normals[face[0]], normals[face[1]], normals[face[2]]});
             for (std::size_t i = 0; i < 3; ++i) {
                 const TangentFrame& there = frames[face[i]];
-                fit.turn[i] = turn_to(fit.frame, there.tangent, there.normal);
+                fit.turn[i] = rotation_to(fit.frame, there.tangent, there.normal);
             }
         },
-        k_grain);
+        k_estimator_grain);
     average(face_forms, forms);
 }
 
@@ -185,15 +177,16 @@ void CurvatureEstimator::Parts::fit_derivatives() {
             const FaceFit& fit = fits[f];
             if (!fit.valid) return;
             std::array<Form, 3> in_face;
-            for (std::size_t i = 0; i < 3; ++i) in_face[i] = turned(forms[faces[f][i]], fit.turn[i].inverse());
+            for (std::size_t i = 0; i < 3; ++i)
+                in_face[i] = in_rotated_frame(forms[faces[f][i]], fit.turn[i].inverse());
             face_derivatives[f] = fit_derivative(fit, in_face);
         },
-        k_grain);
+        k_estimator_grain);
     average(face_derivatives, derivatives);
 }
 
-/// Mean of the faces' tensors at each vertex, weighted by corner area; zero without faces. A degenerate face has
-/// no tensor.
+/// Averages the faces' tensors at each vertex, weighted by corner area; zero without faces. Skips degenerate faces,
+/// which have no tensor.
 template <typename Tensor>
 void CurvatureEstimator::Parts::average(const std::vector<Tensor>& of_faces, std::vector<Tensor>& sums) const {
     parallel_for(
@@ -203,7 +196,7 @@ void CurvatureEstimator::Parts::average(const std::vector<Tensor>& of_faces, std
             for (const std::uint32_t corner : rows.of(v)) {
                 const FaceFit& fit = fits[corner / 3];
                 if (!fit.valid) continue;
-                const Tensor there = turned(of_faces[corner / 3], fit.turn[corner % 3]);
+                const Tensor there = in_rotated_frame(of_faces[corner / 3], fit.turn[corner % 3]);
                 const float area = fit.corner_area[corner % 3];
                 for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += area * there[k];
             }
@@ -211,32 +204,32 @@ void CurvatureEstimator::Parts::average(const std::vector<Tensor>& of_faces, std
             for (float& s : sum) s *= scale;
             sums[v] = sum;
         },
-        k_grain);
+        k_estimator_grain);
 }
 
-/// Turns the forms, and the derivatives, to the principal frames.
+/// Rotates the forms and derivatives into the principal frames.
 void CurvatureEstimator::Parts::diagonalize(bool with_derivatives) {
     result.derivative.resize(with_derivatives ? normals.size() : 0);
     parallel_for(
         normals.size(),
         [&](std::size_t v) {
-            const Turn turn = principal_turn(forms[v], result.k1[v], result.k2[v]);
+            const TangentRotation turn = principal_rotation(forms[v], result.k1[v], result.k2[v]);
             const Vec3 &u = frames[v].tangent, &w = frames[v].bitangent;
             result.e1[v] = turn.cosine * u + turn.sine * w;
             result.e2[v] = turn.cosine * w - turn.sine * u;
-            if (with_derivatives) result.derivative[v] = turned(derivatives[v], turn);
+            if (with_derivatives) result.derivative[v] = in_rotated_frame(derivatives[v], turn);
         },
-        k_grain);
+        k_estimator_grain);
 }
 
-/// Null for plain least squares.
+/// Returns null for plain least squares.
 const RobustFits* CurvatureEstimator::Parts::robust_fits(const CurvatureOptions& options) {
     if (options.robust == RobustEstimator::none) return nullptr;
     if (!around().robust) around().robust = std::make_unique<RobustFits>(around().neighbors);
     return around().robust.get();
 }
 
-/// Null without smoothing.
+/// Returns null without smoothing.
 TensorDiffusion* CurvatureEstimator::Parts::prepared_diffusion(std::span<const Vec3> vertices,
                                                                const CurvatureOptions& options) {
     if (!(options.smoothing > 0)) return nullptr;

@@ -16,8 +16,8 @@ std::array<float, N> rounded(const std::array<double, N>& values) {
     return result;
 }
 
-/// The part of a triangle that is nearest to each corner (Meyer et al. 2003), from its squared edge lengths; where an
-/// angle is obtuse the Voronoi cells are cut off at the opposite edge.
+/// Returns the area of the part of a triangle nearest to each corner (Meyer et al. 2003), from its squared edge
+/// lengths. At an obtuse angle the Voronoi cells are cut off at the opposite edge.
 std::array<float, 3> voronoi_areas(const std::array<double, 3>& squared_length, double area) {
     const auto& l = squared_length;
     std::array<double, 3> result;
@@ -25,7 +25,7 @@ std::array<float, 3> voronoi_areas(const std::array<double, 3>& squared_length, 
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
         if (2 * l[i] >= sum) {
-            // Beside an obtuse angle at corner i a corner keeps a right triangle over half its edge to i:
+            // If the angle at corner i is obtuse, each other corner gets a right triangle over half its edge to i:
             // an eighth of that edge's squared length times the tangent of its own angle.
             result[j] = l[k] * area / (2 * (sum - 2 * l[j]));
             result[k] = l[j] * area / (2 * (sum - 2 * l[k]));
@@ -44,7 +44,7 @@ std::array<float, 3> voronoi_areas(const std::array<double, 3>& squared_length, 
 }  // namespace
 
 void measure_face(const std::array<Vec3, 3>& corners, FaceFit& fit) {
-    // In double: the products of float coordinates then neither cancel nor underflow.
+    // In double, the products of float coordinates neither cancel nor underflow.
     const Vec3d p0 = corners[0].cast<double>(), p1 = corners[1].cast<double>(), p2 = corners[2].cast<double>();
     const Vec3d e0 = p2 - p1, e1 = p0 - p2, e2 = p1 - p0;
     const Vec3d n = e0.cross(e1);
@@ -53,9 +53,9 @@ void measure_face(const std::array<Vec3, 3>& corners, FaceFit& fit) {
     const double twice_area = n.norm();
     fit.normal = Vec3d::Zero();
     fit.normal_weight = fit.corner_area = {};
-    // |n| is sine times the two edge lengths, so sine over lengths is |n| over the squares of both: over all three
-    // squares but that of the opposite edge, which is left as the corner's weight, in units of the longest. Between
-    // edges of which one is zero, fused products leave n a little above it.
+    // The weight of Max 1999 is sine over the two edge lengths, or |n| over their squares. Here n is divided by all
+    // three squares, and the opposite edge's square becomes the corner's weight, in units of the longest. The test
+    // for zero edges is needed because fused products can leave n slightly above zero there.
     if (squared[0] > 0 && squared[1] > 0 && squared[2] > 0) {
         fit.normal = n / ((squared[0] / longest) * squared[1] * squared[2]);
         for (std::size_t i = 0; i < 3; ++i) fit.normal_weight[i] = static_cast<float>(squared[i] / longest);

@@ -2,31 +2,34 @@
 
 #include <array>
 
-#include "host/mesh/mesh.h"
 #include "host/mesh/curvature/tangent_tensors.h"
+#include "host/mesh/mesh.h"
 
 namespace exemplar {
 
-/// What a face gives to the fits, and to the vertices at its corners. Edge i runs from corner i + 1 to corner i + 2.
+/// Measures of a face for the fits and for the vertices at its corners. Edge i runs from corner i + 1 to corner i +
+/// 2.
 struct FaceFit {
     std::array<Vec2, 3> edge;  ///< in the face's own frame
     TangentFrame frame;
-    std::array<Turn, 3> turn;          ///< from the face's frame to that of corner i, laid flat by the least rotation
-    std::array<float, 3> corner_area;  ///< of the part of the face nearest to each corner; zero in a degenerate face
-    /// Corner i contributes `normal` times `normal_weight[i]` to the vertex normal (Max 1999); zero without area.
+    std::array<TangentRotation, 3> turn;  ///< from the face's frame to that of corner i, by the smallest rotation (see
+                                          ///< rotation_to)
+    std::array<float, 3> corner_area;     ///< area of the part of the face nearest to each corner; zero in a degenerate
+                                          ///< face
+    /// Corner i adds `normal` times `normal_weight[i]` to the vertex normal (Max 1999); zero without area.
     std::array<float, 3> normal_weight;
     Vec3d normal;
     bool valid = false;  ///< false for a degenerate face (lower than 1e-7 of its longest edge)
 };
 
-/// Fills in everything but the turns.
+/// Fills in everything except `turn`.
 void measure_face(const std::array<Vec3, 3>& corners, FaceFit& fit);
 
-/// Least-squares second fundamental form of a face from the change of the vertex normals along its edges
+/// Fits the second fundamental form of a face, by least squares, to the change of the vertex normals along its edges
 /// (Rusinkiewicz 2004, Sec. 2).
 Form fit_form(const FaceFit& fit, const std::array<Vec3, 3>& normals);
 
-/// The same for the derivative, from the change of the vertex forms, given in the face's frame (ibid., Sec. 3).
+/// Fits the derivative to the change of the vertex forms, given in the face's frame (ibid., Sec. 3).
 FormDerivative fit_derivative(const FaceFit& fit, const std::array<Form, 3>& forms);
 
 }  // namespace exemplar

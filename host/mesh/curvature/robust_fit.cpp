@@ -12,14 +12,15 @@ namespace exemplar {
 
 namespace {
 
-constexpr std::size_t k_grain = 64;          // vertices that one thread takes at a time
-constexpr std::size_t k_most_expanded = 24;  // neighbors of a vertex that the second ring is reached through
-constexpr int k_most_iterations = 20;
+constexpr std::size_t k_fit_grain = 64;            // vertices that one thread takes at a time
+constexpr std::size_t k_max_expanded_degree = 24;  // the second ring is reached only through vertices of at most this
+                                                   // many neighbors
+constexpr int k_max_iterations = 20;
 constexpr int k_scale_updates = 4;
 constexpr std::uint32_t k_none_placed = std::numeric_limits<std::uint32_t>::max();
-// The estimators' sigma in standard deviations of the residuals. With Gaussian noise Cauchy's then has 95% of the
-// efficiency of least squares; a narrower Geman-McClure has several minima even on clean surfaces, and neighboring
-// vertices fall into different ones.
+// Sigma of the estimators in standard deviations of the residuals. With this one Cauchy has 95% of the efficiency of
+// least squares under Gaussian noise. A narrower Geman-McClure has several minima even on clean surfaces, and
+// neighboring vertices end up in different ones.
 constexpr double k_cauchy_width = 1.69, k_geman_mcclure_width = 3;
 constexpr double k_converged = 1e-4;  // relative change of the tensor
 
@@ -28,16 +29,16 @@ template <std::size_t N>
 struct Sample {
     double u, v;
     typename TensorEquations<N>::Change change;
-    double weight;  ///< for its distance from the vertex
+    double weight;  ///< by the distance from the vertex
     double squared_residual = 0;
 };
 
-/// The median of a residual's norm is this many standard deviations of its N - 1 components, if they are Gaussian: the
-/// root of the median of chi squared with as many degrees of freedom.
+/// The median norm of a residual in standard deviations of its N - 1 components, if they are Gaussian: the square
+/// root of the median of the chi-squared distribution with N - 1 degrees of freedom.
 template <std::size_t N>
 constexpr double k_median_norm = N == 3 ? 1.17741 : 1.53817;
 
-/// The square of the standard deviation that the weighted median of the residuals stands for.
+/// Returns the squared standard deviation, estimated from the weighted median of the residuals.
 template <std::size_t N>
 double squared_scale(std::vector<Sample<N>>& samples) {
     std::sort(samples.begin(), samples.end(),
@@ -51,7 +52,7 @@ double squared_scale(std::vector<Sample<N>>& samples) {
     return 0;
 }
 
-/// The derivative of the cost over the residual (Eq. 2.7: Cauchy, Eq. 2.8: Geman and McClure).
+/// Returns the derivative of the cost divided by the residual (Eq. 2.7: Cauchy, Eq. 2.8: Geman and McClure).
 double robust_weight(RobustEstimator estimator, double squared_residual, double squared_scale) {
     if (estimator == RobustEstimator::cauchy)
         return 1 / (1 + squared_residual / (2 * k_cauchy_width * k_cauchy_width * squared_scale));
@@ -59,7 +60,7 @@ double robust_weight(RobustEstimator estimator, double squared_residual, double 
     return root * root;
 }
 
-/// Iteratively reweighted least squares; nothing if the samples do not determine the tensor.
+/// Fits by iteratively reweighted least squares; returns nothing if the samples do not determine the tensor.
 template <std::size_t N>
 std::optional<std::array<double, N>> fit_samples(std::vector<Sample<N>>& samples, RobustEstimator estimator) {
     TensorEquations<N> plain;
@@ -67,10 +68,10 @@ std::optional<std::array<double, N>> fit_samples(std::vector<Sample<N>>& samples
     if (!plain.solvable()) return std::nullopt;
     std::array<double, N> x = plain.solve();
     double scale = 0;
-    for (int iteration = 0; iteration < k_most_iterations; ++iteration) {
+    for (int iteration = 0; iteration < k_max_iterations; ++iteration) {
         for (Sample<N>& s : samples) s.squared_residual = TensorEquations<N>::squared_residual(x, s.u, s.v, s.change);
-        // The first scales still hold what the outliers did to the first fits. Once the scale stays, the cost falls
-        // with each step.
+        // Outliers in the first fits distort the first scales, so these are updated. Once the scale is fixed, each
+        // step lowers the cost.
         if (iteration < k_scale_updates) scale = squared_scale(samples);
         if (!(scale > 0)) break;  // half of the samples fit exactly
         TensorEquations<N> weighted;
@@ -89,8 +90,8 @@ std::optional<std::array<double, N>> fit_samples(std::vector<Sample<N>>& samples
     return x;
 }
 
-/// One sample per edge. Edges of the second ring count less, else a crease as narrow as one ring were an outlier at the
-/// vertices on it; the width of the weights is the mean distance of the neighbors.
+/// Makes one sample per edge. Edges of the second ring weigh less, else a crease as narrow as one ring would be an
+/// outlier at the vertices on it. The width of the weights is the mean distance of the neighbors.
 template <std::size_t N>
 void add_samples(const std::vector<std::array<double, 2>>& position,
                  const std::vector<typename TensorEquations<N>::Change>& value,
@@ -114,8 +115,8 @@ void add_samples(const std::vector<std::array<double, 2>>& position,
     }
 }
 
-/// The rows of two rings: no second ring is reached through a vertex of many neighbors, such as the tip of a fan, since
-/// around a fan each vertex would reach all others.
+/// Collects the two rings around `center`. Does not reach the second ring through a vertex of many neighbors, such
+/// as the center of a fan: around a fan each vertex would reach all others.
 void add_rings(std::uint32_t center, const VertexNeighbors& neighbors, std::vector<std::uint32_t>& place,
                std::vector<std::uint32_t>& row) {
     row.assign(1, center);
@@ -127,7 +128,7 @@ void add_rings(std::uint32_t center, const VertexNeighbors& neighbors, std::vect
     };
     for (const std::uint32_t v : neighbors.of(center)) add(v);
     for (const std::uint32_t v : neighbors.of(center))
-        if (neighbors.of(v).size() <= k_most_expanded)
+        if (neighbors.of(v).size() <= k_max_expanded_degree)
             for (const std::uint32_t w : neighbors.of(v)) add(w);
 }
 
@@ -150,12 +151,12 @@ RobustFits::RobustFits(const VertexNeighbors& neighbors) {
     }
 }
 
-/// `value_at(v, other)` is what changes, at `other`, in the frame of v.
+/// `value_at(v, other)` is the differentiated quantity at `other`, in the frame of v.
 template <std::size_t N, typename ValueAt, typename Result>
 void RobustFits::fit_all(std::span<const Vec3> vertices, const std::vector<TangentFrame>& frames,
                          RobustEstimator estimator, ValueAt&& value_at, std::vector<Result>& results) const {
     using Value = typename TensorEquations<N>::Change;
-    parallel_ranges(vertices.size(), k_grain, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(vertices.size(), k_fit_grain, [&](std::size_t begin, std::size_t end) {
         std::vector<std::array<double, 2>> position;
         std::vector<Value> value;
         std::vector<Sample<N>> samples;
@@ -192,8 +193,8 @@ void RobustFits::fit(std::span<const Vec3> vertices, const std::vector<TangentFr
     fit_all<4>(
         vertices, frames, estimator,
         [&](std::size_t v, std::uint32_t other) -> std::array<double, 3> {
-            const Turn turn = turn_to(frames[other], frames[v].tangent, frames[v].normal);
-            const Form form = turned(forms[other], turn);
+            const TangentRotation turn = rotation_to(frames[other], frames[v].tangent, frames[v].normal);
+            const Form form = in_rotated_frame(forms[other], turn);
             return {form[0], form[1], form[2]};
         },
         derivatives);

@@ -16,35 +16,37 @@ namespace {
 
 constexpr std::size_t k_chunk = 256;  // vertices
 
-// The kernel exp(-d^2 / (2 s^2)) - exp(-k_cutoff) ends, continuously, so that no vertex of a moving mesh enters with a
-// jump, at d^2 = 2 k_cutoff s^2. Its variance is less than that of the whole Gaussian by k_kept, the ratio of
-// integrals of t and 1 under (exp(-t) - exp(-k_cutoff)) dt, which a larger s makes up for.
+// The kernel exp(-d^2 / (2 s^2)) - exp(-k_cutoff) is zero from d^2 = 2 k_cutoff s^2 on. It is continuous there, so
+// that no vertex of a moving mesh enters it with a jump. The cutoff lowers its variance by the factor k_kept, the
+// ratio of the integrals of t and 1 under (exp(-t) - exp(-k_cutoff)) dt; a larger s makes up for that.
 constexpr double k_cutoff = 4, k_rest = 0.018315638888734179;  // exp(-k_cutoff)
 constexpr double k_kept = (1 - (1 + k_cutoff + k_cutoff * k_cutoff / 2) * k_rest) / (1 - (1 + k_cutoff) * k_rest);
 
-/// A symmetric form as what turns by 0 and by 2 angles: (mean, half the difference of the diagonal, off-diagonal).
-Form to_spins(const Form& form) {
+/// Splits a symmetric form into components that rotate by 0 and by 2 times the angle: (mean, half the difference of
+/// the diagonal, off-diagonal).
+Form to_angular_components(const Form& form) {
     return {0.5f * (form[0] + form[2]), 0.5f * (form[0] - form[2]), form[1]};
 }
-Form from_spins(const Form& spins) {
+Form from_angular_components(const Form& spins) {
     return {spins[0] + spins[1], spins[2], spins[0] - spins[1]};
 }
-/// A symmetric third-order tensor as what turns by 1 and by 3 angles.
-FormDerivative to_spins(const FormDerivative& d) {
+/// Splits a symmetric third-order tensor into components that rotate by 1 and by 3 times the angle.
+FormDerivative to_angular_components(const FormDerivative& d) {
     return {d[0] + d[2], d[1] + d[3], d[0] - 3 * d[2], 3 * d[1] - d[3]};
 }
-FormDerivative from_spins(const FormDerivative& s) {
+FormDerivative from_angular_components(const FormDerivative& s) {
     return {0.25f * (3 * s[0] + s[2]), 0.25f * (s[1] + s[3]), 0.25f * (s[0] - s[2]), 0.25f * (3 * s[1] - s[3])};
 }
 
-/// sum += weight * the tensor, turned. In spins a turn costs half of what it costs in components.
-void add_turned(Form& sum, const Form& s, float weight, Turn turn) {
+/// Adds weight times the rotated tensor to `sum`. Rotating these components costs half as much as rotating those of
+/// the tensor.
+void add_rotated(Form& sum, const Form& s, float weight, TangentRotation turn) {
     const float c = turn.cosine * turn.cosine - turn.sine * turn.sine, d = 2 * turn.cosine * turn.sine;
     sum[0] += weight * s[0];
     sum[1] += weight * (c * s[1] + d * s[2]);
     sum[2] += weight * (c * s[2] - d * s[1]);
 }
-void add_turned(FormDerivative& sum, const FormDerivative& s, float weight, Turn turn) {
+void add_rotated(FormDerivative& sum, const FormDerivative& s, float weight, TangentRotation turn) {
     const float c1 = turn.cosine, d1 = turn.sine;
     const float c2 = c1 * c1 - d1 * d1, d2 = 2 * c1 * d1;
     const float c3 = c2 * c1 - d2 * d1, d3 = c2 * d1 + d2 * c1;
@@ -56,9 +58,9 @@ void add_turned(FormDerivative& sum, const FormDerivative& s, float weight, Turn
 
 }  // namespace
 
-TensorDiffusion::TensorDiffusion(const VertexNeighbors& neighbors, std::size_t most_bytes)
+TensorDiffusion::TensorDiffusion(const VertexNeighbors& neighbors, std::size_t max_bytes)
     : neighbors_(&neighbors),
-      most_entries_(most_bytes / sizeof(Entry)),
+      max_entries_(max_bytes / sizeof(Entry)),
       chunks_((neighbors.vertex_count() + k_chunk - 1) / k_chunk) {}
 
 void TensorDiffusion::prepare(std::span<const Vec3> vertices, const std::vector<TangentFrame>& frames,
@@ -74,7 +76,7 @@ void TensorDiffusion::prepare(std::span<const Vec3> vertices, const std::vector<
             const std::size_t before = chunk.entries.size();
             add_kernel(static_cast<std::uint32_t>(v), vertices, frames, areas, width, chunk, workspace);
             const std::size_t more = chunk.entries.size() - before;
-            if (total.fetch_add(more, std::memory_order_relaxed) + more > most_entries_)
+            if (total.fetch_add(more, std::memory_order_relaxed) + more > max_entries_)
                 throw UsageError(fmt::format(
                     "smoothing over {:.3g} mesh units reaches too many of {} vertices for the memory there is; smooth "
                     "less (--smoothing 0: not at all), or simplify the mesh",
@@ -94,7 +96,7 @@ void TensorDiffusion::add_kernel(std::uint32_t center, std::span<const Vec3> ver
     const auto limit = static_cast<float>(2 * k_cutoff / k_kept * width * width);
     const TangentFrame& frame = frames[center];
     const std::size_t first = chunk.entries.size();
-    // A vertex of its own, or of degenerate faces only, keeps its value.
+    // A vertex without faces, or with degenerate faces only, keeps its value.
     float total = std::max(areas[center], std::numeric_limits<float>::min()) * static_cast<float>(1 - k_rest);
     chunk.entries.push_back({center, total, {}});
     workspace.visited[center] = workspace.run;
@@ -105,10 +107,10 @@ void TensorDiffusion::add_kernel(std::uint32_t center, std::span<const Vec3> ver
             const float squared = (vertices[vertex] - vertices[center]).squaredNorm();
             if (!(squared < limit)) continue;
             const TangentFrame& there = frames[vertex];
-            // Over a sharp fold there is no transport to speak of; the cosine lets go of it gradually.
+            // Transport over a sharp fold has no meaning; the cosine fades it out.
             const float cosine = std::max(there.normal.dot(frame.normal), 0.0f);
             const float weight = areas[vertex] * cosine * (std::exp(squared * inverse) - static_cast<float>(k_rest));
-            chunk.entries.push_back({vertex, weight, turn_to(there, frame.tangent, frame.normal)});
+            chunk.entries.push_back({vertex, weight, rotation_to(there, frame.tangent, frame.normal)});
             total += weight;
         }
     for (std::size_t i = first; i < chunk.entries.size(); ++i) chunk.entries[i].weight /= total;
@@ -118,7 +120,7 @@ void TensorDiffusion::add_kernel(std::uint32_t center, std::span<const Vec3> ver
 template <typename Tensor>
 void TensorDiffusion::apply_to(std::vector<Tensor>& tensors, std::vector<Tensor>& scratch) {
     scratch.resize(tensors.size());
-    for (std::size_t i = 0; i < tensors.size(); ++i) scratch[i] = to_spins(tensors[i]);
+    for (std::size_t i = 0; i < tensors.size(); ++i) scratch[i] = to_angular_components(tensors[i]);
     parallel_for(chunks_.size(), [&](std::size_t c) {
         const Chunk& chunk = chunks_[c];
         std::size_t entry = 0;
@@ -126,9 +128,9 @@ void TensorDiffusion::apply_to(std::vector<Tensor>& tensors, std::vector<Tensor>
             Tensor sum{};
             for (; entry < chunk.end[i]; ++entry) {
                 const Entry& e = chunk.entries[entry];
-                add_turned(sum, scratch[e.vertex], e.weight, e.turn);
+                add_rotated(sum, scratch[e.vertex], e.weight, e.turn);
             }
-            tensors[c * k_chunk + i] = from_spins(sum);
+            tensors[c * k_chunk + i] = from_angular_components(sum);
         }
     });
 }

@@ -7,28 +7,27 @@
 #include <span>
 #include <vector>
 
-#include "host/mesh/mesh.h"
 #include "host/mesh/curvature/tangent_tensors.h"
+#include "host/mesh/mesh.h"
 #include "host/mesh/vertex_neighbors.h"
 
 namespace exemplar {
 
-/// Diffusion of tensors in vertex frames over a surface: each becomes the mean of those around it under a Gaussian of
-/// their distance, transported to its frame by the least rotation and weighted by vertex area.
+/// Smooths tensors in vertex frames over a surface. Each becomes the mean of the tensors around it, weighted by
+/// vertex area and by a Gaussian of their distance, and transported to its frame by the smallest rotation.
 ///
-/// A kernel of positive weights, rather than steps of the heat equation (Desbrun et al. 1999): it needs no mesh
-/// Laplacian, whose weights turn negative at obtuse angles and whose explicit steps shrink with the shortest edge; it
-/// can never leave the range of its input; its area weights make it a quadrature of the integral over the surface, so
-/// that at a fixed width it converges under refinement and does not depend on the sampling; and at a boundary it is
-/// the mean of what there is, without a condition to impose.
+/// A kernel of positive weights replaces steps of the heat equation (Desbrun et al. 1999): it needs no Laplacian,
+/// whose weights turn negative at obtuse angles and whose explicit steps shrink with the shortest edge. Results stay
+/// within the range of the input. Area weights make it a quadrature over the surface, which converges under
+/// refinement at a fixed width and does not depend on the sampling. It needs no boundary condition.
 class TensorDiffusion {
   public:
-    /// `most_bytes`: of all kernels together.
-    TensorDiffusion(const VertexNeighbors& neighbors, std::size_t most_bytes);
+    /// `max_bytes` is the maximum memory of all kernels together.
+    TensorDiffusion(const VertexNeighbors& neighbors, std::size_t max_bytes);
 
-    /// Builds the kernel of each vertex. `width` is its standard deviation in mesh units; positive and finite. Throws
-    /// UsageError if the kernels take more memory than they may: where a mesh has edges much longer than the usual, as
-    /// around the tip of a cone, each may hold a large part of the surface.
+    /// Builds the kernel of each vertex. `width` is its standard deviation in mesh units, positive and finite.
+    /// Throws UsageError if the kernels exceed the memory limit: where some edges are much longer than usual, as
+    /// around the tip of a cone, each kernel may cover a large part of the surface.
     void prepare(std::span<const Vec3> vertices, const std::vector<TangentFrame>& frames,
                  const std::vector<float>& areas, double width);
     void apply(std::vector<Form>& forms);
@@ -37,16 +36,16 @@ class TensorDiffusion {
   private:
     struct Entry {
         std::uint32_t vertex;
-        float weight;  ///< the weights of a kernel sum to 1
-        Turn turn;     ///< from the frame of `vertex` to that of the kernel's center
+        float weight;          ///< the weights of a kernel sum to 1
+        TangentRotation turn;  ///< from the frame of `vertex` to that of the kernel's center
     };
-    /// The kernels of consecutive vertices; they keep their memory between calls.
+    /// The kernels of consecutive vertices. Buffers are kept between calls.
     struct Chunk {
         std::vector<Entry> entries;
         std::vector<std::size_t> end;
     };
     struct Workspace {
-        std::vector<std::uint32_t> visited;  ///< the last run that saw each vertex
+        std::vector<std::uint32_t> visited;  ///< the last run that visited each vertex
         std::uint32_t run = 0;
     };
     template <typename Tensor>
@@ -55,7 +54,7 @@ class TensorDiffusion {
                     const std::vector<float>& areas, double width, Chunk& chunk, Workspace& workspace) const;
 
     const VertexNeighbors* neighbors_;
-    std::size_t most_entries_;
+    std::size_t max_entries_;
     std::vector<Chunk> chunks_;
     tbb::enumerable_thread_specific<Workspace> workspaces_;
     std::vector<Form> form_scratch_;

@@ -6,8 +6,9 @@
 namespace exemplar {
 
 /// Normal equations of the least-squares fit of a symmetric tensor with N distinct components (3: second fundamental
-/// form, 4: its derivative) to the changes that it makes of steps (u, v): with N = 3 of a normal's two components, with
-/// N = 4 of a form's three (II11, II12, II22), of which the middle one counts twice, as it stands twice in the tensor.
+/// form, 4: its derivative) to changes along steps (u, v). With N = 3 a change has the two components of a normal;
+/// with N = 4 the three of a form (II11, II12, II22), of which the middle one counts twice, as it occurs twice in
+/// the tensor.
 template <std::size_t N>
 class TensorEquations {
   public:
@@ -23,7 +24,7 @@ class TensorEquations {
         }
     }
 
-    /// Whether the steps span the plane well enough to be solved for.
+    /// Returns whether the steps span the plane well enough for a solution.
     bool solvable() const { return uu_ * vv_ - uv_ * uv_ > 1e-9 * (uu_ + vv_) * (uu_ + vv_); }
 
     std::array<double, N> solve() const {
@@ -42,7 +43,7 @@ class TensorEquations {
         return x;
     }
 
-    /// Squared difference between what tensor `x` makes of the step and `change`.
+    /// Returns the squared difference between the change that tensor `x` predicts for the step and `change`.
     static double squared_residual(const std::array<double, N>& x, double u, double v, const Change& change) {
         double sum = 0;
         for (std::size_t i = 0; i < N - 1; ++i) {

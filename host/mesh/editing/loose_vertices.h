@@ -7,10 +7,10 @@
 
 namespace exemplar {
 
-/// The vertices that faces have, in their order.
+/// Returns the vertices that faces refer to, in increasing order.
 std::vector<std::uint32_t> vertices_of_faces(const TriangleMesh& mesh);
 
-/// The mesh with those vertices alone. Others are not part of the surface, and may be anywhere.
+/// Returns the mesh without all other vertices, which are not part of the surface and may be anywhere.
 TriangleMesh without_loose_vertices(const TriangleMesh& mesh);
 
 }  // namespace exemplar

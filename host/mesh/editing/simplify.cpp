@@ -19,11 +19,11 @@
 namespace exemplar {
 namespace {
 
-constexpr int k_passes = 4;                    ///< of clustering; more hardly move the seeds
+constexpr int k_passes = 4;                    ///< of clustering; further ones hardly move the seeds
 constexpr std::size_t k_faces_per_vertex = 2;  ///< of a closed mesh
-constexpr double k_ridge = 0.01;  ///< pulls a vertex to its cluster's center where its planes leave it free
+constexpr double k_ridge = 0.01;  ///< pulls a vertex to its cluster's center in directions that its planes leave free
 
-/// Compressed rows: per row a few indices.
+/// Compressed rows of indices.
 struct Rows {
     std::vector<std::uint32_t> begin, value;
 
@@ -32,7 +32,7 @@ struct Rows {
     }
 };
 
-/// Rows from pairs that for_each_pair(emit) names by emit(row, value), in that order; it is called twice.
+/// Builds rows from the pairs that for_each_pair(emit) passes to emit(row, value), in that order; calls it twice.
 template <typename ForEachPair>
 Rows make_rows(std::size_t count, ForEachPair&& for_each_pair) {
     Rows rows;
@@ -55,7 +55,7 @@ Rows vertex_neighbors(const TriangleMesh& mesh) {
     });
 }
 
-/// Takes a mesh to unit size around the origin and back, so that single precision serves at any scale.
+/// Maps a mesh to unit size around the origin and back, so that single precision suffices at any scale.
 class UnitFrame {
   public:
     explicit UnitFrame(const TriangleMesh& mesh) {
@@ -85,10 +85,10 @@ class Clustering {
     }
 
     std::size_t count() const { return seed_.size(); }
-    /// The cluster of a vertex; k_none in a piece without a seed.
+    /// Returns the cluster of a vertex; k_invalid_index in a piece without a seed.
     std::uint32_t of(std::uint32_t vertex) const { return cluster_[vertex]; }
 
-    /// Per cluster the point whose weighted distances from the planes of the cluster's faces are least.
+    /// Returns per cluster the point with the smallest weighted sum of squared distances to the planes of its faces.
     std::vector<Vec3> best_points() const {
         std::vector<Eigen::Matrix3d> planes(count(), Eigen::Matrix3d::Zero());
         std::vector<Vec3d> right(count(), Vec3d::Zero());
@@ -101,7 +101,7 @@ class Clustering {
             if (!(twice_area > 0)) continue;
             for (const std::uint32_t v : face) {
                 const std::uint32_t c = cluster_[v];
-                if (c == k_none) continue;
+                if (c == k_invalid_index) continue;
                 planes[c] += normal * normal.transpose() / twice_area;
                 right[c] += normal * normal.dot(a - center[c]) / twice_area;
             }
@@ -128,7 +128,7 @@ class Clustering {
         return areas;
     }
 
-    /// Every so much area in the order of the vertices a seed.
+    /// Places seeds at equal steps of accumulated area, in the order of the vertices.
     void spread_seeds(std::size_t clusters) {
         const double step = std::accumulate(area_.begin(), area_.end(), 0.0) / static_cast<double>(clusters);
         double next = step / 2, passed = 0;
@@ -140,9 +140,9 @@ class Clustering {
         }
     }
 
-    /// Clusters grow from all seeds at once, nearest vertices first; a cluster reaches a vertex only along edges.
+    /// Grows the clusters from all seeds at once, nearest vertices first and only along edges.
     void grow() {
-        cluster_.assign(mesh_.vertex_count(), k_none);
+        cluster_.assign(mesh_.vertex_count(), k_invalid_index);
         std::vector<float> best(mesh_.vertex_count(), std::numeric_limits<float>::infinity());
         std::vector<bool> settled(mesh_.vertex_count(), false);
         DistanceQueue queue;
@@ -168,11 +168,11 @@ class Clustering {
         std::vector<Vec3d> center(count(), Vec3d::Zero());
         std::vector<double> total(count(), 0);
         for (std::uint32_t v = 0; v < cluster_.size(); ++v) {
-            if (cluster_[v] == k_none) continue;
+            if (cluster_[v] == k_invalid_index) continue;
             center[cluster_[v]] += area_[v] * mesh_.vertices[v].cast<double>();
             total[cluster_[v]] += area_[v];
         }
-        for (std::size_t c = 0; c < count(); ++c) center[c] /= total[c];  // a seed has some area
+        for (std::size_t c = 0; c < count(); ++c) center[c] /= total[c];  // a seed always has area
         return center;
     }
 
@@ -182,7 +182,7 @@ class Clustering {
         std::vector<double> nearest(count(), std::numeric_limits<double>::infinity());
         for (std::uint32_t v = 0; v < cluster_.size(); ++v) {
             const std::uint32_t c = cluster_[v];
-            if (c == k_none || !(area_[v] > 0)) continue;
+            if (c == k_invalid_index || !(area_[v] > 0)) continue;
             const double d = (mesh_.vertices[v].cast<double>() - center[c]).squaredNorm();
             if (d < nearest[c]) nearest[c] = d, seed_[c] = v;
         }
@@ -194,7 +194,7 @@ class Clustering {
     std::vector<std::uint32_t> seed_, cluster_;
 };
 
-/// A face between each three clusters that meet in a face, once, turned as the first one is.
+/// Returns one face for every three clusters that meet in a face of the mesh, oriented like the first such face.
 std::vector<Face> faces_between(const TriangleMesh& mesh, const Clustering& clustering) {
     std::vector<std::tuple<Face, std::uint32_t, Face>> found;  // clusters sorted, face of the mesh, clusters in order
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
@@ -202,20 +202,20 @@ std::vector<Face> faces_between(const TriangleMesh& mesh, const Clustering& clus
         for (std::size_t k = 0; k < 3; ++k) clusters[k] = clustering.of(mesh.faces[f][k]);
         Face sorted = clusters;
         std::ranges::sort(sorted);
-        if (sorted[2] == k_none || sorted[0] == sorted[1] || sorted[1] == sorted[2]) continue;
+        if (sorted[2] == k_invalid_index || sorted[0] == sorted[1] || sorted[1] == sorted[2]) continue;
         found.emplace_back(sorted, f, clusters);
     }
     std::ranges::sort(found);
     const auto same = [](const auto& a, const auto& b) { return std::get<0>(a) == std::get<0>(b); };
     found.erase(std::unique(found.begin(), found.end(), same), found.end());
-    std::ranges::sort(found, {}, [](const auto& entry) { return std::get<1>(entry); });  // as they lie in the mesh
+    std::ranges::sort(found, {}, [](const auto& entry) { return std::get<1>(entry); });  // in the order of the mesh
     std::vector<Face> faces;
     faces.reserve(found.size());
     for (const auto& entry : found) faces.push_back(std::get<2>(entry));
     return faces;
 }
 
-/// Squared distance of a point from a triangle: the nearest of its inside and its edges.
+/// Returns the squared distance of a point from a triangle, to its inside or its edges.
 float squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const auto from_edge = [&](const Vec3& from, const Vec3& to) {
         const Vec3 along = to - from;
@@ -231,7 +231,8 @@ float squared_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& 
     return std::min({from_edge(a, b), from_edge(b, c), from_edge(c, a)});
 }
 
-/// The face for each face of the original: of those at its clusters that look the same way, the nearest.
+/// Returns the face that represents each face of the original: the nearest one at its clusters, preferably one that
+/// faces the same way.
 std::vector<std::uint32_t> assign_faces(const TriangleMesh& mesh, const Clustering& clustering,
                                         const TriangleMesh& simple) {
     const Rows faces_at = make_rows(clustering.count(), [&](auto&& emit) {
@@ -248,7 +249,7 @@ std::vector<std::uint32_t> assign_faces(const TriangleMesh& mesh, const Clusteri
             bool found = false;
             for (const std::uint32_t v : mesh.faces[f]) {
                 const std::uint32_t c = clustering.of(v);
-                if (c == k_none) continue;
+                if (c == k_invalid_index) continue;
                 for (const std::uint32_t other : faces_at[c]) {
                     const Face& corner = simple.faces[other];
                     const std::pair<bool, float> rating{

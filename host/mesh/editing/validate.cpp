@@ -21,7 +21,7 @@ void find_vertex_defects(const TriangleMesh& mesh, MeshReport& report) {
     }
 }
 
-/// Twice the area vector of a face.
+/// Returns twice the area vector of a face.
 Vec3d doubled_area(const TriangleMesh& mesh, const Face& face) {
     const Vec3d a = mesh.vertices[face[0]].cast<double>();
     return (mesh.vertices[face[1]].cast<double>() - a).cross(mesh.vertices[face[2]].cast<double>() - a);
@@ -54,7 +54,8 @@ void find_duplicate_faces(const TriangleMesh& mesh, MeshReport& report) {
     std::ranges::sort(report.duplicate_faces);
 }
 
-/// +1 if a face runs through the edge from its first vertex to its second, -1 if back, 0 if both (a repeated vertex).
+/// Returns +1 if a face traverses the edge from its first vertex to its second, -1 if in reverse, 0 if both (a
+/// repeated vertex).
 int direction_through(const Face& face, const Edge& edge) {
     int direction = 0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -65,8 +66,8 @@ int direction_through(const Face& face, const Edge& edge) {
     return direction;
 }
 
-/// Fills in what edges tell; returns whether the surface is closed and consistently oriented, that is, whether faces
-/// run through every edge as often in one direction as in the other.
+/// Fills in the defects of edges. Returns whether the surface is closed and consistently oriented, that is, whether
+/// faces traverse every edge as often in one direction as in the other.
 bool find_edge_defects(const TriangleMesh& mesh, const Topology& topology, MeshReport& report) {
     bool is_cycle = !mesh.faces.empty();
     const auto& edges = topology.edges;
@@ -101,7 +102,7 @@ std::string place(const std::array<std::uint32_t, 2>& edge) {
     return fmt::format("{}-{}", edge[0], edge[1]);
 }
 
-/// "NUMBER SINGULAR or PLURAL (FIRST PLACES): MEND", appended if there are any.
+/// Appends "NUMBER SINGULAR or PLURAL (FIRST PLACES): MEND" if there are any.
 template <typename Element>
 void add_message(std::vector<std::string>& lines, const std::vector<Element>& elements, const std::string& what,
                  const std::string& many, const std::string& mend) {

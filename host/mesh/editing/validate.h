@@ -9,11 +9,11 @@
 
 namespace exemplar {
 
-/// What is wrong or unusual about a mesh, and where.
+/// Defects and oddities of a mesh, and where they are.
 struct MeshReport {
     std::vector<std::uint32_t> non_finite_vertices;                ///< NaN or infinity: unusable
     std::vector<std::array<std::uint32_t, 2>> non_manifold_edges;  ///< vertex pairs with more than two faces
-    std::vector<std::array<std::uint32_t, 2>> inconsistent_edges;  ///< both faces run through it in the same direction
+    std::vector<std::array<std::uint32_t, 2>> inconsistent_edges;  ///< both faces traverse it in the same direction
     std::vector<std::uint32_t> degenerate_faces;                   ///< zero area or a repeated vertex
     std::vector<std::uint32_t> duplicate_faces;                    ///< same three vertices as an earlier face
     std::vector<std::uint32_t> unreferenced_vertices;
@@ -24,7 +24,7 @@ struct MeshReport {
 
     bool usable() const { return !empty && non_finite_vertices.empty(); }
     bool clean() const;
-    /// One line per kind of defect: what, how many, the first few places, what Exemplar does about it.
+    /// Returns one line per kind of defect: what, how many, the first few places, what Exemplar does about it.
     std::vector<std::string> messages() const;
 };
 MeshReport validate_mesh(const TriangleMesh& mesh);

@@ -10,10 +10,10 @@
 
 namespace exemplar {
 
-/// Gives equal positions one vertex.
+/// Merges equal positions into one vertex.
 class VertexWelder {
   public:
-    /// The vertex at `position`, appended to `vertices` if there was none. -0 equals 0.
+    /// Returns the vertex at `position`; appends it to `vertices` if it is new. -0 equals 0.
     std::uint32_t add(const Vec3& position, std::vector<Vec3>& vertices);
 
   private:
@@ -27,8 +27,8 @@ class VertexWelder {
     std::unordered_map<Key, std::uint32_t, Hash> index_;
 };
 
-/// The mesh with one vertex per position: the same triangles, and those that touch along an edge share it. A mesh
-/// without coincident vertices comes back as it is.
+/// Returns the mesh with one vertex per position: the same triangles, and those that touch along an edge share it. A
+/// mesh without coincident vertices is returned unchanged.
 TriangleMesh welded(const TriangleMesh& mesh);
 
 }  // namespace exemplar

@@ -32,7 +32,7 @@ std::string read_content(const fs::path& path) {
     }
 }
 
-/// The extension that the first bytes call for; empty where they tell nothing.
+/// Returns the extension that matches the first bytes; empty if they do not tell.
 std::string_view extension_of_content(std::string_view content) {
     if (content.starts_with("glTF")) return ".glb";
     if (content.starts_with("ply\n") || content.starts_with("ply\r")) return ".ply";
@@ -41,7 +41,8 @@ std::string_view extension_of_content(std::string_view content) {
     return {};
 }
 
-/// Throws if the file begins like one of another format; its own reader says more about any other trouble.
+/// Throws if the file begins like one of another format. Any other trouble is left to the format's reader, which can
+/// say more.
 void check_extension(std::string_view extension, std::string_view content, const std::string& name) {
     const std::string_view found = extension_of_content(content);
     const auto is_gltf = [](std::string_view e) { return e == ".glb" || e == ".gltf"; };
@@ -76,11 +77,11 @@ MeshFile read_mesh(const fs::path& path) {
     return read_content_as(extension, content, path);
 }
 
-std::uint64_t bytes_beside(const fs::path& path) {
+std::uint64_t external_buffer_bytes(const fs::path& path) {
     if (mesh_io::lower_case(path.extension().string()) != ".gltf") return 0;
     try {
-        return mesh_io::gltf_bytes_beside(read_content(path), path.string());
-    } catch (const std::exception&) {  // told by read_mesh
+        return mesh_io::gltf_external_buffer_bytes(read_content(path), path.string());
+    } catch (const std::exception&) {  // read_mesh reports it
         return 0;
     }
 }

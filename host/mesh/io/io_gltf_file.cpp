@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// A glTF file taken apart.
+/// The two parts of a glTF file.
 struct GltfChunks {
     std::string_view json, binary;
 };
@@ -34,7 +34,7 @@ std::uint32_t little_endian_word(std::string_view content, std::size_t at) {
     return word;
 }
 
-/// The chunks of a .glb file, each within the file; chunks of other types are passed over.
+/// Finds the chunks of a .glb file and checks that they lie within it; skips chunks of other types.
 GltfChunks binary_chunks(std::string_view content, const std::string& name) {
     constexpr std::size_t k_header_bytes = 12, k_chunk_header_bytes = 8;
     constexpr std::uint32_t k_json = 0x4E4F534A, k_bin = 0x004E4942;
@@ -101,7 +101,8 @@ void drop_extras(Json& value) {
         for (Json& child : value) drop_extras(child);
 }
 
-/// The names of a mesh's morph targets, which by custom are among its extras or those of its first primitive.
+/// Returns the names of a mesh's morph targets. By convention they are in its extras or in those of its first
+/// primitive.
 Json target_names(const Json& mesh) {
     Json names = Json::array();
     const auto collect = [&](const Json& owner) {
@@ -119,7 +120,7 @@ Json target_names(const Json& mesh) {
     return names;
 }
 
-/// Of the materials only their names, which are part names.
+/// Keeps only the names of materials, which are part names.
 Json named_materials(const Json& materials) {
     Json kept = Json::array();
     for (const Json& material : materials) {
@@ -129,7 +130,7 @@ Json named_materials(const Json& materials) {
     return kept;
 }
 
-/// Keeps only what geometry and part names need, and, if wanted, what moves them.
+/// Keeps only what geometry and part names need and, if wanted, skins, morph targets and animations.
 Json cut_down(const Json& document, GltfContent wanted) {
     Json kept = Json::object();
     for (const char* key : {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers"})
@@ -148,7 +149,8 @@ Json cut_down(const Json& document, GltfContent wanted) {
     return kept;
 }
 
-/// Compressed or quantized geometry cannot be read; extensions of appearance do not matter.
+/// Throws if the file needs compressed, quantized or instanced geometry, which cannot be read. Extensions of
+/// appearance do not matter.
 void check_extensions(const Json& document, const std::string& name) {
     const auto required = document.find("extensionsRequired");
     if (required == document.end() || !required->is_array()) return;
@@ -161,9 +163,9 @@ void check_extensions(const Json& document, const std::string& name) {
     }
 }
 
-/// The file in the folder of the glTF file that an address names once the library has decoded it (%20 and +), in a form
-/// that is the same for the same file; empty if it lies elsewhere, or if the library would make anything of a % that
-/// two digits do not follow.
+/// Returns the file that an address names relative to the glTF file, decoded as the library decodes it (%20 and +)
+/// and normalized, so that equal files give equal text. Returns an empty string if it lies outside the folder, or if
+/// a % is not followed by two digits, which the library would decode to anything.
 std::string file_of_uri(const std::string& uri) {
     std::string decoded;
     for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -186,23 +188,23 @@ std::string normal_path(const std::string& path) {
     return fs::path(path).lexically_normal().string();
 }
 
-/// The bytes of buffers in files of their own, by the path that the library asks for. It opens no file itself.
+/// The content of external buffers by the path that the library asks for. It opens no file itself.
 using BufferFiles = std::map<std::string, std::vector<unsigned char>>;
 
-/// What such a file may have, as the glTF file itself.
+/// Maximum size of external buffers, and of the glTF file itself.
 constexpr std::uint64_t k_most_bytes = std::numeric_limits<std::uint32_t>::max() / 2;
 
 fs::path folder_of_buffers(const fs::path& folder) {
     return folder.empty() ? fs::path(".") : folder;
 }
 
-/// Reads buffers in files of their own, from the folder of the glTF file alone, wherever links in it lead, and no more
-/// than the JSON tells of them.
+/// Reads external buffers, only from the folder of the glTF file (refusing links that lead out of it) and only as
+/// many bytes as the JSON declares.
 class BufferReader {
   public:
     BufferReader(const fs::path& folder, const std::string& name) : folder_(folder_of_buffers(folder)), name_(name) {}
 
-    /// `place` is what file_of_uri makes of the address of buffer `index`.
+    /// `place` is the result of file_of_uri for buffer `index`.
     void read(std::size_t index, const std::string& place, const Json& buffer) {
         const std::string what = fmt::format("buffer {}, {},", index, quote(place));
         const fs::path path = inside(place, what);
@@ -217,7 +219,7 @@ class BufferReader {
     BufferFiles take() { return std::move(files_); }
 
   private:
-    /// The file itself.
+    /// Returns the path with links resolved; throws if it is outside of the folder.
     fs::path inside(const std::string& place, const std::string& what) const {
         std::error_code error;
         const fs::path root = fs::canonical(folder_, error);
@@ -248,8 +250,8 @@ class BufferReader {
     std::uint64_t all_bytes_ = 0;
 };
 
-/// Every buffer has bytes of its own: the first may be the binary chunk, each other has an address that no other has.
-/// Returns those that lie in files.
+/// Checks that no two buffers share bytes: the first may be the binary chunk, every other has an address of its own.
+/// Returns the external ones.
 BufferFiles read_buffers(const Json& document, const GltfChunks& chunks, const std::string& name,
                          const fs::path& folder) {
     const auto buffers = document.find("buffers");
@@ -277,13 +279,13 @@ BufferFiles read_buffers(const Json& document, const GltfChunks& chunks, const s
     return reader.take();
 }
 
-/// Text as the library takes it: .glb with cut-down JSON if there is a binary chunk.
+/// Returns the input for the library: .glb with the cut-down JSON if there is a binary chunk, else the JSON.
 std::string rebuilt(const Json& document, const GltfChunks& chunks) {
     std::string json = document.dump(-1, ' ', false, Json::error_handler_t::replace);
     return chunks.binary.empty() ? json : binary_gltf(std::move(json), chunks.binary);
 }
 
-/// Gives the library what was read, and nothing else.
+/// Returns callbacks that give the library the files already read, and nothing else.
 tinygltf::FsCallbacks callbacks_for(BufferFiles* files) {
     tinygltf::FsCallbacks callbacks{};
     callbacks.FileExists = [](const std::string& path, void* data) {
@@ -301,7 +303,7 @@ tinygltf::FsCallbacks callbacks_for(BufferFiles* files) {
     return callbacks;
 }
 
-/// The first line of the library's complaints.
+/// Returns the first line of the library's error message.
 std::string first_line(const std::string& text) {
     const std::string_view line = trimmed(std::string_view(text).substr(0, text.find('\n')));
     return line.empty() ? "tinygltf cannot read it" : printable(line, 200);
@@ -345,7 +347,7 @@ tinygltf::Model load_gltf(std::string_view content, const std::string& name, con
     return load_model(rebuilt(cut_down(document, wanted), chunks), name, folder, std::move(files));
 }
 
-std::uint64_t gltf_bytes_beside(std::string_view json, const std::string& name) {
+std::uint64_t gltf_external_buffer_bytes(std::string_view json, const std::string& name) {
     const Json document = parse_json(json, name);
     const auto buffers = document.find("buffers");
     if (buffers == document.end() || !buffers->is_array()) return 0;

@@ -12,7 +12,7 @@
 namespace exemplar::mesh_io {
 namespace {
 
-/// Copies of a mesh cost a file a few bytes each; this bounds what they may grow to.
+/// Bounds the number of elements read: a file can reference a mesh many times at a few bytes each.
 constexpr std::uint64_t k_free_elements = 300'000, k_elements_per_byte = 2;
 
 int gltf_type(int components) {
@@ -28,14 +28,14 @@ int gltf_type(int components) {
     }
 }
 
-/// Little-endian unsigned integers of `size` bytes.
+/// Decodes little-endian unsigned integers of `size` bytes.
 std::vector<std::uint32_t> unpacked(const std::vector<unsigned char>& bytes, std::size_t size) {
     std::vector<std::uint32_t> values(bytes.size() / size, 0);
     for (std::size_t i = 0; i < bytes.size(); ++i) values[i / size] |= std::uint32_t{bytes[i]} << (8 * (i % size));
     return values;
 }
 
-/// Integers of type T as the fractions that they stand for.
+/// Decodes normalized integers of type T.
 template <typename T>
 std::vector<float> fractions(const std::vector<unsigned char>& bytes) {
     std::vector<float> values(bytes.size() / sizeof(T));
@@ -88,7 +88,7 @@ void GltfReader::check_transform(const tinygltf::Node& node, int index) const {
     check(node.scale, 3, "scale");
 }
 
-/// `count` elements of accessor `index` from a buffer view, one right after the other; checked to lie within the
+/// Returns `count` elements of accessor `index` from a buffer view, consecutively; checks that they lie within the
 /// view and its buffer.
 GltfReader::Bytes GltfReader::view_elements(int index, int view_index, std::size_t offset, std::size_t count,
                                             std::size_t size) const {
@@ -107,7 +107,7 @@ GltfReader::Bytes GltfReader::view_elements(int index, int view_index, std::size
     return elements;
 }
 
-/// The elements of an accessor, one right after the other, with those that its sparse part replaces.
+/// Returns the elements of an accessor, consecutively, with those that its sparse part replaces.
 GltfReader::Bytes GltfReader::accessor_elements(int index, int components, std::size_t size) {
     const tinygltf::Accessor& accessor = item(model_.accessors, index, "accessor");
     if (accessor.type != gltf_type(components)) fail(fmt::format("accessor {} has the wrong type for its use", index));

@@ -14,41 +14,41 @@ struct Primitive;
 
 namespace exemplar::mesh_io {
 
-/// Checked access to what tinygltf made of a file: every index, count and offset is looked at before it is followed.
-/// All functions throw MeshError that begins with the file's name. `model` and `name` must outlive the reader.
+/// Checked access to a model that tinygltf loaded: every index, count and offset is checked before it is used. All
+/// functions throw MeshError that begins with the file's name. `model` and `name` must outlive the reader.
 class GltfReader {
   public:
     GltfReader(const tinygltf::Model& model, const std::string& name);
 
     const tinygltf::Model& model() const { return model_; }
-    /// Bytes of all buffers together.
+    /// Returns the size of all buffers together.
     std::uint64_t bytes() const { return bytes_; }
     [[noreturn]] void fail(const std::string& message) const;
 
-    /// Element `index` of one of the model's lists; `what` names the list for the error.
+    /// Returns element `index` of one of the model's lists; `what` names the list for the error.
     template <typename T>
     const T& item(const std::vector<T>& items, int index, const char* what) const {
         if (index < 0 || static_cast<std::size_t>(index) >= items.size()) fail_item(what, index, items.size());
         return items[static_cast<std::size_t>(index)];
     }
 
-    /// Of the default scene, else of the first; all nodes without a parent if there is no scene.
+    /// Returns the roots of the default scene, else of the first; all nodes without a parent if there is no scene.
     std::vector<int> root_nodes() const;
-    /// `node` has no list of numbers for its place that is of the wrong length.
+    /// Throws if the matrix, translation, rotation or scale of `node` has the wrong number of values.
     void check_transform(const tinygltf::Node& node, int index) const;
 
-    /// Unsigned integers of `components` (1: SCALAR, 4: VEC4) each, one element after the other.
+    /// Returns the unsigned integers of an accessor, element by element; `components` is 1 (SCALAR) or 4 (VEC4).
     std::vector<std::uint32_t> integers(int accessor, int components);
-    /// Numbers of `components` (1: SCALAR, 3: VEC3, 4: VEC4, 16: MAT4) each: floats, or normalized integers of one or
-    /// two bytes.
+    /// Returns the numbers of an accessor, element by element, which must be floats or normalized integers of one or
+    /// two bytes; `components` is 1 (SCALAR), 3 (VEC3), 4 (VEC4) or 16 (MAT4).
     std::vector<float> numbers(int accessor, int components);
-    /// Positions, which must be floats.
+    /// Returns the positions of an accessor, which must be floats.
     std::vector<Vec3> positions(int accessor);
 
-    /// Whether the primitive holds triangles (as such, as a strip or as a fan).
+    /// Returns whether the primitive holds triangles (as a list, a strip or a fan).
     static bool has_triangles(const tinygltf::Primitive& primitive);
-    /// The triangles of a primitive that has some, of `vertex_count` vertices. Those without area that join the parts
-    /// of a strip are left out.
+    /// Returns the triangles of a primitive that has_triangles, over `vertex_count` vertices. Leaves out those
+    /// without area that join the parts of a strip.
     std::vector<Face> triangles(const tinygltf::Primitive& primitive, std::size_t vertex_count);
 
   private:

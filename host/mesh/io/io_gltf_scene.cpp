@@ -1,15 +1,15 @@
-// The triangles of a glTF scene.
+// Reads the triangles of a glTF scene.
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
 #include <Eigen/Geometry>
 
+#include "host/mesh/editing/weld.h"
 #include "host/mesh/io/io_formats.h"
 #include "host/mesh/io/io_gltf_file.h"
 #include "host/mesh/io/io_gltf_reader.h"
 #include "host/mesh/io/io_polygons.h"
 #include "host/mesh/io/io_text.h"
-#include "host/mesh/editing/weld.h"
 
 namespace exemplar::mesh_io {
 namespace {
@@ -43,7 +43,7 @@ class SceneReader {
         if (++depth_ > k_deepest) gltf_.fail(fmt::format("node {} is nested too deep", index));
         const Eigen::Affine3d transform = parent * local_transform(node, index);
         if (node.mesh >= 0) {
-            if (node.skin >= 0) ++skinned_;  // joints, not the node, place a skinned mesh
+            if (node.skin >= 0) ++skinned_;  // a skinned mesh is placed by its joints, not by the node
             read_mesh(node.mesh, node.skin >= 0 ? Eigen::Affine3d::Identity() : transform);
         }
         for (int child : node.children) read_node(child, transform);
@@ -82,7 +82,7 @@ class SceneReader {
             return;
         }
         const std::vector<std::uint32_t> vertices = read_vertices(position->second, transform);
-        const bool mirrored = transform.linear().determinant() < 0;  // which turns every triangle around
+        const bool mirrored = transform.linear().determinant() < 0;  // such a transform reverses every triangle
         for (Face face : gltf_.triangles(primitive, vertices.size())) {
             if (mirrored) std::swap(face[1], face[2]);
             for (std::uint32_t& corner : face) corner = vertices[corner];
@@ -133,8 +133,8 @@ class SceneReader {
 
 }  // namespace
 
-/// All triangles of the default scene in one mesh, transformed by their nodes, vertices welded by exact position.
-/// Material names become labels if Exemplar wrote the file.
+/// Reads all triangles of the default scene into one mesh, transformed by their nodes, vertices welded by exact
+/// position. Material names become labels if Exemplar wrote the file.
 MeshFile read_gltf(std::string_view content, const std::string& name, const std::filesystem::path& folder) {
     const tinygltf::Model model = load_gltf(content, name, folder, GltfContent::geometry);
     return SceneReader(model, name).read();

@@ -1,4 +1,5 @@
-// Binary glTF 2.0: all vertices in one accessor, and for each label that occurs one primitive with its own indices.
+// Writes binary glTF 2.0: all vertices in one accessor, and for each label that occurs a primitive with its own
+// indices.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,7 +15,7 @@
 namespace exemplar {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr int k_float = 5126, k_uint32 = 5125, k_vertex_target = 34962, k_index_target = 34963;
 
@@ -33,17 +34,17 @@ std::vector<Part> parts_by_label(const TriangleMesh& mesh, const FaceLabels& lab
     return parts;
 }
 
-/// glTF colors are linear; label colors are sRGB. Five digits are finer than eight bits need.
+/// glTF colors are linear, label colors sRGB. Five digits are finer than eight bits.
 double linear_of_srgb(std::uint8_t channel) {
     const double s = channel / 255.0;
     const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
     return std::round(linear * 1e5) / 1e5;
 }
 
-/// The material of unlabeled faces has no name, which tells it from every label.
-Json material_of(std::int32_t label, const FaceLabels& labels) {
+/// The material of unlabeled faces has no name, which distinguishes it from every label.
+OrderedJson material_of(std::int32_t label, const FaceLabels& labels) {
     const Color color = label < 0 ? k_unlabeled_color : label_color(static_cast<std::size_t>(label));
-    Json material;
+    OrderedJson material;
     if (label >= 0) material["name"] = labels.names[static_cast<std::size_t>(label)];
     material["doubleSided"] = true;
     material["pbrMetallicRoughness"] = {
@@ -54,7 +55,7 @@ Json material_of(std::int32_t label, const FaceLabels& labels) {
 }
 
 /// The accessor of all positions; viewers need its exact bounds.
-Json position_accessor(const TriangleMesh& mesh) {
+OrderedJson position_accessor(const TriangleMesh& mesh) {
     Vec3 low = mesh.vertices.front(), high = low;
     for (const Vec3& p : mesh.vertices) {
         low = low.cwiseMin(p);
@@ -64,8 +65,9 @@ Json position_accessor(const TriangleMesh& mesh) {
             {"type", "VEC3"},  {"min", {low[0], low[1], low[2]}}, {"max", {high[0], high[1], high[2]}}};
 }
 
-Json document_of(const TriangleMesh& mesh, const FaceLabels& labels, const std::vector<Part>& parts) {
-    Json materials = Json::array(), primitives = Json::array(), accessors = Json::array({position_accessor(mesh)});
+OrderedJson document_of(const TriangleMesh& mesh, const FaceLabels& labels, const std::vector<Part>& parts) {
+    OrderedJson materials = OrderedJson::array(), primitives = OrderedJson::array(),
+                accessors = OrderedJson::array({position_accessor(mesh)});
     std::size_t index_bytes = 0;
     for (const Part& part : parts) {
         primitives.push_back({{"attributes", {{"POSITION", 0}}},
@@ -81,7 +83,7 @@ Json document_of(const TriangleMesh& mesh, const FaceLabels& labels, const std::
         index_bytes += part.faces.size() * sizeof(Face);
     }
     const std::size_t vertex_bytes = mesh.vertex_count() * sizeof(Vec3);
-    Json document;
+    OrderedJson document;
     document["asset"] = {{"version", "2.0"}, {"generator", "Exemplar"}};
     document["scene"] = 0;
     document["scenes"] = {{{"nodes", {0}}}};
@@ -112,7 +114,7 @@ void write_gltf(const std::filesystem::path& path, const TriangleMesh& mesh, con
     mesh_io::check_labels(mesh, labels);
     check_writable(path, mesh);
     const std::vector<Part> parts = parts_by_label(mesh, labels);
-    std::string json = document_of(mesh, labels, parts).dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string json = document_of(mesh, labels, parts).dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
     std::string binary;
     for (const Vec3& p : mesh.vertices)
         for (int i = 0; i < 3; ++i) mesh_io::append_bytes(binary, p[i]);

@@ -1,5 +1,6 @@
-// OBJ through tinyobjloader. That library takes almost anything without complaint (a word that is no number becomes 0),
-// so each line is checked here on its way into it, and the line at hand is known when one of its callbacks speaks.
+// Reads OBJ through tinyobjloader. The library accepts almost anything without complaint (a word that is no number
+// becomes 0). So each line is checked here before it is passed on, and the current line number is known in the
+// library's callbacks.
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
@@ -26,8 +27,8 @@ namespace {
 struct ObjContent {
     PolygonList polygons;
     std::vector<std::size_t> face_line;  ///< per polygon
-    std::vector<std::uint32_t> corners;  ///< of the face at hand
-    std::array<float, 3> position;       ///< of the vertex at hand, as checked
+    std::vector<std::uint32_t> corners;  ///< of the current face
+    std::array<float, 3> position;       ///< of the current vertex, as checked
     std::size_t line = 0;
     std::string name;
 
@@ -40,11 +41,11 @@ struct ObjContent {
     }
 };
 
-/// Feeds vertex and face lines one by one to the library after checking them; all other lines are passed over.
+/// Checks vertex and face lines and passes them to the library one by one; skips all other lines.
 class CheckedLines : public std::streambuf {
   public:
     CheckedLines(std::string_view content, ObjContent& obj) : cursor_(content, obj.name, '#'), obj_(obj) {}
-    /// The error that ended the input, as streams swallow exceptions.
+    /// The error that ended the input; streams swallow exceptions.
     const std::string& error() const { return error_; }
 
   protected:

@@ -1,4 +1,4 @@
-// OFF, the Object File Format of Geomview: a header word, the counts, a line per vertex, a line per face.
+// Reads OFF, the Object File Format of Geomview: a header word, the counts, a line per vertex, a line per face.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,8 +17,8 @@ bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
 
-/// Header words are [ST][C][N][4][n]OFF. Texture, color and normal follow the position on a vertex line and are passed
-/// over; 4 and n change the number of coordinates and are not read. Some large collections have files in which the
+/// Header words are [ST][C][N][4][n]OFF. Texture, color and normal follow the position on a vertex line and are
+/// skipped; 4 and n change the number of coordinates and are not supported. In some files of large collections the
 /// counts follow without a space, as in OFF490 518 0.
 void check_header(TextCursor& cursor) {
     std::string_view word = cursor.word();
@@ -41,8 +41,8 @@ struct Counts {
     std::size_t vertices, faces;
 };
 
-/// The vertex and face count, on the header's line or the next. Each vertex and face takes a line, so both are bounded
-/// by the size of the file, which is checked before memory is set aside.
+/// Reads the vertex and face count, on the header's line or the next. Each vertex and face takes a line, so both are
+/// checked against the size of the file before memory is reserved.
 Counts read_counts(TextCursor& cursor) {
     if (trimmed(cursor.rest()).empty()) cursor.need_line("the line of vertex and face counts");
     if (lower_case(trimmed(cursor.rest())).starts_with("binary"))
@@ -85,7 +85,7 @@ void read_faces(TextCursor& cursor, std::size_t count, PolygonList& polygons) {
                                         corner, vertex_count));
             corners.push_back(static_cast<std::uint32_t>(corner));
         }
-        polygons.add(corners);  // colors may follow and are passed over
+        polygons.add(corners);  // colors may follow and are skipped
     }
 }
 

@@ -1,4 +1,4 @@
-// PLY: a header that declares elements and their properties, then the values as text or binary.
+// Reads PLY: a header that declares elements and their properties, then the values as text or binary.
 #include "host/mesh/io/io_ply.h"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@
 namespace exemplar::mesh_io {
 namespace {
 
-/// Values from a text body: a line per element.
+/// Reads values from a text body, which has a line per element.
 class AsciiValues {
   public:
     AsciiValues(std::string_view content, const std::string& name, const PlyHeader& header) : cursor_(content, name) {
@@ -28,7 +28,7 @@ class AsciiValues {
         if (is_integer(type)) return static_cast<double>(cursor_.integer(property));
         return cursor_.number(property);
     }
-    /// The most values of a type that can still follow in the row.
+    /// Returns the maximum number of values of a type that can still follow in the row.
     std::uint64_t most_values(PlyScalar) const { return (cursor_.rest().size() + 1) / 2; }
     std::uint64_t most_rows(const PlyElement& element) const {
         return (cursor_.bytes_left() + 1) / (2 * element.properties.size());
@@ -40,7 +40,7 @@ class AsciiValues {
     TextCursor cursor_;
 };
 
-/// Values from a binary body.
+/// Reads values from a binary body.
 class BinaryValues {
   public:
     BinaryValues(std::string_view content, const std::string& name, const PlyHeader& header)
@@ -97,7 +97,7 @@ class BinaryValues {
     bool swap_;
 };
 
-/// What a property means to a mesh.
+/// The meaning of a property for a mesh.
 enum class Role { none, x, y, z, corners, strips, label, confidence };
 
 bool is_index_list(const PlyProperty& property) {
@@ -197,8 +197,8 @@ class BodyReader {
         }
     }
 
-    /// Adds the triangles of a strip: every other one is turned around, and those that only join two parts of the strip
-    /// (a vertex twice) count but are left out.
+    /// Adds the triangles of a strip. Every other one is reversed. Those that only join two parts of the strip (a
+    /// vertex occurs twice) count but are left out.
     void end_strip() {
         for (std::size_t i = 2; i < corners_.size(); ++i) {
             std::array<std::uint32_t, 3> triangle{corners_[i - 2], corners_[i - 1], corners_[i]};
@@ -276,8 +276,8 @@ class BodyReader {
     std::vector<std::uint32_t> corners_;
 };
 
-/// Names every value that occurs or that a comment names, in rising order, and renumbers the faces accordingly: where
-/// the comments name 0 .. n-1, and no others occur, the numbers stay. Negative values are unlabeled.
+/// Names every value that occurs or that a comment names, in increasing order, and renumbers the faces accordingly.
+/// Numbers stay if the comments name 0 .. n-1 and no other value occurs. Negative values are unlabeled.
 FaceLabels named_labels(std::vector<std::int32_t> values, const std::map<std::int64_t, std::string>& comments) {
     std::vector<std::int64_t> indices;
     for (const auto& [index, name] : comments)

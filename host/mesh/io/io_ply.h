@@ -16,13 +16,13 @@ inline bool is_integer(PlyScalar type) {
 }
 
 struct PlyProperty {
-    std::string name, shown;              ///< the second for messages
-    PlyScalar type;                       ///< of the value, or of each item of a list
-    std::optional<PlyScalar> count_type;  ///< of a list's item count; a property without it is a single value
+    std::string name, shown;              ///< `shown` is printable, for messages
+    PlyScalar type;                       ///< type of the value, or of each item of a list
+    std::optional<PlyScalar> count_type;  ///< type of a list's item count; absent for a single value
 };
 
 struct PlyElement {
-    std::string name, shown;  ///< the second for messages
+    std::string name, shown;  ///< `shown` is printable, for messages
     std::uint64_t count;
     std::vector<PlyProperty> properties;
 };

@@ -12,7 +12,7 @@
 namespace exemplar::mesh_io {
 namespace {
 
-/// The part of the file through the end_header line and its line end, which is as that of the first line.
+/// Returns the file up to and including the end_header line. Its line end is that of the first line.
 std::string_view header_text(std::string_view content, const std::string& name) {
     if (!content.starts_with("ply\n") && !content.starts_with("ply\r"))
         fail(name + ":1", "a PLY file begins with a line that says ply");
@@ -86,7 +86,7 @@ void read_property(TextCursor& cursor, PlyHeader& header) {
     header.elements.back().properties.push_back(std::move(property));
 }
 
-/// Remembers `label INDEX NAME`; any other comment is passed over.
+/// Stores `label INDEX NAME`; skips any other comment.
 void read_comment(TextCursor& cursor, PlyHeader& header) {
     if (cursor.word() != "label") return;
     const auto index = parse_integer(cursor.word());

@@ -12,12 +12,12 @@ namespace {
 
 using Point = Eigen::Vector2d;
 
-/// Clipping ears takes quadratic time at least; longer polygons than this are cut into a fan. Simple polygons look at
-/// about n^2 / 2 corners; one that crosses itself again and again would look at n^3, so what is left of it after the
-/// second number times n^2 is cut into a fan too.
-constexpr std::size_t k_most_ear_corners = 4000, k_most_looks = 4;
+/// Bounds on ear clipping, which takes at least quadratic time. Polygons with more corners are cut into a fan. A
+/// simple polygon of n corners looks at about n^2 / 2 corners; one that crosses itself many times would look at n^3,
+/// so its remainder is cut into a fan after k_max_corner_checks times n^2.
+constexpr std::size_t k_most_ear_corners = 4000, k_max_corner_checks = 4;
 
-/// The polygon in the plane of its area vector (Newell), counter-clockwise; empty if it has no area.
+/// Projects the polygon into the plane of its area vector (Newell), counter-clockwise; empty if it has no area.
 std::vector<Point> flattened(std::span<const Vec3> vertices, std::span<const std::uint32_t> corners) {
     const Vec3d origin = vertices[corners[0]].cast<double>();
     Vec3d area = Vec3d::Zero();
@@ -35,12 +35,12 @@ std::vector<Point> flattened(std::span<const Vec3> vertices, std::span<const std
     return points;
 }
 
-/// Twice the signed area of the triangle a b c.
+/// Returns twice the signed area of the triangle a b c.
 double turn(const Point& a, const Point& b, const Point& c) {
     return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// Strictly: a fan over corners in one line would have triangles without area.
+/// Returns whether the polygon is strictly convex: a fan over collinear corners would have triangles without area.
 bool is_convex(std::span<const Point> points) {
     const std::size_t n = points.size();
     for (std::size_t i = 0; i < n; ++i)
@@ -52,13 +52,13 @@ void add_fan(std::span<const std::uint32_t> corners, std::vector<Face>& faces) {
     for (std::size_t i = 1; i + 1 < corners.size(); ++i) faces.push_back({corners[0], corners[i], corners[i + 1]});
 }
 
-/// A polygon that loses one corner after the other.
+/// Clips the ears of a polygon one by one.
 class EarClipper {
   public:
     explicit EarClipper(std::vector<Point> points) : points_(std::move(points)), left_(points_.size()) {
         std::iota(left_.begin(), left_.end(), std::size_t{0});
     }
-    /// Corner numbers of the next ear, which is then removed; of any corner where no proper ear is left.
+    /// Removes the next ear and returns its corner numbers; those of any corner where no proper ear is left.
     std::array<std::size_t, 3> clip() {
         const std::size_t n = left_.size();
         std::size_t at = n - 1;              // no ear: the polygon crosses itself or is flat
@@ -73,10 +73,10 @@ class EarClipper {
         return ear;
     }
     std::size_t size() const { return left_.size(); }
-    /// Corner numbers of what is left.
+    /// Returns the corner numbers of the remaining polygon.
     std::span<const std::size_t> left() const { return left_; }
-    /// How many times a corner was looked at.
-    std::size_t looks() const { return looks_; }
+    /// Returns how many corners were looked at.
+    std::size_t corner_checks() const { return looks_; }
 
   private:
     bool is_ear(std::size_t i) {
@@ -106,8 +106,8 @@ void triangulate_polygon(std::span<const Vec3> vertices, std::span<const std::ui
     std::vector<Point> points = flattened(vertices, corners);
     if (points.empty() || is_convex(points)) return add_fan(corners, faces);
     EarClipper clipper(std::move(points));
-    const std::size_t most_looks = k_most_looks * corners.size() * corners.size();
-    while (clipper.size() >= 3 && clipper.looks() < most_looks) {
+    const std::size_t most_looks = k_max_corner_checks * corners.size() * corners.size();
+    while (clipper.size() >= 3 && clipper.corner_checks() < most_looks) {
         const auto [a, b, c] = clipper.clip();
         faces.push_back({corners[a], corners[b], corners[c]});
     }

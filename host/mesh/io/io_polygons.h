@@ -8,12 +8,12 @@
 
 namespace exemplar::mesh_io {
 
-/// The vertices and polygons of a file, in the file's order, on the way to a TriangleMesh.
+/// Collects the vertices and polygons of a file, in the file's order, and turns them into a TriangleMesh.
 class PolygonList {
   public:
     std::vector<Vec3> vertices;
 
-    /// Room for `polygons` triangles; callers bound it by the size of the file.
+    /// Reserves memory for `polygons` triangles; callers bound it by the size of the file.
     void reserve_polygons(std::size_t polygons);
     /// Corners must name vertices that exist when `triangulate` is called.
     void add(std::span<const std::uint32_t> corners);
@@ -22,15 +22,16 @@ class PolygonList {
     std::span<const std::uint32_t> corner_counts() const { return corner_count_; }
 
     /// Cuts the polygons into triangles and moves everything into a mesh. Polygons with fewer than three corners
-    /// yield no triangle but keep their number as source faces; `warnings` says how many there were.
+    /// give no triangle but keep their source face number; a line in `warnings` counts them.
     TriangleMesh triangulate(std::vector<std::string>& warnings) &&;
 
   private:
     std::vector<std::uint32_t> corners_, corner_count_;
 };
 
-/// Cuts a simple polygon into corners - 2 triangles with its orientation, appended to `faces`: a fan if it is convex,
-/// else by clipping ears in the plane of its area vector. Never fails: what is not simple is cut somehow.
+/// Cuts a simple polygon into corners - 2 triangles of its orientation and appends them to `faces`: as a fan if it
+/// is convex or very long, else by clipping ears in the plane of its area vector. Never fails: a polygon that is not
+/// simple is cut somehow.
 void triangulate_polygon(std::span<const Vec3> vertices, std::span<const std::uint32_t> corners,
                          std::vector<Face>& faces);
 

@@ -1,13 +1,13 @@
-// STL: unconnected triangles as text or binary; corners at the same position become one vertex.
+// Reads STL: unconnected triangles as text or binary; corners at the same position become one vertex.
 #include <fmt/format.h>
 
 #include <array>
 #include <cstring>
 
+#include "host/mesh/editing/weld.h"
 #include "host/mesh/io/io_formats.h"
 #include "host/mesh/io/io_polygons.h"
 #include "host/mesh/io/io_text.h"
-#include "host/mesh/editing/weld.h"
 
 namespace exemplar::mesh_io {
 namespace {
@@ -20,8 +20,8 @@ std::uint32_t triangle_count_field(std::string_view content) {
     return b[0] | std::uint32_t{b[1]} << 8 | std::uint32_t{b[2]} << 16 | std::uint32_t{b[3]} << 24;
 }
 
-/// Binary files may begin with "solid" too, so the size that the count field calls for goes first; with another size,
-/// a zero byte tells that the file is no text.
+/// Returns whether a file is binary. Binary files may begin with "solid" too, so first the size is compared with the
+/// count field. If it differs, a zero byte shows that the file is not text.
 bool is_binary(std::string_view content) {
     const bool has_count = content.size() >= k_count_end;
     if (has_count && content.size() == k_count_end + k_triangle_bytes * std::uint64_t{triangle_count_field(content)})
@@ -30,7 +30,7 @@ bool is_binary(std::string_view content) {
     return !lower_case(trimmed(start)).starts_with("solid") || start.find('\0') != std::string_view::npos;
 }
 
-/// Reads the triangles of text files; lines are as `vertex 1 0 0`, in any case.
+/// Reads the triangles of text files, with lines like `vertex 1 0 0` in any case.
 class AsciiStl {
   public:
     AsciiStl(std::string_view content, const std::string& name) : cursor_(content, name) {}
@@ -102,7 +102,7 @@ void read_binary(std::string_view content, const std::string& name, PolygonList&
     VertexWelder welder;
     polygons.reserve_polygons(count);
     for (std::uint64_t t = 0; t < count; ++t) {
-        const char* const triangle = content.data() + k_count_end + k_triangle_bytes * t + 12;  // behind the normal
+        const char* const triangle = content.data() + k_count_end + k_triangle_bytes * t + 12;  // after the normal
         std::array<std::uint32_t, 3> corners;
         for (std::size_t i = 0; i < 3; ++i) {
             const char* const p = triangle + 12 * i;

@@ -18,7 +18,10 @@ void fail(const std::string& name, const std::string& message) {
 std::string printable(std::string_view text, std::size_t longest) {
     std::size_t end = std::min(text.size(), longest);
     const auto is_continuation = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
-    for (int i = 0; i < 3 && end > 0 && end < text.size() && is_continuation(text[end]); ++i) --end;  // no half letter
+    for (int i = 0; i < 3 && end > 0 && end < text.size() && is_continuation(text[end]); ++i)
+        --end;  // does not cut a
+                // character in
+                // two
     const std::string_view shown = text.substr(0, end);
     const bool keeps_letters = is_utf8(shown);
     std::string result;
@@ -63,19 +66,19 @@ std::string lower_case(std::string_view text) {
 
 namespace {
 
-/// Without a leading plus sign, which from_chars does not take.
+/// Removes a leading plus sign, which from_chars does not accept.
 std::string_view without_plus(std::string_view word) {
     if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
     return word;
 }
 
-/// For a well-formed number outside the range of floats: zero if it is small, infinity if it is large.
+/// Returns zero or infinity for a well-formed number that is too small or too large for a float.
 float clamped_number(std::string_view word) {
     const bool negative = word.front() == '-';
     double value = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error == std::errc()) return static_cast<float>(value);
-    // Beyond doubles too; the exponent's sign tells which way.
+    // The number is beyond doubles, too; the sign of its exponent tells whether it is small.
     const std::size_t exponent = word.find_first_of("eE");
     const bool small = exponent != std::string_view::npos ? word.substr(exponent + 1).starts_with('-')
                                                           : word.find_first_not_of("-0") == word.find('.');

@@ -10,22 +10,22 @@ namespace exemplar::mesh_io {
 
 /// Throws MeshError "NAME: MESSAGE".
 [[noreturn]] void fail(const std::string& name, const std::string& message);
-/// Foreign text for an error message: its first `longest` bytes, in which ? stands for what is not printable or no
-/// UTF-8, and ... if that is not all.
+/// Returns foreign text for an error message: its first `longest` bytes, with ? for everything that is not printable
+/// or not UTF-8, and ... if it was cut.
 std::string printable(std::string_view text, std::size_t longest);
-/// A few characters of foreign text, printable and in quotes, for an error message.
+/// Returns the first characters of foreign text, printable and in quotes, for an error message.
 std::string quote(std::string_view text);
 
-/// The number that fills all of `word`, if one does: decimal, with or without sign and exponent, or nan or inf.
-/// What is too large or small for a float becomes infinity or zero.
+/// Parses all of `word` as a number: decimal, with or without sign and exponent, or nan or inf; returns nothing if
+/// it is none. A value too large or small for a float becomes infinity or zero.
 std::optional<float> parse_float(std::string_view word);
-/// The decimal integer that fills all of `word`, if one does.
+/// Parses all of `word` as a decimal integer; returns nothing if it is none.
 std::optional<std::int64_t> parse_integer(std::string_view word);
 
 bool is_space(char c);
-/// `text` without spaces around it.
+/// Returns `text` without spaces around it.
 std::string_view trimmed(std::string_view text);
-/// Takes the first word off `line` (words are separated by spaces or tabs); empty when none is left.
+/// Removes the first word from `line` and returns it (words are separated by white space); empty if none is left.
 std::string_view take_word(std::string_view& line);
 std::string lower_case(std::string_view text);
 
@@ -37,25 +37,25 @@ class TextCursor {
     /// `text` must outlive the cursor.
     TextCursor(std::string_view text, std::string name, char comment = 0);
 
-    /// Goes on behind byte `offset`, the end of line `line_number`.
+    /// Continues behind byte `offset`, the end of line `line_number`.
     void jump(std::size_t offset, std::size_t line_number);
-    /// Goes to the next line that holds anything; false at the end of the text.
+    /// Moves to the next line that is not blank or a comment; returns false at the end of the text.
     bool next_line();
-    /// Goes to the next line that holds anything; throws "the file ends where EXPECTED should be" if there is none.
+    /// Moves as next_line() does; throws "the file ends where EXPECTED should be" at the end of the text.
     void need_line(std::string_view expected);
-    /// The current line, from where words were taken off.
+    /// Returns the current line without the words already taken.
     std::string_view rest() const { return line_; }
     std::size_t line_number() const { return line_number_; }
-    /// Byte just after the current line.
+    /// Returns the number of bytes after the current line.
     std::size_t bytes_left() const { return text_.size() - next_; }
 
-    /// Takes the next word of the line; empty at the line's end.
+    /// Takes the next word of the line; empty at its end.
     std::string_view word() { return take_word(line_); }
-    /// Makes the end `tail` of the latest word the next one.
+    /// Puts back `tail`, the end of the word taken last, as the next word.
     void put_back(std::string_view tail) {
         line_ = {tail.data(), static_cast<std::size_t>(line_.data() + line_.size() - tail.data())};
     }
-    /// Takes a number or throws an error that names `what`.
+    /// Takes a number, or throws an error that names `what`.
     float number(std::string_view what);
     std::int64_t integer(std::string_view what);
 

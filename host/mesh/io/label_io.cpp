@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::string_view k_byte_order_mark = "\xef\xbb\xbf";
 
-/// Whether a line is one of face indices, not a name: it begins with two numbers.
+/// Returns whether a line lists face indices, that is, begins with two numbers; such a line is no name.
 bool is_index_line(std::string_view line) {
     return parse_integer(take_word(line)) && parse_integer(take_word(line));
 }
@@ -92,8 +92,8 @@ class DataLines {
     std::size_t at_ = 0, line_number_ = 0;
 };
 
-/// Names end up in model and JSON files, which hold UTF-8 only. Two numbers or more where a name should be are the face
-/// indices of a block whose name is missing.
+/// Throws unless the line is a valid name. Names end up in model and JSON files, which hold UTF-8 only. Two numbers
+/// or more instead of a name are the face indices of a block whose name is missing.
 void check_name_line(const DataLines& lines) {
     const std::string_view name = lines.line();
     if (!is_utf8(name))

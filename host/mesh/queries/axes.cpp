@@ -14,8 +14,8 @@ namespace exemplar {
 
 namespace {
 
-/// Covariance of the surface about `center`, and its area: over a triangle with corners a, b, c the integral of
-/// x x^T is area / 12 times (a a^T + b b^T + c c^T + s s^T), s = a + b + c.
+/// Computes the covariance of the surface about `center`, and its area. Over a triangle with corners a, b, c the
+/// integral of x x^T is area / 12 times (a a^T + b b^T + c c^T + s s^T), s = a + b + c.
 Eigen::Matrix3d surface_covariance(const TriangleMesh& mesh, const Vec3d& center) {
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
     double total = 0;
@@ -31,8 +31,8 @@ Eigen::Matrix3d surface_covariance(const TriangleMesh& mesh, const Vec3d& center
     return total > 0 ? Eigen::Matrix3d(sum / total) : sum;
 }
 
-/// Third moment of the surface along each column of `axes`: over a triangle whose corners lie at a, b, c along an axis,
-/// the integral of t^3 is area / 10 times the sum of the ten products of three of a, b, c.
+/// Computes the third moment of the surface along each column of `axes`. Over a triangle whose corners lie at a, b,
+/// c along an axis, the integral of t^3 is area / 10 times the sum of the ten products of three of a, b, c.
 Vec3d third_moments(const TriangleMesh& mesh, const Vec3d& center, const Eigen::Matrix3d& axes) {
     Eigen::Array3d sum = Eigen::Array3d::Zero();
     for (const Face& face : mesh.faces) {
@@ -53,7 +53,7 @@ PrincipalAxes principal_axes(const TriangleMesh& mesh) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(surface_covariance(mesh, result.center.cast<double>()));
     const Vec3d skew = third_moments(mesh, result.center.cast<double>(), solver.eigenvectors());
     for (int i = 0; i < 3; ++i) {
-        const int source = 2 - i;  // eigenvalues come in rising order
+        const int source = 2 - i;  // eigenvalues are in increasing order
         result.axis[i] = (skew[source] < 0 ? -1.0F : 1.0F) * solver.eigenvectors().col(source).cast<float>();
         result.sigma[i] = static_cast<float>(std::sqrt(std::max(0.0, solver.eigenvalues()[source])));
     }
@@ -68,9 +68,9 @@ constexpr int k_direction_steps = 13;       // 2 * 13^2 + 1 = 339 directions, 6 
 constexpr std::size_t k_refined_count = 8;  // candidates that a local search improves
 constexpr float k_degree = std::numbers::pi_v<float> / 180;
 constexpr float k_separation = 20 * k_degree;
-constexpr float k_normal_weight = 0.01f;  // cost of opposite normals, over the diagonal
+constexpr float k_normal_weight = 0.01f;  // cost of opposite normals, relative to the diagonal
 
-/// The bits of a 10-bit number, two zeros between any two of them.
+/// Spreads the bits of a 10-bit number, with two zeros between any two of them.
 std::uint32_t spread_bits(std::uint32_t x) {
     x = (x | (x << 16)) & 0x030000ffu;
     x = (x | (x << 8)) & 0x0300f00fu;
@@ -78,8 +78,8 @@ std::uint32_t spread_bits(std::uint32_t x) {
     return (x | (x << 2)) & 0x09249249u;
 }
 
-/// Faces along a space-filling (Morton) curve in the frame of the principal axes: neighbors on the surface come close
-/// together, and neither the order of the faces nor the pose of the mesh matters.
+/// Orders the faces along a space-filling (Morton) curve in the frame of the principal axes. Neighbors on the
+/// surface come close together, and neither the order of the faces nor the pose of the mesh matters.
 std::vector<std::uint32_t> faces_along_curve(const TriangleMesh& mesh, const PrincipalAxes& axes) {
     const std::vector<Vec3> centers = face_centers(mesh);
     float reach = 0;
@@ -88,7 +88,7 @@ std::vector<std::uint32_t> faces_along_curve(const TriangleMesh& mesh, const Pri
         std::uint32_t code, face;
         float along;
     };
-    if (!(reach > 0)) reach = 1;  // all centers in one place, as of a single face
+    if (!(reach > 0)) reach = 1;  // all centers coincide, as of a single face
     std::vector<Key> keys(centers.size());
     for (std::uint32_t f = 0; f < keys.size(); ++f) {
         const Vec3 p = centers[f] - axes.center;
@@ -109,19 +109,19 @@ std::vector<std::uint32_t> faces_along_curve(const TriangleMesh& mesh, const Pri
     return order;
 }
 
-/// The axes as columns.
+/// Returns the axes as columns.
 Eigen::Matrix3f frame(const PrincipalAxes& axes) {
     return (Eigen::Matrix3f() << axes.axis[0], axes.axis[1], axes.axis[2]).finished();
 }
 
-/// Points spread evenly over a surface, with the unit normals there, in the frame of its principal axes: what is found
-/// from them turns with the mesh.
+/// Points spread evenly over a surface, with unit normals, in the frame of its principal axes, so that results
+/// rotate with the mesh.
 struct SurfaceSamples {
     std::vector<Vec3> point, normal;
 };
 
-/// `count` samples, one for each equal share of the area along the curve of faces; within a face they follow a
-/// low-discrepancy sequence. Empty if the area is zero.
+/// Returns `count` samples, one for each equal share of the area along the curve of faces. Within a face they follow
+/// a low-discrepancy sequence. Empty if the area is zero.
 SurfaceSamples sample_surface(const TriangleMesh& mesh, const PrincipalAxes& axes, std::size_t count) {
     const std::vector<float> areas = face_areas(mesh);
     const std::vector<Vec3> normals = face_normals(mesh);
@@ -149,7 +149,7 @@ SurfaceSamples sample_surface(const TriangleMesh& mesh, const PrincipalAxes& axe
     return samples;
 }
 
-/// How well a mirror plane through the area centroid maps the surface to itself.
+/// How far the surface is from being mapped to itself by a mirror plane through the area centroid.
 struct Asymmetry {
     float distance;  ///< mean distance of the mirrored samples to the surface, over the diagonal
     float cost;      ///< the same plus a mild penalty for normals that differ; what the search minimizes
@@ -164,7 +164,7 @@ class MirrorTest {
           sample_radius_(std::sqrt(area / static_cast<float>(samples_.point.size()))),
           tree_(samples_.point) {}
 
-    /// Mirrors `queries` samples, evenly taken from all.
+    /// Mirrors `queries` samples, evenly chosen from all.
     Asymmetry measure(const Vec3& plane_normal, std::size_t queries) const {
         const std::size_t count = samples_.point.size(), stride = std::max<std::size_t>(1, count / queries);
         double distance = 0, mismatch = 0;
@@ -182,7 +182,8 @@ class MirrorTest {
 
   private:
     static Vec3 mirrored(const Vec3& v, const Vec3& plane_normal) { return v - 2 * v.dot(plane_normal) * plane_normal; }
-    /// A sample stands for the disk of surface around it, so that the spacing of samples does not count as distance.
+    /// Returns the distance to the disk of surface that a sample represents, so that the spacing of samples does not
+    /// count as distance.
     float distance_to_sample(const Vec3& offset, const Vec3& normal) const {
         const float height = offset.dot(normal);
         const float along = std::sqrt(std::max(0.0f, offset.squaredNorm() - height * height));
@@ -194,13 +195,14 @@ class MirrorTest {
     PointTree tree_;
 };
 
-/// A plane's normal and what the search knows of its cost.
+/// A plane's normal and its asymmetry.
 struct Candidate {
     Vec3 normal;
     Asymmetry asymmetry;
 };
 
-/// Half of the integer points on an octahedron, as directions: the set does not depend on the signs of the axes.
+/// Returns half of the integer points on an octahedron, as directions. The set does not depend on the signs of the
+/// axes.
 std::vector<Vec3> hemisphere_directions() {
     std::vector<Vec3> directions;
     const int n = k_direction_steps;
@@ -218,7 +220,7 @@ bool separated(const Vec3& normal, const std::vector<Candidate>& chosen, float a
         chosen, [&](const Candidate& other) { return std::abs(normal.dot(other.normal)) > std::cos(angle); });
 }
 
-/// The first `count` candidates, best first, that are more than `angle` apart from those already taken.
+/// Returns the `count` best candidates, best first, each more than `angle` from those before it.
 std::vector<Candidate> best_separated(std::vector<Candidate> candidates, std::size_t count, float angle) {
     std::ranges::stable_sort(candidates, {}, [](const Candidate& c) { return c.asymmetry.cost; });
     std::vector<Candidate> chosen;
@@ -229,7 +231,7 @@ std::vector<Candidate> best_separated(std::vector<Candidate> candidates, std::si
     return chosen;
 }
 
-/// Pattern search over the normal: tries tilts in eight directions, by ever smaller angles.
+/// Refines the normal by pattern search: tries tilts in eight directions, by ever smaller angles.
 Candidate refined(const MirrorTest& test, const Vec3& start, std::size_t queries) {
     Candidate best{start, test.measure(start, queries)};
     for (float tilt = 5 * k_degree; tilt > 0.1f * k_degree; tilt *= 0.5f) {
@@ -247,7 +249,7 @@ Candidate refined(const MirrorTest& test, const Vec3& start, std::size_t queries
     return best;
 }
 
-/// Candidates for all planes: the coarse ones, with the most promising refined.
+/// Returns candidates for all planes: the coarse ones, and the most promising of them refined.
 std::vector<Candidate> search_planes(const MirrorTest& test) {
     const std::vector<Vec3> directions = hemisphere_directions();
     std::vector<Candidate> coarse(directions.size());
@@ -264,7 +266,7 @@ std::vector<Candidate> search_planes(const MirrorTest& test) {
         result[i] = refined(test, starts[i].normal, k_fine_queries);
         result[i].asymmetry = test.measure(result[i].normal, k_final_queries);
     });
-    // A search may end beside its principal plane although that is exact, and coarse planes fill up the rest.
+    // The exact principal planes are added because a search may end beside them; coarse planes fill up the rest.
     for (int i = 0; i < 3; ++i) result.push_back({Vec3::Unit(i), test.measure(Vec3::Unit(i), k_final_queries)});
     result.insert(result.end(), coarse.begin(), coarse.end());
     return result;

@@ -9,9 +9,9 @@
 namespace exemplar {
 
 /// The priority queue of Dijkstra's algorithm: pops (distance, face) by increasing distance, then increasing face.
-/// Distances are >= 0. Entries are never changed in place: push a better one and skip the stale one when it comes up.
-/// A heap with four children per node whose entries are single integers: the bits of a non-negative float grow
-/// with its value.
+/// Distances are >= 0. Entries are never changed in place: push a better one, and skip the outdated one when it is
+/// popped. Implemented as a heap with four children per node whose entries are single integers, since the bits of a
+/// non-negative float increase with its value.
 class DistanceQueue {
   public:
     struct Entry {
@@ -33,7 +33,7 @@ class DistanceQueue {
         keys_[hole] = key;
     }
 
-    /// The entry with the smallest distance; the queue must not be empty.
+    /// Removes and returns the entry with the smallest distance; the queue must not be empty.
     Entry pop() {
         const std::uint64_t top = keys_[0];
         const std::uint64_t last = keys_[--size_];

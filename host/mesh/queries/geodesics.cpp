@@ -11,15 +11,15 @@ namespace {
 
 constexpr float k_infinity = std::numeric_limits<float>::infinity();
 
-/// Relaxes arcs from what the queue holds until it is empty, never beyond `radius`; `distance` must hold the tentative
-/// distances. Calls settle(face, distance) for each face whose distance has become final.
+/// Relaxes arcs, never beyond `radius`, until the queue is empty; `distance` must hold the tentative distances.
+/// Calls settle(face, distance) for each face whose distance has become final.
 template <typename Settle>
 void run_dijkstra(const DualGraph& graph, DistanceQueue& queue, float* distance, float radius, Settle&& settle) {
     const std::uint32_t* begin = graph.begin.data();
     const DualGraph::Arc* arcs = graph.arcs.data();
     while (!queue.empty()) {
         const auto [d, face] = queue.pop();
-        if (d > distance[face]) continue;  // a shorter way has been found since
+        if (d > distance[face]) continue;  // a shorter path was found since
         settle(face, d);
         for (std::uint32_t a = begin[face]; a != begin[face + 1]; ++a) {
             const auto [neighbor, length] = arcs[a];
@@ -67,7 +67,7 @@ std::span<const GeodesicSearch::Reached> GeodesicSearch::within(std::uint32_t so
     run_dijkstra(*graph_, queue_, distance_.data(), radius, [&](std::uint32_t face, float distance) {
         reached_.push_back({face, distance});
     });
-    // Every face with a tentative distance within the radius was settled, so these are all that were touched.
+    // Every face with a tentative distance within the radius was settled, so `reached_` holds all faces touched.
     for (const Reached& reached : reached_) distance_[reached.face] = k_infinity;
     return reached_;
 }
@@ -121,8 +121,8 @@ Components find_components(const DualGraph& graph, const std::vector<float>& are
     return result;
 }
 
-/// Position of each face in the order in which equally distant faces are sampled: large components first, then far from
-/// the area centroid, then by coordinates, so that the index decides only between coinciding faces.
+/// Returns the rank of each face among equally distant faces: large components first, then far from the area
+/// centroid, then by coordinates, so that the index decides only between coinciding faces.
 std::vector<std::uint32_t> sampling_ranks(const TriangleMesh& mesh, const std::vector<float>& component,
                                           const std::vector<float>& from_centroid) {
     const std::vector<Vec3> centers = face_centers(mesh);
@@ -139,15 +139,15 @@ std::vector<std::uint32_t> sampling_ranks(const TriangleMesh& mesh, const std::v
     return rank;
 }
 
-/// Farthest-point sampling with the geodesic Voronoi cell of each face kept up to date.
+/// Farthest-point sampling that maintains the geodesic Voronoi cell of each face.
 class FarthestPointSampler {
   public:
     FarthestPointSampler(const DualGraph& graph, const std::vector<std::uint32_t>& rank)
-        : graph_(graph), rank_(rank), distance_(rank.size(), k_infinity), cell_(rank.size(), k_none) {
+        : graph_(graph), rank_(rank), distance_(rank.size(), k_infinity), cell_(rank.size(), k_invalid_index) {
         for (std::uint32_t f = 0; f < rank.size(); ++f) farthest_.push_back(candidate(f));
         std::make_heap(farthest_.begin(), farthest_.end());
     }
-    /// Makes `face` a sample: it takes over the faces nearer to it than to any earlier sample.
+    /// Makes `face` a sample and moves the faces that are nearer to it than to any earlier sample into its cell.
     void add(std::uint32_t face) {
         const auto sample = static_cast<std::uint32_t>(samples_.size());
         samples_.push_back(face);
@@ -155,7 +155,7 @@ class FarthestPointSampler {
         queue_.push(0, face);
         run_dijkstra(graph_, queue_, distance_.data(), k_infinity, [&](std::uint32_t f, float) { cell_[f] = sample; });
     }
-    /// The face farthest from all samples that is not a sample itself; there must be one.
+    /// Returns the face farthest from all samples that is not a sample itself; there must be one.
     std::uint32_t take_farthest() {
         for (;;) {
             std::pop_heap(farthest_.begin(), farthest_.end());
@@ -165,7 +165,7 @@ class FarthestPointSampler {
                 if (top.distance > 0 || !is_sample(top.face)) return top.face;
                 continue;
             }
-            farthest_.push_back(candidate(top.face));  // distances only fall, so late corrections suffice
+            farthest_.push_back(candidate(top.face));  // distances only decrease, so correcting them late suffices
             std::push_heap(farthest_.begin(), farthest_.end());
         }
     }
@@ -192,13 +192,13 @@ class FarthestPointSampler {
     std::vector<std::uint32_t> samples_;
 };
 
-/// Weights that sum to 1, one per sample: the summed areas of the faces in its cell.
+/// Returns one weight per sample, the summed area of the faces in its cell; weights sum to 1.
 std::vector<float> cell_shares(const std::vector<std::uint32_t>& cell, std::vector<float> areas, std::size_t count) {
     if (std::ranges::all_of(areas, [](float a) { return a == 0; })) std::ranges::fill(areas, 1.0f);
     std::vector<double> sum(count);
     double total = 0;
     for (std::size_t f = 0; f < cell.size(); ++f) {
-        if (cell[f] == k_none) continue;
+        if (cell[f] == k_invalid_index) continue;
         sum[cell[f]] += static_cast<double>(areas[f]);
         total += static_cast<double>(areas[f]);
     }
@@ -225,7 +225,7 @@ FaceSamples sample_faces(const TriangleMesh& mesh, const DualGraph& graph, std::
     const Components components = find_components(graph, areas);
     const std::vector<std::uint32_t> rank = sampling_ranks(mesh, components.area, from_centroid);
 
-    // Where not every component gets a sample, the largest must, or the sampled ones might have no area at all.
+    // If not every component gets a sample, the largest must, or the sampled ones might have no area at all.
     const bool every_component = count >= components.count;
     std::uint32_t first = 0;
     for (std::uint32_t f = 1; f < faces; ++f) {

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "host/mesh/queries/distance_queue.h"
 #include "host/mesh/mesh.h"
+#include "host/mesh/queries/distance_queue.h"
 #include "host/mesh/topology.h"
 
 namespace exemplar {
@@ -31,10 +31,10 @@ class GeodesicSearch {
         float distance;
     };
     explicit GeodesicSearch(const DualGraph& graph);
-    /// All faces within `radius` of `source` (the source included), in order of increasing distance.
-    /// Costs only what it reaches. The span is valid until the next call.
+    /// Returns all faces within `radius` of `source` (itself included), by increasing distance. The cost depends
+    /// only on the faces reached. The span is valid until the next call.
     std::span<const Reached> within(std::uint32_t source, float radius);
-    /// Distance from `source` to every face; infinity in other components. out.size() == face count.
+    /// Computes the distance from `source` to every face; infinity in other components. out.size() == face count.
     void distances(std::uint32_t source, std::span<float> out);
 
   private:
@@ -44,19 +44,19 @@ class GeodesicSearch {
     std::vector<Reached> reached_;
 };
 
-/// Distances from each source to each face: sources x F, row-major, computed in parallel.
+/// Returns the distances from each source to each face: sources x F, row-major, computed in parallel.
 std::vector<float> distances_from_sources(const DualGraph& graph, std::span<const std::uint32_t> sources);
 
-/// A subset of faces that stands for the whole surface in sums over all faces.
+/// A subset of faces that represents the whole surface in sums over all faces.
 struct FaceSamples {
     std::vector<std::uint32_t> face;  ///< S distinct faces
-    std::vector<float> area_share;    ///< S; the share of the surface nearest to each sample; sums to 1
+    std::vector<float> area_share;    ///< S; share of the surface nearest to each sample; sums to 1
 };
-/// Farthest-point samples under geodesic distance (started at the face farthest from the area centroid, so the result
-/// does not depend on face order), each weighted by the area of its geodesic Voronoi cell. Every component gets a
-/// sample, or, with fewer samples than components, the largest do and the others are left out of the shares. A
-/// component without area has a share of 0. With count
-/// >= F every face is its own sample, in order, and sums are exact. Faces count equally if all areas are zero.
+/// Chooses farthest-point samples under geodesic distance, each weighted by the area of its geodesic Voronoi cell.
+/// Starts at the face farthest from the area centroid, so the result does not depend on face order. Every component
+/// gets a sample; with fewer samples than components only the largest do, and the others do not count for the
+/// shares. A component without area has a share of 0. With count >= F every face is its own sample, in order, and
+/// sums are exact. Faces count equally if all areas are zero.
 FaceSamples sample_faces(const TriangleMesh& mesh, const DualGraph& graph, std::size_t count);
 
 }  // namespace exemplar

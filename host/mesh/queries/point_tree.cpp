@@ -6,7 +6,7 @@
 namespace exemplar {
 namespace {
 
-/// The points by the interface that nanoflann asks for.
+/// The points, with the interface that nanoflann requires.
 struct Points {
     std::vector<Vec3> points;
     std::size_t kdtree_get_point_count() const { return points.size(); }

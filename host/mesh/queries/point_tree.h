@@ -18,10 +18,10 @@ class PointTree {
     PointTree(PointTree&&) noexcept;
     PointTree& operator=(PointTree&&) noexcept;
 
-    /// The index of the nearest point; there must be one.
+    /// Returns the index of the nearest point; there must be a point.
     std::uint32_t nearest(const Vec3& point) const;
-    /// Fills `found` with the indices of the nearest points, nearest first; returns their number, less than
-    /// found.size() only where there are fewer points.
+    /// Fills `found` with the indices of the nearest points, nearest first. Returns their number, which is below
+    /// found.size() only if there are fewer points.
     std::size_t nearest(const Vec3& point, std::span<std::uint32_t> found) const;
 
   private:

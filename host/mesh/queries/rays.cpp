@@ -14,7 +14,7 @@ namespace exemplar {
 
 namespace {
 
-/// An Embree context that knows which face to overlook.
+/// An Embree context with the face to ignore.
 struct SkippingContext {
     RTCIntersectContext embree;  // first, so that a pointer to it is a pointer to the whole
     std::uint32_t skipped_face;
@@ -105,7 +105,7 @@ RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 std::optional<RayScene::Hit> RayScene::first_hit(const Vec3& origin, const Vec3& direction, float near) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    // Embree takes hits strictly beyond the near end.
+    // Embree reports only hits strictly beyond the near end.
     return impl_->intersect(make_ray(origin, direction, near > 0 ? std::nextafter(near, 0.0f) : 0.0f), context);
 }
 

@@ -20,10 +20,11 @@ class RayScene {
         float distance;  ///< in mesh units along the unit direction
         std::uint32_t face;
     };
-    /// First intersection with distance >= near; direction is a unit vector.
+    /// Returns the first intersection at a distance >= near; `direction` is a unit vector.
     std::optional<Hit> first_hit(const Vec3& origin, const Vec3& direction, float near) const;
-    /// The first hit of a ray that starts on face `from` (any point of it), other than with that face. Hits nearer than
-    /// the rounding of the largest coordinate (say, with an exact copy of the face) count as the start, too.
+    /// Returns the first hit of a ray that starts on face `from` (any point of it), except with that face. Hits
+    /// nearer than the rounding error of the largest coordinate (say, with an exact copy of the face) are ignored,
+    /// too.
     std::optional<Hit> first_hit_from(std::uint32_t from, const Vec3& origin, const Vec3& direction) const;
 
   private:

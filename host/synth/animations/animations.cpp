@@ -19,27 +19,27 @@ namespace {
 
 constexpr std::size_t k_fewest_vertices = 500, k_most_vertices = 100'000, k_most_frames = 100'000;
 
-struct Kind {
+struct AnimationGenerator {
     std::string_view name;
     Animation (*make)(const AnimationOptions&);
 };
 
-constexpr std::array<Kind, 5> k_kinds{{{"figure", make_figure},
-                                       {"flag", make_flag},
-                                       {"curtain", make_curtain},
-                                       {"drape", make_drape},
-                                       {"face", make_face}}};
+constexpr std::array<AnimationGenerator, 5> k_kinds{{{"figure", make_figure},
+                                                     {"flag", make_flag},
+                                                     {"curtain", make_curtain},
+                                                     {"drape", make_drape},
+                                                     {"face", make_face}}};
 
-constexpr auto k_names = [] {
+constexpr auto k_animation_names = [] {
     std::array<std::string_view, k_kinds.size()> names;
     for (std::size_t i = 0; i < names.size(); ++i) names[i] = k_kinds[i].name;
     return names;
 }();
 
-const Kind& find_kind(std::string_view name) {
-    for (const Kind& kind : k_kinds)
+const AnimationGenerator& find_animation_kind(std::string_view name) {
+    for (const AnimationGenerator& kind : k_kinds)
         if (kind.name == name) return kind;
-    const std::vector<std::string> names(k_names.begin(), k_names.end());
+    const std::vector<std::string> names(k_animation_names.begin(), k_animation_names.end());
     throw UsageError(fmt::format("unknown animation kind '{}'{}; the kinds are {}", name, suggestion(name, names),
                                  fmt::join(names, ", ")));
 }
@@ -52,11 +52,11 @@ void require_range(std::string_view what, std::size_t count, std::size_t low, st
 }  // namespace
 
 std::span<const std::string_view> synth_animation_kinds() {
-    return k_names;
+    return k_animation_names;
 }
 
 Animation make_animation(std::string_view kind_name, const AnimationOptions& options) {
-    const Kind& kind = find_kind(kind_name);
+    const AnimationGenerator& kind = find_animation_kind(kind_name);
     require_range("vertices", options.vertices, k_fewest_vertices, k_most_vertices);
     require_range("frames", options.frames, 1, k_most_frames);
     Animation animation = kind.make(options);

@@ -10,14 +10,14 @@
 namespace exemplar {
 
 struct AnimationOptions {
-    std::size_t vertices = 5000;    ///< about; 500 to 100,000
-    std::size_t frames = 120;       ///< of the one clip, at 30 per second; 1 to 100,000
+    std::size_t vertices = 5000;    ///< approximate number of vertices; 500 to 100,000
+    std::size_t frames = 120;       ///< length of the one clip at 30 per second; 1 to 100,000
     std::uint64_t shape_seed = 1;   ///< the surface: its vertices, faces, skinning weights or blend shapes
     std::uint64_t motion_seed = 1;  ///< the motion, and nothing else
 };
 
-/// The kinds of animations make_animation knows: "figure" (a skinned person), "flag", "curtain", "drape" (simulated
-/// cloth, as mesh sequences) and "face" (blend shapes).
+/// Returns the kinds of animations that make_animation knows: "figure" (a skinned person), "flag", "curtain",
+/// "drape" (simulated cloth, as mesh sequences) and "face" (blend shapes).
 std::span<const std::string_view> synth_animation_kinds();
 
 /// Generates an animation of one clip, "motion_<motion seed>": the same kind and options give the same bytes on one

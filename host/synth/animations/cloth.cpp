@@ -33,7 +33,7 @@ Cloth::Cloth(const ClothGrid& grid, const ClothMaterial& material, std::vector<V
     connect(material);
 }
 
-/// A thread of the cloth stands for a strip `across` wide.
+/// Adds a distance constraint. A thread represents a strip of cloth `across` wide.
 void Cloth::add_distance(std::size_t a, std::size_t b, double rest, double stiffness, double across) {
     distances_.push_back(
         {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), rest, rest / (stiffness * across)});
@@ -63,7 +63,7 @@ void Cloth::connect(const ClothMaterial& material) {
     }
 }
 
-/// Gravity, and the pressure of the air that blows against the cloth.
+/// Computes accelerations by gravity and by the pressure of the air that blows against the cloth.
 void Cloth::accelerate(double time) {
     std::fill(accelerations_.begin(), accelerations_.end(), Vec3d(0, -k_gravity, 0));
     if (!scene_.wind) return;
@@ -90,7 +90,7 @@ void Cloth::solve_distance(const Distance& constraint, double per_square_second)
     const Vec3d offset = positions_[constraint.b] - positions_[constraint.a];
     const double length = offset.norm(), soft = wa + wb + constraint.compliance * per_square_second;
     if (wa + wb == 0 || length < 1e-12) return;
-    // One iteration per step: the multiplier starts at zero and is not needed again.
+    // With one iteration per step the multiplier starts at zero and need not be kept.
     const Vec3d push = (length - constraint.rest) / (soft * length) * offset;
     positions_[constraint.a] += wa * push;
     positions_[constraint.b] -= wb * push;
@@ -106,7 +106,7 @@ void Cloth::solve_bend(const Bend& constraint, double per_square_second) {
     positions_[constraint.c] -= wc * push;
 }
 
-/// Puts particles outside of the ball and holds them back where they slide over it.
+/// Moves particles out of the ball and applies friction where they slide over it.
 void Cloth::collide(const Ball3& ball, double duration) {
     const double radius = ball.radius + thickness_;
     for (std::size_t v = 0; v < positions_.size(); ++v) {
@@ -119,15 +119,15 @@ void Cloth::collide(const Ball3& ball, double duration) {
         Vec3d slide = positions_[v] - before_[v] - carried;
         slide -= slide.dot(normal) * normal;
         const double length = slide.norm();
-        // On top it sticks: a sheet that hangs unevenly would slide off.
+        // On top the cloth sticks, else a sheet that hangs unevenly would slide off.
         const double held = normal.y() > k_sticky_slope ? 1.0 : k_friction * depth / std::max(length, 1e-12);
         positions_[v] -= std::min(1.0, held) * slide;
     }
 }
 
-/// Damps what a particle's velocity differs by from its neighbors' mean.
-void Cloth::calm(double share) {
-    // before_ is free to hold the old velocities here.
+/// Damps the difference between a particle's velocity and the mean of its neighbors'.
+void Cloth::damp_relative_motion(double share) {
+    // before_ is not in use here, so it holds the old velocities.
     std::swap(before_, velocities_);
     for (std::size_t r = 0; r < grid_.rows; ++r) {
         for (std::size_t c = 0; c < grid_.columns; ++c) {
@@ -155,12 +155,13 @@ void Cloth::step(double time, double duration) {
         positions_[v] += duration * velocities_[v];
     }
     for (const std::uint32_t v : scene_.pinned) positions_[v] = scene_.pinned_position(v, time + duration);
-    // Always in the same order: sweeping one way and the other by turns feeds vibrations of the period of two steps.
+    // Constraints are always solved in the same order: alternating the direction would excite vibrations with a
+    // period of two steps.
     for (const Bend& c : bends_) solve_bend(c, per_square_second);
     for (const Distance& c : distances_) solve_distance(c, per_square_second);
     if (scene_.ball) collide(scene_.ball(time + duration), duration);
     for (std::size_t v = 0; v < positions_.size(); ++v) velocities_[v] = (positions_[v] - before_[v]) / duration;
-    calm(std::min(damping_ * duration, 0.5));
+    damp_relative_motion(std::min(damping_ * duration, 0.5));
 }
 
 void Cloth::advance(double from, double to) {

@@ -12,7 +12,7 @@ namespace exemplar {
 /// A grid of particles over a rectangle: row by row, `columns` x `rows` of them.
 struct ClothGrid {
     std::size_t columns = 0, rows = 0;  ///< at least 4 each
-    double width = 1, height = 1;       ///< of the rectangle
+    double width = 1, height = 1;       ///< size of the rectangle
 
     std::size_t size() const { return columns * rows; }
     double cell_width() const { return width / static_cast<double>(columns - 1); }
@@ -20,33 +20,34 @@ struct ClothGrid {
     std::size_t index(std::size_t column, std::size_t row) const { return row * columns + column; }
 };
 
-/// SI units: the cloth is a light woven one.
+/// Material of a cloth in SI units; the defaults are a light woven one.
 struct ClothMaterial {
     double density = 0.18;    ///< kg per square meter
     double stretch = 4000;    ///< N per meter, along the threads
     double shear = 1500;      ///< N per meter, across them
     double bending = 1.2e-3;  ///< N meters
-    double damping = 40;      ///< per second, of what neighbors' velocities differ by
+    double damping = 40;      ///< per second, of the velocity differences between neighbors
 };
 
-/// A ball that cloth cannot pass; turning carries cloth along.
+/// A ball that cloth cannot pass. Its rotation carries cloth along.
 struct Ball3 {
     Vec3d center = Vec3d::Zero(), velocity = Vec3d::Zero();
     double radius = 0;
     double spin = 0;  ///< radians per second about +y
 };
 
-/// What acts on a cloth, as functions of the time in seconds (which may be negative before the first frame).
+/// Constraints and forces on a cloth, as functions of the time in seconds (negative before the first frame).
 struct ClothScene {
-    std::vector<std::uint32_t> pinned;                            ///< particles that do not move by themselves
-    std::function<Vec3d(std::uint32_t, double)> pinned_position;  ///< of a pinned particle
+    std::vector<std::uint32_t> pinned;                            ///< particles whose position is prescribed
+    std::function<Vec3d(std::uint32_t, double)> pinned_position;  ///< position of a pinned particle at a time
     std::function<Vec3d(const Vec3d&, double)> wind;              ///< air velocity at a place; none if empty
     std::function<Ball3(double)> ball;                            ///< none if empty
 };
 
-/// Cloth by extended position-based dynamics (XPBD: Macklin, Mueller and Chentanez 2016) with many small steps of one
-/// iteration each (Macklin et al. 2019): distances along and across the threads, and second differences for bending,
-/// which in cloth that hardly stretches measure curvature. It does not collide with itself. Deterministic.
+/// Simulates cloth by extended position-based dynamics (XPBD: Macklin, Mueller and Chentanez 2016) with many small
+/// steps of one iteration each (Macklin et al. 2019). Constraints are distances along and across the threads, and
+/// second differences for bending, which measure curvature in cloth that hardly stretches. The cloth does not
+/// collide with itself. Deterministic.
 class Cloth {
   public:
     /// Particles start at `positions` (grid.size() of them), at rest.
@@ -74,7 +75,7 @@ class Cloth {
     void solve_distance(const Distance& constraint, double per_square_second);
     void solve_bend(const Bend& constraint, double per_square_second);
     void collide(const Ball3& ball, double duration);
-    void calm(double share);
+    void damp_relative_motion(double share);
 
     ClothGrid grid_;
     ClothScene scene_;
@@ -86,14 +87,14 @@ class Cloth {
 };
 
 /// A triangulated rectangle that follows a grid of particles as a bicubic B-spline surface, so that its curvature is
-/// continuous whatever the particles do. Its vertices do not lie on a grid: rows are set off against each other and
-/// vertices jittered, which leaves triangles nearly equilateral and without a common direction.
+/// continuous for any particle positions. Its vertices are not on a grid: rows are staggered and vertices jittered,
+/// so that triangles are nearly equilateral and have no common direction.
 class ClothSurface {
   public:
     ClothSurface(const ClothGrid& grid, std::size_t vertices, std::uint64_t seed);
 
     const std::vector<Face>& faces() const { return faces_; }
-    /// Vertex positions for these particles.
+    /// Returns the vertex positions for these particles.
     std::vector<Vec3> vertices(const std::vector<Vec3d>& particles) const;
 
   private:

@@ -15,11 +15,11 @@
 namespace exemplar {
 namespace {
 
-constexpr double k_frames_per_second = 30;
+constexpr double k_cloth_frame_rate = 30;
 constexpr std::uint64_t k_cloth_task = 3;
 constexpr double k_drape_radius = 0.38, k_drape_height = 0.5;
 
-/// Air that swirls: random plane waves that drift with the mean wind, as smooth in space as in time.
+/// Turbulent wind: random plane waves that drift with the mean wind, as smooth in space as in time.
 class Turbulence {
   public:
     explicit Turbulence(Random random) {
@@ -50,7 +50,7 @@ class Turbulence {
 
 using Vec2d = Eigen::Vector2d;
 
-/// A strip bent to half a wave of a sine whose ends are `chord` apart, without being stretched.
+/// A strip bent, without stretching, into half a sine wave whose ends are `chord` apart.
 class Pleat {
   public:
     Pleat(double length, double chord) : length_(length) {
@@ -60,7 +60,7 @@ class Pleat {
             (arc_.back() > length ? high : low) = (low + high) / 2;
         }
     }
-    /// Where the point at this distance from the strip's beginning is: along the chord, and aside from it.
+    /// Returns the position of the point at this arc length: along the chord, and aside from it.
     Vec2d at(double distance) const {
         const double wanted = std::clamp(distance / length_, 0.0, 1.0) * arc_.back();
         const auto next = std::max<std::size_t>(
@@ -86,7 +86,7 @@ class Pleat {
     std::vector<double> arc_;  ///< length of the curve up to each point
 };
 
-/// Fewer particles than vertices: the surface is a spline over them, and a fold takes several.
+/// Returns a grid with fewer particles than vertices: the surface is a spline over them, and a fold takes several.
 ClothGrid grid_for(double width, double height, std::size_t vertices) {
     const double area = width * height / (static_cast<double>(vertices) / 3.2);
     const double cell = std::sqrt(area);
@@ -98,7 +98,7 @@ ClothGrid grid_for(double width, double height, std::size_t vertices) {
     return grid;
 }
 
-/// The flat sheet: `right` and `up` span it from `corner`.
+/// Returns the particles of the flat sheet that `right` and `up` span from `corner`.
 std::vector<Vec3d> flat_sheet(const ClothGrid& grid, const Vec3d& corner, const Vec3d& right, const Vec3d& up) {
     std::vector<Vec3d> positions;
     for (std::size_t r = 0; r < grid.rows; ++r)
@@ -108,7 +108,7 @@ std::vector<Vec3d> flat_sheet(const ClothGrid& grid, const Vec3d& corner, const 
     return positions;
 }
 
-/// Simulates from `lead` seconds before the first frame on.
+/// Simulates a cloth, starting `lead` seconds before the first frame.
 Animation simulate(const AnimationOptions& options, const ClothGrid& grid, const std::vector<Vec3d>& rest,
                    const std::vector<Vec3d>& start, const ClothMaterial& material, ClothScene scene, double lead) {
     const ClothSurface surface(grid, options.vertices, Random(options.shape_seed).fork(k_cloth_task + 1).next());
@@ -117,12 +117,12 @@ Animation simulate(const AnimationOptions& options, const ClothGrid& grid, const
     animation.rest.faces = surface.faces();
     animation.rest.vertices = surface.vertices(rest);
     Clip clip;
-    clip.frames_per_second = k_frames_per_second;
+    clip.frames_per_second = k_cloth_frame_rate;
     Cloth cloth(grid, material, start, std::move(scene));
     if (lead > 0) cloth.advance(-lead, 0);
     for (std::size_t f = 0; f < options.frames; ++f) {
-        const double time = static_cast<double>(f) / k_frames_per_second;
-        if (f > 0) cloth.advance(time - 1 / k_frames_per_second, time);
+        const double time = static_cast<double>(f) / k_cloth_frame_rate;
+        if (f > 0) cloth.advance(time - 1 / k_cloth_frame_rate, time);
         clip.frames.push_back(surface.vertices(cloth.positions()));
     }
     animation.clips.push_back(std::move(clip));
@@ -130,7 +130,7 @@ Animation simulate(const AnimationOptions& options, const ClothGrid& grid, const
 }
 
 double duration_of(const AnimationOptions& options, double lead) {
-    return lead + static_cast<double>(options.frames) / k_frames_per_second;
+    return lead + static_cast<double>(options.frames) / k_cloth_frame_rate;
 }
 
 Random shape_random(const AnimationOptions& options, std::uint64_t scene) {
@@ -199,7 +199,7 @@ Animation make_curtain(const AnimationOptions& options) {
     for (Vec3d& p : start) {
         const double place = std::floor(p.x() / ring_distance + 1e-9), along = p.x() - place * ring_distance;
         const Vec2d bent = pleat.at(along);
-        const double side = std::lround(place) % 2 == 0 ? 1.0 : -1.0;  // pleats to either side by turns
+        const double side = std::lround(place) % 2 == 0 ? 1.0 : -1.0;  // pleats to alternating sides
         p = Vec3d(along_rod(place * ring_distance, -k_lead) + bent.x(), p.y(), side * bent.y());
     }
     return simulate(options, grid, rest, start, {.density = 0.3, .bending = 4e-3}, scene, k_lead);
@@ -215,7 +215,7 @@ std::function<Ball3(double)> drape_ball(const AnimationOptions& options) {
     return [=](double time) {
         constexpr double k_moment = 1e-3;
         const auto center = [&](double t) {
-            // Under the middle of the sheet at first, for it to fall squarely.
+            // At first under the middle of the sheet, so that the sheet falls on it symmetrically.
             const double free = std::clamp((t - 0.3) / 1.2, 0.0, 1.0), eased = free * free * (3 - 2 * free);
             return Vec3d(eased * Vec3d(x->at(t), y->at(t), z->at(t)));
         };

@@ -13,7 +13,7 @@ Animation make_flag(const AnimationOptions& options);
 Animation make_curtain(const AnimationOptions& options);
 /// A sheet that falls over a ball, which moves and turns.
 Animation make_drape(const AnimationOptions& options);
-/// The ball of that drape by time in seconds.
+/// Returns the ball of make_drape as a function of the time in seconds.
 std::function<Ball3(double)> drape_ball(const AnimationOptions& options);
 
 }  // namespace exemplar

@@ -9,15 +9,16 @@
 namespace exemplar {
 namespace {
 
-constexpr double k_jitter = 0.16;  // share of the spacing by which vertices leave their places
+constexpr double k_jitter = 0.16;  // maximum displacement of vertices, as a share of the spacing
 
-/// The four cubic B-spline weights at t in [0, 1] of a segment.
+/// Returns the four cubic B-spline weights at t in [0, 1] of a segment.
 std::array<double, 4> spline_weights(double t) {
     const double u = 1 - t;
     return {u * u * u / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * u * u * u - 6 * u * u + 4) / 6, t * t * t / 6};
 }
 
-/// The particles with one more row and column on each side, which go straight on: the surface then ends where they do.
+/// Returns the particles with one more row and column on each side, extrapolated linearly, so that the surface ends
+/// where the particles do.
 std::vector<Vec3d> padded(const ClothGrid& grid, const std::vector<Vec3d>& particles) {
     const std::size_t columns = grid.columns + 2, rows = grid.rows + 2;
     std::vector<Vec3d> result(columns * rows);
@@ -37,7 +38,7 @@ std::vector<Vec3d> padded(const ClothGrid& grid, const std::vector<Vec3d>& parti
 }  // namespace
 
 ClothSurface::ClothSurface(const ClothGrid& grid, std::size_t vertices, std::uint64_t seed) : grid_(grid) {
-    // Equilateral triangles of this side: one vertex per side^2 sqrt(3) / 2.
+    // Side length of equilateral triangles: there is one vertex per side^2 sqrt(3) / 2.
     Random random(seed);
     const double side = std::sqrt(grid.width * grid.height * 2 / std::numbers::sqrt3 / static_cast<double>(vertices));
     const auto count = static_cast<std::size_t>(std::max(std::lround(grid.height / (side * 0.8660254)), 2L));
@@ -66,11 +67,11 @@ void ClothSurface::add_vertex(double x, double y) {
     parameters_.emplace_back(static_cast<float>(x / grid_.cell_width()), static_cast<float>(y / grid_.cell_height()));
 }
 
-/// Triangles between two rows of vertices (ranges of indices), from left to right.
+/// Adds the triangles between two rows of vertices (ranges of indices), from left to right.
 void ClothSurface::zip_rows(std::size_t lower, std::size_t lower_end, std::size_t upper, std::size_t upper_end) {
     std::size_t a = lower, b = upper;
     while (a + 1 < lower_end || b + 1 < upper_end) {
-        // The shorter of the two edges that could come next; ends of rows leave no choice.
+        // Takes the shorter of the two possible next edges; at the ends of rows there is only one.
         const bool can_a = a + 1 < lower_end, can_b = b + 1 < upper_end;
         const float next_a = can_a ? (parameters_[a + 1] - parameters_[b]).squaredNorm() : 0;
         const float next_b = can_b ? (parameters_[b + 1] - parameters_[a]).squaredNorm() : 0;

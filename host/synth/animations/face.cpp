@@ -13,11 +13,11 @@
 namespace exemplar {
 namespace {
 
-constexpr double k_fairing = 0.06;       // width of the bumps to take out: those where solids meet, not lips and eyes
-constexpr float k_least_offset = 1e-6f;  // what is less is left out: the shapes stay sparse
-constexpr double k_frames_per_second = 30;
+constexpr double k_face_fairing = 0.06;  // width of the bumps to smooth: those where solids meet, not lips and eyes
+constexpr float k_least_offset = 1e-6f;  // smaller offsets are left out, so that shapes stay sparse
+constexpr double k_face_frame_rate = 30;
 
-/// What a push does to the skin at p: a bump with three continuous derivatives.
+/// Returns the displacement of the skin at p by a push: a bump with three continuous derivatives.
 Vec3 displacement(const SkinPush& push, const Vec3& p, const Vec3& normal) {
     const Vec3 local = (p - push.center).cwiseQuotient(push.radius);
     const float inside = 1 - local.squaredNorm();
@@ -39,21 +39,21 @@ MorphTarget target_of(const FaceShape& shape, const TriangleMesh& mesh, const st
     return target;
 }
 
-/// All of the head follows one node.
+/// Binds the whole head to one node.
 void bind_to_one_node(Rig& rig, std::size_t vertex_count) {
-    rig.nodes.push_back({"face", k_none, {}});
+    rig.nodes.push_back({"face", k_invalid_index, {}});
     rig.bones.push_back({});
     rig.influences.assign(vertex_count, {0, 1.0f});
     for (std::size_t v = 0; v <= vertex_count; ++v) rig.influence_begin.push_back(static_cast<std::uint32_t>(v));
 }
 
-/// From 0 to 1 with two continuous derivatives that vanish at both ends.
+/// Rises from 0 to 1 with two continuous derivatives that vanish at both ends.
 double ease(double x) {
     const double t = std::clamp(x, 0.0, 1.0);
     return t * t * t * (10 - 15 * t + 6 * t * t);
 }
 
-/// A shape that comes, stays for a moment and goes.
+/// A shape whose weight rises, stays for some time and falls.
 struct Expression {
     std::size_t shape;
     double begin, length, strength;
@@ -64,7 +64,7 @@ struct Expression {
     }
 };
 
-/// The shape of the other side, which comes next to it in the list; the shape itself if it has none to go with.
+/// Returns the same shape of the other side, which is next to it in the list; the shape itself if it has no partner.
 std::size_t partner_of(const Rig& rig, std::size_t shape) {
     const std::string& name = rig.targets[shape].name;
     if (name.starts_with("jaw")) return shape;
@@ -72,8 +72,8 @@ std::size_t partner_of(const Rig& rig, std::size_t shape) {
     return name.ends_with("Right") ? shape - 1 : shape;
 }
 
-/// One expression after the other out of these shapes, often of both sides of the face. All have their turn before one
-/// comes again.
+/// Adds one expression after the other, often for both sides of the face. Each shape is used once before any is
+/// repeated.
 void play(const Rig& rig, const std::vector<std::size_t>& shapes, double duration, Random random,
           std::vector<Expression>& played) {
     std::vector<std::size_t> waiting;
@@ -91,7 +91,7 @@ void play(const Rig& rig, const std::vector<std::size_t>& shapes, double duratio
     }
 }
 
-/// The shapes whose names begin with one of these.
+/// Returns the shapes whose names begin with one of these.
 std::vector<std::size_t> shapes_of(const Rig& rig, std::initializer_list<std::string_view> beginnings) {
     std::vector<std::size_t> found;
     for (std::size_t t = 0; t < rig.targets.size(); ++t)
@@ -142,19 +142,20 @@ FaceModel sculpt_face(Random& random) {
 }
 
 Clip move_face(const Rig& rig, std::size_t frames, const Random& random) {
-    const double duration = static_cast<double>(frames) / k_frames_per_second;
+    const double duration = static_cast<double>(frames) / k_face_frame_rate;
     std::vector<Expression> played;
     play(rig, shapes_of(rig, {"brow"}), duration, random.fork(1), played);
     play(rig, shapes_of(rig, {"eye"}), duration, random.fork(2), played);
     play(rig, shapes_of(rig, {"mouth"}), duration, random.fork(3), played);
     play(rig, shapes_of(rig, {"jaw", "cheek", "nose"}), duration, random.fork(4), played);
     Clip clip;
-    clip.frames_per_second = k_frames_per_second;
+    clip.frames_per_second = k_face_frame_rate;
     for (std::size_t f = 0; f < frames; ++f) {
-        // What is left to do multiplies, so that shapes that are played twice at a time stay within [0, 1].
+        // Expressions of one shape combine as 1 - product of (1 - weight), so that overlapping ones stay within [0,
+        // 1].
         std::vector<double> left(rig.targets.size(), 1.0);
         for (const Expression& expression : played)
-            left[expression.shape] *= 1 - expression.at(static_cast<double>(f) / k_frames_per_second);
+            left[expression.shape] *= 1 - expression.at(static_cast<double>(f) / k_face_frame_rate);
         Pose pose = rest_pose(rig);
         for (std::size_t t = 0; t < left.size(); ++t) pose.weights[t] = static_cast<float>(1 - left[t]);
         clip.poses.push_back(std::move(pose));
@@ -169,7 +170,7 @@ Animation make_face(const AnimationOptions& options) {
     Animation animation;
     animation.kind = AnimationKind::blend_shapes;
     animation.rest = mesh_surface(field, model.shape.detail, options.vertices);
-    fair(animation.rest, k_fairing);
+    fair(animation.rest, k_face_fairing);
     bind_to_one_node(animation.rig, animation.rest.vertex_count());
     const std::vector<Vec3> normals = vertex_normals(animation.rest);
     for (const FaceShape& shape : face_shapes(model, field))

@@ -19,23 +19,23 @@ struct FaceModel {
 };
 FaceModel sculpt_face(Random& random);
 
-/// One smooth push at the skin, with compact support.
+/// One smooth deformation of the skin, with compact support.
 struct SkinPush {
-    Vec3 center, radius;             ///< an axis-parallel ellipsoid outside of which nothing moves
-    Vec3 shift = Vec3::Zero();       ///< what its center is moved by
-    float swell = 0;                 ///< and by how much along the normal
+    Vec3 center, radius;             ///< axis-parallel ellipsoid outside of which nothing moves
+    Vec3 shift = Vec3::Zero();       ///< displacement of the center
+    float swell = 0;                 ///< displacement of the center along the normal
     float fold = 0, fold_width = 1;  ///< height and length of waves along the normal
     Vec3 across = Vec3::UnitY();     ///< unit; the direction from wave to wave
 };
 
-/// A blend shape by its name in common rigs; "Left" is the person's left, +x.
+/// A blend shape with its name in common rigs; "Left" is the person's left, +x.
 struct FaceShape {
     std::string_view name;
     std::vector<SkinPush> pushes;
 };
 std::vector<FaceShape> face_shapes(const FaceModel& model, const ImplicitField& field);
 
-/// Random expressions: weights within [0, 1] that come and go smoothly, a few at a time.
+/// Makes random expressions: weights within [0, 1] that rise and fall smoothly, a few at a time.
 Clip move_face(const Rig& rig, std::size_t frames, const Random& random);
 
 Animation make_face(const AnimationOptions& options);

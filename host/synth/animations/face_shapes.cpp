@@ -8,7 +8,7 @@ namespace {
 
 const Vec3 k_still = Vec3::Zero();
 
-/// The point of the front at (x, y).
+/// Returns the point of the front of the face at (x, y).
 Vec3 front(const ImplicitField& field, float x, float y) {
     float outside = field.high().z(), inside = 0;
     for (int i = 0; i < 30; ++i) {
@@ -35,7 +35,7 @@ class Shapes {
   private:
     Vec3 at(float x, float y) const { return front(field_, x, y); }
     void add(std::string_view name, std::vector<SkinPush> pushes) { shapes_.push_back({name, std::move(pushes)}); }
-    /// Both sides of a shape; `pushes_of` makes the pushes of the side of this sign.
+    /// Adds a shape for each side; `pushes_of` makes the pushes of the side of this sign.
     template <typename PushesOf>
     void add_sides(std::string_view left, std::string_view right, PushesOf pushes_of) {
         add(left, pushes_of(1.0f));

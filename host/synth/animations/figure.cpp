@@ -6,20 +6,20 @@
 #include <utility>
 #include <vector>
 
-#include "host/synth/modeling/fairing.h"
 #include "host/synth/animations/skin_weights.h"
+#include "host/synth/modeling/fairing.h"
 #include "host/synth/modeling/surface.h"
 
 namespace exemplar {
 namespace {
 
-constexpr double k_fairing = 0.07;  // width of the bumps to take out: those where solids meet, not the nose
+constexpr double k_figure_fairing = 0.07;  // width of the bumps to smooth: those where solids meet, not the nose
 
 Rig skeleton_of(const FigureModel& model) {
     Rig rig;
     for (std::size_t j = 0; j < k_figure_joints; ++j) {
         const FigureJoint& joint = figure_joints()[j];
-        const Vec3 base = joint.parent == k_none ? Vec3(Vec3::Zero()) : model.joint[joint.parent];
+        const Vec3 base = joint.parent == k_invalid_index ? Vec3(Vec3::Zero()) : model.joint[joint.parent];
         RigNode node{std::string(joint.name), joint.parent, {}};
         node.rest.translation = model.joint[j] - base;
         rig.nodes.push_back(std::move(node));
@@ -30,7 +30,8 @@ Rig skeleton_of(const FigureModel& model) {
     return rig;
 }
 
-/// The joint that moves each vertex most: that of the nearest solid; of the trunk, which is one mass, by height.
+/// Returns the joint that moves each vertex most: that of the nearest solid, or, in the trunk, which is one mass, by
+/// height.
 std::vector<std::uint32_t> nearest_joints(const TriangleMesh& mesh, const FigureModel& model,
                                           const ImplicitField& field) {
     constexpr std::uint32_t k_trunk = 3;  // hips, spine, chest
@@ -53,7 +54,7 @@ Animation make_figure(const AnimationOptions& options) {
     animation.kind = AnimationKind::skeleton;
     animation.rest = mesh_surface(field, model.shape.detail, options.vertices);
     const std::vector<std::uint32_t> joints = nearest_joints(animation.rest, model, field);
-    fair(animation.rest, k_fairing);
+    fair(animation.rest, k_figure_fairing);
     animation.rig = skeleton_of(model);
     std::vector<BoneSegment> segments;
     for (std::size_t j = 0; j < k_figure_joints; ++j) segments.push_back({model.joint[j], model.tip[j]});

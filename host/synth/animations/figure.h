@@ -14,22 +14,24 @@ namespace exemplar {
 
 constexpr std::size_t k_figure_joints = 19;
 
-/// What a joint allows, in degrees about the axes of its bone (see figure_axes): [0] bends the bone toward +z, [1]
-/// twists it, [2] moves it away from the middle of the body. Of the right side as of the left one.
+/// Range of a joint in degrees about the axes of its bone (see figure_axes): [0] bends the bone toward +z, [1]
+/// twists it, [2] moves it away from the middle of the body. The right side has the same limits as the left.
 struct JointLimits {
     std::array<float, 3> low, high;
 };
 
 struct FigureJoint {
     std::string_view name;
-    std::uint32_t parent;  ///< k_none for the hips, the root
+    std::uint32_t parent;  ///< k_invalid_index for the hips, the root
     float side;            ///< 1 left (+x), -1 right, 0 middle
     JointLimits limits;
 };
-/// The joints of a figure, parents first, in the order of its rig's nodes and bones. At rest none is turned.
+/// Returns the joints of a figure, parents first, in the order of its rig's nodes and bones. At rest none is
+/// rotated.
 const std::array<FigureJoint, k_figure_joints>& figure_joints();
 
-/// A person to be meshed and rigged: standing, arms half raised. Primitive.part is the joint that moves it.
+/// A person to be meshed and rigged: standing, arms half raised. Primitive.part is the joint that moves the
+/// primitive.
 struct FigureModel {
     ShapeModel shape;
     std::array<Vec3, k_figure_joints> joint;  ///< where the joints are
@@ -37,17 +39,18 @@ struct FigureModel {
 };
 FigureModel sculpt_figure(Random& random);
 
-/// The axes (columns) that a joint's limits refer to: y along its bone, z as near as possible to the world's.
+/// Returns the axes (columns) that a joint's limits refer to: y along its bone, z as near as possible to the
+/// world's.
 Eigen::Matrix3f figure_axes(const FigureModel& model, std::size_t joint);
-/// The rotation of a joint by angles in degrees within its limits: about the third axis, after the first, after the
-/// second.
+/// Returns the rotation of a joint by angles in degrees within its limits: first about the second axis, then about
+/// the first, then about the third.
 Eigen::Quaternionf joint_rotation(const FigureJoint& joint, const Eigen::Matrix3f& axes,
                                   const std::array<float, 3>& degrees);
-/// The angles that joint_rotation makes this rotation of; the first one in [-90, 90] degrees.
+/// Returns the angles for which joint_rotation gives this rotation; the first one is in [-90, 90] degrees.
 std::array<float, 3> joint_angles(const FigureJoint& joint, const Eigen::Matrix3f& axes,
                                   const Eigen::Quaternionf& rotation);
 
-/// A motion of the figure: every joint within its limits, walking and gesturing by turns.
+/// Makes a motion of the figure that alternates between walking and gesturing, every joint within its limits.
 Clip move_figure(const FigureModel& model, const Rig& rig, std::size_t frames, Random random);
 
 Animation make_figure(const AnimationOptions& options);

@@ -3,7 +3,8 @@
 #include "host/mesh/topology.h"
 #include "host/synth/animations/figure.h"
 
-// A person of about 1.75 units height, smooth enough to have curvature everywhere: mittens for hands, no hair.
+// Models a person of about 1.75 units height, smooth enough to have curvature everywhere: mittens for hands, no
+// hair.
 
 namespace exemplar {
 namespace {
@@ -14,7 +15,7 @@ enum Joint : std::int32_t {
     k_chest,
     k_neck,
     k_head,
-    k_clavicle,  // the left side; the right one follows it
+    k_clavicle,  // the left side; the right follows in the list
     k_shoulder,
     k_elbow,
     k_wrist,
@@ -32,12 +33,12 @@ constexpr JointLimits k_hip_limits{{-25, -20, -8}, {80, 20, 35}};
 constexpr JointLimits k_knee_limits{{-120, 0, 0}, {0, 0, 0}};
 constexpr JointLimits k_ankle_limits{{-35, -8, -8}, {18, 8, 8}};
 
-struct Build {
+struct FigureBuild {
     float girth, shoulders, hips, legs, arms, muscle, head;
 };
 
-Build pick_build(Random& random) {
-    Build b{};
+FigureBuild pick_figure_build(Random& random) {
+    FigureBuild b{};
     b.girth = pick(random, 0.88f, 1.18f);
     b.shoulders = pick(random, 0.9f, 1.08f);
     b.hips = pick(random, 0.95f, 1.1f);
@@ -48,9 +49,9 @@ Build pick_build(Random& random) {
     return b;
 }
 
-class Body {
+class FigureBody {
   public:
-    Body(FigureModel& figure, const Build& build) : figure_(figure), b_(build), add_(figure.shape) {}
+    FigureBody(FigureModel& figure, const FigureBuild& build) : figure_(figure), b_(build), add_(figure.shape) {}
 
     void sculpt() {
         trunk();
@@ -110,7 +111,7 @@ class Body {
 
     void arm(int side) {
         const float sx = sign(side), m = b_.muscle;
-        // Half raised, so that the surface below the arms is neither stretched nor folded at rest.
+        // The arms are half raised, so that the surface below them is neither stretched nor folded at rest.
         const Frame shoulder = Frame{Vec3(sx * 0.172f * b_.shoulders, 1.412f, -0.012f), turn_z(sx * 52)};
         const Vec3 elbow = shoulder * Vec3(0, -0.285f * b_.arms, 0), wrist = shoulder * Vec3(0, -0.535f * b_.arms, 0);
         place(k_clavicle, side, Vec3(sx * 0.025f, 1.42f, -0.012f), shoulder.origin);
@@ -167,7 +168,7 @@ class Body {
     }
 
     FigureModel& figure_;
-    const Build& b_;
+    const FigureBuild& b_;
     Sculptor add_;
 };
 
@@ -176,7 +177,7 @@ class Body {
 const std::array<FigureJoint, k_figure_joints>& figure_joints() {
     constexpr auto k_right = static_cast<std::uint32_t>(k_joints_of_a_side);
     static const std::array<FigureJoint, k_figure_joints> joints{
-        {{"hips", k_none, 0, {{-8, -180, -6}, {12, 180, 6}}},
+        {{"hips", k_invalid_index, 0, {{-8, -180, -6}, {12, 180, 6}}},
          {"spine", k_hips, 0, {{-12, -14, -12}, {24, 14, 12}}},
          {"chest", k_spine, 0, {{-8, -16, -10}, {16, 16, 10}}},
          {"neck", k_chest, 0, {{-14, -25, -12}, {18, 25, 12}}},
@@ -201,8 +202,8 @@ const std::array<FigureJoint, k_figure_joints>& figure_joints() {
 FigureModel sculpt_figure(Random& random) {
     FigureModel figure{};
     figure.shape.detail = 0.0095f;
-    const Build build = pick_build(random);
-    Body(figure, build).sculpt();
+    const FigureBuild build = pick_figure_build(random);
+    FigureBody(figure, build).sculpt();
     return figure;
 }
 

@@ -10,15 +10,15 @@ namespace exemplar {
 namespace {
 
 constexpr double k_radians = std::numbers::pi / 180;
-constexpr double k_frames_per_second = 30;
+constexpr double k_figure_frame_rate = 30;
 
-/// Signs that mirror a rotation of the left side to the right one: twists and sideways moves turn the other way.
+/// Signs that mirror a rotation of the left side to the right: twists and sideways motions change sign.
 std::array<float, 3> mirror(const FigureJoint& joint) {
     return joint.side < 0 ? std::array{1.0f, -1.0f, -1.0f} : std::array{1.0f, 1.0f, 1.0f};
 }
 
-/// How a joint takes part in walking: degrees at phase p (radians, the left leg swings first) are
-/// middle + swing sin(p + lag), of its first angle.
+/// Walking motion of a joint: at phase p (radians, the left leg swings first) its first angle is middle + swing
+/// sin(p + lag) degrees.
 struct Gait {
     std::string_view joint;
     double middle, swing, lag;
@@ -33,14 +33,14 @@ constexpr std::array<Gait, 8> k_gaits{{{"left_hip", 6, 26, 0},
                                        {"left_elbow", 28, 18, k_half},
                                        {"right_elbow", 28, 18, 0}}};
 
-/// The course of one angle of one joint.
-class AngleCourse {
+/// One angle of one joint over time.
+class AngleCurve {
   public:
-    AngleCourse(const Random& random, float low, float high, double duration)
+    AngleCurve(const Random& random, float low, float high, double duration)
         : low_(low), high_(high), course_(random.fork(1), low, high, Random(random).uniform(0.4, 0.8), duration) {}
 
     void walk(const Gait& gait) { gait_ = &gait; }
-    /// Degrees; `walking` in [0, 1] says how much of the joint's own motion gives way to walking.
+    /// Returns degrees; `walking` in [0, 1] is the share by which walking replaces the joint's own motion.
     float at(double time, double walking, double phase) const {
         double angle = course_.at(time);
         if (gait_) {
@@ -56,13 +56,13 @@ class AngleCourse {
     const Gait* gait_ = nullptr;
 };
 
-std::vector<std::array<AngleCourse, 3>> angle_courses(const Random& random, double duration) {
-    std::vector<std::array<AngleCourse, 3>> courses;
+std::vector<std::array<AngleCurve, 3>> angle_courses(const Random& random, double duration) {
+    std::vector<std::array<AngleCurve, 3>> courses;
     for (std::size_t j = 0; j < k_figure_joints; ++j) {
         const FigureJoint& joint = figure_joints()[j];
         const Random own = random.fork(j);
         const auto course = [&](std::size_t i) {
-            return AngleCourse(own.fork(i), joint.limits.low[i], joint.limits.high[i], duration);
+            return AngleCurve(own.fork(i), joint.limits.low[i], joint.limits.high[i], duration);
         };
         courses.push_back({course(0), course(1), course(2)});
         for (const Gait& gait : k_gaits)
@@ -71,7 +71,7 @@ std::vector<std::array<AngleCourse, 3>> angle_courses(const Random& random, doub
     return courses;
 }
 
-/// Where the root goes, turns (degrees) and how much it walks.
+/// Position, rotation (degrees) and share of walking of the root over time.
 struct RootCourse {
     RootCourse(const Random& random, double duration)
         : x(random.fork(1), -0.9, 0.9, 1.5, duration),
@@ -113,17 +113,17 @@ std::array<float, 3> joint_angles(const FigureJoint& joint, const Eigen::Matrix3
 }
 
 Clip move_figure(const FigureModel& model, const Rig& rig, std::size_t frames, Random random) {
-    const double duration = static_cast<double>(frames) / k_frames_per_second;
+    const double duration = static_cast<double>(frames) / k_figure_frame_rate;
     const auto courses = angle_courses(random.fork(1), duration);
     const RootCourse root(random.fork(2), duration);
     Clip clip;
-    clip.frames_per_second = k_frames_per_second;
+    clip.frames_per_second = k_figure_frame_rate;
     double phase = random.uniform(0, 2 * std::numbers::pi);
     for (std::size_t f = 0; f < frames; ++f) {
-        const double time = static_cast<double>(f) / k_frames_per_second;
+        const double time = static_cast<double>(f) / k_figure_frame_rate;
         const double walking = std::clamp(root.walking.at(time), 0.0, 1.0);
-        const double eased = walking * walking * (3 - 2 * walking);  // no corner where the clamp sets in
-        phase += 2 * std::numbers::pi * root.pace.at(time) / k_frames_per_second;
+        const double eased = walking * walking * (3 - 2 * walking);  // smooth where the clamp begins
+        phase += 2 * std::numbers::pi * root.pace.at(time) / k_figure_frame_rate;
         Pose pose = rest_pose(rig);
         for (std::size_t j = 0; j < k_figure_joints; ++j) {
             const auto& [bend, twist, side] = courses[j];

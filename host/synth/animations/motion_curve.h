@@ -9,8 +9,8 @@
 
 namespace exemplar {
 
-/// A random function of time with two continuous derivatives: a uniform cubic B-spline whose control values are
-/// uniform in [low, high], which its values therefore never leave.
+/// A random function of time with two continuous derivatives: a uniform cubic B-spline with control values uniform
+/// in [low, high], which also bound its values.
 class MotionCurve {
   public:
     /// Covers times from 0 to `duration` seconds, one control value every `spacing` seconds.

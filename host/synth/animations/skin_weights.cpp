@@ -13,13 +13,13 @@
 namespace exemplar {
 namespace {
 
-using SparseMatrix = Eigen::SparseMatrix<double>;
+using WeightMatrix = Eigen::SparseMatrix<double>;
 
 constexpr double k_sharpness = 0.8;  // heat from a bone per area, times the squared reach of its vertices
 constexpr double k_least_reach = 0.025, k_reach_share = 0.25;  // reach = least + share * distance to the bone
 constexpr double k_reach_smoothing = 0.04;  // distance over which the reaches of different bones blend
 constexpr std::size_t k_most_influences = 4;
-constexpr double k_fading_weight = 0.03;  // smaller weights fade to none
+constexpr double k_fading_weight = 0.03;  // smaller weights fade to zero
 
 double distance_to(const BoneSegment& bone, const Vec3& p) {
     const Vec3 along = bone.end - bone.begin, offset = p - bone.begin;
@@ -27,26 +27,26 @@ double distance_to(const BoneSegment& bone, const Vec3& p) {
     return static_cast<double>((offset - t * along).norm());
 }
 
-/// The heat that each vertex takes up from its bone.
+/// Returns the heat that each vertex receives from its bone.
 Eigen::VectorXd warmth_of(const TriangleMesh& mesh, const SurfaceLaplacian& laplacian,
                           std::span<const BoneSegment> bones, std::span<const std::uint32_t> bone_of_vertex) {
     Eigen::MatrixXd reach(laplacian.area.size(), 1);
     for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
         reach(static_cast<Eigen::Index>(v), 0) =
             k_least_reach + k_reach_share * distance_to(bones[bone_of_vertex[v]], mesh.vertices[v]);
-    // A jump from bone to bone would be one in the weights' second derivatives, and so in the posed curvature.
+    // A jump between bones would cause one in the second derivatives of the weights, and so in the posed curvature.
     const Eigen::VectorXd smooth = diffuse(laplacian, k_reach_smoothing, reach).cwiseMax(k_least_reach);
     return k_sharpness * laplacian.area.cwiseQuotient(smooth.cwiseAbs2());
 }
 
-/// From 0 at x <= 0 to 1 at x >= 1 with continuous second derivatives.
+/// Rises from 0 at x <= 0 to 1 at x >= 1 with continuous second derivatives.
 double ramp(double x) {
     const double t = std::clamp(x, 0.0, 1.0);
     return t * t * t * (10 - 15 * t + 6 * t * t);
 }
 
-/// The largest weights, made sharper so that only few matter, each less the first one left out, so that none appears
-/// or vanishes at once.
+/// Returns the largest weights, sharpened so that few matter. The first omitted weight is subtracted from each, so
+/// that none appears or vanishes abruptly.
 std::vector<Influence> strongest(const Eigen::RowVectorXd& weights) {
     std::vector<std::pair<double, std::uint32_t>> sorted;
     const double total = weights.squaredNorm();
@@ -76,9 +76,9 @@ void set_skin_weights(Rig& rig, const TriangleMesh& mesh, std::span<const BoneSe
                       std::span<const std::uint32_t> bone_of_vertex) {
     const SurfaceLaplacian laplacian = surface_laplacian(mesh);
     const Eigen::VectorXd warmth = warmth_of(mesh, laplacian, bones, bone_of_vertex);
-    SparseMatrix matrix = laplacian.matrix;
+    WeightMatrix matrix = laplacian.matrix;
     matrix.diagonal() += warmth;
-    const Eigen::SimplicialLDLT<SparseMatrix> solver(matrix);
+    const Eigen::SimplicialLDLT<WeightMatrix> solver(matrix);
     if (solver.info() != Eigen::Success) throw MeshError("no heat equilibrium on this surface; check it for slivers");
     Eigen::MatrixXd weights(warmth.size(), static_cast<Eigen::Index>(bones.size()));
     parallel_for(bones.size(), [&](std::size_t b) {

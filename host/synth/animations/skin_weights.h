@@ -8,13 +8,13 @@
 
 namespace exemplar {
 
-/// The straight middle line of the part of a body that a bone moves.
+/// The straight center line of the part of a body that a bone moves.
 struct BoneSegment {
     Vec3 begin, end;
 };
 
-/// Skinning weights by heat that flows along the surface only (as of Baran and Popovic 2007, but twice, for weights
-/// with continuous second derivatives): each vertex is warmed by the bone it belongs to (`bone_of_vertex`), the more
+/// Computes skinning weights by heat diffusion over the surface (after Baran and Popovic 2007, but applied twice,
+/// for continuous second derivatives). Each vertex is heated by the bone it belongs to (`bone_of_vertex`), the more
 /// the nearer it is. At most four influences per vertex, which sum to one. Fills influence_begin and influences.
 /// Throws MeshError if the equilibrium cannot be computed.
 void set_skin_weights(Rig& rig, const TriangleMesh& mesh, std::span<const BoneSegment> bones,

@@ -1,4 +1,4 @@
-// Faces that are missing, too many, turned, or apart.
+// Missing, duplicate, reversed or separated faces.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -11,7 +11,7 @@
 namespace exemplar {
 namespace {
 
-/// Removes a patch of faces around a random one: as many as `count`, by the number of edges to cross.
+/// Removes a patch of `count` faces around a random one, nearest by the number of crossed edges.
 void remove_patch(const Topology& topology, std::size_t count, Random& random, std::vector<bool>& kept) {
     std::vector<std::uint32_t> patch{static_cast<std::uint32_t>(random.index(kept.size()))};
     std::vector<bool> seen(kept.size(), false);
@@ -20,7 +20,7 @@ void remove_patch(const Topology& topology, std::size_t count, Random& random, s
         kept[patch[i]] = false;
         for (const std::uint32_t e : topology.edges_of_face(patch[i]))
             for (const std::uint32_t f : topology.edges[e].face) {
-                if (f == k_none || seen[f]) continue;
+                if (f == k_invalid_index || seen[f]) continue;
                 seen[f] = true;
                 patch.push_back(f);
             }
@@ -30,7 +30,7 @@ void remove_patch(const Topology& topology, std::size_t count, Random& random, s
 }  // namespace
 
 DamagedMesh cut_holes(const TriangleMesh& mesh, std::uint64_t seed) {
-    constexpr std::size_t k_holes = 4, k_part = 50;  // one face of so many is cut out
+    constexpr std::size_t k_holes = 4, k_part = 50;  // one of k_part faces is removed
     DamagedMesh damaged = undamaged(mesh);
     const std::size_t count = mesh.face_count();
     if (count <= k_holes) return damaged;  // nothing would be left

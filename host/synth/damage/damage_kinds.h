@@ -5,20 +5,20 @@
 
 namespace exemplar {
 
-// What the table of damages is made of; one file per group, the functions in the order of the table.
+// The functions in the table of damages, in its order; one file per group.
 
-/// The triangles of a mesh, each its own origin.
+/// Returns the triangles of a mesh, each its own origin.
 DamagedMesh undamaged(const TriangleMesh& mesh);
-/// Takes out the faces that are not `kept` (one entry per face).
+/// Removes the faces that are not `kept` (one entry per face).
 void keep_faces(DamagedMesh& damaged, const std::vector<bool>& kept);
 /// Adds a face that came from face `origin` of the original.
 void add_face(DamagedMesh& damaged, const Face& face, std::uint32_t origin);
-/// So many different faces (or other items out of `count`) in random order: `share` of them, at least one.
+/// Returns distinct faces (or other items out of `count`) in random order: `share` of them, at least one.
 std::vector<std::uint32_t> random_share(std::size_t count, double share, Random& random);
-/// A uniformly distributed unit vector.
+/// Returns a uniformly distributed unit vector.
 Vec3d random_direction(Random& random);
 
-// damage_faces.cpp: faces that are missing, too many, turned, or apart.
+// damage_faces.cpp: missing, duplicate, reversed or separated faces.
 DamagedMesh cut_holes(const TriangleMesh& mesh, std::uint64_t seed);
 DamagedMesh duplicate_faces(const TriangleMesh& mesh, std::uint64_t seed);
 DamagedMesh flip_faces(const TriangleMesh& mesh, std::uint64_t seed);
@@ -34,7 +34,7 @@ DamagedMesh refine_to_4(const TriangleMesh& mesh, std::uint64_t seed);
 DamagedMesh refine_to_9(const TriangleMesh& mesh, std::uint64_t seed);
 DamagedMesh pair_to_quads(const TriangleMesh& mesh, std::uint64_t seed);
 
-// damage_points.cpp: vertices elsewhere, or in another order.
+// damage_points.cpp: moved or reordered vertices.
 DamagedMesh add_noise(const TriangleMesh& mesh, std::uint64_t seed);
 DamagedMesh add_strong_noise(const TriangleMesh& mesh, std::uint64_t seed);
 DamagedMesh rotate(const TriangleMesh& mesh, std::uint64_t seed);

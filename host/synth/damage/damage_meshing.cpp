@@ -9,10 +9,10 @@
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
-#include "host/mesh/queries/point_tree.h"
 #include "host/mesh/editing/simplify.h"
-#include "host/mesh/topology.h"
 #include "host/mesh/editing/weld.h"
+#include "host/mesh/queries/point_tree.h"
+#include "host/mesh/topology.h"
 #include "host/synth/damage/damage_kinds.h"
 
 namespace exemplar {
@@ -23,14 +23,14 @@ std::uint32_t add_vertex(TriangleMesh& mesh, const Vec3d& position) {
     return static_cast<std::uint32_t>(mesh.vertex_count() - 1);
 }
 
-/// The corner of a face after which its side a-b (in either direction) begins.
+/// Returns the corner at which the side a-b of a face (in either direction) begins; 3 if there is none.
 std::size_t side_between(const Face& face, const std::array<std::uint32_t, 2>& edge) {
     for (std::size_t k = 0; k < 3; ++k)
         if (std::minmax(face[k], face[(k + 1) % 3]) == std::minmax(edge[0], edge[1])) return k;
     return 3;
 }
 
-/// Finds the face of a mesh whose center is nearest to a point, among those that look the same way where there are any.
+/// Finds the face whose center is nearest to a point, preferably one that faces the same way.
 class NearestFace {
   public:
     explicit NearestFace(const TriangleMesh& mesh) : normals_(face_normals(mesh)), centers_(face_centers(mesh)) {}
@@ -49,7 +49,7 @@ class NearestFace {
     PointTree centers_;
 };
 
-/// Cuts every face into n x n equal ones. Sides of the same two vertices are cut in the same points.
+/// Cuts every face into n x n equal ones. Sides with the same two vertices are cut at the same points.
 DamagedMesh refine(const TriangleMesh& mesh, std::uint32_t n) {
     using Share = std::pair<std::uint32_t, std::uint32_t>;  // a corner and its weight in n-ths
     DamagedMesh damaged = undamaged(mesh);
@@ -59,7 +59,8 @@ DamagedMesh refine(const TriangleMesh& mesh, std::uint32_t n) {
     const auto point = [&](const Face& face, std::uint32_t row, std::uint32_t column) {
         const std::array<std::uint32_t, 3> weight{n - row, row - column, column};
         std::array<Share, 3> shares;
-        for (std::size_t k = 0; k < 3; ++k) shares[k] = weight[k] > 0 ? Share{face[k], weight[k]} : Share{k_none, 0};
+        for (std::size_t k = 0; k < 3; ++k)
+            shares[k] = weight[k] > 0 ? Share{face[k], weight[k]} : Share{k_invalid_index, 0};
         std::ranges::sort(shares);
         if (shares[0].second == n) return shares[0].first;
         const auto [it, fresh] = known.try_emplace(shares, 0);
@@ -81,7 +82,7 @@ DamagedMesh refine(const TriangleMesh& mesh, std::uint32_t n) {
     return damaged;
 }
 
-/// Two triangles as one polygon: its corners in order, cut from the first to the third.
+/// Two triangles as a quad: its corners in order, cut from the first to the third.
 struct Quad {
     std::array<std::uint32_t, 4> corner;
     std::array<std::uint32_t, 2> origin;  ///< the triangles with the corners 0 1 2 and 2 3 0
@@ -92,17 +93,18 @@ Vec3d normal_of(const TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std:
     return (mesh.vertices[b].cast<double>() - p).cross(mesh.vertices[c].cast<double>() - p).normalized();
 }
 
-/// Whether a quad is about flat, and convex: its triangles look the same way along whichever diagonal it is cut.
+/// Returns whether a quad is nearly flat and convex: its triangles face the same way for either diagonal.
 bool is_good_quad(const TriangleMesh& mesh, const Quad& quad) {
-    constexpr double k_least_cosine = 0.9;
+    constexpr double k_min_cosine = 0.9;
     const auto& [a, b, c, d] = quad.corner;
     const Vec3d normal = normal_of(mesh, a, b, c);
     for (const Vec3d& other : {normal_of(mesh, c, d, a), normal_of(mesh, b, c, d), normal_of(mesh, d, a, b)})
-        if (!(normal.dot(other) > k_least_cosine)) return false;
+        if (!(normal.dot(other) > k_min_cosine)) return false;
     return true;
 }
 
-/// The quad of the two faces at an edge; false where they are turned differently, or would not make a good one.
+/// Joins the two faces at an edge to a quad; returns false if they are oriented differently or would not make a good
+/// one.
 bool make_quad(const TriangleMesh& mesh, const Edge& edge, Quad& quad) {
     const Face &first = mesh.faces[edge.face[0]], &second = mesh.faces[edge.face[1]];
     const std::size_t i = side_between(first, edge.vertex), j = side_between(second, edge.vertex);
@@ -112,7 +114,7 @@ bool make_quad(const TriangleMesh& mesh, const Edge& edge, Quad& quad) {
     return quad.corner[1] != quad.corner[3] && is_good_quad(mesh, quad);
 }
 
-/// Cuts a quad along its other diagonal; each half came from the old one whose center is nearer.
+/// Cuts a quad along its other diagonal; the origin of each half is the old triangle with the nearer center.
 Quad turned(const TriangleMesh& mesh, const Quad& quad) {
     const auto& [a, b, c, d] = quad.corner;
     const auto center = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k) {
@@ -130,7 +132,7 @@ DamagedMesh make_slivers(const TriangleMesh& mesh, std::uint64_t seed) {
     DamagedMesh damaged = undamaged(mesh);
     Random random(seed);
     const std::vector<Edge> edges = build_topology(mesh).edges;
-    std::vector<bool> split(mesh.face_count(), false);  // a face is split once at most
+    std::vector<bool> split(mesh.face_count(), false);  // each face is split at most once
     for (const std::uint32_t e : random_share(edges.size(), 0.05, random)) {
         const Edge& edge = edges[e];
         const auto same = [&](std::size_t other) { return other < edges.size() && edges[other].vertex == edge.vertex; };
@@ -139,7 +141,7 @@ DamagedMesh make_slivers(const TriangleMesh& mesh, std::uint64_t seed) {
         const Vec3d a = mesh.vertices[edge.vertex[0]].cast<double>(), b = mesh.vertices[edge.vertex[1]].cast<double>();
         const std::uint32_t middle = add_vertex(damaged.mesh, a + k_from_end * (b - a));
         for (const std::uint32_t f : edge.face) {
-            if (f == k_none) continue;
+            if (f == k_invalid_index) continue;
             const std::size_t k = side_between(mesh.faces[f], edge.vertex);
             Face rest = mesh.faces[f];
             damaged.mesh.faces[f][(k + 1) % 3] = middle;
@@ -157,9 +159,9 @@ DamagedMesh decimate(const TriangleMesh& mesh, std::uint64_t) {
     try {
         damaged.mesh = simplify_mesh(welded(mesh), std::max(mesh.face_count() / k_part, k_fewest)).mesh;
     } catch (const MeshError&) {
-        return damaged;  // without area, or pieces too small to stand for anything: there is no coarser mesh
+        return damaged;  // no coarser mesh exists: there is no area, or all pieces are too small
     }
-    damaged.mesh.source_face.clear();  // a mesh of few faces comes back with its polygons
+    damaged.mesh.source_face.clear();  // a mesh of few faces is returned with its polygons
     damaged.mesh.source_face_count = static_cast<std::uint32_t>(damaged.mesh.face_count());
     const NearestFace nearest(mesh);
     const std::vector<Vec3> centers = face_centers(damaged.mesh), normals = face_normals(damaged.mesh);

@@ -1,4 +1,4 @@
-// Vertices elsewhere, or in another order.
+// Moved or reordered vertices.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace exemplar {
 namespace {
 
-/// Mean length of the edges at each vertex; 0 where there are none.
+/// Returns the mean length of the edges at each vertex; 0 where there are none.
 std::vector<double> mean_edge_lengths(const TriangleMesh& mesh) {
     std::vector<double> sum(mesh.vertex_count(), 0), count(mesh.vertex_count(), 0);
     for (const Face& face : mesh.faces)
@@ -24,8 +24,8 @@ std::vector<double> mean_edge_lengths(const TriangleMesh& mesh) {
     return sum;
 }
 
-/// Moves vertices in all directions by, in the root mean square, a share of the diagonal, but no more than a share of
-/// the mean length of the edges around: on fine meshes, noise of the same size would leave no surface.
+/// Moves vertices in random directions. The root-mean-square distance is a share of the diagonal, but at most a
+/// share of the mean length of the edges around: on fine meshes, noise of the former size would destroy the surface.
 DamagedMesh with_noise(const TriangleMesh& mesh, std::uint64_t seed, double of_diagonal, double of_edges) {
     DamagedMesh damaged = undamaged(mesh);
     Random random(seed);
@@ -95,7 +95,7 @@ DamagedMesh add_loose_vertices(const TriangleMesh& mesh, std::uint64_t seed) {
     Random random(seed);
     const double diagonal = bounding_box(mesh).diagonal();
     const Vec3d center = area_centroid(mesh).cast<double>();
-    std::vector<Vec3> loose;  // before the others, so that these get other numbers
+    std::vector<Vec3> loose;  // inserted before the others, so that their numbers change
     for (std::uint32_t i = 0; i < k_loose; ++i)
         loose.emplace_back((center + random.uniform(0, 10) * diagonal * random_direction(random)).cast<float>());
     damaged.mesh.vertices.insert(damaged.mesh.vertices.begin(), loose.begin(), loose.end());

@@ -11,7 +11,7 @@
 namespace exemplar {
 namespace {
 
-/// Normal, but never farther than two and a half standard deviations.
+/// Returns a normal deviate, clamped to two and a half standard deviations.
 float deviate(Random& random, float deviation) {
     return deviation * static_cast<float>(std::clamp(random.normal(), -2.5, 2.5));
 }
@@ -49,7 +49,7 @@ RuledDrawing draw_by_rule(std::string_view style, PixelFeatures& pixels, StrokeP
         const int y = std::clamp(static_cast<int>(middle.y()), 0, fields.height - 1);
         jitter_stroke(stroke, fields.spacing[fields.index(x, y)], jitter, random);
     }
-    out.ink = drawn_ink(out.strokes, fields.width, fields.height);
+    out.ink = render_ink(out.strokes, fields.width, fields.height);
     return out;
 }
 

@@ -10,16 +10,16 @@
 
 namespace exemplar {
 
-/// By how much a hand is off: standard deviations.
+/// Inaccuracy of a hand: standard deviations.
 struct HandJitter {
-    float turn = 0.025f;     ///< radians, of a stroke about its middle
-    float shift = 0.08f;     ///< of a stroke across, in spacings
+    float turn = 0.025f;     ///< rotation of a stroke about its middle, in radians
+    float shift = 0.08f;     ///< shift of a stroke across its direction, in spacings
     float width = 0.06f;     ///< relative, of a stroke
     float darkness = 0.04f;  ///< relative, of a stroke
-    float wave = 0.25f;      ///< pixels, of a slow wave along a stroke
+    float wave = 0.25f;      ///< amplitude of a slow wave along a stroke, in pixels
 };
 
-/// A drawing by a known rule, as if by hand.
+/// A drawing that follows a known rule, as if drawn by hand.
 struct RuledDrawing {
     RuledHatching truth;
     std::vector<HatchStroke> strokes;

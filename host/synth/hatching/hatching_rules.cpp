@@ -14,10 +14,10 @@
 namespace exemplar {
 namespace {
 
-constexpr std::array<std::string_view, 4> k_names{"contour", "light", "parts", "flow"};
+constexpr std::array<std::string_view, 4> k_rule_names{"contour", "light", "parts", "flow"};
 constexpr std::uint8_t k_outside = 255;
 
-/// The targets at a pixel; lengths for pictures of 1000 pixels.
+/// The hatching at a pixel; lengths are for pictures of 1000 pixels.
 struct Targets {
     std::uint8_t segment = 0, level = 0;
     std::array<DoubledAngle, k_hatch_layers> direction{};
@@ -29,7 +29,7 @@ class NamedFeatures {
   public:
     NamedFeatures(PixelFeatures& pixels, std::span<const char* const> scalars)
         : scalars_(pixels.scalars(numbers_of(scalars), {})), directions_(pixels.orientations({})) {}
-    /// The k-th of the scalars.
+    /// Returns the k-th of the scalars.
     float operator()(std::size_t k, std::size_t row) const { return scalars_.column(k)[row]; }
     DoubledAngle direction(std::string_view name, std::size_t row) const {
         const auto& names = orientation_feature_names();
@@ -52,7 +52,7 @@ DoubledAngle mixed(float share, const DoubledAngle& a, const DoubledAngle& b) {
     return normalized({share * a[0] + (1 - share) * b[0], share * a[1] + (1 - share) * b[1]});
 }
 
-/// A style: the scalar features it reads, and what it makes of them.
+/// A style: the scalar features it reads, and the function from features to targets.
 struct Rule {
     std::vector<const char*> scalars;
     std::function<Targets(const NamedFeatures&, std::size_t)> at;
@@ -120,20 +120,21 @@ Rule rule_of(std::string_view style) {
     if (style == "light") return light_rule();
     if (style == "parts") return parts_rule();
     if (style == "flow") return flow_rule();
-    throw UsageError(fmt::format("'{}' is no built-in hatching style; there are: {}", style, fmt::join(k_names, ", ")));
+    throw UsageError(
+        fmt::format("'{}' is no built-in hatching style; there are: {}", style, fmt::join(k_rule_names, ", ")));
 }
 
 }  // namespace
 
 std::span<const std::string_view> hatching_rule_names() {
-    return k_names;
+    return k_rule_names;
 }
 
 RuledHatching hatching_by_rule(std::string_view style, PixelFeatures& pixels) {
     const Rule rule = rule_of(style);
     const NamedFeatures features(pixels, rule.scalars);
     const HatchingView& view = pixels.view();
-    // Finer strokes than that a picture could not show.
+    // A picture could not show finer strokes.
     constexpr float k_least_scale = 0.7f;
     const float scale = std::max(static_cast<float>(std::min(view.width, view.height)) / 1000, k_least_scale);
     RuledHatching out{HatchingFields(view.width, view.height), {}};
@@ -142,7 +143,7 @@ RuledHatching hatching_by_rule(std::string_view style, PixelFeatures& pixels) {
         const Targets t = rule.at(features, row);
         const std::uint32_t p = pixels.pixels().pixel[row];
         out.segment[p] = t.segment;
-        // Where a direction is not defined, nothing is drawn along it.
+        // A layer without a defined direction is not drawn.
         std::uint8_t level = t.level;
         if (t.direction[1] == DoubledAngle{}) level = std::min(level, k_single_hatching);
         if (t.direction[0] == DoubledAngle{}) level = k_no_hatching;

@@ -10,9 +10,9 @@ namespace exemplar {
 namespace {
 
 constexpr std::size_t k_max_valence = 10;
-constexpr float k_least_facing = 0.25f;  // cosine between a face and its vertices' reference normals
+constexpr float k_min_facing = 0.25f;  // cosine between a face and its vertices' reference normals
 
-/// Smallest of the three angles' cosines turned around: larger is better, -1 for a needle.
+/// Returns the negated maximum of the cosines of the three angles: larger is better, -1 for a needle.
 float angle_quality(const std::array<Vec3, 3>& p) {
     float largest_cosine = -1;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -64,7 +64,7 @@ std::vector<std::array<std::uint32_t, 2>> EditMesh::edges() const {
     std::vector<std::array<std::uint32_t, 2>> edges;
     for (std::uint32_t f = 0; f < faces_.size(); ++f) {
         if (!alive_[f]) continue;
-        // Each edge of an oriented closed mesh runs once in either direction.
+        // Faces of an oriented closed mesh traverse each edge once in either direction.
         for (std::size_t i = 0; i < 3; ++i)
             if (faces_[f][i] < faces_[f][(i + 1) % 3]) edges.push_back({faces_[f][i], faces_[f][(i + 1) % 3]});
     }
@@ -78,7 +78,7 @@ std::array<Vec3, 3> EditMesh::corners(const Face& face) const {
 
 bool EditMesh::is_folded(const std::array<Vec3, 3>& p, const Vec3& reference) const {
     const Vec3 normal = (p[1] - p[0]).cross(p[2] - p[0]);
-    return normal.dot(reference) <= k_least_facing * normal.norm() * reference.norm();
+    return normal.dot(reference) <= k_min_facing * normal.norm() * reference.norm();
 }
 
 bool EditMesh::survives_merge(std::uint32_t v, std::uint32_t other, const Vec3& position, const Vec3& normal) const {
@@ -99,19 +99,19 @@ bool EditMesh::survives_merge(std::uint32_t v, std::uint32_t other, const Vec3& 
     return true;
 }
 
-/// The link condition: a and b share exactly the two vertices opposite to their edge.
+/// Checks the link condition: a and b share exactly the two vertices opposite to their edge.
 bool EditMesh::are_linked_safely(std::uint32_t a, std::uint32_t b) {
-    neighbors(a);  // marks them
-    std::array<std::uint32_t, 2> seen{k_none, k_none};
+    neighbors(a);  // marks the neighbors
+    std::array<std::uint32_t, 2> seen{k_invalid_index, k_invalid_index};
     for (const std::uint32_t f : faces_of_[b]) {
         for (const std::uint32_t u : faces_[f]) {
             if (u == a || u == b || marks_[u] != mark_ || u == seen[0] || u == seen[1]) continue;
-            if (seen[1] != k_none) return false;  // a third
-            seen[seen[0] == k_none ? 0 : 1] = u;
+            if (seen[1] != k_invalid_index) return false;  // a third shared vertex
+            seen[seen[0] == k_invalid_index ? 0 : 1] = u;
         }
     }
-    if (seen[1] == k_none) return false;
-    // The opposite vertices lose a face each, and must keep three.
+    if (seen[1] == k_invalid_index) return false;
+    // The opposite vertices lose one face each, and must keep three.
     return faces_of_[seen[0]].size() > 3 && faces_of_[seen[1]].size() > 3 &&
            faces_of_[a].size() + faces_of_[b].size() <= k_max_valence + 4;
 }
@@ -142,7 +142,7 @@ bool EditMesh::collapse(std::uint32_t kept, std::uint32_t gone) {
 }
 
 bool EditMesh::improve_edge(std::uint32_t a, std::uint32_t b) {
-    std::array<std::uint32_t, 2> sides{};  // the faces that run a -> b and b -> a
+    std::array<std::uint32_t, 2> sides{};  // the faces that traverse a -> b and b -> a
     std::array<std::uint32_t, 2> tips{};
     std::size_t found = 0;
     for (const std::uint32_t f : faces_of_[a]) {
@@ -163,7 +163,7 @@ bool EditMesh::improve_edge(std::uint32_t a, std::uint32_t b) {
     const float before = std::min(angle_quality(corners(faces_[sides[0]])), angle_quality(corners(faces_[sides[1]])));
     const float after = std::min(angle_quality(corners(left)), angle_quality(corners(right)));
     if (after <= before + 1e-3f) return false;
-    // A flip across a crease would cut it off: both new faces must face as all four vertices do.
+    // A flip across a crease would cut it off, so both new faces must agree with the normals of all four vertices.
     const Vec3 reference = normals_[a] + normals_[b] + normals_[tips[0]] + normals_[tips[1]];
     const std::array<Vec3, 3> l = corners(left), r = corners(right);
     const Vec3 nl = (l[1] - l[0]).cross(l[2] - l[0]), nr = (r[1] - r[0]).cross(r[2] - r[0]);
@@ -179,7 +179,7 @@ bool EditMesh::improve_edge(std::uint32_t a, std::uint32_t b) {
 }
 
 bool EditMesh::can_move(std::uint32_t v, const Vec3& position, const Vec3& normal) const {
-    return survives_merge(v, k_none, position, normal);
+    return survives_merge(v, k_invalid_index, position, normal);
 }
 
 TriangleMesh EditMesh::compact() const {

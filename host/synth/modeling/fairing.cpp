@@ -15,9 +15,9 @@ namespace {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-constexpr double k_least_cot = 0.02;  // a negative weight would make heat flow uphill
+constexpr double k_min_cotangent = 0.02;  // a negative weight would make heat flow uphill
 
-/// Cotangents of a triangle's angles.
+/// Returns the cotangents of a triangle's angles.
 std::array<double, 3> cotangents(const TriangleMesh& mesh, const Face& face) {
     std::array<double, 3> result{};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -29,7 +29,8 @@ std::array<double, 3> cotangents(const TriangleMesh& mesh, const Face& face) {
     return result;
 }
 
-/// The parts of a triangle nearest to its corners (Meyer et al. 2003): Voronoi areas, or halves and quarters if obtuse.
+/// Returns the areas of the parts of a triangle nearest to its corners (Meyer et al. 2003): Voronoi areas, or halves
+/// and quarters if obtuse.
 std::array<double, 3> corner_areas(const TriangleMesh& mesh, const Face& face, const std::array<double, 3>& cot) {
     std::array<double, 3> squared{};  // lengths of the sides opposite to the corners
     for (std::size_t i = 0; i < 3; ++i)
@@ -70,7 +71,7 @@ SurfaceLaplacian surface_laplacian(const TriangleMesh& mesh) {
         const std::array<double, 3> cot = cotangents(mesh, face), areas = corner_areas(mesh, face, cot);
         for (std::size_t i = 0; i < 3; ++i) {
             const std::uint32_t a = face[(i + 1) % 3], b = face[(i + 2) % 3];
-            const double half = std::max(cot[i], k_least_cot) / 2;
+            const double half = std::max(cot[i], k_min_cotangent) / 2;
             entries.emplace_back(a, b, -half);
             entries.emplace_back(b, a, -half);
             entries.emplace_back(a, a, half);

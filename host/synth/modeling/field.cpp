@@ -11,7 +11,7 @@ namespace {
 
 constexpr float k_far = 1e9f;
 
-/// Minimum whose kink at a = b is rounded over |a - b| < width by a parabola.
+/// Returns the minimum of a and b; a parabola rounds its kink where |a - b| < width.
 float smooth_min(float a, float b, float width) {
     const float overlap = std::max(width - std::abs(a - b), 0.0f);
     return std::min(a, b) - (width > 0 ? overlap * overlap / (4 * width) : 0.0f);
@@ -47,7 +47,7 @@ float ImplicitField::value(const Vec3& p) const {
     float result = k_far;
     for (std::size_t i = 0; i < primitives_.size(); ++i) {
         const float reach = result + primitives_[i].blend + balls_[i].radius;
-        // A primitive farther away than the value so far plus its blend cannot change it.
+        // A primitive farther away than the current value plus its blend cannot change it.
         if (result < k_far && reach > 0 && (p - balls_[i].center).squaredNorm() > reach * reach) continue;
         result = smooth_min(result, distance_to(i, p), primitives_[i].blend);
     }
@@ -89,7 +89,7 @@ Vec3 ImplicitField::project(Vec3& p, float reach) const {
     for (int iteration = 0; iteration < 4; ++iteration) {
         const float here = value(p);
         direction = normal(p, step);
-        // Flattened primitives have slopes below 1: measure the slope along the direction.
+        // Flattened primitives have gradients below 1, so the slope along the direction is measured.
         const float slope = (value(p + step * direction) - here) / step;
         const float move = here / std::clamp(slope, 0.25f, 1.5f);
         p -= direction * std::clamp(move, -reach, reach);

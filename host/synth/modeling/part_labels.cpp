@@ -32,7 +32,7 @@ Adjacency face_adjacency(const TriangleMesh& mesh, const Topology& topology) {
     return adjacency;
 }
 
-/// A face between two of another part takes that part, if that shortens the boundary.
+/// Gives a face between two faces of another part that part, if this shortens the boundary.
 void shorten_boundaries(const Adjacency& adjacency, std::vector<std::int32_t>& part) {
     for (std::uint32_t f = 0; f < part.size(); ++f) {
         std::map<std::int32_t, float> border;
@@ -43,20 +43,20 @@ void shorten_boundaries(const Adjacency& adjacency, std::vector<std::int32_t>& p
     }
 }
 
-/// Component of equal part of each face, numbered in order of first face.
+/// Returns the component of equal part of each face, numbered in order of first face.
 std::vector<std::uint32_t> part_components(const Adjacency& adjacency, const std::vector<std::int32_t>& part) {
-    std::vector<std::uint32_t> component(part.size(), k_none);
+    std::vector<std::uint32_t> component(part.size(), k_invalid_index);
     std::uint32_t count = 0;
     std::vector<std::uint32_t> stack;
     for (std::uint32_t seed = 0; seed < part.size(); ++seed) {
-        if (component[seed] != k_none) continue;
+        if (component[seed] != k_invalid_index) continue;
         component[seed] = count;
         stack.push_back(seed);
         while (!stack.empty()) {
             const std::uint32_t f = stack.back();
             stack.pop_back();
             for (const Neighbor& n : adjacency[f]) {
-                if (component[n.face] != k_none || part[n.face] != part[f]) continue;
+                if (component[n.face] != k_invalid_index || part[n.face] != part[f]) continue;
                 component[n.face] = count;
                 stack.push_back(n.face);
             }
@@ -86,7 +86,7 @@ std::vector<Patch> measure_patches(const TriangleMesh& mesh, const Adjacency& ad
     return patches;
 }
 
-/// Gives each speck to a neighbor; true if there was one.
+/// Gives each speck to a neighboring part; returns whether any face changed its part.
 bool dissolve_specks(const TriangleMesh& mesh, const Adjacency& adjacency, std::vector<std::int32_t>& part) {
     const std::vector<std::uint32_t> component = part_components(adjacency, part);
     const std::vector<Patch> patches = measure_patches(mesh, adjacency, part, component);

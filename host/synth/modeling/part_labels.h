@@ -8,8 +8,9 @@
 
 namespace exemplar {
 
-/// The part of each face: that of the primitive nearest to its center, with boundaries smoothed by majority and specks
-/// (components small against the largest of the same part) given to the neighboring part they border most.
+/// Returns the part of each face: that of the primitive nearest to its center. Boundaries are smoothed by majority,
+/// and specks (components that are small compared with the largest of the same part) get the neighboring part with
+/// the longest common border.
 std::vector<std::int32_t> label_faces(const TriangleMesh& mesh, const ImplicitField& field);
 
 }  // namespace exemplar

@@ -30,8 +30,8 @@ struct Grid {
     }
 };
 
-/// Fills a cube of side^3 nodes: with its center's value where the surface cannot pass through, else by halves.
-/// Skipped nodes keep the right sign, so the polygonization is closed even where the estimate of distance errs.
+/// Fills a cube of side^3 nodes: with its center's value if the surface cannot pass through, else by recursive
+/// halving. Skipped nodes keep the right sign, so the result is closed even where the distance estimate errs.
 void fill_block(const ImplicitField& field, Grid& grid, std::array<std::uint32_t, 3> at, std::uint32_t side,
                 std::span<const std::uint32_t> active) {
     if (side == 1) {
@@ -84,7 +84,8 @@ Grid sample_grid(const ImplicitField& field, float cell) {
     return grid;
 }
 
-/// A grid edge that the surface crosses: lower node * 8 + the corner (1..7) of the cube above it where it ends.
+/// Key of a grid edge that the surface crosses: lower node * 8 + the corner (1..7) of the cube above it where it
+/// ends.
 using EdgeKey = std::uint64_t;
 using KeyTriangle = std::array<EdgeKey, 3>;
 
@@ -163,7 +164,8 @@ std::vector<KeyTriangle> cut_grid(const Grid& grid) {
     return all;
 }
 
-/// Where the field, taken as linear along the edge, is zero; kept off the nodes so that no triangle collapses.
+/// Returns where the field, assumed linear along the edge, is zero; kept off the nodes so that no triangle
+/// collapses.
 Vec3 crossing(const Grid& grid, EdgeKey key) {
     const std::size_t node = key / 8;
     const auto corner = static_cast<std::uint32_t>(key % 8);

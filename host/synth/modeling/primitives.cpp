@@ -6,9 +6,10 @@
 namespace exemplar {
 namespace {
 
-/// Distance in the half plane (x >= 0 across, y along) to the side view of a round cone from (0, 0) to (0, length).
+/// Returns the distance in the half plane (x >= 0 across, y along) to the profile of a round cone from (0, 0) to (0,
+/// length).
 float round_cone_profile(float x, float y, float length, float r1, float r2) {
-    if (std::abs(r1 - r2) >= length) {  // one sphere holds the other
+    if (std::abs(r1 - r2) >= length) {  // one sphere contains the other
         return r1 > r2 ? std::hypot(x, y) - r1 : std::hypot(x, y - length) - r2;
     }
     const float sine = (r1 - r2) / length, cosine = std::sqrt(1 - sine * sine);
@@ -26,7 +27,7 @@ float box_distance(const Vec2& q) {
     return q.cwiseMax(0.0f).norm() + std::min(q.maxCoeff(), 0.0f);
 }
 
-/// Signed distance to a polygon: nearest edge, sign by crossings of a ray.
+/// Returns the signed distance to a polygon: to its nearest edge, with the sign from the crossings of a ray.
 float polygon_distance(const std::vector<Vec2>& outline, const Vec2& p) {
     float squared = (p - outline[0]).squaredNorm();
     bool inside = false;

@@ -30,19 +30,19 @@ struct Torus {
     float major, minor;
 };
 /// A polygon in the local xz plane (any orientation, not self-intersecting), extruded along y to +-half_height, then
-/// grown by `rounding`.
+/// offset outward by `rounding`.
 struct Prism {
     std::vector<Vec2> outline;
     float half_height, rounding;
 };
-/// A polyline in the (radius, y) half plane turned around the local y axis; thickness[i] > 0 is half the wall at point
-/// i.
+/// A polyline in the (radius, y) half plane, rotated around the local y axis; thickness[i] > 0 is half the wall at
+/// point i.
 struct Lathe {
     std::vector<Vec2> profile;
     std::vector<float> thickness;
 };
 
-/// Spheres swept along a polyline of at least two points; the radius (> 0) runs linearly from point to point.
+/// Spheres swept along a polyline of at least two points; the radius (> 0) varies linearly from point to point.
 struct Tube {
     std::vector<Vec3> points;
     std::vector<float> radii;
@@ -50,17 +50,18 @@ struct Tube {
 
 using Solid = std::variant<RoundCone, Ellipsoid, RoundBox, RoundCylinder, Torus, Prism, Lathe, Tube>;
 
-/// Distance of local point p to the surface, negative inside. Exact outside except for the ellipsoid and the tapered
-/// tube, whose values are first-order estimates. Its gradient is (about) 1.
+/// Returns the distance of local point p to the surface, negative inside. Exact outside except for the ellipsoid and
+/// the tapered tube, whose values are first-order estimates. The gradient is about 1.
 float solid_distance(const Solid& solid, const Vec3& p);
 
-/// Center and radius of a local ball that holds the solid.
+/// A ball in local coordinates that contains the solid.
 struct Ball {
     Vec3 center;
     float radius;
 };
 Ball bounding_ball(const Solid& solid);
-/// Local balls that together hold the solid, for a tight bounding box: one per point of a tube, else the bounding ball.
+/// Returns local balls that together contain the solid, for a tight bounding box: one per point of a tube, else the
+/// bounding ball.
 std::vector<Ball> covering_balls(const Solid& solid);
 
 }  // namespace exemplar

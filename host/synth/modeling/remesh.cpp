@@ -15,20 +15,20 @@
 namespace exemplar {
 namespace {
 
-constexpr int k_rounds = 5;                                     // of flips and smoothing
-constexpr float k_bend_per_edge = 0.45f;                        // radians an edge may turn before triangles get smaller
-constexpr float k_least_density = 0.8f, k_most_density = 2.5f;  // wanted edge length = uniform length / density
+constexpr int k_rounds = 5;                                  // of flips and smoothing
+constexpr float k_bend_per_edge = 0.45f;                     // radians per edge beyond which triangles get smaller
+constexpr float k_min_density = 0.8f, k_max_density = 2.5f;  // wanted edge length = uniform length / density
 
-/// Edge length of `faces` equilateral triangles with the mesh's area.
+/// Returns the edge length of `faces` equilateral triangles with the mesh's area.
 float uniform_edge_length(const TriangleMesh& mesh, std::size_t faces) {
     const std::vector<float> areas = face_areas(mesh);
     const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
     return static_cast<float>(std::sqrt(area / static_cast<double>(faces) * 2.3094));
 }
 
-/// How much finer than uniform the triangles should be at each vertex, by how fast the normal turns there.
+/// Returns how much finer than uniform the triangles should be at each vertex, by how fast the normal turns there.
 std::vector<float> vertex_densities(const EditMesh& mesh, float length) {
-    // Around a vertex of a closed mesh the corners of its faces name every neighbor twice.
+    // Around a vertex of a closed mesh the corners of its faces list every neighbor twice.
     std::vector<float> density(mesh.vertex_count());
     parallel_for(
         density.size(),
@@ -53,17 +53,18 @@ std::vector<float> vertex_densities(const EditMesh& mesh, float length) {
                 float sum = 0;
                 for (const std::uint32_t f : faces)
                     for (const std::uint32_t u : mesh.face(f)) sum += density[u];
-                // v itself counts once per face: its weight is that of a third of the ring.
+                // v itself counts once per face: its weight is a third of the total.
                 smoothed[i] = sum / (3 * static_cast<float>(faces.size()));
             },
             512);
         density = std::move(smoothed);
     }
-    for (float& d : density) d = std::clamp(d, k_least_density, k_most_density);
+    for (float& d : density) d = std::clamp(d, k_min_density, k_max_density);
     return density;
 }
 
-/// Collapses edges, the shortest for their place first, until `faces` are left or nothing can collapse.
+/// Collapses edges, the shortest relative to the wanted length first, until `faces` are left or nothing can
+/// collapse.
 class Coarsener {
   public:
     Coarsener(EditMesh& mesh, std::vector<float>& density) : mesh_(mesh), density_(density) {
@@ -71,7 +72,7 @@ class Coarsener {
     }
     void run(std::size_t faces, float length) {
         for (const float share : {0.35f, 0.5f, 0.6f}) sweep(2 * share * length, faces);
-        // Edges that could not collapse may do so after their surroundings changed: start over while it helps.
+        // Edges that could not collapse may do so after changes around them, so this repeats while it helps.
         for (std::size_t before = mesh_.live_faces() + 1; mesh_.live_faces() < before && mesh_.live_faces() > faces;) {
             before = mesh_.live_faces();
             std::vector<Candidate> all;
@@ -96,7 +97,7 @@ class Coarsener {
         const float length = (mesh_.position(a) - mesh_.position(b)).norm();
         return {length * (density_[a] + density_[b]), a, b, version_[a], version_[b]};
     }
-    /// Collapses, in order of the faces, their shortest edges up to this cost: most of the work, without a queue.
+    /// Goes through the faces and collapses their shortest edges up to this cost: most of the work, without a queue.
     void sweep(float limit, std::size_t faces) {
         for (std::uint32_t f = 0; f < mesh_.face_count() && mesh_.live_faces() > faces; ++f) {
             if (!mesh_.is_live_face(f)) continue;
@@ -125,7 +126,8 @@ class Coarsener {
     std::priority_queue<Candidate, std::vector<Candidate>, Later> queue_;
 };
 
-/// Where v goes: toward the weighted center of its faces within the tangent plane, then onto the surface.
+/// Returns the new position and normal of v: moved toward the weighted center of its faces within the tangent plane,
+/// then onto the surface.
 std::pair<Vec3, Vec3> smoothed_vertex(const EditMesh& mesh, const std::vector<float>& density,
                                       const ImplicitField& field, std::uint32_t v, float length) {
     Vec3 center = Vec3::Zero();

@@ -7,10 +7,10 @@
 
 namespace exemplar {
 
-/// Coarsens a closed manifold mesh of the field's surface to `faces` triangles (an odd count loses one; fewer are left
-/// only where the mesh starts with fewer, more where coarsening would break it) and evens out their shapes: collapses
-/// of the shortest edges, flips that widen the smallest angle, and tangential smoothing on the surface. Triangles are
-/// smaller where the surface bends. Manifoldness, orientation and components are kept.
+/// Coarsens a closed manifold mesh of the field's surface to `faces` triangles and improves their shapes: collapses
+/// the shortest edges, flips edges to increase the smallest angle, and smooths tangentially on the surface.
+/// Triangles are smaller where the surface bends. An odd count loses one; there are fewer faces if the mesh starts
+/// with fewer, and more if coarsening would break it. Keeps manifoldness, orientation and components.
 TriangleMesh remesh(const TriangleMesh& mesh, const ImplicitField& field, std::size_t faces);
 
 }  // namespace exemplar

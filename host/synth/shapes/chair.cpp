@@ -9,17 +9,19 @@
 namespace exemplar {
 namespace {
 
-enum Part : std::int32_t { k_seat, k_back, k_leg };
+struct ChairPart {
+    enum : std::int32_t { seat, back, leg };
+};
 
-struct Design {
+struct ChairDesign {
     float width, depth, height, thickness;  // of the seat; width and depth are half extents
     float back_height, tilt;                // tilt in degrees
     float leg;                              // leg radius
     bool round, square_legs;
 };
 
-Design pick_design(Random& random) {
-    Design d{};
+ChairDesign pick_chair_design(Random& random) {
+    ChairDesign d{};
     d.width = pick(random, 0.2f, 0.27f);
     d.depth = pick(random, 0.19f, 0.25f);
     d.height = pick(random, 0.4f, 0.5f);
@@ -32,7 +34,7 @@ Design pick_design(Random& random) {
     return d;
 }
 
-void stick(Sculptor& add, const Design& d, const Vec3& a, const Vec3& b, float ra, float rb) {
+void stick(Sculptor& add, const ChairDesign& d, const Vec3& a, const Vec3& b, float ra, float rb) {
     if (d.square_legs) {
         add.bar(a, b, (ra + rb) / 2, (ra + rb) / 2, 0.006f);
     } else {
@@ -40,8 +42,8 @@ void stick(Sculptor& add, const Design& d, const Vec3& a, const Vec3& b, float r
     }
 }
 
-void seat(Sculptor& add, const Design& d, Random& random) {
-    add.part(k_seat).blend(0.01f);
+void seat(Sculptor& add, const ChairDesign& d, Random& random) {
+    add.part(ChairPart::seat).blend(0.01f);
     const Frame frame{Vec3(0, d.height, 0), Eigen::Matrix3f::Identity()};
     std::vector<Vec2> outline = superellipse(d.width, d.depth, d.round ? 2.2f : pick(random, 5, 12), 32);
     const float taper = d.round ? 0 : pick(random, 0, 0.18f);
@@ -55,7 +57,7 @@ void seat(Sculptor& add, const Design& d, Random& random) {
     }
 }
 
-void stretchers(Sculptor& add, const Design& d, const std::array<Vec3, 4>& top, const std::array<Vec3, 4>& bottom,
+void stretchers(Sculptor& add, const ChairDesign& d, const std::array<Vec3, 4>& top, const std::array<Vec3, 4>& bottom,
                 Random& random) {
     const bool h_shape = chance(random, 0.5);
     const float share = pick(random, 0.45f, 0.7f);
@@ -71,7 +73,7 @@ void stretchers(Sculptor& add, const Design& d, const std::array<Vec3, 4>& top, 
 }
 
 /// Four legs; corners in the order front left, front right, rear left, rear right.
-void four_legs(Sculptor& add, const Design& d, Random& random) {
+void four_legs(Sculptor& add, const ChairDesign& d, Random& random) {
     const float splay = pick(random, 0, 0.09f), taper = pick(random, 0.6f, 1);
     const float inset = d.round ? 0.68f : 0.84f;
     std::array<Vec3, 4> top, bottom;
@@ -85,7 +87,7 @@ void four_legs(Sculptor& add, const Design& d, Random& random) {
 }
 
 /// A column on a star of five feet with castors.
-void swivel(Sculptor& add, const Design& d, Random& random) {
+void swivel(Sculptor& add, const ChairDesign& d, Random& random) {
     const float reach = pick(random, 0.24f, 0.32f), r = pick(random, 0.026f, 0.036f);
     add.rod(Vec3(0, 0.09f, 0), Vec3(0, d.height - 0.3f * d.thickness, 0), r, 0.008f);
     add.rod(Vec3(0, d.height - d.thickness - 0.03f, 0), Vec3(0, d.height - 0.4f * d.thickness, 0), 2.4f * r, 0.01f);
@@ -98,7 +100,7 @@ void swivel(Sculptor& add, const Design& d, Random& random) {
 }
 
 /// A cantilever: two bent tubes that run down in front and back along the floor.
-void cantilever(Sculptor& add, const Design& d) {
+void cantilever(Sculptor& add, const ChairDesign& d) {
     const float r = std::max(0.75f * d.leg, 0.0165f), x = 0.88f * d.width;
     for (const float side : {1.0f, -1.0f}) {
         const std::array<Vec3, 6> control{Vec3(side * x, d.height - d.thickness, -0.6f * d.depth),
@@ -112,8 +114,8 @@ void cantilever(Sculptor& add, const Design& d) {
     add.limb(Vec3(x, 0.02f, -d.depth), Vec3(-x, 0.02f, -d.depth), r, r);
 }
 
-void legs(Sculptor& add, const Design& d, Random& random) {
-    add.part(k_leg).blend(0.012f);
+void legs(Sculptor& add, const ChairDesign& d, Random& random) {
+    add.part(ChairPart::leg).blend(0.012f);
     const double draw = random.uniform();
     if (draw < 0.68) {
         four_legs(add, d, random);
@@ -125,12 +127,12 @@ void legs(Sculptor& add, const Design& d, Random& random) {
 }
 
 /// The plane of the back: origin at the seat's rear edge, y up along the back, z to the front.
-Frame back_plane(const Design& d) {
+Frame back_plane(const ChairDesign& d) {
     const float rear = d.round ? 0.74f * d.depth : d.depth - 0.025f;
     return {Vec3(0, d.height, -rear), turn_x(-d.tilt)};
 }
 
-void panel(Sculptor& add, const Design& d, Random& random) {
+void panel(Sculptor& add, const ChairDesign& d, Random& random) {
     // A strip bent around the sitter in plan, extruded along the back.
     const float half_width = 0.95f * d.width * (d.round ? 0.78f : 1.0f), bend = pick(random, 0, 0.07f),
                 wall = pick(random, 0.013f, 0.022f);
@@ -150,7 +152,7 @@ void panel(Sculptor& add, const Design& d, Random& random) {
 }
 
 /// Two posts joined by a top rail and filled with rungs, slats or spindles.
-void framed_back(Sculptor& add, const Design& d, Random& random) {
+void framed_back(Sculptor& add, const ChairDesign& d, Random& random) {
     const Frame plane = back_plane(d);
     const float half_width = (d.round ? 0.62f : 0.86f) * d.width, flare = pick(random, 0, 0.03f),
                 rail = pick(random, 0.025f, 0.055f);
@@ -183,7 +185,7 @@ void framed_back(Sculptor& add, const Design& d, Random& random) {
 }
 
 /// A bent hoop with spindles, as on a Windsor chair.
-void hoop(Sculptor& add, const Design& d, Random& random) {
+void hoop(Sculptor& add, const ChairDesign& d, Random& random) {
     const Frame plane = back_plane(d);
     const float half_width = (d.round ? 0.6f : 0.85f) * d.width, h = d.back_height;
     std::vector<Vec3> control;
@@ -206,10 +208,10 @@ ShapeModel sculpt_chair(Random& random) {
     ShapeModel model;
     model.detail = 0.0115f;
     Sculptor add(model);
-    const Design d = pick_design(random);
+    const ChairDesign d = pick_chair_design(random);
     seat(add, d, random);
     legs(add, d, random);
-    add.part(k_back).blend(0.008f);
+    add.part(ChairPart::back).blend(0.008f);
     const double draw = random.uniform();
     if (draw < 0.34) {
         panel(add, d, random);

@@ -8,9 +8,11 @@
 namespace exemplar {
 namespace {
 
-enum Part : std::int32_t { k_body, k_handle };
+struct CupPart {
+    enum : std::int32_t { body, handle };
+};
 
-/// The middle of the wall by height, from the corner above the floor (share 0) to the rim (share 1).
+/// Returns the middle of the wall by height, from the corner above the floor (share 0) to the rim (share 1).
 struct Silhouette {
     float height, base, belly, rim, foot, wall;
 
@@ -57,7 +59,7 @@ void body(Sculptor& add, const Silhouette& s, Random& random) {
         wall.profile.push_back({s.radius(share), s.foot + s.height * share});
         wall.thickness.push_back(s.wall * (1.15f - 0.2f * share));
     }
-    add.part(k_body).blend(0.015f);
+    add.part(CupPart::body).blend(0.015f);
     add.add(wall, {});
     if (chance(random, 0.4)) add.add(Torus{s.radius(1), s.wall * 1.25f}, {s.at(1).cwiseProduct(Vec3(0, 1, 0))});
     if (s.foot > 0) {
@@ -100,7 +102,7 @@ void handle(Sculptor& add, const Silhouette& s, Random& random) {
     }
     const float width = pick(random, 1, 1.7f);
     const auto points = smooth_curve(control, 25);
-    add.part(k_handle).blend(0.02f);
+    add.part(CupPart::handle).blend(0.02f);
     add.tube(points, thick, thick, Vec3(width, 1, 1));
 }
 

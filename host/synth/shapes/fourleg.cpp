@@ -10,7 +10,9 @@
 namespace exemplar {
 namespace {
 
-enum Part : std::int32_t { k_head, k_neck, k_torso, k_leg, k_tail, k_ear };
+struct FourlegPart {
+    enum : std::int32_t { head, neck, torso, leg, tail, ear };
+};
 
 /// Sizes in units of about the trunk's length; angles in degrees.
 struct Species {
@@ -84,14 +86,15 @@ class Animal {
     Vec3 croup() const { return {0, height_ + 0.01f, -0.34f * s_.length}; }
 
     void torso() {
-        add_.part(k_torso).blend(0.06f);
+        add_.part(FourlegPart::torso).blend(0.06f);
         add_.limb(croup(), withers(), s_.rump, s_.chest, 0.8f, Vec3::UnitX());
         add_.ellipsoid({Vec3(0, height_ - 0.1f * s_.belly, -0.02f)},
                        Vec3(0.85f * s_.belly, 0.95f * s_.belly, 0.36f * s_.length));
         add_.ellipsoid({withers() + Vec3(0, -0.12f * s_.chest, 0.2f * s_.chest)}, Vec3(0.78f, 0.98f, 0.75f) * s_.chest);
     }
 
-    /// Joints of a leg: offsets (forward, down) as shares of the free leg length, turned by the swing about the first.
+    /// Returns the joints of a leg: offsets (forward, down) as shares of the free leg length, rotated by the swing
+    /// about the first.
     std::vector<Vec3> joints(const Vec3& top, const std::vector<Vec2>& offsets, float swing, float bend) const {
         const float length = top.y() - s_.leg_radius * 0.6f;
         std::vector<Vec3> points{top};
@@ -118,7 +121,7 @@ class Animal {
         const Vec3 top(side * std::max(0.68f * s_.chest, 2.1f * r), height_ - 0.35f * s_.chest, 0.34f * s_.length);
         const auto p = joints(top, {{0, 0}, {-0.05f, 0.3f}, {-0.02f, 0.62f}, {-0.02f, 0.93f}}, swing,
                               std::max(swing, 0.0f) * 1.3f);
-        add_.part(k_leg).blend(0.06f);
+        add_.part(FourlegPart::leg).blend(0.06f);
         add_.limb(p[0], p[1], 0.34f * s_.chest + 0.35f * r, 1.15f * r, 0.75f, Vec3::UnitX());
         add_.blend(0.02f);
         add_.tube(p, std::array<float, 4>{1.6f * r, 1.15f * r, 0.82f * r, 0.68f * r});
@@ -130,7 +133,7 @@ class Animal {
         const Vec3 top(side * std::max(0.66f * s_.rump, 2.45f * r), height_ - 0.2f * s_.rump, -0.36f * s_.length);
         const auto p = joints(top, {{0, 0}, {0.07f, 0.32f}, {-0.1f, 0.63f}, {-0.07f, 0.94f}}, swing,
                               std::max(-swing, 0.0f) * 0.4f);
-        add_.part(k_leg).blend(0.06f);
+        add_.part(FourlegPart::leg).blend(0.06f);
         add_.limb(p[0], p[1], 0.54f * s_.rump, 1.45f * r, 0.62f, Vec3::UnitX());
         add_.blend(0.02f);
         add_.tube(p, std::array<float, 4>{2.0f * r, 1.4f * r, 0.88f * r, 0.7f * r});
@@ -142,7 +145,7 @@ class Animal {
         const Vec3 root = withers() + Vec3(0, 0.22f * s_.chest, 0.35f * s_.chest);
         const Vec3 middle = root + 0.5f * s_.neck * direction(s_.neck_angle - 6, 0.3f * turn);
         const Vec3 poll = middle + 0.5f * s_.neck * direction(s_.neck_angle + 6, 0.7f * turn);
-        add_.part(k_neck).blend(0.07f);
+        add_.part(FourlegPart::neck).blend(0.07f);
         const float r = s_.neck_radius;
         add_.limb(root, middle, std::min(1.25f * r, 0.9f * s_.chest), r, 0.8f, Vec3::UnitX());
         add_.limb(middle, poll, r, 0.82f * r, 0.8f, Vec3::UnitX());
@@ -152,7 +155,7 @@ class Animal {
             grazing ? pick(random_, -65, -45) : std::min(pick(random_, -38, -8), 20 - 0.55f * s_.neck_angle);
         Frame skull{poll + 0.35f * s_.skull * direction(nod, turn), Eigen::Matrix3f::Identity()};
         skull.axes = turn_y(turn) * turn_x(-nod);  // z along the face
-        add_.part(k_head).blend(0.025f);
+        add_.part(FourlegPart::head).blend(0.025f);
         add_.ellipsoid(skull, Vec3(0.86f, 1.0f, 1.1f) * s_.skull);
         add_.limb(skull * Vec3(0, -0.12f * s_.skull, 0.3f * s_.skull),
                   skull * Vec3(0, -0.28f * s_.skull, 0.84f * s_.head), 0.8f * s_.skull, s_.muzzle, 0.9f,
@@ -164,7 +167,7 @@ class Animal {
     void ear(const Frame& skull, float side) {
         const Frame base =
             skull.at(Vec3(side * 0.66f, 0.64f, -0.35f) * s_.skull, turn_z(side * (s_.ear_angle - 90)) * turn_x(-12));
-        add_.part(k_ear).blend(0.02f);
+        add_.part(FourlegPart::ear).blend(0.02f);
         const float thickness = std::max(0.42f * s_.ear_width, 0.018f) / s_.ear_width;
         add_.add(RoundCone{0.55f * s_.ear, 0.7f * s_.ear_width, s_.ear_width}, base, Vec3(1, 1, thickness));
         add_.add(RoundCone{0.45f * s_.ear, s_.ear_width, 0.5f * s_.ear_width}, base.at(Vec3(0, 0.55f * s_.ear, 0)),
@@ -173,7 +176,7 @@ class Animal {
 
     void horns(const Frame& skull) {
         const float length = pick(random_, 0.8f, 1.5f) * s_.skull, r = 0.2f * s_.skull;
-        add_.part(k_head).blend(0.015f);
+        add_.part(FourlegPart::head).blend(0.015f);
         for (const float side : {1.0f, -1.0f}) {
             const std::array<Vec3, 3> control{
                 skull * (Vec3(side * 0.3f, 0.85f, 0.0f) * s_.skull),
@@ -194,7 +197,7 @@ class Animal {
                               0.25f * s_.tail *
                                   direction(-std::min(droop, 86.0f), 180 + wag * (1 + 0.3f * static_cast<float>(i))));
         }
-        add_.part(k_tail).blend(0.025f);
+        add_.part(FourlegPart::tail).blend(0.025f);
         const auto points = smooth_curve(control, 9);
         add_.tube(points, s_.tail_radius, 0.65f * s_.tail_radius);
         if (s_.tail > 0.4f && s_.hoofed) add_.limb(points[6], points[8], 0.9f * s_.tail_radius, 1.5f * s_.tail_radius);

@@ -8,7 +8,9 @@
 namespace exemplar {
 namespace {
 
-enum Part : std::int32_t { k_frame, k_lens, k_temple };
+struct GlassesPart {
+    enum : std::int32_t { frame, lens, temple };
+};
 
 /// A lens outline for the right lens (+x is outward, second coordinate up), around the origin.
 std::vector<Vec2> lens_outline(float width, float height, Random& random) {
@@ -22,7 +24,7 @@ std::vector<Vec2> lens_outline(float width, float height, Random& random) {
     return outline;
 }
 
-/// Frame whose x is `outward`, whose z is up and whose y points to the face's inside.
+/// Returns the frame whose x is `outward`, whose z is up and whose y points toward the face.
 Frame lens_frame(float side, float x, float wrap) {
     Frame frame{Vec3(side * x, 0, 0), {}};
     frame.axes.col(0) = turn_y(side * wrap) * Vec3(side, 0, 0);
@@ -31,13 +33,13 @@ Frame lens_frame(float side, float x, float wrap) {
     return frame;
 }
 
-struct Design {
+struct GlassesDesign {
     float width, height, gap, rim, wrap, temple_length, temple_height, temple_radius, ear_bend, splay;
     bool flat_temples, double_bridge;
 };
 
-Design pick_design(Random& random) {
-    Design d{};
+GlassesDesign pick_glasses_design(Random& random) {
+    GlassesDesign d{};
     d.width = pick(random, 0.26f, 0.34f);
     d.height = d.width * pick(random, 0.55f, 0.98f);
     d.gap = pick(random, 0.1f, 0.16f);
@@ -53,23 +55,23 @@ Design pick_design(Random& random) {
     return d;
 }
 
-void temple(Sculptor& add, const Design& d, const Vec3& hinge, float side) {
+void temple(Sculptor& add, const GlassesDesign& d, const Vec3& hinge, float side) {
     const Vec3 back = turn_y(side * -d.splay) * Vec3(0, 0, -1);
     const Vec3 ear = hinge + 0.72f * d.temple_length * back;
     const Vec3 down = turn_x(-d.ear_bend) * back;
     const std::array<Vec3, 4> control{hinge, hinge + 0.4f * d.temple_length * back + Vec3(0, 0.01f, 0), ear,
                                       ear + 0.28f * d.temple_length * down};
     const auto points = smooth_curve(control, 19);
-    add.part(k_temple).blend(0.01f);
+    add.part(GlassesPart::temple).blend(0.01f);
     const Vec3 widen(1, d.flat_temples ? 2.0f : 1.0f, 1);
     add.tube(points, d.temple_radius, 1.15f * d.temple_radius, widen);
 }
 
-void half(Sculptor& add, const Design& d, const std::vector<Vec2>& outline, float side) {
+void half(Sculptor& add, const GlassesDesign& d, const std::vector<Vec2>& outline, float side) {
     const Frame lens = lens_frame(side, d.gap + d.width, d.wrap);
-    add.part(k_lens).blend(0.006f);
+    add.part(GlassesPart::lens).blend(0.006f);
     add.add(Prism{outline, 0.004f, 0.0155f}, lens);
-    add.part(k_frame).blend(0.01f);
+    add.part(GlassesPart::frame).blend(0.01f);
     std::vector<Vec3> rim;
     rim.reserve(outline.size() + 1);
     for (const Vec2& p : outline) rim.push_back(lens * Vec3(p.x(), 0, p.y()));
@@ -87,7 +89,7 @@ ShapeModel sculpt_glasses(Random& random) {
     ShapeModel model;
     model.detail = 0.0145f;
     Sculptor add(model);
-    const Design d = pick_design(random);
+    const GlassesDesign d = pick_glasses_design(random);
     const std::vector<Vec2> outline = lens_outline(d.width, d.height, random);
     half(add, d, outline, 1);
     half(add, d, outline, -1);
@@ -96,7 +98,7 @@ ShapeModel sculpt_glasses(Random& random) {
     const std::array<Vec3, 3> arch{Vec3(-inner, bridge_height, 0.0f),
                                    Vec3(0, bridge_height + pick(random, 0.02f, 0.07f), 0.03f),
                                    Vec3(inner, bridge_height, 0.0f)};
-    add.part(k_frame).blend(0.015f);
+    add.part(GlassesPart::frame).blend(0.015f);
     add.tube(smooth_curve(arch, 7), 1.05f * d.rim, 1.05f * d.rim);
     return model;
 }

@@ -3,25 +3,18 @@
 
 #include "host/synth/shapes/models.h"
 
-// A person of about 1.75 units height. Joints hang in a tree of frames; limbs point along -y of their joint's frame.
+// Models a person of about 1.75 units height. Joints form a tree of frames; limbs point along -y of their joint's
+// frame.
 
 namespace exemplar {
 namespace {
 
-enum Part : std::int32_t {
-    k_head,
-    k_neck,
-    k_torso,
-    k_upper_arm,
-    k_lower_arm,
-    k_hand,
-    k_upper_leg,
-    k_lower_leg,
-    k_foot
+struct HumanPart {
+    enum : std::int32_t { head, neck, torso, upper_arm, lower_arm, hand, upper_leg, lower_leg, foot };
 };
 
 /// Proportions, each about 1.
-struct Build {
+struct HumanBuild {
     float girth, shoulders, hips, legs, arms, muscle, head;
     bool woman;
 };
@@ -32,8 +25,8 @@ struct Posture {
     float bend, lean, twist, head_turn, head_nod;
 };
 
-Build pick_build(Random& random) {
-    Build b{};
+HumanBuild pick_human_build(Random& random) {
+    HumanBuild b{};
     b.woman = chance(random, 0.5);
     b.girth = pick(random, 0.85f, 1.22f);
     b.shoulders = pick(random, 0.94f, 1.08f) * (b.woman ? 0.9f : 1.04f);
@@ -122,9 +115,9 @@ Posture pick_posture(Random& random) {
     return p;
 }
 
-class Body {
+class HumanBody {
   public:
-    Body(ShapeModel& model, const Build& build, const Posture& posture, Random& random)
+    HumanBody(ShapeModel& model, const HumanBuild& build, const Posture& posture, Random& random)
         : b_(build), p_(posture), random_(random), add_(model) {}
 
     void sculpt() {
@@ -143,7 +136,7 @@ class Body {
 
     void torso(const Frame& pelvis, const Frame& chest) {
         const float g = b_.girth;
-        add_.part(k_torso).blend(0.07f);
+        add_.part(HumanPart::torso).blend(0.07f);
         add_.ellipsoid(pelvis, Vec3(0.158f * b_.hips * g, 0.125f, 0.112f * g));
         add_.ellipsoid(chest.at(Vec3(0, 0.03f, 0.008f * g)),
                        Vec3(0.133f * g * (b_.woman ? 0.93f : 1.0f), 0.16f, 0.1f * g));
@@ -172,7 +165,7 @@ class Body {
             chest.at(Vec3(sx * 0.178f * b_.shoulders, 0.345f, -0.01f),
                      turn_z(sx * p_.arm_out[s]) * turn_x(-p_.arm_forward[s]) * turn_y(-sx * p_.arm_twist[s]));
         const Vec3 elbow(0, -length, 0);
-        add_.part(k_upper_arm).blend(0.035f);
+        add_.part(HumanPart::upper_arm).blend(0.035f);
         add_.limb(shoulder.origin, shoulder * elbow, 0.05f * m, 0.037f * m);
         add_.ellipsoid(shoulder.at(Vec3(sx * 0.008f, -0.035f, 0)), Vec3(0.054f, 0.075f, 0.057f) * m);
         add_.blend(0.02f);
@@ -180,7 +173,7 @@ class Body {
 
         const Frame forearm = shoulder.at(elbow, turn_x(-p_.elbow[s]));
         const Vec3 wrist(0, -0.245f * b_.arms, 0);
-        add_.part(k_lower_arm).blend(0.015f);
+        add_.part(HumanPart::lower_arm).blend(0.015f);
         add_.limb(forearm.origin, forearm * wrist, 0.036f * m, 0.026f);
         add_.ellipsoid(forearm.at(Vec3(0, -0.075f, 0.004f)), Vec3(0.043f, 0.085f, 0.04f) * m);
         hand(forearm.at(wrist, turn_x(-p_.wrist[s]) * turn_y(sx * 80.0f)), sx);
@@ -189,7 +182,7 @@ class Body {
     /// Palm toward +z of its frame, fingers along -y, the thumb to the side of -sx * x.
     void hand(const Frame& wrist, float sx) {
         const float curl = pick(random_, 4, 32), spread = pick(random_, 10, 14);
-        add_.part(k_hand).blend(0.012f);
+        add_.part(HumanPart::hand).blend(0.012f);
         const Vec3 back = wrist.axes.col(2);
         add_.limb(wrist * Vec3(0, -0.01f, 0), wrist * Vec3(0, -0.065f, 0), 0.031f, 0.044f, 0.58f, back);
         for (int i = 0; i < 4; ++i) {
@@ -215,18 +208,18 @@ class Body {
         const Frame hip =
             pelvis.at(Vec3(sx * 0.088f * b_.hips, -0.045f, 0), turn_z(sx * p_.leg_out[s]) * turn_x(-p_.leg_forward[s]));
         const Vec3 knee(0, -thigh_length, 0);
-        add_.part(k_upper_leg).blend(0.03f);
+        add_.part(HumanPart::upper_leg).blend(0.03f);
         add_.limb(hip.origin, hip * knee, 0.088f * g, 0.053f);
         add_.ellipsoid(hip.at(Vec3(0, -0.17f, 0.022f)), Vec3(0.068f * g, 0.15f, 0.066f * m));
 
         const Frame shin = hip.at(knee, turn_x(p_.knee[s]));
         const Vec3 ankle(0, -0.41f * b_.legs, 0);
-        add_.part(k_lower_leg).blend(0.02f);
+        add_.part(HumanPart::lower_leg).blend(0.02f);
         add_.limb(shin.origin, shin * ankle, 0.051f, 0.034f);
         add_.ellipsoid(shin.at(Vec3(0, -0.115f, -0.022f)), Vec3(0.05f, 0.11f, 0.048f) * m);
 
         const Frame foot = shin.at(ankle, turn_x(p_.ankle[s]) * turn_y(sx * 10));
-        add_.part(k_foot).blend(0.02f);
+        add_.part(HumanPart::foot).blend(0.02f);
         const Vec3 up = foot.axes.col(1);
         add_.limb(foot * Vec3(0, -0.01f, 0), foot * Vec3(0, -0.05f, 0.06f), 0.033f, 0.026f);
         add_.limb(foot * Vec3(0, -0.048f, -0.028f), foot * Vec3(0, -0.054f, 0.09f), 0.036f, 0.038f, 0.8f, up);
@@ -237,9 +230,9 @@ class Body {
         const float h = b_.head;
         const Frame base = chest.at(Vec3(0, 0.405f, -0.012f), turn_x(0.4f * p_.head_nod) * turn_y(0.5f * p_.head_turn));
         const Frame skull = base.at(Vec3(0, 0.095f, 0.012f), turn_x(0.6f * p_.head_nod) * turn_y(0.5f * p_.head_turn));
-        add_.part(k_neck).blend(0.03f);
+        add_.part(HumanPart::neck).blend(0.03f);
         add_.limb(base * Vec3(0, -0.02f, 0), skull * Vec3(0, 0.03f, 0), 0.058f * b_.muscle, 0.05f * b_.muscle);
-        add_.part(k_head).blend(0.025f);
+        add_.part(HumanPart::head).blend(0.025f);
         add_.ellipsoid(skull.at(Vec3(0, 0.115f * h, 0)), Vec3(0.078f, 0.1f, 0.095f) * h);
         add_.ellipsoid(skull.at(Vec3(0, 0.06f * h, 0.032f * h)), Vec3(0.056f, 0.072f, 0.058f) * h);
         add_.blend(0.012f);
@@ -270,7 +263,7 @@ class Body {
         }
     }
 
-    const Build& b_;
+    const HumanBuild& b_;
     const Posture& p_;
     Random& random_;
     Sculptor add_;
@@ -281,9 +274,9 @@ class Body {
 ShapeModel sculpt_human(Random& random) {
     ShapeModel model;
     model.detail = 0.0086f;
-    const Build build = pick_build(random);
+    const HumanBuild build = pick_human_build(random);
     const Posture posture = pick_posture(random);
-    Body(model, build, posture, random).sculpt();
+    HumanBody(model, build, posture, random).sculpt();
     return model;
 }
 

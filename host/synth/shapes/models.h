@@ -8,7 +8,7 @@
 
 namespace exemplar {
 
-// One function per kind; part indices are positions in the list of names beside it.
+// One function per kind of shape. Part indices are positions in the list of names above it.
 
 constexpr std::array<std::string_view, 9> k_human_parts{"head", "neck",      "torso",     "upper_arm", "lower_arm",
                                                         "hand", "upper_leg", "lower_leg", "foot"};

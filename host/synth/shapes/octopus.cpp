@@ -6,9 +6,11 @@
 namespace exemplar {
 namespace {
 
-enum Part : std::int32_t { k_head, k_tentacle };
+struct OctopusPart {
+    enum : std::int32_t { head, tentacle };
+};
 
-/// How a tentacle runs: angles in degrees, positions as shares of its length.
+/// The course of a tentacle: angles in degrees, positions as shares of its length.
 struct Sway {
     float azimuth, drift, droop, wave, phase, curl, curl_side;
 };
@@ -33,7 +35,7 @@ std::vector<Vec3> tentacle_path(const Vec3& root, float length, const Sway& sway
 void mantle(Sculptor& add, Random& random) {
     const float width = pick(random, 0.24f, 0.32f), height = pick(random, 0.3f, 0.48f), lean = pick(random, -48, 5);
     const Frame base{Vec3(0, 0.12f, 0), turn_x(lean)};
-    add.part(k_head).blend(0.1f);
+    add.part(OctopusPart::head).blend(0.1f);
     add.ellipsoid({Vec3(0, 0.09f, 0)}, Vec3(0.24f, 0.17f, 0.24f));
     add.ellipsoid(base.at(Vec3(0, 0.6f * height + 0.1f, 0)), Vec3(width, height, width * pick(random, 0.88f, 1.05f)));
     add.limb(base.origin, base * Vec3(0, height, 0), 0.2f, 0.7f * width);
@@ -51,7 +53,7 @@ ShapeModel sculpt_octopus(Random& random) {
     const std::size_t arms = chance(random, 0.8) ? 8 : 6 + random.index(2);
     const float length = pick(random, 0.95f, 1.45f), radius = pick(random, 0.075f, 0.1f);
     const float droop = pick(random, 5, 55), turn = pick(random, 0, 45);
-    add.part(k_tentacle);
+    add.part(OctopusPart::tentacle);
     for (std::size_t i = 0; i < arms; ++i) {
         const float sector = 360 / static_cast<float>(arms);
         Sway sway{};

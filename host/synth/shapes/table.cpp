@@ -7,16 +7,18 @@
 namespace exemplar {
 namespace {
 
-enum Part : std::int32_t { k_top, k_leg };
+struct TablePart {
+    enum : std::int32_t { top, leg };
+};
 
-struct Design {
+struct TableDesign {
     float width, depth, height, thickness;  // width, depth, thickness are half extents
     float power;                            // of the superellipse: 2 is round
     float leg;
 };
 
-Design pick_design(Random& random) {
-    Design d{};
+TableDesign pick_table_design(Random& random) {
+    TableDesign d{};
     d.height = pick(random, 0.55f, 0.85f);
     d.thickness = pick(random, 0.022f, 0.042f);
     d.leg = pick(random, 0.03f, 0.05f);
@@ -32,9 +34,9 @@ Design pick_design(Random& random) {
     return d;
 }
 
-void top(Sculptor& add, const Design& d, Random& random) {
+void top(Sculptor& add, const TableDesign& d, Random& random) {
     const float rounding = pick(random, 0.3f, 0.8f) * d.thickness;
-    add.part(k_top).blend(0.01f);
+    add.part(TablePart::top).blend(0.01f);
     add.add(Prism{superellipse(d.width - rounding, d.depth - rounding, d.power, 48), d.thickness - rounding, rounding},
             {Vec3(0, d.height, 0)});
     if (chance(random, 0.35)) {  // an apron below
@@ -70,14 +72,14 @@ void cabriole_leg(Sculptor& add, const Vec3& from, const Vec3& out, float radius
     add.ball(points.back(), 0.85f * radius);
 }
 
-void corner_legs(Sculptor& add, const Design& d, Random& random) {
+void corner_legs(Sculptor& add, const TableDesign& d, Random& random) {
     const std::size_t style = random.index(5);
     const float inset = d.power < 3 ? 0.6f : 0.86f, splay = pick(random, 0.04f, 0.12f),
                 taper = pick(random, 0.55f, 0.9f), phase = pick(random, 0, 6.28f);
     std::array<Vec3, 4> feet;
     for (std::size_t i = 0; i < 4; ++i) {
         const Vec3 out(i % 2 == 0 ? 1.0f : -1.0f, 0, i < 2 ? 1.0f : -1.0f);
-        // Round ends must not come out at the top.
+        // Round ends must not stick out of the top.
         const float high = d.height + d.thickness - 1.45f * d.leg;
         const Vec3 from(out.x() * inset * d.width, high, out.z() * inset * d.depth);
         Vec3 to(from.x(), 0, from.z());
@@ -108,7 +110,7 @@ void corner_legs(Sculptor& add, const Design& d, Random& random) {
     }
 }
 
-void pedestal(Sculptor& add, const Design& d, Random& random) {
+void pedestal(Sculptor& add, const TableDesign& d, Random& random) {
     const float r = pick(random, 0.045f, 0.08f), reach = pick(random, 0.5f, 0.75f) * d.depth;
     const Vec3 from(0, d.height - 1.25f * r, 0), to(0, 0.05f, 0), under(0, d.height - d.thickness - 0.03f, 0);
     if (chance(random, 0.5)) {
@@ -131,7 +133,7 @@ void pedestal(Sculptor& add, const Design& d, Random& random) {
     }
 }
 
-void trestle(Sculptor& add, const Design& d, Random& random) {
+void trestle(Sculptor& add, const TableDesign& d, Random& random) {
     const float x = pick(random, 0.6f, 0.78f) * d.width, w = d.leg, high = d.height - 0.5f * d.thickness;
     const bool crossed = chance(random, 0.4);
     for (const float side : {1.0f, -1.0f}) {
@@ -154,9 +156,9 @@ ShapeModel sculpt_table(Random& random) {
     ShapeModel model;
     model.detail = 0.019f;
     Sculptor add(model);
-    const Design d = pick_design(random);
+    const TableDesign d = pick_table_design(random);
     top(add, d, random);
-    add.part(k_leg).blend(0.015f);
+    add.part(TablePart::leg).blend(0.015f);
     const double draw = random.uniform();
     if (draw < 0.62) {
         corner_legs(add, d, random);

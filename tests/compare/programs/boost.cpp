@@ -81,13 +81,13 @@ void boost(const char* in, const char* out) {
 
     const Stopwatch training;
     CalibratedStumps classifier;
-    LinearOpinion linear;
-    std::vector<std::uint32_t> unjudged;
+    LinearExpert linear;
+    std::vector<std::uint32_t> stump_only_labels;
     if (options.folds > 1) {
         const BoostingItems items{&rows.features, rows.label, rows.weight, rows.fold};
         FoldBoostingResult found = boost_with_folds(std::span(&items, 1), options, scorer, [] {});
         classifier = std::move(found.classifier);
-        linear = std::move(found.linear), unjudged = std::move(found.of_one_fold);
+        linear = std::move(found.linear), stump_only_labels = std::move(found.single_fold_labels);
         result.add("held_out", {rows.label.size(), options.classes}, found.out_of_fold.front());
     } else {
         classifier = single_classifier(rows, options);
@@ -97,7 +97,7 @@ void boost(const char* in, const char* out) {
     const Stopwatch scoring;
     std::vector<float> probability(test.rows * options.classes);
     scorer.probabilities(classifier.stumps, test, classifier.link, classifier.scale, probability);
-    pool(linear, test, unjudged, probability);
+    pool(linear, test, stump_only_labels, probability);
     result.metadata["score_seconds"] = fmt::format("{:.6f}", scoring.cpu());
     result.add("probability", {test.rows, options.classes}, probability);
     write_safetensors(out, result);

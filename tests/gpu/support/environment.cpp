@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-namespace exemplar::testing {
+namespace exemplar::test_support {
 namespace {
 
 std::unique_ptr<Device> device;
@@ -46,4 +46,4 @@ Device& shared_device() {
     return *device;
 }
 
-}  // namespace exemplar::testing
+}  // namespace exemplar::test_support

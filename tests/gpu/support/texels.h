@@ -8,7 +8,7 @@
 #include "gpu/imaging/canvas.h"
 #include "tests/gpu/support/environment.h"
 
-namespace exemplar::testing {
+namespace exemplar::test_support {
 
 /// The pixels of a canvas of 8 bits a channel that a picture was drawn on, red lowest.
 inline std::vector<std::uint32_t> texels_of(const Canvas& canvas, Stream& stream) {
@@ -25,10 +25,10 @@ inline std::vector<std::uint32_t> drawn_texels(const Canvas& canvas, const std::
     Stream stream(shared_device());
     canvas.begin(stream);
     stream.render(Pass("clear", canvas.cleared(clear)));
-    canvas.go_on(stream);
+    canvas.separate_passes(stream);
     record(stream);
     canvas.end(stream);
     return texels_of(canvas, stream);
 }
 
-}  // namespace exemplar::testing
+}  // namespace exemplar::test_support

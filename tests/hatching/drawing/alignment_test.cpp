@@ -19,8 +19,8 @@ namespace {
 
 using namespace test;
 
-constexpr int k_width = 400, k_height = 300;
-const Vec2 k_center(205, 155);
+constexpr int k_scan_width = 400, k_scan_height = 300;
+const Vec2 k_scan_center(205, 155);
 using Shape = std::function<bool(const Vec2&)>;  // whether a place relative to the center is inside
 
 bool cow(const Vec2& v) {
@@ -39,11 +39,11 @@ bool star(const Vec2& v) {
 }
 
 Image mask_of(const Shape& shape) {
-    Image mask(k_width, k_height, 1);
-    for (int y = 0; y < k_height; ++y)
-        for (int x = 0; x < k_width; ++x)
+    Image mask(k_scan_width, k_scan_height, 1);
+    for (int y = 0; y < k_scan_height; ++y)
+        for (int x = 0; x < k_scan_width; ++x)
             mask.pixel(x, y)[0] =
-                shape(Vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f) - k_center) ? 255 : 0;
+                shape(Vec2(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f) - k_scan_center) ? 255 : 0;
     return mask;
 }
 
@@ -56,7 +56,7 @@ std::vector<InkStroke> hatches(const Shape& shape, float angle, float spacing, f
         for (float t = -250; t <= 250; t += 0.5f) {
             const Vec2 at = t * along + static_cast<float>(k) * spacing * across;
             const bool on = shape(at) && at.dot(light) > lit;
-            if (on) stroke.points.push_back(k_center + at);
+            if (on) stroke.points.push_back(k_scan_center + at);
             if (!on || t == 250) {
                 if (stroke.points.size() > 12)
                     strokes.push_back({{stroke.points.front(), stroke.points.back()}, 1.6f, 0.9f});
@@ -93,7 +93,7 @@ double error_of(const Similarity& to_view, const Similarity& to_paper, const Ima
 /// The view's center goes to that of a sheet of the given size.
 Similarity laid_down(double scale, double rotation, int width, int height) {
     const Similarity turned(scale, rotation);
-    const Vec2 center = turned.apply({0.5f * k_width, 0.5f * k_height});
+    const Vec2 center = turned.apply({0.5f * k_scan_width, 0.5f * k_scan_height});
     return turned.moved(0.5 * width - static_cast<double>(center.x()), 0.5 * height - static_cast<double>(center.y()));
 }
 
@@ -123,7 +123,7 @@ TEST_P(Alignment, FindsWhereTheDrawingLies) {
     EXPECT_FALSE(alignment.same_frame);
 }
 
-const auto k_name_of = [](const auto& alignment) { return alignment.param.name; };
+const auto k_name_of_scan = [](const auto& alignment) { return alignment.param.name; };
 INSTANTIATE_TEST_SUITE_P(Scans, Alignment,
                          testing::Values(AlignmentCase{"cow_tilted", cow, -500, 1.6, 7.3, 820, 640},
                                          AlignmentCase{"cow_half_blank", cow, -5, 2.3, -4.1, 1100, 900},
@@ -132,12 +132,12 @@ INSTANTIATE_TEST_SUITE_P(Scans, Alignment,
                                          AlignmentCase{"blob_tilted", blob, -500, 1.4, -9.2, 700, 600},
                                          AlignmentCase{"blob_part_blank", blob, -35, 1.9, 3, 900, 800},
                                          AlignmentCase{"star_part_blank", star, -35, 1.2, -5, 700, 500}),
-                         k_name_of);
+                         k_name_of_scan);
 
 TEST(SameFrame, IsKeptAsItIs) {
     const Image mask = mask_of(blob);
     const Similarity twice(2, 0);
-    const Image drawing = scan_of(hatches(blob, 1.1f, 8, -20), twice, 2 * k_width, 2 * k_height);
+    const Image drawing = scan_of(hatches(blob, 1.1f, 8, -20), twice, 2 * k_scan_width, 2 * k_scan_height);
     const DrawingAlignment alignment = align_drawing(drawing_darkness(drawing), mask);
     EXPECT_TRUE(alignment.same_frame);
     EXPECT_EQ(error_of(alignment.to_view, twice, mask), 0);
@@ -145,8 +145,8 @@ TEST(SameFrame, IsKeptAsItIs) {
 
 TEST(SameFrame, IsNotForcedUponAScanOfTheSameShape) {
     const Image mask = mask_of(cow);
-    const Similarity to_paper = laid_down(0.8, 0.1, k_width, k_height).moved(20, -12);
-    const Image scan = scan_of(hatches(cow, 0.6f, 8, -500), to_paper, k_width, k_height);
+    const Similarity to_paper = laid_down(0.8, 0.1, k_scan_width, k_scan_height).moved(20, -12);
+    const Image scan = scan_of(hatches(cow, 0.6f, 8, -500), to_paper, k_scan_width, k_scan_height);
     const DrawingAlignment alignment = align_drawing(drawing_darkness(scan), mask);
     EXPECT_FALSE(alignment.same_frame);
     EXPECT_LE(error_of(alignment.to_view, to_paper, mask), 1);
@@ -171,10 +171,10 @@ TEST(AlignDrawing, RefusesWhatCannotBeAligned) {
     EXPECT_THROW(align_drawing(FloatImage(1, 1, 1, 1.0f), mask), DataError);
     EXPECT_THROW(align_drawing(ink_drawing(std::vector<InkStroke>{{{{50, 50}, {51, 50}}, 4, 1}}, 100, 100), mask),
                  DataError);  // a dot
-    const FloatImage drawing = ink_drawing(hatches(blob, 0.6f, 8, -500), k_width, k_height);
-    EXPECT_THROW(align_drawing(drawing, Image(k_width, k_height, 1)), UsageError);  // no object
+    const FloatImage drawing = ink_drawing(hatches(blob, 0.6f, 8, -500), k_scan_width, k_scan_height);
+    EXPECT_THROW(align_drawing(drawing, Image(k_scan_width, k_scan_height, 1)), UsageError);  // no object
     EXPECT_THROW(align_drawing(drawing, Image()), UsageError);
-    EXPECT_THROW(align_drawing(drawing, Image(k_width, k_height, 3, 255)), UsageError);
+    EXPECT_THROW(align_drawing(drawing, Image(k_scan_width, k_scan_height, 3, 255)), UsageError);
     EXPECT_THROW(align_drawing(FloatImage(), mask), UsageError);
     EXPECT_THROW(align_drawing(FloatImage(0, 0, 1), mask), UsageError);
 }
@@ -204,15 +204,15 @@ TEST(Similarity, IsUndoneByItsInverse) {
 }
 
 TEST(WarpDrawing, KeepsInkWhenItShrinks) {
-    const FloatImage drawing = ink_drawing(hatches(blob, 0.6f, 9, -500), k_width, k_height);
+    const FloatImage drawing = ink_drawing(hatches(blob, 0.6f, 9, -500), k_scan_width, k_scan_height);
     const auto ink = [](const FloatImage& image) {
         double sum = 0;
         for (const float value : image.data) sum += static_cast<double>(value);
         return sum;
     };
-    EXPECT_EQ(warp_drawing(drawing, {}, k_width, k_height).data, drawing.data);
+    EXPECT_EQ(warp_drawing(drawing, {}, k_scan_width, k_scan_height).data, drawing.data);
     for (const double factor : {0.9, 0.5, 0.37, 0.11}) {
-        const FloatImage small = warp_drawing(drawing, Similarity(factor, 0.3, 60, 20), k_width, k_height);
+        const FloatImage small = warp_drawing(drawing, Similarity(factor, 0.3, 60, 20), k_scan_width, k_scan_height);
         EXPECT_NEAR(ink(small), factor * factor * ink(drawing), 0.01 * factor * factor * ink(drawing)) << factor;
     }
     const FloatImage whole(8, 8, 1, 1.0f);

@@ -19,7 +19,7 @@
 namespace exemplar {
 namespace {
 
-constexpr int k_width = 240, k_height = 200;
+constexpr int k_view_width = 240, k_view_height = 200;
 
 struct HostTools {
     CpuGBufferRenderer gbuffers;
@@ -30,12 +30,12 @@ struct HostTools {
 
 /// Seen without perspective, so that analytic truths are simple.
 HatchingView parallel_view(const TriangleMesh& mesh, const Vec3& direction) {
-    return {fit_camera(mesh, direction, 1.2f, {.vertical_fov = 0}), Vec3(1, 2, 2) / 3, k_width, k_height};
+    return {fit_camera(mesh, direction, 1.2f, {.vertical_fov = 0}), Vec3(1, 2, 2) / 3, k_view_width, k_view_height};
 }
 
 Vec2 center_of(std::uint32_t pixel) {
-    const std::uint32_t row = pixel / k_width;
-    return {static_cast<float>(pixel % k_width) + 0.5f, static_cast<float>(row) + 0.5f};
+    const std::uint32_t row = pixel / k_view_width;
+    return {static_cast<float>(pixel % k_view_width) + 0.5f, static_cast<float>(row) + 0.5f};
 }
 
 std::uint32_t number_of(const std::string& name) {
@@ -45,7 +45,7 @@ std::uint32_t number_of(const std::string& name) {
     return static_cast<std::uint32_t>(found - names.begin());
 }
 
-std::size_t field_of(const std::string& name) {
+std::size_t field_of_view(const std::string& name) {
     const auto& names = orientation_feature_names();
     const auto found = std::ranges::find(names, name);
     if (found == names.end()) ADD_FAILURE() << "no field is called " << name;
@@ -101,8 +101,9 @@ TEST(PixelFeatures, OfABallAreThoseOfABall) {
     for (std::size_t i = 0; i < features.size(); ++i) {
         const std::uint32_t pixel = features.pixels().pixel[i];
         const Vec2 at = center_of(pixel);
-        const float half = 0.5f * k_height / 2.1f;  // pixels of a unit, with a margin of a twentieth
-        const Vec3 normal(0.5f * (at.x() - 0.5f * k_width) / half, -0.5f * (at.y() - 0.5f * k_height) / half, 0);
+        const float half = 0.5f * k_view_height / 2.1f;  // pixels of a unit, with a margin of a twentieth
+        const Vec3 normal(0.5f * (at.x() - 0.5f * k_view_width) / half, -0.5f * (at.y() - 0.5f * k_view_height) / half,
+                          0);
         const float off = normal.norm();
         // Near the border pictures are blurred with less than a Gaussian around.
         if (off > 0.85f) continue;
@@ -126,13 +127,13 @@ TEST(PixelFeatures, DirectionsOnABallRunOutwardsAndAround) {
     std::size_t inside = 0;
     for (std::size_t i = 0; i < features.size(); ++i) {
         const std::uint32_t pixel = features.pixels().pixel[i];
-        const Vec2 way = center_of(pixel) - 0.5f * Vec2(k_width, k_height);
+        const Vec2 way = center_of(pixel) - 0.5f * Vec2(k_view_width, k_view_height);
         const float off = way.norm();
         if (off < 20 || off > 75) continue;
         ++inside;
         const DoubledAngle outwards = doubled_angle(std::atan2(way.y(), way.x()));
-        EXPECT_LT(squared_distance(fields.field(field_of("grad V.N,3"))[i], outwards), 0.1f);
-        EXPECT_LT(squared_distance(fields.field(field_of("VxN"))[i], -1.0f * outwards), 0.1f);
+        EXPECT_LT(squared_distance(fields.field(field_of_view("grad V.N,3"))[i], outwards), 0.1f);
+        EXPECT_LT(squared_distance(fields.field(field_of_view("VxN"))[i], -1.0f * outwards), 0.1f);
     }
     EXPECT_GT(inside, 10000u);
 }
@@ -181,13 +182,13 @@ TEST(PixelFeatures, FlatPicturesHaveTheDirectionsAround) {
     const HatchingView at_corner = parallel_view(box.mesh, Vec3(1, 1, 1));
     PixelFeatures corner(box, at_corner, host.tools);
     OrientationFields fields = corner.orientations({});
-    for (const DoubledAngle& v : fields.field(field_of("grad V.N,1"))) ASSERT_NE(v, DoubledAngle{});
+    for (const DoubledAngle& v : fields.field(field_of_view("grad V.N,1"))) ASSERT_NE(v, DoubledAngle{});
     // A picture that is flat all over has no direction anywhere.
     const HatchingSurface sheet = measure_surface(shapes::grid(8, 8, 1));
     const HatchingView from_above = parallel_view(sheet.mesh, sheet.normals[0]);
     PixelFeatures flat(sheet, from_above, host.tools);
     OrientationFields none = flat.orientations({});
-    for (const DoubledAngle& v : none.field(field_of("grad V.N,1"))) ASSERT_EQ(v, DoubledAngle{});
+    for (const DoubledAngle& v : none.field(field_of_view("grad V.N,1"))) ASSERT_EQ(v, DoubledAngle{});
 }
 
 TEST(PixelFeatures, DoNotDependOnTheSizeOfTheMeshNorItsPlace) {

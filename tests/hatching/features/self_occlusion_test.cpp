@@ -12,8 +12,6 @@
 namespace exemplar {
 namespace {
 
-constexpr double k_pi = std::numbers::pi;
-
 /// The integral over the sphere of products of all harmonics with each other: exact in the angle around, by Simpson's
 /// rule in z.
 std::vector<double> products_of_harmonics() {
@@ -23,12 +21,13 @@ std::vector<double> products_of_harmonics() {
         const double z = -1 + 2.0 * i / k_steps, radius = std::sqrt(std::max(0.0, 1 - z * z));
         const double weight = (i == 0 || i == k_steps ? 1 : i % 2 ? 4 : 2) * 2.0 / (3 * k_steps);
         for (int j = 0; j < k_around; ++j) {
-            const double angle = 2 * k_pi * (j + 0.3) / k_around;
+            const double angle = 2 * std::numbers::pi * (j + 0.3) / k_around;
             const Harmonics y =
                 spherical_harmonics(shapes::detail::vec3(radius * std::cos(angle), radius * std::sin(angle), z));
             for (std::size_t a = 0; a < k_harmonics; ++a)
                 for (std::size_t b = 0; b < k_harmonics; ++b)
-                    sums[a * k_harmonics + b] += weight * 2 * k_pi / k_around * static_cast<double>(y[a] * y[b]);
+                    sums[a * k_harmonics + b] +=
+                        weight * 2 * std::numbers::pi / k_around * static_cast<double>(y[a] * y[b]);
         }
     }
     return sums;
@@ -49,7 +48,7 @@ TEST(SphericalHarmonics, BandsHaveNoDirection) {
         for (std::size_t l = 0, k = 0; l < k_harmonic_bands; ++l) {
             double sum = 0;
             for (; k < (l + 1) * (l + 1); ++k) sum += static_cast<double>(y[k] * y[k]);
-            EXPECT_NEAR(sum, (2.0 * static_cast<double>(l) + 1) / (4 * k_pi), 1e-5);
+            EXPECT_NEAR(sum, (2.0 * static_cast<double>(l) + 1) / (4 * std::numbers::pi), 1e-5);
         }
     }
 }
@@ -71,12 +70,13 @@ TEST(SphericalHarmonics, DirectionsAreSpreadEvenly) {
 /// How bright harmonics make an open surface that a light meets at an angle of this cosine: the zonal harmonics of a
 /// clamped cosine, windowed as the light is.
 double brightness(double cosine) {
-    const double x = cosine, cosines[] = {k_pi, 2 * k_pi / 3, k_pi / 4, 0, -k_pi / 24};
+    const double x = cosine, cosines[] = {std::numbers::pi, 2 * std::numbers::pi / 3, std::numbers::pi / 4, 0,
+                                          -std::numbers::pi / 24};
     const double legendre[] = {1, x, 1.5 * x * x - 0.5, 0, (35 * x * x * x * x - 30 * x * x + 3) / 8};
     double sum = 0, straight = 0;
     for (std::size_t l = 0; l < 5; ++l) {
-        const double part =
-            0.5 * (1 + std::cos(k_pi * static_cast<double>(l) / 5)) * cosines[l] * (2.0 * static_cast<double>(l) + 1);
+        const double part = 0.5 * (1 + std::cos(std::numbers::pi * static_cast<double>(l) / 5)) * cosines[l] *
+                            (2.0 * static_cast<double>(l) + 1);
         sum += part * legendre[l];
         straight += part;
     }

@@ -38,8 +38,8 @@ TEST(PropertyPicture, GrowsDarkerWithTheValue) {
 }
 
 TEST(OrientationPicture, HasAHueForEachDirectionWithoutItsSign) {
-    constexpr float k_pi = std::numbers::pi_v<float>;
-    const std::vector<float> angles{0, 0.5f * k_pi, 0.25f * k_pi, 0.9999f * k_pi, 1};
+    constexpr float k_half_turn = std::numbers::pi_v<float>;
+    const std::vector<float> angles{0, 0.5f * k_half_turn, 0.25f * k_half_turn, 0.9999f * k_half_turn, 1};
     const Image image = orientation_picture(angles, std::vector<std::uint8_t>{1, 1, 1, 1, 0}, 5, 1);
     EXPECT_NE(color_at(image, 0), color_at(image, 1));
     EXPECT_NE(color_at(image, 0), color_at(image, 2));

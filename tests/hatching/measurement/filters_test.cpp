@@ -47,7 +47,7 @@ std::array<int, 2> pieces_and_holes(const PixelMask& mask) {
                 const Pixel at = stack.back();
                 stack.pop_back();
                 for (std::size_t k = 0; k < 8; k += set ? 1 : 2) {
-                    const int px = at[0] + k_ring[k][0], py = at[1] + k_ring[k][1];
+                    const int px = at[0] + k_neighbor_offsets[k][0], py = at[1] + k_neighbor_offsets[k][1];
                     if (px < 0 || py < 0 || px >= framed.width || py >= framed.height || seen.pixel(px, py)[0] ||
                         (framed.pixel(px, py)[0] != 0) != set)
                         continue;

@@ -55,18 +55,19 @@ TEST(OcclusionBarriers, SomethingEndsAtNothing) {
 
 /// A ball before a wall: the barrier is a closed line around the ball and nowhere else.
 TEST(OcclusionBarriers, ABallIsDividedFromTheWallBehindIt) {
-    constexpr int k_size = 101;
+    constexpr int k_barrier_image = 101;
     constexpr float k_radius = 40;
     const auto is_ball = [](float x, float y) { return std::hypot(x - 50, y - 50) < k_radius; };
-    const auto depth = depths(k_size, k_size, [&](float x, float y) {
+    const auto depth = depths(k_barrier_image, k_barrier_image, [&](float x, float y) {
         return is_ball(x, y) ? 100 - std::sqrt(k_radius * k_radius - (x - 50) * (x - 50) - (y - 50) * (y - 50))
                              : 130 + 0.1f * x;
     });
-    const auto barriers = occlusion_barriers(depth, k_size, k_size);
-    for (int y = 0; y + 1 < k_size; ++y)
-        for (int x = 0; x + 1 < k_size; ++x) {
+    const auto barriers = occlusion_barriers(depth, k_barrier_image, k_barrier_image);
+    for (int y = 0; y + 1 < k_barrier_image; ++y)
+        for (int x = 0; x + 1 < k_barrier_image; ++x) {
             const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
-            const std::uint8_t bits = barriers[static_cast<std::size_t>(y) * k_size + static_cast<std::size_t>(x)];
+            const std::uint8_t bits =
+                barriers[static_cast<std::size_t>(y) * k_barrier_image + static_cast<std::size_t>(x)];
             EXPECT_EQ((bits & k_barrier_right) != 0, is_ball(fx, fy) != is_ball(fx + 1, fy)) << x << " " << y;
             EXPECT_EQ((bits & k_barrier_below) != 0, is_ball(fx, fy) != is_ball(fx, fy + 1)) << x << " " << y;
         }

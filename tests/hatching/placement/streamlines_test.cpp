@@ -18,7 +18,7 @@
 namespace exemplar {
 namespace {
 
-using namespace testing;
+using namespace test_support;
 
 std::vector<float> lengths_of(const std::vector<HatchStroke>& strokes) {
     std::vector<float> lengths;
@@ -37,7 +37,7 @@ TEST(Streamlines, FillAParallelFieldEvenly) {
         const SpacingMeasure measure = measure_spacing(strokes, fields);
         EXPECT_GT(measure.gaps, 10000u);
         EXPECT_LT(measure.median_error, 0.02);
-        EXPECT_GE(measure.least_ratio, options.test_distance - 0.005);
+        EXPECT_GE(measure.min_ratio, options.test_distance - 0.005);
         EXPECT_LT(empty_share(strokes, fields, 0, 1.0f), 0.002);
         const float tangent = std::tan(orientation);
         for (const HatchStroke& stroke : strokes) {
@@ -261,7 +261,7 @@ TEST(Streamlines, TakeWhatIsHardlyThere) {
     // Denser than pixels: as dense as strokes get.
     EXPECT_EQ(placer.place(even_fields(30, 30, 0.3f, 0.2f, 10)), placer.place(even_fields(30, 30, 0.3f, 1, 10)));
     const HatchingFields fine = even_fields(60, 60, 0.3f, 1.6f, 10);
-    EXPECT_GE(measure_spacing(placer.place(fine), fine).least_ratio, 0.65);
+    EXPECT_GE(measure_spacing(placer.place(fine), fine).min_ratio, 0.65);
     // Two pixels of strokes that are to have no length.
     HatchingFields two = even_fields(40, 30, 0, 6, 0);
     for_pixels(two, [&](std::size_t i, float x, float y) {
@@ -310,11 +310,11 @@ TEST(Streamlines, RefuseOptionsOutOfRange) {
     };
     constexpr float k_nan = std::numeric_limits<float>::quiet_NaN();
     for (const float value : {0.0f, 1.0f, k_nan}) refused({.test_distance = value});
-    for (const float value : {-0.1f, 1.1f, k_nan}) refused({.least_length = value});
+    for (const float value : {-0.1f, 1.1f, k_nan}) refused({.min_length = value});
     for (const float value : {-0.1f, 0.6f, k_nan}) refused({.length_jitter = value});
-    for (const float value : {0.0f, 2.0f, k_nan}) refused({.sharpest_turn = value});
+    for (const float value : {0.0f, 2.0f, k_nan}) refused({.max_turn = value});
     for (const float value : {-0.1f, k_nan}) refused({.length_hysteresis = value});
-    for (const float value : {0.0f, 2.0f, k_nan}) refused({.most_deviation = value});
+    for (const float value : {0.0f, 2.0f, k_nan}) refused({.max_deviation = value});
 }
 
 }  // namespace

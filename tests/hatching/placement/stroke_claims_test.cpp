@@ -11,7 +11,7 @@
 namespace exemplar {
 namespace {
 
-using namespace testing;
+using namespace test_support;
 
 /// Claims are counted down round by round, and begin anew when there are none left.
 TEST(StrokeClaims, GoToTheLeastOfTheirRoundHoweverManyThereWere) {

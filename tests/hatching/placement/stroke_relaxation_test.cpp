@@ -16,7 +16,7 @@
 namespace exemplar {
 namespace {
 
-using namespace testing;
+using namespace test_support;
 
 /// Strokes from left to right at some heights of a picture.
 std::vector<HatchStroke> rows(const std::vector<float>& heights, float from = 10, float to = 90) {
@@ -48,7 +48,8 @@ TEST(StrokeGaps, AreThoseToTheNextStrokes) {
         EXPECT_NEAR(beside.ratio[1 - down], 1, 1e-5);
     }
     // Over three spacings away there is nothing.
-    for (const auto& beside : gaps.beside(3)) EXPECT_EQ(std::ranges::count(beside.ratio, StrokeGaps::k_none), 2);
+    for (const auto& beside : gaps.beside(3))
+        EXPECT_EQ(std::ranges::count(beside.ratio, StrokeGaps::k_invalid_index), 2);
     EXPECT_FLOAT_EQ(gaps.least(0), 1);
     const auto near = rows({20, 23});
     EXPECT_NEAR(StrokeGaps(near, fields).least(1), 0.5, 1e-5);
@@ -63,7 +64,7 @@ TEST(StrokeGaps, DoNotLookAcrossWhatIsEmptyOrOfAnotherLayer) {
     const StrokeGaps gaps(strokes, fields);
     for (std::uint32_t i = 0; i < 3; ++i)
         for (const auto& beside : gaps.beside(i))
-            EXPECT_EQ(std::ranges::count(beside.ratio, StrokeGaps::k_none), 2) << i;
+            EXPECT_EQ(std::ranges::count(beside.ratio, StrokeGaps::k_invalid_index), 2) << i;
 }
 
 TEST(StrokeGaps, RefuseLayersThatAreNot) {
@@ -140,7 +141,7 @@ TEST_P(PlaceEvenly, SpacesStrokesBetterAndKeepsAllElse) {
     const SpacingMeasure before = measure_spacing(placed, fields), after = measure_spacing(even, fields);
     EXPECT_LT(after.median_error, 0.85 * before.median_error);
     EXPECT_GT(after.gaps, 0.9 * static_cast<double>(before.gaps));
-    EXPECT_GE(after.least_ratio, options.test_distance - 0.03);
+    EXPECT_GE(after.min_ratio, options.test_distance - 0.03);
     for (const HatchStroke& stroke : even)
         for (const Vec2& at : stroke.points)
             ASSERT_GT(fields.level[fields.index(static_cast<int>(at.x()), static_cast<int>(at.y()))], stroke.layer);

@@ -19,7 +19,7 @@
 namespace exemplar {
 namespace {
 
-using namespace testing;
+using namespace test_support;
 
 HatchStroke line(const Vec2& from, const Vec2& to, float width, float darkness = 1, std::size_t layer = 0) {
     HatchStroke stroke{.layer = layer, .points = {}, .widths = {}, .darkness = darkness};
@@ -35,12 +35,12 @@ double sum(const std::vector<float>& values) {
 }
 
 TEST(Ink, OfAStrokeIsItsArea) {
-    constexpr double k_pi = std::numbers::pi;
+    constexpr double k_half_turn = std::numbers::pi;
     for (const float width : {0.4f, 1.0f, 1.1f, 3.7f})
         for (const float angle : {0.0f, 0.5f, 1.5707963f}) {
             const Vec2 half = 40 * Vec2(std::cos(angle), std::sin(angle)), middle(50.3f, 49.8f);
-            const auto ink = drawn_ink(std::vector{line(middle - half, middle + half, width, 0.5f)}, 100, 100);
-            const double w = static_cast<double>(width), area = 80 * w + k_pi * w * w / 4;
+            const auto ink = render_ink(std::vector{line(middle - half, middle + half, width, 0.5f)}, 100, 100);
+            const double w = static_cast<double>(width), area = 80 * w + k_half_turn * w * w / 4;
             // Sixteen places of a pixel: along an axis they are a sixteenth of a pixel apart.
             EXPECT_NEAR(sum(ink), 0.5 * area, 0.5 * (0.005 * area + 80.0 / 16)) << width << " " << angle;
         }
@@ -48,7 +48,7 @@ TEST(Ink, OfAStrokeIsItsArea) {
 
 TEST(Ink, DarkensWhereStrokesCrossButNotWhereOneDoes) {
     const std::vector cross{line({2, 10.5f}, {18, 10.5f}, 6, 0.5f), line({10.5f, 2}, {10.5f, 18}, 6, 0.4f)};
-    const auto ink = drawn_ink(cross, 21, 21);
+    const auto ink = render_ink(cross, 21, 21);
     EXPECT_FLOAT_EQ(ink[10 * 21 + 10], 1 - 0.5f * 0.6f);
     EXPECT_FLOAT_EQ(ink[10 * 21 + 4], 0.5f);
     EXPECT_FLOAT_EQ(ink[4 * 21 + 10], 0.4f);
@@ -56,21 +56,21 @@ TEST(Ink, DarkensWhereStrokesCrossButNotWhereOneDoes) {
     HatchStroke folded = line({2, 10.5f}, {18, 10.5f}, 6, 0.5f);
     folded.points.insert(folded.points.end(), folded.points.rbegin(), folded.points.rend());
     folded.widths.assign(folded.points.size(), 6.0f);
-    EXPECT_FLOAT_EQ(drawn_ink(std::vector{folded}, 21, 21)[10 * 21 + 10], 0.5f);
+    EXPECT_FLOAT_EQ(render_ink(std::vector{folded}, 21, 21)[10 * 21 + 10], 0.5f);
 }
 
 TEST(Ink, MayLeaveThePicture) {
-    const auto ink = drawn_ink(std::vector{line({-50, 5.5f}, {80, 5.5f}, 3)}, 20, 10);
+    const auto ink = render_ink(std::vector{line({-50, 5.5f}, {80, 5.5f}, 3)}, 20, 10);
     EXPECT_FLOAT_EQ(ink[5 * 20], 1);
     EXPECT_FLOAT_EQ(ink[5 * 20 + 19], 1);
     EXPECT_FLOAT_EQ(ink[0], 0);
-    EXPECT_TRUE(drawn_ink(std::vector{line({0, 0}, {1, 1}, 1)}, 0, 0).empty());
+    EXPECT_TRUE(render_ink(std::vector{line({0, 0}, {1, 1}, 1)}, 0, 0).empty());
     HatchStroke bad = line({0, 0}, {9, 1}, 1);
     bad.widths.pop_back();
-    EXPECT_THROW(drawn_ink(std::vector{bad}, 20, 10), UsageError);
+    EXPECT_THROW(render_ink(std::vector{bad}, 20, 10), UsageError);
     bad = line({0, 0}, {9, 1}, 1);
     bad.points.back().y() = std::numeric_limits<float>::infinity();
-    EXPECT_THROW(drawn_ink(std::vector{bad}, 20, 10), UsageError);
+    EXPECT_THROW(render_ink(std::vector{bad}, 20, 10), UsageError);
 }
 
 TEST(Ink, MeansOverWindowsAreMeans) {
@@ -103,7 +103,7 @@ TEST(StrokeStatistics, MeasureLinesAsFarAsTheyAre) {
         const double ratio = static_cast<double>(apart) / 6;
         EXPECT_NEAR(measure.mean_ratio, ratio, 1e-4);
         EXPECT_NEAR(measure.median_error, std::abs(ratio - 1), 1e-4);
-        EXPECT_NEAR(measure.least_ratio, std::min(ratio, 1.0), 1e-4);
+        EXPECT_NEAR(measure.min_ratio, std::min(ratio, 1.0), 1e-4);
         EXPECT_EQ(measure.gaps, 2 * (strokes.size() - 1) * strokes[0].points.size());
     }
 }
@@ -163,8 +163,8 @@ TEST_P(ToneMatching, BringsDrawingsToTheirTone) {
         EXPECT_EQ(strokes[i].points, before[i].points);
         for (std::size_t j = 0; j < strokes[i].widths.size(); ++j) {
             const float factor = strokes[i].widths[j] / before[i].widths[j];
-            EXPECT_GE(factor, k_least_width_factor - 1e-5f);
-            EXPECT_LE(factor, k_most_width_factor + 1e-5f);
+            EXPECT_GE(factor, k_min_width_factor - 1e-5f);
+            EXPECT_LE(factor, k_max_width_factor + 1e-5f);
             const float last = j > 0 ? strokes[i].widths[j - 1] / before[i].widths[j - 1] : factor;
             EXPECT_LT(std::abs(factor - last), 0.3f);
         }
@@ -174,7 +174,7 @@ TEST_P(ToneMatching, BringsDrawingsToTheirTone) {
     match_tone(again, fields);
     for (std::size_t i = 0; i < strokes.size(); ++i)
         for (std::size_t j = 0; j < strokes[i].widths.size(); ++j)
-            EXPECT_LE(again[i].widths[j], (k_most_width_factor + 1e-4f) * before[i].widths[j]);
+            EXPECT_LE(again[i].widths[j], (k_max_width_factor + 1e-4f) * before[i].widths[j]);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ToneMatching, ::testing::Range(0, 4));

@@ -16,9 +16,9 @@
 #include "host/core/files.h"
 #include "host/core/random.h"
 #include "host/data/safetensors.h"
-#include "host/hatching/style/pixel_classifier.h"
 #include "host/hatching/features/pixel_features.h"
 #include "host/hatching/features/powers.h"
+#include "host/hatching/style/pixel_classifier.h"
 #include "host/hatching/style/style_prediction.h"
 
 namespace exemplar {

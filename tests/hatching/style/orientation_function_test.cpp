@@ -13,8 +13,6 @@
 namespace exemplar {
 namespace {
 
-constexpr float k_pi = std::numbers::pi_v<float>;
-
 /// Fields that know nothing of each other, one in twenty undefined.
 OrientationFields random_fields(std::size_t rows, std::uint64_t seed) {
     Random random(seed);
@@ -45,8 +43,8 @@ struct Problem {
 };
 
 /// Degrees between a function and what it was to learn, on average.
-double mean_error(const OrientationFunction& learned, const OrientationFunction& truth,
-                  const OrientationFields& fields) {
+double mean_function_error(const OrientationFunction& learned, const OrientationFunction& truth,
+                           const OrientationFields& fields) {
     double sum = 0, count = 0;
     for (std::size_t i = 0; i < fields.rows; ++i) {
         const DoubledAngle expected = truth.evaluate(fields, i), actual = learned.evaluate(fields, i);
@@ -61,8 +59,10 @@ double mean_error(const OrientationFunction& learned, const OrientationFunction&
 TEST(DoubledAngle, IsOfDirectionsWithoutSign) {
     for (const float angle : {0.0f, 0.3f, 1.5f, 2.0f, 3.1f}) {
         EXPECT_NEAR(angle_of(doubled_angle(angle)), angle, 1e-6f);
-        EXPECT_NEAR(angle_of(doubled_angle(angle + k_pi)), angle, 1e-5f);
-        EXPECT_LT(squared_distance(doubled_angle(angle + 0.5f * k_pi), -1.0f * doubled_angle(angle)), 1e-10f);
+        EXPECT_NEAR(angle_of(doubled_angle(angle + std::numbers::pi_v<float>)), angle, 1e-5f);
+        EXPECT_LT(
+            squared_distance(doubled_angle(angle + 0.5f * std::numbers::pi_v<float>), -1.0f * doubled_angle(angle)),
+            1e-10f);
     }
     EXPECT_EQ(normalized({1e-7f, 0}), DoubledAngle{});
     EXPECT_LT(squared_distance(normalized({0, -4}), {0, -1}), 1e-12f);
@@ -94,7 +94,7 @@ TEST(LearnedOrientation, FindsAFieldTurnedBy90Degrees) {
     const Problem problem(truth, 0.05);
     const LearnedOrientation learned = problem.learn();
     EXPECT_EQ(learned.function.terms.size(), 1U);
-    EXPECT_LT(mean_error(learned.function, truth, problem.fields), 0.01);
+    EXPECT_LT(mean_function_error(learned.function, truth, problem.fields), 0.01);
 }
 
 // Weights up to a common factor, within 3%: 1500 items with 3 degrees of noise.
@@ -109,13 +109,13 @@ TEST(LearnedOrientation, FindsABlendAndItsWeights) {
         weights[term.feature == 20] = term.weight;
     }
     EXPECT_NEAR(weights[0] / weights[1], 1.5f, 0.045f);
-    EXPECT_LT(mean_error(learned.function, truth, problem.fields), 1);
+    EXPECT_LT(mean_function_error(learned.function, truth, problem.fields), 1);
 }
 
 TEST(LearnedOrientation, FindsABlendOfAFieldAndOneThatIsTurned) {
     const OrientationFunction truth{{{3, 0.7f}, {20 + k_orientation_fields, 0.3f}}};
     const Problem problem(truth, 0.03);
-    EXPECT_LT(mean_error(problem.learn().function, truth, problem.fields), 1);
+    EXPECT_LT(mean_function_error(problem.learn().function, truth, problem.fields), 1);
 }
 
 // What is turned by 90 degrees is learned as well, turned.

@@ -11,21 +11,21 @@
 namespace exemplar {
 namespace {
 
-constexpr int k_width = 60, k_height = 40;
-constexpr std::size_t k_pixels = std::size_t{k_width} * k_height;
+constexpr int k_crf_width = 60, k_crf_height = 40;
+constexpr std::size_t k_pixels = std::size_t{k_crf_width} * k_crf_height;
 
 std::size_t index(int x, int y) {
-    return static_cast<std::size_t>(y) * k_width + static_cast<std::size_t>(x);
+    return static_cast<std::size_t>(y) * k_crf_width + static_cast<std::size_t>(x);
 }
 
 CoveredPixels pixels_where(const std::function<bool(int, int)>& covered) {
     CoveredPixels pixels;
     pixels.row.assign(k_pixels, -1);
-    for (int y = 0; y < k_height; ++y)
-        for (int x = 0; x < k_width; ++x) {
+    for (int y = 0; y < k_crf_height; ++y)
+        for (int x = 0; x < k_crf_width; ++x) {
             if (!covered(x, y)) continue;
             pixels.row[index(x, y)] = static_cast<std::int32_t>(pixels.pixel.size());
-            pixels.pixel.push_back(static_cast<std::uint32_t>(y * k_width + x));
+            pixels.pixel.push_back(static_cast<std::uint32_t>(y * k_crf_width + x));
         }
     return pixels;
 }
@@ -37,8 +37,8 @@ CoveredPixels all_pixels() {
 std::vector<float> two_halves(int border, double wrong, std::uint64_t seed) {
     Random random(seed);
     std::vector<float> probabilities;
-    for (int i = 0; i < k_width * k_height; ++i) {
-        const bool second = (i % k_width >= border) != (random.uniform() < wrong);
+    for (int i = 0; i < k_crf_width * k_crf_height; ++i) {
+        const bool second = (i % k_crf_width >= border) != (random.uniform() < wrong);
         probabilities.push_back(second ? 0.3f : 0.7f);
         probabilities.push_back(second ? 0.7f : 0.3f);
     }
@@ -48,9 +48,9 @@ std::vector<float> two_halves(int border, double wrong, std::uint64_t seed) {
 /// For each row of pixels where the second label begins; -1 if a row changes its label more than once.
 std::vector<int> borders(const std::vector<std::int32_t>& labels) {
     std::vector<int> result;
-    for (int y = 0; y < k_height; ++y) {
+    for (int y = 0; y < k_crf_height; ++y) {
         int border = 0, changes = 0;
-        for (int x = 1; x < k_width; ++x) {
+        for (int x = 1; x < k_crf_width; ++x) {
             if (labels[index(x, y)] == labels[index(x - 1, y)]) continue;
             border = x;
             ++changes;
@@ -62,14 +62,14 @@ std::vector<int> borders(const std::vector<std::int32_t>& labels) {
 
 std::vector<float> evidence(float elsewhere, int border, float there) {
     std::vector<float> boundary(k_pixels, elsewhere);
-    for (int y = 0; border > 0 && y < k_height; ++y)
+    for (int y = 0; border > 0 && y < k_crf_height; ++y)
         for (const int x : {border - 1, border}) boundary[index(x, y)] = there;
     return boundary;
 }
 
 TEST(PixelCrf, DrawsAStraightBorderBetweenNoisyHalves) {
     const CoveredPixels pixels = all_pixels();
-    PixelCrf crf(pixels, k_width, evidence(0.2f, 0, 0));
+    PixelCrf crf(pixels, k_crf_width, evidence(0.2f, 0, 0));
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         const auto labels = crf.solve(two_halves(27, 0.2, seed), 2, {1.0f, -1.0f});
         for (const int border : borders(labels)) EXPECT_NEAR(border, 27, 1);
@@ -80,7 +80,7 @@ TEST(PixelCrf, DrawsAStraightBorderBetweenNoisyHalves) {
 TEST(PixelCrf, WithoutStrengthPixelsStandAlone) {
     const CoveredPixels pixels = all_pixels();
     const std::vector<float> probabilities = two_halves(27, 0.2, 1);
-    PixelCrf crf(pixels, k_width, evidence(0.2f, 0, 0));
+    PixelCrf crf(pixels, k_crf_width, evidence(0.2f, 0, 0));
     for (const PixelCrfParameters& parameters : {PixelCrfParameters{0.0f, -1.0f}, PixelCrfParameters{1.0f, 5.0f}}) {
         const auto labels = crf.solve(probabilities, 2, parameters);
         for (std::size_t i = 0; i < labels.size(); ++i)
@@ -92,12 +92,12 @@ TEST(PixelCrf, WithoutStrengthPixelsStandAlone) {
 TEST(PixelCrf, EvidenceOfBoundariesMovesTheBorder) {
     const CoveredPixels pixels = all_pixels();
     std::vector<float> probabilities = two_halves(30, 0, 1);
-    for (int i = 0; i < k_width * k_height; ++i) {
-        if (i % k_width < 20 || i % k_width >= 40) continue;
+    for (int i = 0; i < k_crf_width * k_crf_height; ++i) {
+        if (i % k_crf_width < 20 || i % k_crf_width >= 40) continue;
         probabilities[2 * static_cast<std::size_t>(i)] = probabilities[2 * static_cast<std::size_t>(i) + 1] = 0.5f;
     }
     for (const int likely : {22, 30, 37}) {
-        PixelCrf crf(pixels, k_width, evidence(0.05f, likely, 0.9f));
+        PixelCrf crf(pixels, k_crf_width, evidence(0.05f, likely, 0.9f));
         const auto labels = crf.solve(probabilities, 2, {1.0f, -1.0f});
         for (const int border : borders(labels)) EXPECT_EQ(border, likely);
         EXPECT_NEAR(crf.boundary_agreement(labels), 0.9, 1e-6);
@@ -110,12 +110,12 @@ TEST(PixelCrf, EvidenceOfBoundariesMovesTheBorder) {
 TEST(PixelCrf, StrengthAndOffsetDropSmallSegments) {
     const CoveredPixels pixels = all_pixels();
     std::vector<float> probabilities;
-    for (int i = 0; i < k_width * k_height; ++i) {
-        const bool inside = std::hypot(i % k_width - 30, i / k_width - 20) < 4;
+    for (int i = 0; i < k_crf_width * k_crf_height; ++i) {
+        const bool inside = std::hypot(i % k_crf_width - 30, i / k_crf_width - 20) < 4;
         probabilities.push_back(inside ? 0.2f : 0.8f);
         probabilities.push_back(inside ? 0.8f : 0.2f);
     }
-    PixelCrf crf(pixels, k_width, evidence(0.3f, 0, 0));
+    PixelCrf crf(pixels, k_crf_width, evidence(0.3f, 0, 0));
     const auto count = [&](const PixelCrfParameters& parameters) {
         std::size_t inside = 0;
         for (const std::int32_t label : crf.solve(probabilities, 2, parameters)) inside += label == 1;
@@ -132,13 +132,13 @@ TEST(PixelCrf, NeighborsAreThoseOfTheObject) {
     const CoveredPixels pixels = pixels_where(inside);
     std::vector<float> probabilities, boundary(pixels.pixel.size(), 0.01f);
     for (const std::uint32_t pixel : pixels.pixel) {
-        const bool left = pixel % k_width < 25;
+        const bool left = pixel % k_crf_width < 25;
         probabilities.push_back(left ? 0.45f : 0.55f);
         probabilities.push_back(left ? 0.55f : 0.45f);
     }
-    PixelCrf crf(pixels, k_width, boundary);
+    PixelCrf crf(pixels, k_crf_width, boundary);
     const auto labels = crf.solve(probabilities, 2, {100.0f, -10.0f});
-    for (std::size_t i = 0; i < labels.size(); ++i) ASSERT_EQ(labels[i], pixels.pixel[i] % k_width < 25 ? 1 : 0);
+    for (std::size_t i = 0; i < labels.size(); ++i) ASSERT_EQ(labels[i], pixels.pixel[i] % k_crf_width < 25 ? 1 : 0);
     EXPECT_EQ(crf.boundary_agreement(labels), 0);
 }
 

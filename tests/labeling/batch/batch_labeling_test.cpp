@@ -65,7 +65,7 @@ class BatchLabeling : public testing::Test {
         static const LabelingModel model = trained();
         models_.models.push_back({"sphere", "hash", model});
         models_.features = model.feature_options;
-        models_.is_one_for_all = true;
+        models_.is_single_model = true;
     }
     /// A shape in a file, as a catalog knows it.
     void add(const TriangleMesh& mesh, const std::string& category = {}) {
@@ -79,7 +79,7 @@ class BatchLabeling : public testing::Test {
         shape.category = category;
         shapes_.push_back(std::move(shape));
     }
-    std::vector<StageLoad> run() {
+    std::vector<StageStatistics> run() {
         std::size_t next = 0;
         const auto give = [&]() -> std::optional<CatalogShape> {
             if (next == shapes_.size()) return {};
@@ -109,7 +109,7 @@ class BatchLabeling : public testing::Test {
 
 TEST_F(BatchLabeling, LabelsAsOneByOne) {
     for (int i = 0; i < 9; ++i) add(halves(2.0F + 0.1F * static_cast<float>(i)).mesh);
-    const std::vector<StageLoad> stages = run();
+    const std::vector<StageStatistics> stages = run();
     ASSERT_EQ(records_.size(), 9u);
     for (const CatalogShape& shape : shapes_) {
         const TriangleMesh mesh = read_mesh(shape.path).mesh;
@@ -118,7 +118,7 @@ TEST_F(BatchLabeling, LabelsAsOneByOne) {
         EXPECT_EQ(records_[shape.name].content, shape.hash);
         EXPECT_EQ(records_[shape.name].model, "sphere");
     }
-    for (const StageLoad& stage : stages) EXPECT_EQ(stage.items, 9u) << stage.name;
+    for (const StageStatistics& stage : stages) EXPECT_EQ(stage.items, 9u) << stage.name;
     EXPECT_LE(scorer_.most_at_once, options_.group);
 }
 
@@ -209,7 +209,7 @@ TEST_F(BatchLabeling, WhatAFileNamesCountsWithIt) {
 }
 
 TEST_F(BatchLabeling, TheGivenCategoryChoosesTheModel) {
-    models_.is_one_for_all = false;
+    models_.is_single_model = false;
     models_.models.push_back(models_.models.front());
     models_.models.back().name = "Ball";
     add(halves(2.0F).mesh, "sphere");
@@ -221,7 +221,7 @@ TEST_F(BatchLabeling, TheGivenCategoryChoosesTheModel) {
     EXPECT_EQ(records_["1"].model, "Ball");
     EXPECT_THAT(error("2"), HasSubstr("no model of the category 'cube'"));
     EXPECT_THAT(error("3"), HasSubstr("its category is not known"));
-    models_.is_one_for_all = true;
+    models_.is_single_model = true;
     run();
     for (const auto& [name, record] : records_) EXPECT_EQ(record.model, "sphere") << name;
 }

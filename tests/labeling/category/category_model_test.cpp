@@ -55,7 +55,7 @@ CategorizedShapes made_up_shapes(const std::vector<std::size_t>& counts, std::ui
     return shapes;
 }
 
-CategoryModel trained(const CategorizedShapes& shapes, std::uint64_t seed = 1) {
+CategoryModel trained_categories(const CategorizedShapes& shapes, std::uint64_t seed = 1) {
     CategoryReport report;
     return train_categories(shapes, {.seed = seed}, report);
 }
@@ -76,10 +76,10 @@ TEST(Categories, AreRecognizedAndStrangersAreUnknown) {
     EXPECT_FALSE(report.strangers_made_up);
     Random random(99);
     for (std::size_t c = 0; c < 15; ++c) {
-        const CategoryOpinion opinion = recognize(model, made_up_shape(c, random));
-        EXPECT_EQ(opinion.category, c < counts.size() ? static_cast<std::int32_t>(c) : -1) << c;
-        EXPECT_NEAR(std::accumulate(opinion.probability.begin(), opinion.probability.end(), 0.0F), 1, 1e-5F);
-        EXPECT_EQ(opinion.category >= 0, opinion.confidence >= 0.5F);
+        const CategoryPrediction prediction = recognize(model, made_up_shape(c, random));
+        EXPECT_EQ(prediction.category, c < counts.size() ? static_cast<std::int32_t>(c) : -1) << c;
+        EXPECT_NEAR(std::accumulate(prediction.probability.begin(), prediction.probability.end(), 0.0F), 1, 1e-5F);
+        EXPECT_EQ(prediction.category >= 0, prediction.confidence >= 0.5F);
     }
 }
 
@@ -147,10 +147,11 @@ TEST(Categories, UnitsOfFeaturesDoNotMatterNorDoSingleOddValues) {
     Random random(6);
     ShapeDescriptor shape = made_up_shape(1, random), other = shape;
     other.values[3] = 1000 * shape.values[3] - 7;
-    EXPECT_NEAR(recognize(trained(shapes), shape).confidence, recognize(trained(scaled), other).confidence, 1e-4F);
+    EXPECT_NEAR(recognize(trained_categories(shapes), shape).confidence,
+                recognize(trained_categories(scaled), other).confidence, 1e-4F);
     for (const float odd : {1e30F, -1e30F}) {
         shape.values[5] = odd;
-        EXPECT_EQ(recognize(trained(shapes), shape).category, 1);
+        EXPECT_EQ(recognize(trained_categories(shapes), shape).category, 1);
     }
 }
 
@@ -159,20 +160,20 @@ TEST(Categories, AConstantFeatureTellsNothing) {
     for (ShapeDescriptor& shape : shapes.shapes) shape.values[2] = 3;
     Random random(6);
     ShapeDescriptor shape = made_up_shape(2, random);
-    const float before = recognize(trained(shapes), shape).confidence;
+    const float before = recognize(trained_categories(shapes), shape).confidence;
     shape.values[2] = -50;
-    EXPECT_EQ(recognize(trained(shapes), shape).confidence, before);
+    EXPECT_EQ(recognize(trained_categories(shapes), shape).confidence, before);
 }
 
 TEST(Categories, EqualSeedsGiveEqualBytesOnAnyNumberOfThreads) {
     const CategorizedShapes shapes = made_up_shapes({6, 12, 4});
-    const std::string bytes = bytes_of(trained(shapes, 5));
-    EXPECT_EQ(bytes_of(trained(shapes, 5)), bytes);
-    CategoryModel other = trained(shapes, 6);
+    const std::string bytes = bytes_of(trained_categories(shapes, 5));
+    EXPECT_EQ(bytes_of(trained_categories(shapes, 5)), bytes);
+    CategoryModel other = trained_categories(shapes, 6);
     other.seed = 5;
     EXPECT_NE(bytes_of(other), bytes) << "other folds";
     const ThreadLimit limit(1);
-    EXPECT_EQ(bytes_of(trained(shapes, 5)), bytes);
+    EXPECT_EQ(bytes_of(trained_categories(shapes, 5)), bytes);
 }
 
 TEST(Categories, WhatCannotBeLearnedIsRefusedWithTheMend) {
@@ -180,7 +181,7 @@ TEST(Categories, WhatCannotBeLearnedIsRefusedWithTheMend) {
         CategorizedShapes shapes = made_up_shapes({3, 3});
         change(shapes);
         try {
-            trained(shapes);
+            trained_categories(shapes);
         } catch (const UsageError& refused) {
             return refused.what();
         }
@@ -222,7 +223,7 @@ TEST(Categories, OtherFeaturesAreRefused) {
     Random random(1);
     ShapeDescriptor shape = made_up_shape(0, random);
     shape.features[0] = "other";
-    EXPECT_THROW(recognize(trained(made_up_shapes({3, 3})), shape), UsageError);
+    EXPECT_THROW(recognize(trained_categories(made_up_shapes({3, 3})), shape), UsageError);
 }
 
 TEST(Categories, GeneratedShapesAreRecognizedAndAnotherKindIsUnknown) {
@@ -239,7 +240,7 @@ TEST(Categories, GeneratedShapesAreRecognizedAndAnotherKindIsUnknown) {
             shapes.category.push_back(static_cast<std::int32_t>(c));
             shapes.provenance.push_back(kinds[c]);
         }
-    const CategoryModel model = trained(shapes);
+    const CategoryModel model = trained_categories(shapes);
     for (std::size_t c = 0; c < kinds.size(); ++c)
         for (std::uint64_t seed = 11; seed <= 12; ++seed)
             EXPECT_EQ(recognize(model, features_of(kinds[c], seed)).category, static_cast<std::int32_t>(c)) << kinds[c];
@@ -294,7 +295,7 @@ Split split_of(const CategorizedShapes& all, const std::vector<std::size_t>& tra
 TEST(CategoryEvaluation, ACategoryThatTheOthersNeedIsNotLeftOut) {
     const CategorizedShapes all = made_up_shapes({3, 2, 2});
     const Split split = split_of(all, {2, 1, 1});  // without the first, each category has one shape
-    EXPECT_EQ(categories_needed(all.category_names, all.category, split), std::vector<std::int32_t>{0});
+    EXPECT_EQ(indispensable_categories(all.category_names, all.category, split), std::vector<std::int32_t>{0});
     const CategoryTest test = test_categories(all, split, {});
     EXPECT_EQ(test.shapes.size(), 3U);
     ASSERT_EQ(test.strangers.size(), 2U);
@@ -302,19 +303,19 @@ TEST(CategoryEvaluation, ACategoryThatTheOthersNeedIsNotLeftOut) {
 
     const CategorizedShapes two = made_up_shapes({3, 3});
     const Split of_two = split_of(two, {2, 2});
-    EXPECT_EQ(categories_needed(two.category_names, two.category, of_two), (std::vector<std::int32_t>{0, 1}));
+    EXPECT_EQ(indispensable_categories(two.category_names, two.category, of_two), (std::vector<std::int32_t>{0, 1}));
     EXPECT_TRUE(test_categories(two, of_two, {}).strangers.empty());
 
     const CategorizedShapes many = made_up_shapes({3, 3, 3});
-    EXPECT_TRUE(categories_needed(many.category_names, many.category, split_of(many, {2, 2, 2})).empty());
+    EXPECT_TRUE(indispensable_categories(many.category_names, many.category, split_of(many, {2, 2, 2})).empty());
     for (const auto& counts : std::vector<std::vector<std::size_t>>{{1, 1, 1}, {2, 2, 0}})
-        EXPECT_THROW(categories_needed(many.category_names, many.category, split_of(many, counts)), UsageError);
+        EXPECT_THROW(indispensable_categories(many.category_names, many.category, split_of(many, counts)), UsageError);
 }
 
 /// Saves a model after changing its file and returns the error of loading it.
-std::string error_after(const std::function<void(TensorFile&)>& change) {
+std::string category_error_after(const std::function<void(TensorFile&)>& change) {
     const TemporaryFolder folder;
-    save_category_model(folder / "model", trained(made_up_shapes({2, 2})));
+    save_category_model(folder / "model", trained_categories(made_up_shapes({2, 2})));
     TensorFile file = read_safetensors(folder / "model");
     change(file);
     write_safetensors(folder / "model", file);
@@ -330,7 +331,7 @@ TEST(CategoryModelFile, RoundTripKeepsEverythingAndTheBytes) {
     const TemporaryFolder folder;
     CategorizedShapes shapes = made_up_shapes({3, 4, 5});
     shapes.feature_options = {123, true};
-    const CategoryModel model = trained(shapes, 18446744073709551615ULL);
+    const CategoryModel model = trained_categories(shapes, 18446744073709551615ULL);
     save_category_model(folder / "model", model);
     const CategoryModel again = load_category_model(folder / "model");
     EXPECT_EQ(again.category_names, model.category_names);
@@ -350,20 +351,21 @@ TEST(CategoryModelFile, NamesOfMeshesMayBeInAnyEncoding) {
     const TemporaryFolder folder;
     CategorizedShapes shapes = made_up_shapes({2, 2});
     shapes.provenance[1] = "kind0 caf\xe9 0123";
-    save_category_model(folder / "model", trained(shapes));
+    save_category_model(folder / "model", trained_categories(shapes));
     EXPECT_EQ(load_category_model(folder / "model").provenance[1], "kind0 caf\xEF\xBF\xBD 0123");
 }
 
 TEST(CategoryModelFile, OtherVersionsAndKindsAreRefusedWithTheMend) {
     using testing::HasSubstr;
-    EXPECT_THAT(error_after([](TensorFile& f) { f.metadata["format_version"] = "99"; }), HasSubstr("a newer Exemplar"));
+    EXPECT_THAT(category_error_after([](TensorFile& f) { f.metadata["format_version"] = "99"; }),
+                HasSubstr("a newer Exemplar"));
     for (const char* key : {"feature_version", "descriptor_version"})
-        EXPECT_THAT(error_after([&](TensorFile& f) { f.metadata[key] = "0"; }), HasSubstr("train it again"));
-    EXPECT_THAT(error_after([](TensorFile& f) { f.metadata["kind"] = "exemplar mesh labeling"; }),
+        EXPECT_THAT(category_error_after([&](TensorFile& f) { f.metadata[key] = "0"; }), HasSubstr("train it again"));
+    EXPECT_THAT(category_error_after([](TensorFile& f) { f.metadata["kind"] = "exemplar mesh labeling"; }),
                 HasSubstr("category train"));
 }
 
-void replace(std::string& text, const std::string& what, const std::string& by) {
+void replace_in_category(std::string& text, const std::string& what, const std::string& by) {
     const std::size_t at = text.find(what);
     ASSERT_NE(at, std::string::npos) << what;
     text.replace(at, what.size(), by);
@@ -384,21 +386,28 @@ TEST(CategoryModelFile, InconsistentContentIsRefused) {
         {"\"seed\":1", "\"seed\":1.5"},
         {"\"features\"", "\"feature\""}};
     for (const auto& pair : replacements)
-        EXPECT_NE(error_after([&](TensorFile& f) { replace(f.metadata["model"], pair.first, pair.second); }),
+        EXPECT_NE(category_error_after(
+                      [&](TensorFile& f) { replace_in_category(f.metadata["model"], pair.first, pair.second); }),
                   "no error")
             << pair.second;
     for (const char* name : {"mean", "inverse_deviation", "weights", "offset"})
-        EXPECT_NE(error_after([&](TensorFile& f) { f.tensors.erase(name); }), "no error") << name;
-    EXPECT_NE(error_after([](TensorFile& f) { f.add("offset", {2}, std::vector<float>{NAN, 0}); }), "no error");
-    EXPECT_NE(error_after([](TensorFile& f) { f.add("weights", {1, 2}, std::vector<float>{0, 0}); }), "no error");
-    EXPECT_NE(error_after([](TensorFile& f) { f.add("inverse_deviation", {60}, std::vector<float>(60, -1)); }),
+        EXPECT_NE(category_error_after([&](TensorFile& f) { f.tensors.erase(name); }), "no error") << name;
+    EXPECT_NE(category_error_after([](TensorFile& f) {
+                  f.add("offset", {2}, std::vector<float>{NAN, 0});
+              }),
               "no error");
-    EXPECT_EQ(error_after([](TensorFile&) {}), "no error");
+    EXPECT_NE(category_error_after([](TensorFile& f) {
+                  f.add("weights", {1, 2}, std::vector<float>{0, 0});
+              }),
+              "no error");
+    EXPECT_NE(category_error_after([](TensorFile& f) { f.add("inverse_deviation", {60}, std::vector<float>(60, -1)); }),
+              "no error");
+    EXPECT_EQ(category_error_after([](TensorFile&) {}), "no error");
 }
 
 TEST(CategoryModelFile, MutationsNeverCrash) {
     const TemporaryFolder folder;
-    save_category_model(folder / "model", trained(made_up_shapes({2, 2})));
+    save_category_model(folder / "model", trained_categories(made_up_shapes({2, 2})));
     const std::string good = read_file(folder / "model");
     Random random(11);
     const ShapeDescriptor shape = made_up_shape(0, random);

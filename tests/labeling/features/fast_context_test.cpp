@@ -16,11 +16,11 @@
 namespace exemplar {
 namespace {
 
-using testing::ContextGroup;
-using testing::expect_context_parity;
-using testing::histogram_count;
-using testing::random_context;
-using testing::random_probabilities;
+using test_support::ContextGroup;
+using test_support::expect_context_parity;
+using test_support::histogram_count;
+using test_support::random_context;
+using test_support::random_probabilities;
 
 TEST(FastContext, OddNumbersOfFaces) {
     FastContextHistograms histograms;
@@ -54,7 +54,7 @@ TEST(FastContext, MeshesOfAGroupAreDoneAsOneByOne) {
     FastContextHistograms histograms;
     Random random(4);
     for (const std::size_t classes : {1U, 5U, 9U})
-        expect_as_one_by_one(histograms, ContextGroup(testing::k_odd_meshes, classes, random));
+        expect_as_one_by_one(histograms, ContextGroup(test_support::k_odd_meshes, classes, random));
     expect_as_one_by_one(histograms, ContextGroup({}, 2, random));
 }
 

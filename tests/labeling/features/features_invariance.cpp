@@ -14,13 +14,13 @@ const TriangleMesh& original() {
     static const TriangleMesh mesh = lopsided_torus(40, 24);
     return mesh;
 }
-FeatureOptions few_samples() {
+FeatureOptions few_context_samples() {
     FeatureOptions options;
     options.samples = 300;
     return options;
 }
 const MeshFeatures& original_features() {
-    static const MeshFeatures features = compute_features(original(), few_samples());
+    static const MeshFeatures features = compute_features(original(), few_context_samples());
     return features;
 }
 
@@ -49,7 +49,7 @@ TEST(Features, EveryColumnTellsFacesApart) {
 }
 
 TEST(Features, OrientationAddsCenteredCoordinates) {
-    FeatureOptions options = few_samples();
+    FeatureOptions options = few_context_samples();
     options.orientation = true;
     const MeshFeatures features = compute_features(shapes::translated(original(), Vec3(5, -3, 2)), options);
     ASSERT_EQ(features.unary.cols(), 681U);
@@ -65,7 +65,7 @@ TEST(Features, OrientationAddsCenteredCoordinates) {
 TEST(Features, DoNotDependOnRotationTranslationAndScale) {
     TriangleMesh moved = shapes::rotated(original(), shapes::random_rotation(3));
     moved = shapes::translated(shapes::scaled(std::move(moved), 37.0F), Vec3(10, -20, 5));
-    const MeshFeatures features = compute_features(moved, few_samples());
+    const MeshFeatures features = compute_features(moved, few_context_samples());
     EXPECT_LT(mismatched_share(original_features().unary, features.unary, 0.01F), 0.002);
     EXPECT_LT(mismatched_share(original_features().pairwise, features.pairwise, 0.01F), 0.002);
     EXPECT_EQ(original_features().context.sample_face, features.context.sample_face);
@@ -74,7 +74,7 @@ TEST(Features, DoNotDependOnRotationTranslationAndScale) {
 TEST(Features, DoNotDependOnFaceOrder) {
     std::vector<std::uint32_t> order;
     const TriangleMesh shuffled = shapes::with_shuffled_faces(original(), 9, &order);
-    const MeshFeatures features = compute_features(shuffled, few_samples());
+    const MeshFeatures features = compute_features(shuffled, few_context_samples());
     EXPECT_LT(mismatched_share(original_features().unary, features.unary, 0.01F, order), 0.002);
     // Edges are sorted by their vertices, so their rows stay.
     EXPECT_LT(mismatched_share(original_features().pairwise, features.pairwise, 0.01F), 0.002);
@@ -86,7 +86,7 @@ TEST(Features, DoNotTellAMeshFromItsMirrorImage) {
         return {-p.x(), p.y(), p.z()};
     });
     for (Face& face : mirrored.faces) std::swap(face[1], face[2]);
-    const MeshFeatures features = compute_features(mirrored, few_samples());
+    const MeshFeatures features = compute_features(mirrored, few_context_samples());
     EXPECT_EQ(original_features().context.sample_face, features.context.sample_face);
     EXPECT_LT(mismatched_share(original_features().unary, features.unary, 0.01F), 0.002);
     EXPECT_LT(mismatched_share(original_features().pairwise, features.pairwise, 0.01F), 0.002);
@@ -114,7 +114,7 @@ TEST(Features, ContextualOnesDoNotDependOnRotationAndScale) {
     const ContextGeometry& context = original_features().context;
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
         const TriangleMesh moved = shapes::scaled(shapes::rotated(original(), shapes::random_rotation(seed)), 0.02F);
-        const ContextGeometry found = compute_features(moved, few_samples()).context;
+        const ContextGeometry found = compute_features(moved, few_context_samples()).context;
         EXPECT_LT(mismatched_share(contextual_features(context), contextual_features(found), 0.01F), 0.002);
     }
 }
@@ -144,7 +144,7 @@ TEST(Features, ContextualSamplesStandForAllFaces) {
 
 TEST(Features, DoNotDependOnThreadCount) {
     const ThreadLimit limit(1);
-    const MeshFeatures features = compute_features(original(), few_samples());
+    const MeshFeatures features = compute_features(original(), few_context_samples());
     EXPECT_EQ(original_features().unary.values, features.unary.values);
     EXPECT_EQ(original_features().pairwise.values, features.pairwise.values);
     EXPECT_EQ(original_features().edge_context.edge, features.edge_context.edge);
@@ -154,7 +154,7 @@ TEST(Features, DoNotDependOnThreadCount) {
 TEST(Features, AMeshTurnedInsideOutIsTurnedBack) {
     TriangleMesh inverted = original();
     for (Face& face : inverted.faces) std::swap(face[1], face[2]);
-    const MeshFeatures features = compute_features(inverted, few_samples());
+    const MeshFeatures features = compute_features(inverted, few_context_samples());
     for (const char* name : {"curvature.k1@0.1", "diameter.median@90", "medial.mean@60", "shape_context.5x4.d2a1"}) {
         const std::span<const float> a = column(original_features().unary, name), b = column(features.unary, name);
         std::size_t different = 0;

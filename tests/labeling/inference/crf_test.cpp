@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "host/labeling/training/crf_learning.h"
 #include "host/labeling/features/edge_context.h"
 #include "host/labeling/inference/labeler.h"
+#include "host/labeling/training/crf_learning.h"
 
 namespace exemplar {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 using testing::ElementsAre;
 
 /// A strip of faces of area 1 whose neighbors share edges of length 1; the dihedral angle is flat except where said.
-MeshFeatures strip(std::size_t faces) {
+MeshFeatures strip_of_faces(std::size_t faces) {
     MeshFeatures features;
     features.face_area.assign(faces, 1);
     for (std::uint32_t f = 0; f + 1 < faces; ++f) features.edges.push_back({f, f + 1});
@@ -32,7 +32,7 @@ CrfParameters potts(double mu, std::size_t classes) {
 }
 
 TEST(Crf, SmoothsAWeakDissenterAndKeepsAStrongOne) {
-    const MeshFeatures features = strip(5);
+    const MeshFeatures features = strip_of_faces(5);
     const std::vector<float> boundary(4, 0.5F);
     const std::vector<float> weak{0.9F, 0.1F, 0.9F, 0.1F, 0.4F, 0.6F, 0.9F, 0.1F, 0.9F, 0.1F};
     EXPECT_THAT(solve_crf(features, make_crf_terms(features, weak, 2, boundary), potts(1, 2)),
@@ -44,7 +44,7 @@ TEST(Crf, SmoothsAWeakDissenterAndKeepsAStrongOne) {
 }
 
 TEST(Crf, CutsWhereTheEdgeIsConcaveOrTheClassifierSaysSo) {
-    MeshFeatures features = strip(6);
+    MeshFeatures features = strip_of_faces(6);
     const std::vector<float> probabilities{0.9F, 0.1F, 0.6F, 0.4F, 0.5F, 0.5F, 0.5F, 0.5F, 0.4F, 0.6F, 0.1F, 0.9F};
     CrfParameters parameters = potts(0.01, 2);
     parameters.lambda = 1;
@@ -60,7 +60,7 @@ TEST(Crf, CutsWhereTheEdgeIsConcaveOrTheClassifierSaysSo) {
 }
 
 TEST(Crf, TermsStayFiniteForCertainProbabilities) {
-    MeshFeatures features = strip(2);
+    MeshFeatures features = strip_of_faces(2);
     features.dihedral[0] = 0;
     const CrfTerms terms = make_crf_terms(features, std::vector<float>{0, 1, 1, 0}, 2, std::vector<float>{0});
     for (const float value : terms.unary) EXPECT_TRUE(std::isfinite(value));
@@ -69,7 +69,7 @@ TEST(Crf, TermsStayFiniteForCertainProbabilities) {
 }
 
 TEST(LabelComponents, ArePiecesOfEqualLabel) {
-    const MeshFeatures features = strip(6);
+    const MeshFeatures features = strip_of_faces(6);
     const LabelComponents pieces =
         label_components(features.edges, features.face_area, std::vector<std::int32_t>{2, 2, 0, 2, 2, 2});
     EXPECT_THAT(pieces.of_face, ElementsAre(0, 0, 1, 2, 2, 2));
@@ -78,7 +78,7 @@ TEST(LabelComponents, ArePiecesOfEqualLabel) {
 }
 
 TEST(MergeSmallComponents, JoinsTheNeighborTouchedMost) {
-    MeshFeatures features = strip(5);
+    MeshFeatures features = strip_of_faces(5);
     features.edge_length[1] = 3;  // between faces 1 and 2
     std::vector<std::int32_t> labels{0, 0, 1, 2, 2};
     CrfParameters parameters;
@@ -93,7 +93,7 @@ TEST(MergeSmallComponents, JoinsTheNeighborTouchedMost) {
 }
 
 TEST(MergeSmallComponents, APieceWithoutNeighborsStays) {
-    MeshFeatures features = strip(2);
+    MeshFeatures features = strip_of_faces(2);
     std::vector<std::int32_t> labels{1, 1};
     CrfParameters parameters;
     parameters.merge_fraction = 10;
@@ -103,7 +103,7 @@ TEST(MergeSmallComponents, APieceWithoutNeighborsStays) {
 
 TEST(LearnCrf, FindsParametersThatRemoveNoise) {
     const std::size_t faces = 60;
-    const MeshFeatures features = strip(faces);
+    const MeshFeatures features = strip_of_faces(faces);
     std::vector<std::int32_t> truth(faces, 0);
     std::vector<float> probabilities;
     for (std::size_t f = 0; f < faces; ++f) {
@@ -130,7 +130,7 @@ TEST(LearnCrf, FindsParametersThatRemoveNoise) {
 }
 
 TEST(EdgeContext, AveragesBoundaryProbabilityPerRange) {
-    MeshFeatures features = strip(3);
+    MeshFeatures features = strip_of_faces(3);
     features.edge_length = {1, 3};
     features.edge_context.begin = {0, 2, 2};
     features.edge_context.edge = {0, 1};

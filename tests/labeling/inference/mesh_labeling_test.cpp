@@ -14,7 +14,7 @@ namespace exemplar {
 namespace {
 
 /// A sphere whose upper half is label 1, the rest 0.
-LabeledMesh halves(float height) {
+LabeledMesh labeled_halves(float height) {
     LabeledMesh sphere{"sphere", {}, shapes::icosphere(4, 1.0F), {}};  // 5120 faces
     for (Vec3& v : sphere.mesh.vertices)
         if (v.z() > 0) v.z() *= height;
@@ -23,7 +23,7 @@ LabeledMesh halves(float height) {
 }
 
 TEST(MeshLabeling, SimplifiedTrainingMeshesKeepTheirLabels) {
-    LabeledCorpus corpus{{"low", "high"}, {halves(1.0F)}, {}};
+    LabeledCorpus corpus{{"low", "high"}, {labeled_halves(1.0F)}, {}};
     for (std::size_t f = 0; f < 200; ++f) corpus.meshes.front().label[f] = -1;
     const LabeledMesh original = corpus.meshes.front();
     corpus = working_corpus(std::move(corpus), 800);
@@ -42,7 +42,7 @@ TEST(MeshLabeling, SimplifiedTrainingMeshesKeepTheirLabels) {
 }
 
 TEST(MeshLabeling, LabelsOfASimplifiedMeshComeBackToItsFaces) {
-    LabeledCorpus corpus{{"low", "high"}, {halves(2.0F), halves(2.2F), halves(2.4F)}, {}};
+    LabeledCorpus corpus{{"low", "high"}, {labeled_halves(2.0F), labeled_halves(2.2F), labeled_halves(2.4F)}, {}};
     TrainOptions options;
     options.rounds = 20, options.max_stages = 1, options.rows_per_mesh = 400, options.features.samples = 100;
     corpus = working_corpus(std::move(corpus), 1000);
@@ -53,7 +53,7 @@ TEST(MeshLabeling, LabelsOfASimplifiedMeshComeBackToItsFaces) {
     TrainReport report;
     const LabelingModel model = train_labeling(corpus, features, options, {scorer, context}, report);
 
-    const LabeledMesh unseen = halves(2.1F);
+    const LabeledMesh unseen = labeled_halves(2.1F);
     const FaceLabeling labeling = label_mesh(model, unseen.mesh, {}, {scorer, context}, 1000);
     ASSERT_EQ(labeling.label.size(), unseen.mesh.face_count());
     EXPECT_EQ(labeling.confidence.size(), unseen.mesh.face_count());

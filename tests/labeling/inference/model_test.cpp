@@ -31,8 +31,8 @@ CalibratedStumps classifier(std::uint32_t classes, std::uint32_t feature) {
 }
 
 /// Of so many features, the last of which does not vary.
-LinearOpinion linear(std::size_t features) {
-    LinearOpinion result{{2, {}, {}, {}, {0.5F, 0.5F}}, 4, 0.75F};
+LinearExpert linear(std::size_t features) {
+    LinearExpert result{{2, {}, {}, {}, {0.5F, 0.5F}}, 4, 0.75F};
     for (std::size_t f = 0; f < features; ++f) {
         const auto x = static_cast<float>(f);
         result.classifier.mean.push_back(x);

@@ -82,8 +82,8 @@ TEST(FoldBoosting, ALabelOfOneFoldOnlyIsNotHeldAgainstTheOthers) {
     const FoldBoostingResult before = boost_with_folds(meshes.items, options, scorer, [] {});
     for (std::size_t i = 0; i < 30; ++i) meshes.data[0].labels[i] = 2;  // what no classifier without this mesh can know
     const FoldBoostingResult after = boost_with_folds(meshes.items, options, scorer, [] {});
-    EXPECT_TRUE(before.of_one_fold.empty());
-    EXPECT_EQ(after.of_one_fold, std::vector<std::uint32_t>{2});
+    EXPECT_TRUE(before.single_fold_labels.empty());
+    EXPECT_EQ(after.single_fold_labels, std::vector<std::uint32_t>{2});
     EXPECT_EQ(before.classifier.stumps.stumps.size(), 4 * 60U);
     EXPECT_EQ(after.classifier.stumps.stumps.size(), 3 * 60U) << "the one that cannot know the label has no say";
     EXPECT_LT(after.error, before.error + 0.1);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<Link, 2> k_links{Link::softmax, Link::sigmoid};
 constexpr std::span<const Link> k_softmax = std::span(k_links).first(1);
-constexpr std::size_t k_classes = 3;
+constexpr std::size_t k_calibrated_classes = 3;
 
 struct Scores {
     std::vector<float> h;
@@ -26,7 +26,7 @@ Scores drawn_from_softmax(std::size_t rows, double scale) {
     Random random(3);
     Scores set;
     for (std::size_t i = 0; i < rows; ++i) {
-        std::array<double, k_classes> weight{};
+        std::array<double, k_calibrated_classes> weight{};
         double total = 0;
         for (double& w : weight) {
             const double h = 6 * random.uniform() - 3;
@@ -45,7 +45,7 @@ Scores drawn_from_softmax(std::size_t rows, double scale) {
 TEST(Calibration, FindsTheScaleThatTheLabelsWereDrawnWith) {
     for (const double scale : {0.1, 0.5, 2.0}) {
         const Scores set = drawn_from_softmax(20000, scale);
-        const Calibration found = calibrate(set.h, set.labels, set.weights, k_classes, k_softmax);
+        const Calibration found = calibrate(set.h, set.labels, set.weights, k_calibrated_classes, k_softmax);
         EXPECT_NEAR(found.scale / scale, 1, 0.1);
         EXPECT_EQ(found.link, Link::softmax);
     }
@@ -62,13 +62,13 @@ TEST(Calibration, ReportsTheWeightedErrorAndLossByHand) {
 
 TEST(Calibration, RowsOfWeightZeroDoNotCount) {
     Scores set = drawn_from_softmax(5000, 1);
-    const Calibration before = calibrate(set.h, set.labels, set.weights, k_classes, k_links);
+    const Calibration before = calibrate(set.h, set.labels, set.weights, k_calibrated_classes, k_links);
     for (int i = 0; i < 500; ++i) {
         set.h.insert(set.h.end(), {100, -100, -100});
         set.labels.push_back(2);
         set.weights.push_back(0);
     }
-    const Calibration after = calibrate(set.h, set.labels, set.weights, k_classes, k_links);
+    const Calibration after = calibrate(set.h, set.labels, set.weights, k_calibrated_classes, k_links);
     EXPECT_EQ(before.scale, after.scale);
     EXPECT_NEAR(before.loss, after.loss, 1e-9);
     EXPECT_NEAR(before.error, after.error, 1e-12);
@@ -81,14 +81,14 @@ TEST(Calibration, AFewConfidentMistakesDoNotFlattenTheRest) {
         set.labels.push_back(2);
         set.weights.push_back(1);
     }
-    EXPECT_NEAR(calibrate(set.h, set.labels, set.weights, k_classes, k_softmax).scale, 1, 0.1);
+    EXPECT_NEAR(calibrate(set.h, set.labels, set.weights, k_calibrated_classes, k_softmax).scale, 1, 0.1);
 }
 
 TEST(Calibration, TakesTheBetterLink) {
     Scores set = drawn_from_softmax(5000, 1);
-    const Calibration both = calibrate(set.h, set.labels, set.weights, k_classes, k_links);
+    const Calibration both = calibrate(set.h, set.labels, set.weights, k_calibrated_classes, k_links);
     for (const Link& link : k_links)
-        EXPECT_LE(both.loss, calibrate(set.h, set.labels, set.weights, k_classes, std::span(&link, 1)).loss);
+        EXPECT_LE(both.loss, calibrate(set.h, set.labels, set.weights, k_calibrated_classes, std::span(&link, 1)).loss);
 }
 
 TEST(Calibration, ExtremeScoresStayFinite) {

@@ -89,8 +89,8 @@ TEST(SplitHistograms, FollowingAChangeEqualsStartingAnew) {
             const RowSelection few(rows, split);
             EXPECT_LE(2 * few.view().row.size(), rows.count);
             const WeightFactors& factors = weights.factors();
-            carried.follow(few.view(), few.is_above() ? factors.above : factors.below,
-                           few.is_above() ? factors.below : factors.above);
+            carried.update_after_split(few.view(), few.is_above() ? factors.above : factors.below,
+                                       few.is_above() ? factors.below : factors.above);
             SplitHistograms anew(rows, data.quantized, counting(9));
             anew.add({{}, rows.weights, rows.chunks}, ones(rows));
             expect_same(carried, anew, classes, 3e-6);  // of weights with a total near one
@@ -130,7 +130,7 @@ double gain_of(const SplitSums& sums, std::size_t threshold, std::uint64_t subse
     return bs * bs / bw + as * as / aw - constant;
 }
 
-TEST(SubsetSearch, FindsTheBestSubsetAboveTheFloor) {
+TEST(SubsetOptions, FindsTheBestSubsetAboveTheFloor) {
     Random random(60);
     for (int trial = 0; trial < 60; ++trial) {
         const std::size_t classes = 1 + random.index(6), thresholds = 1 + random.index(40);

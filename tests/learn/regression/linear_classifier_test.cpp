@@ -19,14 +19,14 @@ namespace {
 constexpr std::size_t k_rows = 900, k_inputs = 7, k_classes = 3, k_folds = 3;
 
 /// Rows of random features, each labeled by which of three sums of features is largest.
-struct Data {
+struct ClassifierData {
     FeatureMatrix features;
     std::vector<std::uint32_t> rows;
     std::vector<std::int32_t> label;
     std::vector<float> weight;
     std::vector<std::uint8_t> fold;
 
-    explicit Data(std::size_t count = k_rows) : rows(count) {
+    explicit ClassifierData(std::size_t count = k_rows) : rows(count) {
         Random random(5);
         features.rows = count;
         for (std::size_t f = 0; f < k_inputs; ++f)
@@ -50,7 +50,7 @@ std::vector<float> scores_of(const LinearClassifier& classifier, const FeatureMa
     return scores;
 }
 
-double share_right(const Data& data, const std::vector<float>& scores) {
+double share_right(const ClassifierData& data, const std::vector<float>& scores) {
     double right = 0;
     for (std::size_t i = 0; i < data.label.size(); ++i) {
         const auto row = scores.begin() + static_cast<std::ptrdiff_t>(i * k_classes);
@@ -60,8 +60,8 @@ double share_right(const Data& data, const std::vector<float>& scores) {
 }
 
 /// The textbook's ridge regression of one class, of the rows outside of a fold: constant, then weights of z.
-Eigen::VectorXd by_hand(const Data& data, const LinearClassifier& standard, double ridge, std::size_t without_fold,
-                        int label) {
+Eigen::VectorXd by_hand(const ClassifierData& data, const LinearClassifier& standard, double ridge,
+                        std::size_t without_fold, int label) {
     std::vector<std::size_t> rows;
     for (std::size_t i = 0; i < k_rows; ++i)
         if (data.fold[i] != without_fold) rows.push_back(i);
@@ -81,7 +81,7 @@ Eigen::VectorXd by_hand(const Data& data, const LinearClassifier& standard, doub
 }
 
 TEST(LinearClassifier, SolvesTheEquationsOfARidge) {
-    const Data data;
+    const ClassifierData data;
     const LinearTraining training(data.all());
     for (const double ridge : {1e-6, 1e-2, 1.0})
         for (const std::size_t fold : {LinearTraining::k_no_fold, std::size_t{1}}) {
@@ -96,20 +96,20 @@ TEST(LinearClassifier, SolvesTheEquationsOfARidge) {
 }
 
 TEST(LinearClassifier, TellsLabelsApartThatSumsOfFeaturesTell) {
-    const Data data;
+    const ClassifierData data;
     const LinearTraining training(data.all());
     EXPECT_GT(share_right(data, scores_of(training.solve(1e-4), data.features)), 0.93);
 }
 
 TEST(LinearClassifier, TargetsAddUpToOneInEveryRow) {
-    const Data data;
+    const ClassifierData data;
     const std::vector<float> scores = scores_of(LinearTraining(data.all()).solve(1e-3), data.features);
     for (std::size_t i = 0; i < k_rows; ++i)
         EXPECT_NEAR(scores[3 * i] + scores[3 * i + 1] + scores[3 * i + 2], 1, 1e-4);
 }
 
 TEST(LinearClassifier, UnitsMakeNoDifference) {
-    Data data;
+    ClassifierData data;
     const std::vector<float> before = scores_of(LinearTraining(data.all()).solve(1e-2), data.features);
     for (float& value : data.features.column(0)) value = 1024 * value - 7;
     const std::vector<float> after = scores_of(LinearTraining(data.all()).solve(1e-2), data.features);
@@ -118,7 +118,7 @@ TEST(LinearClassifier, UnitsMakeNoDifference) {
 
 TEST(LinearClassifier, RowsAreWeighed) {
     // Rows of weight zero may be anything; a row of weight two is two rows.
-    Data data, twice;
+    ClassifierData data, twice;
     for (std::size_t i = 0; i < k_rows; ++i) data.weight[i] = static_cast<float>(i % 3);
     twice.rows.clear();
     for (std::uint32_t i = 0; i < k_rows; ++i) {
@@ -131,7 +131,7 @@ TEST(LinearClassifier, RowsAreWeighed) {
 }
 
 TEST(LinearClassifier, FeaturesThatDoNotVaryOrAreNoNumbersCountForNothing) {
-    Data data;
+    ClassifierData data;
     const std::vector<float> before = scores_of(LinearTraining(data.all()).solve(1e-3), data.features);
     for (float& value : data.features.add("a.same")) value = 1e6F;
     data.features.add("a.odd")[17] = std::numeric_limits<float>::quiet_NaN();
@@ -143,10 +143,10 @@ TEST(LinearClassifier, FeaturesThatDoNotVaryOrAreNoNumbersCountForNothing) {
 }
 
 TEST(LinearClassifier, WhatIsStrangeStaysWithinBounds) {
-    Data data;
+    ClassifierData data;
     const LinearClassifier found = LinearTraining(data.all()).solve(1e-3);
-    constexpr float k_infinite = std::numeric_limits<float>::infinity();
-    data.features.column(0)[0] = k_infinite;
+    constexpr float k_unbounded = std::numeric_limits<float>::infinity();
+    data.features.column(0)[0] = k_unbounded;
     data.features.column(0)[1] = 1e30F;
     data.features.column(0)[2] = std::numeric_limits<float>::quiet_NaN();
     data.features.column(0)[3] = found.mean[0];
@@ -161,7 +161,7 @@ TEST(LinearClassifier, WhatIsStrangeStaysWithinBounds) {
 }
 
 TEST(LinearClassifier, ChosenRowsScoreAsAmongAll) {
-    const Data data;
+    const ClassifierData data;
     const LinearClassifier found = LinearTraining(data.all()).solve(1e-3);
     const std::vector<float> all = scores_of(found, data.features);
     const std::vector<std::uint32_t> rows{899, 0, 300, 300};
@@ -173,7 +173,7 @@ TEST(LinearClassifier, ChosenRowsScoreAsAmongAll) {
 }
 
 TEST(LinearClassifier, ThreadsMakeNoDifference) {
-    const Data data(5000);
+    const ClassifierData data(5000);
     const auto learn = [&](std::size_t threads) {
         const ThreadLimit limit(threads);
         return scores_of(LinearTraining(data.all()).solve(1e-3), data.features);
@@ -182,7 +182,7 @@ TEST(LinearClassifier, ThreadsMakeNoDifference) {
 }
 
 TEST(LinearClassifier, TheMeanScoresTheMean) {
-    const Data data;
+    const ClassifierData data;
     const LinearTraining training(data.all());
     const std::vector<LinearClassifier> two{training.solve(1e-3, 0), training.solve(1e-3, 1)};
     const std::vector<float> first = scores_of(two[0], data.features), second = scores_of(two[1], data.features);
@@ -191,7 +191,7 @@ TEST(LinearClassifier, TheMeanScoresTheMean) {
 }
 
 TEST(LinearClassifier, WhatDoesNotFitIsRefused) {
-    Data data;
+    ClassifierData data;
     const LinearClassifier found = LinearTraining(data.all()).solve(1e-3);
     std::vector<float> scores(5);
     EXPECT_THROW(linear_scores(found, data.features, scores), UsageError);

@@ -420,11 +420,11 @@ INSTANTIATE_TEST_SUITE_P(AllTypes, EveryLine, testing::ValuesIn(std::span(k_line
                          [](const auto& type) { return std::string(name_of(type.param)); });
 
 TEST(LineTypes, AreMeantByTheirBeginnings) {
-    EXPECT_EQ(line_type_meant("Suggestive"), LineType::suggestive_contours);
-    EXPECT_EQ(line_type_meant("apparent-ridges"), LineType::apparent_ridges);
-    EXPECT_EQ(line_type_meant("highlights"), LineType::suggestive_highlights);
-    for (const LineType type : k_line_types) EXPECT_EQ(line_type_meant(name_of(type)), type);
-    for (const char* other : {"", "co", "contourss", "none"}) EXPECT_EQ(line_type_meant(other), std::nullopt);
+    EXPECT_EQ(line_type_from_prefix("Suggestive"), LineType::suggestive_contours);
+    EXPECT_EQ(line_type_from_prefix("apparent-ridges"), LineType::apparent_ridges);
+    EXPECT_EQ(line_type_from_prefix("highlights"), LineType::suggestive_highlights);
+    for (const LineType type : k_line_types) EXPECT_EQ(line_type_from_prefix(name_of(type)), type);
+    for (const char* other : {"", "co", "contourss", "none"}) EXPECT_EQ(line_type_from_prefix(other), std::nullopt);
 }
 
 TEST(LineTypes, KnowNoOtherName) {

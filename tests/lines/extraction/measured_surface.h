@@ -7,7 +7,7 @@
 #include "host/lines/extraction/lines.h"
 #include "host/mesh/curvature/curvature_estimator.h"
 
-namespace exemplar::testing {
+namespace exemplar::test_support {
 
 /// A mesh with estimated curvature and neighbors.
 struct MeasuredSurface {
@@ -28,4 +28,4 @@ struct MeasuredSurface {
     LineSurface surface() const { return {mesh.faces, mesh.vertices, normals, curvature, neighbors}; }
 };
 
-}  // namespace exemplar::testing
+}  // namespace exemplar::test_support

@@ -15,7 +15,7 @@ namespace exemplar {
 namespace {
 
 /// A lumpy sphere, or another mesh, with estimated curvature and neighbors.
-struct Surface : testing::MeasuredSurface {
+struct ChainSurface : test_support::MeasuredSurface {
     using MeasuredSurface::MeasuredSurface;
 
     std::vector<LineSegment> lines(LineType type, const Vec3& eye = {3, 2, 4}) const {
@@ -31,14 +31,14 @@ struct Surface : testing::MeasuredSurface {
     }
 };
 
-TriangleMesh lumpy(int subdivisions) {
+TriangleMesh lumpy_sphere(int subdivisions) {
     return shapes::transformed(shapes::icosphere(subdivisions, 1), [](const Vec3& p) -> Vec3 {
         return p * (1 + 0.2f * std::sin(3 * p.x() + 1) + 0.15f * p.y() * std::cos(4 * p.z()));
     });
 }
 
 /// Where an end lies, said by vertices alone: of an edge with exactly two faces, or one vertex; nothing elsewhere.
-std::vector<std::uint32_t> place_of(const Surface& surface, const LineSegment& segment, std::size_t end) {
+std::vector<std::uint32_t> place_of(const ChainSurface& surface, const LineSegment& segment, std::size_t end) {
     const Face& face = surface.mesh.faces[segment.face];
     const SegmentEnd place = segment.places[end];
     if (place >= k_inside_face) return {};
@@ -58,7 +58,7 @@ std::size_t entered(const ChainLink& link) {
 }
 
 /// Everything that chains.h promises of chains, found out the slow way.
-void expect_chains_of(const Surface& surface, const std::vector<LineSegment>& segments,
+void expect_chains_of(const ChainSurface& surface, const std::vector<LineSegment>& segments,
                       const std::vector<Chain>& chains) {
     std::map<std::pair<int, std::vector<std::uint32_t>>, std::set<std::pair<std::uint32_t, std::size_t>>> meeting;
     for (std::uint32_t s = 0; s < segments.size(); ++s)
@@ -113,14 +113,14 @@ void expect_chains_of(const Surface& surface, const std::vector<LineSegment>& se
     EXPECT_EQ(std::count(times.begin(), times.end(), 1), static_cast<std::ptrdiff_t>(segments.size()));
 }
 
-std::vector<Chain> chains_of(const Surface& surface, const std::vector<LineSegment>& segments) {
+std::vector<Chain> chains_of(const ChainSurface& surface, const std::vector<LineSegment>& segments) {
     return chain_segments(surface.mesh.faces, surface.neighbors, segments);
 }
 
 class ChainsOfEveryLine : public ::testing::TestWithParam<LineType> {};
 
 TEST_P(ChainsOfEveryLine, JoinWhatContinues) {
-    const Surface surface(lumpy(4));
+    const ChainSurface surface(lumpy_sphere(4));
     const auto segments = surface.lines(GetParam());
     if (GetParam() != LineType::creases && GetParam() != LineType::boundaries) {
         EXPECT_GT(segments.size(), 10);
@@ -131,7 +131,7 @@ TEST_P(ChainsOfEveryLine, JoinWhatContinues) {
 }
 
 TEST_P(ChainsOfEveryLine, AreOfTheSameSegmentsInAnyOrder) {
-    const Surface surface(lumpy(4));
+    const ChainSurface surface(lumpy_sphere(4));
     auto segments = surface.lines(GetParam());
     const auto sets_of = [&](const std::vector<std::uint32_t>& name) {
         std::set<std::set<std::uint32_t>> sets;
@@ -159,7 +159,7 @@ INSTANTIATE_TEST_SUITE_P(AllTypes, ChainsOfEveryLine, ::testing::ValuesIn(k_line
                          [](const auto& type) { return std::string(name_of(type.param)); });
 
 TEST(Chains, OfAClosedSurfacesContourAreLoops) {
-    const Surface surface(shapes::torus(3, 1, 60, 20));
+    const ChainSurface surface(shapes::torus(3, 1, 60, 20));
     for (const Vec3& eye : {Vec3(9, 2, 4), Vec3(0.3f, -12, 1), Vec3(0.1f, 0.2f, 8)}) {
         const auto segments = surface.lines(LineType::contours, eye);
         const auto chains = chains_of(surface, segments);
@@ -170,7 +170,7 @@ TEST(Chains, OfAClosedSurfacesContourAreLoops) {
 }
 
 TEST(Chains, OfAnOpenCylindersRimsAreTwoLoops) {
-    const Surface surface(shapes::cylinder(1, 2, 12, 3, false));
+    const ChainSurface surface(shapes::cylinder(1, 2, 12, 3, false));
     const auto segments = surface.lines(LineType::boundaries);
     EXPECT_EQ(segments.size(), 24);
     EXPECT_TRUE(surface.lines(LineType::creases).empty());  // its faces meet at 30 degrees, creases begin at 40
@@ -184,7 +184,7 @@ TEST(Chains, OfAnOpenCylindersRimsAreTwoLoops) {
 }
 
 TEST(Chains, OfACubesEdgesEndAtItsCorners) {
-    const Surface surface(shapes::box(1, 1, 1, 4));
+    const ChainSurface surface(shapes::box(1, 1, 1, 4));
     const auto segments = surface.lines(LineType::creases);
     EXPECT_EQ(segments.size(), 12 * 4);
     for (const LineSegment& segment : segments)
@@ -208,7 +208,7 @@ TriangleMesh fan() {
 }
 
 TEST(Chains, StopWhereThreeFacesMeet) {
-    const Surface surface(fan());
+    const ChainSurface surface(fan());
     const auto creases = surface.lines(LineType::creases);
     ASSERT_EQ(creases.size(), 1);  // once, whatever the angle
     EXPECT_EQ(creases[0].face, 0);
@@ -229,7 +229,7 @@ TEST(Chains, StopWhereThreeFacesMeet) {
 }
 
 TEST(Chains, KeepFamiliesApart) {
-    const Surface surface(shapes::grid(1, 1, 1));
+    const ChainSurface surface(shapes::grid(1, 1, 1));
     ASSERT_EQ(surface.neighbors[0][2], 4u * 1 + 0);
     std::vector<LineSegment> segments(2);
     segments[0].face = 0;
@@ -246,7 +246,7 @@ TEST(Chains, OfNothingAreNone) {
 }
 
 TEST(Chains, RefuseWhatDoesNotFit) {
-    const Surface surface(shapes::grid(1, 1, 1));
+    const ChainSurface surface(shapes::grid(1, 1, 1));
     std::vector<LineSegment> segments(1);
     segments[0].face = 2;
     EXPECT_THROW(chains_of(surface, segments), UsageError);
@@ -255,12 +255,12 @@ TEST(Chains, RefuseWhatDoesNotFit) {
 }
 
 TEST(FaceNeighbors, AreMutualAndShareTheEdge) {
-    const TriangleMesh mesh = lumpy(2);
+    const TriangleMesh mesh = lumpy_sphere(2);
     const auto neighbors = build_face_neighbors(mesh.faces, mesh.vertex_count());
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
         for (std::uint32_t i = 0; i < 3; ++i) {
             const std::uint32_t across = neighbors[f][i];
-            ASSERT_LE(across, k_last_neighbor);
+            ASSERT_LE(across, k_max_neighbor_code);
             EXPECT_EQ(neighbors[across / 4][across % 4], 4 * f + i);
             EXPECT_EQ(mesh.faces[across / 4][across % 4], mesh.faces[f][(i + 1) % 3]);
             EXPECT_EQ(mesh.faces[across / 4][(across % 4 + 1) % 3], mesh.faces[f][i]);
@@ -286,7 +286,7 @@ TEST(FaceNeighbors, EndAtBoundaries) {
 TEST(FaceNeighbors, OfAFanAreMany) {
     const TriangleMesh mesh = fan();
     const auto neighbors = build_face_neighbors(mesh.faces, mesh.vertex_count());
-    EXPECT_EQ(neighbors[0], (FaceNeighbors{k_many_neighbors, k_no_neighbor, k_no_neighbor}));
+    EXPECT_EQ(neighbors[0], (FaceNeighbors{k_nonmanifold_neighbors, k_no_neighbor, k_no_neighbor}));
     for (std::size_t f : {1, 2}) EXPECT_EQ(neighbors[f], (FaceNeighbors{k_blocked_side, k_no_neighbor, k_no_neighbor}));
 }
 
@@ -305,7 +305,7 @@ TEST(FaceNeighbors, RefuseVerticesThatAreNotThere) {
 
 TEST(Creases, AreWhereFacesMeetAtTheAngle) {
     // Of a prism of 12 sides: its rims at 90 degrees, its sides at 30.
-    const Surface surface(shapes::cylinder(1, 2, 12, 1, true));
+    const ChainSurface surface(shapes::cylinder(1, 2, 12, 1, true));
     LineOptions options;
     const auto count = [&](float angle) {
         options.thresholds.crease_angle = angle;
@@ -320,7 +320,7 @@ TEST(Creases, AreNoneAtFacesWithoutArea) {
     TriangleMesh mesh = shapes::grid(1, 1, 1);
     mesh.vertices.push_back(mesh.vertices[0]);
     mesh.faces.push_back({0, 1, static_cast<std::uint32_t>(mesh.vertices.size() - 1)});
-    const Surface surface(mesh);
+    const ChainSurface surface(mesh);
     EXPECT_TRUE(surface.lines(LineType::creases).empty());
 }
 

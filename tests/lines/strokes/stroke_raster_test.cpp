@@ -12,7 +12,7 @@
 namespace exemplar {
 namespace {
 
-using namespace testing;
+using namespace test_support;
 
 Stroke straight(const Vec2& a, const Vec2& b, float width) {
     Stroke stroke;

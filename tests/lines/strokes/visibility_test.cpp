@@ -14,7 +14,7 @@
 namespace exemplar {
 namespace {
 
-struct Scene : testing::MeasuredSurface {
+struct Scene : test_support::MeasuredSurface {
     using MeasuredSurface::MeasuredSurface;
 
     Vec3 at(const LineSegment& segment, float t) const {

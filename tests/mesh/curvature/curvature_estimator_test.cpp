@@ -23,7 +23,7 @@ VertexCurvature estimated(const TriangleMesh& mesh, const CurvatureOptions& opti
     return CurvatureEstimator(mesh.faces, mesh.vertex_count()).estimate(mesh.vertices, options);
 }
 /// A mesh without symmetry, of uneven triangles.
-TriangleMesh lumpy() {
+TriangleMesh lumpy_sphere() {
     return shapes::transformed(shapes::icosphere(4, 1), [](const Vec3& p) -> Vec3 {
         return p * (1 + 0.2f * std::sin(3 * p.x() + 1) + 0.15f * p.y() * std::cos(4 * p.z()));
     });
@@ -51,7 +51,7 @@ const CurvatureOptions k_kinds[] = {
     {}, {true, 1.5}, {false, 1}, robust(RobustEstimator::cauchy), {true, 1, 0, RobustEstimator::geman_mcclure}};
 
 TEST(CurvatureEstimator, GivesWhatTheOneOffFunctionGives) {
-    const TriangleMesh mesh = lumpy();
+    const TriangleMesh mesh = lumpy_sphere();
     CurvatureEstimator estimator(mesh.faces, mesh.vertex_count());
     expect_equal_bits(estimator.estimate(mesh.vertices), estimate_curvature(mesh, true));
     CurvatureOptions no_derivatives;
@@ -60,7 +60,7 @@ TEST(CurvatureEstimator, GivesWhatTheOneOffFunctionGives) {
 }
 
 TEST(CurvatureEstimator, HasTheNormalsOfTheMesh) {
-    TriangleMesh mesh = lumpy();
+    TriangleMesh mesh = lumpy_sphere();
     mesh.vertices.push_back({5, 5, 5});
     mesh.faces.push_back({1, 1, 2});
     CurvatureEstimator estimator(mesh.faces, mesh.vertex_count());
@@ -70,7 +70,8 @@ TEST(CurvatureEstimator, HasTheNormalsOfTheMesh) {
 }
 
 TEST(CurvatureEstimator, RemembersNothingOfEarlierPoses) {
-    const TriangleMesh mesh = lumpy(), other = shapes::scaled(shapes::rotated(lumpy(), shapes::random_rotation(3)), 2);
+    const TriangleMesh mesh = lumpy_sphere(),
+                       other = shapes::scaled(shapes::rotated(lumpy_sphere(), shapes::random_rotation(3)), 2);
     for (const CurvatureOptions& options : k_kinds) {
         CurvatureEstimator estimator(mesh.faces, mesh.vertex_count());
         const VertexCurvature first = estimator.estimate(mesh.vertices, options);
@@ -89,7 +90,7 @@ TEST(CurvatureEstimator, DoesNotDependOnThreads) {
 }
 
 TEST(CurvatureEstimator, RefusesWhatDoesNotFit) {
-    const TriangleMesh mesh = lumpy();
+    const TriangleMesh mesh = lumpy_sphere();
     EXPECT_THROW(CurvatureEstimator(mesh.faces, mesh.vertex_count() - 1), MeshError);
     CurvatureEstimator estimator(mesh.faces, mesh.vertex_count());
     EXPECT_THROW(estimator.estimate(std::span(mesh.vertices).first(10)), UsageError);
@@ -101,7 +102,7 @@ TEST(CurvatureEstimator, RefusesWhatDoesNotFit) {
 
 TEST(CurvatureEstimator, StaysFiniteOnMessyMeshes) {
     Random random(8);
-    TriangleMesh mesh = lumpy();
+    TriangleMesh mesh = lumpy_sphere();
     for (int i = 0; i < 40; ++i)
         mesh.vertices.push_back(shapes::detail::vec3(random.normal(), random.normal(), 1e-6 * random.normal()));
     for (int i = 0; i < 300; ++i) {
@@ -128,8 +129,8 @@ class EveryCurvature : public testing::TestWithParam<CurvatureOptions> {
 };
 
 /// Compares where directions are well defined; `scale` is the ratio of the units of length.
-void expect_same_up_to(const VertexCurvature& a, const VertexCurvature& b, const Eigen::Matrix3f& rotation, float scale,
-                       float tolerance) {
+void expect_same_estimate(const VertexCurvature& a, const VertexCurvature& b, const Eigen::Matrix3f& rotation,
+                          float scale, float tolerance) {
     std::size_t compared = 0;
     for (std::size_t i = 0; i < a.k1.size(); ++i) {
         EXPECT_NEAR(a.k1[i], b.k1[i] * scale, tolerance) << i;
@@ -146,14 +147,14 @@ void expect_same_up_to(const VertexCurvature& a, const VertexCurvature& b, const
 
 TEST_P(EveryCurvature, MovesWithRigidMotionsAndScales) {
     const Eigen::Matrix3f rotation = shapes::random_rotation(6);
-    const TriangleMesh mesh = lumpy();
+    const TriangleMesh mesh = lumpy_sphere();
     const TriangleMesh moved =
-        shapes::translated(shapes::scaled(shapes::rotated(lumpy(), rotation), 0.01f), {0.003f, -0.002f, 0.005f});
-    expect_same_up_to(estimated(mesh, options()), estimated(moved, options()), rotation, 0.01f, 5e-3f);
+        shapes::translated(shapes::scaled(shapes::rotated(lumpy_sphere(), rotation), 0.01f), {0.003f, -0.002f, 0.005f});
+    expect_same_estimate(estimated(mesh, options()), estimated(moved, options()), rotation, 0.01f, 5e-3f);
 }
 
 TEST_P(EveryCurvature, TurnedInsideOutChangesSignAndOrder) {
-    TriangleMesh inverted = lumpy();
+    TriangleMesh inverted = lumpy_sphere();
     for (Face& face : inverted.faces) std::swap(face[0], face[1]);
     VertexCurvature b = estimated(inverted, options());
     // The same directions change places and, with the normal, one changes its sign: (e1, e2) of the one side is
@@ -166,7 +167,7 @@ TEST_P(EveryCurvature, TurnedInsideOutChangesSignAndOrder) {
         const auto [c111, c112, c122, c222] = b.derivative[i];
         b.derivative[i] = {-c222, -c122, -c112, -c111};
     }
-    expect_same_up_to(estimated(lumpy(), options()), b, Eigen::Matrix3f::Identity(), 1, 2e-3f);
+    expect_same_estimate(estimated(lumpy_sphere(), options()), b, Eigen::Matrix3f::Identity(), 1, 2e-3f);
 }
 
 TEST_P(EveryCurvature, OfASaddleConvergesAtSecondOrder) {
@@ -292,7 +293,7 @@ TEST(CurvatureSmoothing, TakesNoiseAway) {
 }
 
 TEST(CurvatureSmoothing, UnitIsTheMedianEdge) {
-    const TriangleMesh mesh = lumpy();
+    const TriangleMesh mesh = lumpy_sphere();
     CurvatureEstimator estimator(mesh.faces, mesh.vertex_count());
     const double unit = estimator.median_edge_length(mesh.vertices);
     const VertexCurvature relative = estimator.estimate(mesh.vertices, smoothed(1.5));

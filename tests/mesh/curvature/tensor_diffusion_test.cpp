@@ -24,11 +24,11 @@ TriangleMesh cone(std::uint32_t sides) {
     return mesh;
 }
 
-void prepare(const TriangleMesh& mesh, double width, std::size_t most_bytes) {
+void prepare(const TriangleMesh& mesh, double width, std::size_t max_bytes) {
     std::vector<TangentFrame> frames;
-    for (const Vec3& vertex : mesh.vertices) frames.push_back(any_frame(vertex.normalized()));
+    for (const Vec3& vertex : mesh.vertices) frames.push_back(frame_of_normal(vertex.normalized()));
     const VertexNeighbors neighbors = build_vertex_neighbors(mesh.faces, mesh.vertex_count());
-    TensorDiffusion diffusion(neighbors, most_bytes);
+    TensorDiffusion diffusion(neighbors, max_bytes);
     diffusion.prepare(mesh.vertices, frames, std::vector<float>(mesh.vertex_count(), 1), width);
 }
 

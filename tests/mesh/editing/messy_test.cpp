@@ -7,12 +7,12 @@
 #include <numeric>
 #include <string>
 
-#include "host/mesh/queries/axes.h"
 #include "host/mesh/curvature/curvature.h"
+#include "host/mesh/editing/validate.h"
+#include "host/mesh/queries/axes.h"
 #include "host/mesh/queries/geodesics.h"
 #include "host/mesh/queries/rays.h"
 #include "host/mesh/topology.h"
-#include "host/mesh/editing/validate.h"
 #include "tests/support/shapes.h"
 
 namespace exemplar {

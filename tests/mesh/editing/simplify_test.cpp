@@ -8,14 +8,14 @@
 
 #include "host/core/errors.h"
 #include "host/core/random.h"
-#include "host/mesh/topology.h"
 #include "host/mesh/editing/validate.h"
+#include "host/mesh/topology.h"
 #include "tests/support/shapes.h"
 
 namespace exemplar {
 namespace {
 
-double total_area(const TriangleMesh& mesh) {
+double simplified_area(const TriangleMesh& mesh) {
     const std::vector<float> areas = face_areas(mesh);
     return std::accumulate(areas.begin(), areas.end(), 0.0);
 }
@@ -44,7 +44,7 @@ TEST(Simplify, ASphereStaysAClosedEvenSphere) {
     EXPECT_TRUE(report.clean()) << report.messages().front();
     EXPECT_EQ(report.boundary_edges, 0U);
     EXPECT_FALSE(report.inside_out);
-    EXPECT_NEAR(total_area(simple.mesh), total_area(mesh), 0.02 * total_area(mesh));
+    EXPECT_NEAR(simplified_area(simple.mesh), simplified_area(mesh), 0.02 * simplified_area(mesh));
     for (const Vec3& v : simple.mesh.vertices) EXPECT_NEAR(v.norm(), 1, 0.01);
     std::vector<float> areas = face_areas(simple.mesh);
     std::ranges::sort(areas);
@@ -58,7 +58,7 @@ TEST(Simplify, ASphereStaysAClosedEvenSphere) {
 TEST(Simplify, EdgesOfABoxStaySharp) {
     const TriangleMesh mesh = shapes::box(1.0F, 1.0F, 1.0F, 40);
     const SimplifiedMesh simple = simplify_mesh(mesh, 1200);
-    EXPECT_NEAR(total_area(simple.mesh), 6, 0.06);
+    EXPECT_NEAR(simplified_area(simple.mesh), 6, 0.06);
     for (const Vec3& v : simple.mesh.vertices) EXPECT_NEAR(v.cwiseAbs().maxCoeff(), 0.5F, 0.01F);
 }
 
@@ -70,7 +70,7 @@ TEST(Simplify, DoesNotDependOnScaleOrPlace) {
         for (Vec3& v : scaled.vertices) v *= scale;
         const SimplifiedMesh simple = simplify_mesh(scaled, 500);
         EXPECT_NEAR(static_cast<double>(simple.mesh.face_count()), static_cast<double>(expected.mesh.face_count()), 25);
-        EXPECT_NEAR(total_area(simple.mesh) / (double{scale} * scale), total_area(expected.mesh), 0.05);
+        EXPECT_NEAR(simplified_area(simple.mesh) / (double{scale} * scale), simplified_area(expected.mesh), 0.05);
         EXPECT_LT(farthest_shift(scaled, simple), 0.25F * scale);
     }
 }

@@ -34,10 +34,11 @@ std::vector<float> naive_distances(const DualGraph& graph, std::uint32_t source)
     std::vector<bool> settled(graph.face_count());
     distance[source] = 0;
     for (;;) {
-        std::uint32_t best = k_none;
+        std::uint32_t best = k_invalid_index;
         for (std::uint32_t f = 0; f < distance.size(); ++f)
-            if (!settled[f] && distance[f] < k_infinity && (best == k_none || distance[f] < distance[best])) best = f;
-        if (best == k_none) return distance;
+            if (!settled[f] && distance[f] < k_infinity && (best == k_invalid_index || distance[f] < distance[best]))
+                best = f;
+        if (best == k_invalid_index) return distance;
         settled[best] = true;
         for (std::uint32_t a = graph.begin[best]; a < graph.begin[best + 1]; ++a)
             distance[graph.arcs[a].face] =

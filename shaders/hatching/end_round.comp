@@ -1,0 +1,150 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/hatching.h"
+
+// Ends a round: assigns storage to the strokes that won, removes exhausted lists from the front, appends the lists
+// of the new strokes, and sets up the next round (host/hatching/placement/streamlines.cpp). A single workgroup:
+// reads and writes some 50 bytes for each trial and each list of the front.
+layout(local_size_x = k_end_round_group) in;
+layout(push_constant) uniform Push { PlacementParameters parameters; };
+layout(set = 0, binding = 0, std430) coherent buffer Lists { SeedQueueRecord lists[]; };
+layout(set = 0, binding = 1, std430) coherent buffer Trials { TrialRecord trials[]; };
+layout(set = 0, binding = 2, std430) coherent buffer Counts { PlacementCounts counts; };
+layout(set = 0, binding = 3, std430) writeonly buffer Strokes { StrokeRecord strokes[]; };
+#include "shaders/lib/group_scan.glsl"
+
+// Counts over the front at the end of a round.
+struct Round {
+    uint won;      // strokes
+    uint points;   // points of the won strokes
+    uint kept;     // lists that stay in the front
+    uint waiting;  // tried lists that are not exhausted
+};
+
+bool has_won(uint i) {
+    return i < counts.trials && (trials[i].state & (k_open_trial | k_lost_trial)) == k_open_trial;
+}
+// Lists that were not tried stay; a part leaves the front when it has a stroke.
+bool is_kept(uint i) {
+    if (counts.in_blocks != 0u || i >= counts.front) return false;
+    if (i >= counts.trials) return true;
+    const bool is_part = (lists[parameters.blocks + i].kind & k_source_mask) == k_part_source;
+    return (trials[i].state & k_pending_trial) != 0u && !(is_part && has_won(i));
+}
+
+Round measured(uint items) {
+    Round own = Round(0u, 0u, 0u, 0u);
+    for (uint i = gl_LocalInvocationID.x; i < items; i += k_end_round_group) {
+        if (has_won(i)) {
+            own.won += 1u;
+            own.points += trials[i].count;
+        }
+        if (is_kept(i)) own.kept += 1u;
+        if (i < counts.trials && (trials[i].state & k_pending_trial) != 0u) own.waiting += 1u;
+    }
+    Round all;
+    exclusive_sum(own.won);
+    all.won = group_total;
+    exclusive_sum(own.points);
+    all.points = group_total;
+    exclusive_sum(own.kept);
+    all.kept = group_total;
+    exclusive_sum(own.waiting);
+    all.waiting = group_total;
+    return all;
+}
+
+// Compacts the lists that stay, in their order, and assigns strokes their storage, in the order of the trials.
+void compact(uint items) {
+    Round before = Round(counts.strokes, counts.points, parameters.blocks, 0u);
+    for (uint begin = 0; begin < items; begin += k_end_round_group) {
+        const uint i = begin + gl_LocalInvocationID.x;
+        const bool won = has_won(i), kept = is_kept(i);
+        SeedQueueRecord list = SeedQueueRecord(0u, 0u, 0u, 0u);
+        if (kept) list = lists[parameters.blocks + i];
+        // Where strokes are a pixel apart, the clearance map may miss a stroke at its own seed: it would be placed
+        // again forever.
+        if (won) ++list.next;
+        if (won && counts.in_blocks != 0u) ++lists[i].next;
+        const uint count = won ? trials[i].count : 0u;
+        // Both counts are below 2^16.
+        const uint counted = exclusive_sum((won ? 1u : 0u) | (kept ? 1u << 16 : 0u)), total = group_total;
+        const uint first = before.points + exclusive_sum(count), points = group_total;
+        memoryBarrierBuffer();
+        barrier();
+        if (kept) lists[before.kept + (counted >> 16)] = list;
+        if (won) {
+            const uint stroke = before.won + (counted & 0xffffu);
+            trials[i].target = first;
+            trials[i].claim = stroke;
+            strokes[stroke] = StrokeRecord(first, count, trials[i].state >> k_layer_shift, 0u);
+        }
+        before.won += total & 0xffffu;
+        before.kept += total >> 16;
+        before.points += points;
+        memoryBarrierBuffer();
+        barrier();
+    }
+}
+
+// Appends the lists of the new strokes' sides and ends to the lists that stay.
+void extend(uint kept) {
+    for (uint i = gl_LocalInvocationID.x; i < counts.trials; i += k_end_round_group) {
+        if (!has_won(i)) continue;
+        const uint target = parameters.blocks + kept + 4u * (trials[i].claim - counts.strokes);
+        const uint layer = trials[i].state & ~((1u << k_layer_shift) - 1u);
+        for (uint source = k_left_side_source; source <= k_last_end_source; ++source)
+            lists[target + source - k_left_side_source] = SeedQueueRecord(layer | source, trials[i].target, trials[i].count, 0u);
+    }
+}
+
+uint missing_room(Round round) {
+    uint full = 0u;
+    if (counts.strokes + round.won > parameters.stroke_room) full |= k_full_strokes;
+    if (counts.points + round.points > parameters.point_room) full |= k_full_points;
+    if (parameters.blocks + round.kept + 4u * round.won > parameters.list_room) full |= k_full_lists;
+    return full;
+}
+
+void set_groups(uint placing) {
+    counts.trial_groups[0] = (counts.trials + k_hatch_group - 1u) / k_hatch_group;
+    counts.candidate_groups[0] = 0u;
+    counts.place_groups[0] = placing;
+}
+
+// Sets up the next round: the front or, if it is empty, the holes, as long as there are some.
+void set_up_next_round(Round round, uint placing) {
+    counts.strokes += round.won;
+    counts.points += round.points;
+    counts.front = round.kept + 4u * round.won;
+    const bool done = counts.in_blocks != 0u && round.waiting == 0u;
+    counts.in_blocks = counts.front == 0u ? 1u : 0u;
+    counts.trials = counts.front != 0u ? min(counts.front, parameters.candidates) : done ? 0u : parameters.blocks;
+    set_groups(placing);
+    counts.place_groups[1] = counts.candidate_groups[1];
+    counts.candidate_groups[1] = 1u;
+}
+
+void main() {
+    const uint placing = counts.candidate_groups[0];
+    if (counts.trials == 0u || counts.full != 0u) return;
+
+    const uint items = counts.in_blocks != 0u ? counts.trials : counts.front;
+    const Round round = measured(items);
+    const uint full = missing_room(round);
+    if (full == 0u) {
+        compact(items);
+        extend(round.kept);
+    }
+    memoryBarrierBuffer();
+    barrier();
+    if (gl_LocalInvocationID.x != 0u) return;
+    if (full == 0u) {
+        set_up_next_round(round, placing);
+    } else {
+        counts.full = full;
+        counts.held_groups = placing;
+        set_groups(0u);
+        counts.trial_groups[0] = 0u;
+    }
+}

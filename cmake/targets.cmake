@@ -65,6 +65,8 @@ function(exemplar_test name label dir)
   list(FILTER sources EXCLUDE REGEX "/(programs|support)/")
   add_executable(test_${name} ${sources})
   exemplar_unity(test_${name})
+  # Checks name their file: by its path in the project, so that clones share what a compiler cache holds.
+  target_compile_options(test_${name} PRIVATE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
   target_link_libraries(test_${name} PRIVATE exemplar_options ${ARGN} GTest::gmock GTest::gtest GTest::gtest_main)
   set(list ${CMAKE_CURRENT_BINARY_DIR}/test_${name}.cmake)
   add_custom_command(

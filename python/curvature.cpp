@@ -86,7 +86,7 @@ CurvatureModelPointer train_curvature(const AnimationObject& animation,
     training.truth.robust = robust_of(robust);
     training.learner = learner_of(learner);
     training.variance = variance;
-    // As on the command line: components that are small in training may be large in other folds of cloth.
+    // Cloth keeps all components, as on the command line: small ones in training may be large in other folds.
     if (animation.animation.kind == AnimationKind::sequence) training.dropped_variance = 0;
     const std::vector<FrameRef> frames = chosen_frames(animation, chosen);
     return std::make_shared<CurvatureModel>(long_result([&] {

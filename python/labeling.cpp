@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 using ModelPointer = std::shared_ptr<LabelingModel>;
 
-/// What a model says about a mesh.
+/// A labeled mesh: its labels, their probabilities and their names.
 struct LabelingObject {
     FaceLabeling labeling;
     std::vector<std::string> names;

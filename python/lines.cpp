@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is drawn, and how.
+/// Types, style, view and measurement of the lines to draw.
 struct LinesJob {
     std::vector<LineType> types;
     DrawingStyle style;

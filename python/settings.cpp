@@ -1,4 +1,4 @@
-// What holds for the whole process: threads, progress, folders of remembered results.
+// Settings of the whole process: threads, progress, folders of remembered results.
 
 #include <memory>
 

@@ -17,11 +17,11 @@ HOST = {
     'data': {'core', 'mesh', 'learn'},
     'imaging': {'core', 'mesh'},
     'animation': {'core', 'mesh'},
-    'synth': {'core', 'mesh', 'animation', 'learn', 'imaging', 'hatching'},
+    'synth': {'core', 'mesh', 'animation', 'hatching'},
     'lines': {'core', 'mesh', 'imaging'},
-    'curvature': {'core', 'mesh', 'learn', 'data', 'animation', 'lines', 'imaging'},
+    'curvature': {'core', 'mesh', 'learn', 'data', 'animation', 'lines'},
     'shape': {'core', 'mesh', 'learn'},
-    'labeling': {'core', 'mesh', 'learn', 'graphcut', 'data', 'imaging', 'shape'},
+    'labeling': {'core', 'mesh', 'learn', 'graphcut', 'data', 'shape'},
     'hatching': {'core', 'mesh', 'learn', 'graphcut', 'data', 'imaging', 'lines', 'shape'},
 }
 GPU = {

@@ -9,7 +9,7 @@
 
 namespace exemplar {
 
-/// Which frames of an animation a command works on.
+/// The frames of an animation that a command works on.
 struct FrameArguments {
     std::vector<std::string> clips;
     std::string range;     ///< "a:b", either end may be left out

@@ -31,7 +31,7 @@ std::string first_bytes(const fs::path& path) {
     return {bytes.data(), static_cast<std::size_t>(stream.gcount())};
 }
 
-/// What is wrong with a folder to write into, or "".
+/// Returns what is wrong with a folder to write into, or "".
 std::string why_not_writable(fs::path folder) {
     if (folder.empty()) folder = ".";
     std::error_code error;

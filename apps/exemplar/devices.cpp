@@ -81,7 +81,7 @@ void print_table(const std::vector<DeviceRow>& rows) {
 void run_devices(const DevicesOptions& options) {
     const auto limits = apply_common_options(options.common);
     std::vector<DeviceInfo> devices = list_devices();
-    // Where none can be used the table says why, and the error of choosing comes after it.
+    // If no device can be used, the table says why before choosing one throws.
     const bool choice = std::ranges::any_of(devices, [](const DeviceInfo& info) { return info.unusable.empty(); });
     const std::size_t chosen = choice ? select_device(devices, wanted_device(options)) : devices.size();
 

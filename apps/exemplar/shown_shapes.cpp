@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 /// Maximum size of a file; one of two million faces is smaller. A larger file is not the one that the catalog
 /// describes.
-constexpr std::uintmax_t k_most_bytes = 64 << 20;
+constexpr std::uintmax_t k_max_bytes = 64 << 20;
 
 bool is_finite(const TriangleMesh& mesh) {
     return std::ranges::all_of(mesh.vertices, [](const Vec3& vertex) { return vertex.allFinite(); });
@@ -82,7 +82,7 @@ ShownShape simplified(const ShownShape& shape, std::size_t max_faces) {
 
 std::optional<ShownShape> read_shown_shape(const fs::path& path, std::size_t max_faces) {
     std::error_code unreadable;
-    if (!fs::is_regular_file(path, unreadable) || fs::file_size(path, unreadable) > k_most_bytes) return {};
+    if (!fs::is_regular_file(path, unreadable) || fs::file_size(path, unreadable) > k_max_bytes) return {};
     try {
         std::optional<ShownShape> shape = per_triangle(read_mesh(path));
         if (shape && shape->mesh.face_count() > max_faces) shape = simplified(*shape, max_faces);

@@ -64,7 +64,7 @@ std::string words_of_option(const CommandHelp& command, const ArgumentHelp& opti
                                  fmt::join(option.words, " "), option.comma ? " comma=," : ""));
 }
 
-/// What follows an option that takes a value.
+/// Writes the cases that complete the value of an option.
 std::string values_of_options(const CommandHelp& program) {
     const auto of_kind = [&](Completion kind) {
         return option_patterns(program, [=](const ArgumentHelp& o) {
@@ -80,7 +80,7 @@ std::string values_of_options(const CommandHelp& program) {
     return text + "    esac\n";
 }
 
-/// What follows anything else: the command's options, subcommands and arguments.
+/// Writes the case of a command: completes its options, subcommands and arguments.
 std::string arguments_of_commands(const CommandHelp& program) {
     std::string text = "    [ -n \"$kind\" ] || case $command in\n";
     for (const CommandHelp* command : all_commands(program)) {

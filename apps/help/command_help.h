@@ -7,14 +7,14 @@
 
 namespace exemplar {
 
-/// What a shell's completion offers for a value.
+/// The kind of values that a shell offers to complete.
 enum class Completion { nothing, words, files, folders };
 
 /// An option or a positional argument, as it was defined.
 struct ArgumentHelp {
-    std::vector<std::string> names;  ///< "-h", "--help"; of a positional its placeholder, "MESH"
+    std::vector<std::string> names;  ///< "-h", "--help"; for a positional argument the name of its value, "MESH"
     std::string description;
-    std::string value;          ///< placeholder of the value, "FOLDER"; empty if there is none
+    std::string value;          ///< name of the value in the help text, "FOLDER"; empty if it takes none
     std::string range;          ///< "from 1 to 64", or empty
     std::string default_value;  ///< empty if there is none
     std::vector<std::string> words;

@@ -22,7 +22,7 @@ void write_text(const fs::path& path, const std::string& text) {
     write_file_atomically(path, [&](std::ostream& out) { out << text; });
 }
 
-/// As https://reproducible-builds.org asks for.
+/// Returns the date of SOURCE_DATE_EPOCH if it is set, else today (https://reproducible-builds.org).
 std::string date_of_pages() {
     std::time_t time = std::time(nullptr);
     if (const char* text = std::getenv("SOURCE_DATE_EPOCH")) {

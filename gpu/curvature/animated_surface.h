@@ -17,7 +17,7 @@
 
 namespace exemplar {
 
-/// Where the curvature of a frame comes from.
+/// Source of the curvature of a frame: none is computed, estimated from the posed mesh, or predicted by a model.
 enum class CurvatureSource { none, estimated, learned };
 
 /// An animated surface on the device: vertices, normals and curvature of a pose or a frame of a mesh sequence.

@@ -23,7 +23,7 @@ ContentKey content_key(std::string_view use, std::span<const std::span<const std
 void BufferCache::add(const ContentKey& key, std::shared_ptr<Buffer> buffer) {
     bytes_ += buffer->bytes();
     kept_.push_front({key, std::move(buffer)});
-    while (bytes_ > most_bytes_ && kept_.size() > 1) {
+    while (bytes_ > max_bytes_ && kept_.size() > 1) {
         bytes_ -= kept_.back().buffer->bytes();
         kept_.pop_back();
     }

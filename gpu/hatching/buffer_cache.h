@@ -27,7 +27,7 @@ inline ContentKey content_key(std::string_view use, std::initializer_list<std::s
 class BufferCache {
   public:
     /// Keeps at most that many bytes, but always the buffer used last.
-    explicit BufferCache(std::size_t max_bytes) : most_bytes_(max_bytes) {}
+    explicit BufferCache(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
     /// Returns the buffer of a key; if it is not cached, stores what make() returns. The buffer lives at least as
     /// long as the result.
@@ -48,7 +48,7 @@ class BufferCache {
         std::shared_ptr<Buffer> buffer;
     };
     void add(const ContentKey& key, std::shared_ptr<Buffer> buffer);
-    std::size_t most_bytes_, bytes_ = 0;
+    std::size_t max_bytes_, bytes_ = 0;
     std::list<Kept> kept_;  // most recently used first
 };
 

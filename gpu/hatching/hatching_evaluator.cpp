@@ -80,7 +80,7 @@ void copy_bounded(std::span<const float> values, std::span<std::byte> memory) {
     parallel_for(
         values.size(),
         [&](std::size_t i) {
-            const float x = std::clamp(values[i], -shared::k_largest_value, shared::k_largest_value);
+            const float x = std::clamp(values[i], -shared::k_max_value, shared::k_max_value);
             out[i] = std::isnan(x) ? 2 * shared::k_no_value : x;
         },
         65536);

@@ -25,7 +25,7 @@ using shared::FieldParameters;
 using shared::uvec4;
 using shared::vec4;
 
-constexpr std::size_t k_most_segments = std::size_t{1} << shared::k_line_rounds;
+constexpr std::size_t k_max_segments = std::size_t{1} << shared::k_line_rounds;
 
 std::size_t divide_up(std::size_t count, std::size_t size) {
     return (count + size - 1) / size;
@@ -63,7 +63,7 @@ FamilyThresholds family_thresholds(const LineThresholds& thresholds) {
 GpuLineExtraction::GpuLineExtraction(const GpuLineSurface& surface, std::size_t max_segments)
     : surface_(surface),
       room_(
-          std::min({std::max<std::size_t>(surface.surface().face_count(), k_min_room), max_segments, k_most_segments})),
+          std::min({std::max<std::size_t>(surface.surface().face_count(), k_min_room), max_segments, k_max_segments})),
       scan_kernel_(surface.surface().device(), shaders::lines_scan_comp,
                    {.push_constants = layout_of<shared::ScanParameters>(), .constants = {{0, 0}}}) {
     Device& device = surface.surface().device();

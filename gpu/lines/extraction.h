@@ -42,8 +42,9 @@ class GpuLineExtraction {
 
     /// A shared::LineSegmentRecord each.
     const Buffer& segments() const { return segments_; }
-    /// Where the segments of faces begin. Per face: the number of segments of the faces before it in its group of
-    /// shared::k_count_group, times 256, plus its own number. Per group: the number of segments before it.
+    /// Segment counts. Per face: 256 times the number of segments of the faces before it in its group (of
+    /// shared::k_count_group faces), plus the face's own number of segments. Per group: the number of segments before
+    /// it. Their sum is the index of a face's first segment.
     const Buffer& face_counts() const { return face_counts_; }
     const Buffer& face_groups() const { return face_groups_; }
     /// segments(), face_counts() and face_groups() of the previous record; counts() has their number. Faces are the

@@ -27,7 +27,7 @@ DrawPipeline stroke_pipeline(Device& device) {
 }
 
 // Maximum vertex index that every device supports in index buffers.
-constexpr std::uint32_t k_most_indexed = (1u << 24) - 1;
+constexpr std::uint32_t k_max_indexed = (1u << 24) - 1;
 
 }  // namespace
 
@@ -78,7 +78,7 @@ void LineRenderer::draw_surface(Stream& stream, const GpuCurvedSurface& snapshot
     painter_.draw(pass,
                   {.face_count = surface.face_count(),
                    .faces = &surface.faces(),
-                   .indices = surface.vertex_count() <= k_most_indexed ? &surface.indices() : nullptr,
+                   .indices = surface.vertex_count() <= k_max_indexed ? &surface.indices() : nullptr,
                    .vertices = &snapshot.vertices,
                    .normals = &snapshot.normals,
                    .colors = face_colors_ ? &face_colors_ : nullptr,

@@ -20,7 +20,7 @@
 
 namespace exemplar {
 
-/// What one line drawing shows.
+/// View, line types and style of one line drawing.
 struct LinePicture {
     StrokeView view;
     std::uint32_t families = 0;  ///< line_families() of the types to draw; 0: the surface alone

@@ -29,7 +29,7 @@ struct RigNode {
     NodeTransform rest;
 };
 
-/// What vertices are bound to: a joint of a skin, or a node that carries a mesh without a skin.
+/// A node that vertices are bound to: a joint of a skin, or a node that carries a mesh without a skin.
 struct Bone {
     std::uint32_t node = 0;
     Affine inverse_bind = Affine::Identity();  ///< from the space of the rest mesh to that of the node

@@ -44,13 +44,13 @@ void merge_bones(std::vector<Influence>& row) {
 
 /// Drops weights too small to be visible and scales the rest to sum to one; returns the previous sum.
 double normalize_row(std::vector<Influence>& row) {
-    constexpr float k_least_weight = 1e-4f;
+    constexpr float k_min_weight = 1e-4f;
     std::erase_if(row, [](const Influence& influence) { return influence.weight <= 0; });
     const double before = weight_sum(row);
     if (row.empty()) return before;
     scale_weights(row, before);
     merge_bones(row);
-    std::erase_if(row, [&](const Influence& influence) { return influence.weight < k_least_weight; });
+    std::erase_if(row, [&](const Influence& influence) { return influence.weight < k_min_weight; });
     scale_weights(row, weight_sum(row));
     return before;
 }

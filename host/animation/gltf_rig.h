@@ -13,7 +13,7 @@ namespace exemplar::animation_io {
 /// would be taken for a skeleton.
 constexpr std::string_view k_blend_shapes_generator = "Blend shapes written by Exemplar";
 
-/// Which entries of a pose the nodes of a glTF file drive.
+/// Maps the nodes of a glTF file to the entries of a pose that they drive.
 struct GltfLinks {
     struct Targets {
         std::uint32_t begin = 0, count = 0;

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float k_default_gigabytes = 20, k_most_gigabytes = 1e9F;
+constexpr float k_default_gigabytes = 20, k_max_gigabytes = 1e9F;
 constexpr std::time_t k_day = 24 * 60 * 60;  ///< longer than writing any entry takes
 
 struct Entry {
@@ -84,7 +84,7 @@ std::uint64_t cache_bound() {
     const char* value = std::getenv("EXEMPLAR_CACHE_GB");
     if (!value || !*value) return static_cast<std::uint64_t>(1e9 * k_default_gigabytes);
     const std::optional<float> gigabytes = mesh_io::parse_float(value);
-    if (!gigabytes || !(*gigabytes >= 0 && *gigabytes <= k_most_gigabytes))
+    if (!gigabytes || !(*gigabytes >= 0 && *gigabytes <= k_max_gigabytes))
         throw UsageError(
             fmt::format("EXEMPLAR_CACHE_GB is {}; give the gigabytes that remembered results may take, "
                         "such as 20, or 0 to remember nothing",

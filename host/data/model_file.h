@@ -6,7 +6,7 @@
 #include "host/data/safetensors.h"
 #include "host/learn/boosting/boosted_stumps.h"
 
-/// What the model files of all systems have in common.
+/// The parts that model files of all systems share.
 namespace exemplar {
 
 /// Throws ModelError that says how the file is damaged.

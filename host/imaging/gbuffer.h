@@ -11,7 +11,7 @@
 
 namespace exemplar {
 
-/// What a camera sees of a mesh through the center of each pixel, row by row from the top left.
+/// For each pixel, row by row from the top left, the surface point that a camera sees through its center.
 struct GBuffer {
     int width = 0, height = 0;
     std::vector<std::uint32_t> face;                ///< k_no_face where no face is visible

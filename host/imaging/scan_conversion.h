@@ -11,7 +11,7 @@ namespace exemplar {
 
 constexpr std::uint32_t k_no_face = 0xFFFFFFFF;
 
-/// What is visible at a sample of an image.
+/// The visible surface point of one sample of an image.
 struct VisibleSample {
     double depth = std::numeric_limits<double>::infinity();  ///< depth in clip space, in [0, 1]
     std::uint32_t face = k_no_face;

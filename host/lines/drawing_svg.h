@@ -35,7 +35,7 @@ struct SvgOptions {
     std::string title = "Drawing";
 };
 
-/// What was written.
+/// The size of what was written.
 struct SvgSummary {
     std::size_t paths = 0, points = 0;
     double length = 0;  ///< of all visible runs, in pixels

@@ -68,7 +68,7 @@ std::optional<RayStatistics> measure_around(const PreparedMesh& prepared, const 
 
 }  // namespace
 
-/// As with the shape diameter, a cone without valid rays takes the values of the next wider cone that has one.
+/// A cone without valid rays takes, as for the shape diameter, the values of the next wider cone that has one.
 FeatureMatrix medial_features(const PreparedMesh& prepared, const RayScene& scene, const InwardRays& rays) {
     const InwardRayPattern& pattern = inward_ray_pattern();
     ConeStatistics statistics(prepared.face_count());

@@ -4,7 +4,7 @@
 #define EXEMPLAR_ORIENTATIONS_GLSL
 #include "shaders/hatching/placement_grid.glsl"
 
-const int k_least_agreement = 358;  // minimum length of a mean of directions, in shares
+const int k_min_agreement = 358;  // minimum length of a mean of directions, in shares
 
 // Return 1 if no barrier is to the right of a pixel, or below it.
 uint free_along(uvec4 texel) {
@@ -61,7 +61,7 @@ ivec2 direction_at(uint layer, ivec2 point, ivec2 heading) {
     const ivec2 mean = (sum.xy + (1 << 15)) >> 16;
     const int size = int(floor_sqrt(uint(dot_of(mean, mean))));
     const uvec4 own = mix(mix(t11, t01, bvec4(is_low.x)), mix(t10, t00, bvec4(is_low.x)), bvec4(is_low.y));
-    const bool known = all(bvec3(direction_word(own, layer) != 0u, size != 0, size << 12 >= sum.z * k_least_agreement));
+    const bool known = all(bvec3(direction_word(own, layer) != 0u, size != 0, size << 12 >= sum.z * k_min_agreement));
     return half_angle(mean, size, heading) * int(known);
 }
 

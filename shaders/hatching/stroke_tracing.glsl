@@ -9,7 +9,7 @@
 
 const int k_far_turn = 2 * k_unit;
 const int k_itself_bits = 8;
-const int k_most_pieces = 32;
+const int k_max_pieces = 32;
 const int k_far_from_itself = 1 << 20;
 const int k_beside_stroke = 1032;
 const int k_beside_gap = 1250;
@@ -79,7 +79,7 @@ bool meets_itself(ivec2 next, uvec4 texel) {
     const bool far_turned = max(branch.turn - turns.x, turns.y - branch.turn) > k_far_turn;
     const int test = share_of_spacing(spacing_of(texel), parameters.test_share);
     const int begin = -other.reach, last = branch.reach - (2 * test >> k_pixel_bits);
-    const int stride = 1 + max(last - begin, 0) / k_most_pieces, end = mix(begin, last, all(bvec2(branch.unchecked_steps == 0, far_turned)));
+    const int stride = 1 + max(last - begin, 0) / k_max_pieces, end = mix(begin, last, all(bvec2(branch.unchecked_steps == 0, far_turned)));
     int nearest = k_far_from_itself;
     for (int i = begin; i < end; i += stride) {
         const ivec2 from = ways[ring_index(branch.sign * i)], to = ways[ring_index(branch.sign * min(i + stride, end))];

@@ -25,12 +25,12 @@ uint claim_of(uint i, uint shortness) {
 // Returns how many workgroups share the pixels around a streamline, so that each stays far below the limit of D1 in
 // docs/portability.md.
 uint parts_of(uint begin, uint count) {
-    const uint k_most_rounds = 16384u;
+    const uint k_max_rounds = 16384u;
     int spacing = 0;
     for (uint k = 0u; k < count; ++k)
         spacing = max(spacing, spacing_of(texel_of(ways[way_first + (begin + k) % parameters.room])));
     const uint passes = 1u + count / k_hatch_group, side = uint((5 * spacing >> (k_spacing_bits + 1)) + 4);
-    return 1u + passes * side * side / k_most_rounds;
+    return 1u + passes * side * side / k_max_rounds;
 }
 
 void put_trial(uint i, ivec2 part) {

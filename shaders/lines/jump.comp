@@ -22,10 +22,10 @@ void main() {
     if (node >= 2u * counts.segments) return;
 
     const uvec4 way = texelFetch(source, int(2u * node)), least = texelFetch(source, int(2u * node + 1u));
-    const uvec4 way_on = texelFetch(source, int(2u * way.x)), least_on = texelFetch(source, int(2u * way.x + 1u));
-    target[2u * node] = uvec4(way_on.x, way.y + way_on.y, floatBitsToUint(added(way.z, way_on.z)), way_on.w);
+    const uvec4 next_way = texelFetch(source, int(2u * way.x)), next_least = texelFetch(source, int(2u * way.x + 1u));
+    target[2u * node] = uvec4(next_way.x, way.y + next_way.y, floatBitsToUint(added(way.z, next_way.z)), next_way.w);
     target[2u * node + 1u] =
-        least_on.x / 2u < least.x / 2u
-            ? uvec4(least_on.x, way.y + least_on.y, floatBitsToUint(added(way.z, least_on.z)), 0u)
+        next_least.x / 2u < least.x / 2u
+            ? uvec4(next_least.x, way.y + next_least.y, floatBitsToUint(added(way.z, next_least.z)), 0u)
             : least;
 }

@@ -15,7 +15,7 @@ layout(set = 0, binding = 1) uniform usamplerBuffer segments;
 layout(set = 0, binding = 2) uniform usamplerBuffer faces;
 layout(set = 0, binding = 3) uniform usamplerBuffer neighbors;
 layout(set = 0, binding = 4) uniform samplerBuffer positions;
-// Of the previous frame; ends as written by traces.comp.
+// The lines of the previous frame; traces.comp has written old_ends.
 layout(set = 0, binding = 5) uniform usamplerBuffer face_counts;
 layout(set = 0, binding = 6) uniform usamplerBuffer groups;
 layout(set = 0, binding = 7) uniform usamplerBuffer old_segments;

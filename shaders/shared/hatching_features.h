@@ -76,9 +76,9 @@ struct PropertyTerm {
     float high;
     float least;
 };
-// Values of columns are in [-k_largest_value, k_largest_value], whose squares are finite; lower ones mean that there
+// Values of columns are in [-k_max_value, k_max_value], whose squares are finite; lower ones mean that there
 // is no value.
-const float k_largest_value = 1e19f;
+const float k_max_value = 1e19f;
 const float k_no_value = -1e30f;
 
 #ifdef __cplusplus

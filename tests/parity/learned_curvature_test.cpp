@@ -114,7 +114,7 @@ TEST(LearnedCurvatureParity, Neurons) {
 }
 
 TEST(LearnedCurvatureParity, ManyComponents) {
-    expect_learned_parity({.vertices = 50, .blocks = 60, .most_components = 30});
+    expect_learned_parity({.vertices = 50, .blocks = 60, .max_components = 30});
 }
 
 TEST(LearnedCurvatureParity, BasesInManyRanges) {

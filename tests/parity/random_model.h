@@ -20,7 +20,7 @@ struct Shape {
     std::size_t segments = 3;  // of principal attributes
     std::size_t blocks = 10;   // of components that share their features
     std::size_t neurons = 0;
-    std::size_t most_components = 5;  // of a block and attribute
+    std::size_t max_components = 5;  // of a block and attribute
 };
 
 struct Surface {
@@ -153,7 +153,7 @@ class RandomModel {
             if (random_.uniform() < 0.4) vertices.push_back(v);
         for (std::size_t a = 0; a < attribute_count(shape.set); ++a) {
             if (random_.uniform() < 0.25) continue;
-            const std::size_t components = 1 + random_.index(shape.most_components);
+            const std::size_t components = 1 + random_.index(shape.max_components);
             builder.add_basis(a, vertices, 0.3f * random_matrix(vertices.size(), components), first,
                               0.3f * random_matrix(components, features));
         }

@@ -219,7 +219,8 @@ struct Local {
         CurvatureEvaluator reference(model);
         return differences_of(curvature, reference.evaluate(rest.vertices, normals));
     }
-    // Of patches: 24 vertices for their rotations; of inputs: a map in halves, vertices and normals of their patch.
+    // A patch reads 24 vertices for its rotation; an input reads a map in halves, and vertices and normals of its
+    // patch.
     std::map<std::string, Work> work() const {
         const auto patches = static_cast<double>(model.segments.count()),
                    inputs = static_cast<double>(model.state.input_count),

@@ -1,18 +1,17 @@
 #include "apps/bench/kernels/statistics.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "host/core/statistics.h"
 
 namespace exemplar {
 
 double median(std::span<const double> values) {
     if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-    std::vector<double> sorted(values.begin(), values.end());
-    std::ranges::sort(sorted);
-    const std::size_t middle = sorted.size() / 2;
-    return sorted.size() % 2 ? sorted[middle] : 0.5 * (sorted[middle - 1] + sorted[middle]);
+    std::vector<double> reordered(values.begin(), values.end());
+    return median(std::span(reordered));
 }
 
 double relative_error(std::span<const double> values) {

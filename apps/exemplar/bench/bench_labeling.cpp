@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t k_faces = 20'000, k_bench_training_meshes = 6;
 constexpr std::size_t k_quick_rows = 1500;  // faces per mesh of a model that serves only to be applied
 
-/// What takes the place of a device's shaders on a CPU; keeps to the number of threads.
+/// The CPU implementations that replace shaders where the device is a CPU; they obey the thread limit.
 struct HostBackend {
     CpuStumpScorer scorer;
     FastContextHistograms context;

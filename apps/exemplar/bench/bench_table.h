@@ -9,7 +9,7 @@
 
 namespace exemplar {
 
-/// What one run cost.
+/// Time and memory of one run.
 struct Cost {
     double wall = 0;  ///< seconds
     double cpu = 0;   ///< seconds of all threads

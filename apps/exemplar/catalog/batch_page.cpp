@@ -24,13 +24,13 @@ using TableRow = std::vector<std::string>;
 constexpr const char* k_page = "index.html";
 
 // Bounds of what is shown: a mesh of 5,000 faces takes 80 kB of the page, a row of a table at most 2 kB.
-constexpr std::size_t k_most_views = 48, k_views_per_category = 6, k_most_shown_faces = 5000;
-constexpr std::int64_t k_most_read_faces = 200'000;  ///< of a shape that is to be shown: each is read and simplified
-constexpr std::size_t k_most_rows = 200, k_least_sure = 50, k_most_labels = 255;
-constexpr std::size_t k_most_text = 300;  ///< bytes of a name or an error
+constexpr std::size_t k_max_views = 48, k_views_per_category = 6, k_max_shown_faces = 5000;
+constexpr std::int64_t k_max_read_faces = 200'000;  ///< of a shape that is to be shown: each is read and simplified
+constexpr std::size_t k_max_rows = 200, k_least_sure = 50, k_max_labels = 255;
+constexpr std::size_t k_max_text = 300;  ///< bytes of a name or an error
 
 std::string shown_text(const std::string& text) {
-    return mesh_io::printable(text, k_most_text);
+    return mesh_io::printable(text, k_max_text);
 }
 std::string percent_of(double share) {
     return std::isnan(share) ? "–" : fmt::format("{:.1f} %", 100 * share);
@@ -84,7 +84,7 @@ ReportTable category_table(const std::vector<CategorySummary>& categories) {
                       "Those with most labeled shapes first.",
                       {"Category", "Model", "Labeled", "Recognized", "Unknown", "Failed", "Confidence"},
                       {}};
-    if (categories.size() == k_most_rows) table.note += fmt::format(" Only {} are shown.", k_most_rows);
+    if (categories.size() == k_max_rows) table.note += fmt::format(" Only {} are shown.", k_max_rows);
     for (const CategorySummary& category : categories)
         table.rows.push_back({title_of(category), shown_text(category.model), grouped(category.done),
                               grouped(category.recognized), grouped(category.unknown), grouped(category.failed),
@@ -113,7 +113,7 @@ std::vector<CatalogRun::Labeled> chosen_shapes(CatalogRun& run, const std::strin
 
 ReportTable failure_table(CatalogRun& run, std::int64_t all) {
     const std::vector<CatalogRun::Labeled> shapes =
-        chosen_shapes(run, fmt::format("state IN ('failed', 'unknown') ORDER BY shape LIMIT {}", k_most_rows));
+        chosen_shapes(run, fmt::format("state IN ('failed', 'unknown') ORDER BY shape LIMIT {}", k_max_rows));
     ReportTable table{"Not labeled",
                       "'label batch' with --retry tries these again." + and_more(shapes.size(), all),
                       {"Shape", "Why"},
@@ -129,7 +129,7 @@ ReportTable problem_table(Catalog& catalog, std::int64_t all) {
         [&](const CatalogShape& shape) {
             table.rows.push_back({shown_text(shape.path.string()), shown_text(shape.problem)});
         },
-        fmt::format("id IN (SELECT id FROM shapes WHERE problem <> '' ORDER BY id LIMIT {})", k_most_rows));
+        fmt::format("id IN (SELECT id FROM shapes WHERE problem <> '' ORDER BY id LIMIT {})", k_max_rows));
     table.note = "Not taken up for labeling." + and_more(table.rows.size(), all);
     return table;
 }
@@ -157,8 +157,8 @@ std::vector<std::int32_t> label_numbers(const std::vector<std::string>& names, R
         const std::string name = shown_text(foreign);
         const auto known = std::ranges::find(group.label_names, name);
         const auto number = static_cast<std::size_t>(known - group.label_names.begin());
-        numbers.push_back(number < k_most_labels ? static_cast<std::int32_t>(number) : -1);
-        if (known != group.label_names.end() || number >= k_most_labels) continue;
+        numbers.push_back(number < k_max_labels ? static_cast<std::int32_t>(number) : -1);
+        if (known != group.label_names.end() || number >= k_max_labels) continue;
         group.label_names.push_back(name);
         group.label_colors.push_back(label_color(number));
     }
@@ -184,11 +184,11 @@ void add_views(Catalog& catalog, CatalogRun& run, const std::string& category, s
                std::deque<ShownShape>& meshes, ReportData& group) {
     const std::size_t least_sure = (views + 1) / 2;
     for (const std::int64_t id :
-         example_shapes(catalog, run.id(), category, least_sure, views - least_sure, k_most_read_faces))
+         example_shapes(catalog, run.id(), category, least_sure, views - least_sure, k_max_read_faces))
         run.for_each(
             [&](const CatalogRun::Labeled& labeled) {
                 const std::filesystem::path labels = run.record_path(labeled.shape).replace_extension(".ply");
-                std::optional<ShownShape> shape = read_shown_shape(labels, k_most_shown_faces);
+                std::optional<ShownShape> shape = read_shown_shape(labels, k_max_shown_faces);
                 if (shape) add_mesh(group, meshes.emplace_back(std::move(*shape)), labeled);
             },
             fmt::format("labels.shape = {}", id));
@@ -249,7 +249,7 @@ ReportData category_group(Catalog& catalog, CatalogRun& run, const CategorySumma
     group.summary = {{"labeled", grouped(category.done)}, {"mean confidence", percent_of(category.confidence)}};
     if (category.recognized > 0) group.summary.emplace_back("recognized as such", grouped(category.recognized));
     group.tables.push_back(
-        label_table(summarize_labels(catalog, run.id(), category.category, k_most_rows), category.category));
+        label_table(summarize_labels(catalog, run.id(), category.category, k_max_rows), category.category));
     add_views(catalog, run, category.category, views, meshes, group);
     return group;
 }
@@ -268,12 +268,12 @@ void join_into_overview(std::vector<ReportData>& groups) {
 }  // namespace
 
 void write_batch_page(const std::filesystem::path& out, Catalog& catalog, CatalogRun& run, const BatchReport& report) {
-    const std::vector<CategorySummary> categories = summarize_categories(catalog, run.id(), k_most_rows);
+    const std::vector<CategorySummary> categories = summarize_categories(catalog, run.id(), k_max_rows);
     const auto labeled = static_cast<std::size_t>(
         std::ranges::count_if(categories, [](const CategorySummary& category) { return category.done > 0; }));
-    const std::size_t shown_categories = std::min(labeled, k_most_views);
+    const std::size_t shown_categories = std::min(labeled, k_max_views);
     const std::size_t views =
-        std::clamp<std::size_t>(k_most_views / std::max<std::size_t>(labeled, 1), 1, k_views_per_category);
+        std::clamp<std::size_t>(k_max_views / std::max<std::size_t>(labeled, 1), 1, k_views_per_category);
     std::deque<ShownShape> meshes;
     std::vector<ReportData> groups{overview(catalog, run, report, categories)};
     for (std::size_t c = 0; c < shown_categories; ++c)

@@ -32,7 +32,7 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
     return std::filesystem::equivalent(a, b, error);
 }
 
-/// Of the frames to test on, those that are not learned from.
+/// Returns the frames to test on without those that are learned from.
 std::vector<FrameRef> unseen_frames(std::vector<FrameRef> test, const std::vector<FrameRef>& seen) {
     std::erase_if(test, [&](const FrameRef& frame) {
         return std::ranges::any_of(

@@ -37,10 +37,10 @@ std::array<int, 2> size_of(const std::string& text) {
 
 /// Returns the vertices of evenly spaced frames together, which a camera has to show.
 TriangleMesh extent_of(const LinesSource& source) {
-    constexpr std::size_t k_most_frames = 60;
+    constexpr std::size_t k_max_frames = 60;
     TriangleMesh all;
     const std::vector<std::uint32_t> used = vertices_of_faces(source.animation().rest);
-    const std::size_t count = std::min(source.frame_count(), k_most_frames);
+    const std::size_t count = std::min(source.frame_count(), k_max_frames);
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t frame = count > 1 ? i * (source.frame_count() - 1) / (count - 1) : 0;
         const std::vector<Vec3> vertices = source.vertices(frame);

@@ -27,7 +27,7 @@ CurvatureModel TrainingJob::train(const Animation& animation, std::uint64_t seed
     const std::vector<FrameRef> frames = select_frames(animation, {});
     CurvatureTraining options;
     options.seed = seed;
-    // As on the command line: components that are small in training may be large in other folds of cloth.
+    // Cloth keeps all components, as on the command line: small ones in training may be large in other folds.
     if (animation.kind == AnimationKind::sequence) options.dropped_variance = 0;
     CurvatureTrainingReport report;
     CurvatureModel model = train_curvature(animation, frames, options, report);

@@ -15,7 +15,7 @@ struct LegendEntry {
     Color color{};
 };
 
-/// What the viewer shows: a surface and its motions. A single mesh is a sequence without clips.
+/// The opened file: a surface and its motions. A single mesh is a sequence without clips.
 struct Document {
     std::filesystem::path path;
     Animation animation;

@@ -248,7 +248,7 @@ void Viewer::run_session(Session& session) {
 }
 
 void Viewer::run() {
-    constexpr int k_most_losses = 3;
+    constexpr int k_max_losses = 3;
     for (int losses = 0; !ended(); ++losses) {
         std::shared_ptr<const ValidationLog> log;
         try {
@@ -256,10 +256,10 @@ void Viewer::run() {
             log = session.device().validation_log();
             run_session(session);
         } catch (const DeviceLostError& error) {
-            if (losses >= k_most_losses) throw;
+            if (losses >= k_max_losses) throw;
             state_.messages.error(error.what());
         } catch (const SurfaceLostError& error) {
-            if (losses >= k_most_losses) throw;
+            if (losses >= k_max_losses) throw;
             state_.messages.error(error.what());
         }
         if (log) require_no_validation_messages(*log);

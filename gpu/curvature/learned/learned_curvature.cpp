@@ -54,8 +54,8 @@ GpuLearnedCurvature::GpuLearnedCurvature(Device& device, const CurvatureModel& m
       rotations_(segments_.count()) {
     check_inputs(model);
     for (const Influence& influence : segments_.influences)
-        fewest_bones_ = std::max<std::size_t>(fewest_bones_, influence.bone + 1);
-    for (const std::uint32_t node : reader_.nodes) fewest_controls_ = std::max<std::size_t>(fewest_controls_, node + 1);
+        min_bones_ = std::max<std::size_t>(min_bones_, influence.bone + 1);
+    for (const std::uint32_t node : reader_.nodes) min_controls_ = std::max<std::size_t>(min_controls_, node + 1);
     if (reader_.is_local())
         local_.emplace(device, model, predictor_.padded_inputs());
     else
@@ -69,12 +69,12 @@ void GpuLearnedCurvature::record(Stream& stream, const Rig& rig, const Pose& pos
     if (reader_.kind == AnimationKind::sequence)
         throw UsageError("curvature learned on a mesh sequence is not that of a pose; give vertices");
     const bool shapes = reader_.kind == AnimationKind::blend_shapes;
-    if (rig.bones.size() < fewest_bones_ || pose.nodes.size() != rig.nodes.size() ||
-        (shapes ? pose.weights.size() : pose.nodes.size()) < fewest_controls_)
+    if (rig.bones.size() < min_bones_ || pose.nodes.size() != rig.nodes.size() ||
+        (shapes ? pose.weights.size() : pose.nodes.size()) < min_controls_)
         throw UsageError(
             fmt::format("a pose of {} nodes and {} weights of a rig of {} bones is not one the curvature "
                         "model was learned on, which needs {} bones and {} {}",
-                        pose.nodes.size(), pose.weights.size(), rig.bones.size(), fewest_bones_, fewest_controls_,
+                        pose.nodes.size(), pose.weights.size(), rig.bones.size(), min_bones_, min_controls_,
                         shapes ? "weights" : "nodes"));
     reader_.read_pose(pose, x_);
     if (segments_.count() != 0) segments_.rotations_of_rig(bone_transforms(rig, pose), rotations_);

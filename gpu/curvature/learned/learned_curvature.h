@@ -55,8 +55,8 @@ class GpuLearnedCurvature {
     std::size_t vertex_count_;
     StateReader reader_;
     PoseRange range_;
-    Segments segments_;                                   // none for tensors
-    std::size_t fewest_bones_ = 0, fewest_controls_ = 0;  // minimum sizes of a rig; controls: nodes or targets
+    Segments segments_;                             // none for tensors
+    std::size_t min_bones_ = 0, min_controls_ = 0;  // minimum sizes of a rig; controls: nodes or targets
     GpuComponentPredictor predictor_;
     bool is_identity_;
     GpuReprojection reprojection_;

@@ -17,7 +17,7 @@ constexpr std::uint32_t k_sets_per_pool = 256;
 constexpr std::uint32_t k_bindings_per_pool = 8 * k_sets_per_pool;
 constexpr std::uint64_t k_min_bytes = 16;  // what every buffer has, empty ones too
 
-// What a device demands of ranges of one type.
+// The device's limits for ranges of one descriptor type.
 struct RangeLimits {
     std::uint64_t bytes;
     std::uint64_t alignment;

@@ -16,7 +16,7 @@ struct Access {
     VkAccessFlags2 writes = 0;
 };
 
-/// What must be waited for before a command may run.
+/// The accesses that a command must wait for.
 struct Barrier {
     VkBuffer buffer = VK_NULL_HANDLE;
     VkPipelineStageFlags2 source_stage = 0;

@@ -101,8 +101,8 @@ class Stream {
         static_assert(std::is_trivially_copyable_v<T>);
         upload_bytes(target, std::as_bytes(values), offset);
     }
-    /// As upload, of `bytes` bytes that `write` computes into the std::span<std::byte> it is called with. It is
-    /// called before the return. The span is write-only memory.
+    /// Uploads `bytes` bytes that the callback computes: calls `write` once, before it returns, with a
+    /// std::span<std::byte> of write-only memory to fill. Otherwise like upload().
     template <typename Write>
     void upload_with(Buffer& target, std::size_t bytes, std::size_t offset, Write&& write) {
         const UploadTarget place = begin_upload(target, offset, bytes);

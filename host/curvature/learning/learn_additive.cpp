@@ -18,7 +18,8 @@ namespace exemplar {
 
 namespace {
 
-/// Which features a fit uses. Each family contains the previous ones; pairs are products of inputs of two controls.
+/// Family of features that a fit uses. Each family contains the previous ones; pairs are products of inputs of two
+/// controls.
 enum class Family : std::size_t { linear, squares, products, cubes, pairs };
 constexpr std::size_t k_families = 5;
 

@@ -92,7 +92,7 @@ class LocalLearner {
                  std::size_t max_inputs, StateReader& reader)
         : moments_(snapshots),
           real_(Index(real)),
-          most_inputs_(max_inputs),
+          max_inputs_(max_inputs),
           reader_(reader),
           attributes_(encode_all(frames, snapshots)),
           means_(Index(attributes_.size()), Index(frames.vertex_count())),
@@ -169,7 +169,7 @@ class LocalLearner {
         for (std::size_t a = 0; a < attributes_.size(); ++a)
             for (std::size_t i = 0; i < vertices.size(); ++i)
                 y.col(Index(a * vertices.size() + i)) = attributes_[a].col(vertices[i]);
-        return fit_reduced_rank(x, y, k_ridge, most_inputs_);
+        return fit_reduced_rank(x, y, k_ridge, max_inputs_);
     }
 
     /// Drops components that explain little. An attribute of a vertex has a variance of at most 1.
@@ -199,7 +199,7 @@ class LocalLearner {
 
     const std::vector<SurfaceSnapshot>& moments_;
     Index real_;
-    std::size_t most_inputs_;
+    std::size_t max_inputs_;
     StateReader& reader_;
     std::vector<MatrixXf> attributes_;  // centered, over their scales
     MatrixXf means_, scales_;           // attributes x vertices

@@ -191,8 +191,8 @@ CurvatureEvaluation evaluate_curvature(const CurvatureModel& model, const Animat
                                        std::span<const FrameRef> frames) {
     require_compatible(model, animation);
     // Fixed chunks of frames, so that sums do not depend on the number of threads.
-    constexpr std::size_t k_chunk = 8, k_most_kept = 4'000'000;
-    const std::size_t stride = 1 + frames.size() * model.vertex_count / k_most_kept;
+    constexpr std::size_t k_chunk = 8, k_max_kept = 4'000'000;
+    const std::size_t stride = 1 + frames.size() * model.vertex_count / k_max_kept;
     std::vector<Tally> tallies((frames.size() + k_chunk - 1) / k_chunk);
     Progress progress("comparing frames", frames.size());
     parallel_for(tallies.size(), [&](std::size_t chunk) {

@@ -19,7 +19,7 @@ struct FrameRef {
     std::uint32_t clip = 0, frame = 0;
 };
 
-/// Which frames of an animation are used.
+/// Selects frames of an animation.
 struct FrameSelection {
     std::vector<std::string> clips;  ///< by name; empty: all
     std::size_t begin = 0;           ///< frames [begin, end) of each clip, clamped to its length

@@ -22,7 +22,7 @@ constexpr float k_weight_bandwidth = 0.35f;
 constexpr float k_rotation_bandwidth = 0.3f;
 /// Minimum vertices of a segment: its frame is computed from their positions.
 constexpr std::size_t k_smallest_patch = 40;
-constexpr std::size_t k_most_rotation_frames = 24, k_rotation_dimensions = 12;
+constexpr std::size_t k_max_rotation_frames = 24, k_rotation_dimensions = 12;
 
 /// The edges of a triangle that meet in its first corner.
 struct TriangleEdges {
@@ -174,7 +174,7 @@ Segments segment_rig(const Rig& rig, std::size_t vertex_count) {
 }
 
 Segments segment_sequence(const TriangleMesh& rest, std::span<const std::vector<Vec3>> frames) {
-    const std::size_t taken = std::min(frames.size(), k_most_rotation_frames);
+    const std::size_t taken = std::min(frames.size(), k_max_rotation_frames);
     Eigen::MatrixXf rotations(static_cast<Eigen::Index>(rest.vertex_count()), static_cast<Eigen::Index>(9 * taken));
     for (std::size_t i = 0; i < taken; ++i)
         vertex_rotations(rest, frames[i * frames.size() / taken],

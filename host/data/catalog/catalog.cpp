@@ -215,7 +215,7 @@ std::string Catalog::free_name(const std::string& wanted, const fs::path& path) 
     if (!is_output_name(wanted))
         throw UsageError(fmt::format("{}: no file can be called '{}' in an output folder", path.string(), wanted));
     if (is_free(wanted)) return wanted;
-    // Of a.off and a.obj the second becomes a.obj.
+    // If a.off has taken the name "a", a.obj becomes "a.obj".
     constexpr std::size_t k_longest_extension = 5;
     std::string extension = output_part(path.extension().string());
     if (!extension.empty()) extension.front() = '.';

@@ -18,8 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr int k_deepest = 8;                       ///< maximum nesting: a record has three levels
-constexpr std::uintmax_t k_most_bytes = 16 << 20;  ///< maximum size of a record: far more than it ever has
+constexpr int k_deepest = 8;                      ///< maximum nesting: a record has three levels
+constexpr std::uintmax_t k_max_bytes = 16 << 20;  ///< maximum size of a record: far more than it ever has
 
 Json number(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -114,7 +114,7 @@ Json to_json(const ShapeRecord& record) {
 
 std::optional<ShapeRecord> read_record(const fs::path& path) {
     std::error_code ignored;
-    if (!fs::is_regular_file(path, ignored) || fs::file_size(path, ignored) > k_most_bytes) return {};
+    if (!fs::is_regular_file(path, ignored) || fs::file_size(path, ignored) > k_max_bytes) return {};
     try {
         return from_json(parse_shallow(read_file(path)));
     } catch (const Json::exception&) {

@@ -30,7 +30,7 @@ constexpr std::size_t k_first_descriptor = k_curvature_features,
                       k_first_image = k_first_descriptor + k_descriptor_features,
                       k_first_line = k_first_image + k_image_features;
 
-/// What an image feature is: a quantity of a shading image at a scale, or depth.
+/// An image feature: a quantity of a shading image at a scale, or depth.
 struct ImageFeature {
     enum Quantity { value, gradient, curvature_max, curvature_min, depth } quantity;
     std::size_t image, sigma;
@@ -115,7 +115,7 @@ struct PixelFeatures::Parts {
 
 namespace {
 
-/// Where a feature comes from.
+/// The computation that a feature comes from.
 enum class Source { curvature, descriptors, picture };
 Source source_of(std::size_t feature) {
     if (feature < k_first_descriptor) return Source::curvature;

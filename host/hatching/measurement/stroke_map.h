@@ -41,7 +41,7 @@ class StrokeMap {
     std::vector<std::int32_t> nearest_;
 };
 
-/// Where the center lines of two strokes meet or cross.
+/// A place where the center lines of two strokes meet or cross.
 struct StrokeCrossing {
     Vec2 center = Vec2::Zero();
     std::array<std::int32_t, 2> strokes{};  ///< indices, the smaller first

@@ -20,7 +20,7 @@ constexpr float k_farthest_mutual = 2;    ///< max distance of a neighbor, in it
 constexpr std::int32_t k_line_side = 3;   ///< points before and behind another that define its line
 constexpr float k_min_loop_ratio = 4;     ///< min ratio of arc length to distance for a stroke to neighbor itself
 
-/// Which strokes cross which.
+/// Looks up whether two strokes cross.
 class CrossingPairs {
   public:
     CrossingPairs(std::span<const StrokeCrossing> crossings, std::size_t strokes) : crossed_(strokes) {

@@ -61,8 +61,8 @@ class StrokeClipper {
     StrokeClipper(const PlacementGrid& grid, const StrokeOptions& options, Clearance& clearance)
         : grid_(grid),
           clearance_(clearance),
-          least_cosine_(static_cast<std::int32_t>(std::lround(std::cos(options.max_deviation) * k_unit))),
-          most_share_(static_cast<std::int64_t>(
+          min_cosine_(static_cast<std::int32_t>(std::lround(std::cos(options.max_deviation) * k_unit))),
+          max_share_(static_cast<std::int64_t>(
               std::lround((1.0 + options.length_jitter + options.length_hysteresis) * (1 << k_share_bits)))) {}
 
     /// Returns the clipped stroke; empty if it is too short.
@@ -85,7 +85,7 @@ class StrokeClipper {
         const FinePoint way = points[std::min(i + 1, points.size() - 1)] - points[i ? i - 1 : 0];
         const Direction heading = direction_of(way.x, way.y);
         const Direction asked = direction_at(grid_, layer, points[i], heading);
-        return asked && dot(asked, heading) >= least_cosine_ * k_unit;
+        return asked && dot(asked, heading) >= min_cosine_ * k_unit;
     }
     bool is_clear(std::uint32_t layer, FinePoint point) const {
         return clearance_.is_clear(layer, point, grid_.at(point)->spacing(), grid_.rules.test_share);
@@ -116,15 +116,15 @@ class StrokeClipper {
         if (part.size() == 0) return part;
         const std::int64_t target = grid_.at(points[(part.begin + part.end) / 2])->length() >> k_length_bits;
         const auto steps = static_cast<std::int64_t>(part.size() - 1);
-        if (steps << k_share_bits <= target * most_share_) return part;
+        if (steps << k_share_bits <= target * max_share_) return part;
         const auto over = static_cast<std::size_t>(steps - target);
         return {part.begin + over / 2, part.end - (over - over / 2), part.crowded_ends};
     }
 
     const PlacementGrid& grid_;
     const Clearance& clearance_;
-    std::int32_t least_cosine_;
-    std::int64_t most_share_;
+    std::int32_t min_cosine_;
+    std::int64_t max_share_;
 };
 
 }  // namespace

@@ -16,18 +16,18 @@
 namespace exemplar {
 namespace {
 
-constexpr int k_largest_picture = 32768;
-constexpr float k_most_length = 1024;  // pixels
-constexpr std::size_t k_most_candidate_points = std::size_t{1} << 22;
-constexpr std::size_t k_least_candidates = 256, k_most_candidates = 16384;
-constexpr std::uint32_t k_least_block_bits = 5;
+constexpr int k_max_picture = 32768;
+constexpr float k_max_length = 1024;  // pixels
+constexpr std::size_t k_max_candidate_points = std::size_t{1} << 22;
+constexpr std::size_t k_min_candidates = 256, k_max_candidates = 16384;
+constexpr std::uint32_t k_min_block_bits = 5;
 /// Maximum distance in the clearance map, which stores ten bits.
-constexpr std::int32_t k_most_near = 1000;
+constexpr std::int32_t k_max_near = 1000;
 
 void check_field_sizes(const HatchingFields& fields, std::span<const std::uint8_t> barriers) {
-    if (fields.width < 0 || fields.height < 0 || fields.width > k_largest_picture || fields.height > k_largest_picture)
+    if (fields.width < 0 || fields.height < 0 || fields.width > k_max_picture || fields.height > k_max_picture)
         throw UsageError(fmt::format("strokes cannot be placed on {} x {} pixels; {} a side are the most", fields.width,
-                                     fields.height, k_largest_picture));
+                                     fields.height, k_max_picture));
     const auto fits = [&](const auto& values) { return values.size() == fields.size(); };
     if (!fits(fields.level) || !fits(fields.orientation[0]) || !fits(fields.orientation[1]) ||
         !fits(fields.thickness) || !fits(fields.intensity) || !fits(fields.spacing) || !fits(fields.length))
@@ -95,7 +95,7 @@ PlacementTexel texel_of(const HatchingFields& fields, std::size_t i, std::uint8_
     check_pixel(fields, i);
     for (std::size_t layer = 0; layer < fields.level[i]; ++layer)
         texel.directions[layer] = packed_direction(fields.orientation[layer][i]);
-    const std::uint32_t length = rounded(fields.length[i], 0, k_most_length, k_length_bits);
+    const std::uint32_t length = rounded(fields.length[i], 0, k_max_length, k_length_bits);
     texel.sizes = rounded(fields.spacing[i], 1, k_max_spacing, k_spacing_bits) | length << 16;
     return texel;
 }
@@ -127,14 +127,14 @@ void set_limits(PlacementGrid& grid) {
     }
     PlacementRules& rules = grid.rules;
     rules.near_shift = 4;
-    while (clearance_radius(spacing) >> rules.near_shift > k_most_near) ++rules.near_shift;
+    while (clearance_radius(spacing) >> rules.near_shift > k_max_near) ++rules.near_shift;
     const std::int32_t longest = length * ((1 << k_share_bits) + rules.jitter) >> (k_share_bits + k_length_bits);
     // Tracing looks ahead at both ends, over a gap and three spacings at most.
     const std::int32_t ahead = 4 * (spacing >> k_spacing_bits) + k_min_steps + 6;
     rules.room = static_cast<std::uint32_t>(longest + 2 * ahead);
-    rules.candidates = static_cast<std::uint32_t>(
-        std::clamp(k_most_candidate_points / rules.room, k_least_candidates, k_most_candidates));
-    rules.block_bits = k_least_block_bits;
+    rules.candidates =
+        static_cast<std::uint32_t>(std::clamp(k_max_candidate_points / rules.room, k_min_candidates, k_max_candidates));
+    rules.block_bits = k_min_block_bits;
     const auto blocks = [&](int size) { return ((size - 1) >> rules.block_bits) + 1; };
     while (grid.size() > 0 && static_cast<std::size_t>(blocks(grid.width)) *
                                       static_cast<std::size_t>(blocks(grid.height)) * k_hatch_layers >

@@ -9,10 +9,10 @@ namespace exemplar {
 namespace {
 
 /// A stroke may meet itself once it has turned by more than k_far_turn (a sum of sines, times k_unit). Distances to
-/// itself are in units of 2^k_itself_bits (1/16 pixel) and measured to at most k_most_pieces pieces of it.
+/// itself are in units of 2^k_itself_bits (1/16 pixel) and measured to at most k_max_pieces pieces of it.
 constexpr std::int32_t k_far_turn = 2 * k_unit;
 constexpr int k_itself_bits = 8;
-constexpr std::int32_t k_most_pieces = 32;
+constexpr std::int32_t k_max_pieces = 32;
 constexpr std::int32_t k_far_from_itself = 1 << 20;
 
 FinePoint moved(FinePoint from, Direction way, std::int32_t distance) {
@@ -113,8 +113,8 @@ void Streamline::step(StrokeBranch& branch) {
         branch.end = StrokeEnd::crowd;
         return;
     }
-    least_turn_ = std::min(least_turn_, branch.turn);
-    most_turn_ = std::max(most_turn_, branch.turn);
+    min_turn_ = std::min(min_turn_, branch.turn);
+    max_turn_ = std::max(max_turn_, branch.turn);
     branch.tip = next->point;
     branch.heading = next->heading;
     branch.points.push_back(next->point);
@@ -126,7 +126,7 @@ bool Streamline::meets_itself(StrokeBranch& branch, FinePoint next, const Placem
         --branch.unchecked_steps;
         return false;
     }
-    if (std::max(branch.turn - least_turn_, most_turn_ - branch.turn) <= k_far_turn) return false;
+    if (std::max(branch.turn - min_turn_, max_turn_ - branch.turn) <= k_far_turn) return false;
     const std::int32_t test = share_of_spacing(texel.spacing(), grid_.rules.test_share);
     const std::int32_t beyond = distance_to_itself(branch, next, test) - (test >> k_itself_bits);
     branch.unchecked_steps = beyond >> (k_pixel_bits - k_itself_bits);
@@ -138,7 +138,7 @@ bool Streamline::meets_itself(StrokeBranch& branch, FinePoint next, const Placem
 std::int32_t Streamline::distance_to_itself(const StrokeBranch& branch, FinePoint next, std::int32_t test) const {
     const std::int32_t sign = &branch == branches_.data() ? 1 : -1;
     const std::int32_t begin = branch.reach() - last(), end = branch.reach() - (2 * test >> k_pixel_bits);
-    const std::int32_t stride = 1 + (end - begin) / k_most_pieces;
+    const std::int32_t stride = 1 + (end - begin) / k_max_pieces;
     std::int32_t nearest = k_far_from_itself;
     for (std::int32_t i = begin; i < end; i += stride) {
         const FinePoint from = from_seed(sign * i), way = next - from;

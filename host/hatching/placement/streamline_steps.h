@@ -82,7 +82,7 @@ class Streamline {
     const StrokeSeed& seed_;
     const PlacementTexel& texel_;
     std::int32_t length_share_ = 0;
-    std::int32_t least_turn_ = 0, most_turn_ = 0;  // extremes of StrokeBranch::turn so far, on both sides
+    std::int32_t min_turn_ = 0, max_turn_ = 0;  // extremes of StrokeBranch::turn so far, on both sides
     std::array<StrokeBranch, 2> branches_;
 };
 

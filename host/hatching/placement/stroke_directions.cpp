@@ -8,7 +8,7 @@ namespace exemplar {
 namespace {
 
 /// Directions cancel out if their mean is shorter than this share of a unit vector.
-constexpr std::int32_t k_least_agreement = 358;
+constexpr std::int32_t k_min_agreement = 358;
 
 std::int32_t signed_half(std::uint32_t word) {
     return static_cast<std::int16_t>(static_cast<std::uint16_t>(word));
@@ -30,7 +30,7 @@ struct Corners {
 
 /// Returns the direction at half the angle of (c, s), a vector of that length, with the sign nearer to `heading`.
 Direction half_angle(std::int32_t c, std::int32_t s, std::int32_t length, Direction heading) {
-    // The one of the two formulas without cancellation.
+    // Of the two equivalent formulas, takes the one without cancellation.
     const Direction half = c >= 0 ? direction_of(length + c, s) : direction_of(s, length - c);
     return dot(half, heading) < 0 ? -half : half;
 }
@@ -62,7 +62,7 @@ Direction direction_at(const PlacementGrid& grid, std::uint32_t layer, FinePoint
     s = (s + (1 << 15)) >> 16;
     const auto length = static_cast<std::int32_t>(floor_sqrt(static_cast<std::uint32_t>(c * c + s * s)));
     // The weights of all four pixels are 2^16 together, directions 2^14 long and shares 2^10.
-    if (length == 0 || length << 12 < total * k_least_agreement) return {};
+    if (length == 0 || length << 12 < total * k_min_agreement) return {};
     return half_angle(c, s, length, heading);
 }
 

@@ -10,7 +10,7 @@
 
 namespace exemplar {
 
-/// Where the places of a seed list are, at which strokes are tried.
+/// The kind of places that a seed queue holds.
 enum class SeedSource : std::uint32_t {
     part,        ///< around the middle of a part of the picture; one stroke is enough
     left_side,   ///< one spacing to the left of a stroke, along all of it

@@ -18,8 +18,8 @@ using Json = nlohmann::json;
 
 constexpr const char* k_kind = "exemplar hatching style";
 constexpr int k_format_version = 1;
-constexpr std::size_t k_most_segments = 64;
-constexpr int k_most_stages = 16, k_largest_drawing = 1 << 15;
+constexpr std::size_t k_max_segments = 64;
+constexpr int k_max_stages = 16, k_max_drawing = 1 << 15;
 
 void add_function(TensorFile& file, const std::string& name, const OrientationFunction& function) {
     std::vector<std::uint32_t> features;
@@ -98,13 +98,13 @@ int read_count(const TensorFile& file, const Json& json, const char* key, int mo
 void read_description(const TensorFile& file, HatchingStyle& style, std::size_t& stages) {
     const Json json = Json::parse(file.meta("style"));
     style.name = json.at("name");
-    style.width = read_count(file, json, "width", k_largest_drawing);
-    style.height = read_count(file, json, "height", k_largest_drawing);
+    style.width = read_count(file, json, "width", k_max_drawing);
+    style.height = read_count(file, json, "height", k_max_drawing);
     style.share = json.at("share").get<std::vector<double>>();
     style.segment_crf = read_cut(file, json.at("segment_cut"));
     style.level_crf = read_cut(file, json.at("level_cut"));
-    stages = static_cast<std::size_t>(read_count(file, json, "stages", k_most_stages));
-    if (style.share.empty() || style.share.size() > k_most_segments)
+    stages = static_cast<std::size_t>(read_count(file, json, "stages", k_max_stages));
+    if (style.share.empty() || style.share.size() > k_max_segments)
         inconsistent(file, fmt::format("it has {} segments", style.share.size()));
 }
 

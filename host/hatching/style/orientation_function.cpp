@@ -130,7 +130,7 @@ class Boosting {
     /// factor of the weights turns nothing and stays. Items with a sum near zero would count too much, so its length
     /// is bounded from below.
     Eigen::VectorXd direction_step(const OrientationFunction& function, const Eigen::VectorXd& weights) const {
-        constexpr double k_least_length = 0.1;
+        constexpr double k_min_length = 0.1;
         Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(weights.size(), weights.size());
         Eigen::VectorXd right = Eigen::VectorXd::Zero(weights.size()), turn(weights.size());
         Eigen::Matrix2Xd v(2, weights.size());
@@ -143,7 +143,7 @@ class Boosting {
             const double length = sum.norm();
             if (!(length > 0)) continue;
             const Eigen::Vector2d across(-sum.y() / length, sum.x() / length);
-            turn = v.transpose() * across / std::max(length, k_least_length);
+            turn = v.transpose() * across / std::max(length, k_min_length);
             right += w * across.dot(in_double(training_.target[i])) * turn;
             normal += w * turn * turn.transpose();
         }

@@ -13,9 +13,9 @@ namespace exemplar {
 namespace {
 
 constexpr double k_min_share = 0.04;
-constexpr float k_crossing_distance = 1;   // |u - v|^2 of directions 30 degrees apart; crossing strokes exceed it
-constexpr double k_least_variance = 1e-3;  // of |u - f|^2: noise of about a degree
-constexpr float k_gate_radius = 2;         // in spacings
+constexpr float k_crossing_distance = 1;  // |u - v|^2 of directions 30 degrees apart; crossing strokes exceed it
+constexpr double k_min_variance = 1e-3;   // of |u - f|^2: noise of about a degree
+constexpr float k_gate_radius = 2;        // in spacings
 
 /// An expert with its columns of gamma and beta.
 struct Expert {
@@ -181,9 +181,9 @@ class Mixture {
             expert.share = gamma / count;
             if (!(gamma > 0)) continue;
             expert.part = {first / gamma, second / gamma};
-            expert.variance = std::max(variance / gamma, k_least_variance);
+            expert.variance = std::max(variance / gamma, k_min_variance);
         }
-        variance_ = std::max(variance_, k_least_variance);
+        variance_ = std::max(variance_, k_min_variance);
     }
 
     /// Returns the prior that replaces pi_c: the mean gamma of the neighbors, with pi_c as one more neighbor.
@@ -336,7 +336,7 @@ class Mixture {
             weight[set] += of_a + of_b;
         }
         const std::size_t judge = weight[1] > 0 ? 1 : 0;
-        return together[judge] <= 1.1 * apart[judge] + k_least_variance * weight[judge];
+        return together[judge] <= 1.1 * apart[judge] + k_min_variance * weight[judge];
     }
 
     /// Merges a pair that one rule explains as well as two; returns false if there is none.

@@ -18,7 +18,7 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_least_samples = 200;
+constexpr std::size_t k_min_samples = 200;
 constexpr double k_held_out = 0.25;
 
 /// A random subset of rows, in their order.
@@ -117,7 +117,7 @@ class StyleLearning {
     void learn_rules() {
         const std::vector<std::uint32_t> all = rows_where(
             [&](std::uint32_t p) { return drawing_.center[p] && !drawing_.crossing[p] && drawing_.level[p] > 0; });
-        if (all.size() < k_least_samples)
+        if (all.size() < k_min_samples)
             throw DataError(
                 fmt::format("the drawing has strokes on only {} pixels of the object; is it of this view, and aligned?",
                             all.size()));
@@ -197,7 +197,7 @@ class StyleLearning {
         std::vector<std::uint32_t> on = rows_where([&](std::uint32_t p) { return drawing_.boundary[p] != 0; });
         std::vector<std::uint32_t> off = rows_where([&](std::uint32_t p) { return drawing_.boundary[p] == 0; });
         style_.boundary.stumps.class_count = 2;
-        if (on.size() < k_least_samples || off.size() < k_least_samples) return;
+        if (on.size() < k_min_samples || off.size() < k_min_samples) return;
         on = sample_rows(std::move(on), options_.samples / 2, options_.seed + 4);
         off = sample_rows(std::move(off), options_.samples / 2, options_.seed + 5);
         std::vector<std::uint32_t> rows = on;
@@ -287,7 +287,7 @@ class StyleLearning {
         std::vector<std::uint32_t> rows = rows_where(
             [&](std::uint32_t at) { return drawing_.center[at] && drawing_.level[at] > 0 && values[at] > 0; });
         if (property == StrokeProperty::length) rows = rather_uncrossed(std::move(rows));
-        if (rows.size() < k_least_samples)
+        if (rows.size() < k_min_samples)
             throw DataError(fmt::format("the {} of strokes is known at only {} pixels; the drawing has too few",
                                         name_of(property), rows.size()));
         rows = sample_rows(std::move(rows), options_.samples, options_.seed + 11);
@@ -305,13 +305,13 @@ class StyleLearning {
         report_.property[p] = std::sqrt(learned.error);
     }
 
-    /// Returns the rows of strokes that cross no other, or all rows if these are few (below 5% or k_least_samples).
+    /// Returns the rows of strokes that cross no other, or all rows if these are few (below 5% or k_min_samples).
     /// A stroke across the gap between two collinear strokes makes them look like one.
     std::vector<std::uint32_t> rather_uncrossed(std::vector<std::uint32_t> rows) const {
         std::vector<std::uint32_t> uncrossed;
         for (const std::uint32_t row : rows)
             if (!drawing_.crossed[pixel(row)]) uncrossed.push_back(row);
-        return uncrossed.size() < std::max(k_least_samples, rows.size() / 20) ? rows : uncrossed;
+        return uncrossed.size() < std::max(k_min_samples, rows.size() / 20) ? rows : uncrossed;
     }
 
     /// Returns the 85th percentile of measured length over predicted length. Many strokes are cut short for lack of

@@ -21,7 +21,7 @@ struct SkeletonEnd {
     std::size_t trim = 0;  ///< pixels between position and the segment's last one
 };
 
-/// Which ends of segments continue each other.
+/// Pairs of segment ends that continue each other.
 struct SegmentLinks {
     std::vector<SkeletonEnd> ends;     ///< 2 s: the front of segment s; 2 s + 1: its back
     std::vector<std::size_t> partner;  ///< per end; k_unlinked: the stroke ends there

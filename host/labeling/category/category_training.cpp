@@ -29,7 +29,7 @@ constexpr std::size_t k_max_category_folds = 10;
 /// Assumed share of strangers among the shapes, for the confidence.
 constexpr double k_stranger_share = 0.2;
 /// With two categories: how many strangers are made from each shape. More would not help to fit the two parameters.
-constexpr std::size_t k_most_pairs = 20;
+constexpr std::size_t k_max_pairs = 20;
 /// A deviation below this share of the mean is rounding.
 constexpr double k_min_variation = 1e-6;
 /// Factor on the scores before `calibrate`, which searches scales in [0.02, 10].
@@ -175,15 +175,15 @@ std::vector<float> mean_vector(std::span<const float> a, std::span<const float> 
     return mean;
 }
 
-/// Returns shapes of categories other than that of `shape`, at most k_most_pairs.
+/// Returns shapes of categories other than that of `shape`, at most k_max_pairs.
 Indices some_others(const Problem& problem, std::size_t shape, std::uint64_t seed) {
     Indices others;
     for (std::size_t j = 0; j < problem.training->category.size(); ++j)
         if (problem.category(j) != problem.category(shape)) others.push_back(j);
-    if (others.size() <= k_most_pairs) return others;
+    if (others.size() <= k_max_pairs) return others;
     Random random = Random(seed).fork(shape);
     random.shuffle(others);
-    others.resize(k_most_pairs);
+    others.resize(k_max_pairs);
     return others;
 }
 

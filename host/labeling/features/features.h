@@ -34,7 +34,7 @@ struct EdgeNeighborhood {
     std::vector<std::uint8_t> bin;            ///< its distance range
 };
 
-/// All that labeling uses of a mesh: computed once, cached on disk, then read by training and inference.
+/// The features of a mesh that labeling uses: computed once, cached on disk, then read by training and inference.
 struct MeshFeatures {
     FeatureMatrix unary;     ///< per face (App. A.1a-h): 678 features, 681 with orientation
     FeatureMatrix pairwise;  ///< per interior edge (App. A.2a-d): 186 features

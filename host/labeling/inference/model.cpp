@@ -18,8 +18,8 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* k_kind = "exemplar mesh labeling";
-constexpr std::size_t k_most_stages = 64;  ///< bounds against absurd files
-constexpr float k_largest_score = 1e30F;
+constexpr std::size_t k_max_stages = 64;  ///< bounds against absurd files
+constexpr float k_max_score = 1e30F;
 
 Json describe_model(const LabelingModel& model) {
     Json colors = Json::array();
@@ -64,8 +64,8 @@ void read_model_description(const TensorFile& file, LabelingModel& model) {
     model.feature_options.orientation = json.at("orientation");
     model.unary_names = json.at("unary_features").get<std::vector<std::string>>();
     model.pairwise_names = json.at("pairwise_features").get<std::vector<std::string>>();
-    model.unary.resize(std::min<std::size_t>(whole_number(file, json.at("unary_stages")), k_most_stages));
-    model.pairwise.resize(std::min<std::size_t>(whole_number(file, json.at("pairwise_stages")), k_most_stages));
+    model.unary.resize(std::min<std::size_t>(whole_number(file, json.at("unary_stages")), k_max_stages));
+    model.pairwise.resize(std::min<std::size_t>(whole_number(file, json.at("pairwise_stages")), k_max_stages));
     const Json averaged = json.value("averaged_labels", Json::array());  // older models have none
     if (!averaged.is_array()) inconsistent(file, "its averaged labels are no list");
     for (const Json& label : averaged)
@@ -131,7 +131,7 @@ LinearExpert get_linear(const TensorFile& file, const std::string& name, std::si
         require_finite(file, name, *values);
     expert.ratio = ratio_scale[0], expert.scale = ratio_scale[1];
     if (!(expert.ratio >= 0) || !(expert.scale > 0)) inconsistent(file, name + ".ratio_scale is negative");
-    if (!(expert.scale * (expert.ratio * largest_score(linear) + 1) < k_largest_score))
+    if (!(expert.scale * (expert.ratio * largest_score(linear) + 1) < k_max_score))
         inconsistent(file, name + " has weights so large that scores are not finite");
     return expert;
 }

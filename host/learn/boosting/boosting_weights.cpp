@@ -11,7 +11,7 @@ namespace {
 
 constexpr double k_tiny_weight = 1e-300;  // keeps an empty side's 0 / 0 at 0
 /// Minimum weight: one that became zero or denormal could not grow again, and denormals are slow.
-constexpr float k_least_weight = 1e-30f;
+constexpr float k_min_weight = 1e-30f;
 
 /// Sum of the weights of a chunk's rows, per lane, below and above the split.
 struct SideSums {
@@ -95,7 +95,7 @@ double scale_chunk(BoostingRows& rows, const RowChunk& chunk, const SplitCandida
     const LaneLayout& layout = rows.layout;
     const AlignedFloats below = chunk_factors(chunk, factors.below), above = chunk_factors(chunk, factors.above);
     AlignedFloats least(layout.padded(), 0.0f);
-    std::fill_n(least.begin(), layout.lanes, k_least_weight);
+    std::fill_n(least.begin(), layout.lanes, k_min_weight);
     double total = 0.0;
     with_width(layout, [&]<int width>() {
         for (std::size_t panel = 0; panel < layout.panels; ++panel) {

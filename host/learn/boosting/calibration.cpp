@@ -11,7 +11,7 @@ namespace exemplar {
 namespace {
 
 constexpr float k_label_noise = 0.01F;
-constexpr double k_least_scale = 0.02, k_largest_scale = 10;
+constexpr double k_min_scale = 0.02, k_max_scale = 10;
 constexpr int k_steps = 16;  // golden sections of the scale's logarithm: to about a thousandth of its range
 constexpr std::size_t k_calibration_block = 4096;
 
@@ -64,7 +64,7 @@ std::pair<float, double> best_scale(const Scored& set, Link link) {
     const auto loss_at = [&](double log_scale) {
         return total_loss(set, link, static_cast<float>(std::exp(log_scale)));
     };
-    double low = std::log(k_least_scale), high = std::log(k_largest_scale);
+    double low = std::log(k_min_scale), high = std::log(k_max_scale);
     double left = high - golden * (high - low), right = low + golden * (high - low);
     double loss_left = loss_at(left), loss_right = loss_at(right);
     for (int step = 0; step < k_steps; ++step) {

@@ -78,7 +78,7 @@ SplitHistograms::SplitHistograms(const BoostingRows& rows, const QuantizedFeatur
         for (std::size_t slot = 0; slot < k_together; ++slot) {
             groups_[g].bins = std::max(groups_[g].bins, features.thresholds[feature(g, slot)].size() + 1);
         }
-        most_bins_ = std::max(most_bins_, groups_[g].bins);
+        max_bins_ = std::max(max_bins_, groups_[g].bins);
     }
     clear();
 }
@@ -95,7 +95,7 @@ void SplitHistograms::clear() {
 }
 
 void SplitHistograms::add(const WeightedRows& added, const LaneFactors& factors) {
-    AlignedFloats partial(k_together * most_bins_ * rows_->layout.width, 0.0f);
+    AlignedFloats partial(k_together * max_bins_ * rows_->layout.width, 0.0f);
     with_width(rows_->layout, [&]<int width>() {
         for (std::size_t panel = 0; panel < rows_->layout.panels; ++panel) {
             for (const RowChunk& chunk : added.chunks) add_chunk<width>(added, chunk, panel, factors, partial);

@@ -78,7 +78,7 @@ class SplitHistograms {
     const QuantizedFeatures* features_;
     std::vector<std::uint32_t> list_;
     std::vector<Group> groups_;
-    std::size_t most_bins_ = 0;
+    std::size_t max_bins_ = 0;
 };
 
 }  // namespace exemplar

@@ -10,7 +10,7 @@
 
 namespace exemplar {
 
-/// Which subsets of lanes the search may share a split between.
+/// Subsets of lanes that the search may share a split between.
 struct SubsetOptions {
     std::vector<std::uint32_t> candidates;  ///< lanes that may share
     bool exhaustive = true;                 ///< all subsets, else greedily grown (Torralba et al. 2007)

@@ -10,11 +10,11 @@ namespace {
 constexpr std::size_t k_ranking_block =
     512;  // values ranked together: these and their ranks stay in the first-level cache
 // Up to this many thresholds, comparing every value with each threshold (vectorized) is faster than searching.
-constexpr std::size_t k_most_compared = 128;
+constexpr std::size_t k_max_compared = 128;
 
 template <typename Rank>
 void rank_block(std::span<const float> values, std::span<const float> thresholds, std::span<Rank> ranks) {
-    if (thresholds.size() > k_most_compared) {
+    if (thresholds.size() > k_max_compared) {
         for (std::size_t i = 0; i < values.size(); ++i)
             ranks[i] = static_cast<Rank>(std::ranges::lower_bound(thresholds, values[i]) - thresholds.begin());
         return;

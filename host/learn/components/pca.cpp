@@ -79,7 +79,7 @@ Spectrum spectrum_of(const Eigen::MatrixXd& gram, Index samples) {
     return out;
 }
 
-/// How many leading variances are more than rounding noise.
+/// Counts the leading variances that exceed rounding noise.
 Index varying(const Spectrum& spectrum, double mean_square) {
     if (spectrum.variance.size() == 0) return 0;
     const double floor = std::max(k_relative_noise * spectrum.variance(0), k_absolute_noise * mean_square);

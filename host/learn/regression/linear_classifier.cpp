@@ -18,7 +18,7 @@ namespace {
 using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr std::size_t k_standardized_block = 256;  // rows that are standardized together
-constexpr double k_least_variance = 1e-12;         // of the squared mean; below, a feature does not vary
+constexpr double k_min_variance = 1e-12;           // of the squared mean; below, a feature does not vary
 
 float standardized(float value, float mean, float inverse) {
     const float z = (value - mean) * inverse;
@@ -35,7 +35,7 @@ std::pair<float, float> measure(const LinearRows& data, std::size_t feature, dou
         squares += double{data.weight[i]} * (double{column[i]} - mean) * (double{column[i]} - mean);
     const double variance = squares / total;
     const auto inverse = static_cast<float>(1 / std::sqrt(variance));
-    if (!(variance > k_least_variance * mean * mean) || !std::isfinite(variance) || !std::isfinite(inverse))
+    if (!(variance > k_min_variance * mean * mean) || !std::isfinite(variance) || !std::isfinite(inverse))
         return {0.0F, 0.0F};
     return {static_cast<float>(mean), inverse};
 }

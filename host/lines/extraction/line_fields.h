@@ -6,7 +6,7 @@
 
 namespace exemplar {
 
-/// What determines at a vertex the lines in the faces around it. Members are interpolated linearly in a face.
+/// Quantities at a vertex that determine the lines in the faces around it. Members are interpolated linearly in a face.
 struct LineField {
     /// Zero sets: the function whose zeros are the line. Extrema: positive where there may be a line.
     float value = 0;

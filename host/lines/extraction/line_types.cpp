@@ -37,12 +37,12 @@ std::optional<LineType> line_type_named(std::string_view name) {
 }
 
 std::optional<LineType> line_type_from_prefix(std::string_view word) {
-    constexpr std::size_t k_fewest_letters = 3;
+    constexpr std::size_t k_min_letters = 3;
     std::string name(word);
     std::transform(name.begin(), name.end(), name.begin(),
                    [](unsigned char c) { return c == '-' ? '_' : static_cast<char>(std::tolower(c)); });
     if (name == "highlights") return LineType::suggestive_highlights;
-    if (name.size() >= k_fewest_letters)
+    if (name.size() >= k_min_letters)
         for (const LineType type : k_line_types)
             if (name_of(type).starts_with(name)) return type;
     return std::nullopt;

@@ -24,7 +24,7 @@ struct ChainTexture {
 constexpr float k_max_vote = 16;
 constexpr int k_follow_faces = 8, k_follow_reach = 64, k_follow_points = 32, k_whole_chain_divisor = 16;
 
-/// What the next frame needs to know of a segment.
+/// The data of a segment that the next frame needs.
 struct LineTrace {
     std::uint32_t face = 0;
     std::uint8_t family = 0;                     ///< as in LineSegment

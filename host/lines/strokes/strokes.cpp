@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t k_chain_grain = 16;  // chains that one thread takes at a time
 constexpr float k_taper_step = 0.2f;       // maximum distance of two points, in tapers
-constexpr float k_most_pieces = 10000;     // maximum pieces of a link
+constexpr float k_max_pieces = 10000;      // maximum pieces of a link
 
 void check_stroke_input(const LineSurface& surface, std::span<const LineSegment> segments,
                         std::span<const Chain> chains, const VisibleParts* visible) {
@@ -240,7 +240,7 @@ class StrokeMaker {
     void refine(const ChainLink& link, const StrokePoint& first, const StrokePoint& last, std::size_t begin,
                 std::vector<StrokePoint>& points) const {
         const float step = k_taper_step * thickness_.taper, length = last.parameter - first.parameter;
-        const float wanted = std::ceil(std::min(length / step, k_most_pieces));
+        const float wanted = std::ceil(std::min(length / step, k_max_pieces));
         if (!(step > 0 && wanted > 1)) return;
         std::vector<StrokePoint> added;
         std::size_t i = begin;

@@ -192,7 +192,7 @@ std::string normal_path(const std::string& path) {
 using BufferFiles = std::map<std::string, std::vector<unsigned char>>;
 
 /// Maximum size of external buffers, and of the glTF file itself.
-constexpr std::uint64_t k_most_bytes = std::numeric_limits<std::uint32_t>::max() / 2;
+constexpr std::uint64_t k_max_bytes = std::numeric_limits<std::uint32_t>::max() / 2;
 
 fs::path folder_of_buffers(const fs::path& folder) {
     return folder.empty() ? fs::path(".") : folder;
@@ -238,7 +238,7 @@ class BufferReader {
         if (error) fail(name_, fmt::format("{} cannot be read: {}", what, error.message()));
         if (found != bytes)
             fail(name_, fmt::format("{} has {} bytes instead of {}; copy or export it again", what, found, bytes));
-        if (bytes > k_most_bytes - all_bytes_) fail(name_, "its buffers are larger than 2 GiB; split it");
+        if (bytes > k_max_bytes - all_bytes_) fail(name_, "its buffers are larger than 2 GiB; split it");
         all_bytes_ += bytes;
         return bytes;
     }
@@ -335,7 +335,7 @@ tinygltf::Model load_model(const std::string& bytes, const std::string& name, co
 
 tinygltf::Model load_gltf(std::string_view content, const std::string& name, const fs::path& folder,
                           GltfContent wanted) {
-    if (content.size() > k_most_bytes) fail(name, "the file is larger than 2 GiB; split it");
+    if (content.size() > k_max_bytes) fail(name, "the file is larger than 2 GiB; split it");
     GltfChunks chunks;
     if (content.starts_with("glTF"))
         chunks = binary_chunks(content, name);
@@ -356,9 +356,9 @@ std::uint64_t gltf_external_buffer_bytes(std::string_view json, const std::strin
         if (!buffer.is_object() || !buffer.contains("uri") || !buffer.contains("byteLength")) continue;
         const Json &uri = buffer["uri"], &length = buffer["byteLength"];
         if (!uri.is_string() || uri.get_ref<const std::string&>().starts_with("data:")) continue;
-        if (length.is_number_unsigned()) bytes += std::min(length.get<std::uint64_t>(), k_most_bytes);
+        if (length.is_number_unsigned()) bytes += std::min(length.get<std::uint64_t>(), k_max_bytes);
     }
-    return std::min(bytes, k_most_bytes);  // more is not read
+    return std::min(bytes, k_max_bytes);  // more is not read
 }
 
 std::string binary_gltf(std::string json, std::string_view binary) {

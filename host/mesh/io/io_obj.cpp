@@ -23,7 +23,7 @@ namespace exemplar {
 namespace mesh_io {
 namespace {
 
-/// What the library's callbacks fill.
+/// The data that the library's callbacks fill.
 struct ObjContent {
     PolygonList polygons;
     std::vector<std::size_t> face_line;  ///< per polygon

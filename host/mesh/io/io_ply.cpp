@@ -29,8 +29,8 @@ class AsciiValues {
         return cursor_.number(property);
     }
     /// Returns the maximum number of values of a type that can still follow in the row.
-    std::uint64_t most_values(PlyScalar) const { return (cursor_.rest().size() + 1) / 2; }
-    std::uint64_t most_rows(const PlyElement& element) const {
+    std::uint64_t max_values(PlyScalar) const { return (cursor_.rest().size() + 1) / 2; }
+    std::uint64_t max_rows(const PlyElement& element) const {
         return (cursor_.bytes_left() + 1) / (2 * element.properties.size());
     }
     [[noreturn]] void fail(const std::string& message) const { cursor_.fail(message); }
@@ -70,8 +70,8 @@ class BinaryValues {
         }
         fail("unknown type");
     }
-    std::uint64_t most_values(PlyScalar type) const { return bytes_left() / byte_size(type); }
-    std::uint64_t most_rows(const PlyElement& element) const {
+    std::uint64_t max_values(PlyScalar type) const { return bytes_left() / byte_size(type); }
+    std::uint64_t max_rows(const PlyElement& element) const {
         std::size_t row_bytes = 0;
         for (const PlyProperty& p : element.properties) row_bytes += byte_size(p.count_type.value_or(p.type));
         return bytes_left() / row_bytes;
@@ -180,7 +180,7 @@ class BodyReader {
 
     void read_element(const PlyElement& element) {
         if (element.properties.empty()) return;
-        if (element.count > values_.most_rows(element))
+        if (element.count > values_.max_rows(element))
             mesh_io::fail(name_,
                           fmt::format("{} rows of element {} cannot be in what is left of the file; the count is wrong "
                                       "or the file is cut off",
@@ -241,7 +241,7 @@ class BodyReader {
 
     void read_list(const PlyProperty& property, Role role) {
         const double count = values_.value(*property.count_type, property.shown);
-        if (count < 0 || count > static_cast<double>(values_.most_values(property.type)))
+        if (count < 0 || count > static_cast<double>(values_.max_values(property.type)))
             values_.fail(fmt::format(
                 "a list of {} items cannot be in what is left; the count is wrong or the file is cut off", count));
         const bool wanted = role == Role::corners || role == Role::strips;

@@ -15,7 +15,7 @@ using Point = Eigen::Vector2d;
 /// Bounds on ear clipping, which takes at least quadratic time. Polygons with more corners are cut into a fan. A
 /// simple polygon of n corners looks at about n^2 / 2 corners; one that crosses itself many times would look at n^3,
 /// so its remainder is cut into a fan after k_max_corner_checks times n^2.
-constexpr std::size_t k_most_ear_corners = 4000, k_max_corner_checks = 4;
+constexpr std::size_t k_max_ear_corners = 4000, k_max_corner_checks = 4;
 
 /// Projects the polygon into the plane of its area vector (Newell), counter-clockwise; empty if it has no area.
 std::vector<Point> flattened(std::span<const Vec3> vertices, std::span<const std::uint32_t> corners) {
@@ -102,12 +102,12 @@ class EarClipper {
 
 void triangulate_polygon(std::span<const Vec3> vertices, std::span<const std::uint32_t> corners,
                          std::vector<Face>& faces) {
-    if (corners.size() <= 3 || corners.size() > k_most_ear_corners) return add_fan(corners, faces);
+    if (corners.size() <= 3 || corners.size() > k_max_ear_corners) return add_fan(corners, faces);
     std::vector<Point> points = flattened(vertices, corners);
     if (points.empty() || is_convex(points)) return add_fan(corners, faces);
     EarClipper clipper(std::move(points));
-    const std::size_t most_looks = k_max_corner_checks * corners.size() * corners.size();
-    while (clipper.size() >= 3 && clipper.corner_checks() < most_looks) {
+    const std::size_t max_looks = k_max_corner_checks * corners.size() * corners.size();
+    while (clipper.size() >= 3 && clipper.corner_checks() < max_looks) {
         const auto [a, b, c] = clipper.clip();
         faces.push_back({corners[a], corners[b], corners[c]});
     }

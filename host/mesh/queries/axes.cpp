@@ -149,7 +149,7 @@ SurfaceSamples sample_surface(const TriangleMesh& mesh, const PrincipalAxes& axe
     return samples;
 }
 
-/// How far the surface is from being mapped to itself by a mirror plane through the area centroid.
+/// Measures how far the surface is from being mapped to itself by a mirror plane through the area centroid.
 struct Asymmetry {
     float distance;  ///< mean distance of the mirrored samples to the surface, over the diagonal
     float cost;      ///< the same plus a mild penalty for normals that differ; what the search minimizes

@@ -17,7 +17,7 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_fewest_vertices = 500, k_most_vertices = 100'000, k_most_frames = 100'000;
+constexpr std::size_t k_min_vertices = 500, k_max_vertices = 100'000, k_max_frames = 100'000;
 
 struct AnimationGenerator {
     std::string_view name;
@@ -57,8 +57,8 @@ std::span<const std::string_view> synth_animation_kinds() {
 
 Animation make_animation(std::string_view kind_name, const AnimationOptions& options) {
     const AnimationGenerator& kind = find_animation_kind(kind_name);
-    require_range("vertices", options.vertices, k_fewest_vertices, k_most_vertices);
-    require_range("frames", options.frames, 1, k_most_frames);
+    require_range("vertices", options.vertices, k_min_vertices, k_max_vertices);
+    require_range("frames", options.frames, 1, k_max_frames);
     Animation animation = kind.make(options);
     animation.name = kind_name;
     animation.rest.source_face_count = static_cast<std::uint32_t>(animation.rest.face_count());

@@ -14,7 +14,7 @@ namespace exemplar {
 namespace {
 
 constexpr double k_face_fairing = 0.06;  // width of the bumps to smooth: those where solids meet, not lips and eyes
-constexpr float k_least_offset = 1e-6f;  // smaller offsets are left out, so that shapes stay sparse
+constexpr float k_min_offset = 1e-6f;    // smaller offsets are left out, so that shapes stay sparse
 constexpr double k_face_frame_rate = 30;
 
 /// Returns the displacement of the skin at p by a push: a bump with three continuous derivatives.
@@ -32,7 +32,7 @@ MorphTarget target_of(const FaceShape& shape, const TriangleMesh& mesh, const st
     for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) {
         Vec3 offset = Vec3::Zero();
         for (const SkinPush& push : shape.pushes) offset += displacement(push, mesh.vertices[v], normals[v]);
-        if (offset.norm() < k_least_offset) continue;
+        if (offset.norm() < k_min_offset) continue;
         target.vertices.push_back(v);
         target.offsets.push_back(offset);
     }

@@ -16,9 +16,9 @@ namespace {
 using WeightMatrix = Eigen::SparseMatrix<double>;
 
 constexpr double k_sharpness = 0.8;  // heat from a bone per area, times the squared reach of its vertices
-constexpr double k_least_reach = 0.025, k_reach_share = 0.25;  // reach = least + share * distance to the bone
-constexpr double k_reach_smoothing = 0.04;  // distance over which the reaches of different bones blend
-constexpr std::size_t k_most_influences = 4;
+constexpr double k_min_reach = 0.025, k_reach_share = 0.25;  // reach = least + share * distance to the bone
+constexpr double k_reach_smoothing = 0.04;                   // distance over which the reaches of different bones blend
+constexpr std::size_t k_max_influences = 4;
 constexpr double k_fading_weight = 0.03;  // smaller weights fade to zero
 
 double distance_to(const BoneSegment& bone, const Vec3& p) {
@@ -33,9 +33,9 @@ Eigen::VectorXd warmth_of(const TriangleMesh& mesh, const SurfaceLaplacian& lapl
     Eigen::MatrixXd reach(laplacian.area.size(), 1);
     for (std::size_t v = 0; v < mesh.vertex_count(); ++v)
         reach(static_cast<Eigen::Index>(v), 0) =
-            k_least_reach + k_reach_share * distance_to(bones[bone_of_vertex[v]], mesh.vertices[v]);
+            k_min_reach + k_reach_share * distance_to(bones[bone_of_vertex[v]], mesh.vertices[v]);
     // A jump between bones would cause one in the second derivatives of the weights, and so in the posed curvature.
-    const Eigen::VectorXd smooth = diffuse(laplacian, k_reach_smoothing, reach).cwiseMax(k_least_reach);
+    const Eigen::VectorXd smooth = diffuse(laplacian, k_reach_smoothing, reach).cwiseMax(k_min_reach);
     return k_sharpness * laplacian.area.cwiseQuotient(smooth.cwiseAbs2());
 }
 
@@ -55,12 +55,12 @@ std::vector<Influence> strongest(const Eigen::RowVectorXd& weights) {
         sorted.emplace_back(-sharp * ramp(sharp / k_fading_weight), static_cast<std::uint32_t>(b));
     }
     std::sort(sorted.begin(), sorted.end());
-    const double next = sorted.size() > k_most_influences ? -sorted[k_most_influences].first : 0.0;
+    const double next = sorted.size() > k_max_influences ? -sorted[k_max_influences].first : 0.0;
     std::vector<Influence> influences;
     double sum = 0;
     for (const auto& [negative, bone] : sorted) {
         const double weight = -negative - next;
-        if (weight < 1e-6 || influences.size() == k_most_influences) break;
+        if (weight < 1e-6 || influences.size() == k_max_influences) break;
         influences.push_back({bone, static_cast<float>(weight)});
         sum += weight;
     }

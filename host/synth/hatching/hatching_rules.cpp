@@ -135,8 +135,8 @@ RuledHatching hatching_by_rule(std::string_view style, PixelFeatures& pixels) {
     const NamedFeatures features(pixels, rule.scalars);
     const HatchingView& view = pixels.view();
     // A picture could not show finer strokes.
-    constexpr float k_least_scale = 0.7f;
-    const float scale = std::max(static_cast<float>(std::min(view.width, view.height)) / 1000, k_least_scale);
+    constexpr float k_min_scale = 0.7f;
+    const float scale = std::max(static_cast<float>(std::min(view.width, view.height)) / 1000, k_min_scale);
     RuledHatching out{HatchingFields(view.width, view.height), {}};
     out.segment.assign(out.fields.size(), k_outside);
     for (std::size_t row = 0; row < pixels.size(); ++row) {

@@ -23,7 +23,7 @@ namespace {
 
 constexpr int k_any_genus = -1;
 constexpr std::uint64_t k_attempts = 100;
-constexpr std::size_t k_fewest_faces = 100, k_most_faces = 200'000;  // with more, the grid takes gigabytes
+constexpr std::size_t k_min_faces = 100, k_max_faces = 200'000;  // with more, the grid takes gigabytes
 constexpr std::uint64_t k_orientation_task = 1000;
 
 struct ShapeKind {
@@ -81,9 +81,9 @@ std::span<const std::string_view> synth_labels(std::string_view kind) {
 
 SynthShape make_shape(std::string_view kind_name, std::uint64_t seed, std::size_t faces, bool random_orientation) {
     const ShapeKind& kind = find_shape_kind(kind_name);
-    if (faces < k_fewest_faces || faces > k_most_faces)
+    if (faces < k_min_faces || faces > k_max_faces)
         throw UsageError(
-            fmt::format("a shape of {} faces cannot be made; ask for {} to {}", faces, k_fewest_faces, k_most_faces));
+            fmt::format("a shape of {} faces cannot be made; ask for {} to {}", faces, k_min_faces, k_max_faces));
     const Random root = Random(seed).fork(static_cast<std::uint64_t>(&kind - kinds().data()));
     SynthShape shape;
     // A pose in which limbs touch has another genus; such shapes are generated again.

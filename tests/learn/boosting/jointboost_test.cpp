@@ -39,7 +39,7 @@ class PlainJointBoost {
     }
 
     /// The least Eq. 3.6 over all features, thresholds and subsets, with a, b, k_c in closed form.
-    double least_error() const {
+    double min_error() const {
         double least = 1e30;
         for (std::uint32_t f = 0; f < data_.features.cols(); ++f) {
             for (const float threshold : data_.quantized.thresholds[f]) {
@@ -105,7 +105,7 @@ void expect_every_round_optimal(const Data& data, const BoostOptions& options) {
     PlainJointBoost plain(data);
     for (std::size_t m = 0; m < options.rounds; ++m) {
         const Stump& stump = result.classifier.stumps[m];
-        const double found = plain.error(stump, constants(result.classifier, m)), least = plain.least_error();
+        const double found = plain.error(stump, constants(result.classifier, m)), least = plain.min_error();
         EXPECT_NEAR(found, least, 1e-5 * least) << "round " << m;
         // a, b and k_c are the closed form of the split that was found.
         EXPECT_NEAR(found, plain.best_error(stump.feature, stump.threshold, stump.classes), 1e-6 * found);
@@ -150,7 +150,7 @@ TEST(JointBoost, ShrinksEveryStep) {
         grown.above *= 4.0f, grown.below *= 4.0f;
         std::vector<float> elsewhere(constants(small.classifier, m).begin(), constants(small.classifier, m).end());
         for (float& k : elsewhere) k *= 4.0f;
-        const double least = plain.least_error();
+        const double least = plain.min_error();
         EXPECT_NEAR(plain.error(grown, elsewhere), least, 1e-5 * least) << m;
         const double loss = plain.update(stump, constants(small.classifier, m));
         EXPECT_NEAR(small.loss[m], loss, 1e-5 * loss) << m;

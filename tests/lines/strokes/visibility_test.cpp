@@ -98,7 +98,7 @@ double bend_along(const Inside& inside, const Vec3d& p, const Vec3d& eye) {
     return inside(p + step) + inside(p - step) - 2 * inside(p);
 }
 
-void expect_right_contours(const Scene& scene, const Inside& inside, const Vec3& eye, double least_length,
+void expect_right_contours(const Scene& scene, const Inside& inside, const Vec3& eye, double min_length,
                            double most_wrong) {
     const Camera camera = camera_at(eye);
     const Comparison found = compare(scene, LineType::contours, camera, [&](const Vec3d& p) -> std::optional<bool> {
@@ -107,8 +107,8 @@ void expect_right_contours(const Scene& scene, const Inside& inside, const Vec3&
         if (bend < 0) return false;
         return sees(inside, p, eye.cast<double>(), 0.25, 0.02);
     });
-    EXPECT_GT(found.known, least_length) << eye.transpose();
-    EXPECT_GT(found.visible, 0.5 * least_length) << eye.transpose();
+    EXPECT_GT(found.known, min_length) << eye.transpose();
+    EXPECT_GT(found.visible, 0.5 * min_length) << eye.transpose();
     EXPECT_LT(found.wrong, most_wrong * found.known) << eye.transpose();
 }
 

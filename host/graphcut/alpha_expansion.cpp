@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "host/core/errors.h"
+#include "host/graphcut/expansion_move.h"
 
 namespace exemplar {
 
 namespace {
-
-constexpr std::size_t k_forbidding_stages = 8;
 
 void check_energy(const LabelingEnergy& energy, std::size_t nodes, std::size_t edges, std::size_t labels) {
     if (labels == 0 || energy.unary.size() != nodes * labels || energy.weight.size() != edges ||
@@ -30,32 +30,12 @@ void check_energy(const LabelingEnergy& energy, std::size_t nodes, std::size_t e
     for (std::size_t a = 0; a < labels; ++a) {
         for (std::size_t b = 0; b < labels; ++b) {
             const double v = energy.compatibility[a * labels + b];
-            if (!(v >= 0.0) || v != energy.compatibility[b * labels + a] || (a == b && v != 0.0)) {
+            if (!(v >= 0.0) || std::isinf(v) || v != energy.compatibility[b * labels + a] || (a == b && v != 0.0)) {
                 throw UsageError("the compatibility of labels " + std::to_string(a) + " and " + std::to_string(b) +
-                                 " is wrong: V must be symmetric, not negative and zero for equal labels");
+                                 " is wrong: V must be symmetric, finite, not negative and zero for equal labels");
             }
         }
     }
-}
-
-double largest_finite(std::span<const double> values) {
-    double largest = 0.0;
-    for (const double value : values) {
-        if (!std::isinf(value)) largest = std::max(largest, value);
-    }
-    return largest;
-}
-
-/// Returns more than any energy difference between labelings without forbidden pairs.
-double cost_above_all(const LabelingEnergy& energy, std::size_t labels) {
-    double range = 1.0;
-    for (std::size_t i = 0; i < energy.unary.size(); i += labels) {
-        const auto [low, high] = std::ranges::minmax(energy.unary.subspan(i, labels));
-        range += static_cast<double>(high) - static_cast<double>(low);
-    }
-    const double largest = largest_finite(energy.compatibility);
-    for (const double weight : energy.weight) range += weight * largest;
-    return range;
 }
 
 void check_labels(std::span<const std::int32_t> labeling, std::size_t nodes, std::size_t labels) {
@@ -80,13 +60,6 @@ std::vector<std::int32_t> cheapest_labels(std::span<const float> unary, std::siz
     return labeling;
 }
 
-std::vector<std::int32_t> cheapest_single_label(std::span<const float> unary, std::size_t nodes, std::size_t labels) {
-    std::vector<double> total(labels, 0.0);
-    for (std::size_t i = 0; i < unary.size(); ++i) total[i % labels] += static_cast<double>(unary[i]);
-    const auto best = static_cast<std::int32_t>(std::ranges::min_element(total) - total.begin());
-    return std::vector<std::int32_t>(nodes, best);
-}
-
 }  // namespace
 
 AlphaExpansion::AlphaExpansion(std::size_t nodes, std::span<const std::array<std::uint32_t, 2>> edges)
@@ -94,28 +67,26 @@ AlphaExpansion::AlphaExpansion(std::size_t nodes, std::span<const std::array<std
 
 double AlphaExpansion::evaluate(const LabelingEnergy& energy, std::size_t labels,
                                 std::span<const std::int32_t> labeling) const {
-    check_energy(energy, flow_.nodes(), edges_.size(), labels);
-    check_labels(labeling, flow_.nodes(), labels);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < labeling.size(); ++i) {
-        sum += static_cast<double>(energy.unary[i * labels + static_cast<std::size_t>(labeling[i])]);
-    }
-    for (std::size_t e = 0; e < edges_.size(); ++e) {
-        const auto a = static_cast<std::size_t>(labeling[edges_[e][0]]);
-        const auto b = static_cast<std::size_t>(labeling[edges_[e][1]]);
-        if (a != b && energy.weight[e] > 0.0) sum += energy.weight[e] * energy.compatibility[a * labels + b];
-    }
-    return sum;
+    const std::size_t nodes = flow_.nodes();
+    check_energy(energy, nodes, edges_.size(), labels);
+    check_labels(labeling, nodes, labels);
+    return ExpansionProblem{nodes, labels, edges_, energy.unary, energy.weight, energy.compatibility}.cost(labeling);
 }
 
-ExpansionResult AlphaExpansion::descend(const ExpansionProblem& problem, std::size_t max_sweeps,
-                                        std::vector<std::int32_t> labeling) {
-    LabelExpansion expansion(problem, flow_, std::move(labeling));
+ExpansionResult AlphaExpansion::solve(const LabelingEnergy& energy, std::size_t labels, std::size_t max_sweeps,
+                                      std::span<const std::int32_t> initial) {
+    const std::size_t nodes = flow_.nodes();
+    check_energy(energy, nodes, edges_.size(), labels);
+    if (!initial.empty()) check_labels(initial, nodes, labels);
+    const ExpansionProblem problem{nodes, labels, edges_, energy.unary, energy.weight, energy.compatibility};
+    LabelExpansion expansion(problem, flow_,
+                             initial.empty() ? cheapest_labels(energy.unary, labels)
+                                             : std::vector<std::int32_t>(initial.begin(), initial.end()));
     ExpansionResult result;
     result.energies.push_back(expansion.energy());
     std::size_t in_vain = 0;  // labels tried since the last change
-    for (; result.sweeps < max_sweeps && in_vain < problem.labels; ++result.sweeps) {
-        for (std::size_t alpha = 0; alpha < problem.labels && in_vain < problem.labels; ++alpha) {
+    for (; result.sweeps < max_sweeps && in_vain < labels; ++result.sweeps) {
+        for (std::size_t alpha = 0; alpha < labels && in_vain < labels; ++alpha) {
             ++in_vain;
             if (!expansion.expand(static_cast<std::int32_t>(alpha))) continue;
             in_vain = 0;
@@ -124,31 +95,6 @@ ExpansionResult AlphaExpansion::descend(const ExpansionProblem& problem, std::si
     }
     result.labels = std::move(expansion.labels());
     return result;
-}
-
-ExpansionResult AlphaExpansion::solve(const LabelingEnergy& energy, std::size_t labels, std::size_t max_sweeps,
-                                      std::span<const std::int32_t> initial) {
-    const std::size_t nodes = flow_.nodes();
-    check_energy(energy, nodes, edges_.size(), labels);
-    ExpansionProblem problem{nodes, labels, edges_, energy.unary, energy.weight, energy.compatibility};
-    problem.forbidden_cost = cost_above_all(energy, labels);
-    if (!initial.empty()) {
-        check_labels(initial, flow_.nodes(), labels);
-        return descend(problem, max_sweeps, {initial.begin(), initial.end()});
-    }
-    const auto broken = [&](std::span<const std::int32_t> of) { return std::isinf(evaluate(energy, labels, of)); };
-    std::vector<std::int32_t> start = cheapest_labels(energy.unary, labels);
-    // The cost of forbidden pairs rises step by step. If they were forbidden at once, the first label that fits
-    // would replace all labels in conflict, and expansion moves do not undo that.
-    problem.forbidden_factor = std::max(largest_finite(energy.compatibility), 1e-3);
-    for (std::size_t stage = 0; stage < k_forbidding_stages && broken(start); ++stage) {
-        start = descend(problem, max_sweeps, std::move(start)).labels;
-        problem.forbidden_factor *= 4.0;
-    }
-    problem.forbidden_factor = 0.0;
-    ExpansionResult result = descend(problem, max_sweeps, std::move(start));
-    if (!broken(result.labels)) return result;
-    return descend(problem, max_sweeps, cheapest_single_label(energy.unary, flow_.nodes(), labels));
 }
 
 ExpansionResult alpha_expansion(std::span<const float> unary, std::size_t labels,

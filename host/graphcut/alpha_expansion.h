@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "host/graphcut/expansion_move.h"
 #include "host/graphcut/max_flow.h"
 
 namespace exemplar {
@@ -15,15 +14,13 @@ namespace exemplar {
 struct LabelingEnergy {
     std::span<const float> unary;           ///< nodes x labels, node-major, finite
     std::span<const double> weight;         ///< one per edge, >= 0, finite
-    std::span<const double> compatibility;  ///< V, labels x labels: symmetric, zero diagonal, >= 0; infinity forbids
+    std::span<const double> compatibility;  ///< V, labels x labels: symmetric, zero diagonal, >= 0, finite
 };
 
 struct ExpansionResult {
     std::vector<std::int32_t> labels;  ///< one per node
-    /// Energies at the start of the last descent and after each accepted move; they never rise. A forbidden pair has
-    /// a finite cost, above any energy difference between labelings without one.
-    std::vector<double> energies;
-    std::size_t sweeps = 0;  ///< passes over the labels
+    std::vector<double> energies;      ///< at the start and after each accepted move; they never rise
+    std::size_t sweeps = 0;            ///< passes over the labels
 };
 
 /// Minimizes energies of labelings of one graph by expansion moves (Boykov, Veksler and Zabih, PAMI 2001). For each
@@ -36,20 +33,15 @@ class AlphaExpansion {
     /// Throws UsageError for a node out of range.
     AlphaExpansion(std::size_t nodes, std::span<const std::array<std::uint32_t, 2>> edges);
 
-    /// Starts from `initial` (one label per node), or, if it is empty, from each node's cheapest label. If the
-    /// cheapest labels contain forbidden pairs (V = infinity), their cost first rises step by step from the largest
-    /// finite V. Without `initial` the result has no forbidden pair. Throws UsageError for sizes that do not match,
-    /// or labels or values that are out of range.
+    /// Starts from `initial` (one label per node), or, if it is empty, from each node's cheapest label. Throws
+    /// UsageError for sizes that do not match, or labels or values that are out of range.
     ExpansionResult solve(const LabelingEnergy& energy, std::size_t labels, std::size_t max_sweeps = 100,
                           std::span<const std::int32_t> initial = {});
 
-    /// Returns the energy of a labeling; infinite if an edge of positive weight joins a forbidden pair.
+    /// Returns the energy of a labeling. Throws UsageError likewise.
     double evaluate(const LabelingEnergy& energy, std::size_t labels, std::span<const std::int32_t> labeling) const;
 
   private:
-    ExpansionResult descend(const ExpansionProblem& problem, std::size_t max_sweeps,
-                            std::vector<std::int32_t> labeling);
-
     std::vector<std::array<std::uint32_t, 2>> edges_;
     MaxFlow flow_;
 };

@@ -9,12 +9,11 @@ namespace {
 
 constexpr std::size_t k_never = std::numeric_limits<std::size_t>::max();
 
-/// Whether V is finite and obeys the triangle inequality.
+/// Returns whether V obeys the triangle inequality.
 bool is_metric(const ExpansionProblem& problem) {
     const auto labels = static_cast<std::int32_t>(problem.labels);
     for (std::int32_t a = 0; a < labels; ++a) {
         for (std::int32_t b = 0; b < labels; ++b) {
-            if (std::isinf(problem.factor(a, b))) return false;
             for (std::int32_t c = 0; c < labels; ++c) {
                 if (problem.factor(a, b) > problem.factor(a, c) + problem.factor(c, b)) return false;
             }
@@ -24,13 +23,6 @@ bool is_metric(const ExpansionProblem& problem) {
 }
 
 }  // namespace
-
-double ExpansionProblem::pair_cost(double weight_of_edge, std::int32_t a, std::int32_t b) const {
-    const double of_pair = factor(a, b);
-    if (!std::isinf(of_pair)) return weight_of_edge * of_pair;
-    if (weight_of_edge == 0.0) return 0.0;
-    return forbidden_factor > 0.0 ? weight_of_edge * forbidden_factor : forbidden_cost;
-}
 
 double ExpansionProblem::cost(std::span<const std::int32_t> labeling) const {
     double sum = 0.0;
@@ -79,12 +71,10 @@ bool LabelExpansion::has_equal_neighbors(Node node) const {
 LabelExpansion::PairCosts LabelExpansion::pair_costs(Node node, ArcIndex arc) const {
     const Node neighbor = flow_.head(arc);
     const double weight = weight_of_arc_[arc];
-    if (is_metric_)
-        return {weight * problem_.factor(labels_[node], labels_[neighbor]),
-                weight * problem_.factor(alpha_, labels_[neighbor]), weight * problem_.factor(labels_[node], alpha_)};
     PairCosts costs{problem_.pair_cost(weight, labels_[node], labels_[neighbor]),
                     problem_.pair_cost(weight, alpha_, labels_[neighbor]),
                     problem_.pair_cost(weight, labels_[node], alpha_)};
+    if (is_metric_) return costs;
     const double lack = costs.keep - costs.takes - costs.other_takes;
     if (lack <= 0.0) return costs;
     // The one-sided change that costs less by the unary terms keeps its true cost, as it is the likelier one.
@@ -97,9 +87,8 @@ LabelExpansion::PairCosts LabelExpansion::pair_costs(Node node, ArcIndex arc) co
 /// Returns whether a node might take alpha if its neighbors do. Returns true where a quick test cannot tell.
 bool LabelExpansion::may_follow(Node node) const {
     if (labels_[node] == alpha_) return false;
-    const double factor = problem_.factor(labels_[node], alpha_);
-    if (std::isinf(factor) || !(is_metric_ || is_inner_[node])) return true;
-    return gain_of_keeping(node) < weight_around_[node] * factor;
+    if (!(is_metric_ || is_inner_[node])) return true;
+    return gain_of_keeping(node) < problem_.pair_cost(weight_around_[node], labels_[node], alpha_);
 }
 
 /// Returns whether a node might take alpha alone.
@@ -148,8 +137,9 @@ void LabelExpansion::add_to_cut(Node node) {
     double terminal = 0.0;
     if (labels_[node] == alpha_) {
         for (ArcIndex a = begin; a < end; ++a) flow_.set_arc(a, 0.0);
-    } else if (const double factor = problem_.factor(labels_[node], alpha_); is_inner_[node] && !std::isinf(factor)) {
+    } else if (is_inner_[node]) {
         terminal = gain_of_keeping(node);
+        const double factor = problem_.factor(labels_[node], alpha_);
         for (ArcIndex a = begin; a < end; ++a) flow_.set_arc(a, weight_of_arc_[a] * factor);
     } else {
         terminal = gain_of_keeping(node);

@@ -11,15 +11,13 @@
 
 namespace exemplar {
 
-/// An energy (see LabelingEnergy) of a graph, with finite costs instead of infinite V.
+/// An energy (see LabelingEnergy) of a graph.
 struct ExpansionProblem {
     std::size_t nodes, labels;
     std::span<const std::array<std::uint32_t, 2>> edges;
     std::span<const float> unary;
     std::span<const double> weight;
     std::span<const double> v;
-    double forbidden_cost = 0;    ///< cost of an edge between forbidden labels, whatever its weight
-    double forbidden_factor = 0;  ///< if above zero, replaces an infinite V instead
 
     double unary_cost(std::size_t node, std::int32_t label) const {
         return static_cast<double>(unary[node * labels + static_cast<std::size_t>(label)]);
@@ -28,7 +26,9 @@ struct ExpansionProblem {
         return v[static_cast<std::size_t>(a) * labels + static_cast<std::size_t>(b)];
     }
     /// Returns the cost of an edge of this weight between nodes of these labels.
-    double pair_cost(double weight_of_edge, std::int32_t a, std::int32_t b) const;
+    double pair_cost(double weight_of_edge, std::int32_t a, std::int32_t b) const {
+        return weight_of_edge * factor(a, b);
+    }
     double cost(std::span<const std::int32_t> labeling) const;
 };
 

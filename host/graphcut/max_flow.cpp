@@ -52,26 +52,6 @@ std::array<MaxFlow::ArcIndex, 2> MaxFlow::arcs_of_edge(std::size_t edge) const {
     return {arc, arc == k_no_arc ? arc : arcs_[arc].sister};
 }
 
-void MaxFlow::clear() {
-    for (Vertex& vertex : vertices_) vertex.terminal = 0.0;
-    for (Arc& arc : arcs_) arc.residual = 0.0;
-    flow_ = 0.0;
-}
-
-void MaxFlow::add_terminals(std::size_t node, double from_source, double to_sink) {
-    double& terminal = vertices_[node].terminal;
-    const double in = from_source + std::max(terminal, 0.0), out = to_sink + std::max(-terminal, 0.0);
-    flow_ += std::min(in, out);  // goes straight through
-    terminal = in - out;
-}
-
-void MaxFlow::set_edge(std::size_t edge, double forward, double backward) {
-    const ArcIndex arc = arc_of_edge_[edge];
-    if (arc == k_no_arc) return;
-    arcs_[arc].residual = forward;
-    arcs_[arcs_[arc].sister].residual = backward;
-}
-
 void MaxFlow::start_problem() {
     if (++problem_ == 0) {  // all numbers have been used
         for (Vertex& vertex : vertices_) vertex.problem = 0;
@@ -83,24 +63,10 @@ void MaxFlow::start_problem() {
     next_active_ = 0;
 }
 
-double MaxFlow::solve() {
-    start_problem();
-    reach_ = nullptr;
-    for (Node i = 0; i < nodes(); ++i) {
-        if (vertices_[i].terminal < 0.0) reach(i);
-    }
-    run();
-    return flow_;
-}
-
 void MaxFlow::solve(std::span<const Node> start, const std::function<void(Node)>& reach_node) {
     start_problem();
     reach_ = &reach_node;
     for (const Node node : start) reach(node);
-    run();
-}
-
-void MaxFlow::run() {
     for (ArcIndex meeting = find_meeting_arc(); meeting != k_no_arc; meeting = find_meeting_arc()) {
         ++time_;
         augment(meeting);
@@ -113,7 +79,7 @@ void MaxFlow::reach(Node node) {
     Vertex& vertex = vertices_[node];
     if (vertex.problem == problem_) return;
     vertex.problem = problem_;
-    if (reach_) (*reach_)(node);
+    (*reach_)(node);
     reached_.push_back(node);
     vertex.stamp = 0;
     vertex.distance = 1;
@@ -180,7 +146,6 @@ double MaxFlow::bottleneck(ArcIndex meeting) const {
 /// Sends as much flow as the path carries from the source over the meeting arc and up the tree.
 void MaxFlow::augment(ArcIndex meeting) {
     const double flow = bottleneck(meeting);
-    flow_ += flow;
     vertices_[arcs_[arcs_[meeting].sister].head].terminal -= flow;
     arcs_[meeting].residual -= flow;
     arcs_[arcs_[meeting].sister].residual += flow;

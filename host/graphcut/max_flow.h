@@ -14,7 +14,7 @@ namespace exemplar {
 /// Kolmogorov (PAMI 2004). There is no second tree from the source: source capacity is everywhere, so the sink's
 /// tree soon finds some, and nodes far from all that leads to the sink are never visited. The graph is fixed;
 /// capacities are set anew for each problem, so that a series of problems on one graph allocates nothing. Capacities
-/// are finite and not negative; integers below 2^53 give exact flows.
+/// are finite; integers below 2^53 give exact cuts.
 class MaxFlow {
   public:
     using Node = std::uint32_t;
@@ -32,20 +32,13 @@ class MaxFlow {
     /// Returns the two arcs of an edge, from its first node and from its second; equal if the edge carries nothing.
     std::array<ArcIndex, 2> arcs_of_edge(std::size_t edge) const;
 
-    /// Sets all capacities to zero.
-    void clear();
-    /// Adds capacities from the source to a node and from the node to the sink.
-    void add_terminals(std::size_t node, double from_source, double to_sink);
-    /// Sets the capacities of an edge: from its first node to its second, and back.
-    void set_edge(std::size_t edge, double forward, double backward);
-    /// Returns the value of the maximum flow. Uses up the capacities: clear and set them before the next call.
-    double solve();
-
     /// Solves with capacities that are set on demand. `start` holds all nodes with capacity to the sink, and may
     /// hold others. Before a node is first used, `reach` is called for it, and calls set_node for it and set_arc for
     /// its arcs.
     void solve(std::span<const Node> start, const std::function<void(Node)>& reach);
-    void set_node(Node node, double from_source) { vertices_[node].terminal = from_source; }  ///< negative: to sink
+    /// Sets the capacity from the source to a node less that from the node to the sink: the smaller of the two goes
+    /// straight through and changes no cut.
+    void set_node(Node node, double from_source) { vertices_[node].terminal = from_source; }
     void set_arc(ArcIndex arc, double capacity) { arcs_[arc].residual = capacity; }
 
     /// After solve: returns whether the node is on the sink's side of the minimum cut whose sink side is smallest.
@@ -73,7 +66,6 @@ class MaxFlow {
     };
 
     void start_problem();
-    void run();
     void reach(Node node);
     ArcIndex find_meeting_arc();
     ArcIndex scan(Node node);
@@ -96,7 +88,6 @@ class MaxFlow {
     std::size_t next_active_ = 0;
     std::uint32_t problem_ = 0;
     std::uint32_t time_ = 0;
-    double flow_ = 0.0;
 };
 
 }  // namespace exemplar

@@ -24,8 +24,8 @@ Json describe_category(const CategoryModel& model) {
             {"orientation", model.feature_options.orientation},
             {"features", model.features},
             {"sharpness", model.sharpness},
-            {"evidence_slope", model.evidence_slope},
-            {"evidence_offset", model.evidence_offset},
+            {"evidence_slope", model.confidence.slope},
+            {"evidence_offset", model.confidence.offset},
             {"least_confidence", model.least_confidence},
             {"seed", model.seed},
             {"provenance", model.provenance}};
@@ -44,8 +44,8 @@ void read_category_description(const TensorFile& file, CategoryModel& model) {
     model.feature_options.orientation = json.at("orientation").get<bool>();
     model.features = json.at("features").get<std::vector<std::string>>();
     model.sharpness = json.at("sharpness").get<double>();
-    model.evidence_slope = json.at("evidence_slope").get<double>();
-    model.evidence_offset = json.at("evidence_offset").get<double>();
+    model.confidence.slope = json.at("evidence_slope").get<double>();
+    model.confidence.offset = json.at("evidence_offset").get<double>();
     model.least_confidence = json.at("least_confidence").get<double>();
     model.seed = whole_value(file, json.at("seed"));
     model.provenance = json.at("provenance").get<std::vector<std::string>>();
@@ -61,7 +61,8 @@ void check_category_description(const TensorFile& file, const CategoryModel& mod
         inconsistent(file, fmt::format("its features are of {} samples", model.feature_options.samples));
     if (model.features.empty()) inconsistent(file, "it has no features");
     if (!(model.sharpness > 0) || !std::isfinite(model.sharpness)) inconsistent(file, "its sharpness is not positive");
-    if (!(model.evidence_slope >= 0) || !std::isfinite(model.evidence_slope) || !std::isfinite(model.evidence_offset))
+    if (!(model.confidence.slope >= 0) || !std::isfinite(model.confidence.slope) ||
+        !std::isfinite(model.confidence.offset))
         inconsistent(file, "more evidence makes it less sure");
     if (!(model.least_confidence >= 0 && model.least_confidence <= 1))
         inconsistent(file, "its least confidence is not from 0 to 1");

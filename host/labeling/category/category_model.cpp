@@ -5,22 +5,9 @@
 #include <functional>
 
 #include "host/core/errors.h"
+#include "host/learn/softmax.h"
 
 namespace exemplar {
-namespace {
-
-std::vector<float> softmax(std::span<const double> scores, double sharpness) {
-    const double most = std::ranges::max(scores);
-    double sum = 0;
-    for (const double score : scores) sum += std::exp(sharpness * (score - most));
-    std::vector<float> probability;
-    for (const double score : scores)
-        probability.push_back(static_cast<float>(std::exp(sharpness * (score - most)) / sum));
-    return probability;
-}
-
-}  // namespace
-
 std::vector<double> CategoryScores::of(std::span<const float> descriptor) const {
     const std::size_t count = mean.size();
     std::vector<double> squashed(count);
@@ -46,11 +33,14 @@ CategoryPrediction recognize(const CategoryModel& model, const ShapeDescriptor& 
             "options of the model");
     const std::vector<double> scores = model.scores.of(shape.values);
     CategoryPrediction prediction;
-    prediction.probability = softmax(scores, model.sharpness);
-    const double log_odds = model.evidence_slope * category_evidence(scores) + model.evidence_offset;
-    prediction.confidence = static_cast<float>(1 / (1 + std::exp(-log_odds)));
+    const auto best = std::ranges::max_element(scores);
+    std::vector<double> probability;
+    for (const double score : scores) probability.push_back(model.sharpness * (score - *best));
+    softmax(std::span(probability));
+    prediction.probability.assign(probability.begin(), probability.end());
+    prediction.confidence = static_cast<float>(model.confidence.probability(category_evidence(scores)));
     if (static_cast<double>(prediction.confidence) >= model.least_confidence)
-        prediction.category = static_cast<std::int32_t>(std::ranges::max_element(scores) - scores.begin());
+        prediction.category = static_cast<std::int32_t>(best - scores.begin());
     return prediction;
 }
 

@@ -10,6 +10,7 @@
 #include "host/data/catalog/shape_record.h"
 #include "host/labeling/category/shape_descriptor.h"
 #include "host/labeling/features/features.h"
+#include "host/learn/regression/logistic_regression.h"
 
 namespace exemplar {
 
@@ -39,8 +40,7 @@ struct CategoryModel {
     std::vector<std::string> features;  ///< the face features that descriptors are computed from, in order
     CategoryScores scores;
     double sharpness = 10;          ///< P(category | it is a known one) = softmax(sharpness H)
-    double evidence_slope = 0;      ///< confidence = sigma(slope * evidence + offset); >= 0
-    double evidence_offset = 0;     ///< see evidence_slope
+    LogisticCurve confidence;       ///< probability that the best category is right, by category_evidence
     double least_confidence = 0.5;  ///< shapes with a lower confidence are called unknown; in [0, 1]
     std::uint64_t seed = 0;
     std::vector<std::string> provenance;  ///< one line per training mesh: category, name and content hash

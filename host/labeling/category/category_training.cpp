@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -14,16 +13,16 @@
 #include "host/core/parallel.h"
 #include "host/core/random.h"
 #include "host/learn/boosting/calibration.h"
-#include "host/learn/decompositions.h"
+#include "host/learn/regression/logistic_regression.h"
+#include "host/learn/regression/ridge.h"
 #include "host/mesh/io/io_text.h"
 
 namespace exemplar {
 namespace {
 
 using Indices = std::vector<std::size_t>;
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Ridge penalty; the mean squared value of a squashed descriptor is at most 1.
+/// See ridge_regression; the mean squared value of a squashed descriptor is at most 1.
 constexpr double k_ridge = 0.05;
 constexpr std::size_t k_max_category_folds = 10;
 /// Assumed share of strangers among the shapes, for the confidence.
@@ -54,9 +53,9 @@ Eigen::VectorXd balanced_weights(const Problem& problem, const Indices& shapes) 
     return weights;
 }
 
-Rows matrix_of(const Problem& problem, const Indices& shapes) {
+RowMajorMatrix matrix_of(const Problem& problem, const Indices& shapes) {
     const std::size_t values = problem.descriptor(0).size();
-    Rows matrix(static_cast<Eigen::Index>(shapes.size()), static_cast<Eigen::Index>(values));
+    RowMajorMatrix matrix(static_cast<Eigen::Index>(shapes.size()), static_cast<Eigen::Index>(values));
     for (std::size_t r = 0; r < shapes.size(); ++r)
         matrix.row(static_cast<Eigen::Index>(r)) =
             Eigen::Map<const Eigen::RowVectorXf>(problem.descriptor(shapes[r]).data(), matrix.cols()).cast<double>();
@@ -64,7 +63,7 @@ Rows matrix_of(const Problem& problem, const Indices& shapes) {
 }
 
 /// Sets the squashing of CategoryScores to weighted means and deviations, and applies it to `matrix`.
-void squash(Rows& matrix, const Eigen::VectorXd& weights, CategoryScores& scores) {
+void squash(RowMajorMatrix& matrix, const Eigen::VectorXd& weights, CategoryScores& scores) {
     const auto rows = static_cast<double>(matrix.rows());
     const Eigen::RowVectorXd mean = weights.transpose() * matrix / rows;
     matrix.rowwise() -= mean;
@@ -80,30 +79,10 @@ void squash(Rows& matrix, const Eigen::VectorXd& weights, CategoryScores& scores
     }
 }
 
-/// Ridge regression in its dual form, as descriptors usually have more values than there are shapes:
-///
-///     (Z Z^T / D + ridge diag(1 / w)) A = Y - b,   weights = A^T Z / D
-///
-/// Y has one target per category, b is their weighted mean. With more shapes than values, the same in primal form:
-///
-///     (Z^T diag(w) Z / D + ridge 1) weights^T = Z^T diag(w) (Y - b) / D
-Rows ridge_weights(const Rows& z, const Eigen::VectorXd& weights, const Eigen::MatrixXd& target) {
-    const auto values = static_cast<double>(z.cols());
-    if (z.rows() <= z.cols()) {
-        Eigen::MatrixXd kernel = z * z.transpose() / values;
-        kernel.diagonal() += k_ridge * weights.cwiseInverse();
-        return solve_cholesky(std::move(kernel), target).transpose() * z / values;
-    }
-    const Rows weighted = weights.asDiagonal() * z;
-    Eigen::MatrixXd normal = weighted.transpose() * z / values;
-    normal.diagonal().array() += k_ridge;
-    return solve_cholesky(std::move(normal), weighted.transpose() * target / values).transpose();
-}
-
 CategoryScores fit(const Problem& problem, const Indices& shapes) {
     CategoryScores scores;
     const Eigen::VectorXd weights = balanced_weights(problem, shapes);
-    Rows z = matrix_of(problem, shapes);
+    RowMajorMatrix z = matrix_of(problem, shapes);
     squash(z, weights, scores);
     const auto rows = z.rows(), categories = static_cast<Eigen::Index>(problem.categories());
     Eigen::MatrixXd target = Eigen::MatrixXd::Zero(rows, categories);
@@ -112,7 +91,7 @@ CategoryScores fit(const Problem& problem, const Indices& shapes) {
     const Eigen::RowVectorXd offset = weights.transpose() * target / static_cast<double>(rows);
     target.rowwise() -= offset;
 
-    const Rows found = ridge_weights(z, weights, target);
+    const RowMajorMatrix found = ridge_regression(z, weights, target, k_ridge);
     for (const double value : found.reshaped<Eigen::RowMajor>()) scores.weights.push_back(static_cast<float>(value));
     for (const double value : offset) scores.offset.push_back(static_cast<float>(value));
     return scores;
@@ -250,74 +229,18 @@ std::vector<double> item_weights(const std::vector<HeldOutShape>& items, std::si
     return weights;
 }
 
-double sigmoid(double x) {
-    return 1 / (1 + std::exp(-x));
-}
-
-/// Returns -log sigmoid(x), also where the sigmoid underflows to 0.
-double loss_of(double x) {
-    return x > 0 ? std::log1p(std::exp(-x)) : std::log1p(std::exp(x)) - x;
-}
-
-/// A weighted logistic regression on one value: P = sigma(line . (value, 1)) should be `target`.
-struct LogisticProblem {
-    std::vector<double> value, target, weight;
-
-    /// Returns the log odds of the mean target: the best line without a slope.
-    double log_odds() const {
-        double sum = 0, all = 0;
-        for (std::size_t i = 0; i < target.size(); ++i) sum += weight[i] * target[i], all += weight[i];
-        return std::log(sum / (all - sum));
-    }
-    double loss(const Eigen::Vector2d& line) const {
-        double sum = 0;
-        for (std::size_t i = 0; i < value.size(); ++i) {
-            const double x = line[0] * value[i] + line[1];
-            sum += weight[i] * (target[i] * loss_of(x) + (1 - target[i]) * loss_of(-x));
-        }
-        return sum;
-    }
-    Eigen::Vector2d newton_step(const Eigen::Vector2d& line) const {
-        Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
-        Eigen::Matrix2d curvature = Eigen::Matrix2d::Identity() * 1e-9;
-        for (std::size_t i = 0; i < value.size(); ++i) {
-            const Eigen::Vector2d x(value[i], 1);
-            const double p = sigmoid(line.dot(x));
-            gradient += weight[i] * (p - target[i]) * x;
-            curvature += weight[i] * p * (1 - p) * x * x.transpose();
-        }
-        return -curvature.ldlt().solve(gradient);
-    }
-    /// Newton's method, with steps that are halved until the loss falls.
-    Eigen::Vector2d solve() const {
-        Eigen::Vector2d line = Eigen::Vector2d::Zero();
-        double least = loss(line);
-        for (int round = 0; round < 100; ++round) {
-            Eigen::Vector2d step = newton_step(line);
-            for (int halving = 0; halving < 30 && !(loss(line + step) < least); ++halving) step /= 2;
-            if (!(loss(line + step) < least)) break;
-            line += step;
-            least = loss(line);
-        }
-        return line;
-    }
-};
-
 /// Fits the confidence: a logistic regression of being right on the evidence. The targets of Platt (1999) keep the
 /// slope finite if the evidence separates the right answers from all others.
 void fit_confidence(const std::vector<HeldOutShape>& items, const std::vector<double>& weights, CategoryModel& model) {
     const auto right = static_cast<double>(std::ranges::count_if(items, &HeldOutShape::right));
     const double yes = (right + 1) / (right + 2), no = 1 / (static_cast<double>(items.size()) - right + 2);
-    LogisticProblem problem;
+    std::vector<double> evidence, target, weight;
     for (std::size_t i = 0; i < items.size(); ++i) {
-        problem.value.push_back(items[i].evidence);
-        problem.target.push_back(items[i].right() ? yes : no);
-        problem.weight.push_back(weights[i] * (items[i].stranger ? k_stranger_share : 1 - k_stranger_share));
+        evidence.push_back(items[i].evidence);
+        target.push_back(items[i].right() ? yes : no);
+        weight.push_back(weights[i] * (items[i].stranger ? k_stranger_share : 1 - k_stranger_share));
     }
-    Eigen::Vector2d line = problem.solve();
-    if (line[0] <= 0) line = {0, problem.log_odds()};  // the evidence is not informative
-    model.evidence_slope = line[0];
-    model.evidence_offset = line[1];
+    model.confidence = fit_rising_logistic(evidence, target, weight);
 }
 
 void fit_sharpness(const std::vector<HeldOutShape>& items, CategoryModel& model) {
@@ -339,8 +262,7 @@ CategoryReport report_of(const std::vector<HeldOutShape>& items, const std::vect
     CategoryReport report;
     report.strangers_made_up = model.category_count() == 2;
     for (std::size_t i = 0; i < items.size(); ++i) {
-        const double log_odds = model.evidence_slope * items[i].evidence + model.evidence_offset;
-        const bool known = sigmoid(log_odds) >= model.least_confidence;
+        const bool known = model.confidence.probability(items[i].evidence) >= model.least_confidence;
         if (items[i].stranger) {
             report.strangers_unknown += known ? 0 : weights[i];
             continue;

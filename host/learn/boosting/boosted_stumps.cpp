@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <string>
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
 #include "host/learn/boosting/grouped_stumps.h"
+#include "host/learn/softmax.h"
 
 namespace exemplar {
 namespace {
@@ -45,19 +45,9 @@ void sum_stumps(const Sum& sum, const FeatureMatrix& features, std::size_t begin
     }
 }
 
-/// Returns the log of the unnormalized probability: s H for the softmax, log sigma(s H) for the sigmoid (which stays
-/// finite where sigma itself underflows).
+/// Returns the log of the unnormalized probability: s H for the softmax, log sigma(s H) for the sigmoid.
 float log_weight(float scaled, Link link) {
-    if (link == Link::softmax) return scaled;
-    return std::min(scaled, 0.0f) - std::log1p(std::exp(-std::abs(scaled)));
-}
-
-/// Turns unnormalized log probabilities into probabilities.
-void normalize(std::span<float> row) {
-    const float largest = *std::max_element(row.begin(), row.end());
-    float sum = 0.0f;
-    for (float& value : row) sum += value = std::exp(value - largest);
-    for (float& value : row) value /= sum;
+    return link == Link::softmax ? scaled : log_logistic(scaled);
 }
 
 void score_rows(const Sum& sum, const FeatureMatrix& features, Link link, float scale, std::span<float> out) {
@@ -72,7 +62,7 @@ void score_rows(const Sum& sum, const FeatureMatrix& features, Link link, float 
             for (std::size_t i = 0; i < count; ++i) {
                 const std::span<float> row = out.subspan((begin + i) * classes, classes);
                 for (std::size_t c = 0; c < classes; ++c) row[c] = log_weight(scale * h[c * k_scoring_block + i], link);
-                normalize(row);
+                softmax(row);
             }
         }
     });
@@ -86,7 +76,7 @@ void scores_to_probabilities(std::span<float> scores, std::size_t classes, Link 
         [&](std::size_t i) {
             const std::span<float> row = scores.subspan(i * classes, classes);
             for (float& h : row) h = log_weight(scale * h, link);
-            normalize(row);
+            softmax(row);
         },
         k_scoring_block);
 }

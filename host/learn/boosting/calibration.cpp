@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/core/parallel.h"
+#include "host/learn/softmax.h"
 
 namespace exemplar {
 namespace {
@@ -35,15 +36,11 @@ std::pair<double, double> sum_rows(std::size_t rows, const Measure& measure) {
     return sum;
 }
 
-float unnormalized(float scaled, float largest, Link link) {
-    return link == Link::softmax ? std::exp(scaled - largest) : 1 / (1 + std::exp(-scaled));
-}
-
 float probability_of(std::span<const float> row, std::size_t label, Link link, float scale) {
-    const float largest = scale * *std::max_element(row.begin(), row.end());
+    if (link == Link::softmax) return softmax_at(row, label, scale);
     float sum = 0;
-    for (const float h : row) sum += unnormalized(scale * h, largest, link);
-    return sum > 0 ? unnormalized(scale * row[label], largest, link) / sum : 0;  // all sigmoids may underflow
+    for (const float h : row) sum += logistic(scale * h);
+    return sum > 0 ? logistic(scale * row[label]) / sum : 0;  // all may underflow
 }
 
 double total_loss(const Scored& set, Link link, float scale) {

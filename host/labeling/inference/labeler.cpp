@@ -142,18 +142,6 @@ void drop_context_columns(MeshFeatures& features) {
     }
 }
 
-std::vector<float> unary_probabilities(const LabelingModel& model, MeshFeatures& features,
-                                       const LabelingBackend& backend) {
-    MeshFeatures* const mesh = &features;
-    return std::move(score_unary(model, std::span(&mesh, 1), backend).front());
-}
-
-std::vector<float> boundary_probabilities(const LabelingModel& model, MeshFeatures& features,
-                                          const LabelingBackend& backend) {
-    MeshFeatures* const mesh = &features;
-    return std::move(score_boundary(model, std::span(&mesh, 1), backend).front());
-}
-
 std::vector<FaceScores> score_faces(const LabelingModel& model, std::span<MeshFeatures* const> meshes,
                                     const LabelingBackend& backend) {
     std::vector<FaceScores> scores(meshes.size());

@@ -49,16 +49,6 @@ std::span<float> context_columns(FeatureMatrix& matrix, std::size_t base, const 
 /// Removes the contextual columns of both matrices.
 void drop_context_columns(MeshFeatures& features);
 
-/// Runs the unary cascade and returns faces x classes. Adds the contextual columns to `features.unary`, or reuses
-/// them.
-/// Throws ModelError if the features are not those that the model was trained on.
-std::vector<float> unary_probabilities(const LabelingModel& model, MeshFeatures& features,
-                                       const LabelingBackend& backend);
-/// Runs the boundary classifiers and returns one probability per edge. Adds the contextual columns to
-/// `features.pairwise`.
-std::vector<float> boundary_probabilities(const LabelingModel& model, MeshFeatures& features,
-                                          const LabelingBackend& backend);
-
 // Labeling has two steps, so that many meshes can keep a device and the cores busy: the classifiers for several meshes
 // together, then the graph cut of each mesh.
 

@@ -79,13 +79,6 @@ WorkingFeatures working_features(const FeatureOptions& options, const TriangleMe
     return prepared;
 }
 
-std::vector<FaceScores> score_meshes(const LabelingModel& model, std::span<WorkingFeatures* const> meshes,
-                                     const LabelingBackend& backend) {
-    std::vector<MeshFeatures*> features;
-    for (WorkingFeatures* mesh : meshes) features.push_back(&mesh->features);
-    return score_faces(model, features, backend);
-}
-
 FaceLabeling finish_labeling(const LabelingModel& model, const WorkingFeatures& mesh, FaceScores scores) {
     FaceLabeling labeling = cut_faces(model, mesh.features, std::move(scores));
     labeling.seconds.emplace(labeling.seconds.begin(), "features", mesh.seconds);
@@ -98,8 +91,8 @@ FaceLabeling finish_labeling(const LabelingModel& model, const WorkingFeatures& 
 FaceLabeling label_mesh(const LabelingModel& model, const TriangleMesh& mesh, const std::filesystem::path& cache,
                         const LabelingBackend& backend, std::size_t max_faces) {
     WorkingFeatures prepared = working_features(model.feature_options, mesh, cache, max_faces);
-    WorkingFeatures* const one = &prepared;
-    return finish_labeling(model, prepared, std::move(score_meshes(model, std::span(&one, 1), backend).front()));
+    MeshFeatures* const one = &prepared.features;
+    return finish_labeling(model, prepared, std::move(score_faces(model, std::span(&one, 1), backend).front()));
 }
 
 }  // namespace exemplar

@@ -43,11 +43,8 @@ struct WorkingFeatures {
 /// cached_features). Throws what compute_features throws.
 WorkingFeatures working_features(const FeatureOptions& options, const TriangleMesh& mesh,
                                  const std::filesystem::path& cache, std::size_t max_faces = k_max_working_faces);
-/// Step 2, for several meshes together: score_faces of their working meshes.
-std::vector<FaceScores> score_meshes(const LabelingModel& model, std::span<WorkingFeatures* const> meshes,
-                                     const LabelingBackend& backend);
-/// Step 3: cut_faces, mapped back to the original's triangles. `seconds` of the result begin with "features".
-/// Threads may do this for different meshes at once.
+/// Step 2 is score_faces of the working meshes' features. Step 3: cut_faces, mapped back to the original's triangles.
+/// `seconds` of the result begin with "features". Threads may do this for different meshes at once.
 FaceLabeling finish_labeling(const LabelingModel& model, const WorkingFeatures& mesh, FaceScores scores);
 
 /// Labels a mesh of any size (thesis Sec. 3.2): the three steps, one after the other.

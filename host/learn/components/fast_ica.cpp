@@ -1,7 +1,5 @@
 #include "host/learn/components/fast_ica.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -39,15 +37,9 @@ void check_ica_options(const IcaOptions& options) {
     if (!(options.tolerance > 0)) throw UsageError("the tolerance of independent components must be above 0");
 }
 
-Projection project_samples(const Pca& pca, const Samples& samples, const IcaOptions& options) {
-    if (samples.cols() != pca.mean.size() || samples.rows() == 0) {
-        throw UsageError(fmt::format("the principal components are of {} values, but there are {} samples of {}",
-                                     pca.mean.size(), samples.rows(), samples.cols()));
-    }
-    const std::size_t wanted = components_for_variance(pca.variance, pca.total_variance, options.share);
-    const auto count = static_cast<Index>(std::min(wanted, options.most));
-    Projection out{pca.basis.leftCols(count).cast<double>(), {}};
-    out.components.resize(samples.rows(), count);
+Projection project_samples(const Pca& pca, const Samples& samples) {
+    Projection out{pca.basis.cast<double>(), {}};
+    out.components.resize(samples.rows(), pca.basis.cols());
     const Eigen::RowVectorXd mean = pca.mean.cast<double>().transpose();
     constexpr Index k_block = 64;
     for (Index begin = 0; begin < samples.rows(); begin += k_block) {
@@ -65,7 +57,7 @@ MatrixXd whitening_factor(const MatrixXd& components) {
     const MatrixXd covariance = components.transpose() * components / static_cast<double>(components.rows());
     const Eigen::LLT<MatrixXd> factor(covariance);
     if (factor.info() != Eigen::Success) {
-        throw UsageError("the samples do not vary along all the principal components; give those of these samples");
+        throw UsageError("the samples hardly vary along some principal components; ask for less of the variance");
     }
     return factor.matrixL();
 }
@@ -123,22 +115,14 @@ Ica in_order(const Mixture& mixture, const Eigen::VectorXf& mean) {
 
 Ica fit_ica(const Samples& samples, const IcaOptions& options) {
     check_ica_options(options);
-    return rotate_to_independent(fit_pca(samples, options.share, options.most), samples, options);
-}
-
-Ica rotate_to_independent(const Pca& pca, const Samples& samples, const IcaOptions& options) {
-    check_ica_options(options);
-    return in_order(rotate_sources(project_samples(pca, samples, options), options), pca.mean);
+    const Pca pca = fit_pca(samples, options.share, options.most);
+    return in_order(rotate_sources(project_samples(pca, samples), options), pca.mean);
 }
 
 Ica fit_spatial_ica(const Samples& samples, const IcaOptions& options) {
     check_ica_options(options);
-    return rotate_to_sparse(fit_pca(samples, options.share, options.most), samples, options);
-}
-
-Ica rotate_to_sparse(const Pca& pca, const Samples& samples, const IcaOptions& options) {
-    check_ica_options(options);
-    return in_order(rotate_basis(project_samples(pca, samples, options), options), pca.mean);
+    const Pca pca = fit_pca(samples, options.share, options.most);
+    return in_order(rotate_basis(project_samples(pca, samples), options), pca.mean);
 }
 
 }  // namespace exemplar

@@ -49,18 +49,11 @@ struct Ica {
 /// Throws what fit_pca throws, and UsageError for a tolerance or a number of iterations that is not above 0.
 Ica fit_ica(const Eigen::Ref<const Eigen::MatrixXf>& samples, const IcaOptions& options = {});
 
-/// The same for known principal components `pca` of these samples, of which it uses those that options.share and
-/// options.most select. Throws UsageError if `pca` is of samples of another size.
-Ica rotate_to_independent(const Pca& pca, const Eigen::Ref<const Eigen::MatrixXf>& samples,
-                          const IcaOptions& options = {});
-
 /// Spatial FastICA, for local bases (thesis Fig. 2.6): rotates the orthonormal basis of the principal subspace so
 /// that the columns of the mixing matrix are as independent over the M values as possible, which for local
 /// deformations means sparse. The columns are orthogonal; the third moment of each over its entries is positive. The
 /// sources are the projections of the samples, scaled to unit variance; unlike those of fit_ica they may correlate.
 /// Otherwise like fit_ica.
 Ica fit_spatial_ica(const Eigen::Ref<const Eigen::MatrixXf>& samples, const IcaOptions& options = {});
-/// The same for known principal components, see rotate_to_independent.
-Ica rotate_to_sparse(const Pca& pca, const Eigen::Ref<const Eigen::MatrixXf>& samples, const IcaOptions& options = {});
 
 }  // namespace exemplar

@@ -51,66 +51,30 @@ void check_ridge(double ridge) {
     throw UsageError(fmt::format("a ridge of {} is not a number from 0 up", ridge));
 }
 
-/// Returns the sum of the squared errors of the samples [begin, end) when they are left out: their residuals r
-/// become (I - H_BB)^-1 r. `residual` is I - H, `gram` is targets times their transpose. Infinite if the other
-/// samples do not determine the prediction.
-double left_out_error(const MatrixXd& residual, const MatrixXd& gram, Index begin, Index end) {
-    constexpr double k_undetermined = 1e-10;
-    const Index count = end - begin;
-    const SymmetricEigen block = symmetric_eigen(residual.block(begin, begin, count, count));
-    if (block.values(0) < k_undetermined) return std::numeric_limits<double>::infinity();
-    const MatrixXd rows =
-        block.values.cwiseInverse().asDiagonal() * block.vectors.transpose() * residual.middleRows(begin, count);
-    return std::max(0.0, (rows * gram).cwiseProduct(rows).sum());
-}
+/// Singular value decomposition U S V^T of features (N x P, the first column all ones) in the coordinates that the
+/// penalty is defined in: each other column minus its mean, divided by its standard deviation. Columns that do not
+/// vary are left out. Serves any ridge.
+class FeatureDecomposition {
+  public:
+    explicit FeatureDecomposition(const DoubleRef& features);
 
-double error_of_candidate(const FeatureDecomposition& features, const MatrixXd& gram, double ridge,
-                          std::size_t blocks) {
-    const Index samples = features.samples();
-    const double share = 1.0 / static_cast<double>(samples);
-    const MatrixXd residual = MatrixXd::Identity(samples, samples) - MatrixXd::Constant(samples, samples, share) -
-                              features.left() * features.shrinkage(ridge).asDiagonal() * features.left().transpose();
-    const auto start = [&](std::size_t b) {
-        return static_cast<Index>(b * static_cast<std::size_t>(samples) / blocks);
-    };
-    double error = 0;
-    for (std::size_t b = 0; b < blocks; ++b) error += left_out_error(residual, gram, start(b), start(b + 1));
-    return error;
-}
-
-}  // namespace
-
-std::size_t polynomial_feature_count(std::size_t inputs, int degree) {
-    if (degree < 1 || degree > 3) throw UsageError(fmt::format("a degree of {} is not 1, 2 or 3", degree));
-    return 1 + inputs * static_cast<std::size_t>(degree);
-}
-
-void polynomial_features(std::span<const float> x, int degree, std::span<float> phi) {
-    if (phi.size() != polynomial_feature_count(x.size(), degree)) {
-        throw UsageError(fmt::format("there is room for {} features, but {} inputs of degree {} have {}", phi.size(),
-                                     x.size(), degree, polynomial_feature_count(x.size(), degree)));
+    Index samples() const { return left_.rows(); }
+    /// N x rank: an orthonormal basis of the varying features.
+    const MatrixXd& left() const { return left_; }
+    /// Returns the factors, in [0, 1], that the ridge puts on the fit along each column of left().
+    VectorXd shrinkage(double ridge) const {
+        const auto squared = singular_.array().square();
+        return squared / (squared + ridge);
     }
-    const std::size_t inputs = x.size();
-    phi[0] = 1;
-    for (std::size_t k = 0; k < inputs; ++k) {
-        float power = 1;
-        for (std::size_t d = 0; d < static_cast<std::size_t>(degree); ++d) phi[1 + d * inputs + k] = power *= x[k];
-    }
-}
+    /// Returns the operator (P x N) that gives the weights V = operator * targets.
+    MatrixXd solution_operator(double ridge) const;
 
-MatrixXd polynomial_features(const Eigen::Ref<const Eigen::MatrixXf>& x, int degree) {
-    const std::size_t count = polynomial_feature_count(static_cast<std::size_t>(x.cols()), degree);
-    MatrixXd phi(x.rows(), static_cast<Index>(count));
-    phi.col(0).setOnes();
-    const MatrixXd base = x.cast<double>();
-    if (x.cols() == 0) return phi;
-    phi.middleCols(1, x.cols()) = base;
-    for (Index d = 1; d < degree; ++d) {
-        phi.middleCols(1 + d * x.cols(), x.cols()) =
-            phi.middleCols(1 + (d - 1) * x.cols(), x.cols()).cwiseProduct(base);
-    }
-    return phi;
-}
+  private:
+    VectorXd mean_;     // P, of the columns; 1 for the first
+    VectorXd inverse_;  // P, one over their standard deviation; 0 for those that do not vary
+    MatrixXd left_, right_;
+    VectorXd singular_;
+};
 
 FeatureDecomposition::FeatureDecomposition(const DoubleRef& features) {
     check_features(features);
@@ -143,11 +107,6 @@ FeatureDecomposition::FeatureDecomposition(const DoubleRef& features) {
     }
 }
 
-VectorXd FeatureDecomposition::shrinkage(double ridge) const {
-    const auto squared = singular_.array().square();
-    return squared / (squared + ridge);
-}
-
 MatrixXd FeatureDecomposition::solution_operator(double ridge) const {
     const VectorXd gain = shrinkage(ridge).cwiseQuotient(singular_);
     MatrixXd out = inverse_.asDiagonal() * right_ * gain.asDiagonal() * left_.transpose();
@@ -157,14 +116,52 @@ MatrixXd FeatureDecomposition::solution_operator(double ridge) const {
     return out;
 }
 
-LeastSquares::LeastSquares(const DoubleRef& features, double ridge)
-    : LeastSquares(FeatureDecomposition(features), ridge) {}
+/// Returns the sum of the squared errors of the samples [begin, end) when they are left out: their residuals r
+/// become (I - H_BB)^-1 r. `residual` is I - H, `gram` is targets times their transpose. Infinite if the other
+/// samples do not determine the prediction.
+double left_out_error(const MatrixXd& residual, const MatrixXd& gram, Index begin, Index end) {
+    constexpr double k_undetermined = 1e-10;
+    const Index count = end - begin;
+    const SymmetricEigen block = symmetric_eigen(residual.block(begin, begin, count, count));
+    if (block.values(0) < k_undetermined) return std::numeric_limits<double>::infinity();
+    const MatrixXd rows =
+        block.values.cwiseInverse().asDiagonal() * block.vectors.transpose() * residual.middleRows(begin, count);
+    return std::max(0.0, (rows * gram).cwiseProduct(rows).sum());
+}
 
-LeastSquares::LeastSquares(const FeatureDecomposition& features, double ridge) {
+double error_of_candidate(const FeatureDecomposition& features, const MatrixXd& gram, double ridge,
+                          std::size_t blocks) {
+    const Index samples = features.samples();
+    const double share = 1.0 / static_cast<double>(samples);
+    const MatrixXd residual = MatrixXd::Identity(samples, samples) - MatrixXd::Constant(samples, samples, share) -
+                              features.left() * features.shrinkage(ridge).asDiagonal() * features.left().transpose();
+    const auto start = [&](std::size_t b) {
+        return static_cast<Index>(b * static_cast<std::size_t>(samples) / blocks);
+    };
+    double error = 0;
+    for (std::size_t b = 0; b < blocks; ++b) error += left_out_error(residual, gram, start(b), start(b + 1));
+    return error;
+}
+
+}  // namespace
+
+MatrixXd polynomial_features(const Eigen::Ref<const Eigen::MatrixXf>& x, int degree) {
+    if (degree < 1 || degree > 3) throw UsageError(fmt::format("a degree of {} is not 1, 2 or 3", degree));
+    MatrixXd phi(x.rows(), 1 + degree * x.cols());
+    phi.col(0).setOnes();
+    const MatrixXd base = x.cast<double>();
+    if (x.cols() == 0) return phi;
+    phi.middleCols(1, x.cols()) = base;
+    for (Index d = 1; d < degree; ++d) {
+        phi.middleCols(1 + d * x.cols(), x.cols()) =
+            phi.middleCols(1 + (d - 1) * x.cols(), x.cols()).cwiseProduct(base);
+    }
+    return phi;
+}
+
+LeastSquares::LeastSquares(const DoubleRef& features, double ridge) {
     check_ridge(ridge);
-    operator_ = features.solution_operator(ridge);
-    leverage_ = features.left().array().square().matrix() * features.shrinkage(ridge);
-    leverage_.array() += 1.0 / static_cast<double>(features.samples());
+    operator_ = FeatureDecomposition(features).solution_operator(ridge);
 }
 
 MatrixXd LeastSquares::solve(const DoubleRef& targets) const {

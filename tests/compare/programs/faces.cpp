@@ -51,7 +51,9 @@ void cut(const fs::path& cache, const fs::path& model_path, const fs::path& in, 
     TensorFile result;
     for (const fs::path mesh : meshes) {
         WorkingFeatures working = working_features(model.feature_options, read_mesh(mesh).mesh, cache);
-        const std::vector<float> boundary = boundary_probabilities(model, working.features, {scorer, context});
+        MeshFeatures* const features = &working.features;
+        const std::vector<float> boundary =
+            score_faces(model, std::span(&features, 1), {scorer, context}).front().boundary;
         const std::string prefix = mesh.stem().string() + "/";
         for (const auto& [name, tensor] : file.tensors) {
             if (!name.starts_with(prefix)) continue;

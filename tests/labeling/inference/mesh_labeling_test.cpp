@@ -64,8 +64,8 @@ TEST(MeshLabeling, LabelsOfASimplifiedMeshComeBackToItsFaces) {
     const TriangleMesh small = shapes::icosphere(2, 1.0F);
     WorkingFeatures large = working_features(model.feature_options, unseen.mesh, {}, 1000),
                     other = working_features(model.feature_options, small, {}, 1000);
-    const std::array<WorkingFeatures*, 2> both{&other, &large};
-    std::vector<FaceScores> scores = score_meshes(model, both, {scorer, context});
+    const std::array<MeshFeatures*, 2> both{&other.features, &large.features};
+    std::vector<FaceScores> scores = score_faces(model, both, {scorer, context});
     const FaceLabeling in_steps = finish_labeling(model, large, std::move(scores[1]));
     EXPECT_EQ(in_steps.label, labeling.label);
     EXPECT_EQ(in_steps.confidence, labeling.confidence);

@@ -114,8 +114,10 @@ TEST_F(SlowTraining, ForALabelOfOneMeshAllStagesCount) {
     ASSERT_EQ(model.unary.size(), 2U);
     EXPECT_EQ(model.averaged_labels, std::vector<std::uint32_t>{1});
     MeshFeatures features = compute_features(corpus.meshes[0].mesh, model.feature_options);
+    MeshFeatures* const mesh = &features;
     const auto handle = [&](const LabelingModel& of) {
-        const std::vector<float> probabilities = unary_probabilities(of, features, {scorer_, context_});
+        const std::vector<float> probabilities =
+            score_faces(of, std::span(&mesh, 1), {scorer_, context_}).front().probabilities;
         std::vector<float> result;
         for (std::size_t f = 0; f < features.face_area.size(); ++f) {
             EXPECT_NEAR(probabilities[2 * f] + probabilities[2 * f + 1], 1, 1e-5) << "face " << f;

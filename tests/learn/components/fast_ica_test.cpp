@@ -142,16 +142,6 @@ TEST(FastIca, SpansThePrincipalSubspaceOfTheShare) {
     }
 }
 
-TEST(FastIca, UsesPrincipalComponentsThatAreThere) {
-    const Mixed data = mix(300, 40, 7);
-    IcaOptions options;
-    options.share = 0.8;
-    const Ica direct = fit_ica(data.samples, options);
-    const Ica reused = rotate_to_independent(fit_pca(data.samples, 1.0), data.samples, options);
-    EXPECT_EQ(direct.mixing, reused.mixing);
-    EXPECT_EQ(direct.sources, reused.sources);
-}
-
 TEST(FastIca, TheSameSeedGivesTheSameBytesOnAnyThreads) {
     const Mixed data = mix(5000, 30, 8);
     const Ica many = fit_ica(data.samples, exact_options());
@@ -232,8 +222,6 @@ TEST(FastIca, RefusesWhatItCannotUse) {
     options = {};
     options.share = 2;
     EXPECT_THROW(fit_ica(data, options), UsageError);
-    EXPECT_THROW(rotate_to_independent(fit_pca(data, 1), data.leftCols(7), {}), UsageError);
-    EXPECT_THROW(rotate_to_independent(fit_pca(data, 1), MatrixXf::Zero(9, 8), {}), UsageError);
     data(0, 0) = std::numeric_limits<float>::infinity();
     EXPECT_THROW(fit_ica(data, {}), DataError);
 }

@@ -3,7 +3,7 @@
 #include "shaders/lib/dispatch.glsl"
 #include "shaders/shared/curvature.h"
 
-// Computes the inputs of learned curvature from the local shape of patches (exemplar::StateReader::read_local), one
+// Computes the inputs of learned curvature from the local shape of patches (exemplar::LocalShapeState::read), one
 // per invocation. Reads 16 bytes and 8 per vertex of its patch; normals and positions come from caches, which the
 // inputs of a patch share. Writes 4.
 layout(local_size_x = 64, local_size_x_id = 100) in;

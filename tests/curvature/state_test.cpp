@@ -21,7 +21,7 @@ std::vector<const Pose*> pointers(const Clip& clip) {
 
 TEST(State, OfAHingeIsItsAngleWithTheSignOfTheBend) {
     // Two triangles over the x axis, the second raised by an angle; convex seen from above where it points down.
-    const StateReader::Hinge hinge{0, 1, 2, 3};
+    const Hinge hinge{0, 1, 2, 3};
     for (const float angle : {-1.2f, -0.1f, 0.0f, 0.4f, 2.5f}) {
         const std::vector<Vec3> vertices = {
             {0, 0, 0}, {1, 0, 0}, {0.3f, 1, 0}, {0.6f, -std::cos(angle), -std::sin(angle)}};
@@ -149,7 +149,6 @@ TEST(Influence, IsOfTheJointsBetweenTheBonesOfAVertex) {
 
 TEST(Influence, TheTestDropsWhatDoesNotMatter) {
     StateReader reader;
-    reader.kind = AnimationKind::blend_shapes;
     for (std::uint32_t c = 0; c < 3; ++c) reader.controls.push_back({"c" + std::to_string(c), c, 1});
     reader.input_count = 3;
     Random random(1);

@@ -46,8 +46,9 @@ Animation animation_of(const CurvatureModel& model, const MadeUpSurface& surface
         rig.bones.push_back({i, Affine::Identity()});
         rig.targets.push_back({"target", {}, {}, 0});
     }
-    for (std::size_t c = 0; c < model.state.nodes.size(); ++c)
-        if (const std::uint32_t i = model.state.nodes[c]; i < k_few)
+    const std::span<const std::uint32_t> parts = model.state.parts_of_rig();
+    for (std::size_t c = 0; c < parts.size(); ++c)
+        if (const std::uint32_t i = parts[c]; i < k_few)
             rig.nodes[i].name = rig.targets[i].name = model.state.controls[c].name;
     return animation;
 }

@@ -239,16 +239,16 @@ struct MovedSheet {
 
 // What rounding may do to each input: numbers of the shape are of size one, but heights, which are differences of
 // positions.
-std::vector<float> input_roundings(const StateReader& state, const std::vector<Vec3>& vertices) {
+std::vector<float> input_roundings(const LocalShapeState& state, const std::vector<Vec3>& vertices) {
     constexpr float k_rounding = 2 * std::numeric_limits<float>::epsilon();
     float farthest = 0;
     for (const Vec3& p : vertices) farthest = std::max(farthest, p.norm());
     std::vector<float> roundings;
-    for (const Eigen::MatrixXf& map : state.unmixing)
+    for (const Eigen::MatrixXf& map : state.map)
         for (Eigen::Index i = 0; i < map.rows(); ++i) {
             float sum = 0;
             for (Eigen::Index j = 0; j < map.cols(); ++j)
-                sum += std::abs(map(i, j)) * (j % 4 == 3 ? farthest / state.local_unit : 1.0f);
+                sum += std::abs(map(i, j)) * (j % 4 == 3 ? farthest / state.unit : 1.0f);
             roundings.push_back(k_rounding * sum);
         }
     return roundings;
@@ -273,7 +273,8 @@ TEST(LearnedCurvatureParity, ReadsLocalShapeOnTheDevice) {
         state.inputs().download(std::span(actual));
         model.state.read_surface(moved.mesh.vertices, moved.normals, rotations, expected);
         model.range.prepare(model.state, expected);
-        const std::vector<float> roundings = input_roundings(model.state, moved.mesh.vertices);
+        const std::vector<float> roundings =
+            input_roundings(std::get<LocalShapeState>(model.state.source), moved.mesh.vertices);
         for (std::size_t i = 0; i < inputs; ++i) EXPECT_NEAR(actual[i], expected[i], roundings[i]) << "input " << i;
         EXPECT_EQ(std::vector<float>(actual.begin() + std::ptrdiff_t(inputs), actual.end()),
                   (std::vector<float>{1, 0, 0}));

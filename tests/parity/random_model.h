@@ -102,10 +102,10 @@ class RandomModel {
     }
 
     void add_state() {
-        model.state.kind = AnimationKind::skeleton;
+        auto& joints = model.state.source.emplace<JointState>();
         for (std::uint32_t n = 0; n < rig.nodes.size(); n += 2) {
-            model.state.nodes.push_back(n);
-            model.state.reference.push_back(random_transform(random_).rotation);
+            joints.nodes.push_back(n);
+            joints.reference.push_back(random_transform(random_).rotation);
             model.state.controls.push_back({rig.nodes[n].name, std::uint32_t(model.state.input_count), 3});
             model.state.input_count += 3;
         }

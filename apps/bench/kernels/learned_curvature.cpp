@@ -31,10 +31,10 @@ Eigen::MatrixXf random_matrix(std::size_t rows, std::size_t columns, float devia
 // A control per node.
 StateReader chain_state(const Rig& rig) {
     StateReader state;
-    state.kind = AnimationKind::skeleton;
+    auto& joints = state.source.emplace<JointState>();
     for (std::uint32_t n = 0; n < rig.nodes.size(); ++n) {
-        state.nodes.push_back(n);
-        state.reference.push_back(Eigen::Quaternionf::Identity());
+        joints.nodes.push_back(n);
+        joints.reference.push_back(Eigen::Quaternionf::Identity());
         state.controls.push_back({rig.nodes[n].name, 3 * n, 3});
     }
     state.input_count = 3 * rig.nodes.size();
@@ -105,14 +105,15 @@ StateReader local_state(const std::vector<std::uint32_t>& patch_of_vertex, std::
     for (std::uint32_t v = 0; v < patch_of_vertex.size(); ++v)
         if (auto& patch = members[patch_of_vertex[v]]; patch.size() < k_read) patch.push_back(v);
     StateReader state;
-    state.local_begin.push_back(0);
+    auto& local = state.source.emplace<LocalShapeState>();
+    local.begin.push_back(0);
     for (std::size_t p = 0; p < patches; ++p) {
-        state.local_vertex.insert(state.local_vertex.end(), members[p].begin(), members[p].end());
-        state.local_begin.push_back(static_cast<std::uint32_t>(state.local_vertex.size()));
+        local.vertex.insert(local.vertex.end(), members[p].begin(), members[p].end());
+        local.begin.push_back(static_cast<std::uint32_t>(local.vertex.size()));
         state.controls.push_back({"patch " + std::to_string(p), static_cast<std::uint32_t>(k_inputs * p),
                                   static_cast<std::uint32_t>(k_inputs)});
-        state.local_mean.emplace_back(Eigen::VectorXf::Zero(static_cast<Eigen::Index>(state.local_size(p))));
-        state.unmixing.push_back(random_matrix(k_inputs, state.local_size(p), 0.05f, random));
+        local.mean.emplace_back(Eigen::VectorXf::Zero(static_cast<Eigen::Index>(local.size(p))));
+        local.map.push_back(random_matrix(k_inputs, local.size(p), 0.05f, random));
     }
     state.input_count = k_inputs * patches;
     return state;
@@ -224,8 +225,8 @@ struct Local {
     std::map<std::string, Work> work() const {
         const auto patches = static_cast<double>(model.segments.count()),
                    inputs = static_cast<double>(model.state.input_count),
-                   members = static_cast<double>(model.state.local_vertex.size()),
-                   numbers = static_cast<double>(StateReader::k_local_numbers) * members;
+                   members = static_cast<double>(std::get<LocalShapeState>(model.state.source).vertex.size()),
+                   numbers = static_cast<double>(LocalShapeState::k_numbers) * members;
         return {{"curvature/patch_rotations.comp",
                  {.bytes = patches * (96 + 24 * 16 + 48), .operations = patches * (24 * 3 + 60)}},
                 {"curvature/local_state.comp",

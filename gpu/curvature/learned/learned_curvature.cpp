@@ -55,7 +55,8 @@ GpuLearnedCurvature::GpuLearnedCurvature(Device& device, const CurvatureModel& m
     check_inputs(model);
     for (const Influence& influence : segments_.influences)
         min_bones_ = std::max<std::size_t>(min_bones_, influence.bone + 1);
-    for (const std::uint32_t node : reader_.nodes) min_controls_ = std::max<std::size_t>(min_controls_, node + 1);
+    for (const std::uint32_t part : reader_.parts_of_rig())
+        min_controls_ = std::max<std::size_t>(min_controls_, part + 1);
     if (reader_.is_local())
         local_.emplace(device, model, predictor_.padded_inputs());
     else
@@ -66,9 +67,9 @@ GpuLearnedCurvature::GpuLearnedCurvature(Device& device, const CurvatureModel& m
 void GpuLearnedCurvature::record(Stream& stream, const Rig& rig, const Pose& pose, const Buffer& vertices,
                                  const Buffer& normals) {
     if (local_) return record(stream, vertices, normals);
-    if (reader_.kind == AnimationKind::sequence)
+    if (!reader_.is_of_rig())
         throw UsageError("curvature learned on a mesh sequence is not that of a pose; give vertices");
-    const bool shapes = reader_.kind == AnimationKind::blend_shapes;
+    const bool shapes = std::holds_alternative<WeightState>(reader_.source);
     if (rig.bones.size() < min_bones_ || pose.nodes.size() != rig.nodes.size() ||
         (shapes ? pose.weights.size() : pose.nodes.size()) < min_controls_)
         throw UsageError(
@@ -82,8 +83,7 @@ void GpuLearnedCurvature::record(Stream& stream, const Rig& rig, const Pose& pos
 }
 
 void GpuLearnedCurvature::check_frame(std::size_t vertices) const {
-    if (reader_.kind != AnimationKind::sequence)
-        throw UsageError("curvature learned on a rig is not that of vertices; give a pose");
+    if (reader_.is_of_rig()) throw UsageError("curvature learned on a rig is not that of vertices; give a pose");
     if (vertices != vertex_count_)
         throw UsageError(fmt::format("a frame of {} vertices is not of a surface of {}", vertices, vertex_count_));
 }

@@ -23,18 +23,21 @@ using shared::vec4;
 // The kernel fetches it as one four-component vector.
 static_assert(sizeof(LocalInput) == 16);
 static_assert(shared::k_corner_vertices == Segments::Triangle::k_patch && shared::k_corner_vertices % 4 == 0);
-static_assert(StateReader::k_local_numbers == 4);  // a texel of halves has two vertices
+static_assert(LocalShapeState::k_numbers == 4);  // a texel of halves has two vertices
 
-void check_local_model(const CurvatureModel& model) {
-    const StateReader& state = model.state;
-    const std::size_t patches = state.controls.size();
-    bool fits = state.local_begin.size() == patches + 1 && model.segments.triangles.size() == patches &&
-                state.unmixing.size() == patches && state.local_mean.size() == patches;
+/// Returns the state of a model after checking that all of it fits together.
+const LocalShapeState& checked_state(const CurvatureModel& model) {
+    const std::vector<Control>& controls = model.state.controls;
+    const std::size_t patches = controls.size();
+    const auto* const local = std::get_if<LocalShapeState>(&model.state.source);
+    bool fits = local && local->begin.size() == patches + 1 && model.segments.triangles.size() == patches &&
+                local->map.size() == patches && local->mean.size() == patches;
     for (std::size_t p = 0; fits && p < patches; ++p)
-        fits = state.unmixing[p].rows() == Eigen::Index{state.controls[p].input_count} &&
-               state.unmixing[p].cols() == static_cast<Eigen::Index>(state.local_size(p)) &&
-               state.local_mean[p].size() == static_cast<Eigen::Index>(state.local_size(p));
+        fits = local->map[p].rows() == Eigen::Index{controls[p].input_count} &&
+               local->map[p].cols() == static_cast<Eigen::Index>(local->size(p)) &&
+               local->mean[p].size() == static_cast<Eigen::Index>(local->size(p));
     if (!fits) throw ModelError("a curvature model is damaged: its patches contradict each other; train it again");
+    return *local;
 }
 
 std::vector<std::uint32_t> corner_vertices(const Segments& segments) {
@@ -50,7 +53,7 @@ void append_weights(const Eigen::Ref<const Eigen::RowVectorXf>& row, std::vector
         if (at >= row.size()) return std::uint32_t{0};
         return std::uint32_t{to_half(row[at]).bits} | std::uint32_t{to_half(row[at + 1]).bits} << 16;
     };
-    for (Eigen::Index at = 0; at < row.size(); at += 2 * StateReader::k_local_numbers)
+    for (Eigen::Index at = 0; at < row.size(); at += 2 * LocalShapeState::k_numbers)
         texels.push_back({word(at), word(at + 2), word(at + 4), word(at + 6)});
 }
 
@@ -60,16 +63,15 @@ struct LocalInputs {
     std::vector<float> biases;
 };
 
-LocalInputs gather_inputs(const CurvatureModel& model) {
-    const StateReader& state = model.state;
+LocalInputs gather_inputs(const LocalShapeState& state, const PoseRange& range) {
     LocalInputs result;
-    for (std::uint32_t p = 0; p < state.controls.size(); ++p) {
-        const Eigen::MatrixXf& map = state.unmixing[p];
-        const std::uint32_t first = state.local_begin[p], count = state.local_begin[p + 1] - first;
+    for (std::uint32_t p = 0; p < state.map.size(); ++p) {
+        const Eigen::MatrixXf& map = state.map[p];
+        const std::uint32_t first = state.begin[p], count = state.begin[p + 1] - first;
         for (Eigen::Index i = 0; i < map.rows(); ++i) {
             result.table.push_back({p, first, count, static_cast<std::uint32_t>(result.weights.size())});
-            result.biases.push_back(-map.row(i).dot(state.local_mean[p]) -
-                                    model.range.mean[static_cast<Eigen::Index>(result.biases.size())]);
+            result.biases.push_back(-map.row(i).dot(state.mean[p]) -
+                                    range.mean[static_cast<Eigen::Index>(result.biases.size())]);
             append_weights(map.row(i), result.weights);
         }
     }
@@ -81,7 +83,7 @@ LocalInputs gather_inputs(const CurvatureModel& model) {
 GpuLocalState::GpuLocalState(Device& device, const CurvatureModel& model, std::size_t padded_inputs)
     : patch_count_(model.state.controls.size()),
       input_count_(model.state.input_count),
-      unit_(model.state.local_unit),
+      unit_(checked_state(model).unit),
       rotation_kernel_(device, shaders::curvature_patch_rotations_comp,
                        {.push_constants = layout_of<PatchParameters>(),
                         .elements = {layout_of<uvec4>(), layout_of<vec4>(), layout_of<vec4>()}}),
@@ -90,13 +92,13 @@ GpuLocalState::GpuLocalState(Device& device, const CurvatureModel& model, std::s
           {.push_constants = layout_of<LocalInputParameters>(),
            .elements = {layout_of<uvec4>(), layout_of<std::uint32_t>(), layout_of<uvec4>(), layout_of<float>(),
                         layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<float>()}}) {
-    check_local_model(model);
-    const LocalInputs inputs = gather_inputs(model);
-    check_texels(device, std::max({inputs.weights.size(), model.state.local_vertex.size(), 6 * patch_count_}),
+    const LocalShapeState& state = checked_state(model);
+    const LocalInputs inputs = gather_inputs(state, model.range);
+    check_texels(device, std::max({inputs.weights.size(), state.vertex.size(), 6 * patch_count_}),
                  "the patches of a curvature model");
     corners_ = Buffer::of<std::uint32_t>(device, corner_vertices(model.segments));
     table_ = Buffer::of<LocalInput>(device, inputs.table);
-    members_ = Buffer::of<std::uint32_t>(device, model.state.local_vertex);
+    members_ = Buffer::of<std::uint32_t>(device, state.vertex);
     weights_ = Buffer::of<uvec4>(device, inputs.weights);
     biases_ = Buffer::of<float>(device, inputs.biases);
     rotations_ = Buffer(device, 3 * patch_count_ * sizeof(vec4));

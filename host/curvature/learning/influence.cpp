@@ -79,7 +79,8 @@ ControlSet joints_between(const Rig& rig, const ControlSet& bones, const std::ve
 std::vector<ControlSet> joints_of_vertices(const Animation& animation, const StateReader& reader, int rings) {
     const Rig& rig = animation.rig;
     std::vector<std::uint32_t> control_of_node(rig.nodes.size(), k_invalid_index);
-    for (std::uint32_t c = 0; c < reader.nodes.size(); ++c) control_of_node[reader.nodes[c]] = c;
+    const std::span<const std::uint32_t> joints = reader.parts_of_rig();
+    for (std::uint32_t c = 0; c < joints.size(); ++c) control_of_node[joints[c]] = c;
     std::vector<ControlSet> sets = bones_of_vertices(rig, animation.rest.vertex_count());
     spread(animation.rest.faces, rings, sets);
     std::map<ControlSet, ControlSet> known;
@@ -108,8 +109,9 @@ void fill(const std::vector<Face>& faces, std::vector<ControlSet>& sets) {
 
 std::vector<ControlSet> targets_of_vertices(const Animation& animation, const StateReader& reader, int rings) {
     std::vector<ControlSet> sets(animation.rest.vertex_count());
-    for (std::uint32_t c = 0; c < reader.nodes.size(); ++c)
-        for (const std::uint32_t v : animation.rig.targets[reader.nodes[c]].vertices) sets[v].push_back(c);
+    const std::span<const std::uint32_t> targets = reader.parts_of_rig();
+    for (std::uint32_t c = 0; c < targets.size(); ++c)
+        for (const std::uint32_t v : animation.rig.targets[targets[c]].vertices) sets[v].push_back(c);
     spread(animation.rest.faces, rings, sets);
     return sets;
 }

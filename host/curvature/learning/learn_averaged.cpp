@@ -23,13 +23,13 @@ struct JointPredictor {
 std::vector<std::uint32_t> bone_inputs(const LearningTask& task, std::size_t control) {
     const StateReader& reader = task.reader;
     std::vector<std::size_t> controls{control};
-    if (reader.kind == AnimationKind::skeleton) {
+    if (const auto* joints = std::get_if<JointState>(&reader.source)) {
         const Rig& rig = task.animation.rig;
-        for (std::uint32_t node = rig.nodes[reader.nodes[control]].parent; node != k_invalid_index;
+        for (std::uint32_t node = rig.nodes[joints->nodes[control]].parent; node != k_invalid_index;
              node = rig.nodes[node].parent) {
-            const auto place = std::find(reader.nodes.begin(), reader.nodes.end(), node);
-            if (place == reader.nodes.end()) continue;
-            controls.push_back(static_cast<std::size_t>(place - reader.nodes.begin()));
+            const auto place = std::find(joints->nodes.begin(), joints->nodes.end(), node);
+            if (place == joints->nodes.end()) continue;
+            controls.push_back(static_cast<std::size_t>(place - joints->nodes.begin()));
             break;
         }
     }

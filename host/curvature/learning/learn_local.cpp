@@ -94,9 +94,10 @@ class LocalLearner {
           real_(Index(real)),
           max_inputs_(max_inputs),
           reader_(reader),
+          local_(std::get<LocalShapeState>(reader.source)),
           attributes_(encode_all(frames, snapshots)),
           means_(Index(attributes_.size()), Index(frames.vertex_count())),
-          patches_(reader.local_begin.size() - 1) {
+          patches_(local_.begin.size() - 1) {
         for (std::size_t a = 0; a < attributes_.size(); ++a)
             means_.row(Index(a)) = attributes_[a].topRows(real_).colwise().mean();
         scales_ = error_scales(deviations(attributes_, means_));
@@ -109,7 +110,7 @@ class LocalLearner {
 
     /// Learns the reader's maps and inputs. Returns a builder with the bases.
     PredictorBuilder learn() {
-        reader_.local_mean.resize(patches_.size());
+        local_.mean.resize(patches_.size());
         std::vector<ReducedRank> maps(patches_.size());
         Progress progress("fitting", patches_.size());
         parallel_for(patches_.size(), [&](std::size_t p) {
@@ -124,8 +125,7 @@ class LocalLearner {
                 {"patch " + std::to_string(p), static_cast<std::uint32_t>(reader_.input_count), inputs});
             reader_.input_count += inputs;
             // Files hold halves.
-            reader_.unmixing.push_back(
-                maps[p].projection.unaryExpr([](float value) { return from_half(to_half(value)); }));
+            local_.map.push_back(maps[p].projection.unaryExpr([](float value) { return from_half(to_half(value)); }));
         }
         PredictorBuilder builder(reader_.input_count);
         for (std::size_t p = 0; p < patches_.size(); ++p) add_bases(p, maps[p], builder);
@@ -152,17 +152,17 @@ class LocalLearner {
     /// poses x local shape
     MatrixXf shapes(std::size_t patch) const {
         Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> result(Index(moments_.size()),
-                                                                                     Index(reader_.local_size(patch)));
+                                                                                     Index(local_.size(patch)));
         for (std::size_t i = 0; i < moments_.size(); ++i)
-            reader_.read_local(patch, moments_[i].vertices, moments_[i].normals, moments_[i].rotations[patch],
-                               {result.data() + i * reader_.local_size(patch), reader_.local_size(patch)});
+            local_.read(patch, moments_[i].vertices, moments_[i].normals, moments_[i].rotations[patch],
+                        {result.data() + i * local_.size(patch), local_.size(patch)});
         return result;
     }
 
     ReducedRank fit_patch(std::size_t patch) {
         MatrixXf x = shapes(patch);
-        reader_.local_mean[patch] = x.topRows(real_).colwise().mean().transpose();
-        x.rowwise() -= reader_.local_mean[patch].transpose();
+        local_.mean[patch] = x.topRows(real_).colwise().mean().transpose();
+        x.rowwise() -= local_.mean[patch].transpose();
         if (x.squaredNorm() < k_min_motion * k_min_motion * static_cast<double>(x.size())) x.setZero();
         const std::vector<std::uint32_t>& vertices = patches_[patch];
         MatrixXf y(x.rows(), Index(vertices.size() * attributes_.size()));
@@ -201,6 +201,7 @@ class LocalLearner {
     Index real_;
     std::size_t max_inputs_;
     StateReader& reader_;
+    LocalShapeState& local_;            // of the reader
     std::vector<MatrixXf> attributes_;  // centered, over their scales
     MatrixXf means_, scales_;           // attributes x vertices
     std::vector<std::vector<std::uint32_t>> patches_;
@@ -208,19 +209,20 @@ class LocalLearner {
 
 /// Builds the reader of the local shape of patches, without the learned maps.
 StateReader local_reader(const TriangleMesh& rest, const Segments& segments, float unit) {
-    StateReader reader;
-    reader.kind = AnimationKind::sequence;
-    reader.control_of_vertex = segments.segment_of_vertex;
-    reader.local_unit = unit;
+    LocalShapeState local;
+    local.unit = unit;
     std::vector<std::vector<std::uint32_t>> patches(segments.count());
     for (std::uint32_t v = 0; v < rest.vertex_count(); ++v) patches[segments.segment_of_vertex[v]].push_back(v);
     const Neighbors neighbors = neighbors_of(rest);
-    reader.local_begin.push_back(0);
+    local.begin.push_back(0);
     for (const std::vector<std::uint32_t>& patch : patches) {
         const std::vector<std::uint32_t> vertices = thinned(widened(patch, neighbors), neighbors);
-        reader.local_vertex.insert(reader.local_vertex.end(), vertices.begin(), vertices.end());
-        reader.local_begin.push_back(static_cast<std::uint32_t>(reader.local_vertex.size()));
+        local.vertex.insert(local.vertex.end(), vertices.begin(), vertices.end());
+        local.begin.push_back(static_cast<std::uint32_t>(local.vertex.size()));
     }
+    StateReader reader;
+    reader.control_of_vertex = segments.segment_of_vertex;
+    reader.source = std::move(local);
     return reader;
 }
 

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "host/core/errors.h"
 #include "host/data/safetensors.h"
@@ -70,42 +71,54 @@ Json describe(const CurvatureModel& model) {
             {"training", model.training}};
 }
 
-void add_state(TensorFile& file, const StateReader& state) {
-    Floats reference;
-    for (const Eigen::Quaternionf& q : state.reference) reference.insert(reference.end(), {q.x(), q.y(), q.z(), q.w()});
-    file.add("state.nodes", {state.nodes.size()}, state.nodes);
-    file.add("state.reference", {state.reference.size(), 4}, reference);
-    Words hinges;
-    for (const StateReader::Hinge& h : state.hinges) hinges.insert(hinges.end(), {h.a, h.b, h.left, h.right});
-    file.add("state.hinges", {state.hinges.size(), 4}, hinges);
-    file.add("state.hinge_begin", {state.hinge_begin.size()}, state.hinge_begin);
-    file.add("state.mean_angles", {state.hinges.size()}, row_major(state.mean_angles));
-    Floats unmixing;
-    for (const Eigen::MatrixXf& part : state.unmixing) {
+template <typename Matrices>
+Floats concatenated(const Matrices& parts) {
+    Floats all;
+    for (const auto& part : parts) {
         const Floats values = row_major(part);
-        unmixing.insert(unmixing.end(), values.begin(), values.end());
+        all.insert(all.end(), values.begin(), values.end());
     }
-    std::vector<Half> local_map;
-    if (state.is_local()) {
-        std::transform(unmixing.begin(), unmixing.end(), std::back_inserter(local_map), to_half);
-        unmixing.clear();
-    }
+    return all;
+}
+
+/// Returns this kind of a state, empty if the state is of another kind.
+template <typename Kind>
+const Kind& kind_of(const StateReader& state) {
+    static const Kind k_other;
+    const Kind* const kind = std::get_if<Kind>(&state.source);
+    return kind ? *kind : k_other;
+}
+
+/// Writes the arrays of all kinds of state, those of other kinds empty.
+void add_state(TensorFile& file, const StateReader& state) {
+    const auto& joints = kind_of<JointState>(state);
+    const auto& bending = kind_of<HingeState>(state);
+    const auto& local = kind_of<LocalShapeState>(state);
+    const std::span<const std::uint32_t> nodes = state.parts_of_rig();
+    Floats reference;
+    for (const Eigen::Quaternionf& q : joints.reference)
+        reference.insert(reference.end(), {q.x(), q.y(), q.z(), q.w()});
+    file.add("state.nodes", {nodes.size()}, Words(nodes.begin(), nodes.end()));
+    file.add("state.reference", {joints.reference.size(), 4}, reference);
+    Words hinges;
+    for (const Hinge& h : bending.hinges) hinges.insert(hinges.end(), {h.a, h.b, h.left, h.right});
+    file.add("state.hinges", {bending.hinges.size(), 4}, hinges);
+    file.add("state.hinge_begin", {bending.begin.size()}, bending.begin);
+    file.add("state.mean_angles", {bending.hinges.size()}, row_major(bending.mean));
+    const Floats unmixing = concatenated(bending.unmixing), map = concatenated(local.map),
+                 mean = concatenated(local.mean);
+    std::vector<Half> halves;
+    std::transform(map.begin(), map.end(), std::back_inserter(halves), to_half);
     file.add("state.unmixing", {unmixing.size()}, unmixing);
-    file.add("state.local_map", {local_map.size()}, local_map);
-    Floats local_mean;
-    for (const Eigen::VectorXf& part : state.local_mean) local_mean.insert(local_mean.end(), part.begin(), part.end());
-    file.add("state.local_begin", {state.local_begin.size()}, state.local_begin);
-    file.add("state.local_vertex", {state.local_vertex.size()}, state.local_vertex);
-    file.add("state.local_mean", {local_mean.size()}, local_mean);
-    file.add("state.local_unit", {1}, Floats{state.local_unit});
+    file.add("state.local_map", {halves.size()}, halves);
+    file.add("state.local_begin", {local.begin.size()}, local.begin);
+    file.add("state.local_vertex", {local.vertex.size()}, local.vertex);
+    file.add("state.local_mean", {mean.size()}, mean);
+    file.add("state.local_unit", {1}, Floats{local.unit});
 }
 
 void add_range(TensorFile& file, const PoseRange& range) {
-    Floats whitening;
-    for (const Eigen::MatrixXf& part : range.whitening) {
-        const Floats values = row_major(part);
-        whitening.insert(whitening.end(), values.begin(), values.end());
-    }
+    const Floats whitening = concatenated(range.whitening);
     file.add("range.mean", {static_cast<std::size_t>(range.mean.size())}, row_major(range.mean));
     file.add("range.whitening", {whitening.size()}, whitening);
     file.add("range.largest", {range.largest.size()}, range.largest);
@@ -234,76 +247,79 @@ void read_description(const Reading& reading, CurvatureModel& model) {
         reading.require(value >= 0 && std::isfinite(value), "a length in its description is negative");
 }
 
-/// Splits the concatenated unmixing matrices of all controls; columns(c) is the width of that of control c.
+/// Splits concatenated maps of the controls to their inputs; columns(c) is the width of that of control c.
 template <typename Columns>
-void split_unmixing(const Reading& reading, const Floats& unmixing, StateReader& state, Columns&& columns) {
+std::vector<Eigen::MatrixXf> split_maps(const Reading& reading, const Floats& all, const std::vector<Control>& controls,
+                                        Columns&& columns) {
+    std::vector<Eigen::MatrixXf> maps;
     std::size_t at = 0;
-    for (std::size_t c = 0; c < state.controls.size(); ++c) {
-        const std::size_t rows = state.controls[c].input_count, width = columns(c);
-        reading.require(rows * width <= unmixing.size() - at, "its map to the inputs is too short");
-        state.unmixing.push_back(matrix_of(part_of(unmixing, at, rows * width), rows, width));
+    for (std::size_t c = 0; c < controls.size(); ++c) {
+        const std::size_t rows = controls[c].input_count, width = columns(c);
+        reading.require(rows * width <= all.size() - at, "its map to the inputs is too short");
+        maps.push_back(matrix_of(part_of(all, at, rows * width), rows, width));
         at += rows * width;
     }
-    reading.require(at == unmixing.size(), "its map to the inputs is too long");
+    reading.require(at == all.size(), "its map to the inputs is too long");
+    return maps;
 }
 
-void read_hinges(const Reading& reading, CurvatureModel& model) {
-    StateReader& state = model.state;
-    const Words hinges = reading.words("state.hinges", {state.kind == AnimationKind::sequence ? k_any : 0, 4});
-    reading.below(hinges, model.vertex_count, "state.hinges");
-    for (std::size_t i = 0; i < hinges.size(); i += 4)
-        state.hinges.push_back({hinges[i], hinges[i + 1], hinges[i + 2], hinges[i + 3]});
-    state.mean_angles = vector_of(reading.floats("state.mean_angles", {state.hinges.size()}));
-    const bool has_hinges = state.kind == AnimationKind::sequence && !state.is_local();
-    state.hinge_begin = reading.words("state.hinge_begin", {has_hinges ? state.controls.size() + 1 : 0});
-    if (has_hinges)
-        reading.rows(state.hinge_begin, state.controls.size(), state.hinges.size(), "the hinges of the patches");
-    else
-        reading.require(state.hinges.empty(), "a state has hinges and local shape");
-}
-
-void read_local_shape(const Reading& reading, CurvatureModel& model) {
-    StateReader& state = model.state;
-    state.local_begin = reading.words("state.local_begin", {k_any});
-    state.local_vertex = reading.words("state.local_vertex", {k_any});
-    state.local_unit = reading.floats("state.local_unit", {1})[0];
-    const Floats mean = reading.floats("state.local_mean", {StateReader::k_local_numbers * state.local_vertex.size()});
-    if (!state.is_local()) {
-        reading.require(state.local_vertex.empty(), "vertices are listed for no patch");
+void read_rig_parts(const Reading& reading, bool is_rig, AnimationKind kind, StateReader& state) {
+    const bool turns = is_rig && kind == AnimationKind::skeleton;
+    Words parts = reading.words("state.nodes", {is_rig ? state.controls.size() : 0});
+    const Floats reference = reading.floats("state.reference", {turns ? state.controls.size() : 0, 4});
+    if (!is_rig) return;
+    for (const Control& control : state.controls)
+        reading.require(control.input_count == (turns ? 3u : 1u), "a control has a wrong number of inputs");
+    if (!turns) {
+        state.source = WeightState{std::move(parts)};
         return;
     }
-    reading.rows(state.local_begin, state.controls.size(), state.local_vertex.size(), "the vertices of the patches");
-    reading.below(state.local_vertex, model.vertex_count, "state.local_vertex");
-    reading.require(state.local_unit > 0, "state.local_unit is not positive");
-    for (std::size_t c = 0; c < state.controls.size(); ++c)
-        state.local_mean.push_back(
-            vector_of(part_of(mean, StateReader::k_local_numbers * state.local_begin[c], state.local_size(c))));
-}
-
-void read_joints(const Reading& reading, CurvatureModel& model) {
-    StateReader& state = model.state;
-    const bool is_rig = state.kind != AnimationKind::sequence, turns = state.kind == AnimationKind::skeleton;
-    state.nodes = reading.words("state.nodes", {is_rig ? state.controls.size() : 0});
-    const Floats reference = reading.floats("state.reference", {turns ? state.controls.size() : 0, 4});
+    JointState joints{std::move(parts), {}};
     for (std::size_t i = 0; i + 3 < reference.size(); i += 4)
-        state.reference.emplace_back(reference[i + 3], reference[i], reference[i + 1], reference[i + 2]);
-    for (const Control& control : state.controls)
-        reading.require(!is_rig || control.input_count == (turns ? 3u : 1u), "a control has a wrong number of inputs");
+        joints.reference.emplace_back(reference[i + 3], reference[i], reference[i + 1], reference[i + 2]);
+    state.source = std::move(joints);
 }
 
+void read_hinges(const Reading& reading, bool bends, std::size_t vertex_count, StateReader& state) {
+    HingeState bending;
+    const Words hinges = reading.words("state.hinges", {bends ? k_any : 0, 4});
+    reading.below(hinges, vertex_count, "state.hinges");
+    for (std::size_t i = 0; i < hinges.size(); i += 4)
+        bending.hinges.push_back({hinges[i], hinges[i + 1], hinges[i + 2], hinges[i + 3]});
+    bending.mean = vector_of(reading.floats("state.mean_angles", {bending.hinges.size()}));
+    bending.begin = reading.words("state.hinge_begin", {bends ? state.controls.size() + 1 : 0});
+    const Floats unmixing = reading.floats("state.unmixing", {bends ? k_any : 0});
+    if (!bends) return;
+    reading.rows(bending.begin, state.controls.size(), bending.hinges.size(), "the hinges of the patches");
+    bending.unmixing = split_maps(reading, unmixing, state.controls,
+                                  [&](std::size_t c) { return bending.begin[c + 1] - bending.begin[c]; });
+    state.source = std::move(bending);
+}
+
+void read_local_shape(const Reading& reading, bool is_local, std::size_t vertex_count, StateReader& state) {
+    LocalShapeState local;
+    local.begin = reading.words("state.local_begin", {is_local ? state.controls.size() + 1 : 0});
+    local.vertex = reading.words("state.local_vertex", {is_local ? k_any : 0});
+    local.unit = reading.floats("state.local_unit", {1})[0];
+    const Floats mean = reading.floats("state.local_mean", {LocalShapeState::k_numbers * local.vertex.size()});
+    const Floats map = as_floats(reading.halves("state.local_map", {is_local ? k_any : 0}));
+    if (!is_local) return;
+    reading.rows(local.begin, state.controls.size(), local.vertex.size(), "the vertices of the patches");
+    reading.below(local.vertex, vertex_count, "state.local_vertex");
+    reading.require(local.unit > 0, "state.local_unit is not positive");
+    for (std::size_t c = 0; c < state.controls.size(); ++c)
+        local.mean.push_back(vector_of(part_of(mean, LocalShapeState::k_numbers * local.begin[c], local.size(c))));
+    local.map = split_maps(reading, map, state.controls, [&](std::size_t c) { return local.size(c); });
+    state.source = std::move(local);
+}
+
+/// Reads the arrays of all kinds of state; those of other kinds must be empty.
 void read_state(const Reading& reading, CurvatureModel& model) {
-    StateReader& state = model.state;
-    read_local_shape(reading, model);
-    state.kind = state.is_local() ? AnimationKind::sequence : model.kind;
-    read_joints(reading, model);
-    read_hinges(reading, model);
-    const bool is_local = state.is_local(), is_rig = state.kind != AnimationKind::sequence;
-    const Floats of_hinges = reading.floats("state.unmixing", {is_local || is_rig ? 0 : k_any}),
-                 of_shape = as_floats(reading.halves("state.local_map", {is_local ? k_any : 0}));
-    if (is_rig) return;
-    split_unmixing(reading, is_local ? of_shape : of_hinges, state, [&](std::size_t c) {
-        return is_local ? state.local_size(c) : state.hinge_begin[c + 1] - state.hinge_begin[c];
-    });
+    const bool is_local = !reading.file.get<std::uint32_t>("state.local_begin", {k_any}).empty();
+    const bool is_sequence = model.kind == AnimationKind::sequence;
+    read_rig_parts(reading, !is_local && !is_sequence, model.kind, model.state);
+    read_hinges(reading, !is_local && is_sequence, model.vertex_count, model.state);
+    read_local_shape(reading, is_local, model.vertex_count, model.state);
 }
 
 void read_range(const Reading& reading, CurvatureModel& model) {
@@ -324,8 +340,7 @@ void read_range(const Reading& reading, CurvatureModel& model) {
 
 void read_segments(const Reading& reading, CurvatureModel& model) {
     Segments& segments = model.segments;
-    const bool is_rig = model.state.kind != AnimationKind::sequence,
-               principal = model.tiles.set == AttributeSet::principal;
+    const bool is_rig = model.state.is_of_rig(), principal = model.tiles.set == AttributeSet::principal;
     const bool has_bones = is_rig && principal, has_patches = !is_rig && (principal || model.state.is_local());
     segments.influence_begin = reading.words("segments.influence_begin", {has_bones ? k_any : 0});
     const Words bones = reading.words("segments.bone", {has_bones ? k_any : 0});
@@ -466,8 +481,9 @@ void require_compatible(const CurvatureModel& model, const Animation& animation)
         model.topology != topology_hash(animation.rest.faces, animation.rest.vertex_count()))
         refuse(fmt::format("it was learned on other triangles ({} vertices, here {})", model.vertex_count,
                            animation.rest.vertex_count()));
-    for (std::size_t c = 0; c < model.state.nodes.size(); ++c) {
-        const std::uint32_t index = model.state.nodes[c];
+    const std::span<const std::uint32_t> parts = model.state.parts_of_rig();
+    for (std::size_t c = 0; c < parts.size(); ++c) {
+        const std::uint32_t index = parts[c];
         const bool skeleton = model.kind == AnimationKind::skeleton;
         const std::size_t count = skeleton ? animation.rig.nodes.size() : animation.rig.targets.size();
         const std::string& name = model.state.controls[c].name;

@@ -9,19 +9,20 @@ namespace exemplar {
 
 using Eigen::Index;
 
-LocalShapeReader::LocalShapeReader(const StateReader& state) : state_(state) {
+LocalShapeReader::LocalShapeReader(const StateReader& state)
+    : state_(state), local_(std::get<LocalShapeState>(state.source)) {
     std::size_t largest = 0;
     for (std::uint32_t c = 0; c < state.controls.size(); ++c) {
         append_blocks(c);
-        largest = std::max(largest, state.local_size(c));
+        largest = std::max(largest, local_.size(c));
     }
     shape_.resize(largest);
 }
 
 void LocalShapeReader::append_blocks(std::uint32_t control) {
     const Control& all = state_.controls[control];
-    const Eigen::MatrixXf& map = state_.unmixing[control];
-    const Eigen::VectorXf bias = -map * state_.local_mean[control];
+    const Eigen::MatrixXf& map = local_.map[control];
+    const Eigen::VectorXf bias = -map * local_.mean[control];
     for (std::uint32_t first = 0; first < all.input_count; first += k_lanes) {
         const std::uint32_t inputs = std::min<std::uint32_t>(k_lanes, all.input_count - first);
         blocks_.push_back({control, all.first_input + first, inputs, map_.size()});
@@ -36,7 +37,7 @@ void LocalShapeReader::read(std::span<const Vec3> vertices, std::span<const Vec3
                             std::span<const Eigen::Matrix3f> rotations, std::span<float> x) {
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
         const std::uint32_t control = blocks_[b].control;
-        const std::size_t numbers = state_.local_size(control);
+        const std::size_t numbers = local_.size(control);
         if (b == 0 || blocks_[b - 1].control != control) read_shape(control, vertices, normals, rotations[control]);
         read_block(blocks_[b], numbers, x);
     }
@@ -44,12 +45,12 @@ void LocalShapeReader::read(std::span<const Vec3> vertices, std::span<const Vec3
 
 void LocalShapeReader::read_shape(std::uint32_t control, std::span<const Vec3> vertices, std::span<const Vec3> normals,
                                   const Eigen::Matrix3f& rotation) {
-    static_assert(StateReader::k_local_numbers == 4);
-    const std::uint32_t* const begin = state_.local_vertex.data() + state_.local_begin[control];
-    const std::uint32_t* const end = state_.local_vertex.data() + state_.local_begin[control + 1];
+    static_assert(LocalShapeState::k_numbers == 4);
+    const std::uint32_t* const begin = local_.vertex.data() + local_.begin[control];
+    const std::uint32_t* const end = local_.vertex.data() + local_.begin[control + 1];
     if (begin == end) return;
     const auto turning = [&](int j) { return FourFloats{rotation(j, 0), rotation(j, 1), rotation(j, 2), 0}; };
-    const auto rising = [&](int j) { return FourFloats{0, 0, 0, rotation(j, 2) / state_.local_unit}; };
+    const auto rising = [&](int j) { return FourFloats{0, 0, 0, rotation(j, 2) / local_.unit}; };
     const FourFloats turn[] = {turning(0), turning(1), turning(2)}, rise[] = {rising(0), rising(1), rising(2)};
     const FourFloats start = load_three(vertices[*begin].data());
     FourFloats sum{};
@@ -66,7 +67,7 @@ void LocalShapeReader::read_shape(std::uint32_t control, std::span<const Vec3> v
 }
 
 void LocalShapeReader::read_block(const Block& block, std::size_t numbers, std::span<float> x) const {
-    static_assert(k_lanes == 16 && StateReader::k_local_numbers % 2 == 0);
+    static_assert(k_lanes == 16 && LocalShapeState::k_numbers % 2 == 0);
     const auto bias = static_cast<std::size_t>(&block - blocks_.data()) * k_lanes;
     EightFloats low, high, low_odd{}, high_odd{};
     std::memcpy(&low, &bias_[bias], sizeof(low));

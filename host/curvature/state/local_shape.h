@@ -9,7 +9,7 @@
 
 namespace exemplar {
 
-/// Fast StateReader::read_surface for a state of local shape: half-precision maps, sixteen inputs at a time. Sums
+/// Fast StateReader::read_surface for a state that is_local(): half-precision maps, sixteen inputs at a time. Sums
 /// are in another order, so rounding differs. Keeps its work space, so only one thread at a time may use it.
 class LocalShapeReader {
   public:
@@ -24,12 +24,13 @@ class LocalShapeReader {
         std::size_t map;                             ///< start in map_: k_lanes values per number of the shape
     };
     void append_blocks(std::uint32_t control);
-    /// Does what StateReader::read_local does, into shape_.
+    /// Does what LocalShapeState::read does, into shape_.
     void read_shape(std::uint32_t control, std::span<const Vec3> vertices, std::span<const Vec3> normals,
                     const Eigen::Matrix3f& rotation);
     void read_block(const Block& block, std::size_t numbers, std::span<float> x) const;
 
     const StateReader& state_;
+    const LocalShapeState& local_;
     std::vector<Block> blocks_;
     std::vector<Half> map_;
     std::vector<float> bias_;  ///< k_lanes per block: minus the map of the mean shape

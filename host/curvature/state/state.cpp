@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "host/core/parallel.h"
 #include "host/curvature/state/patches.h"
@@ -54,6 +55,7 @@ std::vector<bool> nodes_above_bones(const Rig& rig) {
 
 void add_joints(const Rig& rig, std::span<const Pose* const> poses, StateReader& reader) {
     const std::vector<bool> used = nodes_above_bones(rig);
+    JointState joints;
     for (std::uint32_t node = 0; node < rig.nodes.size(); ++node) {
         if (!used[node]) continue;
         const Quaternionf reference = mean_rotation(poses, node);
@@ -62,12 +64,14 @@ void add_joints(const Rig& rig, std::span<const Pose* const> poses, StateReader&
         });
         if (!turns) continue;
         add_control(reader, rig.nodes[node].name, 3);
-        reader.nodes.push_back(node);
-        reader.reference.push_back(reference);
+        joints.nodes.push_back(node);
+        joints.reference.push_back(reference);
     }
+    reader.source = std::move(joints);
 }
 
 void add_targets(const Rig& rig, std::span<const Pose* const> poses, StateReader& reader) {
+    WeightState weights;
     for (std::uint32_t target = 0; target < rig.targets.size(); ++target) {
         const float first = poses.front()->weights[target];
         const bool changes = std::any_of(poses.begin(), poses.end(), [&](const Pose* pose) {
@@ -75,16 +79,17 @@ void add_targets(const Rig& rig, std::span<const Pose* const> poses, StateReader
         });
         if (!changes) continue;
         add_control(reader, rig.targets[target].name, 1);
-        reader.nodes.push_back(target);
+        weights.targets.push_back(target);
     }
+    reader.source = std::move(weights);
 }
 
-std::vector<StateReader::Hinge> all_hinges(const TriangleMesh& mesh) {
+std::vector<Hinge> all_hinges(const TriangleMesh& mesh) {
     const Topology topology = build_topology(mesh);
-    std::vector<StateReader::Hinge> hinges;
+    std::vector<Hinge> hinges;
     for (const Edge& edge : topology.edges) {
         if (edge.is_boundary()) continue;
-        StateReader::Hinge hinge{edge.vertex[0], edge.vertex[1], k_invalid_index, k_invalid_index};
+        Hinge hinge{edge.vertex[0], edge.vertex[1], k_invalid_index, k_invalid_index};
         for (std::size_t side = 0; side < 2; ++side) {
             const Face& face = mesh.faces[edge.face[side]];
             for (std::size_t i = 0; i < 3; ++i) {
@@ -99,12 +104,11 @@ std::vector<StateReader::Hinge> all_hinges(const TriangleMesh& mesh) {
 }
 
 /// Returns for each patch the hinges that have a vertex in it, at most `most`, evenly spaced.
-std::vector<std::vector<StateReader::Hinge>> hinges_of_patches(const std::vector<StateReader::Hinge>& all,
-                                                               const std::vector<std::uint32_t>& patch_of_vertex,
-                                                               std::size_t most) {
+std::vector<std::vector<Hinge>> hinges_of_patches(const std::vector<Hinge>& all,
+                                                  const std::vector<std::uint32_t>& patch_of_vertex, std::size_t most) {
     const std::uint32_t count = 1 + *std::max_element(patch_of_vertex.begin(), patch_of_vertex.end());
-    std::vector<std::vector<StateReader::Hinge>> patches(count);
-    for (const StateReader::Hinge& hinge : all) {
+    std::vector<std::vector<Hinge>> patches(count);
+    for (const Hinge& hinge : all) {
         std::array<std::uint32_t, 4> near{patch_of_vertex[hinge.a], patch_of_vertex[hinge.b],
                                           patch_of_vertex[hinge.left], patch_of_vertex[hinge.right]};
         std::sort(near.begin(), near.end());
@@ -113,7 +117,7 @@ std::vector<std::vector<StateReader::Hinge>> hinges_of_patches(const std::vector
     }
     for (auto& hinges : patches) {
         if (hinges.size() <= most) continue;
-        std::vector<StateReader::Hinge> taken;
+        std::vector<Hinge> taken;
         for (std::size_t h = 0; h < most; ++h) taken.push_back(hinges[h * hinges.size() / most]);
         hinges = std::move(taken);
     }
@@ -121,7 +125,7 @@ std::vector<std::vector<StateReader::Hinge>> hinges_of_patches(const std::vector
 }
 
 /// frames x hinges
-Eigen::MatrixXf angles_of(const std::vector<StateReader::Hinge>& hinges, std::span<const std::vector<Vec3>> frames) {
+Eigen::MatrixXf angles_of(const std::vector<Hinge>& hinges, std::span<const std::vector<Vec3>> frames) {
     Eigen::MatrixXf angles(static_cast<Eigen::Index>(frames.size()), static_cast<Eigen::Index>(hinges.size()));
     for (std::size_t i = 0; i < frames.size(); ++i)
         for (std::size_t h = 0; h < hinges.size(); ++h)
@@ -141,7 +145,7 @@ Eigen::MatrixXf whitening_of(const Eigen::MatrixXd& centered) {
 
 }  // namespace
 
-float bend(const StateReader::Hinge& hinge, std::span<const Vec3> vertices) {
+float bend(const Hinge& hinge, std::span<const Vec3> vertices) {
     const Vec3 &a = vertices[hinge.a], &b = vertices[hinge.b];
     const Vec3 edge = b - a, left = edge.cross(vertices[hinge.left] - a),
                right = (vertices[hinge.right] - a).cross(edge);
@@ -149,63 +153,69 @@ float bend(const StateReader::Hinge& hinge, std::span<const Vec3> vertices) {
     return std::atan2(sine, cosine);
 }
 
-void StateReader::read_pose(const Pose& pose, std::span<float> x) const {
-    for (std::size_t c = 0; c < controls.size(); ++c) {
-        const std::uint32_t first = controls[c].first_input;
-        if (kind == AnimationKind::blend_shapes) {
-            x[first] = pose.weights[nodes[c]];
-            continue;
-        }
-        const Vec3 part = vector_part(reference[c], pose.nodes[nodes[c]].rotation);
-        for (int i = 0; i < 3; ++i) x[first + i] = part[i];
-    }
-}
-
-void StateReader::read_local(std::size_t control, std::span<const Vec3> vertices, std::span<const Vec3> normals,
-                             const Eigen::Matrix3f& rotation, std::span<float> shape) const {
-    const std::span<const std::uint32_t> members(local_vertex.data() + local_begin[control],
-                                                 local_begin[control + 1] - local_begin[control]);
+void LocalShapeState::read(std::size_t control, std::span<const Vec3> vertices, std::span<const Vec3> normals,
+                           const Eigen::Matrix3f& rotation, std::span<float> shape) const {
+    const std::span<const std::uint32_t> members(vertex.data() + begin[control], begin[control + 1] - begin[control]);
     Vec3 center = Vec3::Zero();
     for (const std::uint32_t v : members) center += vertices[v];
     center /= static_cast<float>(std::max<std::size_t>(members.size(), 1));
-    const Vec3 up = rotation.col(2) / local_unit;
+    const Vec3 up = rotation.col(2) / unit;
     float* out = shape.data();
     for (const std::uint32_t v : members) {
         Eigen::Map<Vec3>(out).noalias() = rotation.transpose() * normals[v];
         out[3] = up.dot(vertices[v] - center);
-        out += k_local_numbers;
+        out += k_numbers;
+    }
+}
+
+std::span<const std::uint32_t> StateReader::parts_of_rig() const {
+    if (const auto* joints = std::get_if<JointState>(&source)) return joints->nodes;
+    if (const auto* weights = std::get_if<WeightState>(&source)) return weights->targets;
+    return {};
+}
+
+void StateReader::read_pose(const Pose& pose, std::span<float> x) const {
+    if (const auto* weights = std::get_if<WeightState>(&source)) {
+        for (std::size_t c = 0; c < controls.size(); ++c)
+            x[controls[c].first_input] = pose.weights[weights->targets[c]];
+        return;
+    }
+    const auto& joints = std::get<JointState>(source);
+    for (std::size_t c = 0; c < controls.size(); ++c) {
+        const Vec3 part = vector_part(joints.reference[c], pose.nodes[joints.nodes[c]].rotation);
+        for (int i = 0; i < 3; ++i) x[controls[c].first_input + i] = part[i];
     }
 }
 
 void StateReader::read_surface(std::span<const Vec3> vertices, std::span<const Vec3> normals,
                                std::span<const Eigen::Matrix3f> rotations, std::span<float> x) const {
-    if (!is_local()) return read_hinges(vertices, x);
-    std::size_t largest = 0;
-    for (std::size_t c = 0; c < controls.size(); ++c) largest = std::max(largest, local_size(c));
-    Eigen::VectorXf room(static_cast<Eigen::Index>(largest));
-    for (std::size_t c = 0; c < controls.size(); ++c) {
-        auto shape = room.head(static_cast<Eigen::Index>(local_size(c)));
-        read_local(c, vertices, normals, rotations[c], {shape.data(), local_size(c)});
-        shape -= local_mean[c];
-        Eigen::Map<Eigen::VectorXf>(x.data() + controls[c].first_input, controls[c].input_count).noalias() =
-            unmixing[c] * shape;
+    const auto inputs = [&](std::size_t c) {
+        return Eigen::Map<Eigen::VectorXf>(x.data() + controls[c].first_input, controls[c].input_count);
+    };
+    Eigen::VectorXf room;
+    if (const auto* local = std::get_if<LocalShapeState>(&source)) {
+        std::size_t largest = 0;
+        for (std::size_t c = 0; c < controls.size(); ++c) largest = std::max(largest, local->size(c));
+        room.resize(static_cast<Eigen::Index>(largest));
+        for (std::size_t c = 0; c < controls.size(); ++c) {
+            auto shape = room.head(static_cast<Eigen::Index>(local->size(c)));
+            local->read(c, vertices, normals, rotations[c], {shape.data(), local->size(c)});
+            shape -= local->mean[c];
+            inputs(c).noalias() = local->map[c] * shape;
+        }
+        return;
     }
-}
-
-void StateReader::read_hinges(std::span<const Vec3> vertices, std::span<float> x) const {
-    Eigen::VectorXf angles;
+    const auto& hinges = std::get<HingeState>(source);
     for (std::size_t c = 0; c < controls.size(); ++c) {
-        const std::uint32_t first = hinge_begin[c], count = hinge_begin[c + 1] - first;
-        angles.resize(count);
-        for (std::uint32_t h = 0; h < count; ++h) angles[h] = bend(hinges[first + h], vertices);
-        Eigen::Map<Eigen::VectorXf>(x.data() + controls[c].first_input, controls[c].input_count).noalias() =
-            unmixing[c] * (angles - mean_angles.segment(first, count));
+        const std::uint32_t first = hinges.begin[c], count = hinges.begin[c + 1] - first;
+        room.resize(count);
+        for (std::uint32_t h = 0; h < count; ++h) room[h] = bend(hinges.hinges[first + h], vertices);
+        inputs(c).noalias() = hinges.unmixing[c] * (room - hinges.mean.segment(first, count));
     }
 }
 
 StateReader make_rig_state(const Animation& animation, std::span<const Pose* const> poses) {
     StateReader reader;
-    reader.kind = animation.kind;
     if (animation.kind == AnimationKind::blend_shapes)
         add_targets(animation.rig, poses, reader);
     else
@@ -216,28 +226,29 @@ StateReader make_rig_state(const Animation& animation, std::span<const Pose* con
 StateReader make_sequence_state(const TriangleMesh& rest, std::span<const std::vector<Vec3>> frames,
                                 const SequenceStateOptions& options) {
     StateReader reader;
-    reader.kind = AnimationKind::sequence;
     reader.control_of_vertex = surface_patches(rest, options.patch_vertices);
-    const std::vector<std::vector<StateReader::Hinge>> hinges =
+    const std::vector<std::vector<Hinge>> patches =
         hinges_of_patches(all_hinges(rest), reader.control_of_vertex, options.max_hinges);
-    const bool is_whole = hinges.size() == 1;
-    std::vector<Ica> components(hinges.size());
-    parallel_for(hinges.size(), [&](std::size_t patch) {
-        if (hinges[patch].empty()) return;
+    const bool is_whole = patches.size() == 1;
+    std::vector<Ica> components(patches.size());
+    parallel_for(patches.size(), [&](std::size_t patch) {
+        if (patches[patch].empty()) return;
         components[patch] = fit_ica(
-            angles_of(hinges[patch], frames),
+            angles_of(patches[patch], frames),
             {.share = options.share, .most = is_whole ? k_unlimited : options.max_inputs, .seed = options.seed});
     });
-    reader.hinge_begin.push_back(0);
-    for (std::size_t patch = 0; patch < hinges.size(); ++patch) {
-        reader.hinges.insert(reader.hinges.end(), hinges[patch].begin(), hinges[patch].end());
-        reader.hinge_begin.push_back(static_cast<std::uint32_t>(reader.hinges.size()));
-        reader.mean_angles.conservativeResize(static_cast<Eigen::Index>(reader.hinges.size()));
-        reader.mean_angles.tail(static_cast<Eigen::Index>(hinges[patch].size())) = components[patch].mean;
-        reader.unmixing.push_back(components[patch].unmixing);
+    HingeState state;
+    state.begin.push_back(0);
+    for (std::size_t patch = 0; patch < patches.size(); ++patch) {
+        state.hinges.insert(state.hinges.end(), patches[patch].begin(), patches[patch].end());
+        state.begin.push_back(static_cast<std::uint32_t>(state.hinges.size()));
+        state.mean.conservativeResize(static_cast<Eigen::Index>(state.hinges.size()));
+        state.mean.tail(static_cast<Eigen::Index>(patches[patch].size())) = components[patch].mean;
+        state.unmixing.push_back(components[patch].unmixing);
         add_control(reader, is_whole ? "surface" : "patch " + std::to_string(patch),
                     static_cast<std::uint32_t>(components[patch].unmixing.rows()));
     }
+    reader.source = std::move(state);
     return reader;
 }
 

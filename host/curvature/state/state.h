@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "host/animation/animation.h"
@@ -18,50 +19,66 @@ struct Control {
     std::uint32_t first_input = 0, input_count = 0;
 };
 
-/// Computes the inputs x, from which curvature is predicted, of a pose.
-///
-/// Skeleton (Sec. 5.4.1): per joint the rotation relative to its mean in training, as the vector part of its unit
-/// quaternion, sin(theta / 2) times the axis. For a hinge this is the thesis' cos(theta / 2) if the angle is
+/// Rotations of joints (Sec. 5.4.1): per joint the rotation relative to its mean in training, as the vector part of its
+/// unit quaternion, sin(theta / 2) times the axis. For a hinge this is the thesis' cos(theta / 2) if the angle is
 /// measured as a dihedral angle, pi at rest; the vector part distinguishes both directions of bending and has no
-/// gimbal lock. Blend shapes (Sec. 5.6): the weights. Mesh sequence: independent components of the dihedral angles
-/// (Sec. 5.5.1). Local shape, for any animation: a linear map of the normals and heights of a patch's vertices in
-/// the frame of the patch (see learn_local). It takes no angle and follows the curvature more closely.
+/// gimbal lock.
+struct JointState {
+    std::vector<std::uint32_t> nodes;           ///< per control
+    std::vector<Eigen::Quaternionf> reference;  ///< per control: mean rotation in training
+};
+
+/// Weights of blend shapes (Sec. 5.6).
+struct WeightState {
+    std::vector<std::uint32_t> targets;  ///< per control
+};
+
+/// An edge a-b and the third vertices of its faces; a-b-left runs around a face.
+struct Hinge {
+    std::uint32_t a, b, left, right;
+};
+/// Returns the signed bending angle of a hinge in radians: zero where flat, positive where convex.
+float bend(const Hinge& hinge, std::span<const Vec3> vertices);
+
+/// Independent components of the dihedral angles of patches of a mesh sequence (Sec. 5.5.1).
+struct HingeState {
+    std::vector<Hinge> hinges;
+    std::vector<std::uint32_t> begin;       ///< control c has the hinges [begin[c], begin[c + 1])
+    Eigen::VectorXf mean;                   ///< per hinge: mean angle in training
+    std::vector<Eigen::MatrixXf> unmixing;  ///< per control: inputs x hinges
+};
+
+/// Local shape, for any animation: a linear map of the normals and heights of a patch's vertices in the frame of the
+/// patch (see learn_local). It takes no angle and follows the curvature more closely. Control c is segment c.
+struct LocalShapeState {
+    static constexpr std::size_t k_numbers = 4;  ///< of a vertex
+
+    std::vector<std::uint32_t> begin;   ///< the vertices of control c: [begin[c], begin[c + 1])
+    std::vector<std::uint32_t> vertex;  ///< a subset of each patch and its surroundings
+    std::vector<Eigen::VectorXf> mean;  ///< per control: mean local shape in training
+    std::vector<Eigen::MatrixXf> map;   ///< per control: inputs x size
+    float unit = 1;                     ///< mesh units that positions are divided by
+
+    /// Returns the length of a control's local shape.
+    std::size_t size(std::size_t control) const { return k_numbers * (begin[control + 1] - begin[control]); }
+    /// Computes the local shape of a control, size(control) numbers: per vertex its normal in the frame of the patch,
+    /// `rotation`, and its height above the mean position along the third axis, divided by the unit.
+    void read(std::size_t control, std::span<const Vec3> vertices, std::span<const Vec3> normals,
+              const Eigen::Matrix3f& rotation, std::span<float> shape) const;
+};
+
+/// Computes the inputs x, from which curvature is predicted, of a pose or a surface.
 struct StateReader {
-    AnimationKind kind = AnimationKind::sequence;  ///< sequence also for a rig with local shape
     std::vector<Control> controls;
     std::size_t input_count = 0;
+    std::variant<HingeState, JointState, WeightState, LocalShapeState> source;  ///< what inputs are read from
+    std::vector<std::uint32_t> control_of_vertex;  ///< in training on a surface: the patch of each vertex
 
-    // skeleton
-    std::vector<std::uint32_t> nodes;  ///< per control
-    std::vector<Eigen::Quaternionf> reference;
-
-    // mesh sequence
-    struct Hinge {
-        std::uint32_t a, b, left,
-            right;  ///< an edge a-b and the third vertices of its faces; a-b-left runs around a face
-    };
-    std::vector<Hinge> hinges;
-    std::vector<std::uint32_t> hinge_begin;        ///< control c has the hinges [hinge_begin[c], hinge_begin[c + 1])
-    Eigen::VectorXf mean_angles;                   ///< per hinge
-    std::vector<Eigen::MatrixXf> unmixing;         ///< per control: inputs x hinges, or inputs x local_size
-    std::vector<std::uint32_t> control_of_vertex;  ///< in training: the patch of each vertex
-
-    // local shape, for any animation: there are no hinges, and control c is segment c
-    std::vector<std::uint32_t> local_begin;   ///< the vertices of control c: [local_begin[c], local_begin[c + 1])
-    std::vector<std::uint32_t> local_vertex;  ///< a subset of each patch and its surroundings
-    std::vector<Eigen::VectorXf> local_mean;  ///< per control: mean local shape in training
-    float local_unit = 1;                     ///< mesh units that positions are divided by
-
-    bool is_local() const { return !local_begin.empty(); }
-    /// Returns the length of a control's local shape: four numbers per vertex.
-    std::size_t local_size(std::size_t control) const {
-        return k_local_numbers * (local_begin[control + 1] - local_begin[control]);
-    }
-    /// Computes the local shape of a control, local_size numbers: per vertex its normal in the frame of the patch,
-    /// `rotation`, and its height above the mean position along the third axis, divided by local_unit.
-    void read_local(std::size_t control, std::span<const Vec3> vertices, std::span<const Vec3> normals,
-                    const Eigen::Matrix3f& rotation, std::span<float> shape) const;
-    static constexpr std::size_t k_local_numbers = 4;
+    bool is_local() const { return std::holds_alternative<LocalShapeState>(source); }
+    /// Returns whether inputs are read from a pose; otherwise from a surface.
+    bool is_of_rig() const { return !is_local() && !std::holds_alternative<HingeState>(source); }
+    /// Returns per control its joint's node or its blend shape; nothing if inputs are read from a surface.
+    std::span<const std::uint32_t> parts_of_rig() const;
 
     /// Computes the inputs of a rig's pose. `x` has input_count numbers.
     void read_pose(const Pose& pose, std::span<float> x) const;
@@ -69,13 +86,7 @@ struct StateReader {
     /// used for local shape only.
     void read_surface(std::span<const Vec3> vertices, std::span<const Vec3> normals,
                       std::span<const Eigen::Matrix3f> rotations, std::span<float> x) const;
-
-  private:
-    void read_hinges(std::span<const Vec3> vertices, std::span<float> x) const;
 };
-
-/// Returns the signed bending angle of a hinge in radians: zero where flat, positive where convex.
-float bend(const StateReader::Hinge& hinge, std::span<const Vec3> vertices);
 
 /// Builds the reader of a rig: a control per joint that turns in `poses` (skeleton) or per blend shape that changes.
 StateReader make_rig_state(const Animation& animation, std::span<const Pose* const> poses);

@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 fs::path descriptor_path(const TriangleMesh& mesh, const FeatureOptions& options, const fs::path& folder) {
-    return folder / fmt::format("{}-v{}-s{}{}-shape{}.safetensors", content_hash(mesh), k_feature_version,
-                                options.samples, options.orientation ? "-oriented" : "", k_shape_descriptor_version);
+    const fs::path features = feature_entry_name(mesh, options);
+    return folder / fmt::format("{}-shape{}.safetensors", features.stem().string(), k_shape_descriptor_version);
 }
 
 ShapeDescriptor descriptor_from_file(const TensorFile& file) {

@@ -11,6 +11,7 @@
 #include "apps/help/help_pages.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/core/json_text.h"
 #include "host/core/parallel.h"
 #include "host/core/progress.h"
 #include "host/core/run_program.h"
@@ -134,7 +135,7 @@ std::shared_ptr<void> apply_common_options(const CommonOptions& options) {
 
 void write_json(const std::filesystem::path& path, const nlohmann::json& json) {
     // Names of files may be in any encoding; JSON is UTF-8, so what is not becomes U+FFFD.
-    const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+    const std::string text = json_text(json, 2);
     write_file_atomically(path, [&](std::ostream& out) { out << text << '\n'; });
 }
 

@@ -12,6 +12,7 @@
 #include "embedded/report_page.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/core/json_text.h"
 
 namespace exemplar {
 namespace {
@@ -298,7 +299,7 @@ std::string escaped_html(std::string_view text) {
 /// comment.
 std::string script_json(const Json& json) {
     std::string result;
-    for (const char c : json.dump(-1, ' ', true, Json::error_handler_t::replace)) {
+    for (const char c : json_text(json, -1, true)) {
         if (c == '<')
             result += "\\u003c";
         else

@@ -11,6 +11,7 @@
 #include "host/animation/write_animation.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/core/json_text.h"
 #include "host/mesh/io/io_gltf_file.h"
 #include "host/mesh/io/io_write_text.h"
 
@@ -45,7 +46,7 @@ class GltfBuilder {
         add_mesh();
         for (const Clip& clip : animation_.clips) add_clip(clip);
         document_["buffers"] = {{{"byteLength", binary_.size()}}};
-        return mesh_io::binary_gltf(document_.dump(-1, ' ', false, OrderedJson::error_handler_t::replace), binary_);
+        return mesh_io::binary_gltf(json_text(document_), binary_);
     }
 
   private:

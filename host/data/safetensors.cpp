@@ -9,6 +9,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/core/json_text.h"
 #include "host/mesh/io/io_text.h"
 
 namespace exemplar {
@@ -113,7 +114,7 @@ TensorFile parse(const std::string& path, const FileView& read) {
     const std::string_view header = content.substr(sizeof(header_size), header_size);
     const std::string_view data = content.substr(sizeof(header_size) + header_size);
 
-    const Json json = Json::parse(header);
+    const Json json = parse_json(header);
     if (!json.is_object()) damaged(path, "the header is no object");
     TensorFile file;
     file.path = path;
@@ -216,7 +217,7 @@ void write_safetensors(const std::filesystem::path& path, const TensorFile& file
         offset += tensor.bytes.size();
     }
     // File names in the metadata may have any encoding; bytes that are not UTF-8, which JSON needs, become U+FFFD.
-    std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string text = json_text(header);
     text.resize((text.size() + 7) / 8 * 8, ' ');  // keeps the arrays aligned for readers that map the file
     const std::uint64_t size = text.size();
     write_file_atomically(path, [&](std::ostream& out) {

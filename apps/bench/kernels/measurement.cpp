@@ -12,6 +12,7 @@
 #include "gpu/runtime/device/errors.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/core/json_text.h"
 
 namespace exemplar {
 namespace {
@@ -166,7 +167,7 @@ nlohmann::ordered_json to_json(const Measurement& measurement, const Device& dev
 
 std::vector<Measurement> read_measurements(const std::filesystem::path& path, const DeviceInfo& device) {
     try {
-        const nlohmann::json json = nlohmann::json::parse(read_file(path));
+        const nlohmann::json json = parse_json(read_file(path));
         const std::string name = json.at("device").at("name");
         if (name != device.name)
             throw UsageError(fmt::format("{}: it was measured on device '{}', this is '{}'; compare the same device",

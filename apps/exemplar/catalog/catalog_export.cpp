@@ -13,6 +13,7 @@
 #include "apps/exemplar/commands.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/core/json_text.h"
 #include "host/core/progress.h"
 #include "host/core/text.h"
 #include "host/data/catalog/worker_folder.h"
@@ -112,7 +113,7 @@ std::string csv_value(const std::string& column, const Json& value) {
                                     label["area_share"].get<double>());
         return csv_field(text);
     }
-    return csv_field(value.dump(-1, ' ', false, Json::error_handler_t::replace));
+    return csv_field(json_text(value));
 }
 
 void write_csv(std::ostream& out, Catalog& catalog, std::optional<CatalogRun>& run, const fs::path& cache) {

@@ -1,4 +1,5 @@
 #include "apps/exemplar/catalog/catalog_output.h"
+#include "host/core/json_text.h"
 
 #include <algorithm>
 #include <ostream>
@@ -27,7 +28,7 @@ std::string csv_field(std::string_view text) {
 }
 
 std::string json_text(const nlohmann::json& json) {
-    return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return json_text(json);
 }
 
 void write_json_list(std::ostream& out,

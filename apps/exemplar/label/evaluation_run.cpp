@@ -16,6 +16,7 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/interrupt.h"
+#include "host/core/json_text.h"
 #include "host/core/stopwatch.h"
 #include "host/core/text.h"
 #include "host/labeling/evaluation/evaluation.h"
@@ -67,13 +68,13 @@ std::string evaluation_run_key(const EvaluationTask& task, const TrainOptions& t
              {"training", k_training_version},
              {"format", k_model_format_version}};
     for (const fs::path& path : task.train) key["train"].push_back({path.stem().string(), digest(path, task.labels)});
-    return key.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return json_text(key);
 }
 
 /// The JSON of a file; null if it is missing or damaged.
 Json read_json(const fs::path& path) {
     if (!fs::exists(path)) return nullptr;
-    Json json = Json::parse(read_file(path), nullptr, false);
+    Json json = parse_json(read_file(path), nullptr, false);
     return json.is_object() ? json : Json(nullptr);
 }
 

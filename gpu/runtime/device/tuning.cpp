@@ -10,6 +10,7 @@
 #include "gpu/runtime/device/device_cache.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/core/json_text.h"
 
 namespace exemplar {
 
@@ -44,7 +45,7 @@ Tuning Tuning::load(const std::filesystem::path& path) {
     std::error_code error;
     if (path.empty() || !std::filesystem::exists(path, error)) return tuning;
     try {
-        tuning.kernels_ = nlohmann::json::parse(read_file(path)).at("kernels").get<decltype(kernels_)>();
+        tuning.kernels_ = parse_json(read_file(path)).at("kernels").get<decltype(kernels_)>();
     } catch (const nlohmann::json::exception&) {
         throw DataError(
             fmt::format("{}: this is no tuning of kernels; delete it, or write it anew with 'exemplar bench "
@@ -55,7 +56,7 @@ Tuning Tuning::load(const std::filesystem::path& path) {
 }
 
 void Tuning::save(const std::filesystem::path& path) const {
-    const std::string text = nlohmann::json{{"kernels", kernels_}}.dump(2);
+    const std::string text = json_text(nlohmann::json{{"kernels", kernels_}}, 2);
     write_file_atomically(path, [&](std::ostream& out) { out << text << '\n'; });
 }
 

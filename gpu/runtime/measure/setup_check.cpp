@@ -17,6 +17,7 @@
 #include "gpu/runtime/device/tuning.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/core/json_text.h"
 
 namespace exemplar {
 namespace {
@@ -78,7 +79,7 @@ std::string loading_error(const std::string& library) {
 Finding check_driver(const path& file) {
     std::string library;
     try {
-        library = nlohmann::json::parse(read_file(file)).at("ICD").at("library_path");
+        library = parse_json(read_file(file)).at("ICD").at("library_path");
     } catch (const std::exception&) {
         return {Level::remark, fmt::format("driver {} cannot be read", file.string()),
                 "install the package that it belongs to again, or delete it"};

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "host/core/errors.h"
+#include "host/core/json_text.h"
 #include "host/data/safetensors.h"
 #include "host/mesh/io/io_text.h"
 
@@ -227,7 +228,7 @@ std::uint64_t topology_of(const Reading& reading, const std::string& digits) {
 }
 
 void read_description(const Reading& reading, CurvatureModel& model) {
-    const Json json = Json::parse(reading.file.meta("model"));
+    const Json json = parse_json(reading.file.meta("model"));
     model.kind = static_cast<AnimationKind>(whole_number(reading, json.at("animation"), 2));
     model.tiles.set = static_cast<AttributeSet>(whole_number(reading, json.at("attributes"), 1));
     model.vertex_count = whole_number(reading, json.at("vertices"), 0xFFFFFFFEu);
@@ -442,7 +443,7 @@ void save_curvature_model(const std::filesystem::path& path, const CurvatureMode
     TensorFile file;
     file.metadata["kind"] = k_kind;
     file.metadata["format_version"] = std::to_string(k_format_version);
-    file.metadata["model"] = describe(model).dump(-1, ' ', false, Json::error_handler_t::replace);
+    file.metadata["model"] = json_text(describe(model));
     add_state(file, model.state);
     add_range(file, model.range);
     add_segments(file, model.segments);

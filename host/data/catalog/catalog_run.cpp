@@ -6,6 +6,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
+#include "host/core/json_text.h"
 #include "host/core/memory_budget.h"
 #include "host/data/catalog/shape_scan.h"
 
@@ -19,7 +20,7 @@ constexpr const char* k_content =
     "(shapes.hash || CASE WHEN shapes.category = '' THEN '' ELSE ' ' || shapes.category END)";
 
 std::string dump(const Json& json) {
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return json_text(json);
 }
 
 /// Reads a record from the columns `first`, ... of a row, as for_each selects them.

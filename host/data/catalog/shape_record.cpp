@@ -11,6 +11,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/core/json_text.h"
 
 namespace exemplar {
 namespace {
@@ -64,7 +65,7 @@ double ShapeRecord::seconds_all() const {
 
 Json parse_shallow(std::string_view text) {
     const auto is_kept = [](int depth, Json::parse_event_t, Json&) { return depth <= k_deepest; };
-    return Json::parse(text, is_kept, false);
+    return parse_json(text, is_kept, false);
 }
 
 std::string to_text(const std::string& bytes) {

@@ -10,6 +10,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/core/json_text.h"
 #include "host/data/catalog/shape_record.h"
 
 namespace exemplar {
@@ -91,8 +92,8 @@ void for_each_line(std::string_view text, Use&& use) {
 
 void write_shard(const fs::path& path, const Shard& shard) {
     write_file_atomically(path, [&](std::ostream& out) {
-        out << to_json(shard.plan).dump() << '\n';
-        for (const CatalogShape& shape : shard.shapes) out << to_json(shape).dump() << '\n';
+        out << json_text(to_json(shard.plan)) << '\n';
+        for (const CatalogShape& shape : shard.shapes) out << json_text(to_json(shape)) << '\n';
     });
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/core/json_text.h"
 #include "host/core/parallel.h"
 #include "host/data/result_cache.h"
 
@@ -139,8 +140,8 @@ void transfer_arrays(Entry& entry, Surface& surface, std::size_t faces, std::siz
 
 TensorFile to_file(const HatchingSurface& surface) {
     TensorFile file;
-    file.metadata["descriptors"] = Json(surface.descriptors.names).dump();
-    file.metadata["seconds"] = Json(surface.seconds).dump();
+    file.metadata["descriptors"] = json_text(Json(surface.descriptors.names));
+    file.metadata["seconds"] = json_text(Json(surface.seconds));
     EntryWriter writer{file};
     transfer_arrays(writer, surface, surface.mesh.face_count(), surface.mesh.vertex_count());
     file.add("sizes", {2}, std::vector<float>{surface.unit, surface.feature_size});
@@ -155,8 +156,8 @@ HatchingSurface from_file(const TensorFile& file, const TriangleMesh& mesh) {
     surface.mesh = mesh;
     const std::size_t faces = mesh.face_count(), vertices = mesh.vertex_count();
     surface.descriptors.rows = vertices;
-    surface.descriptors.names = Json::parse(file.meta("descriptors")).get<std::vector<std::string>>();
-    surface.seconds = Json::parse(file.meta("seconds")).get<std::vector<std::pair<std::string, double>>>();
+    surface.descriptors.names = parse_json(file.meta("descriptors")).get<std::vector<std::string>>();
+    surface.seconds = parse_json(file.meta("seconds")).get<std::vector<std::pair<std::string, double>>>();
     EntryReader reader{file};
     transfer_arrays(reader, surface, faces, vertices);
     const std::vector<float> sizes = file.get<float>("sizes", {2});

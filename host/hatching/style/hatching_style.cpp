@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/core/errors.h"
+#include "host/core/json_text.h"
 #include "host/data/model_file.h"
 #include "host/hatching/features/pixel_features.h"
 #include "host/hatching/features/powers.h"
@@ -96,7 +97,7 @@ int read_count(const TensorFile& file, const Json& json, const char* key, int mo
 }
 
 void read_description(const TensorFile& file, HatchingStyle& style, std::size_t& stages) {
-    const Json json = Json::parse(file.meta("style"));
+    const Json json = parse_json(file.meta("style"));
     style.name = json.at("name");
     style.width = read_count(file, json, "width", k_max_drawing);
     style.height = read_count(file, json, "height", k_max_drawing);
@@ -132,7 +133,7 @@ void save_hatching_style(const std::filesystem::path& path, const HatchingStyle&
                            {"level_cut", described(style.level_crf)},
                            {"stages", style.segments.size()}};
     // A file name need not be valid UTF-8.
-    file.metadata["style"] = description.dump(-1, ' ', false, Json::error_handler_t::replace);
+    file.metadata["style"] = json_text(description);
     for (std::size_t c = 0; c < style.rules.size(); ++c) {
         for (std::size_t j = 0; j < k_hatch_layers; ++j)
             add_function(file, fmt::format("rule.{}.{}", c, j), style.rules[c].function[j]);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/core/errors.h"
+#include "host/core/json_text.h"
 #include "host/data/model_file.h"
 #include "host/data/safetensors.h"
 #include "host/labeling/category/category_model.h"
@@ -38,7 +39,7 @@ std::uint64_t whole_value(const TensorFile& file, const Json& value) {
 }
 
 void read_category_description(const TensorFile& file, CategoryModel& model) {
-    const Json json = Json::parse(file.meta("model"));
+    const Json json = parse_json(file.meta("model"));
     model.category_names = json.at("categories").get<std::vector<std::string>>();
     model.feature_options.samples = whole_value(file, json.at("samples"));
     model.feature_options.orientation = json.at("orientation").get<bool>();
@@ -97,7 +98,7 @@ void save_category_model(const std::filesystem::path& path, const CategoryModel&
     file.metadata["format_version"] = std::to_string(k_category_format_version);
     file.metadata["feature_version"] = std::to_string(k_feature_version);
     file.metadata["descriptor_version"] = std::to_string(k_shape_descriptor_version);
-    file.metadata["model"] = describe_category(model).dump(-1, ' ', false, Json::error_handler_t::replace);
+    file.metadata["model"] = json_text(describe_category(model));
     const std::size_t values = k_shape_statistics * model.features.size();
     file.add("mean", {values}, model.scores.mean);
     file.add("inverse_deviation", {values}, model.scores.inverse_deviation);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "host/core/json_text.h"
 #include "host/data/result_cache.h"
 #include "host/labeling/features/feature_cache.h"
 #include "host/labeling/inference/mesh_labeling.h"
@@ -24,14 +25,14 @@ fs::path descriptor_path(const TriangleMesh& mesh, const FeatureOptions& options
 
 ShapeDescriptor descriptor_from_file(const TensorFile& file) {
     ShapeDescriptor shape;
-    shape.features = Json::parse(file.meta("features")).get<std::vector<std::string>>();
+    shape.features = parse_json(file.meta("features")).get<std::vector<std::string>>();
     shape.values = file.get<float>("values", {k_shape_statistics, shape.features.size()});
     return shape;
 }
 
 TensorFile descriptor_to_file(const ShapeDescriptor& shape) {
     TensorFile file;
-    file.metadata["features"] = Json(shape.features).dump();
+    file.metadata["features"] = json_text(Json(shape.features));
     file.add("values", {k_shape_statistics, shape.features.size()}, shape.values);
     return file;
 }

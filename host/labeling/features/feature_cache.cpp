@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "host/core/json_text.h"
 #include "host/data/result_cache.h"
 
 namespace exemplar {
@@ -24,9 +25,9 @@ std::vector<T> flatten(const std::vector<std::array<T, 2>>& pairs) {
 
 TensorFile features_to_file(const MeshFeatures& features) {
     TensorFile file;
-    file.metadata["unary"] = Json(features.unary.names).dump();
-    file.metadata["pairwise"] = Json(features.pairwise.names).dump();
-    file.metadata["seconds"] = Json(features.seconds).dump();
+    file.metadata["unary"] = json_text(Json(features.unary.names));
+    file.metadata["pairwise"] = json_text(Json(features.pairwise.names));
+    file.metadata["seconds"] = json_text(Json(features.seconds));
     file.add("unary", {features.unary.cols(), features.unary.rows}, features.unary.values);
     file.add("pairwise", {features.pairwise.cols(), features.pairwise.rows}, features.pairwise.values);
     const ContextGeometry& context = features.context;
@@ -54,7 +55,7 @@ constexpr std::size_t k_pairwise_room = EdgeNeighborhood::k_bins;
 FeatureMatrix matrix_from(const TensorFile& file, const std::string& name, std::size_t rows, std::size_t room) {
     FeatureMatrix matrix;
     matrix.rows = rows;
-    matrix.names = Json::parse(file.meta(name)).get<std::vector<std::string>>();
+    matrix.names = parse_json(file.meta(name)).get<std::vector<std::string>>();
     matrix.values = file.get<float>(name, {matrix.cols(), rows}, room * rows);
     return matrix;
 }
@@ -69,7 +70,7 @@ MeshFeatures features_from_file(const TensorFile& file, std::size_t faces) {
     features.dihedral = file.get<float>("dihedral", {edge_count});
     features.unary = matrix_from(file, "unary", faces, k_unary_room);
     features.pairwise = matrix_from(file, "pairwise", edge_count, k_pairwise_room);
-    features.seconds = Json::parse(file.meta("seconds")).get<std::vector<std::pair<std::string, double>>>();
+    features.seconds = parse_json(file.meta("seconds")).get<std::vector<std::pair<std::string, double>>>();
 
     ContextGeometry& context = features.context;
     context.faces = faces;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/core/errors.h"
+#include "host/core/json_text.h"
 #include "host/data/model_file.h"
 #include "host/data/safetensors.h"
 #include "host/mesh/io/io_formats.h"
@@ -57,7 +58,7 @@ Color color_of(const TensorFile& file, const Json& channels) {
 }
 
 void read_model_description(const TensorFile& file, LabelingModel& model) {
-    const Json json = Json::parse(file.meta("model"));
+    const Json json = parse_json(file.meta("model"));
     model.label_names = json.at("labels").get<std::vector<std::string>>();
     for (const Json& color : json.at("colors")) model.label_colors.push_back(color_of(file, color));
     model.feature_options.samples = whole_number(file, json.at("samples"));
@@ -143,7 +144,7 @@ void save_model(const std::filesystem::path& path, const LabelingModel& model) {
     file.metadata["kind"] = k_kind;
     file.metadata["format_version"] = std::to_string(k_model_format_version);
     file.metadata["feature_version"] = std::to_string(k_feature_version);
-    file.metadata["model"] = describe_model(model).dump(-1, ' ', false, Json::error_handler_t::replace);
+    file.metadata["model"] = json_text(describe_model(model));
     for (std::size_t s = 0; s < model.unary.size(); ++s)
         add_classifier(file, fmt::format("unary.{}", s), model.unary[s]);
     for (std::size_t s = 0; s < model.linear.size(); ++s)

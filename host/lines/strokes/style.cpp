@@ -11,6 +11,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/core/json_text.h"
 #include "host/core/text.h"
 #include "host/lines/strokes/stroke_textures.h"
 
@@ -108,7 +109,7 @@ class StyleReader {
         };
         Json json;
         try {
-            json = Json::parse(text, watch, true, true);
+            json = parse_json(text, watch, true, true);
         } catch (const Json::exception& error) {
             throw DataError(not_json(text, error));
         }

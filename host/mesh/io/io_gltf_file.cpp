@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "host/core/json_text.h"
 #include "host/mesh/io/io_text.h"
 #include "host/mesh/io/io_write_text.h"
 
@@ -79,10 +80,10 @@ void check_depth(std::string_view json, const std::string& name) {
     }
 }
 
-Json parse_json(std::string_view text, const std::string& name) {
+Json parse_document(std::string_view text, const std::string& name) {
     check_depth(text, name);
     try {
-        Json document = Json::parse(text);
+        Json document = parse_json(text);
         if (!document.is_object()) fail(name, "the JSON of a glTF file must be an object");
         return document;
     } catch (const Json::parse_error& error) {
@@ -281,7 +282,7 @@ BufferFiles read_buffers(const Json& document, const GltfChunks& chunks, const s
 
 /// Returns the input for the library: .glb with the cut-down JSON if there is a binary chunk, else the JSON.
 std::string rebuilt(const Json& document, const GltfChunks& chunks) {
-    std::string json = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+    std::string json = json_text(document);
     return chunks.binary.empty() ? json : binary_gltf(std::move(json), chunks.binary);
 }
 
@@ -341,14 +342,14 @@ tinygltf::Model load_gltf(std::string_view content, const std::string& name, con
         chunks = binary_chunks(content, name);
     else
         chunks.json = content;
-    const Json document = parse_json(chunks.json, name);
+    const Json document = parse_document(chunks.json, name);
     check_extensions(document, name);
     BufferFiles files = read_buffers(document, chunks, name, folder);
     return load_model(rebuilt(cut_down(document, wanted), chunks), name, folder, std::move(files));
 }
 
 std::uint64_t gltf_external_buffer_bytes(std::string_view json, const std::string& name) {
-    const Json document = parse_json(json, name);
+    const Json document = parse_document(json, name);
     const auto buffers = document.find("buffers");
     if (buffers == document.end() || !buffers->is_array()) return 0;
     std::uint64_t bytes = 0;

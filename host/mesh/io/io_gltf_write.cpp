@@ -8,6 +8,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/core/json_text.h"
 #include "host/mesh/io/io_formats.h"
 #include "host/mesh/io/io_gltf_file.h"
 #include "host/mesh/io/io_write_text.h"
@@ -114,7 +115,7 @@ void write_gltf(const std::filesystem::path& path, const TriangleMesh& mesh, con
     mesh_io::check_labels(mesh, labels);
     check_writable(path, mesh);
     const std::vector<Part> parts = parts_by_label(mesh, labels);
-    std::string json = document_of(mesh, labels, parts).dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+    std::string json = json_text(document_of(mesh, labels, parts));
     std::string binary;
     for (const Vec3& p : mesh.vertices)
         for (int i = 0; i < 3; ++i) mesh_io::append_bytes(binary, p[i]);

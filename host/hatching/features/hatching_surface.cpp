@@ -145,6 +145,12 @@ class Measurement {
         done("distances");
     }
 
+    /// Measures the descriptors alone.
+    FeatureMatrix descriptors() {
+        measure_descriptors();
+        return std::move(surface_.descriptors);
+    }
+
     HatchingSurface run() {
         measure_curvature(surface_, 0);
         surface_.neighbors = build_face_neighbors(surface_.mesh.faces, surface_.mesh.vertex_count());
@@ -295,12 +301,12 @@ class TurningDirections {
 }  // namespace
 
 std::vector<std::string> descriptor_names() {
-    // All meshes have the same columns.
+    // The families of descriptors name their columns as they measure them, for all meshes alike.
     TriangleMesh mesh;
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     mesh.faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
     mesh.source_face_count = 4;
-    return Measurement(mesh).run().descriptors.names;
+    return Measurement(mesh).descriptors().names;
 }
 
 HatchingSurface measure_surface(const TriangleMesh& mesh) {

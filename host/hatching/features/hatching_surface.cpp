@@ -145,17 +145,11 @@ class Measurement {
         done("distances");
     }
 
-    /// Measures the descriptors alone.
-    FeatureMatrix descriptors() {
-        measure_descriptors();
-        return std::move(surface_.descriptors);
-    }
-
     HatchingSurface run() {
         measure_curvature(surface_, 0);
         surface_.neighbors = build_face_neighbors(surface_.mesh.faces, surface_.mesh.vertex_count());
         done("curvature");
-        measure_descriptors();
+        surface_.descriptors = descriptors();
         done("descriptors");
         surface_.occlusion = measure_self_occlusion(surface_.mesh, surface_.normals);
         done("self-occlusion");
@@ -166,15 +160,10 @@ class Measurement {
         return std::move(surface_);
     }
 
-  private:
-    void done(const char* step) {
-        surface_.seconds.emplace_back(step, watch_.wall());
-        watch_ = Stopwatch();
-        check_interrupt();
-    }
-
-    void measure_descriptors() {
-        surface_.descriptors.rows = surface_.mesh.vertex_count();
+    /// Measures the shape descriptors; needs no step before it.
+    FeatureMatrix descriptors() {
+        FeatureMatrix at_vertices;
+        at_vertices.rows = surface_.mesh.vertex_count();
         const auto all = [](const std::string&) { return true; };
         PcaFamily pca(prepared_, k_pca_scales);
         pca.keep_covariances();
@@ -186,14 +175,22 @@ class Measurement {
                               });
         pca.measure_large_radii();
         contexts.measure_far();
-        append_at_vertices(prepared_, pca.take(), all, surface_.descriptors);
+        append_at_vertices(prepared_, pca.take(), all, at_vertices);
         covariances_ = pca.take_covariances();
         const RayScene scene(prepared_.mesh);
         const InwardRays rays = cast_inward_rays(prepared_, scene);
-        append_at_vertices(prepared_, diameter_features(prepared_, rays), is_cone_column, surface_.descriptors);
-        append_at_vertices(prepared_, medial_features(prepared_, scene, rays), is_cone_column, surface_.descriptors);
-        append_at_vertices(prepared_, geodesic_features(prepared_), all, surface_.descriptors);
-        append_at_vertices(prepared_, contexts.take(5, 6), all, surface_.descriptors);
+        append_at_vertices(prepared_, diameter_features(prepared_, rays), is_cone_column, at_vertices);
+        append_at_vertices(prepared_, medial_features(prepared_, scene, rays), is_cone_column, at_vertices);
+        append_at_vertices(prepared_, geodesic_features(prepared_), all, at_vertices);
+        append_at_vertices(prepared_, contexts.take(5, 6), all, at_vertices);
+        return at_vertices;
+    }
+
+  private:
+    void done(const char* step) {
+        surface_.seconds.emplace_back(step, watch_.wall());
+        watch_ = Stopwatch();
+        check_interrupt();
     }
 
     void complete_directions() {

@@ -14,6 +14,7 @@
 #include "host/core/text.h"
 #include "host/hatching/drawing/aligned_drawing.h"
 #include "host/hatching/features/surface_cache.h"
+#include "host/hatching/fields/ink.h"
 #include "host/hatching/hatching_drawing.h"
 #include "host/hatching/style/hatching_style.h"
 #include "host/hatching/style/style_learning.h"
@@ -125,10 +126,7 @@ ScenePointer make_scene(const MeshObject& mesh, const std::string& view, const p
 py::array example(Scene& scene, const std::string& rule, std::uint64_t seed) {
     return image_view(scene.use([&](PixelFeatures& pixels) {
         const RuledDrawing drawing = draw_by_rule(rule, pixels, scene.tools().placer, seed);
-        Image image(scene.view().width, scene.view().height, 1);
-        for (std::size_t i = 0; i < drawing.ink.size(); ++i)
-            image.data[i] = static_cast<std::uint8_t>(std::lround(255 * (1 - drawing.ink[i])));
-        return image;
+        return ink_picture(drawing.ink, drawing.truth.width, drawing.truth.height);
     }));
 }
 
@@ -138,11 +136,9 @@ StylePointer train_hatching(Scene& scene, const py::object& drawing, std::uint64
     const Image given = is_file ? Image() : image_of(drawing, "drawing");
     return std::make_shared<HatchingStyle>(scene.use([&](PixelFeatures& pixels) {
         const AlignedDrawing aligned = align_and_measure(is_file ? read_png(path) : given, pixels);
-        StyleLearningOptions options;
-        options.seed = options.mixture.seed = seed;
         StyleReport report;
-        HatchingStyle style =
-            learn_hatching_style(pixels, drawing_properties(aligned.strokes), scene.tools().scorer, options, report);
+        HatchingStyle style = learn_hatching_style(pixels, drawing_properties(aligned.strokes), scene.tools().scorer,
+                                                   {.seed = seed}, report);
         style.name = is_file ? path.filename().string() : "drawing";
         return style;
     }));

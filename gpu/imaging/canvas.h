@@ -28,7 +28,6 @@ class Canvas {
     /// be.
     void resize(VkExtent2D extent);
     VkExtent2D extent() const { return extent_; }
-    VkFormat color_format() const { return color_format_; }
     VkFormat depth_format() const { return depth_format_; }
     VkImage image() const { return color_.image(); }
     VkImageView color_view() const { return color_.view(); }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "host/core/errors.h"
+#include "host/core/evenly_spaced.h"
 #include "host/core/parallel.h"
 #include "host/mesh/io/io_text.h"
 
@@ -233,9 +234,10 @@ std::vector<std::vector<Vec3>> some_frames(const Animation& animation) {
     std::vector<std::pair<const Clip*, std::size_t>> all;
     for (const Clip& clip : animation.clips)
         for (std::size_t i = 0; i < clip.size(); ++i) all.emplace_back(&clip, i);
-    std::vector<std::vector<Vec3>> frames(std::min(k_looked_at, all.size()));
+    const auto chosen = evenly_spaced(all, k_looked_at);
+    std::vector<std::vector<Vec3>> frames(chosen.size());
     parallel_for(frames.size(), [&](std::size_t i) {
-        const auto& [clip, frame] = all[i * all.size() / frames.size()];
+        const auto& [clip, frame] = chosen[i];
         frames[i] = frame_vertices(animation, *clip, frame);
     });
     if (!frames.empty()) return frames;

@@ -111,10 +111,6 @@ void SvgDocument::open_layer(std::string_view label, std::span<const SvgAttribut
     open("g", all, false);
 }
 
-void SvgDocument::open_group(std::span<const SvgAttribute> attributes) {
-    open("g", attributes, false);
-}
-
 void SvgDocument::close() {
     if (depth_ == 0) throw UsageError("no group of the SVG document is open; close() comes once after each");
     --depth_;

@@ -38,14 +38,13 @@ class SvgPath {
 
 using SvgAttribute = std::pair<std::string_view, std::string>;
 
-/// Builds an SVG document with one coordinate unit per pixel. Groups are nested by opening and closing them.
+/// Builds an SVG document with one coordinate unit per pixel. Layers are nested by opening and closing them.
 class SvgDocument {
   public:
     /// `title` is the document's name in viewers. Throws UsageError unless both sizes are positive.
     SvgDocument(int width, int height, std::string_view title);
-    /// Opens a group that Inkscape shows as a layer with this name. Layers may be nested.
+    /// Opens a group that Inkscape shows as a layer with this name.
     void open_layer(std::string_view label, std::span<const SvgAttribute> attributes = {});
-    void open_group(std::span<const SvgAttribute> attributes = {});
     void close();
     /// Adds an element without content.
     void add(std::string_view element, std::span<const SvgAttribute> attributes);

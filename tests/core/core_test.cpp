@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "host/core/errors.h"
+#include "host/core/evenly_spaced.h"
 #include "host/core/files.h"
 #include "host/core/parallel.h"
 #include "host/core/progress.h"
@@ -226,6 +227,15 @@ TEST(Parallel, ErrorsReachTheCaller) {
                                   if (i == 57) throw MeshError("57");
                               }),
                  MeshError);
+}
+
+TEST(EvenlySpaced, TakesTheFirstAndSkipsAlike) {
+    const std::vector<int> items{0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+    EXPECT_THAT(evenly_spaced(items, 4), testing::ElementsAre(0, 2, 5, 7));
+    EXPECT_EQ(evenly_spaced(items, 10), items);
+    EXPECT_EQ(evenly_spaced(items, 99), items);
+    EXPECT_TRUE(evenly_spaced(items, 0).empty());
+    EXPECT_TRUE(evenly_spaced(std::vector<int>{}, 3).empty());
 }
 
 TEST(Progress, TellsItsListenerFromAllThreadsAndLetsItEndTheTask) {

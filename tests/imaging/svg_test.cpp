@@ -64,7 +64,7 @@ TEST(SvgDocuments, NestLayersAndGroups) {
     path.curve_to({1, 2}, {3, 4}, {5, 6});
     path.close();
     document.add("path", std::vector<SvgAttribute>{{"d", path.data()}});
-    document.open_group();
+    document.open_layer("inner");
     document.close();
     EXPECT_THROW(document.text(), UsageError);
     document.close();
@@ -76,7 +76,7 @@ TEST(SvgDocuments, NestLayersAndGroups) {
               "  <title>A &amp; B</title>\n"
               "  <g id=\"layer1\" inkscape:groupmode=\"layer\" inkscape:label=\"ink\" fill=\"none\">\n"
               "    <path d=\"M0 1L2.5 -3C1 2 3 4 5 6Z\"/>\n"
-              "    <g>\n"
+              "    <g id=\"layer2\" inkscape:groupmode=\"layer\" inkscape:label=\"inner\">\n"
               "    </g>\n"
               "  </g>\n"
               "</svg>\n");
@@ -89,7 +89,7 @@ TEST(SvgDocuments, AreWrittenWholeOrNotAtAll) {
     SvgDocument document(3, 2, "t");
     write_svg(path, document);
     EXPECT_EQ(read_file(path), document.text());
-    document.open_group();
+    document.open_layer("open");
     EXPECT_THROW(write_svg(path, document), UsageError);
     EXPECT_EQ(read_file(path).substr(0, 5), "<?xml");
     std::filesystem::remove(path);

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <map>
+#include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "apps/exemplar/arguments.h"
 #include "host/core/text.h"
@@ -11,17 +13,43 @@
 namespace exemplar {
 namespace {
 
-const std::map<std::string, RobustEstimator>& robust_names() {
-    static const std::map<std::string, RobustEstimator> names{{"none", RobustEstimator::none},
-                                                              {"cauchy", RobustEstimator::cauchy},
-                                                              {"geman-mcclure", RobustEstimator::geman_mcclure}};
+/// The words of an option and the values that they stand for.
+template <typename Value>
+using NamedValues = std::vector<std::pair<std::string, Value>>;
+
+const NamedValues<RobustEstimator> k_robust_names{{"none", RobustEstimator::none},
+                                                  {"cauchy", RobustEstimator::cauchy},
+                                                  {"geman-mcclure", RobustEstimator::geman_mcclure}};
+const NamedValues<Learner> k_learner_names = [] {
+    NamedValues<Learner> names;
+    for (const Learner learner :
+         {Learner::additive, Learner::averaged, Learner::network, Learner::global, Learner::local})
+        names.emplace_back(name_of(learner), learner);
     return names;
+}();
+const NamedValues<AttributeSet> k_attribute_names{{"tensor", AttributeSet::tensor},
+                                                  {"principal", AttributeSet::principal}};
+const NamedValues<bool> k_independent_names{{"ica", true}, {"pca", false}};
+
+template <typename Value>
+const std::string& word_of(const Value& value, const NamedValues<Value>& names) {
+    return std::ranges::find(names, value, &std::pair<std::string, Value>::second)->first;
 }
 
-Learner learner_of(const std::string& name) {
-    for (const Learner learner : {Learner::additive, Learner::averaged, Learner::network, Learner::local})
-        if (name == name_of(learner)) return learner;
-    return Learner::global;
+template <typename Value>
+void add_named_option(CLI::App& command, const std::string& option, Value& value, const NamedValues<Value>& names,
+                      const std::string& help) {
+    std::vector<std::string> words;
+    for (const auto& [word, of] : names) words.push_back(word);
+    command
+        .add_option_function<std::string>(
+            option,
+            [&value, &names](const std::string& given) {
+                value = std::ranges::find(names, given, &std::pair<std::string, Value>::first)->second;
+            },
+            help)
+        ->default_str(word_of(value, names))
+        ->check(CLI::IsMember(words));
 }
 
 /// Components of little variance in training are also small in other motions of a rig, but not in other folds of
@@ -33,31 +61,23 @@ double suitable_sparsity(AnimationKind kind) {
 }  // namespace
 
 void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
+    CurvatureTraining& training = arguments.training;
     command.add_option("--fps", arguments.frames_per_second, "frames a second that clips of glTF files are sampled at")
         ->capture_default_str()
         ->check(CLI::Range(0.1, 1000.0));
     command
-        .add_option("--smoothing", arguments.smoothing,
+        .add_option("--smoothing", training.truth.smoothing,
                     "width of the diffusion of measured curvature, in median edge lengths; 0 is none")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 20.0));
-    command.add_option("--robust", arguments.robust, "estimator for noisy meshes: none, cauchy or geman-mcclure")
-        ->capture_default_str()
-        ->check(CLI::IsMember({"none", "cauchy", "geman-mcclure"}));
-    command
-        .add_option("--learner", arguments.learner,
-                    "local, additive (rigs), or averaged, network, global (as in the thesis)")
-        ->capture_default_str()
-        ->check(CLI::IsMember({"additive", "averaged", "network", "global", "local"}));
-    command
-        .add_option("--attributes", arguments.attributes,
-                    "tensor: seven numbers that stay smooth; principal: the thesis' eight")
-        ->capture_default_str()
-        ->check(CLI::IsMember({"tensor", "principal"}));
-    command.add_option("--bases", arguments.bases, "ica or pca")
-        ->capture_default_str()
-        ->check(CLI::IsMember({"ica", "pca"}));
-    command.add_option("--variance", arguments.variance, "share of the variance that bases keep")
+    add_named_option(command, "--robust", training.truth.robust, k_robust_names,
+                     "estimator for noisy meshes: none, cauchy or geman-mcclure");
+    add_named_option(command, "--learner", training.learner, k_learner_names,
+                     "local, additive (rigs), or averaged, network, global (as in the thesis)");
+    add_named_option(command, "--attributes", training.attributes, k_attribute_names,
+                     "tensor: seven numbers that stay smooth; principal: the thesis' eight");
+    add_named_option(command, "--bases", training.independent, k_independent_names, "ica or pca");
+    command.add_option("--variance", training.variance, "share of the variance that bases keep")
         ->capture_default_str()
         ->check(CLI::Range(0.01, 1.0));
     command
@@ -67,61 +87,48 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
         ->check(CLI::Range(0.0, 0.5));
     command
         .add_option(
-            "--augment", arguments.augmented_poses,
+            "--augment", training.augmented_poses,
             "rigs: poses to learn from beside the frames, in which joints or shapes of different frames are mixed")
         ->capture_default_str()
         ->check(whole_number(0, 100000));
     command
-        .add_option("--patch", arguments.patch_vertices,
+        .add_option("--patch", training.sequence.patch_vertices,
                     "vertices of the patches whose shapes are told apart, at most; 0 takes the whole surface")
         ->capture_default_str()
         ->check(whole_number(0));
-    command.add_option("--patch-inputs", arguments.patch_inputs, "most numbers that describe a patch")
+    command.add_option("--patch-inputs", training.sequence.max_inputs, "most numbers that describe a patch")
         ->capture_default_str()
         ->check(whole_number(1, 1000));
     command
-        .add_option("--state-variance", arguments.state_variance,
+        .add_option("--state-variance", training.sequence.share,
                     "mesh sequences: share of the variance of the dihedral angles that these numbers keep")
         ->capture_default_str()
         ->check(CLI::Range(0.01, 1.0));
-    command.add_option("--seed", arguments.seed, "seed of all random choices; equal seeds give equal model files")
+    command.add_option("--seed", training.seed, "seed of all random choices; equal seeds give equal model files")
         ->capture_default_str()
         ->check(whole_number(0));
 }
 
 CurvatureTraining training_of(const CurvatureArguments& arguments, AnimationKind kind) {
-    CurvatureTraining training;
-    training.attributes = arguments.attributes == "principal" ? AttributeSet::principal : AttributeSet::tensor;
-    training.learner = learner_of(arguments.learner);
-    training.independent = arguments.bases == "ica";
-    training.variance = arguments.variance;
+    CurvatureTraining training = arguments.training;
     training.dropped_variance = arguments.dropped_variance.value_or(suitable_sparsity(kind));
-    training.truth.smoothing = arguments.smoothing;
-    training.truth.robust = robust_names().at(arguments.robust);
-    training.seed = arguments.seed;
-    training.augmented_poses = arguments.augmented_poses;
-    training.sequence.patch_vertices = arguments.patch_vertices;
-    training.sequence.max_inputs = arguments.patch_inputs;
-    training.sequence.share = arguments.state_variance;
-    training.sequence.seed = arguments.seed;
+    training.sequence.seed = training.seed;
     return training;
 }
 
-std::map<std::string, std::string> training_words(const CurvatureArguments& arguments, AnimationKind kind) {
-    const CurvatureTraining training = training_of(arguments, kind);
-    return {{"smoothing", fmt::format("{}", arguments.smoothing)},
-            {"robust", arguments.robust},
-            {"learner", std::string(name_of(training.learner))},
-            {"attributes", arguments.attributes},
-            {"bases", arguments.bases},
-            {"variance", fmt::format("{}", arguments.variance)},
+std::map<std::string, std::string> training_words(const CurvatureTraining& training) {
+    return {{"smoothing", fmt::format("{}", training.truth.smoothing)},
+            {"robust", word_of(training.truth.robust, k_robust_names)},
+            {"learner", word_of(training.learner, k_learner_names)},
+            {"attributes", word_of(training.attributes, k_attribute_names)},
+            {"bases", word_of(training.independent, k_independent_names)},
+            {"variance", fmt::format("{}", training.variance)},
             {"sparsity", fmt::format("{}", training.dropped_variance)},
-            {"augment", std::to_string(arguments.augmented_poses)},
-            {"patch", std::to_string(arguments.patch_vertices)},
-            {"patch-inputs", std::to_string(arguments.patch_inputs)},
-            {"state-variance", fmt::format("{}", arguments.state_variance)},
-            {"fps", fmt::format("{}", arguments.frames_per_second)},
-            {"seed", std::to_string(arguments.seed)}};
+            {"augment", std::to_string(training.augmented_poses)},
+            {"patch", std::to_string(training.sequence.patch_vertices)},
+            {"patch-inputs", std::to_string(training.sequence.max_inputs)},
+            {"state-variance", fmt::format("{}", training.sequence.share)},
+            {"seed", std::to_string(training.seed)}};
 }
 
 nlohmann::json describe_training(const CurvatureTrainingReport& report) {

@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <functional>
+#include <utility>
 
 #include "apps/exemplar/animation_arguments.h"
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/curvature/curvature_options.h"
 #include "host/core/errors.h"
+#include "host/core/evenly_spaced.h"
 #include "host/core/stopwatch.h"
 
 namespace exemplar {
@@ -23,7 +27,7 @@ struct StudyOptions {
 /// One training that differs from the one asked for in a single thing.
 struct Variation {
     std::string what, value;
-    CurvatureArguments arguments;
+    CurvatureTraining training;
     std::size_t poses;
 };
 
@@ -45,35 +49,31 @@ std::vector<FrameRef> unseen_frames(std::vector<FrameRef> test, const std::vecto
     return test;
 }
 
-/// Returns `most` of the frames, evenly spaced.
-std::vector<FrameRef> evenly(const std::vector<FrameRef>& frames, std::size_t most) {
-    std::vector<FrameRef> taken;
-    for (std::size_t i = 0; i < std::min(most, frames.size()); ++i)
-        taken.push_back(frames[i * frames.size() / std::min(most, frames.size())]);
-    return taken;
-}
-
 /// The variations of Figs. 5.6, 5.8, 5.10, 5.12 and 5.14, and of sparsity.
-std::vector<Variation> variations(const CurvatureArguments& given, std::size_t poses, Learner learner) {
+std::vector<Variation> variations(const CurvatureTraining& given, std::size_t poses) {
     std::vector<Variation> result{{"as given", "", given, poses}};
     for (std::size_t few = k_min_poses; few < poses; few *= 2)
         result.push_back({"poses", std::to_string(few), given, few});
-    const auto vary = [&](const char* what, auto CurvatureArguments::*member, const auto& values) {
+    // `what` is an option that sets this member of the training.
+    const auto vary = [&](const char* what, auto member, const auto& values) {
         for (const auto& value : values) {
-            if (given.*member == value) continue;
-            Variation variation{what, fmt::format("{}", value), given, poses};
-            variation.arguments.*member = value;
-            result.push_back(std::move(variation));
+            Variation variation{what, "", given, poses};
+            std::invoke(member, variation.training) = value;
+            variation.value = training_words(variation.training).at(what);
+            if (variation.value != training_words(given).at(what)) result.push_back(std::move(variation));
         }
     };
-    if (learner == Learner::local) {
-        vary("patch-inputs", &CurvatureArguments::patch_inputs, std::vector<std::size_t>{2, 4, 8, 12, 24});
+    if (given.learner == Learner::local) {
+        const auto patch_inputs = [](CurvatureTraining& training) -> std::size_t& {
+            return training.sequence.max_inputs;
+        };
+        vary("patch-inputs", patch_inputs, std::to_array<std::size_t>({2, 4, 8, 12, 24}));
     } else {
-        vary("variance", &CurvatureArguments::variance, std::vector<double>{0.8, 0.9, 0.95, 0.99, 0.999});
-        vary("bases", &CurvatureArguments::bases, std::vector<std::string>{"ica", "pca"});
+        vary("variance", &CurvatureTraining::variance, std::array{0.8, 0.9, 0.95, 0.99, 0.999});
+        vary("bases", &CurvatureTraining::independent, std::array{true, false});
     }
-    vary("sparsity", &CurvatureArguments::dropped_variance, std::vector<double>{0, 0.002, 0.01, 0.05});
-    vary("attributes", &CurvatureArguments::attributes, std::vector<std::string>{"tensor", "principal"});
+    vary("sparsity", &CurvatureTraining::dropped_variance, std::array{0.0, 0.002, 0.01, 0.05});
+    vary("attributes", &CurvatureTraining::attributes, std::array{AttributeSet::tensor, AttributeSet::principal});
     return result;
 }
 
@@ -104,8 +104,8 @@ nlohmann::json run_variation(const Variation& variation, const Animation& animat
                              const std::vector<FrameRef>& test_frames) {
     const Stopwatch watch;
     CurvatureTrainingReport report;
-    const CurvatureModel model = train_curvature(animation, evenly(frames, variation.poses),
-                                                 training_of(variation.arguments, animation.kind), report);
+    const CurvatureModel model =
+        train_curvature(animation, evenly_spaced(frames, variation.poses), variation.training, report);
     const double seconds = watch.wall();
     require_compatible(model, test);
     const CurvatureEvaluation evaluation = evaluate_curvature(model, test, test_frames);
@@ -128,19 +128,17 @@ void run_study(const StudyOptions& options) {
     const auto read = [&](const std::filesystem::path& path, std::uint64_t seed) {
         return animation_of_argument(path, options.curvature.frames_per_second, seed, options.common.quiet);
     };
-    const Animation animation = read(options.animation, options.curvature.seed);
+    const Animation animation = read(options.animation, options.curvature.training.seed);
     const std::vector<FrameRef> frames = select_frames(animation, selection_of(options.frames));
     const bool same = options.test.empty() || same_file(options.test, options.animation);
-    const Animation other = same ? Animation{} : read(options.test, options.curvature.seed + 1);
+    const Animation other = same ? Animation{} : read(options.test, options.curvature.training.seed + 1);
     const Animation& test = same ? animation : other;
     std::vector<FrameRef> test_frames = select_frames(test, selection_of(options.test_frames));
     if (same) test_frames = unseen_frames(std::move(test_frames), frames);
 
     nlohmann::json rows = nlohmann::json::array();
     const CurvatureTraining training = training_of(options.curvature, animation.kind);
-    CurvatureArguments given = options.curvature;
-    given.dropped_variance = training.dropped_variance;
-    for (const Variation& variation : variations(given, frames.size(), training.learner))
+    for (const Variation& variation : variations(training, frames.size()))
         rows.push_back(run_variation(variation, animation, frames, test, test_frames));
     write_report(options.common, {{"animation", options.animation.string()},
                                   {"test", same ? options.animation.string() : options.test.string()},

@@ -23,14 +23,15 @@ void run_curvature_train(const CurvatureTrainOptions& options) {
     require_output_file(options.out);
     const Stopwatch watch;
     const Animation animation = animation_of_argument(options.animation, options.curvature.frames_per_second,
-                                                      options.curvature.seed, options.common.quiet);
+                                                      options.curvature.training.seed, options.common.quiet);
     const std::vector<FrameRef> frames = select_frames(animation, selection_of(options.frames));
+    const CurvatureTraining training = training_of(options.curvature, animation.kind);
     CurvatureTrainingReport report;
-    CurvatureModel model = train_curvature(animation, frames, training_of(options.curvature, animation.kind), report);
+    CurvatureModel model = train_curvature(animation, frames, training, report);
     model.training["animation"] = options.animation.filename().string();
     model.training["poses"] = std::to_string(frames.size());
-    for (const auto& [option, value] : training_words(options.curvature, animation.kind))
-        model.training[option] = value;
+    model.training["fps"] = fmt::format("{}", options.curvature.frames_per_second);
+    for (const auto& [option, value] : training_words(training)) model.training[option] = value;
     save_curvature_model(options.out, model);
 
     fmt::print("{}, {} ({} varying), {}: {} with {}, {:.1f} of {:.1f} matter to a vertex\n", name_of(animation.kind),

@@ -51,7 +51,7 @@ void draw_still(const HatchDrawJob& job) {
     HatchScene scene(job.scene, job.common.device, job.common.quiet);
     const double surface_seconds = watch.wall();
     progress.advance(1, "surface");
-    const ViewHatching hatching = hatch_view(style, scene.pixels(), scene.tools(), job.options());
+    const ViewHatching hatching = hatch_view(style, scene.pixels(), scene.tools(), job.hatching);
     const HatchingFields& fields = hatching.prediction.fields;
     progress.advance(2, "strokes");
     watch = {};
@@ -88,6 +88,10 @@ void run_draw(HatchDrawJob& job) {
     require_hatch_scene(job.scene);
     job.curve_types();
     job.output = lines_output_of(job.out);
+    job.source.input = job.scene.mesh;
+    job.source.first_frame_only = job.is_single_picture();
+    job.source.derivatives = false;
+    job.source.quiet = job.common.quiet;
     if (job.output == LinesOutput::folder)
         require_output_folder(job.out);
     else
@@ -98,8 +102,9 @@ void run_draw(HatchDrawJob& job) {
 }
 
 void add_frames_options(CLI::App& command, HatchDrawJob& job) {
-    add_frame_options(command, job.frames, "", "draw");
-    command.add_option("--fps", job.frames_per_second, "frames a second that clips of glTF files are sampled at")
+    add_frame_options(command, job.source.frames, "", "draw");
+    command
+        .add_option("--fps", job.source.frames_per_second, "frames a second that clips of glTF files are sampled at")
         ->capture_default_str()
         ->check(CLI::Range(0.1, 1000.0));
     command
@@ -178,9 +183,11 @@ void add_hatch_draw_command(CLI::App& hatch) {
     command->add_option("--scale", arguments->scale, "enlarges PNG pictures")
         ->capture_default_str()
         ->check(CLI::Range(0.1, 16.0));
-    command->add_flag("--no-tone", arguments->no_tone, "leaves strokes as thick as learned, not matched to the tone");
+    command->add_flag_callback(
+        "--no-tone", [job = arguments.get()] { job->hatching.matches_tone = false; },
+        "leaves strokes as thick as learned, not matched to the tone");
     command->add_flag("--outlines", arguments->outlines, "SVG with filled shapes of varying width, not center lines");
-    command->add_option("--seed", arguments->seed, "of the placement of strokes")
+    command->add_option("--seed", arguments->hatching.strokes.seed, "of the placement of strokes")
         ->capture_default_str()
         ->check(whole_number(0));
     add_hatch_scene_options(*command, arguments->scene);

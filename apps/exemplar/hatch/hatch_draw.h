@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/exemplar/animation_arguments.h"
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/hatch/hatch_scene.h"
 #include "apps/exemplar/lines/lines_job.h"
+#include "apps/exemplar/lines/lines_source.h"
 #include "host/hatching/view_hatching.h"
 
 namespace exemplar {
@@ -21,27 +21,20 @@ struct HatchDrawJob {
     CommonOptions common;
     std::vector<std::string> curves{"contours"};
     float taper = 6, scale = 1;
-    bool no_tone = false, outlines = false;
-    std::uint64_t seed = 1;
+    bool outlines = false;
+    HatchingOptions hatching;
     // For animations:
-    FrameArguments frames;
-    double frames_per_second = 30;
+    LinesSourceArguments source;
     double turn = 0;  ///< degrees from one frame to the next
     bool fresh = false, remeasure = false;
 
-    HatchingOptions options() const {
-        HatchingOptions options;
-        options.strokes.seed = seed;
-        options.matches_tone = !no_tone;
-        return options;
-    }
     /// Returns the line types of `curves`; throws UsageError for an unknown one.
     std::vector<LineType> curve_types() const;
+    bool is_single_picture() const { return output == LinesOutput::svg || output == LinesOutput::picture; }
     /// Returns whether frames are asked for rather than a still of a mesh.
     bool has_frames() const {
-        return std::filesystem::is_directory(scene.mesh) || output == LinesOutput::video ||
-               output == LinesOutput::folder || !frames.range.empty() || !frames.clips.empty() || frames.most > 0 ||
-               turn != 0;
+        return std::filesystem::is_directory(scene.mesh) || !is_single_picture() || !source.frames.range.empty() ||
+               !source.frames.clips.empty() || source.frames.most > 0 || turn != 0;
     }
 };
 

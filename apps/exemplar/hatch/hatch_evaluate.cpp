@@ -154,8 +154,8 @@ class StyleEvaluation {
   private:
     void train() {
         HatchScene scene(scene_of(arguments_, arguments_.meshes[0], k_views[0]), arguments_.common.device, true);
-        const RuledDrawing drawn = draw_by_rule(name_, scene.pixels(), scene.placer(), arguments_.seed);
-        const HatchingFields& truth = drawn.truth.fields;
+        const RuledDrawing drawn = draw_by_rule(name_, scene.pixels(), scene.tools().placer, arguments_.seed);
+        const HatchingFields& truth = drawn.truth;
         Stopwatch watch;
         Image mask(truth.width, truth.height, 1);
         for (const std::uint32_t pixel : scene.pixels().pixels().pixel) mask.data[pixel] = 1;
@@ -166,10 +166,8 @@ class StyleEvaluation {
         result_["measured"] = measured_errors(drawing, truth);
         result_["measured"]["level_accuracy"] =
             compare_hatching(measured_fields(drawing), truth, scene.pixels().pixels().pixel).level_accuracy;
-        StyleLearningOptions options;
-        options.seed = options.mixture.seed = arguments_.seed;
         StyleReport report;
-        style_ = learn_hatching_style(scene.pixels(), drawing, scene.scorer(), options, report);
+        style_ = learn_hatching_style(scene.pixels(), drawing, scene.tools().scorer, {.seed = arguments_.seed}, report);
         result_["training_seconds"] = watch.wall();
         global_ = one_rule(scene.pixels(), drawing, false, arguments_.seed);
         curvature_ = one_rule(scene.pixels(), drawing, true, arguments_.seed);
@@ -203,8 +201,9 @@ class StyleEvaluation {
     void test(const fs::path& mesh, const char* view, bool training_view) {
         HatchScene scene(scene_of(arguments_, mesh, view), arguments_.common.device, true);
         PixelFeatures& pixels = scene.pixels();
-        const HatchingFields truth = hatching_by_rule(name_, pixels).fields;
-        const HatchingPrediction predicted = predict_hatching(style_, pixels, scene.scorer(), scene.evaluator());
+        const HatchingFields truth = hatching_by_rule(name_, pixels);
+        const HatchingPrediction predicted =
+            predict_hatching(style_, pixels, scene.tools().scorer, scene.tools().evaluator);
         nlohmann::json row = row_of(compare_hatching(predicted.fields, truth, pixels.pixels().pixel));
         row["mesh"] = mesh.stem().string();
         row["view"] = view;
@@ -212,7 +211,7 @@ class StyleEvaluation {
         row["global_rule_degrees"] = rule_error(global_, pixels, truth);
         row["curvature_only_degrees"] = rule_error(curvature_, pixels, truth);
         const auto barriers = occlusion_barriers(pixels.gbuffer().depth, truth.width, truth.height);
-        std::vector<HatchStroke> strokes = place_evenly(scene.placer(), predicted.fields, barriers, {});
+        std::vector<HatchStroke> strokes = place_evenly(scene.tools().placer, predicted.fields, barriers, {});
         match_tone(strokes, predicted.fields);
         row["drawn_spacing"] = measure_spacing(strokes, predicted.fields).median_error;
         row["drawn_tone"] = measure_tone(strokes, predicted.fields).median_error;

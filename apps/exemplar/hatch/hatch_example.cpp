@@ -4,13 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/hatch/hatch_scene.h"
 #include "apps/help/offered_words.h"
 #include "host/core/errors.h"
 #include "host/core/text.h"
+#include "host/hatching/fields/ink.h"
 #include "host/imaging/png.h"
 #include "host/synth/hatching/hatched_drawing.h"
 
@@ -34,12 +34,8 @@ void run_example(const ExampleArguments& arguments) {
     require_output_picture(arguments.out);
     require_not_replaced(arguments.out, {arguments.scene.mesh});
     HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
-    const RuledDrawing drawing = draw_by_rule(arguments.style, scene.pixels(), scene.placer(), arguments.seed);
-    const HatchingView& view = scene.pixels().view();
-    Image image(view.width, view.height, 1);
-    for (std::size_t i = 0; i < drawing.ink.size(); ++i)
-        image.data[i] = static_cast<std::uint8_t>(std::lround(255 * (1 - drawing.ink[i])));
-    write_png(arguments.out, image);
+    const RuledDrawing drawing = draw_by_rule(arguments.style, scene.pixels(), scene.tools().placer, arguments.seed);
+    write_png(arguments.out, ink_picture(drawing.ink, drawing.truth.width, drawing.truth.height));
     if (!arguments.common.quiet)
         fmt::print("{}: {}\n", arguments.out.string(), counted(drawing.strokes.size(), "stroke"));
     write_report(arguments.common, {{"style", arguments.style}, {"strokes", drawing.strokes.size()}});

@@ -26,28 +26,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-LinesSourceArguments source_of(const HatchDrawJob& job) {
-    LinesSourceArguments arguments;
-    arguments.input = job.scene.mesh;
-    arguments.frames = job.frames;
-    arguments.first_frame_only = job.output == LinesOutput::svg || job.output == LinesOutput::picture;
-    arguments.frames_per_second = job.frames_per_second;
-    arguments.derivatives = false;
-    arguments.quiet = job.common.quiet;
-    return arguments;
-}
-
 /// The frames of an animation, or of a mesh that turns, and the camera of each.
 class HatchedFrames {
   public:
     explicit HatchedFrames(const HatchDrawJob& job) : job_(job), source_(arguments_of(job)) {
-        const FrameSelection asked = selection_of(job.frames);
+        const FrameSelection asked = selection_of(job.source.frames);
         const std::size_t around =
             job.turn != 0 ? static_cast<std::size_t>(std::lround(360 / std::abs(job.turn))) : std::size_t{1};
         const std::size_t of_mesh = std::min(asked.end, std::max(asked.begin + 1, around)) - asked.begin;
         count_ = source_.is_animation() ? source_.frame_count() : of_mesh;
         first_ = source_.is_animation() ? 0 : asked.begin;
-        if (!source_.is_animation() && (!job.frames.clips.empty() || job.frames.most > 0))
+        if (!source_.is_animation() && (!job.source.frames.clips.empty() || job.source.frames.most > 0))
             throw UsageError(
                 fmt::format("--clips and --poses are for animations: {} is a mesh, whose frames are those of "
                             "--turn and --frames",
@@ -59,7 +48,7 @@ class HatchedFrames {
     }
 
     std::size_t count() const { return count_; }
-    double frames_per_second() const { return moves() ? source_.frames_per_second() : job_.frames_per_second; }
+    double frames_per_second() const { return moves() ? source_.frames_per_second() : job_.source.frames_per_second; }
     bool moves() const { return source_.is_animation(); }
     TriangleMesh mesh(std::size_t frame) const {
         const std::vector<Vec3> all = source_.vertices(moves() ? frame : 0);
@@ -82,7 +71,7 @@ class HatchedFrames {
   private:
     /// For a mesh the frames are those of its turning, not of an animation.
     static LinesSourceArguments arguments_of(const HatchDrawJob& job) {
-        LinesSourceArguments arguments = source_of(job);
+        LinesSourceArguments arguments = job.source;
         if (job.turn != 0 && !is_animation(arguments)) arguments.frames = {};
         return arguments;
     }
@@ -136,7 +125,7 @@ class FrameHatcher {
         std::vector<HatchStroke> kept;
         if (!job_.fresh)
             for (const AdvectedStroke& one : carried) kept.push_back(one.stroke);
-        ViewHatching hatching = hatch_view(style_, pixels, device_.tools(), job_.options(), kept);
+        ViewHatching hatching = hatch_view(style_, pixels, device_.tools(), job_.hatching, kept);
         if (frame > 0) flicker_.push_back(measure_flicker(hatching.strokes, carried));
         stroke_counts_.push_back(hatching.strokes.size());
         before_ = strokes_on_surface(hatching.strokes, surface_->mesh, view, pixels.gbuffer());
@@ -176,8 +165,7 @@ class FrameHatcher {
 
 /// Draws all frames and writes them in the way that the job asks for.
 void write_frames(const HatchDrawJob& job, const HatchedFrames& frames, FrameHatcher& hatcher) {
-    if (job.output == LinesOutput::svg || job.output == LinesOutput::picture)
-        return write_hatched_drawing(job, hatcher.draw(0), hatcher.look());
+    if (job.is_single_picture()) return write_hatched_drawing(job, hatcher.draw(0), hatcher.look());
     std::optional<Video> video;
     if (job.output == LinesOutput::folder) fs::create_directories(job.out);
     Progress progress("drawing", frames.count());
@@ -228,8 +216,7 @@ void write_hatched_frames(const HatchDrawJob& job) {
     if (job.output == LinesOutput::video) require_ffmpeg(job.out);
     const Stopwatch watch;
     const HatchedFrames frames(job);
-    const bool single = job.output == LinesOutput::svg || job.output == LinesOutput::picture;
-    if (single && frames.count() > 1)
+    if (job.is_single_picture() && frames.count() > 1)
         throw UsageError(fmt::format("{}: {} frames are no single picture; give a folder or one frame (--frames 0)",
                                      job.out.string(), frames.count()));
     FrameHatcher hatcher(job, frames);

@@ -65,15 +65,6 @@ PixelFeatures& HatchScene::pixels() {
 const HatchingTools& HatchScene::tools() const {
     return impl_->device.tools();
 }
-StumpScorer& HatchScene::scorer() {
-    return tools().scorer;
-}
-HatchingEvaluator& HatchScene::evaluator() {
-    return tools().evaluator;
-}
-StrokePlacer& HatchScene::placer() {
-    return tools().placer;
-}
 const std::string& HatchScene::device_name() const {
     return impl_->device.device().info().name;
 }

@@ -37,9 +37,6 @@ class HatchScene {
     const HatchingSurface& surface() const;
     PixelFeatures& pixels();
     const HatchingTools& tools() const;
-    StumpScorer& scorer();
-    HatchingEvaluator& evaluator();
-    StrokePlacer& placer();
     const std::string& device_name() const;
 
   private:

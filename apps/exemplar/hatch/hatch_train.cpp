@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 struct TrainArguments {
     HatchSceneArguments scene;
     fs::path drawing, out;
-    std::uint64_t seed = 1;
+    StyleLearningOptions learning;
     CommonOptions common;
 };
 
@@ -92,11 +92,10 @@ void run_hatch_train(const TrainArguments& arguments) {
     const StrokeMeasurements measured = read_drawing(arguments.drawing, scene.pixels(), arguments.common.quiet);
     const double reading = watch.wall();
     progress.begins("orientation rules");
-    StyleLearningOptions options;
-    options.seed = options.mixture.seed = arguments.seed;
     StyleReport report;
-    HatchingStyle style = learn_hatching_style(scene.pixels(), drawing_properties(measured), scene.scorer(), options,
-                                               report, [&](const char* step) { progress.begins(step); });
+    HatchingStyle style =
+        learn_hatching_style(scene.pixels(), drawing_properties(measured), scene.tools().scorer, arguments.learning,
+                             report, [&](const char* step) { progress.begins(step); });
     progress.finish();
     style.name = arguments.drawing.filename().string();
     save_hatching_style(arguments.out, style);
@@ -114,7 +113,7 @@ void add_hatch_train_command(CLI::App& hatch) {
     command->add_option("MESH", arguments->scene.mesh, "mesh that the drawing shows")->required()->type_name("");
     command->add_option("DRAWING", arguments->drawing, "the drawing (PNG)")->required()->type_name("");
     command->add_option("--out", arguments->out, "style file to write")->required()->type_name("FILE");
-    command->add_option("--seed", arguments->seed, "of all random choices")
+    command->add_option("--seed", arguments->learning.seed, "of all random choices")
         ->capture_default_str()
         ->check(whole_number(0));
     add_hatch_scene_options(*command, arguments->scene);

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "host/core/errors.h"
+#include "host/core/evenly_spaced.h"
 #include "host/core/half.h"
 #include "host/core/parallel.h"
 #include "host/core/progress.h"
@@ -131,12 +132,7 @@ std::vector<FrameRef> select_frames(const Animation& animation, const FrameSelec
     if (frames.empty())
         throw UsageError(fmt::format("{} has no frame that was asked for; its clips are: {}", animation.name,
                                      fmt::join(clip_names(animation), ", ")));
-    if (frames.size() > selection.most) {
-        std::vector<FrameRef> taken;
-        for (std::size_t i = 0; i < selection.most; ++i) taken.push_back(frames[i * frames.size() / selection.most]);
-        frames = std::move(taken);
-    }
-    return frames;
+    return evenly_spaced(frames, selection.most);
 }
 
 SnapshotReader::SnapshotReader(const Animation& animation, const Segments& segments, const CurvatureOptions& truth)

@@ -7,6 +7,7 @@
 #include <nlopt.hpp>
 #include <numbers>
 
+#include "host/core/evenly_spaced.h"
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
 
@@ -28,13 +29,6 @@ Similarity about(const Vec2& center, double scale, double rotation, const Vec2& 
     const Similarity turned(scale, rotation);
     const Vec2 shift = to - turned.apply(center);
     return turned.moved(static_cast<double>(shift.x()), static_cast<double>(shift.y()));
-}
-
-std::vector<Vec2> evenly(const std::vector<Vec2>& points, std::size_t most) {
-    std::vector<Vec2> some;
-    const std::size_t count = std::min(most, points.size());
-    for (std::size_t i = 0; i < count; ++i) some.push_back(points[i * points.size() / count]);
-    return some;
 }
 
 struct Place {
@@ -92,7 +86,7 @@ RegionShape region_shape(const PixelMask& region, const PixelMask& ink) {
     for (int y = 0; y < ink.height; ++y)
         for (int x = 0; x < ink.width; ++x)
             if (ink.pixel(x, y)[0]) shape.inside.push_back(center_of({x, y}));
-    shape.inside = evenly(shape.inside, 6 * k_points);
+    shape.inside = evenly_spaced(shape.inside, 6 * k_points);
     return shape;
 }
 
@@ -117,7 +111,7 @@ std::vector<Similarity> best_places(const RegionShape& drawing, const RegionShap
                                     std::size_t count) {
     RegionShape coarse = drawing, coarse_object = object;
     for (std::vector<Vec2>* points : {&coarse.border, &coarse.inside, &coarse_object.border})
-        *points = evenly(*points, k_points);
+        *points = evenly_spaced(*points, k_points);
     const std::vector<std::array<double, 2>> all = scales_and_rotations(range);
     std::vector<Place> places(all.size());
     parallel_for(all.size(),

@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "host/hatching/drawing/drawing_alignment.h"
+#include "host/hatching/drawing/drawing_warp.h"
 #include "host/hatching/tracing/ink_mask.h"
 #include "host/hatching/tracing/region_outline.h"
 

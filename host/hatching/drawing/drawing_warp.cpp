@@ -1,3 +1,5 @@
+#include "host/hatching/drawing/drawing_warp.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -5,26 +7,12 @@
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
-#include "host/hatching/drawing/drawing_alignment.h"
+#include "host/imaging/bilinear.h"
 
 namespace exemplar {
 namespace {
 
 constexpr int k_max_samples = 64;  ///< samples per view pixel and axis
-
-/// Linear interpolation between pixels; paper beyond the border.
-float sample_darkness(const FloatImage& image, const Vec2& place) {
-    const float left = std::floor(place.x() - 0.5f), top = std::floor(place.y() - 0.5f);
-    if (!(left >= -1 && top >= -1 && left < static_cast<float>(image.width) && top < static_cast<float>(image.height)))
-        return 0;
-    const auto at = [&](int column, int row) {
-        const bool inside = column >= 0 && row >= 0 && column < image.width && row < image.height;
-        return inside ? image.pixel(column, row)[0] : 0.0f;
-    };
-    const int x = static_cast<int>(left), y = static_cast<int>(top);
-    const float sx = place.x() - 0.5f - left, sy = place.y() - 0.5f - top;
-    return std::lerp(std::lerp(at(x, y), at(x + 1, y), sx), std::lerp(at(x, y + 1), at(x + 1, y + 1), sx), sy);
-}
 
 }  // namespace
 
@@ -79,7 +67,7 @@ FloatImage warp_drawing(const FloatImage& darkness, const Similarity& to_view, i
                 for (int i = 0; i < samples; ++i) {
                     const Vec2 place(static_cast<float>(column) + (static_cast<float>(i) + 0.5f) * part,
                                      static_cast<float>(row) + (static_cast<float>(j) + 0.5f) * part);
-                    sum += sample_darkness(darkness, back.apply(place));
+                    sum += sample_bilinear(darkness, back.apply(place), ImageBorder::zero);
                 }
             view.pixel(column, static_cast<int>(row))[0] = sum / static_cast<float>(samples * samples);
         }

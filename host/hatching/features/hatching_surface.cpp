@@ -149,7 +149,7 @@ class Measurement {
         measure_curvature(surface_, 0);
         surface_.neighbors = build_face_neighbors(surface_.mesh.faces, surface_.mesh.vertex_count());
         done("curvature");
-        measure_descriptors();
+        surface_.descriptors = descriptors();
         done("descriptors");
         surface_.occlusion = measure_self_occlusion(surface_.mesh, surface_.normals);
         done("self-occlusion");
@@ -160,15 +160,10 @@ class Measurement {
         return std::move(surface_);
     }
 
-  private:
-    void done(const char* step) {
-        surface_.seconds.emplace_back(step, watch_.wall());
-        watch_ = Stopwatch();
-        check_interrupt();
-    }
-
-    void measure_descriptors() {
-        surface_.descriptors.rows = surface_.mesh.vertex_count();
+    /// Measures the shape descriptors; needs no step before it.
+    FeatureMatrix descriptors() {
+        FeatureMatrix at_vertices;
+        at_vertices.rows = surface_.mesh.vertex_count();
         const auto all = [](const std::string&) { return true; };
         PcaFamily pca(prepared_, k_pca_scales);
         pca.keep_covariances();
@@ -180,14 +175,22 @@ class Measurement {
                               });
         pca.measure_large_radii();
         contexts.measure_far();
-        append_at_vertices(prepared_, pca.take(), all, surface_.descriptors);
+        append_at_vertices(prepared_, pca.take(), all, at_vertices);
         covariances_ = pca.take_covariances();
         const RayScene scene(prepared_.mesh);
         const InwardRays rays = cast_inward_rays(prepared_, scene);
-        append_at_vertices(prepared_, diameter_features(prepared_, rays), is_cone_column, surface_.descriptors);
-        append_at_vertices(prepared_, medial_features(prepared_, scene, rays), is_cone_column, surface_.descriptors);
-        append_at_vertices(prepared_, geodesic_features(prepared_), all, surface_.descriptors);
-        append_at_vertices(prepared_, contexts.take(5, 6), all, surface_.descriptors);
+        append_at_vertices(prepared_, diameter_features(prepared_, rays), is_cone_column, at_vertices);
+        append_at_vertices(prepared_, medial_features(prepared_, scene, rays), is_cone_column, at_vertices);
+        append_at_vertices(prepared_, geodesic_features(prepared_), all, at_vertices);
+        append_at_vertices(prepared_, contexts.take(5, 6), all, at_vertices);
+        return at_vertices;
+    }
+
+  private:
+    void done(const char* step) {
+        surface_.seconds.emplace_back(step, watch_.wall());
+        watch_ = Stopwatch();
+        check_interrupt();
     }
 
     void complete_directions() {
@@ -295,12 +298,12 @@ class TurningDirections {
 }  // namespace
 
 std::vector<std::string> descriptor_names() {
-    // All meshes have the same columns.
+    // The families of descriptors name their columns as they measure them, for all meshes alike.
     TriangleMesh mesh;
     mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     mesh.faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
     mesh.source_face_count = 4;
-    return Measurement(mesh).run().descriptors.names;
+    return Measurement(mesh).descriptors().names;
 }
 
 HatchingSurface measure_surface(const TriangleMesh& mesh) {

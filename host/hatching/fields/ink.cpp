@@ -145,6 +145,13 @@ std::vector<float> render_ink(std::span<const HatchStroke> strokes, int width, i
     return ink;
 }
 
+Image ink_picture(std::span<const float> ink, int width, int height) {
+    Image image(width, height, 1);
+    for (std::size_t i = 0; i < ink.size(); ++i)
+        image.data[i] = static_cast<std::uint8_t>(std::lround(255 * (1 - ink[i])));
+    return image;
+}
+
 std::vector<float> target_tone(const HatchingFields& fields) {
     std::vector<float> tone(fields.size());
     for (std::size_t i = 0; i < tone.size(); ++i) {

@@ -5,6 +5,7 @@
 
 #include "host/hatching/fields/hatch_stroke.h"
 #include "host/hatching/fields/hatching_fields.h"
+#include "host/imaging/image.h"
 
 namespace exemplar {
 
@@ -13,6 +14,9 @@ namespace exemplar {
 /// darkness a and b gets 1 - (1 - a)(1 - b). The result does not depend on the number of threads. Throws UsageError
 /// for strokes with different numbers of points and widths, or with values that are not finite.
 std::vector<float> render_ink(std::span<const HatchStroke> strokes, int width, int height);
+
+/// Returns the darkness of pixels as a gray picture, dark on light.
+Image ink_picture(std::span<const float> ink, int width, int height);
 
 /// Returns the target tone of each pixel, in the measure of render_ink(): t = thickness x intensity / spacing, at
 /// most the intensity, where one layer is hatched; 1 - (1 - t)^2 where two are.

@@ -4,46 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <numeric>
 
 #include "host/core/parallel.h"
+#include "host/learn/boosting/boosted_regression.h"
 #include "host/learn/decompositions.h"
 
 namespace exemplar {
 namespace {
-
-/// Histogram of the weights of squared errors in [0, 4], over which a line search sums repeatedly.
-class ErrorHistogram {
-  public:
-    void add(float error, double weight) {
-        const auto bin = static_cast<std::size_t>(error * (static_cast<float>(k_bins) / 4));
-        weight_[std::min(bin, k_bins - 1)] += weight;
-    }
-    /// Returns the sum of w exp(r e) / sqrt(r).
-    double objective(double r) const {
-        double sum = 0;
-        for (std::size_t b = 0; b < k_bins; ++b) sum += weight_[b] * std::exp(r * center(b));
-        return sum / std::sqrt(r);
-    }
-    /// Returns the r in [k_least, k_most] that minimizes the objective. The objective is convex in log r, as a sum
-    /// of convex functions, so golden-section search finds the minimum.
-    double best_r() const {
-        constexpr double k_golden = 0.6180339887498949, k_least = 0.05, k_most = 50;
-        double low = std::log(k_least), high = std::log(k_most);
-        for (int step = 0; step < 24; ++step) {
-            const double a = high - k_golden * (high - low), b = low + k_golden * (high - low);
-            (objective(std::exp(a)) < objective(std::exp(b)) ? high : low) =
-                objective(std::exp(a)) < objective(std::exp(b)) ? b : a;
-        }
-        return std::exp(0.5 * (low + high));
-    }
-
-  private:
-    static constexpr std::size_t k_bins = 128;
-    static double center(std::size_t b) { return 4 * (static_cast<double>(b) + 0.5) / static_cast<double>(k_bins); }
-    std::array<double, k_bins> weight_{};
-};
 
 Eigen::Vector2d in_double(const DoubledAngle& v) {
     return {static_cast<double>(v[0]), static_cast<double>(v[1])};
@@ -54,16 +21,13 @@ Eigen::VectorXd ridge_solution(Eigen::MatrixXd normal, const Eigen::VectorXd& ri
     return solve_ldlt(normal, right);
 }
 
-class Boosting {
+class OrientationLearning {
   public:
-    explicit Boosting(const OrientationTraining& training) : training_(training), weight_(training.target.size()) {
-        for (std::size_t i = 0; i < weight_.size(); ++i)
-            weight_[i] = training.held_out[i] ? 0.0 : static_cast<double>(training.weight[i]);
-        normalize_weights();
-    }
+    explicit OrientationLearning(const OrientationTraining& training)
+        : training_(training), boosting_(boosting_weights(training)) {}
 
     LearnedOrientation run() {
-        if (!(total_ > 0)) return {{}, 4};
+        if (std::ranges::none_of(boosting_.weights(), [](double w) { return w > 0; })) return {{}, 4};
         LearnedOrientation best = boost();
         match(best);
         return std::isfinite(best.error) ? best : LearnedOrientation{{}, 4};
@@ -71,24 +35,28 @@ class Boosting {
 
   private:
     struct Choice {
-        double objective = std::numeric_limits<double>::infinity();
-        double r = 1;
+        RegressionBoosting::Step step;
         std::uint32_t feature = 0;
     };
+
+    static std::vector<double> boosting_weights(const OrientationTraining& training) {
+        std::vector<double> weights(training.target.size());
+        for (std::size_t i = 0; i < weights.size(); ++i)
+            weights[i] = training.held_out[i] ? 0.0 : static_cast<double>(training.weight[i]);
+        return weights;
+    }
 
     LearnedOrientation boost() {
         LearnedOrientation best;
         best.error = std::numeric_limits<double>::infinity();
         std::vector<OrientationFunction::Term> terms;
         for (std::size_t round = 0; round < training_.max_terms; ++round) {
-            const Choice choice = choose(round == 0);
-            if (!std::isfinite(choice.objective)) break;
+            const Choice choice = choose();
+            if (!std::isfinite(choice.step.objective)) break;
             add_term(terms, choice);
-            update_weights(choice);
+            boosting_.add([&](std::size_t i) { return choice.step.r * feature_error(choice.feature, i); });
             OrientationFunction averaged{terms};
-            float sum = 0;
-            for (const auto& term : averaged.terms) sum += term.weight;
-            for (auto& term : averaged.terms) term.weight /= sum;
+            normalize_coefficients(averaged.terms, &OrientationFunction::Term::weight);
             // A round that only adds weight to a known feature may still lead to a new one.
             if (!keep_better(averaged, best) && terms.size() > best.function.terms.size()) break;
         }
@@ -134,7 +102,7 @@ class Boosting {
         Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(weights.size(), weights.size());
         Eigen::VectorXd right = Eigen::VectorXd::Zero(weights.size()), turn(weights.size());
         Eigen::Matrix2Xd v(2, weights.size());
-        for (std::size_t i = 0; i < weight_.size(); ++i) {
+        for (std::size_t i = 0; i < training_.target.size(); ++i) {
             const auto w = static_cast<double>(training_.weight[i]);
             if (training_.held_out[i] || !(w > 0)) continue;
             for (Eigen::Index k = 0; k < weights.size(); ++k)
@@ -152,47 +120,37 @@ class Boosting {
         return ridge_solution(normal, right);
     }
 
-    void normalize_weights() {
-        total_ = std::accumulate(weight_.begin(), weight_.end(), 0.0);
-        if (total_ > 0) {
-            for (double& w : weight_) w /= total_;
-        }
+    /// Returns |u_i - v_i|^2 of a feature, in [0, 4].
+    double feature_error(std::size_t feature, std::size_t i) const {
+        return static_cast<double>(squared_distance(training_.target[i], training_.fields.feature(feature, i)));
     }
 
-    Choice choose(bool first) const {
+    Choice choose() const {
+        constexpr RegressionBoosting::LineSearch k_search{.max_error = 4, .max_r = 50, .bins = 128};
         std::vector<Choice> choices(k_orientation_features);
         parallel_for(k_orientation_features, [&](std::size_t k) {
-            ErrorHistogram histogram;
-            bool defined = false;
-            for (std::size_t i = 0; i < weight_.size(); ++i) {
-                if (!(weight_[i] > 0)) continue;
-                const DoubledAngle v = training_.fields.feature(k, i);
-                defined = defined || v != DoubledAngle{};
-                histogram.add(squared_distance(training_.target[i], v), weight_[i]);
-            }
-            if (!defined) return;
-            const double r = first ? 1 : histogram.best_r();
-            choices[k] = {histogram.objective(r), r, static_cast<std::uint32_t>(k)};
+            if (!is_defined(k)) return;
+            choices[k] = {boosting_.line_search([&](std::size_t i) { return feature_error(k, i); }, k_search),
+                          static_cast<std::uint32_t>(k)};
         });
-        return *std::ranges::min_element(choices, {}, &Choice::objective);
+        return *std::ranges::min_element(choices, {}, [](const Choice& choice) { return choice.step.objective; });
+    }
+
+    /// Returns whether a feature is defined at an item that is learned from.
+    bool is_defined(std::size_t feature) const {
+        for (std::size_t i = 0; i < training_.target.size(); ++i) {
+            if (boosting_.weights()[i] > 0 && training_.fields.feature(feature, i) != DoubledAngle{}) return true;
+        }
+        return false;
     }
 
     static void add_term(std::vector<OrientationFunction::Term>& terms, const Choice& choice) {
         for (auto& term : terms) {
             if (term.feature != choice.feature) continue;
-            term.weight += static_cast<float>(choice.r);
+            term.weight += static_cast<float>(choice.step.r);
             return;
         }
-        terms.push_back({choice.feature, static_cast<float>(choice.r)});
-    }
-
-    void update_weights(const Choice& choice) {
-        for (std::size_t i = 0; i < weight_.size(); ++i) {
-            if (!(weight_[i] > 0)) continue;
-            const DoubledAngle v = training_.fields.feature(choice.feature, i);
-            weight_[i] *= std::exp(choice.r * static_cast<double>(squared_distance(training_.target[i], v)));
-        }
-        normalize_weights();
+        terms.push_back({choice.feature, static_cast<float>(choice.step.r)});
     }
 
     /// Replaces the best function by a better one; more features must lower the error by 5%.
@@ -207,22 +165,19 @@ class Boosting {
 
     /// Returns the weighted mean of |u - f|^2 over the held-out items, or over all if none is held out.
     double error(const OrientationFunction& function) const {
-        double sums[2][2] = {};
-        for (std::size_t i = 0; i < weight_.size(); ++i) {
+        HeldOutError error;
+        for (std::size_t i = 0; i < training_.target.size(); ++i) {
             const auto w = static_cast<double>(training_.weight[i]);
             if (!(w > 0)) continue;
-            const double e =
-                static_cast<double>(squared_distance(training_.target[i], function.evaluate(training_.fields, i)));
-            sums[training_.held_out[i] ? 1 : 0][0] += w * e;
-            sums[training_.held_out[i] ? 1 : 0][1] += w;
+            error.add(
+                training_.held_out[i], w,
+                static_cast<double>(squared_distance(training_.target[i], function.evaluate(training_.fields, i))));
         }
-        const auto& s = sums[1][1] > 0 ? sums[1] : sums[0];
-        return s[1] > 0 ? s[0] / s[1] : 4;
+        return error.mean(4);
     }
 
     const OrientationTraining& training_;
-    std::vector<double> weight_;  // of boosting; zero where held out
-    double total_ = 0;
+    RegressionBoosting boosting_;
 };
 
 }  // namespace
@@ -301,7 +256,7 @@ double least_squares_error(const FieldProducts& products, const std::vector<Eige
 }
 
 LearnedOrientation learn_orientation(const OrientationTraining& training) {
-    return Boosting(training).run();
+    return OrientationLearning(training).run();
 }
 
 }  // namespace exemplar

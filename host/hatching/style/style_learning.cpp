@@ -132,7 +132,8 @@ class StyleLearning {
             samples.spacing.push_back(drawing_.property[static_cast<std::size_t>(StrokeProperty::spacing)][p]);
         }
         samples.fields = pixels_.orientations(rule_rows_);
-        OrientationMixture mixture = learn_mixture(samples, options_.mixture, [&] { progress_("orientation rules"); });
+        OrientationMixture mixture =
+            learn_mixture(samples, {.seed = options_.seed}, [&] { progress_("orientation rules"); });
         style_.rules = std::move(mixture.rules);
         style_.share = std::move(mixture.share);
         report_.orientation_error = mixture.error;

@@ -17,8 +17,7 @@ struct StyleLearningOptions {
     std::size_t orientation_samples = 20'000;  ///< pixels for learn_mixture(), at most
     std::size_t samples = 16'000;              ///< pixels for each classifier and property, at most
     std::size_t max_stages = 3;                ///< of the cascade of segment classifiers
-    MixtureOptions mixture;
-    std::uint64_t seed = 1;
+    std::uint64_t seed = 1;                    ///< of all random choices
 };
 
 /// Errors of a style on its drawing: of classifiers and properties on held-out pixels.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/core/evenly_spaced.h"
 #include "host/hatching/tracing/drawing_filters.h"
 #include "host/hatching/tracing/thinning.h"
 
@@ -100,7 +101,7 @@ FloatImage signed_distance(const PixelMask& region) {
 }
 
 std::vector<Vec2> border_points(const PixelMask& region, std::size_t most) {
-    std::vector<Vec2> all, some;
+    std::vector<Vec2> all;
     for (int y = 0; y < region.height; ++y)
         for (int x = 0; x < region.width; ++x) {
             if (!region.pixel(x, y)[0]) continue;
@@ -108,11 +109,11 @@ std::vector<Vec2> border_points(const PixelMask& region, std::size_t most) {
             if (!(n[0] && n[2] && n[4] && n[6]))
                 all.emplace_back(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
         }
-    const std::size_t count = std::min(most, all.size());
-    for (std::size_t i = 0; i < count; ++i) some.push_back(all[i * all.size() / count]);
-    return some;
+    return evenly_spaced(all, most);
 }
 
+// Not sample_bilinear(): the search for an alignment spends its time here, and weighted sums take a quarter of the
+// time of std::lerp.
 float distance_at(const FloatImage& distance, const Vec2& place) {
     const Vec2 at = place - Vec2::Constant(0.5f);
     const float x = std::clamp(at.x(), 0.0f, static_cast<float>(distance.width - 1));

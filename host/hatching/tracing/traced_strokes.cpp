@@ -6,6 +6,7 @@
 #include <span>
 
 #include "host/hatching/tracing/stroke_links.h"
+#include "host/imaging/bilinear.h"
 
 namespace exemplar {
 namespace {
@@ -123,16 +124,6 @@ bool is_dot(const TracedStroke& stroke, const FloatImage& width) {
     return static_cast<float>(stroke.points.size()) < k_min_aspect * widest;
 }
 
-float darkness_at(const FloatImage& image, const Vec2& at) {
-    const float x = std::clamp(at.x() - 0.5f, 0.0f, static_cast<float>(image.width - 1));
-    const float y = std::clamp(at.y() - 0.5f, 0.0f, static_cast<float>(image.height - 1));
-    const int left = static_cast<int>(x), top = static_cast<int>(y);
-    const int right = std::min(left + 1, image.width - 1), bottom = std::min(top + 1, image.height - 1);
-    const float sx = x - static_cast<float>(left), sy = y - static_cast<float>(top);
-    return std::lerp(std::lerp(image.pixel(left, top)[0], image.pixel(right, top)[0], sx),
-                     std::lerp(image.pixel(left, bottom)[0], image.pixel(right, bottom)[0], sx), sy);
-}
-
 /// Returns point i of a stroke, counted from its front or back, or the last one.
 const TracedPoint& point_from(const TracedStroke& stroke, bool back, std::size_t i) {
     const std::size_t last = stroke.points.size() - 1;
@@ -182,11 +173,12 @@ Vec2 end_direction(const TracedStroke& stroke, bool back) {
 
 std::optional<float> distance_to_tip(const FloatImage& darkness, const TracedStroke& stroke, bool back, float width) {
     const Vec2 out = end_direction(stroke, back), end = point_from(stroke, back, 0).center;
+    const auto darkness_at = [&](const Vec2& place) { return sample_bilinear(darkness, place, ImageBorder::nearest); };
     float dark = 0;
     for (std::size_t i = 1; i <= k_end_points; ++i)
-        dark = std::max(dark, darkness_at(darkness, point_from(stroke, back, i).center));
+        dark = std::max(dark, darkness_at(point_from(stroke, back, i).center));
     for (float way = -0.5f * width; way < 2 * width + 3; way += k_tip_step)
-        if (darkness_at(darkness, end + way * out) < 0.5f * dark) return way - 0.5f * k_tip_step;
+        if (darkness_at(end + way * out) < 0.5f * dark) return way - 0.5f * k_tip_step;
     return std::nullopt;
 }
 

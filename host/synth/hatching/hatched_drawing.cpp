@@ -37,11 +37,9 @@ void jitter_stroke(HatchStroke& stroke, float spacing, const HandJitter& jitter,
 RuledDrawing draw_by_rule(std::string_view style, PixelFeatures& pixels, StrokePlacer& placer, std::uint64_t seed,
                           const HandJitter& jitter) {
     RuledDrawing out{hatching_by_rule(style, pixels), {}, {}};
-    const HatchingFields& fields = out.truth.fields;
-    StrokeOptions options;
-    options.seed = seed;
-    out.strokes =
-        place_evenly(placer, fields, occlusion_barriers(pixels.gbuffer().depth, fields.width, fields.height), options);
+    const HatchingFields& fields = out.truth;
+    out.strokes = place_evenly(placer, fields, occlusion_barriers(pixels.gbuffer().depth, fields.width, fields.height),
+                               {.seed = seed});
     Random random(seed);
     for (HatchStroke& stroke : out.strokes) {
         const Vec2& middle = stroke.points[stroke.points.size() / 2];

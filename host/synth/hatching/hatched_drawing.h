@@ -21,7 +21,7 @@ struct HandJitter {
 
 /// A drawing that follows a known rule, as if drawn by hand.
 struct RuledDrawing {
-    RuledHatching truth;
+    HatchingFields truth;
     std::vector<HatchStroke> strokes;
     std::vector<float> ink;  ///< darkness of each pixel, in [0, 1]
 };

@@ -15,11 +15,10 @@ namespace exemplar {
 namespace {
 
 constexpr std::array<std::string_view, 4> k_rule_names{"contour", "light", "parts", "flow"};
-constexpr std::uint8_t k_outside = 255;
 
 /// The hatching at a pixel; lengths are for pictures of 1000 pixels.
 struct Targets {
-    std::uint8_t segment = 0, level = 0;
+    std::uint8_t level = 0;
     std::array<DoubledAngle, k_hatch_layers> direction{};
     float thickness = 2, intensity = 1, spacing = 8, length = 60;
 };
@@ -90,8 +89,7 @@ Rule parts_rule() {
             [](const NamedFeatures& of, std::size_t row) {
                 const float tone = 0.6f * of(1, row) + 0.4f * of(2, row);
                 Targets t;
-                t.segment = of(0, row) > 0.3f ? 0 : 1;
-                const bool thick = t.segment == 0;
+                const bool thick = of(0, row) > 0.3f;
                 t.level = thick && tone < 0.45f ? 2 : tone < 0.8f ? 1 : 0;
                 t.direction = {of.direction(thick ? "e_a,3" : "k_max,2", row), of.direction("perp e_a,3", row)};
                 t.spacing = thick ? 9.0f : 7.0f;
@@ -130,30 +128,28 @@ std::span<const std::string_view> hatching_rule_names() {
     return k_rule_names;
 }
 
-RuledHatching hatching_by_rule(std::string_view style, PixelFeatures& pixels) {
+HatchingFields hatching_by_rule(std::string_view style, PixelFeatures& pixels) {
     const Rule rule = rule_of(style);
     const NamedFeatures features(pixels, rule.scalars);
     const HatchingView& view = pixels.view();
     // A picture could not show finer strokes.
     constexpr float k_min_scale = 0.7f;
     const float scale = std::max(static_cast<float>(std::min(view.width, view.height)) / 1000, k_min_scale);
-    RuledHatching out{HatchingFields(view.width, view.height), {}};
-    out.segment.assign(out.fields.size(), k_outside);
+    HatchingFields out(view.width, view.height);
     for (std::size_t row = 0; row < pixels.size(); ++row) {
         const Targets t = rule.at(features, row);
         const std::uint32_t p = pixels.pixels().pixel[row];
-        out.segment[p] = t.segment;
         // A layer without a defined direction is not drawn.
         std::uint8_t level = t.level;
         if (t.direction[1] == DoubledAngle{}) level = std::min(level, k_single_hatching);
         if (t.direction[0] == DoubledAngle{}) level = k_no_hatching;
-        out.fields.level[p] = level;
+        out.level[p] = level;
         for (std::size_t layer = 0; layer < k_hatch_layers; ++layer)
-            out.fields.orientation[layer][p] = angle_of(t.direction[layer]);
-        out.fields.thickness[p] = scale * t.thickness;
-        out.fields.intensity[p] = t.intensity;
-        out.fields.spacing[p] = scale * t.spacing;
-        out.fields.length[p] = scale * t.length;
+            out.orientation[layer][p] = angle_of(t.direction[layer]);
+        out.thickness[p] = scale * t.thickness;
+        out.intensity[p] = t.intensity;
+        out.spacing[p] = scale * t.spacing;
+        out.length[p] = scale * t.length;
     }
     return out;
 }

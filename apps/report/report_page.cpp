@@ -299,7 +299,7 @@ std::string escaped_html(std::string_view text) {
 /// comment.
 std::string script_json(const Json& json) {
     std::string result;
-    for (const char c : json_text(json, -1, true)) {
+    for (const char c : ordered_json_text(json, -1, true)) {
         if (c == '<')
             result += "\\u003c";
         else

@@ -46,7 +46,7 @@ class GltfBuilder {
         add_mesh();
         for (const Clip& clip : animation_.clips) add_clip(clip);
         document_["buffers"] = {{{"byteLength", binary_.size()}}};
-        return mesh_io::binary_gltf(json_text(document_), binary_);
+        return mesh_io::binary_gltf(ordered_json_text(document_), binary_);
     }
 
   private:

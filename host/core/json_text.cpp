@@ -11,7 +11,7 @@ std::string json_text(const nlohmann::json& json, int indent) {
     return json.dump(indent, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-std::string json_text(const nlohmann::ordered_json& json, int indent, bool ascii) {
+std::string ordered_json_text(const nlohmann::ordered_json& json, int indent, bool ascii) {
     return json.dump(indent, ' ', ascii, nlohmann::ordered_json::error_handler_t::replace);
 }
 

@@ -17,6 +17,6 @@ nlohmann::json parse_json(std::string_view text, const nlohmann::json::parser_ca
 /// Writes JSON in one line, or indented by `indent` blanks. Bytes that are no UTF-8, as names of files may hold, become U+FFFD.
 /// With `ascii`, other characters are escaped as well.
 std::string json_text(const nlohmann::json& json, int indent = -1);
-std::string json_text(const nlohmann::ordered_json& json, int indent = -1, bool ascii = false);
+std::string ordered_json_text(const nlohmann::ordered_json& json, int indent = -1, bool ascii = false);
 
 }  // namespace exemplar

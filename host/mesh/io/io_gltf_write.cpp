@@ -115,7 +115,7 @@ void write_gltf(const std::filesystem::path& path, const TriangleMesh& mesh, con
     mesh_io::check_labels(mesh, labels);
     check_writable(path, mesh);
     const std::vector<Part> parts = parts_by_label(mesh, labels);
-    std::string json = json_text(document_of(mesh, labels, parts));
+    std::string json = ordered_json_text(document_of(mesh, labels, parts));
     std::string binary;
     for (const Vec3& p : mesh.vertices)
         for (int i = 0; i < 3; ++i) mesh_io::append_bytes(binary, p[i]);

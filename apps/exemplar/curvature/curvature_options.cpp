@@ -37,7 +37,7 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
         ->capture_default_str()
         ->check(CLI::Range(0.1, 1000.0));
     command
-        .add_option("--smoothing", arguments.smoothing,
+        .add_option("--smoothing", arguments.training.truth.smoothing,
                     "width of the diffusion of measured curvature, in median edge lengths; 0 is none")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 20.0));
@@ -57,7 +57,7 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
     command.add_option("--bases", arguments.bases, "ica or pca")
         ->capture_default_str()
         ->check(CLI::IsMember({"ica", "pca"}));
-    command.add_option("--variance", arguments.variance, "share of the variance that bases keep")
+    command.add_option("--variance", arguments.training.variance, "share of the variance that bases keep")
         ->capture_default_str()
         ->check(CLI::Range(0.01, 1.0));
     command
@@ -67,61 +67,55 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
         ->check(CLI::Range(0.0, 0.5));
     command
         .add_option(
-            "--augment", arguments.augmented_poses,
+            "--augment", arguments.training.augmented_poses,
             "rigs: poses to learn from beside the frames, in which joints or shapes of different frames are mixed")
         ->capture_default_str()
         ->check(whole_number(0, 100000));
     command
-        .add_option("--patch", arguments.patch_vertices,
+        .add_option("--patch", arguments.training.sequence.patch_vertices,
                     "vertices of the patches whose shapes are told apart, at most; 0 takes the whole surface")
         ->capture_default_str()
         ->check(whole_number(0));
-    command.add_option("--patch-inputs", arguments.patch_inputs, "most numbers that describe a patch")
+    command.add_option("--patch-inputs", arguments.training.sequence.max_inputs, "most numbers that describe a patch")
         ->capture_default_str()
         ->check(whole_number(1, 1000));
     command
-        .add_option("--state-variance", arguments.state_variance,
+        .add_option("--state-variance", arguments.training.sequence.share,
                     "mesh sequences: share of the variance of the dihedral angles that these numbers keep")
         ->capture_default_str()
         ->check(CLI::Range(0.01, 1.0));
-    command.add_option("--seed", arguments.seed, "seed of all random choices; equal seeds give equal model files")
+    command
+        .add_option("--seed", arguments.training.seed, "seed of all random choices; equal seeds give equal model files")
         ->capture_default_str()
         ->check(whole_number(0));
 }
 
 CurvatureTraining training_of(const CurvatureArguments& arguments, AnimationKind kind) {
-    CurvatureTraining training;
+    CurvatureTraining training = arguments.training;
     training.attributes = arguments.attributes == "principal" ? AttributeSet::principal : AttributeSet::tensor;
     training.learner = learner_of(arguments.learner);
     training.independent = arguments.bases == "ica";
-    training.variance = arguments.variance;
     training.dropped_variance = arguments.dropped_variance.value_or(suitable_sparsity(kind));
-    training.truth.smoothing = arguments.smoothing;
     training.truth.robust = robust_names().at(arguments.robust);
-    training.seed = arguments.seed;
-    training.augmented_poses = arguments.augmented_poses;
-    training.sequence.patch_vertices = arguments.patch_vertices;
-    training.sequence.max_inputs = arguments.patch_inputs;
-    training.sequence.share = arguments.state_variance;
-    training.sequence.seed = arguments.seed;
+    training.sequence.seed = training.seed;
     return training;
 }
 
 std::map<std::string, std::string> training_words(const CurvatureArguments& arguments, AnimationKind kind) {
     const CurvatureTraining training = training_of(arguments, kind);
-    return {{"smoothing", fmt::format("{}", arguments.smoothing)},
+    return {{"smoothing", fmt::format("{}", training.truth.smoothing)},
             {"robust", arguments.robust},
-            {"learner", std::string(name_of(training.learner))},
+            {"learner", arguments.learner},
             {"attributes", arguments.attributes},
             {"bases", arguments.bases},
-            {"variance", fmt::format("{}", arguments.variance)},
+            {"variance", fmt::format("{}", training.variance)},
             {"sparsity", fmt::format("{}", training.dropped_variance)},
-            {"augment", std::to_string(arguments.augmented_poses)},
-            {"patch", std::to_string(arguments.patch_vertices)},
-            {"patch-inputs", std::to_string(arguments.patch_inputs)},
-            {"state-variance", fmt::format("{}", arguments.state_variance)},
+            {"augment", std::to_string(training.augmented_poses)},
+            {"patch", std::to_string(training.sequence.patch_vertices)},
+            {"patch-inputs", std::to_string(training.sequence.max_inputs)},
+            {"state-variance", fmt::format("{}", training.sequence.share)},
             {"fps", fmt::format("{}", arguments.frames_per_second)},
-            {"seed", std::to_string(arguments.seed)}};
+            {"seed", std::to_string(training.seed)}};
 }
 
 nlohmann::json describe_training(const CurvatureTrainingReport& report) {

@@ -11,18 +11,13 @@
 
 namespace exemplar {
 
-/// Command-line arguments of learning curvature.
+/// Command-line arguments of learning curvature. Numbers are read into `training`; words and `dropped_variance` are
+/// added by training_of().
 struct CurvatureArguments {
     double frames_per_second = 30;
-    double smoothing = 1;
+    CurvatureTraining training{};
     std::string robust = "none", learner = "local", attributes = "tensor", bases = "ica";
-    double variance = CurvatureTraining{}.variance;
     std::optional<double> dropped_variance;  ///< none: chosen by the kind of animation
-    std::size_t augmented_poses = CurvatureTraining{}.augmented_poses;
-    std::size_t patch_vertices = SequenceStateOptions{}.patch_vertices,
-                patch_inputs = SequenceStateOptions{}.max_inputs;
-    double state_variance = SequenceStateOptions{}.share;
-    std::uint64_t seed = 1;
 };
 
 void add_curvature_options(CLI::App& command, CurvatureArguments& arguments);

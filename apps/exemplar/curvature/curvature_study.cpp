@@ -58,22 +58,31 @@ std::vector<Variation> variations(const CurvatureArguments& given, std::size_t p
     std::vector<Variation> result{{"as given", "", given, poses}};
     for (std::size_t few = k_min_poses; few < poses; few *= 2)
         result.push_back({"poses", std::to_string(few), given, few});
-    const auto vary = [&](const char* what, auto CurvatureArguments::*member, const auto& values) {
+    const auto vary = [&](const char* what, auto&& argument, const auto& values) {
         for (const auto& value : values) {
-            if (given.*member == value) continue;
             Variation variation{what, fmt::format("{}", value), given, poses};
-            variation.arguments.*member = value;
+            auto& varied = argument(variation.arguments);
+            if (varied == value) continue;
+            varied = value;
             result.push_back(std::move(variation));
         }
     };
+    using Given = CurvatureArguments;
     if (learner == Learner::local) {
-        vary("patch-inputs", &CurvatureArguments::patch_inputs, std::vector<std::size_t>{2, 4, 8, 12, 24});
+        vary(
+            "patch-inputs", [](Given & g) -> auto& { return g.training.sequence.max_inputs; },
+            std::vector<std::size_t>{2, 4, 8, 12, 24});
     } else {
-        vary("variance", &CurvatureArguments::variance, std::vector<double>{0.8, 0.9, 0.95, 0.99, 0.999});
-        vary("bases", &CurvatureArguments::bases, std::vector<std::string>{"ica", "pca"});
+        vary(
+            "variance", [](Given & g) -> auto& { return g.training.variance; },
+            std::vector<double>{0.8, 0.9, 0.95, 0.99, 0.999});
+        vary(
+            "bases", [](Given & g) -> auto& { return g.bases; }, std::vector<std::string>{"ica", "pca"});
     }
-    vary("sparsity", &CurvatureArguments::dropped_variance, std::vector<double>{0, 0.002, 0.01, 0.05});
-    vary("attributes", &CurvatureArguments::attributes, std::vector<std::string>{"tensor", "principal"});
+    vary(
+        "sparsity", [](Given & g) -> auto& { return g.dropped_variance; }, std::vector<double>{0, 0.002, 0.01, 0.05});
+    vary(
+        "attributes", [](Given & g) -> auto& { return g.attributes; }, std::vector<std::string>{"tensor", "principal"});
     return result;
 }
 
@@ -128,10 +137,10 @@ void run_study(const StudyOptions& options) {
     const auto read = [&](const std::filesystem::path& path, std::uint64_t seed) {
         return animation_of_argument(path, options.curvature.frames_per_second, seed, options.common.quiet);
     };
-    const Animation animation = read(options.animation, options.curvature.seed);
+    const Animation animation = read(options.animation, options.curvature.training.seed);
     const std::vector<FrameRef> frames = select_frames(animation, selection_of(options.frames));
     const bool same = options.test.empty() || same_file(options.test, options.animation);
-    const Animation other = same ? Animation{} : read(options.test, options.curvature.seed + 1);
+    const Animation other = same ? Animation{} : read(options.test, options.curvature.training.seed + 1);
     const Animation& test = same ? animation : other;
     std::vector<FrameRef> test_frames = select_frames(test, selection_of(options.test_frames));
     if (same) test_frames = unseen_frames(std::move(test_frames), frames);

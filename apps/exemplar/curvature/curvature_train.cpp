@@ -23,7 +23,7 @@ void run_curvature_train(const CurvatureTrainOptions& options) {
     require_output_file(options.out);
     const Stopwatch watch;
     const Animation animation = animation_of_argument(options.animation, options.curvature.frames_per_second,
-                                                      options.curvature.seed, options.common.quiet);
+                                                      options.curvature.training.seed, options.common.quiet);
     const std::vector<FrameRef> frames = select_frames(animation, selection_of(options.frames));
     CurvatureTrainingReport report;
     CurvatureModel model = train_curvature(animation, frames, training_of(options.curvature, animation.kind), report);

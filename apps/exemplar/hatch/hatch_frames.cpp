@@ -32,7 +32,7 @@ LinesSourceArguments source_of(const HatchDrawJob& job) {
     arguments.frames = job.frames;
     arguments.first_frame_only = job.output == LinesOutput::svg || job.output == LinesOutput::picture;
     arguments.frames_per_second = job.frames_per_second;
-    arguments.derivatives = false;
+    arguments.measuring.derivatives = false;
     arguments.quiet = job.common.quiet;
     return arguments;
 }

@@ -105,13 +105,11 @@ CurvaturePointer predicted(const CurvatureModel& model, const AnimationObject& o
     return std::make_shared<VertexCurvature>(long_result([&] {
         const Animation& animation = object.animation;
         require_compatible(model, animation);
-        const Clip& clip = animation.clips[ref.clip];
         TriangleMesh posed = animation.rest;
-        posed.vertices = frame_vertices(animation, clip, ref.frame);
+        posed.vertices = frame_vertices(animation, animation.clips[ref.clip], ref.frame);
         const std::vector<Vec3> normals = vertex_normals(posed);
         CurvatureEvaluator evaluator(model);
-        return clip.poses.empty() ? evaluator.evaluate(posed.vertices, normals)
-                                  : evaluator.evaluate(animation.rig, clip.poses[ref.frame], posed.vertices, normals);
+        return evaluator.evaluate(animation.rig, shape_at(animation, ref.clip, ref.frame), posed.vertices, normals);
     }));
 }
 

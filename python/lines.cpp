@@ -17,6 +17,7 @@
 #include "host/lines/extraction/drawable_surface.h"
 #include "host/lines/strokes/style.h"
 #include "host/lines/strokes/view_point.h"
+#include "host/mesh/editing/drawable_mesh.h"
 #include "host/mesh/editing/loose_vertices.h"
 #include "host/mesh/editing/validate.h"
 #include "python/arrays.h"

@@ -5,7 +5,6 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
-#include <cctype>
 #include <variant>
 
 #include "host/core/text.h"
@@ -13,6 +12,7 @@
 #include "host/mesh/editing/simplify.h"
 #include "host/mesh/editing/validate.h"
 #include "host/mesh/io/io.h"
+#include "host/mesh/io/io_text.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/long_work.h"
@@ -93,9 +93,7 @@ std::vector<MeshPointer> read_labeled(const std::variant<fs::path, std::vector<f
 }
 
 void write_mesh_file(const MeshObject& object, const fs::path& path) {
-    std::string extension = path.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = mesh_io::lower_case(path.extension().string());
     std::function<void()> writer;
     if (extension == ".off") writer = [&] { write_off(path, *object.mesh); };
     if (extension == ".obj") writer = [&] { write_obj(path, *object.mesh); };

@@ -6,12 +6,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "apps/exemplar/lines/drawn_animation.h"
 #include "apps/exemplar/lines/frames_view.h"
 #include "gpu/imaging/picture.h"
+#include "gpu/lines/animation_renderer.h"
 #include "gpu/runtime/device/device.h"
 #include "host/animation/read_animation.h"
 #include "host/core/errors.h"
@@ -67,9 +68,10 @@ void run(const std::string& path, const std::string& model, const std::string& p
     const Animation animation = read_animation(path);
     const std::vector<FrameRef> frames = select_frames(animation, {.clips = {}, .most = k_frames});
     Device device;
-    DrawnAnimation drawn(device, animation, {.derivatives = true, .smoothing = 1});
-    if (!model.empty()) drawn.set_model(load_curvature_model(model));
-    LineRenderer& renderer = drawn.renderer();
+    std::optional<CurvatureModel> learned;
+    if (!model.empty()) learned = load_curvature_model(model);
+    AnimationRenderer drawn(device, animation, {.derivatives = true, .smoothing = 1}, learned ? &*learned : nullptr);
+    LineRenderer& renderer = drawn.view();
     const LinePicture picture = picture_of(animation, frames);
     Stream stream(device);
     const CurvatureSource source = model.empty() ? CurvatureSource::estimated : CurvatureSource::learned;

@@ -69,11 +69,7 @@ void require_input(const fs::path& path) {
 std::vector<fs::path> meshes_of_argument(const fs::path& source, MissingMeshes missing) {
     require_input(source);
     const auto known = mesh_extensions();
-    std::string extension = source.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    const bool mesh = std::find(known.begin(), known.end(), extension) != known.end();
-    if (!mesh && fs::is_regular_file(source) && first_bytes(source).find('\0') != std::string::npos)
+    if (!is_mesh_file(source) && fs::is_regular_file(source) && first_bytes(source).find('\0') != std::string::npos)
         throw DataError(fmt::format("{}: is neither a mesh ({}) nor a list of meshes (text, a path a line)",
                                     source.string(), fmt::join(known, " ")));
     return list_meshes(source, missing);

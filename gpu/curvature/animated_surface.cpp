@@ -16,37 +16,31 @@ void GpuAnimatedSurface::set_model(const CurvatureModel& model) {
     learned_.emplace(surface_.device(), model);
 }
 
-void GpuAnimatedSurface::record(Stream& stream, const Pose& pose, CurvatureSource source) {
-    poser_.record(stream, pose);
-    pose_ = pose;
-    record_curvature(stream, source);
-}
-
-void GpuAnimatedSurface::record(Stream& stream, std::span<const Vec3> vertices, CurvatureSource source) {
-    poser_.set_vertices(stream, vertices);
-    pose_.reset();
-    frame_.assign(vertices.begin(), vertices.end());
-    record_curvature(stream, source);
+void GpuAnimatedSurface::record(Stream& stream, const SurfaceShape& shape, CurvatureSource source) {
+    if (shape.pose)
+        poser_.record(stream, *shape.pose);
+    else
+        poser_.set_vertices(stream, shape.vertices);
+    pose_ = shape.pose;
+    frame_.assign(shape.vertices.begin(), shape.vertices.end());
+    record_again(stream, source);
 }
 
 void GpuAnimatedSurface::record_again(Stream& stream, CurvatureSource source) {
-    record_curvature(stream, source);
-}
-
-void GpuAnimatedSurface::record_curvature(Stream& stream, CurvatureSource source) {
     source_ = source;
     if (source == CurvatureSource::estimated) {
         if (!estimated_) estimated_.emplace(surface_, options_);
-        estimated_->record(stream, vertices());
+        estimated_->record(stream, poser_.vertices());
         return;
     }
-    normals_.record(stream, vertices());
+    normals_.record(stream, poser_.vertices());
     if (source == CurvatureSource::none) return;
     if (!learned_) throw UsageError("no curvature has been learned for this surface; give a model, or estimate it");
-    if (pose_)
-        learned_->record(stream, rig_, *pose_, vertices(), normals());
-    else
-        learned_->record(stream, frame_, vertices(), normals());
+    learned_->record(stream, {.vertices = poser_.vertices(),
+                              .normals = normals(),
+                              .rig = &rig_,
+                              .pose = pose_ ? &*pose_ : nullptr,
+                              .host_vertices = frame_});
 }
 
 const Buffer& GpuAnimatedSurface::normals() const {
@@ -56,14 +50,14 @@ const Buffer& GpuAnimatedSurface::normals() const {
 GpuCurvedSurface GpuAnimatedSurface::snapshot() const {
     switch (source_) {
         case CurvatureSource::estimated:
-            return {vertices(), normals(), &estimated_->first(), &estimated_->second(),
+            return {poser_.vertices(), normals(), &estimated_->first(), &estimated_->second(),
                     options_.derivatives ? &estimated_->derivative() : nullptr};
         case CurvatureSource::learned:
-            return {vertices(), normals(), &learned_->first(), &learned_->second(), &learned_->derivative()};
+            return {poser_.vertices(), normals(), &learned_->first(), &learned_->second(), &learned_->derivative()};
         case CurvatureSource::none:
             break;
     }
-    return {vertices(), normals()};
+    return {poser_.vertices(), normals()};
 }
 
 }  // namespace exemplar

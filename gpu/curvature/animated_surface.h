@@ -31,25 +31,18 @@ class GpuAnimatedSurface {
     /// Sets the model of learned curvature; it must fit the animation (require_compatible). No recorded work that uses
     /// an earlier model may still await submission. Throws ModelError and DeviceLimitError as GpuLearnedCurvature does.
     void set_model(const CurvatureModel& model);
-    bool has_model() const { return learned_.has_value(); }
 
-    /// Records posing the rig, normals and curvature. Throws UsageError if the pose is not of the rig, or learned
-    /// curvature is requested without a model.
-    void record(Stream& stream, const Pose& pose, CurvatureSource source);
-    /// Records the same for a frame of a mesh sequence, or for a static mesh.
-    void record(Stream& stream, std::span<const Vec3> vertices, CurvatureSource source);
-    /// Records curvature from another source for the vertices of the last call.
+    /// Records the vertices of a shape of the animation, their normals and their curvature. Throws UsageError if the
+    /// shape is not of the animation, or learned curvature is requested without a model.
+    void record(Stream& stream, const SurfaceShape& shape, CurvatureSource source);
+    /// Records normals and curvature from another source for the shape of the last call.
     void record_again(Stream& stream, CurvatureSource source);
 
-    const GpuSurface& surface() const { return surface_; }
-    const Rig& rig() const { return rig_; }
-    const Buffer& vertices() const { return poser_.vertices(); }
-    const Buffer& normals() const;
     /// Returns the buffers of the last recorded frame.
     GpuCurvedSurface snapshot() const;
 
   private:
-    void record_curvature(Stream& stream, CurvatureSource source);
+    const Buffer& normals() const;
     const GpuSurface& surface_;
     Rig rig_;
     CurvatureOptions options_;
@@ -58,7 +51,7 @@ class GpuAnimatedSurface {
     std::optional<GpuCurvature> estimated_;  // made at its first use
     std::optional<GpuLearnedCurvature> learned_;
     CurvatureSource source_ = CurvatureSource::none;
-    // The pose or the vertices of the last call.
+    // The shape of the last call.
     std::optional<Pose> pose_;
     std::vector<Vec3> frame_;
 };

@@ -55,11 +55,8 @@ GpuChains::GpuChains(GpuLineExtraction& lines) : lines_(lines) {
 void GpuChains::record(Stream& stream, const Buffer& vertices, const Camera& camera, int width, int height) {
     const GpuLineSurface& surface = lines_.surface();
     Buffer& counts = lines_.counts();
-    shared::LinkParameters parameters{.matrix = {},
-                                      .width = static_cast<float>(width),
-                                      .height = static_cast<float>(height),
-                                      .unused0 = 0,
-                                      .unused1 = 0};
+    shared::LinkParameters parameters{
+        .matrix = {}, .width = static_cast<float>(width), .height = static_cast<float>(height)};
     put_matrix(camera.view_projection(), parameters.matrix);
     constexpr std::size_t k_segments = offsetof(LineCounts, segment_groups),
                           k_nodes = offsetof(LineCounts, node_groups), k_rounds = offsetof(LineCounts, round_groups);

@@ -29,8 +29,7 @@ FollowParameters follow_parameters(const StrokeView& view, bool keeps) {
     FollowParameters parameters{.matrix = {},
                                 .width = static_cast<float>(view.width),
                                 .height = static_cast<float>(view.height),
-                                .keeps = keeps ? 1u : 0u,
-                                .unused = 0};
+                                .keeps = keeps ? 1u : 0u};
     put_matrix(view.camera.view_projection(), parameters.matrix);
     return parameters;
 }

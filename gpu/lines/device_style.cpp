@@ -58,10 +58,7 @@ shared::StrokeLook look_of(const LineStyle& line, float threshold, float fade, T
             .threshold = threshold,
             .fade = fade,
             .texture = texture.texture,
-            .period = texture.period,
-            .unused0 = 0,
-            .unused1 = 0,
-            .unused2 = 0};
+            .period = texture.period};
 }
 
 SurfaceLight light_of(SurfaceShading shading) {

@@ -37,9 +37,7 @@ FieldParameters field_parameters(const GpuLineOptions& options, std::uint32_t ve
             .low_thresholds = {t[0], t[1], t[2], t[3]},
             .high_thresholds = {t[4], t[5], t[6], t[7]},
             .vertices = vertices,
-            .feature_size = options.feature_size,
-            .unused0 = 0,
-            .unused1 = 0};
+            .feature_size = options.feature_size};
 }
 
 void check(const GpuCurvedSurface& snapshot, std::uint32_t families, const GpuLineOptions& options) {

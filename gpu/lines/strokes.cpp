@@ -37,10 +37,7 @@ StrokeParameters stroke_parameters(const StrokeView& view, bool curved, bool clo
             .unit_depth = view.unit_depth,
             .parallel = parallel ? 1u : 0u,
             .curved = curved ? 1u : 0u,
-            .closed = closed ? 1u : 0u,
-            .unused0 = 0,
-            .unused1 = 0,
-            .unused2 = 0};
+            .closed = closed ? 1u : 0u};
 }
 
 }  // namespace
@@ -58,10 +55,7 @@ StrokeLooks plain_looks(const LineThresholds& thresholds, const StrokeThickness&
                          .threshold = fading ? fading->threshold : 0,
                          .fade = fading ? fading->half : 0,
                          .texture = 0,
-                         .period = float(shared::k_texture_width),
-                         .unused0 = 0,
-                         .unused1 = 0,
-                         .unused2 = 0};
+                         .period = float(shared::k_texture_width)};
     }
     return looks;
 }

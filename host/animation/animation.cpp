@@ -35,6 +35,19 @@ std::size_t Animation::frame_count() const {
     return count;
 }
 
+SurfaceShape shape_at(const Animation& animation, std::size_t clip, std::size_t frame) {
+    const bool exists = clip < animation.clips.size() && frame < animation.clips[clip].size();
+    if (animation.has_rig()) return {exists ? animation.clips[clip].poses[frame] : rest_pose(animation.rig)};
+    return {.pose = {}, .vertices = exists ? animation.clips[clip].frames[frame] : animation.rest.vertices};
+}
+
+std::vector<Vec3> vertices_of(const Animation& animation, const SurfaceShape& shape) {
+    if (!shape.pose) return {shape.vertices.begin(), shape.vertices.end()};
+    std::vector<Vec3> vertices;
+    pose_vertices(animation.rig, animation.rest.vertices, *shape.pose, vertices);
+    return vertices;
+}
+
 Pose rest_pose(const Rig& rig) {
     Pose pose;
     for (const RigNode& node : rig.nodes) pose.nodes.push_back(node.rest);

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -98,7 +99,20 @@ struct Animation {
     std::vector<std::string> warnings;  ///< one line each: what was repaired or left out
 
     std::size_t frame_count() const;  ///< summed over all clips
+    bool has_rig() const { return kind != AnimationKind::sequence; }
+    /// Returns whether the surface can move: false for a mesh alone (see read_surface).
+    bool moves() const { return has_rig() || frame_count() > 0; }
 };
+
+/// The shape of an animated surface at one time.
+struct SurfaceShape {
+    std::optional<Pose> pose;          ///< of its rig
+    std::span<const Vec3> vertices{};  ///< of a surface without a rig; empty for rigs
+};
+/// Returns the shape at a frame, or at rest if there is no such frame. The animation must outlive it.
+SurfaceShape shape_at(const Animation& animation, std::size_t clip, std::size_t frame);
+/// Computes the vertices of a shape of the animation.
+std::vector<Vec3> vertices_of(const Animation& animation, const SurfaceShape& shape);
 
 /// Returns the pose in which every node and weight is at rest.
 Pose rest_pose(const Rig& rig);

@@ -10,6 +10,7 @@
 #include "host/core/errors.h"
 #include "host/core/evenly_spaced.h"
 #include "host/core/parallel.h"
+#include "host/mesh/editing/drawable_mesh.h"
 #include "host/mesh/io/io_text.h"
 
 namespace exemplar {
@@ -114,23 +115,17 @@ void check_rest(Animation& animation) {
         if (v >= rest.vertex_count()) fail(fmt::format("a vertex of the file is welded to vertex {}", v));
     for (std::size_t v = 0; v < rest.vertex_count(); ++v)
         if (!rest.vertices[v].allFinite()) fail(fmt::format("vertex {} of the rest shape is not finite", v));
-    std::vector<Face> kept;
-    std::vector<std::uint32_t> kept_source;
-    for (std::uint32_t f = 0; f < rest.face_count(); ++f) {
-        const auto& [a, b, c] = rest.faces[f];
-        if (a == b || b == c || c == a) continue;
-        kept.push_back(rest.faces[f]);
-        if (!rest.source_face.empty()) kept_source.push_back(rest.source_face[f]);
-    }
-    if (kept.empty()) fail("the surface has no faces");
-    if (kept.size() == rest.face_count()) return;
+    const bool is_of_triangles = rest.source_face.empty();
+    const std::size_t removed = remove_collapsed_faces(rest);
+    if (rest.faces.empty()) fail("the surface has no faces");
+    if (removed == 0) return;
     animation.warnings.push_back(
         fmt::format("{} faces without area in any frame were left out (two of their corners "
                     "are one place)",
-                    rest.face_count() - kept.size()));
-    if (rest.source_face.empty()) rest.source_face_count = static_cast<std::uint32_t>(kept.size());
-    rest.faces = std::move(kept);
-    rest.source_face = std::move(kept_source);
+                    removed));
+    if (!is_of_triangles) return;
+    rest.source_face.clear();
+    rest.source_face_count = static_cast<std::uint32_t>(rest.face_count());
 }
 
 void check_counts(const Animation& animation, const Clip& clip) {

@@ -31,7 +31,6 @@ struct FollowParameters {
     float width;     // of the picture, in pixels
     float height;
     uint keeps;  // 0: the texture of every chain starts at the chain's start
-    uint unused;
 };
 
 // How lines differ from those of the previous frame: sums in units of 1 / k_flicker_unit.
@@ -46,7 +45,7 @@ const float k_flicker_unit = 4.0f;
 
 #ifdef __cplusplus
 EXEMPLAR_LAYOUT(ChainVotes, balance, along_cos, along_sin, against_cos, against_sin)
-EXEMPLAR_LAYOUT(FollowParameters, matrix, width, height, keeps, unused)
+EXEMPLAR_LAYOUT(FollowParameters, matrix, width, height, keeps)
 EXEMPLAR_LAYOUT(FlickerSums, drawn, kept, appeared, slip, stretch)
 #endif
 

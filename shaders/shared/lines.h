@@ -33,8 +33,6 @@ struct FieldParameters {
     vec4 high_thresholds;  // of families 4 to 7
     uint vertices;
     float feature_size;
-    uint unused0;
-    uint unused1;
 };
 
 // Codes of what is across the sides of a face: exemplar::k_no_neighbor, k_nonmanifold_neighbors and k_max_neighbor_code.
@@ -95,8 +93,6 @@ struct LinkParameters {
     vec4 matrix[4];  // columns: world to clip space
     float width;     // of the picture, in pixels
     float height;
-    uint unused0;
-    uint unused1;
 };
 
 // A point of a chain in the picture. The points of a chain are contiguous.
@@ -135,9 +131,6 @@ struct StrokeLook {
     float fade;
     uint texture;  // 0: none; else 1 + its first texel
     float period;  // of the texture, in pixels along the stroke
-    float unused0;
-    float unused1;
-    float unused2;
 };
 // The window in which points are smoothed, see exemplar::make_strokes.
 const int k_min_smoothing_window = 3;  // pixels
@@ -159,9 +152,6 @@ struct StrokeParameters {
     uint parallel;
     uint curved;  // whether there is curvature
     uint closed;  // whether the surface has no boundary
-    uint unused0;
-    uint unused1;
-    uint unused2;
 };
 
 struct StrokeDrawParameters {
@@ -170,16 +160,15 @@ struct StrokeDrawParameters {
 };
 
 #ifdef __cplusplus
-EXEMPLAR_LAYOUT(FieldParameters, eye, low_thresholds, high_thresholds, vertices, feature_size, unused0, unused1)
+EXEMPLAR_LAYOUT(FieldParameters, eye, low_thresholds, high_thresholds, vertices, feature_size)
 EXEMPLAR_LAYOUT(FaceLineParameters, faces, vertices, crease_angle, max_segments)
 EXEMPLAR_LAYOUT(LineSegmentRecord, face, kind, first_strength, second_strength, ends)
 EXEMPLAR_LAYOUT(ScanParameters, groups, most)
-EXEMPLAR_LAYOUT(LinkParameters, matrix, width, height, unused0, unused1)
+EXEMPLAR_LAYOUT(LinkParameters, matrix, width, height)
 EXEMPLAR_LAYOUT(LinePoint, x, y, depth, parameter, kind, chain, segment, strength)
-EXEMPLAR_LAYOUT(StrokeLook, color, width, epsilon, least, most, taper, threshold, fade, texture, period, unused0,
-                unused1, unused2)
+EXEMPLAR_LAYOUT(StrokeLook, color, width, epsilon, least, most, taper, threshold, fade, texture, period)
 EXEMPLAR_LAYOUT(StrokeParameters, eye, axis, width, height, near_term, far_term, feature_size, unit_depth, parallel,
-                curved, closed, unused0, unused1, unused2)
+                curved, closed)
 EXEMPLAR_LAYOUT(StrokeDrawParameters, width, height)
 #endif
 

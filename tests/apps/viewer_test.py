@@ -88,6 +88,14 @@ class Headless(Viewer):
         said = self.view("inside.off", "--headless", "--size", "64x64").stderr
         self.assertIn("inside out", said)
 
+    def test_vertices_at_one_place_are_joined(self):
+        corners = [vertex for triangle in CUBE_TRIANGLES for vertex in triangle]
+        write_off(self.folder / "joined.off", [CUBE[v] for v in dict.fromkeys(corners)],
+                  [tuple(list(dict.fromkeys(corners)).index(v) for v in triangle) for triangle in CUBE_TRIANGLES])
+        write_off(self.folder / "apart.off", [CUBE[v] for v in corners], [(3 * i, 3 * i + 1, 3 * i + 2) for i in range(12)])
+        look = ["--size", "64x64", "--lines", "contours,creases,boundaries"]
+        self.assertTrue(self.picture("apart.off", *look) == self.picture("joined.off", *look))
+
     def test_learned_curvature_is_shown_beside_that_of_every_frame(self):
         self.call("curvature", "train", "figure_001.glb", "--out", "m.safetensors", "--augment", "40")
         size = ["--size", "200x100", "--paint", "mean", "--first-frame", "4", "--lines", "none"]

@@ -321,7 +321,7 @@ TEST(SmoothedCurvatureParity, TheScaleOfTheBindSpaceDoesNotMatter) {
     const CurvatureOptions options{.smoothing = 1, .smoothing_unit = 0.25};
     GpuAnimatedSurface moving(surface, tube, options);
     Stream stream(shared_device());
-    moving.record(stream, tube.clips[0].poses[1], CurvatureSource::estimated);
+    moving.record(stream, shape_at(tube, 0, 1), CurvatureSource::estimated);
     stream.finish();
     const GpuCurvedSurface snapshot = moving.snapshot();
     TriangleMesh frame = tube.rest;

@@ -67,6 +67,9 @@ struct DeviceSurface {
     explicit DeviceSurface(const Surface& surface)
         : vertices(test_support::upload_vertices(shared_device(), surface.vertices)),
           normals(test_support::upload_vertices(shared_device(), surface.normals)) {}
+    GpuLearnedCurvature::Frame frame(const Rig& rig, const Pose& pose) const {
+        return {.vertices = vertices, .normals = normals, .rig = &rig, .pose = &pose};
+    }
     Buffer vertices, normals;
 };
 
@@ -79,7 +82,7 @@ void expect_learned_parity(const Shape& shape, const ReprojectionOptions& option
         const Pose pose = random.pose();
         const Surface surface = random.surface(pose, anywhere);
         const DeviceSurface on_device(surface);
-        curvature.record(stream, random.rig, pose, on_device.vertices, on_device.normals);
+        curvature.record(stream, on_device.frame(random.rig, pose));
         stream.finish();
         expect_near_learned(test_support::download_curvature(curvature),
                             reference.evaluate(random.rig, pose, surface.vertices, surface.normals),
@@ -138,7 +141,7 @@ TEST(LearnedCurvatureParity, OppositeNormalsAndUprightEdgesStayFinite) {
         Stream stream(shared_device());
         const Surface surface = random.degenerate_surface(pose);
         const DeviceSurface on_device(surface);
-        curvature.record(stream, random.rig, pose, on_device.vertices, on_device.normals);
+        curvature.record(stream, on_device.frame(random.rig, pose));
         stream.finish();
         const VertexCurvature actual = test_support::download_curvature(curvature);
         if (set == AttributeSet::tensor)
@@ -179,7 +182,9 @@ TEST(LearnedCurvatureParity, TrainedOnARig) {
             for (const Pose& pose : {tube.clips[1].poses[0], tube.clips[1].poses[7]}) {
                 poser.record(stream, pose);
                 normals.record(stream, poser.vertices());
-                curvature.record(stream, tube.rig, pose, poser.vertices(), normals.normals());
+                curvature.record(
+                    stream,
+                    {.vertices = poser.vertices(), .normals = normals.normals(), .rig = &tube.rig, .pose = &pose});
                 stream.finish();
                 expect_near_learned(test_support::download_curvature(curvature),
                                     reference.evaluate(tube.rig, pose, download_vectors(poser.vertices()),
@@ -218,7 +223,8 @@ TEST(LearnedCurvatureParity, TrainedOnASequence) {
         frame.vertices = vertices;
         const std::vector<Vec3> normals = vertex_normals(frame);
         const DeviceSurface on_device({vertices, normals});
-        curvature.record(stream, vertices, on_device.vertices, on_device.normals);
+        curvature.record(stream,
+                         {.vertices = on_device.vertices, .normals = on_device.normals, .host_vertices = vertices});
         stream.finish();
         expect_near_learned(test_support::download_curvature(curvature), reference.evaluate(vertices, normals));
     }
@@ -265,7 +271,7 @@ TEST(LearnedCurvatureParity, ReadsLocalShapeOnTheDevice) {
     for (const std::size_t frame : {3u, 20u}) {
         const MovedSheet moved(sheet, frame);
         state.record(stream, moved.on_device->vertices, moved.on_device->normals);
-        curvature.record(stream, moved.on_device->vertices, moved.on_device->normals);
+        curvature.record(stream, {.vertices = moved.on_device->vertices, .normals = moved.on_device->normals});
         stream.finish();
         std::vector<Eigen::Matrix3f> rotations;
         model.segments.rotations_of_sequence(moved.mesh.vertices, rotations);
@@ -292,7 +298,7 @@ TEST(LearnedCurvatureParity, LocalShapeIsOfSequencesThatAreWhole) {
     GpuLearnedCurvature read_on_host(shared_device(), trained(sheet, {.learner = Learner::additive}));
     Stream stream(shared_device());
     const Buffer vertices = test_support::upload_vertices(shared_device(), sheet.rest.vertices);
-    EXPECT_THROW(read_on_host.record(stream, vertices, vertices), UsageError);
+    EXPECT_THROW(read_on_host.record(stream, {.vertices = vertices, .normals = vertices}), UsageError);
     CurvatureModel damaged = trained(sheet, {.learner = Learner::local});
     damaged.segments.triangles.pop_back();
     EXPECT_THROW(GpuLearnedCurvature(shared_device(), damaged), ModelError);
@@ -305,17 +311,22 @@ TEST(LearnedCurvatureParity, RefusesWhatIsOfAnotherModel) {
     const Buffer all = test_support::upload_vertices(shared_device(), std::vector<Vec3>(200, Vec3::UnitZ())),
                  few = test_support::upload_vertices(shared_device(), std::vector<Vec3>(199, Vec3::UnitZ()));
     const Pose pose = random.pose();
-    EXPECT_THROW(curvature.record(stream, random.rig, pose, all, few), UsageError);
-    EXPECT_THROW(curvature.record(stream, random.rig, pose, few, all), UsageError);
-    EXPECT_THROW(curvature.record(stream, std::vector<Vec3>(200), all, all), UsageError);
+    const auto record = [&](GpuLearnedCurvature& to, const Rig& rig, const Pose& in, const Buffer& vertices,
+                            const Buffer& normals) {
+        to.record(stream, {.vertices = vertices, .normals = normals, .rig = &rig, .pose = &in});
+    };
+    EXPECT_THROW(record(curvature, random.rig, pose, all, few), UsageError);
+    EXPECT_THROW(record(curvature, random.rig, pose, few, all), UsageError);
+    const std::vector<Vec3> on_host(200);
+    EXPECT_THROW(curvature.record(stream, {.vertices = all, .normals = all, .host_vertices = on_host}), UsageError);
     Rig shorter = random.rig;
     shorter.nodes.pop_back();
-    EXPECT_THROW(curvature.record(stream, shorter, pose, all, all), UsageError);
+    EXPECT_THROW(record(curvature, shorter, pose, all, all), UsageError);
     RandomModel segmented({.set = AttributeSet::principal}, 5);
     GpuLearnedCurvature principal(shared_device(), segmented.model);
     shorter = segmented.rig;
     shorter.bones.resize(5);
-    EXPECT_THROW(principal.record(stream, shorter, segmented.pose(), all, all), UsageError);
+    EXPECT_THROW(record(principal, shorter, segmented.pose(), all, all), UsageError);
 
     CurvatureModel bad = random.model;
     bad.regression.components.back().first_feature += 100;
@@ -348,7 +359,7 @@ TEST(LearnedCurvatureParity, ManyFrames) {
         frames.push_back({pose, DeviceSurface(random.surface(pose, false))});
     }
     const auto run = [&](const Frame& frame) {
-        curvature.record(stream, random.rig, frame.pose, frame.surface.vertices, frame.surface.normals);
+        curvature.record(stream, frame.surface.frame(random.rig, frame.pose));
         stream.finish();
         return std::array{download(curvature.first()), download(curvature.second()), download(curvature.derivative())};
     };

@@ -175,7 +175,7 @@ struct Additive {
         for (NodeTransform& node : posed.nodes) node.rotation = Eigen::AngleAxisf(0.02f, Vec3::UnitZ());
     }
     void run() {
-        curvature.record(stream, rig, posed, device_vertices, device_normals);
+        curvature.record(stream, {.vertices = device_vertices, .normals = device_normals, .rig = &rig, .pose = &posed});
         stream.finish();
     }
     std::vector<Difference> differences() const {
@@ -213,7 +213,7 @@ struct Local {
           stream(device, &profiler),
           curvature(device, model) {}
     void run() {
-        curvature.record(stream, device_vertices, device_normals);
+        curvature.record(stream, {.vertices = device_vertices, .normals = device_normals});
         stream.finish();
     }
     std::vector<Difference> differences() const {

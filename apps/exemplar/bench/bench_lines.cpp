@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include "apps/exemplar/bench/bench_rows.h"
-#include "apps/exemplar/lines/drawn_animation.h"
 #include "apps/exemplar/lines/frames_view.h"
-#include "gpu/lines/extraction.h"
+#include "gpu/lines/animation_renderer.h"
 #include "host/core/freed_memory.h"
 
 namespace exemplar {
@@ -30,14 +29,13 @@ void bench_lines(BenchContext& context, const std::function<void(const BenchRow&
     const BenchCharacter& character = context.character();
     const CurvatureModel& model = context.curvature_model();
     Device device({.name = context.device_name()});
-    DrawnAnimation drawn(device, character.unseen, model.truth);
-    drawn.set_model(model);
+    AnimationRenderer renderer(device, character.unseen, model.truth, &model);
     const LinePicture picture = picture_of(character);
     Stream stream(device);
     const auto draw_all = [&](CurvatureSource from) {
         for (const FrameRef& frame : character.unseen_frames) {
-            drawn.record(stream, frame, from);
-            drawn.renderer().record(stream, drawn.snapshot(), picture);
+            renderer.record(stream, frame, from);
+            renderer.view().record(stream, renderer.snapshot(), picture);
             stream.finish();
         }
     };

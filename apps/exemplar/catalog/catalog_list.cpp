@@ -5,6 +5,7 @@
 #include <ostream>
 
 #include "apps/exemplar/catalog/catalog_output.h"
+#include "host/core/json_text.h"
 #include "apps/exemplar/catalog/catalog_runs.h"
 #include "apps/exemplar/commands.h"
 #include "host/core/files.h"

@@ -1,8 +1,9 @@
 #include "apps/exemplar/catalog/catalog_output.h"
-#include "host/core/json_text.h"
 
 #include <algorithm>
 #include <ostream>
+
+#include "host/core/json_text.h"
 
 namespace exemplar {
 namespace {
@@ -25,10 +26,6 @@ std::string csv_field(std::string_view text) {
     std::string field(text);
     if (formula) field.insert(field.begin(), '\'');
     return field.find_first_of(",\"\r\n") == std::string::npos ? field : in_marks(field, '"');
-}
-
-std::string json_text(const nlohmann::json& json) {
-    return json_text(json);
 }
 
 void write_json_list(std::ostream& out,

@@ -11,8 +11,6 @@ namespace exemplar {
 /// Returns a text as a field of a CSV file (RFC 4180), quoted if needed. An apostrophe precedes what a spreadsheet
 /// would take for a formula, as file names may come from anywhere.
 std::string csv_field(std::string_view text);
-/// Returns JSON on one line; bytes that are not UTF-8 become U+FFFD.
-std::string json_text(const nlohmann::json& json);
 /// Writes a list while its values are made, one value a line: `fill` is called once, with a function that writes a
 /// value.
 void write_json_list(std::ostream& out,

@@ -8,7 +8,7 @@ namespace {
 
 CurvatureOptions measured_curvature(const LinesJob& job, const LinesSource& source) {
     if (source.model()) return source.model()->truth;
-    return {.derivatives = true, .smoothing = job.source.smoothing};
+    return {.derivatives = true, .smoothing = job.source.measuring.smoothing};
 }
 
 }  // namespace
@@ -16,11 +16,11 @@ CurvatureOptions measured_curvature(const LinesJob& job, const LinesSource& sour
 FrameDrawer::FrameDrawer(const LinesJob& job, LinesSource& source, const StrokeView& view)
     : source_(source),
       device_({.name = job.common.device}),
-      drawn_(device_, source.animation(), measured_curvature(job, source)),
+      renderer_(device_, source.animation(), measured_curvature(job, source),
+                source.model() ? &*source.model() : nullptr),
       stream_(device_) {
-    if (source.model()) drawn_.set_model(*source.model());
     const DeviceStyle style = device_style(job.style);
-    drawn_.renderer().set_textures(style.textures);
+    renderer_.view().set_textures(style.textures);
     picture_.view = view;
     apply_style(style, job.types, picture_);
 }
@@ -30,9 +30,9 @@ Image FrameDrawer::draw(std::size_t frame) {
 }
 
 Image FrameDrawer::draw(std::size_t frame, CurvatureSource from) {
-    drawn_.record(stream_, source_.frames()[frame], from);
-    Image image = drawn_.renderer().render(stream_, drawn_.snapshot(), picture_);
-    flicker_.push_back(drawn_.renderer().coherence().flicker());
+    renderer_.record(stream_, source_.frames()[frame], from);
+    Image image = renderer_.view().render(stream_, renderer_.snapshot(), picture_);
+    flicker_.push_back(renderer_.view().coherence().flicker());
     return image;
 }
 
@@ -48,13 +48,13 @@ LineFlicker FrameDrawer::flicker() const {
     return mean;
 }
 
-FaceTypes FrameDrawer::face_types() const {
-    return download_face_types(drawn_.renderer().strokes().chains().lines());
+FaceTypes FrameDrawer::face_types() {
+    return download_face_types(renderer_.view().strokes().chains().lines());
 }
 
 FaceTypes FrameDrawer::face_types_from(const Vec3& eye) {
-    if (!elsewhere_) elsewhere_.emplace(drawn_.line_surface());
-    elsewhere_->record(stream_, drawn_.snapshot(), picture_.families,
+    if (!elsewhere_) elsewhere_.emplace(renderer_.line_surface());
+    elsewhere_->record(stream_, renderer_.snapshot(), picture_.families,
                        {.eye = {eye.x(), eye.y(), eye.z(), 1},
                         .feature_size = picture_.view.feature_size,
                         .thresholds = picture_.thresholds});

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/exemplar/lines/drawn_animation.h"
 #include "apps/exemplar/lines/lines_job.h"
+#include "gpu/lines/animation_renderer.h"
 #include "gpu/lines/extraction.h"
 #include "gpu/runtime/device/device.h"
 #include "host/imaging/image.h"
@@ -27,7 +27,7 @@ class FrameDrawer {
     LineFlicker flicker() const;
 
     /// Returns the line types of the faces in the last picture.
-    FaceTypes face_types() const;
+    FaceTypes face_types();
     /// The same as seen from another eye.
     FaceTypes face_types_from(const Vec3& eye);
 
@@ -36,7 +36,7 @@ class FrameDrawer {
   private:
     LinesSource& source_;
     Device device_;
-    DrawnAnimation drawn_;
+    AnimationRenderer renderer_;
     Stream stream_;
     LinePicture picture_;
     std::vector<LineFlicker> flicker_;

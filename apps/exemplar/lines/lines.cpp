@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 
 #include "apps/exemplar/arguments.h"
@@ -13,6 +12,7 @@
 #include "host/core/errors.h"
 #include "host/core/freed_memory.h"
 #include "host/core/text.h"
+#include "host/mesh/io/io_text.h"
 
 namespace exemplar {
 namespace {
@@ -117,10 +117,10 @@ LinesJob job_of(const LinesArguments& arguments) {
                                                                 : "width";
     job.svg.fading = choice<SvgFading>(fading, "--fading", fading_words());
     job.svg.background = !arguments.no_background;
-    job.source.derivatives = std::any_of(job.types.begin(), job.types.end(), needs_curvature);
+    job.source.measuring.derivatives = std::any_of(job.types.begin(), job.types.end(), needs_curvature);
     const bool on_host = job.output == LinesOutput::svg;
     if (on_host && std::find(job.types.begin(), job.types.end(), LineType::creases) != job.types.end())
-        job.source.split_angle = job.style.thresholds(LineType::creases).crease_angle;
+        job.source.measuring.split_angle = job.style.thresholds(LineType::creases).crease_angle;
     job.source.first_frame_only = job.output == LinesOutput::svg || job.output == LinesOutput::picture;
     if (arguments.no_background) job.style.background.reset();
     job.source.quiet = job.common.quiet;
@@ -167,7 +167,7 @@ void add_look_options(CLI::App& command, LinesArguments& arguments) {
         ->delimiter(',')
         ->allow_extra_args(false);
     command
-        .add_option("--smoothing", arguments.job.source.smoothing,
+        .add_option("--smoothing", arguments.job.source.measuring.smoothing,
                     "width, in edge lengths, that measured curvature is smoothed with")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 100.0));
@@ -197,9 +197,7 @@ void add_svg_options(CLI::App& command, LinesArguments& arguments) {
 }  // namespace
 
 LinesOutput lines_output_of(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = mesh_io::lower_case(path.extension().string());
     if (extension == ".svg") return LinesOutput::svg;
     if (extension == ".png") return LinesOutput::picture;
     for (const char* video : {".mp4", ".mkv", ".webm", ".mov"})

@@ -2,77 +2,36 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
-
 #include "apps/exemplar/arguments.h"
-#include "host/animation/read_animation.h"
+#include "host/animation/read_surface.h"
 #include "host/core/errors.h"
-#include "host/mesh/io/io.h"
 
 namespace exemplar {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// A mesh as an animation of one frame.
-Animation still_of(const fs::path& path) {
-    MeshFile file = read_mesh(path);
-    DrawableMesh drawable = drawable_mesh(file.mesh, path.string());
-    Animation animation;
-    animation.name = path.string();
-    animation.rest = std::move(drawable.mesh);
-    animation.warnings = std::move(file.warnings);
-    if (drawable.turned) animation.warnings.emplace_back("the surface is inside out; its faces were turned around");
+/// Adds a clip of the shape at rest.
+void add_rest_clip(Animation& animation, const std::string& name) {
     Clip clip;
-    clip.name = path.stem().string();
-    clip.frames.push_back(animation.rest.vertices);
+    clip.name = name;
+    if (animation.has_rig())
+        clip.poses.push_back(rest_pose(animation.rig));
+    else
+        clip.frames.push_back(animation.rest.vertices);
     animation.clips.push_back(std::move(clip));
-    return animation;
-}
-
-/// A clip of the pose at rest, for a rig that has none.
-void add_rest_clip(Animation& animation) {
-    Clip clip;
-    clip.name = "rest";
-    clip.poses.push_back(rest_pose(animation.rig));
-    animation.clips.push_back(std::move(clip));
-}
-
-bool is_gltf(const fs::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension == ".glb" || extension == ".gltf";
-}
-
-/// Folders and glTF files with something that moves are animations, all else is a mesh.
-bool moves(const LinesSourceArguments& arguments, Animation& animation) {
-    const fs::path& path = arguments.input;
-    require_input(path);
-    const bool folder = fs::is_directory(path);
-    if (!folder && !is_gltf(path)) return false;
-    try {
-        animation = read_animation(path, {.frames_per_second = arguments.frames_per_second});
-        return true;
-    } catch (const MeshError&) {
-        // A glTF file may also hold a plain mesh. If it holds neither, reading that says what is wrong.
-        if (folder || !arguments.model.empty()) throw;
-    }
-    return false;
 }
 
 }  // namespace
 
 LinesSource::LinesSource(const LinesSourceArguments& arguments) : arguments_(arguments) {
-    animated_ = moves(arguments, animation_);
-    if (!animated_) {
-        if (!arguments.model.empty())
-            throw UsageError(fmt::format("--model is for animations: {} is a mesh, whose curvature is measured",
-                                         arguments.input.string()));
-        animation_ = still_of(arguments.input);
+    SurfaceFile file = read_surface(arguments.input, {.frames_per_second = arguments.frames_per_second});
+    animation_ = std::move(file.animation);
+    animated_ = animation_.moves();
+    if (!animated_ && !arguments.model.empty()) {
+        if (!file.why_still.empty()) throw MeshError(file.why_still);
+        throw UsageError(fmt::format("--model is for animations: {} is a mesh, whose curvature is measured",
+                                     arguments.input.string()));
     }
-    if (animation_.clips.empty()) add_rest_clip(animation_);
+    if (animation_.clips.empty()) add_rest_clip(animation_, animated_ ? "rest" : arguments.input.stem().string());
     if (!arguments.quiet)
         for (const std::string& warning : animation_.warnings)
             fmt::print(stderr, "warning: {}: {}\n", arguments.input.string(), warning);
@@ -85,9 +44,9 @@ LinesSource::LinesSource(const LinesSourceArguments& arguments) : arguments_(arg
         require_compatible(*model_, animation_);
         evaluator_ = std::make_unique<CurvatureEvaluator>(*model_);
     }
-    const DrawableOptions options{arguments.smoothing, arguments.derivatives,
-                                  model_ ? std::nullopt : arguments.split_angle};
-    drawable_ = std::make_unique<DrawableSurface>(faces(), vertices(0), options);
+    DrawableOptions measuring = arguments.measuring;
+    if (model_) measuring.split_angle.reset();
+    drawable_ = std::make_unique<DrawableSurface>(faces(), vertices(0), measuring);
     if (model_) estimator_ = std::make_unique<CurvatureEstimator>(faces(), vertex_count());
 }
 
@@ -99,10 +58,8 @@ std::vector<Vec3> LinesSource::vertices(std::size_t frame) const {
 void LinesSource::predict(std::size_t frame) {
     estimator_->estimate(vertices_, {.derivatives = false});  // for its normals
     const FrameRef& ref = frames_[frame];
-    const Clip& clip = animation_.clips[ref.clip];
-    curvature_ = clip.poses.empty()
-                     ? &evaluator_->evaluate(vertices_, estimator_->normals())
-                     : &evaluator_->evaluate(animation_.rig, clip.poses[ref.frame], vertices_, estimator_->normals());
+    curvature_ = &evaluator_->evaluate(animation_.rig, shape_at(animation_, ref.clip, ref.frame), vertices_,
+                                       estimator_->normals());
 }
 
 LineSurface LinesSource::surface(std::size_t frame) {

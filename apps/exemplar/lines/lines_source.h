@@ -23,10 +23,7 @@ struct LinesSourceArguments {
     FrameArguments frames;
     bool first_frame_only = false;  ///< if no frames are selected
     double frames_per_second = 30;
-    double smoothing = 1;     ///< of measured curvature, in edge lengths
-    bool derivatives = true;  ///< of curvature; some line types need them
-    /// Radians. Measured curvature and normals ignore the surface across edges of a larger angle; none: cuts no edge.
-    std::optional<float> split_angle;
+    DrawableOptions measuring{};  ///< if there is no model
     bool quiet = false;
 };
 

@@ -39,8 +39,8 @@ void FrameRenderer::record(const ViewerState& state, ViewSize size) {
     for (std::size_t i = 0; i < parts; ++i) extents.push_back(part_of(size, parts, i));
     shown_.clear();
     if (!scene_) return record_empty(state, extents.front());
-    scene_->record(stream_, state.moment(), state.camera, extents, state.settings);
-    for (std::size_t i = 0; i < parts; ++i) shown_.push_back(&scene_->view(i).canvas());
+    scene_->record(stream_, state.shape(), state.camera, extents, state.settings);
+    for (std::size_t i = 0; i < parts; ++i) shown_.push_back(&scene_->canvas(i));
 }
 
 void FrameRenderer::record_empty(const ViewerState& state, VkExtent2D extent) {

@@ -12,7 +12,6 @@
 #include "host/hatching/view_hatching.h"
 #include "host/imaging/png.h"
 #include "host/mesh/editing/loose_vertices.h"
-#include "host/mesh/editing/weld.h"
 
 namespace exemplar {
 namespace {
@@ -51,9 +50,7 @@ HatchedStill hatched_still(const ViewerState& state, ViewSize size, const std::s
     HatchedStill still;
     still.hatching = state.hatching();
     still.mesh = state.document().animation.rest;
-    still.mesh.vertices = vertices_at(state.document(), state.moment());
-    // Parts that touch in one pose may separate in the next, so only single meshes are welded.
-    if (state.document().animation.clips.empty()) still.mesh = welded(still.mesh);
+    still.mesh.vertices = vertices_of(state.document().animation, state.shape());
     still.mesh = without_loose_vertices(still.mesh);
     still.view.camera = state.camera.camera(size);
     still.view.light = default_light(still.view.camera);

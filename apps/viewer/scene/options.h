@@ -7,6 +7,7 @@
 
 #include "apps/viewer/scene/view_settings.h"
 #include "apps/viewer/scene/viewer_state.h"
+#include "gpu/runtime/device/instance.h"
 
 namespace exemplar {
 

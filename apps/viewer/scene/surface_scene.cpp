@@ -2,84 +2,92 @@
 
 #include <algorithm>
 
-#include "host/curvature/state/samples.h"
+#include "host/curvature/learning/training.h"
 #include "host/mesh/curvature/curvature_estimator.h"
 
 namespace exemplar {
 namespace {
 
-// Default of training, used without a model; see CurvatureTraining.
-constexpr CurvatureOptions k_measured{.derivatives = true, .smoothing = 1};
-
-float measured_feature_size(const Document& document) {
-    const std::vector<Vec3> vertices = vertices_at(document, frame_shape_of(document, 0, 0));
-    CurvatureEstimator estimator(document.animation.rest.faces, vertices.size());
-    CurvatureOptions options = k_measured;
+float measured_feature_size(const Animation& animation) {
+    const std::vector<Vec3> vertices = vertices_of(animation, shape_at(animation, 0, 0));
+    CurvatureEstimator estimator(animation.rest.faces, vertices.size());
+    CurvatureOptions options = measuring_options(nullptr);
     options.derivatives = false;
     return feature_size(vertices, estimator.estimate(vertices, options));
 }
 
-}  // namespace
-
-FrameShape frame_shape_of(const Document& document, std::size_t clip, std::size_t frame) {
-    const Animation& animation = document.animation;
-    const bool exists = clip < animation.clips.size() && frame < animation.clips[clip].size();
-    if (document.posable()) return {exists ? animation.clips[clip].poses[frame] : rest_pose(animation.rig)};
-    if (!exists) return {.pose = {}, .vertices = animation.rest.vertices};
-    return {.pose = {}, .vertices = animation.clips[clip].frames[frame]};
+PaintLook look_of(const ViewSettings& settings, float feature_size) {
+    PaintLook look{.paint = settings.paint,
+                   .light = settings.light,
+                   .plain = settings.plain,
+                   .full_color_curvature = settings.curvature_range / std::max(feature_size, 1e-20f),
+                   .background = settings.background};
+    // Under lines the surface has the headlight, as in styles, so that lines stand out.
+    if (look.light == SurfaceLight::smooth && settings.shows_lines()) look.light = SurfaceLight::headlight;
+    return look;
 }
 
-std::vector<Vec3> vertices_at(const Document& document, const FrameShape& snapshot) {
-    const Animation& animation = document.animation;
-    if (!snapshot.pose) return {snapshot.vertices.begin(), snapshot.vertices.end()};
-    std::vector<Vec3> vertices;
-    pose_vertices(animation.rig, animation.rest.vertices, *snapshot.pose, vertices);
-    return vertices;
+}  // namespace
+
+CurvatureOptions measuring_options(const CurvatureModel* model) {
+    CurvatureOptions options = model ? model->truth : CurvatureTraining{}.truth;
+    options.derivatives = true;
+    return options;
 }
 
 SurfaceScene::SurfaceScene(Device& device, const Document& document)
-    : document_(document), surface_(device, first_shape(document.animation)), line_surface_(surface_) {
-    animated_.emplace(surface_, document.animation, k_measured);
-}
+    : document_(document), renderer_(device, document.animation, measuring_options(nullptr)) {}
 
-// Measures curvature as in the model's training, so that both can be compared.
 void SurfaceScene::set_model(std::shared_ptr<const CurvatureModel> model) {
-    CurvatureOptions options = model ? model->truth : k_measured;
-    options.derivatives = true;
+    CurvatureOptions options = measuring_options(model.get());
     options.robust = RobustEstimator::none;  // which the device does not have
     if (model) require_compatible(*model, document_.animation);
-    animated_.emplace(surface_, document_.animation, options);
-    if (model) animated_->set_model(*model);
+    renderer_.set_curvature(options, model.get());
     feature_size_ = model ? model->feature_size : 0;
     model_ = std::move(model);
 }
 
 void SurfaceScene::find_feature_size() {
-    if (feature_size_ <= 0) feature_size_ = measured_feature_size(document_);
+    if (feature_size_ <= 0) feature_size_ = measured_feature_size(document_.animation);
 }
 
-void SurfaceScene::record_moment(Stream& stream, const FrameShape& snapshot, CurvatureSource source) {
-    if (snapshot.pose)
-        animated_->record(stream, *snapshot.pose, source);
-    else
-        animated_->record(stream, snapshot.vertices, source);
+void SurfaceScene::prepare_views(std::size_t count, const ViewSettings& settings) {
+    if (style_version_ != settings.style_version) {
+        style_ = device_style(settings.style);
+        style_version_ = settings.style_version;
+        styled_views_ = 0;
+    }
+    for (; !document_.face_colors.empty() && colored_views_ < count; ++colored_views_)
+        renderer_.view(colored_views_).set_face_colors(document_.face_colors);
+    for (; styled_views_ < count; ++styled_views_) renderer_.view(styled_views_).set_textures(style_.textures);
 }
 
-void SurfaceScene::record(Stream& stream, const FrameShape& snapshot, const OrbitCamera& camera,
+LinePicture SurfaceScene::picture_of(const OrbitCamera& camera, VkExtent2D extent, const ViewSettings& settings) const {
+    const ViewSize size{static_cast<int>(extent.width), static_cast<int>(extent.height)};
+    LinePicture picture;
+    apply_style(style_, settings.shown_lines(), picture);
+    picture.surface = look_of(settings, feature_size_);
+    picture.view = {.camera = camera.camera(size),
+                    .width = size.width,
+                    .height = size.height,
+                    .unit_depth = camera.distance(),
+                    .feature_size = feature_size_};
+    return picture;
+}
+
+void SurfaceScene::record(Stream& stream, const SurfaceShape& shape, const OrbitCamera& camera,
                           std::span<const VkExtent2D> extents, const ViewSettings& settings) {
     const bool curved = settings.needs_curvature();
-    const bool learned = has_model() && settings.source != ShownCurvature::estimated;
+    const bool learned = model_ && settings.source != ShownCurvature::estimated;
     if (curved) find_feature_size();
-    record_moment(stream, snapshot,
-                  !curved   ? CurvatureSource::none
-                  : learned ? CurvatureSource::learned
-                            : CurvatureSource::estimated);
-    while (views_.size() < extents.size()) views_.emplace_back(line_surface_, document_.face_colors);
+    renderer_.record(stream, shape,
+                     !curved   ? CurvatureSource::none
+                     : learned ? CurvatureSource::learned
+                               : CurvatureSource::estimated);
+    prepare_views(extents.size(), settings);
     for (std::size_t i = 0; i < extents.size(); ++i) {
-        if (i > 0) animated_->record_again(stream, CurvatureSource::estimated);
-        const ViewSize size{static_cast<int>(extents[i].width), static_cast<int>(extents[i].height)};
-        views_[i].record(stream, {.surface = animated_->snapshot(), .feature_size = feature_size_},
-                         {camera.camera(size), camera.distance()}, extents[i], settings);
+        if (i > 0) renderer_.record_again(stream, CurvatureSource::estimated);
+        renderer_.view(i).record(stream, renderer_.snapshot(), picture_of(camera, extents[i], settings));
     }
 }
 

@@ -1,35 +1,25 @@
 #pragma once
 
 #include <cstddef>
-#include <deque>
+#include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
-#include <vector>
 
 #include "apps/viewer/controls/orbit_camera.h"
 #include "apps/viewer/scene/document.h"
-#include "apps/viewer/scene/scene_view.h"
 #include "apps/viewer/scene/view_settings.h"
-#include "gpu/curvature/animated_surface.h"
+#include "gpu/lines/animation_renderer.h"
+#include "gpu/lines/device_style.h"
 #include "gpu/runtime/record/stream.h"
 #include "host/curvature/model/model.h"
 
 namespace exemplar {
 
-/// Shape of a surface at one frame: a pose of its rig, or vertices of a sequence.
-struct FrameShape {
-    std::optional<Pose> pose;
-    std::span<const Vec3> vertices{};  ///< empty for rigs
-};
+/// Returns how curvature is measured: as in the training of the model, so that both can be compared; null: by the
+/// defaults of training.
+CurvatureOptions measuring_options(const CurvatureModel* model);
 
-/// Returns the shape at a frame of a document. The document must outlive it.
-FrameShape frame_shape_of(const Document& document, std::size_t clip, std::size_t frame);
-/// Computes the vertices of a shape, on the host.
-std::vector<Vec3> vertices_at(const Document& document, const FrameShape& moment);
-
-/// A document on the device. Computes vertices, normals, curvature and pictures from a pose there, without copying
-/// any of them to the host.
+/// A document on the device, drawn with the viewer's settings in one view or in two side by side.
 class SurfaceScene {
   public:
     /// The document must outlive this. Throws MeshError or DeviceLimitError if the device cannot show it.
@@ -37,23 +27,24 @@ class SurfaceScene {
 
     /// Sets the model of learned curvature; null: none. Throws ModelError if it is of another surface.
     void set_model(std::shared_ptr<const CurvatureModel> model);
-    bool has_model() const { return model_ != nullptr; }
 
-    /// Records a frame in one view, or in two side by side with learned and estimated curvature.
-    void record(Stream& stream, const FrameShape& moment, const OrbitCamera& camera,
+    /// Records a frame in one view, or in two with learned and estimated curvature.
+    void record(Stream& stream, const SurfaceShape& shape, const OrbitCamera& camera,
                 std::span<const VkExtent2D> extents, const ViewSettings& settings);
-    SceneView& view(std::size_t index) { return views_[index]; }
+    /// Holds the picture of a view when the recorded work is done.
+    Canvas& canvas(std::size_t view) { return renderer_.view(view).canvas(); }
 
   private:
-    void record_moment(Stream& stream, const FrameShape& moment, CurvatureSource source);
     void find_feature_size();
+    void prepare_views(std::size_t count, const ViewSettings& settings);
+    LinePicture picture_of(const OrbitCamera& camera, VkExtent2D extent, const ViewSettings& settings) const;
     const Document& document_;
-    GpuSurface surface_;
-    GpuLineSurface line_surface_;
+    AnimationRenderer renderer_;
     std::shared_ptr<const CurvatureModel> model_;
-    std::optional<GpuAnimatedSurface> animated_;
-    float feature_size_ = 0;       // 0: not yet found
-    std::deque<SceneView> views_;  // as many as have been shown side by side
+    float feature_size_ = 0;  // 0: not yet found
+    DeviceStyle style_;
+    std::uint64_t style_version_ = 0;
+    std::size_t colored_views_ = 0, styled_views_ = 0;  // numbers of views that have the face colors, the textures
 };
 
 }  // namespace exemplar

@@ -20,14 +20,13 @@ bool is_labels_file(const fs::path& path) {
 }
 
 // Returns a ball around the surface in some frames of a clip.
-ViewBall ball_of(const Document& document, std::size_t clip) {
+ViewBall ball_of(const Animation& animation, std::size_t clip) {
     constexpr std::size_t k_frames = 12;
-    const std::size_t frames =
-        clip < document.animation.clips.size() ? document.animation.clips[clip].size() : std::size_t{1};
+    const std::size_t frames = clip < animation.clips.size() ? animation.clips[clip].size() : std::size_t{1};
     std::vector<Vec3> points;
     for (std::size_t i = 0; i < std::min(frames, k_frames); ++i) {
-        const std::vector<Vec3> vertices =
-            vertices_at(document, frame_shape_of(document, clip, i * frames / std::min(frames, k_frames)));
+        const std::size_t frame = i * frames / std::min(frames, k_frames);
+        const std::vector<Vec3> vertices = vertices_of(animation, shape_at(animation, clip, frame));
         points.insert(points.end(), vertices.begin(), vertices.end());
     }
     return ball_around(points);
@@ -74,7 +73,7 @@ void ViewerState::open_document(const fs::path& path, ViewSize view) {
     set_clip(0);
     fit(view);
     if (playback.frame_count() > 1) playback.play();
-    for (const std::string& remark : document_->remarks) messages.remark(remark);
+    for (const std::string& remark : document_->animation.warnings) messages.remark(remark);
 }
 
 void ViewerState::open_model(const fs::path& path) {
@@ -125,13 +124,13 @@ void ViewerState::set_model(std::shared_ptr<const CurvatureModel> model, std::st
 void ViewerState::fit(ViewSize view) {
     if (!document_) return;
     if (shows_both()) view.width = std::max(view.width / 2, 1);
-    camera.fit(ball_of(*document_, clip_), view);
+    camera.fit(ball_of(document_->animation, clip_), view);
 }
 
-FrameShape ViewerState::moment() const {
-    FrameShape moment = frame_shape_of(*document_, clip_, playback.frame());
-    if (moment.pose && pose.changed()) moment.pose = pose.apply(*moment.pose);
-    return moment;
+SurfaceShape ViewerState::shape() const {
+    SurfaceShape shape = shape_at(document_->animation, clip_, playback.frame());
+    if (shape.pose && pose.changed()) shape.pose = pose.apply(*shape.pose);
+    return shape;
 }
 
 bool ViewerState::perform(Action action, ViewSize view) {

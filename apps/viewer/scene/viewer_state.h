@@ -15,7 +15,6 @@
 #include "apps/viewer/scene/document.h"
 #include "apps/viewer/scene/hatching_job.h"
 #include "apps/viewer/scene/messages.h"
-#include "apps/viewer/scene/surface_scene.h"
 #include "apps/viewer/scene/view_settings.h"
 #include "host/curvature/model/model.h"
 
@@ -62,7 +61,7 @@ class ViewerState {
     std::shared_ptr<const HatchingStyle> hatching() const { return hatching_; }
     const std::string& hatching_name() const { return hatching_name_; }
     /// The shape at the current frame, with the changes of sliders.
-    FrameShape moment() const;
+    SurfaceShape shape() const;
 
     /// Whether learned and estimated curvature are shown side by side.
     bool shows_both() const {

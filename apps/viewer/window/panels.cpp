@@ -18,7 +18,7 @@ void draw_file(ViewerState& state, std::string& path, InterfaceRequests& request
     if (state.has_document()) {
         const Animation& animation = state.document().animation;
         ImGui::TextUnformatted(animation.name.c_str());
-        const std::string kind(state.document().moves() ? name_of(animation.kind) : "mesh");
+        const std::string kind(animation.moves() ? name_of(animation.kind) : "mesh");
         ImGui::TextDisabled("%s, %zu vertices, %zu faces", kind.c_str(), animation.rest.vertex_count(),
                             animation.rest.face_count());
     }
@@ -85,7 +85,7 @@ void draw_side_panel(ViewerState& state, const PanelSizes& sizes, std::string& p
         if (ImGui::CollapsingHeader("Curvature", ImGuiTreeNodeFlags_DefaultOpen)) draw_curvature(state, requests);
         if (ImGui::CollapsingHeader("Hatching", state.hatching() ? ImGuiTreeNodeFlags_DefaultOpen : 0))
             draw_hatching(state, requests);
-        if (state.document().posable() && ImGui::CollapsingHeader("Pose")) draw_pose(state);
+        if (state.document().animation.has_rig() && ImGui::CollapsingHeader("Pose")) draw_pose(state);
         ImGui::SetNextItemOpen(state.show_times);
         state.show_times = ImGui::CollapsingHeader("Frame times (G)");
         if (state.show_times) draw_frame_times(state);

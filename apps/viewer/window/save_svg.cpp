@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "apps/viewer/scene/surface_scene.h"
 #include "host/core/errors.h"
 #include "host/lines/drawing_svg.h"
 #include "host/mesh/curvature/curvature_estimator.h"
@@ -9,18 +10,10 @@
 namespace exemplar {
 namespace {
 
-// Returns the options by which SurfaceScene measures on the device.
-CurvatureOptions measuring_options(const ViewerState& state) {
-    CurvatureOptions options = state.model() ? state.model()->truth : CurvatureOptions{.smoothing = 1};
-    options.derivatives = true;
-    return options;
-}
-
-VertexCurvature learned_curvature(const ViewerState& state, const FrameShape& moment, std::span<const Vec3> vertices,
+VertexCurvature learned_curvature(const ViewerState& state, const SurfaceShape& shape, std::span<const Vec3> vertices,
                                   std::span<const Vec3> normals) {
     CurvatureEvaluator evaluator(*state.model());
-    return moment.pose ? evaluator.evaluate(state.document().animation.rig, *moment.pose, vertices, normals)
-                       : evaluator.evaluate(vertices, normals);
+    return evaluator.evaluate(state.document().animation.rig, shape, vertices, normals);
 }
 
 /// The surface at one frame, on the host.
@@ -31,12 +24,12 @@ struct HostFrame {
     CurvatureEstimator estimator;
     VertexCurvature estimated;
 
-    HostFrame(const ViewerState& state, const FrameShape& moment)
+    HostFrame(const ViewerState& state, const SurfaceShape& shape)
         : faces(state.document().animation.rest.faces),
-          vertices(vertices_at(state.document(), moment)),
+          vertices(vertices_of(state.document().animation, shape)),
           neighbors(build_face_neighbors(faces, vertices.size())),
           estimator(faces, vertices.size()),
-          estimated(estimator.estimate(vertices, measuring_options(state))) {}
+          estimated(estimator.estimate(vertices, measuring_options(state.model().get()))) {}
 
     Drawing draw(const ViewerState& state, const VertexCurvature& curvature, ViewSize size) const {
         const StrokeView view{
@@ -51,11 +44,11 @@ struct HostFrame {
 };
 
 Drawing drawing_of(const ViewerState& state, ViewSize size) {
-    const FrameShape moment = state.moment();
-    const HostFrame saved(state, moment);
+    const SurfaceShape shape = state.shape();
+    const HostFrame saved(state, shape);
     if (!state.model() || state.settings.source == ShownCurvature::estimated)
         return saved.draw(state, saved.estimated, size);
-    const VertexCurvature learned = learned_curvature(state, moment, saved.vertices, saved.estimator.normals());
+    const VertexCurvature learned = learned_curvature(state, shape, saved.vertices, saved.estimator.normals());
     if (!state.shows_both()) return saved.draw(state, learned, size);
     const ViewSize left{std::max(size.width / 2, 1), size.height};
     const ViewSize right{std::max(size.width - left.width, 1), size.height};

@@ -70,7 +70,8 @@ void draw_legend(const Document& document) {
 
 void draw_training(ViewerState& state) {
     if (!state.training) {
-        const bool can = state.document().posable() || state.document().animation.frame_count() >= k_min_poses;
+        const Animation& animation = state.document().animation;
+        const bool can = animation.has_rig() || animation.frame_count() >= k_min_poses;
         if (!can || !ImGui::Button(state.model() ? "Train again" : "Train a model", ImVec2(-1, 0))) return;
         try {
             state.start_training();

@@ -64,12 +64,37 @@ GpuLearnedCurvature::GpuLearnedCurvature(Device& device, const CurvatureModel& m
             device, k_rows_per_segment * sizeof(vec4) * rotations_.size() + sizeof(float) * predictor_.padded_inputs());
 }
 
-void GpuLearnedCurvature::record(Stream& stream, const Rig& rig, const Pose& pose, const Buffer& vertices,
-                                 const Buffer& normals) {
-    if (local_) return record(stream, vertices, normals);
-    if (!reader_.is_of_rig())
-        throw UsageError("curvature learned on a mesh sequence is not that of a pose; give vertices");
+void GpuLearnedCurvature::record(Stream& stream, const Frame& frame) {
+    check_buffers(frame);
+    if (local_) {
+        local_->record(stream, frame.vertices, frame.normals);
+        if (!is_identity_) predictor_.record(stream, local_->inputs(), 0);
+    } else {
+        if (reader_.is_of_rig())
+            read_pose(frame);
+        else
+            read_vertices(frame);
+        farthest_ = range_.prepare(reader_, x_);
+        stream.upload_with(state_, state_.bytes(), 0, [&](std::span<std::byte> memory) { write_state(memory); });
+        predictor_.record(stream, state_, k_rows_per_segment * 4 * rotations_.size());
+    }
+    reprojection_.record(
+        stream, local_ && is_identity_ ? local_->inputs() : predictor_.components(),
+        {.vertices = frame.vertices, .normals = frame.normals, .rotations = local_ ? local_->rotations() : state_});
+}
+
+void GpuLearnedCurvature::check_buffers(const Frame& frame) const {
+    const std::size_t vertices = frame.vertices.bytes() / sizeof(vec4), normals = frame.normals.bytes() / sizeof(vec4);
+    if (vertices != vertex_count_ || normals != vertex_count_)
+        throw UsageError(fmt::format("{} vertices and {} normals are not of a surface of {} vertices", vertices,
+                                     normals, vertex_count_));
+}
+
+void GpuLearnedCurvature::read_pose(const Frame& frame) {
+    if (!frame.pose) throw UsageError("curvature learned on a rig is not that of vertices; give a pose");
     const bool shapes = std::holds_alternative<WeightState>(reader_.source);
+    const Rig& rig = *frame.rig;
+    const Pose& pose = *frame.pose;
     if (rig.bones.size() < min_bones_ || pose.nodes.size() != rig.nodes.size() ||
         (shapes ? pose.weights.size() : pose.nodes.size()) < min_controls_)
         throw UsageError(
@@ -79,42 +104,14 @@ void GpuLearnedCurvature::record(Stream& stream, const Rig& rig, const Pose& pos
                         shapes ? "weights" : "nodes"));
     reader_.read_pose(pose, x_);
     if (segments_.count() != 0) segments_.rotations_of_rig(bone_transforms(rig, pose), rotations_);
-    record_state(stream, vertices, normals);
 }
 
-void GpuLearnedCurvature::check_frame(std::size_t vertices) const {
-    if (reader_.is_of_rig()) throw UsageError("curvature learned on a rig is not that of vertices; give a pose");
-    if (vertices != vertex_count_)
-        throw UsageError(fmt::format("a frame of {} vertices is not of a surface of {}", vertices, vertex_count_));
-}
-
-void GpuLearnedCurvature::record(Stream& stream, std::span<const Vec3> vertices_on_host, const Buffer& vertices,
-                                 const Buffer& normals) {
-    check_frame(vertices_on_host.size());
-    if (local_) return record(stream, vertices, normals);
-    reader_.read_surface(vertices_on_host, {}, {}, x_);
-    if (segments_.count() != 0) segments_.rotations_of_sequence(vertices_on_host, rotations_);
-    record_state(stream, vertices, normals);
-}
-
-void GpuLearnedCurvature::record(Stream& stream, const Buffer& vertices, const Buffer& normals) {
-    check_frame(vertices.bytes() / sizeof(vec4));
-    if (!local_) throw UsageError("the state of this curvature model is read on the host; give the vertices there");
-    if (normals.bytes() != vertices.bytes())
-        throw UsageError(
-            fmt::format("{} vertices cannot have {} normals", vertex_count_, normals.bytes() / sizeof(vec4)));
-    local_->record(stream, vertices, normals);
-    if (!is_identity_) predictor_.record(stream, local_->inputs(), 0);
-    reprojection_.record(stream, is_identity_ ? local_->inputs() : predictor_.components(),
-                         {.vertices = vertices, .normals = normals, .rotations = local_->rotations()});
-}
-
-void GpuLearnedCurvature::record_state(Stream& stream, const Buffer& vertices, const Buffer& normals) {
-    farthest_ = range_.prepare(reader_, x_);
-    stream.upload_with(state_, state_.bytes(), 0, [&](std::span<std::byte> memory) { write_state(memory); });
-    predictor_.record(stream, state_, k_rows_per_segment * 4 * rotations_.size());
-    reprojection_.record(stream, predictor_.components(),
-                         {.vertices = vertices, .normals = normals, .rotations = state_});
+void GpuLearnedCurvature::read_vertices(const Frame& frame) {
+    if (frame.host_vertices.size() != vertex_count_)
+        throw UsageError(fmt::format("curvature learned on a mesh sequence is that of {} vertices on the host, not {}",
+                                     vertex_count_, frame.host_vertices.size()));
+    reader_.read_surface(frame.host_vertices, {}, {}, x_);
+    if (segments_.count() != 0) segments_.rotations_of_sequence(frame.host_vertices, rotations_);
 }
 
 void GpuLearnedCurvature::write_state(std::span<std::byte> memory) const {

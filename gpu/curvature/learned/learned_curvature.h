@@ -27,15 +27,17 @@ class GpuLearnedCurvature {
     /// for the device.
     GpuLearnedCurvature(Device& device, const CurvatureModel& model, const ReprojectionOptions& options = {});
 
-    /// Records the curvature in a pose of the rig, given GpuPoser::vertices() and GpuNormals::normals() of the posed
-    /// surface: three dispatches, more where the device's limits are low. Throws UsageError if the model was learned
-    /// on mesh sequences, or if rig, pose, vertices or normals do not match the model.
-    void record(Stream& stream, const Rig& rig, const Pose& pose, const Buffer& vertices, const Buffer& normals);
-    /// Records the same for a frame of a mesh sequence. Local shape is read on the device, in up to five dispatches
-    /// without uploads; dihedral angles are read on the host from the same vertices.
-    void record(Stream& stream, std::span<const Vec3> vertices_on_host, const Buffer& vertices, const Buffer& normals);
-    /// Records the same for vertices that only the device has. Throws UsageError if the state is not of local shape.
-    void record(Stream& stream, const Buffer& vertices, const Buffer& normals);
+    /// The surface in one frame. Models of local shape read its state from the buffers alone, models of a rig from the
+    /// pose, and models of dihedral angles from the vertices on the host.
+    struct Frame {
+        const Buffer &vertices, &normals;  ///< as of GpuPoser and GpuNormals
+        const Rig* rig = nullptr;          ///< with `pose`
+        const Pose* pose = nullptr;
+        std::span<const Vec3> host_vertices{};  ///< equal to `vertices`
+    };
+    /// Records the curvature in a frame: three dispatches, up to five for local shape, more where the device's limits
+    /// are low. Throws UsageError if the frame lacks what the model reads, or does not match the model.
+    void record(Stream& stream, const Frame& frame);
 
     /// Returns the control that was farthest from the training poses in the last call; zero for local shape, which
     /// the host does not read.
@@ -49,8 +51,9 @@ class GpuLearnedCurvature {
     const Buffer& derivative() const { return reprojection_.derivative(); }
 
   private:
-    void check_frame(std::size_t vertices) const;
-    void record_state(Stream& stream, const Buffer& vertices, const Buffer& normals);
+    void check_buffers(const Frame& frame) const;
+    void read_pose(const Frame& frame);
+    void read_vertices(const Frame& frame);
     void write_state(std::span<std::byte> memory) const;
     std::size_t vertex_count_;
     StateReader reader_;

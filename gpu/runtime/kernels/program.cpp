@@ -10,6 +10,13 @@
 namespace exemplar {
 namespace {
 
+// C++ pads a structure with a vec4 to a multiple of 16 bytes, shaders end it after its last member.
+void pad_push_constants(const ProgramInterface& interface, Reflection& reflection) {
+    constexpr std::size_t k_alignment = 16;
+    const std::size_t padded = (reflection.push_bytes + k_alignment - 1) / k_alignment * k_alignment;
+    if (interface.push_constants && interface.push_constants->bytes == padded) reflection.push_bytes = padded;
+}
+
 void check_declarations(const Shader& shader, const Reflection& reflection, const ProgramInterface& interface) {
     const StructLayout none{.name = "interface without push constants", .bytes = 0, .fields = {}};
     check_layout(shader, "the push constants", interface.push_constants.value_or(none), reflection.push_bytes,
@@ -51,6 +58,7 @@ void set_texel_formats(const Shader& shader, const ProgramInterface& interface, 
 }  // namespace
 
 void check_interface(const Shader& shader, const ProgramInterface& interface, Reflection& reflection) {
+    pad_push_constants(interface, reflection);
     check_declarations(shader, reflection, interface);
     set_texel_formats(shader, interface, reflection);
 }

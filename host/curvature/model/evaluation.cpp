@@ -104,8 +104,7 @@ struct Tally {
 
 const VertexCurvature& evaluate_frame(CurvatureEvaluator& evaluator, const Animation& animation, FrameRef frame,
                                       const SurfaceSnapshot& snapshot) {
-    if (animation.kind == AnimationKind::sequence) return evaluator.evaluate(snapshot.vertices, snapshot.normals);
-    return evaluator.evaluate(animation.rig, animation.clips[frame.clip].poses[frame.frame], snapshot.vertices,
+    return evaluator.evaluate(animation.rig, shape_at(animation, frame.clip, frame.frame), snapshot.vertices,
                               snapshot.normals);
 }
 

@@ -54,10 +54,14 @@ class CurvatureEvaluator {
                                     std::span<const Vec3> normals);
     /// Does the same for a mesh sequence or a model of local shape.
     const VertexCurvature& evaluate(std::span<const Vec3> vertices, std::span<const Vec3> normals);
+    /// Does the same for a shape of either kind, of which these are the vertices.
+    const VertexCurvature& evaluate(const Rig& rig, const SurfaceShape& shape, std::span<const Vec3> vertices,
+                                    std::span<const Vec3> normals) {
+        return shape.pose ? evaluate(rig, *shape.pose, vertices, normals) : evaluate(vertices, normals);
+    }
     /// Returns the control that was farthest from the training poses in the last call.
     PoseRange::Farthest farthest() const { return farthest_; }
     std::span<const float> components() const { return z_; }
-    std::span<const Eigen::Matrix3f> rotations() const { return rotations_; }
 
   private:
     const VertexCurvature& reproject(std::span<const Vec3> vertices, std::span<const Vec3> normals);

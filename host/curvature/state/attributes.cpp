@@ -1,16 +1,11 @@
 #include "host/curvature/state/attributes.h"
 
 #include <Eigen/Geometry>
-#include <array>
 #include <cmath>
 
 namespace exemplar {
 
 namespace {
-
-constexpr std::array<std::string_view, 8> k_principal_names{"k1",   "k2",   "e1 first", "e1 second",
-                                                            "C111", "C112", "C122",     "C222"};
-constexpr std::array<std::string_view, 7> k_tensor_names{"II11", "II12", "II22", "C111", "C112", "C122", "C222"};
 
 /// The two coordinates of e1 that are kept. The third, where |normal| has its largest coordinate, follows from e1
 /// being orthogonal to the normal; dropping that one makes the division by the normal's coordinate most stable.
@@ -31,11 +26,7 @@ TangentRotation turn_between(const Vec3& tangent, const Vec3& normal, const Vec3
 }  // namespace
 
 std::size_t attribute_count(AttributeSet set) {
-    return set == AttributeSet::principal ? k_principal_names.size() : k_tensor_names.size();
-}
-
-std::string_view attribute_name(AttributeSet set, std::size_t attribute) {
-    return set == AttributeSet::principal ? k_principal_names.at(attribute) : k_tensor_names.at(attribute);
+    return set == AttributeSet::principal ? 8 : 7;
 }
 
 bool is_derivative(AttributeSet set, std::size_t attribute) {

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "host/mesh/curvature/curvature.h"
@@ -30,7 +29,6 @@ constexpr float k_min_divisor = 0.2f;
 /// An edge whose projection into the tangent plane has less than this share of its squared length has no direction.
 constexpr float k_min_flatness = 1e-6f;
 std::size_t attribute_count(AttributeSet set);
-std::string_view attribute_name(AttributeSet set, std::size_t attribute);
 /// Returns whether an attribute is of third order, i.e. a component of the derivative tensor. Those are learned with
 /// cubic features.
 bool is_derivative(AttributeSet set, std::size_t attribute);

@@ -165,13 +165,9 @@ TriangleMesh layout_shape(const Animation& animation, FrameRef frame) {
 
 TriangleMesh first_shape(const Animation& animation) {
     TriangleMesh shape = animation.rest;
-    for (const Clip& clip : animation.clips)
-        if (clip.size() > 0) {
-            shape.vertices = frame_vertices(animation, clip, 0);
-            return shape;
-        }
-    if (animation.kind != AnimationKind::sequence)
-        pose_vertices(animation.rig, animation.rest.vertices, rest_pose(animation.rig), shape.vertices);
+    std::size_t clip = 0;
+    while (clip < animation.clips.size() && animation.clips[clip].size() == 0) ++clip;
+    shape.vertices = vertices_of(animation, shape_at(animation, clip, 0));
     return shape;
 }
 

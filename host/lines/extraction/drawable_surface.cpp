@@ -1,19 +1,6 @@
 #include "host/lines/extraction/drawable_surface.h"
 
-#include <utility>
-
-#include "host/mesh/editing/validate.h"
-#include "host/mesh/editing/weld.h"
-
 namespace exemplar {
-
-DrawableMesh drawable_mesh(const TriangleMesh& mesh, const std::string& name) {
-    const MeshReport report = require_usable(mesh, name);
-    DrawableMesh drawable{welded(mesh), report.inside_out};
-    if (drawable.turned)
-        for (Face& face : drawable.mesh.faces) std::swap(face[1], face[2]);
-    return drawable;
-}
 
 DrawableSurface::DrawableSurface(std::span<const Face> faces, std::span<const Vec3> first,
                                  const DrawableOptions& options)

@@ -2,23 +2,13 @@
 
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "host/lines/extraction/lines.h"
 #include "host/lines/extraction/split_surface.h"
 #include "host/mesh/curvature/curvature_estimator.h"
-#include "host/mesh/mesh.h"
 
 namespace exemplar {
-
-/// A mesh prepared for drawing: coincident vertices are merged, and faces are oriented outwards.
-struct DrawableMesh {
-    TriangleMesh mesh;
-    bool turned = false;  ///< whether the mesh was inside out
-};
-/// Prepares a mesh for drawing. Throws MeshError naming `name` if the mesh is empty or not finite.
-DrawableMesh drawable_mesh(const TriangleMesh& mesh, const std::string& name);
 
 /// How a surface is measured for drawing.
 struct DrawableOptions {

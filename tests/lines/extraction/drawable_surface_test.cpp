@@ -2,32 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <utility>
-
-#include "host/core/errors.h"
 #include "tests/support/shapes.h"
 
 namespace exemplar {
 namespace {
-
-TEST(DrawableMeshes, AreTurnedOutward) {
-    TriangleMesh mesh = shapes::box(1, 1, 1, 2);
-    EXPECT_FALSE(drawable_mesh(mesh, "box").turned);
-    const TriangleMesh outward = mesh;
-    for (Face& face : mesh.faces) std::swap(face[1], face[2]);
-    const DrawableMesh drawable = drawable_mesh(mesh, "box");
-    EXPECT_TRUE(drawable.turned);
-    EXPECT_EQ(drawable.mesh.faces, outward.faces);
-    EXPECT_THROW(drawable_mesh({}, "nothing"), MeshError);
-}
-
-TEST(DrawableMeshes, HaveOneVertexPerPlace) {
-    TriangleMesh mesh = shapes::box(1, 1, 1, 2);
-    const std::size_t places = mesh.vertex_count();
-    mesh.vertices.push_back(mesh.vertices[mesh.faces[0][0]]);
-    mesh.faces[0][0] = static_cast<std::uint32_t>(places);
-    EXPECT_EQ(drawable_mesh(mesh, "box").mesh.vertex_count(), places);
-}
 
 TEST(DrawableSurfaces, AreCutOpenAlongTheirCreases) {
     const TriangleMesh mesh = shapes::box(1, 1, 1, 3);

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "host/animation/read_animation.h"
+#include "host/mesh/labels.h"
+
+namespace exemplar {
+
+/// The surface in a file or folder, with its motions if it has any.
+struct SurfaceFile {
+    /// Of a mesh: a sequence without clips, whose shape at rest is the mesh as drawable_mesh() returns it.
+    Animation animation;
+    std::optional<FaceLabels> labels;  ///< in a mesh file, see MeshFile
+    std::string why_still;             ///< why a glTF file that was read as a mesh is no animation
+};
+
+/// Reads a folder as an animation, a glTF file as an animation or else as a mesh, and any other file as a mesh (see
+/// read_animation, read_mesh). Throws DataError if there is nothing at `path`, MeshError if it is neither.
+SurfaceFile read_surface(const std::filesystem::path& path, const ReadAnimationOptions& options = {});
+
+}  // namespace exemplar

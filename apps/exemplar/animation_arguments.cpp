@@ -24,7 +24,7 @@ std::size_t range_end(std::string_view text, std::size_t otherwise, const std::s
 
 }  // namespace
 
-void add_frame_options(CLI::App& command, FrameArguments& arguments, const std::string& prefix,
+void add_frame_options(Command& command, FrameArguments& arguments, const std::string& prefix,
                        const std::string& what) {
     command.add_option("--" + prefix + "clips", arguments.clips, "names of the clips to " + what + "; default: all")
         ->type_name("NAME")

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "apps/exemplar/commands.h"
+#include "apps/help/command.h"
 #include "host/animation/animation.h"
 #include "host/curvature/state/samples.h"
 
@@ -17,8 +18,7 @@ struct FrameArguments {
 };
 
 /// Adds --clips, --frames and --poses. `prefix` goes before each name, as in --test-clips.
-void add_frame_options(CLI::App& command, FrameArguments& arguments, const std::string& prefix,
-                       const std::string& what);
+void add_frame_options(Command& command, FrameArguments& arguments, const std::string& prefix, const std::string& what);
 /// Parses the arguments; throws UsageError for a bad range.
 FrameSelection selection_of(const FrameArguments& arguments);
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <fstream>
 #include <map>
 #include <set>
@@ -46,19 +45,6 @@ std::string why_not_writable(fs::path folder) {
 }
 
 }  // namespace
-
-CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
-    const bool open = most == std::numeric_limits<std::uint64_t>::max();
-    const std::string range = open ? fmt::format("from {}", least) : fmt::format("from {} to {}", least, most);
-    const auto check = [=](const std::string& text) {
-        std::uint64_t value = 0;
-        const char* end = text.data() + text.size();
-        const auto [stop, error] = std::from_chars(text.data(), end, value);
-        if (error == std::errc() && stop == end && value >= least && value <= most) return std::string();
-        return fmt::format("'{}' is no whole number {}", text, range);
-    };
-    return {check, least == 0 && open ? "" : range};
-}
 
 void require_input(const fs::path& path) {
     std::error_code ignored;  // for names that the system refuses there is no file

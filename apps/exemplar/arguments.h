@@ -1,9 +1,7 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,9 +13,6 @@
 namespace exemplar {
 
 // Checks of arguments before any long work, so that a wrong name does not cost the minutes of a training.
-
-/// Returns a check for options: a whole number from `least` to `most`.
-CLI::Validator whole_number(std::uint64_t least, std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
 /// Throws DataError, with the nearest name in the folder, if there is nothing at `path`.
 void require_input(const std::filesystem::path& path);

@@ -1,10 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+
+#include "apps/help/command.h"
 
 namespace exemplar {
 
@@ -17,11 +18,11 @@ struct CommonOptions {
 };
 
 /// Adds --device to a subcommand that computes on a device.
-void add_device_option(CLI::App& command, CommonOptions& options);
+void add_device_option(Command& command, CommonOptions& options);
 /// Adds --threads, --quiet and --json to a subcommand.
-void add_common_options(CLI::App& command, CommonOptions& options);
+void add_common_options(Command& command, CommonOptions& options);
 /// Adds --memory, in GB; 0 leaves it to the program.
-void add_memory_option(CLI::App& command, double& gigabytes);
+void add_memory_option(Command& command, double& gigabytes);
 /// Returns the value of --memory in bytes; 0 if it was not given.
 std::size_t memory_of_option(double gigabytes);
 /// Puts --threads and --quiet into effect; called first by every subcommand. The result holds the thread limit.
@@ -32,40 +33,40 @@ void write_json(const std::filesystem::path& path, const nlohmann::json& json);
 void write_report(const CommonOptions& options, const nlohmann::json& report);
 
 // One function per file of the same name: adds the subcommand, whose callback does the work and throws Error.
-void add_devices_command(CLI::App& app);
-void add_doctor_command(CLI::App& app);
-void add_features_command(CLI::App& app);
-void add_synth_command(CLI::App& app);
-void add_label_command(CLI::App& app);
-void add_train_command(CLI::App& label);
-void add_apply_command(CLI::App& label);
-void add_batch_command(CLI::App& label);
-void add_evaluate_command(CLI::App& label);
-void add_stress_command(CLI::App& label);
-void add_category_command(CLI::App& app);
-void add_category_train_command(CLI::App& category);
-void add_category_apply_command(CLI::App& category);
-void add_category_evaluate_command(CLI::App& category);
-void add_curvature_command(CLI::App& app);
-void add_curvature_train_command(CLI::App& curvature);
-void add_curvature_evaluate_command(CLI::App& curvature);
-void add_curvature_study_command(CLI::App& curvature);
-void add_lines_command(CLI::App& app);
-void add_hatch_command(CLI::App& app);
-void add_hatch_template_command(CLI::App& hatch);
-void add_hatch_example_command(CLI::App& hatch);
-void add_hatch_extract_command(CLI::App& hatch);
-void add_hatch_train_command(CLI::App& hatch);
-void add_hatch_draw_command(CLI::App& hatch);
-void add_hatch_evaluate_command(CLI::App& hatch);
-void add_catalog_command(CLI::App& app);
-void add_catalog_add_command(CLI::App& catalog);
-void add_catalog_list_command(CLI::App& catalog);
-void add_catalog_status_command(CLI::App& catalog);
-void add_catalog_export_command(CLI::App& catalog);
-void add_catalog_merge_command(CLI::App& catalog);
-void add_demo_command(CLI::App& app);
-void add_bench_command(CLI::App& app);
-void add_bench_shaders_command(CLI::App& bench);
+void add_devices_command(Command& app);
+void add_doctor_command(Command& app);
+void add_features_command(Command& app);
+void add_synth_command(Command& app);
+void add_label_command(Command& app);
+void add_train_command(Command& label);
+void add_apply_command(Command& label);
+void add_batch_command(Command& label);
+void add_evaluate_command(Command& label);
+void add_stress_command(Command& label);
+void add_category_command(Command& app);
+void add_category_train_command(Command& category);
+void add_category_apply_command(Command& category);
+void add_category_evaluate_command(Command& category);
+void add_curvature_command(Command& app);
+void add_curvature_train_command(Command& curvature);
+void add_curvature_evaluate_command(Command& curvature);
+void add_curvature_study_command(Command& curvature);
+void add_lines_command(Command& app);
+void add_hatch_command(Command& app);
+void add_hatch_template_command(Command& hatch);
+void add_hatch_example_command(Command& hatch);
+void add_hatch_extract_command(Command& hatch);
+void add_hatch_train_command(Command& hatch);
+void add_hatch_draw_command(Command& hatch);
+void add_hatch_evaluate_command(Command& hatch);
+void add_catalog_command(Command& app);
+void add_catalog_add_command(Command& catalog);
+void add_catalog_list_command(Command& catalog);
+void add_catalog_status_command(Command& catalog);
+void add_catalog_export_command(Command& catalog);
+void add_catalog_merge_command(Command& catalog);
+void add_demo_command(Command& app);
+void add_bench_command(Command& app);
+void add_bench_shaders_command(Command& bench);
 
 }  // namespace exemplar

@@ -104,9 +104,9 @@ void run_devices(const DevicesOptions& options) {
 
 }  // namespace
 
-void add_devices_command(CLI::App& app) {
+void add_devices_command(Command& app) {
     auto options = std::make_shared<DevicesOptions>();
-    CLI::App* command = app.add_subcommand(
+    Command* command = app.add_subcommand(
         "devices", "Lists the Vulkan devices (* is the one that would be used), their limits and speeds");
     command->footer(
         "Example:\n  exemplar devices\n  EXEMPLAR_DEVICE=llvmpipe exemplar devices --no-measure --json devices.json");

@@ -94,9 +94,9 @@ void run_doctor(const CommonOptions& options) {
 
 }  // namespace
 
-void add_doctor_command(CLI::App& app) {
+void add_doctor_command(Command& app) {
     auto options = std::make_shared<CommonOptions>();
-    CLI::App* command =
+    Command* command =
         app.add_subcommand("doctor", "Looks at this machine's Vulkan set-up and says what is wrong and how to mend it");
     command->footer(
         "Loader, drivers, hardware without a driver, rights, devices, what is kept between runs, and whether kernels\n"

@@ -66,9 +66,9 @@ void run_features(const FeaturesOptions& options) {
 
 }  // namespace
 
-void add_features_command(CLI::App& app) {
+void add_features_command(Command& app) {
     auto options = std::make_shared<FeaturesOptions>();
-    CLI::App* command =
+    Command* command =
         app.add_subcommand("features", "Computes the features of a mesh (faces x features, float32 .npy)");
     command->footer("Example:\n  exemplar features horse.off --out horse.npy --names horse.json");
     command->add_option("MESH", options->mesh, "mesh file: OFF, OBJ, PLY, STL or glTF")->required()->type_name("");

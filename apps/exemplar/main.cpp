@@ -20,67 +20,16 @@
 namespace exemplar {
 namespace {
 
-std::vector<const CLI::App*> subcommands(const CLI::App& app) {
-    return app.get_subcommands([](const CLI::App*) { return true; });
-}
-
-bool has_subcommands(const CLI::App& app) {
-    return !subcommands(app).empty();
-}
-
-/// All option and subcommand names that `app` knows at its level.
-std::vector<std::string> known_words(const CLI::App& app) {
-    std::vector<std::string> words;
-    for (const CLI::App* command : subcommands(app)) words.push_back(command->get_name());
-    for (const CLI::Option* option : app.get_options())
-        for (const std::string& name : option->get_lnames()) words.push_back("--" + name);
-    return words;
-}
-
-/// The subcommand the user got to before the parser gave up.
-const CLI::App& deepest(const CLI::App& app) {
-    const auto parsed = app.get_subcommands();
-    return parsed.empty() ? app : deepest(*parsed.back());
-}
-
-/// "exemplar label train": the words that lead to a subcommand.
-std::string command_path(const CLI::App& app) {
-    return app.get_parent() ? command_path(*app.get_parent()) + " " + app.get_name() : app.get_name();
-}
-
-/// Returns a message on the first unknown argument, with the nearest known word; empty if all are known.
-std::string unknown_argument(const CLI::App& app) {
-    std::vector<std::string> unknown = app.remaining(true);
-    if (unknown.empty()) return {};
-    const auto option = std::find_if(unknown.begin(), unknown.end(), [](const auto& w) { return w.starts_with('-'); });
-    std::string word = option == unknown.end() ? unknown.front() : *option;
-    word.erase(std::min(word.find('='), word.size()));
-    const CLI::App& command = deepest(app);
-    const std::vector<std::string> words = known_words(command);
-    if (word.starts_with('-')) return fmt::format("unknown option '{}'{}", word, suggestion(word, words));
-    if (!has_subcommands(command)) return fmt::format("unexpected argument '{}'", word);
-    return fmt::format("unknown subcommand '{}'{}", word, suggestion(word, words));
-}
-
-int report_usage_error(const CLI::App& app, const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
-    std::string what = unknown_argument(app);
-    if (what.empty()) what = error.what();
-    fmt::print(stderr, "error: {}; see '{} --help'\n", what, command_path(deepest(app)));
-    return 2;
-}
-
 int run(int argc, char** argv) {
-    CLI::App app("Learns geometry processing from examples and runs what it learned on the GPU.");
+    Command app("exemplar", "Learns geometry processing from examples and runs what it learned on the GPU.");
     app.footer(
         "'exemplar SUBCOMMAND --help' shows the options of each.\n"
         "Exit codes: 0 done, 1 error (one line says what), 2 wrong usage, 130 interrupted.\n\nExample:\n"
         "  exemplar synth human --count 8 --seed 1 --out shapes\n"
         "  exemplar label train shapes --out human.safetensors\n"
         "  exemplar label apply human.safetensors mesh.obj --out labeled");
-    app.name("exemplar");
-    app.require_subcommand(1);
-    app.set_version_flag("--version", EXEMPLAR_VERSION);
+    app.require_subcommand();
+    app.version(EXEMPLAR_VERSION);
     add_label_command(app);
     add_category_command(app);
     add_curvature_command(app);
@@ -94,22 +43,17 @@ int run(int argc, char** argv) {
     add_demo_command(app);
     add_bench_command(app);
     add_help_pages_option(app, EXEMPLAR_VERSION);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return report_usage_error(app, error);
-    }
-    return 0;
+    return app.parse(argc, argv).value_or(0);
 }
 
 }  // namespace
 
-void add_device_option(CLI::App& command, CommonOptions& options) {
+void add_device_option(Command& command, CommonOptions& options) {
     command.add_option("--device", options.device, "Vulkan device: index or part of its name (see 'exemplar devices')")
         ->type_name("NAME");
 }
 
-void add_common_options(CLI::App& command, CommonOptions& options) {
+void add_common_options(Command& command, CommonOptions& options) {
     command.add_option("--threads", options.threads, "CPU threads; 0 uses all cores")
         ->capture_default_str()
         ->check(whole_number(0, 4096));
@@ -117,9 +61,9 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
     command.add_option("--json", options.json, "also write the report as JSON to this file")->type_name("FILE");
 }
 
-void add_memory_option(CLI::App& command, double& gigabytes) {
+void add_memory_option(Command& command, double& gigabytes) {
     command.add_option("--memory", gigabytes, "GB of memory to use at most; if not given, half of what there is")
-        ->check(CLI::Range(0.1, 1e6))
+        ->check(in_range(0.1, 1e6))
         ->type_name("GB");
 }
 

@@ -6,7 +6,7 @@
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/commands.h"
-#include "apps/help/offered_words.h"
+#include "apps/help/command.h"
 #include "host/animation/write_animation.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
@@ -48,7 +48,7 @@ void require_kind(const std::string& kind) {
 }
 
 /// Throws UsageError for options of shapes given for animations, or the reverse.
-void require_fitting_options(const CLI::App& command, const std::string& kind) {
+void require_fitting_options(const Command& command, const std::string& kind) {
     const bool is_animation = is_one_of(synth_animation_kinds(), kind);
     const auto refuse = [&](const char* option) {
         if (command.count(option) > 0)
@@ -101,7 +101,7 @@ void run_synth(const SynthOptions& options) {
         {{"kind", options.kind}, {"seed", options.seed}, {is_animation ? "animations" : "shapes", std::move(made)}});
 }
 
-void add_animation_options(CLI::App& command, AnimationOptions& options) {
+void add_animation_options(Command& command, AnimationOptions& options) {
     command.add_option("--vertices", options.vertices, "vertices of an animation, about")
         ->capture_default_str()
         ->check(whole_number(500, 100'000));
@@ -117,9 +117,9 @@ void add_animation_options(CLI::App& command, AnimationOptions& options) {
 
 }  // namespace
 
-void add_synth_command(CLI::App& app) {
+void add_synth_command(Command& app) {
     auto options = std::make_shared<SynthOptions>();
-    CLI::App* command = app.add_subcommand(
+    Command* command = app.add_subcommand(
         "synth",
         "Generates labeled shapes (NAME.off and NAME_labels.txt) and animations (NAME.glb, or a folder of PLY)");
     command->footer(

@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <regex>
 
-#include "apps/help/offered_words.h"
+#include "apps/help/command.h"
 
 namespace exemplar {
 namespace {
@@ -70,6 +71,16 @@ Completion completion_of(const ArgumentHelp& argument, bool positional) {
     return is_file || (positional && argument.value == "WORD") ? Completion::files : Completion::nothing;
 }
 
+/// Returns the words given to completion_words() or one_of(), in order; empty if an option has neither.
+std::vector<std::string> words_of(CLI::Option& option) {
+    for (const CLI::Validator* validator : validators_of(option)) {
+        const std::string name = validator->get_name(), text = validator->get_description();
+        if (name.starts_with(k_offered)) return split_at_commas(std::string_view(name).substr(k_offered.size()));
+        if (is_set_of_words(text)) return split_at_commas(std::string_view(text).substr(1, text.size() - 2));
+    }
+    return {};
+}
+
 ArgumentHelp describe_argument(CLI::Option& option) {
     ArgumentHelp help;
     const bool positional = option.get_positional();
@@ -100,22 +111,13 @@ CommandHelp describe(CLI::App& app, const std::string& path) {
 
 }  // namespace
 
-CLI::Validator completion_words(const std::vector<std::string>& words) {
+ValueCheck completion_words(const std::vector<std::string>& words) {
     const auto accept = [](const std::string&) { return std::string(); };
     return {accept, "", std::string(k_offered) + fmt::format("{}", fmt::join(words, ","))};
 }
 
-CLI::Validator completion_words(std::span<const std::string_view> words) {
+ValueCheck completion_words(std::span<const std::string_view> words) {
     return completion_words(std::vector<std::string>(words.begin(), words.end()));
-}
-
-std::vector<std::string> words_of(CLI::Option& option) {
-    for (const CLI::Validator* validator : validators_of(option)) {
-        const std::string name = validator->get_name(), text = validator->get_description();
-        if (name.starts_with(k_offered)) return split_at_commas(std::string_view(name).substr(k_offered.size()));
-        if (is_set_of_words(text)) return split_at_commas(std::string_view(text).substr(1, text.size() - 2));
-    }
-    return {};
 }
 
 CommandHelp describe_command(CLI::App& app) {

@@ -2,9 +2,11 @@
 
 #include <fmt/chrono.h>
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <ostream>
 
 #include "apps/help/command_help.h"
@@ -45,12 +47,12 @@ void write_help_pages(const CommandHelp& program, const std::string& version, co
 
 }  // namespace
 
-void add_help_pages_option(CLI::App& app, const std::string& version) {
-    const auto write = [&app, version](const std::string& folder) {
+void add_help_pages_option(Command& program, const std::string& version) {
+    const auto write = [&app = program.app(), version](const std::string& folder) {
         write_help_pages(describe_command(app), version, folder);
         throw CLI::Success();
     };
-    app.add_option_function<std::string>("--help-pages", write)->group("");
+    program.add_word_option("--help-pages", write, "")->hide();
 }
 
 }  // namespace exemplar

@@ -3,13 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cstdio>
 #include <map>
 
 #include "apps/help/help_pages.h"
-#include "apps/help/offered_words.h"
 #include "apps/viewer/scene/hatched_still.h"
 #include "apps/viewer/scene/options.h"
 #include "host/core/errors.h"
@@ -39,11 +37,13 @@ const Names<ViewSide> k_sides{{"front", ViewSide::front}, {"back", ViewSide::bac
                               {"right", ViewSide::right}, {"top", ViewSide::top},   {"bottom", ViewSide::bottom}};
 
 template <typename T>
-void add_choice(CLI::App& app, const std::string& name, std::optional<T>& value, const std::string& help,
+void add_choice(Command& app, const std::string& name, std::optional<T>& value, const std::string& help,
                 const Names<T>& names) {
-    app.add_option_function<std::string>(
+    std::vector<std::string> words;
+    for (const auto& [word, meaning] : names) words.push_back(word);
+    app.add_word_option(
            name, [&value, &names](const std::string& word) { value = names.at(word); }, help)
-        ->check(CLI::IsMember(&names));
+        ->check(one_of(words));
 }
 
 std::vector<std::string> line_words() {
@@ -79,7 +79,7 @@ ViewSize parse_size(const std::string& text) {
     throw UsageError(fmt::format("'{}' is no size; write WIDTHxHEIGHT, up to {} each", text, k_largest));
 }
 
-void add_options(CLI::App& app, ViewerOptions& options, std::string& size) {
+void add_options(Command& app, ViewerOptions& options, std::string& size) {
     app.add_option("FILE", options.file, "mesh (OFF, OBJ, PLY, STL, glTF), animation (glTF), or folder of meshes")
         ->type_name("");
     app.add_option("--model", options.model, "model of the animation's curvature, .safetensors")->type_name("FILE");
@@ -90,7 +90,7 @@ void add_options(CLI::App& app, ViewerOptions& options, std::string& size) {
         ->type_name("FILE");
     app.add_option("--clip", options.clip, "clip to play; default: the first")->type_name("NAME");
     app.add_option("--first-frame", options.first_frame, "frame of the clip to begin with; a window stands there");
-    app.add_option_function<std::vector<std::string>>(
+    app.add_list_option(
            "--lines", [&options](const std::vector<std::string>& words) { options.lines = parse_lines(words); },
            "lines to draw, as in contours,suggestive_contours (the default); none for no lines")
         ->delimiter(',')
@@ -116,7 +116,7 @@ void add_options(CLI::App& app, ViewerOptions& options, std::string& size) {
         ->type_name("FOLDER");
     app.add_flag("--plain", options.plain_window, "shows no panels to begin with");
     app.add_flag("--quiet", options.quiet, "no progress and no remarks");
-    app.add_option("--lose-device-at", options.losing_frame, "")->group("");
+    app.add_option("--lose-device-at", options.losing_frame, "")->hide();
 }
 
 void require_still_options(const ViewerOptions& options) {
@@ -129,8 +129,7 @@ void require_still_options(const ViewerOptions& options) {
 
 int run(int argc, char** argv) {
     keep_freed_memory();
-    CLI::App app("Shows meshes and animations, with their curvature estimated and learned.");
-    app.name("exemplar-viewer");
+    Command app("exemplar-viewer", "Shows meshes and animations, with their curvature estimated and learned.");
     app.footer(
         "F1 in the window shows its keys.\n"
         "Exit codes: 0 done, 1 error (one line says what), 2 wrong usage, 130 interrupted.\n\nExamples:\n"
@@ -138,18 +137,12 @@ int run(int argc, char** argv) {
         "  exemplar-viewer shapes/figure_001.glb\n"
         "  exemplar-viewer shapes/figure_001.glb --headless --frames 30 --out frames\n"
         "  exemplar-viewer bunny.off --headless --hatching mine.safetensors --save-hatching bunny.svg");
-    app.set_version_flag("--version", EXEMPLAR_VERSION);
+    app.version(EXEMPLAR_VERSION);
     ViewerOptions options;
     std::string size = "1280x720";
     add_options(app, options, size);
     add_help_pages_option(app, EXEMPLAR_VERSION);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
-        fmt::print(stderr, "error: {}; see 'exemplar-viewer --help'\n", error.what());
-        return 2;
-    }
+    if (const std::optional<int> exit_code = app.parse(argc, argv)) return *exit_code;
     options.size = parse_size(size);
     if (!options.headless && !options.out.empty()) throw UsageError("--out needs --headless");
     if (!options.hatched_still.empty()) require_still_options(options);

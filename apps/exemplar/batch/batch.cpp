@@ -197,12 +197,12 @@ void run_batch(const BatchCommand& options) {
     run_here(options, catalog, run, plan, models);
 }
 
-void add_slurm_options(CLI::App& command, BatchCommand& options) {
+void add_slurm_options(Command& command, BatchCommand& options) {
     command
         .add_option("--tasks", options.tasks, "divide the shapes among so many tasks, to be run by --slurm or by hand")
         ->check(whole_number(1, 100'000))
         ->type_name("N");
-    CLI::Option* slurm = command.add_flag("--slurm", options.slurm, "submit the tasks to Slurm, as a job array");
+    Option* slurm = command.add_flag("--slurm", options.slurm, "submit the tasks to Slurm, as a job array");
     command.add_flag("--wait", options.wait, "wait until the tasks have ended, and take their results over");
     SlurmOptions& cluster = options.slurm_options;
     const auto add = [&](const char* name, auto& value, const char* what) {
@@ -212,7 +212,7 @@ void add_slurm_options(CLI::App& command, BatchCommand& options) {
     add("--gres", cluster.gres, "what each task needs, say gpu:1")->type_name("LIST");
     add("--time", cluster.time, "longest time of each task, say 4:00:00")->type_name("TIME");
     add("--cpus-per-task", cluster.cpus, "processors of each task")->check(whole_number(1, 4096))->type_name("N");
-    add("--mem", cluster.memory, "memory of each task, GB")->check(CLI::Range(0.1, 1e6))->type_name("GB");
+    add("--mem", cluster.memory, "memory of each task, GB")->check(in_range(0.1, 1e6))->type_name("GB");
     add("--sbatch", cluster.further, "a further option of sbatch, as in --sbatch=--account=lab; may be repeated")
         ->allow_extra_args(false)
         ->type_name("OPTION");
@@ -220,9 +220,9 @@ void add_slurm_options(CLI::App& command, BatchCommand& options) {
 
 }  // namespace
 
-void add_batch_command(CLI::App& label) {
+void add_batch_command(Command& label) {
     auto options = std::make_shared<BatchCommand>();
-    CLI::App* command = label.add_subcommand("batch", "Labels all shapes of a catalog or folder");
+    Command* command = label.add_subcommand("batch", "Labels all shapes of a catalog or folder");
     command->footer(
         "Ended at any moment, it goes on where it was when called again. Several calls at once share the work.\n"
         "A shape that cannot be labeled is left out, and the catalog says why.\n\nExample:\n"

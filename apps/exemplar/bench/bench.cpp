@@ -8,7 +8,7 @@
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/bench/bench_rows.h"
 #include "apps/exemplar/commands.h"
-#include "apps/help/offered_words.h"
+#include "apps/help/command.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/text.h"
@@ -74,9 +74,9 @@ void run_bench(const BenchOptions& options) {
 
 }  // namespace
 
-void add_bench_command(CLI::App& app) {
+void add_bench_command(Command& app) {
     auto options = std::make_shared<BenchOptions>();
-    CLI::App* command = app.add_subcommand("bench", "Measures speed and memory, beside goals and others' figures");
+    Command* command = app.add_subcommand("bench", "Measures speed and memory, beside goals and others' figures");
     command->footer(
         "Times are medians of three runs, of long ones a single run; CPU times are those of all threads; peak is the\n"
         "memory of the process.\n"
@@ -97,7 +97,7 @@ void add_bench_command(CLI::App& app) {
     add_bench_shaders_command(*command);
     // Without a subcommand of its own.
     command->callback([options, command] {
-        if (command->get_subcommands().empty()) run_bench(*options);
+        if (!command->has_given_subcommand()) run_bench(*options);
     });
 }
 

@@ -204,9 +204,9 @@ void run_shader_bench(const ShaderBenchOptions& options) {
 
 }  // namespace
 
-void add_bench_shaders_command(CLI::App& bench) {
+void add_bench_shaders_command(Command& bench) {
     auto options = std::make_shared<ShaderBenchOptions>();
-    CLI::App* command =
+    Command* command =
         bench.add_subcommand("shaders", "Compares every kernel with its reference and times it on the device");
     command->footer(
         "Times are the device's own, of single runs: medians of repeats, and the standard error of these. Bytes and\n"

@@ -4,8 +4,8 @@
 
 namespace exemplar {
 
-void add_catalog_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("catalog", "Keeps a catalog of many shapes, to be labeled in batch");
+void add_catalog_command(Command& app) {
+    Command* command = app.add_subcommand("catalog", "Keeps a catalog of many shapes, to be labeled in batch");
     command->footer(
         "A catalog is one SQLite file: what is known of each shape, and how it was labeled by which "
         "model.\n\nExample:\n"
@@ -14,7 +14,7 @@ void add_catalog_command(CLI::App& app) {
         "  exemplar label batch shapes.db --models models --out labeled\n"
         "  exemplar catalog status shapes.db\n"
         "  exemplar catalog export shapes.db --out shapes.csv");
-    command->require_subcommand(1);
+    command->require_subcommand();
     add_catalog_add_command(*command);
     add_catalog_list_command(*command);
     add_catalog_status_command(*command);

@@ -11,6 +11,7 @@
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/commands.h"
 #include "host/core/errors.h"
+#include "host/core/interrupt.h"
 #include "host/core/memory_budget.h"
 #include "host/core/parallel.h"
 #include "host/core/progress.h"
@@ -187,9 +188,9 @@ void run_add(AddCommand& options) {
 
 }  // namespace
 
-void add_catalog_add_command(CLI::App& catalog) {
+void add_catalog_add_command(Command& catalog) {
     auto options = std::make_shared<AddCommand>();
-    CLI::App* command = catalog.add_subcommand("add", "Adds shapes to a catalog, which is made if there is none");
+    Command* command = catalog.add_subcommand("add", "Adds shapes to a catalog, which is made if there is none");
     command->footer(
         "Folders are searched with all folders below them. Added again, shapes that have changed are read again.\n\n"
         "Example:\n  exemplar catalog add shapes.db downloads/ scans/chair.obj\n"
@@ -198,7 +199,7 @@ void add_catalog_add_command(CLI::App& catalog) {
     command->add_option("SOURCE", options->sources, "folders of meshes, lists (.txt, a path a line) or mesh files")
         ->required()
         ->type_name("");
-    CLI::Option* category =
+    Option* category =
         command->add_option("--category", options->add.category, "what all of them are, say 'cup'")->type_name("NAME");
     command->add_flag("--category-of-folder", options->add.category_of_folder, "each is what its folder is called")
         ->excludes(category);

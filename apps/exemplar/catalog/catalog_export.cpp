@@ -183,7 +183,7 @@ void run_merge(const ExportCommand& options) {
     write_report(options.common, {{"catalog", options.catalog.string()}, {"runs", merged}});
 }
 
-void add_export_options(CLI::App& command, ExportCommand& options) {
+void add_export_options(Command& command, ExportCommand& options) {
     command.add_option("CATALOG", options.catalog, "catalog file")->required()->type_name("");
     command.add_option("--run", options.run, "number of the labeling run, see 'exemplar catalog status'")
         ->check(whole_number(1, 1'000'000'000))
@@ -193,9 +193,9 @@ void add_export_options(CLI::App& command, ExportCommand& options) {
 
 }  // namespace
 
-void add_catalog_export_command(CLI::App& catalog) {
+void add_catalog_export_command(Command& catalog) {
     auto options = std::make_shared<ExportCommand>();
-    CLI::App* command = catalog.add_subcommand("export", "Writes a catalog and its labels as CSV or JSON");
+    Command* command = catalog.add_subcommand("export", "Writes a catalog and its labels as CSV or JSON");
     command->footer(
         "A row for every shape, with what the latest run (or --run) made of it.\n\nExample:\n"
         "  exemplar catalog export shapes.db --out shapes.csv");
@@ -207,9 +207,9 @@ void add_catalog_export_command(CLI::App& catalog) {
     command->callback([options] { run_export(*options); });
 }
 
-void add_catalog_merge_command(CLI::App& catalog) {
+void add_catalog_merge_command(Command& catalog) {
     auto options = std::make_shared<ExportCommand>();
-    CLI::App* command = catalog.add_subcommand("merge", "Takes over what was labeled elsewhere, such as on a cluster");
+    Command* command = catalog.add_subcommand("merge", "Takes over what was labeled elsewhere, such as on a cluster");
     command->footer(
         "Looks into the folders that runs write to, for shapes that the catalog has no result of.\n\nExample:\n"
         "  exemplar catalog merge shapes.db");

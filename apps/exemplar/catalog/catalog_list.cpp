@@ -5,10 +5,10 @@
 #include <ostream>
 
 #include "apps/exemplar/catalog/catalog_output.h"
-#include "host/core/json_text.h"
 #include "apps/exemplar/catalog/catalog_runs.h"
 #include "apps/exemplar/commands.h"
 #include "host/core/files.h"
+#include "host/core/json_text.h"
 #include "host/core/text.h"
 #include "host/labeling/features/feature_cache.h"
 #include "host/mesh/io/io_text.h"
@@ -144,7 +144,7 @@ void run_status(const ListCommand& options) {
                                   {"runs", runs}});
 }
 
-void add_list_options(CLI::App& command, ListCommand& options) {
+void add_list_options(Command& command, ListCommand& options) {
     command.add_option("CATALOG", options.catalog, "catalog file")->required()->type_name("");
     command.add_option("--cache", options.cache, "folder that remembers features")
         ->capture_default_str()
@@ -154,22 +154,21 @@ void add_list_options(CLI::App& command, ListCommand& options) {
 
 }  // namespace
 
-void add_catalog_list_command(CLI::App& catalog) {
+void add_catalog_list_command(Command& catalog) {
     auto options = std::make_shared<ListCommand>();
-    CLI::App* command = catalog.add_subcommand("list", "Prints a line for every shape of a catalog");
+    Command* command = catalog.add_subcommand("list", "Prints a line for every shape of a catalog");
     command->footer("Example:\n  exemplar catalog list shapes.db --problems");
     add_list_options(*command, *options);
-    CLI::Option* problems =
-        command->add_flag("--problems", options->problems, "only those that cannot be used, and why");
+    Option* problems = command->add_flag("--problems", options->problems, "only those that cannot be used, and why");
     command->add_flag("--usable", options->usable, "only those that can be used")->excludes(problems);
     command->add_option("--category", options->category, "only those that were added with this category")
         ->type_name("NAME");
     command->callback([options] { run_list(*options); });
 }
 
-void add_catalog_status_command(CLI::App& catalog) {
+void add_catalog_status_command(Command& catalog) {
     auto options = std::make_shared<ListCommand>();
-    CLI::App* command = catalog.add_subcommand("status", "Prints what a catalog holds and how far its labeling is");
+    Command* command = catalog.add_subcommand("status", "Prints what a catalog holds and how far its labeling is");
     command->footer("Example:\n  exemplar catalog status shapes.db --json status.json");
     add_list_options(*command, *options);
     command->callback([options] { run_status(*options); });

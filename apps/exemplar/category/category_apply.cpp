@@ -100,9 +100,9 @@ void run_category_apply(const CategoryApplyCommand& options) {
 
 }  // namespace
 
-void add_category_apply_command(CLI::App& category) {
+void add_category_apply_command(Command& category) {
     auto options = std::make_shared<CategoryApplyCommand>();
-    CLI::App* command = category.add_subcommand("apply", "Says of each mesh what category it is of, or 'unknown'");
+    Command* command = category.add_subcommand("apply", "Says of each mesh what category it is of, or 'unknown'");
     command->footer(
         "Prints a line a mesh: its category, how sure that is, and the two most probable categories.\n\nExample:\n"
         "  exemplar category apply categories.safetensors a.off b.obj --json report.json");
@@ -113,7 +113,7 @@ void add_category_apply_command(CLI::App& category) {
     command
         ->add_option("--least-confidence", options->least_confidence,
                      "a shape of less is called unknown, from 0 (never) to 1; without it as the model was trained")
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(in_range(0.0, 1.0))
         ->type_name("SHARE");
     command->add_option("--cache", options->cache, "folder that remembers what shapes are like; '' remembers nothing")
         ->capture_default_str()

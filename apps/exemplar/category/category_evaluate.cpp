@@ -157,28 +157,26 @@ void run_category_evaluate(const CategoryEvaluateCommand& options) {
 
 }  // namespace
 
-void add_category_evaluate_command(CLI::App& category) {
+void add_category_evaluate_command(Command& category) {
     auto options = std::make_shared<CategoryEvaluateCommand>();
-    CLI::App* command = category.add_subcommand("evaluate", "Trains on some meshes of each category and tests others");
+    Command* command = category.add_subcommand("evaluate", "Trains on some meshes of each category and tests others");
     command->footer(
         "The last column of the table: how often shapes of a category are called unknown by a model that was trained\n"
         "without that category.\n\nExamples:\n"
         "  exemplar category evaluate psb/labeled --train-count 6 --splits 3\n"
         "  exemplar category evaluate --train cup=a.txt human=b.txt ant=c.txt --test cup=d.txt human=e.txt ant=f.txt");
-    CLI::Option* sources =
-        command->add_option("SOURCE", options->trials.sources, k_category_source_help)->type_name("");
-    CLI::Option* train =
+    Option* sources = command->add_option("SOURCE", options->trials.sources, k_category_source_help)->type_name("");
+    Option* train =
         command->add_option("--train", options->trials.train, "training meshes, as SOURCE")->type_name("SOURCE");
-    CLI::Option* test =
-        command->add_option("--test", options->trials.test, "test meshes, as SOURCE")->type_name("SOURCE");
-    CLI::Option* count =
+    Option* test = command->add_option("--test", options->trials.test, "test meshes, as SOURCE")->type_name("SOURCE");
+    Option* count =
         command->add_option("--train-count", options->trials.train_count, "meshes of each category to learn from")
             ->capture_default_str()
             ->check(whole_number(2, 1'000'000));
-    CLI::Option* splits = command->add_option("--splits", options->trials.splits, "random splits, each a training")
-                              ->capture_default_str()
-                              ->check(whole_number(1, 1000));
-    for (CLI::Option* option : {train, test}) option->excludes(sources)->excludes(count)->excludes(splits);
+    Option* splits = command->add_option("--splits", options->trials.splits, "random splits, each a training")
+                         ->capture_default_str()
+                         ->check(whole_number(1, 1000));
+    for (Option* option : {train, test}) option->excludes(sources)->excludes(count)->excludes(splits);
     add_category_options(*command, options->training, options->features, options->cache);
     add_common_options(*command, options->common);
     command->callback([options] { run_category_evaluate(*options); });

@@ -112,7 +112,7 @@ CategorizedShapes describe_categories(const std::vector<CategoryMeshes>& categor
     return result;
 }
 
-void add_category_options(CLI::App& command, CategoryTrainingOptions& training, FeatureOptions& features,
+void add_category_options(Command& command, CategoryTrainingOptions& training, FeatureOptions& features,
                           fs::path& cache) {
     command.add_option("--seed", training.seed, "seed of all random choices; equal seeds give equal model files")
         ->capture_default_str()
@@ -125,7 +125,7 @@ void add_category_options(CLI::App& command, CategoryTrainingOptions& training, 
         .add_option("--least-confidence", training.least_confidence,
                     "a shape of less is called unknown, from 0 (never) to 1")
         ->capture_default_str()
-        ->check(CLI::Range(0.0, 1.0))
+        ->check(in_range(0.0, 1.0))
         ->type_name("SHARE");
     command.add_option("--cache", cache, "folder that remembers what shapes are like; '' remembers nothing")
         ->capture_default_str()

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "apps/help/command.h"
 #include "host/labeling/category/category_training.h"
 
 namespace exemplar {
@@ -29,7 +29,7 @@ CategorizedShapes describe_categories(const std::vector<CategoryMeshes>& categor
                                       const std::filesystem::path& cache, bool quiet);
 
 /// Adds the options of training, of its features and of their cache to a subcommand.
-void add_category_options(CLI::App& command, CategoryTrainingOptions& training, FeatureOptions& features,
+void add_category_options(Command& command, CategoryTrainingOptions& training, FeatureOptions& features,
                           std::filesystem::path& cache);
 
 /// Results on held-out shapes, as text and for --json.

@@ -71,9 +71,9 @@ void run_category_train(const CategoryTrainCommand& options) {
 
 }  // namespace
 
-void add_category_train_command(CLI::App& category) {
+void add_category_train_command(Command& category) {
     auto options = std::make_shared<CategoryTrainCommand>();
-    CLI::App* command = category.add_subcommand("train", "Learns categories from meshes of each");
+    Command* command = category.add_subcommand("train", "Learns categories from meshes of each");
     command->footer(
         "Needs meshes of two categories at least, and of one of them two; six of each are a good start.\n"
         "To choose among models for 'label batch --models', give --samples and --orientation as to 'label "

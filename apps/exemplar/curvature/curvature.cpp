@@ -4,9 +4,9 @@
 
 namespace exemplar {
 
-void add_curvature_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("curvature", "Learns and evaluates the curvature of animated surfaces");
-    command->require_subcommand(1);
+void add_curvature_command(Command& app) {
+    Command* command = app.add_subcommand("curvature", "Learns and evaluates the curvature of animated surfaces");
+    command->require_subcommand();
     command->footer(
         "Animations: glTF 2.0 (.glb, .gltf) with a skin or morph targets; folders of OBJ or PLY, a mesh a frame;\n"
         "folders with a neutral mesh and its blend shapes.\n\nExample:\n"

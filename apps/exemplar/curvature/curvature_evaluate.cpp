@@ -50,9 +50,9 @@ void run_curvature_evaluate(const EvaluateOptions& options) {
 
 }  // namespace
 
-void add_curvature_evaluate_command(CLI::App& curvature) {
+void add_curvature_evaluate_command(Command& curvature) {
     auto options = std::make_shared<EvaluateOptions>();
-    CLI::App* command =
+    Command* command =
         curvature.add_subcommand("evaluate", "Compares learned with measured curvature, on unseen frames");
     command->footer(
         "Misclassified are faces that carry a line by one curvature but not by the other, seen from six sides. Zero\n"
@@ -67,7 +67,7 @@ void add_curvature_evaluate_command(CLI::App& curvature) {
         ->type_name("DIR");
     command->add_option("--fps", options->frames_per_second, "frames a second that clips of glTF files are sampled at")
         ->capture_default_str()
-        ->check(CLI::Range(0.1, 1000.0));
+        ->check(in_range(0.1, 1000.0));
     command->add_option("--seed", options->seed, "seed of random expressions, for blend shapes without a clip")
         ->capture_default_str()
         ->check(whole_number(0));

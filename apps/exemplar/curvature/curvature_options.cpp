@@ -37,19 +37,19 @@ const std::string& word_of(const Value& value, const NamedValues<Value>& names) 
 }
 
 template <typename Value>
-void add_named_option(CLI::App& command, const std::string& option, Value& value, const NamedValues<Value>& names,
+void add_named_option(Command& command, const std::string& option, Value& value, const NamedValues<Value>& names,
                       const std::string& help) {
     std::vector<std::string> words;
     for (const auto& [word, of] : names) words.push_back(word);
     command
-        .add_option_function<std::string>(
+        .add_word_option(
             option,
             [&value, &names](const std::string& given) {
                 value = std::ranges::find(names, given, &std::pair<std::string, Value>::first)->second;
             },
             help)
         ->default_str(word_of(value, names))
-        ->check(CLI::IsMember(words));
+        ->check(one_of(words));
 }
 
 /// Components of little variance in training are also small in other motions of a rig, but not in other folds of
@@ -60,16 +60,16 @@ double suitable_sparsity(AnimationKind kind) {
 
 }  // namespace
 
-void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
+void add_curvature_options(Command& command, CurvatureArguments& arguments) {
     CurvatureTraining& training = arguments.training;
     command.add_option("--fps", arguments.frames_per_second, "frames a second that clips of glTF files are sampled at")
         ->capture_default_str()
-        ->check(CLI::Range(0.1, 1000.0));
+        ->check(in_range(0.1, 1000.0));
     command
         .add_option("--smoothing", training.truth.smoothing,
                     "width of the diffusion of measured curvature, in median edge lengths; 0 is none")
         ->capture_default_str()
-        ->check(CLI::Range(0.0, 20.0));
+        ->check(in_range(0.0, 20.0));
     add_named_option(command, "--robust", training.truth.robust, k_robust_names,
                      "estimator for noisy meshes: none, cauchy or geman-mcclure");
     add_named_option(command, "--learner", training.learner, k_learner_names,
@@ -79,12 +79,12 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
     add_named_option(command, "--bases", training.independent, k_independent_names, "ica or pca");
     command.add_option("--variance", training.variance, "share of the variance that bases keep")
         ->capture_default_str()
-        ->check(CLI::Range(0.01, 1.0));
+        ->check(in_range(0.01, 1.0));
     command
         .add_option("--sparsity", arguments.dropped_variance,
                     "share of what the bases explain that is left out to make the model smaller; default: 0.001, or 0 "
                     "for mesh sequences")
-        ->check(CLI::Range(0.0, 0.5));
+        ->check(in_range(0.0, 0.5));
     command
         .add_option(
             "--augment", training.augmented_poses,
@@ -103,7 +103,7 @@ void add_curvature_options(CLI::App& command, CurvatureArguments& arguments) {
         .add_option("--state-variance", training.sequence.share,
                     "mesh sequences: share of the variance of the dihedral angles that these numbers keep")
         ->capture_default_str()
-        ->check(CLI::Range(0.01, 1.0));
+        ->check(in_range(0.01, 1.0));
     command.add_option("--seed", training.seed, "seed of all random choices; equal seeds give equal model files")
         ->capture_default_str()
         ->check(whole_number(0));

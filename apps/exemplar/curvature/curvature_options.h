@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
+#include "apps/help/command.h"
 #include "host/curvature/learning/training.h"
 #include "host/curvature/model/evaluation.h"
 
@@ -18,7 +18,7 @@ struct CurvatureArguments {
     double frames_per_second = 30;
 };
 
-void add_curvature_options(CLI::App& command, CurvatureArguments& arguments);
+void add_curvature_options(Command& command, CurvatureArguments& arguments);
 /// Returns the training options; `kind` decides those that are not given.
 CurvatureTraining training_of(const CurvatureArguments& arguments, AnimationKind kind);
 

@@ -149,9 +149,9 @@ void run_study(const StudyOptions& options) {
 
 }  // namespace
 
-void add_curvature_study_command(CLI::App& curvature) {
+void add_curvature_study_command(Command& curvature) {
     auto options = std::make_shared<StudyOptions>();
-    CLI::App* command = curvature.add_subcommand(
+    Command* command = curvature.add_subcommand(
         "study", "Trains again and again: errors on unseen frames against poses, variance, bases and size");
     command->footer(
         "Each row differs from the training asked for in one thing. Frames that are learned from are never tested on.\n"

@@ -53,9 +53,9 @@ void run_curvature_train(const CurvatureTrainOptions& options) {
 
 }  // namespace
 
-void add_curvature_train_command(CLI::App& curvature) {
+void add_curvature_train_command(Command& curvature) {
     auto options = std::make_shared<CurvatureTrainOptions>();
-    CLI::App* command = curvature.add_subcommand("train", "Learns curvature from the poses of an animation");
+    Command* command = curvature.add_subcommand("train", "Learns curvature from the poses of an animation");
     command->footer(
         "Example:\n  exemplar curvature train figure.glb --clips walk,run --out figure.safetensors --seed 1");
     command->add_option("ANIM", options->animation, "animation: glTF file, or a folder of meshes")

@@ -8,7 +8,7 @@
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/demo/demo_lines.h"
 #include "apps/exemplar/label/evaluation_run.h"
-#include "apps/help/offered_words.h"
+#include "apps/help/command.h"
 #include "host/core/interrupt.h"
 #include "host/core/stopwatch.h"
 #include "host/core/text.h"
@@ -91,9 +91,9 @@ void run_demo(const DemoOptions& options) {
 
 }  // namespace
 
-void add_demo_command(CLI::App& app) {
+void add_demo_command(Command& app) {
     auto options = std::make_shared<DemoOptions>();
-    CLI::App* command = app.add_subcommand(
+    Command* command = app.add_subcommand(
         "demo", "Generates shapes, trains, labels unseen ones, draws a figure in lines, and shows it all in a page");
     command->footer("Example:\n  exemplar demo --out out/demo");
     command->add_option("--out", options->out, "folder to write to")->capture_default_str()->type_name("FOLDER");

@@ -4,9 +4,9 @@
 
 namespace exemplar {
 
-void add_hatch_command(CLI::App& app) {
-    CLI::App* hatch = app.add_subcommand("hatch", "Learns hatching from one drawing, and draws in its style");
-    hatch->require_subcommand(1);
+void add_hatch_command(Command& app) {
+    Command* hatch = app.add_subcommand("hatch", "Learns hatching from one drawing, and draws in its style");
+    hatch->require_subcommand();
     hatch->footer(
         "From a view to trace to drawings of other meshes:\n"
         "  exemplar hatch template bunny.off --out bunny.png          # trace it: strokes only, no outlines\n"

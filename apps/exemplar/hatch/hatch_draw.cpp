@@ -4,7 +4,7 @@
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/hatch/hatch_draw.h"
-#include "apps/help/offered_words.h"
+#include "apps/help/command.h"
 #include "host/core/errors.h"
 #include "host/core/progress.h"
 #include "host/core/stopwatch.h"
@@ -101,18 +101,18 @@ void run_draw(HatchDrawJob& job) {
     job.has_frames() ? write_hatched_frames(job) : draw_still(job);
 }
 
-void add_frames_options(CLI::App& command, HatchDrawJob& job) {
+void add_frames_options(Command& command, HatchDrawJob& job) {
     add_frame_options(command, job.source.frames, "", "draw");
     command
         .add_option("--fps", job.source.frames_per_second, "frames a second that clips of glTF files are sampled at")
         ->capture_default_str()
-        ->check(CLI::Range(0.1, 1000.0));
+        ->check(in_range(0.1, 1000.0));
     command
         .add_option("--turn", job.turn,
                     "degrees that the object turns by from a frame to the next; a mesh turns all around, or for as "
                     "many frames as --frames says")
         ->type_name("DEGREES")
-        ->check(CLI::Range(-90.0, 90.0));
+        ->check(in_range(-90.0, 90.0));
     command.add_flag("--fresh", job.fresh, "draws each frame anew, instead of keeping strokes on the surface");
     command.add_flag("--remeasure", job.remeasure,
                      "measures each frame's surface as a whole, instead of keeping what changes slowly");
@@ -149,9 +149,9 @@ void write_hatched_drawing(const HatchDrawJob& job, const HatchedDrawing& drawin
     write_hatching_svg(job.out, drawing, look, options);
 }
 
-void add_hatch_draw_command(CLI::App& hatch) {
+void add_hatch_draw_command(Command& hatch) {
     auto arguments = std::make_shared<HatchDrawJob>();
-    CLI::App* command = hatch.add_subcommand("draw", "Draws a mesh or an animation in a learned style");
+    Command* command = hatch.add_subcommand("draw", "Draws a mesh or an animation in a learned style");
     command->footer(
         "Examples:\n"
         "  exemplar hatch draw mine.safetensors cow.obj --out cow.svg\n"
@@ -179,10 +179,10 @@ void add_hatch_draw_command(CLI::App& hatch) {
         ->type_name("FOLDER");
     command->add_option("--taper", arguments->taper, "pixels over which strokes end in a point; 0: blunt")
         ->capture_default_str()
-        ->check(CLI::Range(0.0, 1000.0));
+        ->check(in_range(0.0, 1000.0));
     command->add_option("--scale", arguments->scale, "enlarges PNG pictures")
         ->capture_default_str()
-        ->check(CLI::Range(0.1, 16.0));
+        ->check(in_range(0.1, 16.0));
     command->add_flag_callback(
         "--no-tone", [job = arguments.get()] { job->hatching.matches_tone = false; },
         "leaves strokes as thick as learned, not matched to the tone");

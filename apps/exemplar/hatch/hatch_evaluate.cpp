@@ -9,7 +9,7 @@
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/hatch/hatch_reading.h"
 #include "apps/exemplar/hatch/hatch_scene.h"
-#include "apps/help/offered_words.h"
+#include "apps/help/command.h"
 #include "host/core/errors.h"
 #include "host/core/progress.h"
 #include "host/core/random.h"
@@ -278,9 +278,9 @@ void run_hatch_evaluate(EvaluateArguments arguments) {
 
 }  // namespace
 
-void add_hatch_evaluate_command(CLI::App& hatch) {
+void add_hatch_evaluate_command(Command& hatch) {
     auto arguments = std::make_shared<EvaluateArguments>();
-    CLI::App* command =
+    Command* command =
         hatch.add_subcommand("evaluate", "Learns styles whose rule is known, and tests them on other views and meshes");
     command->footer(
         "The first mesh is drawn and learned from, in one view; tested are three other views of it, and the other\n"

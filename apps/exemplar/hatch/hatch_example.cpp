@@ -7,7 +7,7 @@
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/hatch/hatch_scene.h"
-#include "apps/help/offered_words.h"
+#include "apps/help/command.h"
 #include "host/core/errors.h"
 #include "host/core/text.h"
 #include "host/hatching/fields/ink.h"
@@ -43,9 +43,9 @@ void run_example(const ExampleArguments& arguments) {
 
 }  // namespace
 
-void add_hatch_example_command(CLI::App& hatch) {
+void add_hatch_example_command(Command& hatch) {
     auto arguments = std::make_shared<ExampleArguments>();
-    CLI::App* command = hatch.add_subcommand("example", "Draws a view in one of the styles that are built in");
+    Command* command = hatch.add_subcommand("example", "Draws a view in one of the styles that are built in");
     command->footer(
         fmt::format("Styles: {}\n\nExample:\n"
                     "  exemplar hatch example contour bunny.off --out drawing.png",

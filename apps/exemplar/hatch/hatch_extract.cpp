@@ -73,9 +73,9 @@ void run_extract(const ExtractArguments& arguments) {
 
 }  // namespace
 
-void add_hatch_extract_command(CLI::App& hatch) {
+void add_hatch_extract_command(Command& hatch) {
     auto arguments = std::make_shared<ExtractArguments>();
-    CLI::App* command = hatch.add_subcommand("extract", "Measures the strokes of a drawing, for inspection");
+    Command* command = hatch.add_subcommand("extract", "Measures the strokes of a drawing, for inspection");
     command->footer(
         "Writes a picture of each property: skeleton, orientation, thickness, intensity, spacing, length, levels,\n"
         "intersections, boundaries.\n\nExample:\n"

@@ -11,7 +11,7 @@
 
 namespace exemplar {
 
-void add_hatch_scene_options(CLI::App& command, HatchSceneArguments& arguments) {
+void add_hatch_scene_options(Command& command, HatchSceneArguments& arguments) {
     arguments.camera.size = "1000x1000";
     add_camera_options(command, arguments.camera);
     command

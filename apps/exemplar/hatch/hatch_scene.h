@@ -1,12 +1,12 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
 #include <string>
 
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/lines/lines_camera.h"
+#include "apps/help/command.h"
 #include "host/hatching/features/hatching_surface.h"
 #include "host/hatching/features/pixel_features.h"
 #include "host/hatching/features/surface_cache.h"
@@ -21,7 +21,7 @@ struct HatchSceneArguments {
     std::string light = "-0.45,0.55,0.7";                    ///< direction to it: x right, y up, z towards the eye
     std::filesystem::path cache = default_surface_folder();  ///< cache of measured surfaces; empty: none
 };
-void add_hatch_scene_options(CLI::App& command, HatchSceneArguments& arguments);
+void add_hatch_scene_options(Command& command, HatchSceneArguments& arguments);
 /// Checks what can be checked before any work; throws UsageError or DataError.
 void require_hatch_scene(const HatchSceneArguments& arguments);
 /// Returns the view of a mesh.

@@ -35,9 +35,9 @@ void run_template(const TemplateArguments& arguments) {
 
 }  // namespace
 
-void add_hatch_template_command(CLI::App& hatch) {
+void add_hatch_template_command(Command& hatch) {
     auto arguments = std::make_shared<TemplateArguments>();
-    CLI::App* command = hatch.add_subcommand("template", "Renders a view of a mesh to draw on");
+    Command* command = hatch.add_subcommand("template", "Renders a view of a mesh to draw on");
     command->footer(
         "Draw the strokes of hatching on a layer above it, or on paper over a print, and leave outlines out; then "
         "hand\n"

@@ -105,9 +105,9 @@ void run_hatch_train(const TrainArguments& arguments) {
 
 }  // namespace
 
-void add_hatch_train_command(CLI::App& hatch) {
+void add_hatch_train_command(Command& hatch) {
     auto arguments = std::make_shared<TrainArguments>();
-    CLI::App* command = hatch.add_subcommand("train", "Learns a style from one drawing of a view");
+    Command* command = hatch.add_subcommand("train", "Learns a style from one drawing of a view");
     command->footer(
         "Example:\n  exemplar hatch train bunny.off traced.png --view three-quarter --out mine.safetensors");
     command->add_option("MESH", arguments->scene.mesh, "mesh that the drawing shows")->required()->type_name("");

@@ -87,9 +87,9 @@ void run_apply(const ApplyOptions& options) {
 
 }  // namespace
 
-void add_apply_command(CLI::App& label) {
+void add_apply_command(Command& label) {
     auto options = std::make_shared<ApplyOptions>();
-    CLI::App* command = label.add_subcommand("apply", "Labels unseen meshes with a trained model");
+    Command* command = label.add_subcommand("apply", "Labels unseen meshes with a trained model");
     command->footer(
         "Writes for each mesh NAME_labels.txt, NAME.ply (label and color per face) and NAME.seg.\n\nExample:\n"
         "  exemplar label apply human.safetensors a.off b.obj --out labeled --gltf --png --json labeled/report.json");

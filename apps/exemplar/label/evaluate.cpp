@@ -218,19 +218,19 @@ void run_label_evaluate(const EvaluateCommand& options) {
 }
 
 /// --train and --test, or --train-on and --test-on, and the protocols that take their place.
-void add_mesh_options(CLI::App& command, EvaluateCommand& options) {
-    CLI::Option* train = command.add_option("--train", options.train_sets,
-                                            "training meshes: a folder or list, or several that are merged");
-    CLI::Option* test = command.add_option("--test", options.test_sets, "test meshes: folders or lists");
-    CLI::Option* train_on =
+void add_mesh_options(Command& command, EvaluateCommand& options) {
+    Option* train = command.add_option("--train", options.train_sets,
+                                       "training meshes: a folder or list, or several that are merged");
+    Option* test = command.add_option("--test", options.test_sets, "test meshes: folders or lists");
+    Option* train_on =
         command.add_option("--train-on", options.train_on, "training meshes of another category than --test-on");
-    CLI::Option* test_on = command.add_option("--test-on", options.test_on,
-                                              "test meshes of it; rated by the label names that both categories have");
-    for (CLI::Option* option : {train_on, test_on}) option->excludes(train)->excludes(test);
-    CLI::Option* protocol = command.add_option(
+    Option* test_on = command.add_option("--test-on", options.test_on,
+                                         "test meshes of it; rated by the label names that both categories have");
+    for (Option* option : {train_on, test_on}) option->excludes(train)->excludes(test);
+    Option* protocol = command.add_option(
         "--protocol", options.protocol, "train on 3, 6 or 12 random meshes of each category, or on all but one (sb19)");
-    protocol->check(CLI::IsMember({"sb3", "sb6", "sb12", "sb19"}))->type_name("");
-    for (CLI::Option* option : {train, test, train_on, test_on}) {
+    protocol->check(one_of({"sb3", "sb6", "sb12", "sb19"}))->type_name("");
+    for (Option* option : {train, test, train_on, test_on}) {
         option->type_name("SET");
         protocol->excludes(option);
     }
@@ -251,9 +251,9 @@ void add_mesh_options(CLI::App& command, EvaluateCommand& options) {
 
 }  // namespace
 
-void add_evaluate_command(CLI::App& label) {
+void add_evaluate_command(Command& label) {
     auto options = std::make_shared<EvaluateCommand>();
-    CLI::App* command =
+    Command* command =
         label.add_subcommand("evaluate", "Trains on some labeled meshes, tests on others, reports the accuracy");
     command->footer(
         "Interrupted, it goes on where it stopped when called again with the same options and --out.\n\nExamples:\n"

@@ -4,15 +4,15 @@
 
 namespace exemplar {
 
-void add_label_command(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("label", "Labels the parts of meshes, learned from labeled meshes");
+void add_label_command(Command& app) {
+    Command* command = app.add_subcommand("label", "Labels the parts of meshes, learned from labeled meshes");
     command->footer(
         "Example:\n  exemplar label train shapes --out human.safetensors\n"
         "  exemplar label apply human.safetensors mesh.obj --out labeled\n"
         "  exemplar label batch shapes --model human.safetensors --out labeled\n"
         "  exemplar label evaluate --protocol sb6 shapes --out report\n"
         "  exemplar label stress human.safetensors mesh.obj");
-    command->require_subcommand(1);
+    command->require_subcommand();
     add_train_command(*command);
     add_apply_command(*command);
     add_batch_command(*command);

@@ -10,7 +10,7 @@
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/label/labeled_output.h"
-#include "apps/help/offered_words.h"
+#include "apps/help/command.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
@@ -289,9 +289,9 @@ std::string list_of_damages() {
 
 }  // namespace
 
-void add_stress_command(CLI::App& label) {
+void add_stress_command(Command& label) {
     auto options = std::make_shared<StressOptions>();
-    CLI::App* command =
+    Command* command =
         label.add_subcommand("stress", "Damages meshes on purpose and reports how much of their labels a model keeps");
     command->footer(list_of_damages() +
                     "\nExample:\n"

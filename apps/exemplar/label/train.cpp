@@ -49,7 +49,7 @@ void run_label_train(const TrainCommand& options) {
 
 }  // namespace
 
-void add_training_options(CLI::App& command, TrainOptions& options, std::filesystem::path& cache) {
+void add_training_options(Command& command, TrainOptions& options, std::filesystem::path& cache) {
     command.add_option("--seed", options.seed, "seed of all random choices; equal seeds give equal model files")
         ->capture_default_str()
         ->check(whole_number(0));
@@ -74,10 +74,10 @@ void add_training_options(CLI::App& command, TrainOptions& options, std::filesys
         .add_option("--feature-fraction", options.feature_fraction,
                     "share of the features that each boosting round looks at, drawn at random")
         ->capture_default_str()
-        ->check(CLI::Range(0.001, 1.0));
+        ->check(in_range(0.001, 1.0));
     command.add_option("--shrinkage", options.shrinkage, "what each stump's response is multiplied with")
         ->capture_default_str()
-        ->check(CLI::Range(0.01, 1.0));
+        ->check(in_range(0.01, 1.0));
     command.add_flag_callback(
         "--no-linear", [&options] { options.linear = false; },
         "boosted stumps alone, not pooled with linear classifiers where that is better on held-out meshes");
@@ -92,9 +92,9 @@ void add_training_options(CLI::App& command, TrainOptions& options, std::filesys
         ->type_name("FOLDER");
 }
 
-void add_train_command(CLI::App& label) {
+void add_train_command(Command& label) {
     auto options = std::make_shared<TrainCommand>();
-    CLI::App* command = label.add_subcommand("train", "Learns a model from labeled meshes");
+    Command* command = label.add_subcommand("train", "Learns a model from labeled meshes");
     command->footer(
         "Labels: NAME_labels.txt beside NAME.off (a label name, then a line of 1-based face numbers, and so on),\n"
         "or a PLY with a per-face 'label' property.\n\nExample:\n"

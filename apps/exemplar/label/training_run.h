@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -8,13 +7,14 @@
 #include <utility>
 #include <vector>
 
+#include "apps/help/command.h"
 #include "host/labeling/features/feature_cache.h"
 #include "host/labeling/training/training.h"
 
 namespace exemplar {
 
 /// Adds --seed, --rounds and the other options of training to a subcommand.
-void add_training_options(CLI::App& command, TrainOptions& options, std::filesystem::path& cache);
+void add_training_options(Command& command, TrainOptions& options, std::filesystem::path& cache);
 
 /// Computes the features of all meshes of a corpus, with progress.
 std::vector<MeshFeatures> features_of(const LabeledCorpus& corpus, const FeatureOptions& options,

@@ -8,7 +8,7 @@
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/lines/lines_comparison.h"
 #include "apps/exemplar/lines/lines_job.h"
-#include "apps/help/offered_words.h"
+#include "apps/help/command.h"
 #include "host/core/errors.h"
 #include "host/core/freed_memory.h"
 #include "host/core/text.h"
@@ -141,7 +141,7 @@ void run_lines(const LinesArguments& arguments) {
         write_lines_pictures(job);
 }
 
-void add_look_options(CLI::App& command, LinesArguments& arguments) {
+void add_look_options(Command& command, LinesArguments& arguments) {
     command
         .add_option("--types", arguments.types,
                     fmt::format("lines to draw, separated by commas; the first letters will do: {}",
@@ -170,10 +170,10 @@ void add_look_options(CLI::App& command, LinesArguments& arguments) {
         .add_option("--smoothing", arguments.job.source.measuring.smoothing,
                     "width, in edge lengths, that measured curvature is smoothed with")
         ->capture_default_str()
-        ->check(CLI::Range(0.0, 100.0));
+        ->check(in_range(0.0, 100.0));
 }
 
-void add_svg_options(CLI::App& command, LinesArguments& arguments) {
+void add_svg_options(Command& command, LinesArguments& arguments) {
     command
         .add_option("--form", arguments.form,
                     "lines: center lines with a stroke width, for plotters; outlines: filled shapes of varying width")
@@ -190,7 +190,7 @@ void add_svg_options(CLI::App& command, LinesArguments& arguments) {
         .add_option("--tolerance", arguments.job.svg.tolerance,
                     "pixels that paths may be off where that saves points; more than the default calms uneven lines")
         ->capture_default_str()
-        ->check(CLI::Range(0.0, 100.0));
+        ->check(in_range(0.0, 100.0));
     command.add_flag("--no-background", arguments.no_background, "leaves the background out");
 }
 
@@ -225,9 +225,9 @@ nlohmann::json describe_job(const LinesJob& job, const LinesSource& source, cons
             {"view_projection", matrix}};
 }
 
-void add_lines_command(CLI::App& app) {
+void add_lines_command(Command& app) {
     auto arguments = std::make_shared<LinesArguments>();
-    CLI::App* command = app.add_subcommand("lines", "Draws a mesh or an animation in lines");
+    Command* command = app.add_subcommand("lines", "Draws a mesh or an animation in lines");
     command->footer(
         "SVG is made on the CPU: hidden lines are not in the file, each type of lines is a layer, and frames of an\n"
         "animation (--frames) play. Pictures (.png, or a folder: one a frame) and videos (.mp4, by ffmpeg) are drawn "
@@ -256,7 +256,7 @@ void add_lines_command(CLI::App& app) {
     command
         ->add_option("--fps", job.source.frames_per_second, "frames a second that clips of glTF files are sampled at")
         ->capture_default_str()
-        ->check(CLI::Range(0.1, 1000.0));
+        ->check(in_range(0.1, 1000.0));
     add_device_option(*command, job.common);
     add_common_options(*command, job.common);
     command->callback([arguments] { run_lines(*arguments); });

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "apps/help/offered_words.h"
+#include "apps/help/command.h"
 #include "host/core/errors.h"
 #include "host/core/text.h"
 #include "host/lines/strokes/view_point.h"
@@ -77,7 +77,7 @@ Vec3 point_of(const std::string& text, const char* option) {
     return point;
 }
 
-void add_camera_options(CLI::App& command, CameraArguments& arguments) {
+void add_camera_options(Command& command, CameraArguments& arguments) {
     command
         .add_option("--view", arguments.view,
                     fmt::format("where it is seen from, as large as it fits: {}", fmt::join(view_names(), ", ")))
@@ -93,7 +93,7 @@ void add_camera_options(CLI::App& command, CameraArguments& arguments) {
         ->capture_default_str();
     command.add_option("--fov", arguments.field_of_view, "vertical angle of view in degrees; 0: parallel projection")
         ->capture_default_str()
-        ->check(CLI::Range(0.0, 170.0));
+        ->check(in_range(0.0, 170.0));
     command.add_option("--size", arguments.size, "pixels of the drawing")->type_name("WxH")->capture_default_str();
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
 #include "apps/exemplar/lines/lines_source.h"
+#include "apps/help/command.h"
 #include "host/lines/strokes/strokes.h"
 
 namespace exemplar {
@@ -15,7 +15,7 @@ struct CameraArguments {
     double field_of_view = 23;  ///< degrees, vertical; 0: parallel
 };
 
-void add_camera_options(CLI::App& command, CameraArguments& arguments);
+void add_camera_options(Command& command, CameraArguments& arguments);
 /// Parses three numbers separated by commas; throws UsageError naming the option.
 Vec3 point_of(const std::string& text, const char* option);
 /// Checks all arguments before any work; throws UsageError naming the option.

@@ -102,8 +102,8 @@ TEST_P(AttributesTest, DoNotDependOnTheSignOfTheDirection) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sets, AttributesTest, ::testing::Values(AttributeSet::principal, AttributeSet::tensor),
-                         [](const auto& info) {
-                             return info.param == AttributeSet::principal ? "principal" : "tensor";
+                         [](const auto& instance) {
+                             return instance.param == AttributeSet::principal ? "principal" : "tensor";
                          });
 
 // Where k1 and k2 change places the principal direction jumps by a right angle; the tensor does not notice.

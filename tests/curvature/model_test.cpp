@@ -66,10 +66,10 @@ INSTANTIATE_TEST_SUITE_P(Ways, TrainingTest,
                                            TrainingCase{Learner::averaged, AttributeSet::tensor, true, 0.3},
                                            TrainingCase{Learner::averaged, AttributeSet::principal, false, 0.3},
                                            TrainingCase{Learner::global, AttributeSet::tensor, false, 0.3}),
-                         [](const auto& info) {
-                             return std::string(name_of(info.param.learner)) +
-                                    (info.param.attributes == AttributeSet::tensor ? "_tensor" : "_principal") +
-                                    (info.param.independent ? "_ica" : "_pca");
+                         [](const auto& instance) {
+                             return std::string(name_of(instance.param.learner)) +
+                                    (instance.param.attributes == AttributeSet::tensor ? "_tensor" : "_principal") +
+                                    (instance.param.independent ? "_ica" : "_pca");
                          });
 
 TEST(Training, OfEqualSeedsGivesEqualFiles) {

@@ -142,8 +142,9 @@ TEST(Influence, IsOfTheJointsBetweenTheBonesOfAVertex) {
         for (const std::uint32_t v : group.vertices) of_vertex[v] = group.controls;
     for (std::size_t v = 0; v < of_vertex.size(); ++v) {
         const float x = tube.rest.vertices[v].x();
-        if (std::abs(x) < 0.8f)
+        if (std::abs(x) < 0.8f) {
             EXPECT_EQ(of_vertex[v], std::vector<std::uint32_t>{1}) << x;  // the elbow, never the root
+        }
     }
 }
 

@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
                       SurplusCase{"hinges", small_sheet, Learner::additive, AttributeSet::tensor},
                       SurplusCase{"hinges_principal", small_sheet, Learner::global, AttributeSet::principal},
                       SurplusCase{"local_shape", small_sheet, Learner::local, AttributeSet::tensor}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& instance) { return instance.param.name; });
 
 }  // namespace
 }  // namespace exemplar

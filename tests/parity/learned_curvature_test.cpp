@@ -246,7 +246,7 @@ struct MovedSheet {
 // What rounding may do to each input: numbers of the shape are of size one, but heights, which are differences of
 // positions.
 std::vector<float> input_roundings(const LocalShapeState& state, const std::vector<Vec3>& vertices) {
-    constexpr float k_rounding = 2 * std::numeric_limits<float>::epsilon();
+    constexpr float k_unit_roundoff = 2 * std::numeric_limits<float>::epsilon();
     float farthest = 0;
     for (const Vec3& p : vertices) farthest = std::max(farthest, p.norm());
     std::vector<float> roundings;
@@ -255,7 +255,7 @@ std::vector<float> input_roundings(const LocalShapeState& state, const std::vect
             float sum = 0;
             for (Eigen::Index j = 0; j < map.cols(); ++j)
                 sum += std::abs(map(i, j)) * (j % 4 == 3 ? farthest / state.unit : 1.0f);
-            roundings.push_back(k_rounding * sum);
+            roundings.push_back(k_unit_roundoff * sum);
         }
     return roundings;
 }

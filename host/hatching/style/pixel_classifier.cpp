@@ -84,6 +84,42 @@ BoostedStumps with_all_rows(const ClassifierTraining& training, const QuantizedF
     return booster.classifier();
 }
 
+/// Returns, per face, geodesic range and label, the mean probability of the pixels in that range; normalized per face.
+std::vector<float> mean_probabilities_around_faces(const HatchingSurface& surface, const GBuffer& gbuffer,
+                                                   const CoveredPixels& pixels, std::span<const float> probabilities,
+                                                   std::size_t labels) {
+    // Pixels are accumulated at the surface samples nearest to their faces.
+    const std::size_t samples = surface.sample_face.size(), faces = surface.mesh.face_count();
+    std::vector<float> seen(samples), sums(samples * labels);
+    for (std::size_t i = 0; i < pixels.pixel.size(); ++i) {
+        const std::uint32_t s = surface.face_sample[gbuffer.face[pixels.pixel[i]]];
+        seen[s] += 1;
+        for (std::size_t c = 0; c < labels; ++c) sums[s * labels + c] += probabilities[i * labels + c];
+    }
+    const std::size_t columns = k_context_ranges * labels;
+    std::vector<float> at_face(faces * columns);
+    parallel_ranges(faces, 256, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> count(k_context_ranges);
+        for (std::size_t f = begin; f < end; ++f) {
+            std::ranges::fill(count, 0.0f);
+            float* out = at_face.data() + f * columns;
+            for (std::size_t s = 0; s < samples; ++s) {
+                const std::uint8_t range = surface.sample_bin[s * faces + f];
+                if (!(seen[s] > 0) || range >= k_context_ranges) continue;
+                count[range] += seen[s];
+                for (std::size_t c = 0; c < labels; ++c) out[range * labels + c] += sums[s * labels + c];
+            }
+            float total = 0;
+            for (std::size_t k = 0; k < columns; ++k) {
+                out[k] = count[k / labels] > 0 ? out[k] / count[k / labels] : 0.0f;
+                total += out[k];
+            }
+            for (std::size_t k = 0; k < columns && total > 0; ++k) out[k] /= total;
+        }
+    });
+    return at_face;
+}
+
 }  // namespace
 
 LearnedClassifier learn_classifier(const ClassifierTraining& training, const std::function<void()>& progress) {
@@ -147,35 +183,8 @@ std::vector<std::string> contextual_feature_names(std::size_t labels) {
 FeatureMatrix contextual_features(const HatchingSurface& surface, const GBuffer& gbuffer, const CoveredPixels& pixels,
                                   std::span<const float> probabilities, std::size_t labels,
                                   std::span<const std::uint32_t> rows) {
-    // Pixels are accumulated at the surface samples nearest to their faces.
-    const std::size_t samples = surface.sample_face.size(), faces = surface.mesh.face_count();
-    std::vector<float> seen(samples), sums(samples * labels);
-    for (std::size_t i = 0; i < pixels.pixel.size(); ++i) {
-        const std::uint32_t s = surface.face_sample[gbuffer.face[pixels.pixel[i]]];
-        seen[s] += 1;
-        for (std::size_t c = 0; c < labels; ++c) sums[s * labels + c] += probabilities[i * labels + c];
-    }
     const std::size_t columns = k_context_ranges * labels;
-    std::vector<float> at_face(faces * columns);
-    parallel_ranges(faces, 256, [&](std::size_t begin, std::size_t end) {
-        std::vector<float> count(k_context_ranges);
-        for (std::size_t f = begin; f < end; ++f) {
-            std::ranges::fill(count, 0.0f);
-            float* out = at_face.data() + f * columns;
-            for (std::size_t s = 0; s < samples; ++s) {
-                const std::uint8_t range = surface.sample_bin[s * faces + f];
-                if (!(seen[s] > 0) || range >= k_context_ranges) continue;
-                count[range] += seen[s];
-                for (std::size_t c = 0; c < labels; ++c) out[range * labels + c] += sums[s * labels + c];
-            }
-            float total = 0;
-            for (std::size_t k = 0; k < columns; ++k) {
-                out[k] = count[k / labels] > 0 ? out[k] / count[k / labels] : 0.0f;
-                total += out[k];
-            }
-            for (std::size_t k = 0; k < columns && total > 0; ++k) out[k] /= total;
-        }
-    });
+    const std::vector<float> at_face = mean_probabilities_around_faces(surface, gbuffer, pixels, probabilities, labels);
     FeatureMatrix matrix;
     matrix.rows = rows.empty() ? pixels.pixel.size() : rows.size();
     for (std::string& name : contextual_feature_names(labels)) {

@@ -34,8 +34,8 @@ CategoryPrediction recognize(const CategoryModel& model, const ShapeDescriptor& 
     const std::vector<double> scores = model.scores.of(shape.values);
     CategoryPrediction prediction;
     const auto best = std::ranges::max_element(scores);
-    std::vector<double> probability;
-    for (const double score : scores) probability.push_back(model.sharpness * (score - *best));
+    std::vector<double> probability = scores;
+    for (double& p : probability) p = model.sharpness * (p - *best);
     softmax(std::span(probability));
     prediction.probability.assign(probability.begin(), probability.end());
     prediction.confidence = static_cast<float>(model.confidence.probability(category_evidence(scores)));

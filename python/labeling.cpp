@@ -90,6 +90,7 @@ LabelingModel train_labeling(const std::vector<MeshPointer>& meshes, const Train
     return train_labeling(corpus, features, options, backend.labeling(), report);
 }
 
+// One parameter for each keyword of the Python function. NOLINTNEXTLINE(readability-function-size)
 ModelPointer train_model(const std::vector<MeshPointer>& meshes, std::uint64_t seed, std::int64_t rounds,
                          std::int64_t patience, std::int64_t stages, std::int64_t bins, std::int64_t rows,
                          double feature_fraction, double shrinkage, bool linear, std::int64_t samples, bool orientation,

@@ -92,6 +92,7 @@ void set_thresholds(DrawingStyle& style, const std::map<std::string, float>& thr
         }
 }
 
+// One parameter for each keyword of the Python function. NOLINTNEXTLINE(readability-function-size)
 LineDrawingPointer draw_lines(const MeshObject& mesh, const std::vector<std::string>& types, const std::string& style,
                               const std::string& view, const py::object& eye, const py::object& target,
                               const py::object& up, double field_of_view, std::pair<std::int64_t, std::int64_t> size,

@@ -4,7 +4,7 @@ add_library(exemplar_options INTERFACE)
 target_include_directories(exemplar_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
 # In a batch (see exemplar_unity), GCC takes the sources for headers, whose unnamed namespaces it warns of.
 set(exemplar_warnings -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-                      $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi> $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+                      $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi> $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
 target_compile_options(exemplar_options INTERFACE "$<BUILD_INTERFACE:${exemplar_warnings}>")
 # GCC collects its garbage from 512 MB on instead of 128: 7 % less time for a batch, at a quarter more memory.
 target_compile_options(exemplar_options INTERFACE "$<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=524288>>")

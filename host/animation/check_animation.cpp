@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "host/core/errors.h"
-#include "host/core/evenly_spaced.h"
 #include "host/core/parallel.h"
+#include "host/core/statistics.h"
 #include "host/mesh/editing/drawable_mesh.h"
 #include "host/mesh/io/io_text.h"
 

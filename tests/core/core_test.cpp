@@ -8,11 +8,11 @@
 #include <fstream>
 
 #include "host/core/errors.h"
-#include "host/core/evenly_spaced.h"
 #include "host/core/files.h"
 #include "host/core/parallel.h"
 #include "host/core/progress.h"
 #include "host/core/random.h"
+#include "host/core/statistics.h"
 #include "host/core/text.h"
 #include "tests/support/mesh_files.h"
 #include "tests/support/temporary_folder.h"

@@ -89,7 +89,7 @@ TEST_P(SurplusTest, IsRefusedAtTheEndOfEveryArray) {
         std::vector<std::uint8_t> bytes(tensor.bytes.begin(), tensor.bytes.end());
         std::size_t added = row;
         for (std::size_t i = 1; i < tensor.shape.size(); ++i) added *= tensor.shape[i];
-        bytes.resize(bytes.size() + added);
+        bytes.insert(bytes.end(), added, 0);
         ++longer.shape[0];
         longer.bytes = bytes;
         TensorFile changed = file;

@@ -11,7 +11,7 @@
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/curvature/curvature_options.h"
 #include "host/core/errors.h"
-#include "host/core/evenly_spaced.h"
+#include "host/core/statistics.h"
 #include "host/core/stopwatch.h"
 
 namespace exemplar {

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "host/core/errors.h"
-#include "host/core/evenly_spaced.h"
 #include "host/core/half.h"
 #include "host/core/parallel.h"
 #include "host/core/progress.h"

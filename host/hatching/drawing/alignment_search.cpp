@@ -7,9 +7,9 @@
 #include <nlopt.hpp>
 #include <numbers>
 
-#include "host/core/evenly_spaced.h"
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
+#include "host/core/statistics.h"
 
 namespace exemplar {
 namespace {

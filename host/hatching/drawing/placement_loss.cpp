@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "host/core/evenly_spaced.h"
+#include "host/core/statistics.h"
 #include "host/hatching/tracing/drawing_filters.h"
 #include "host/hatching/tracing/region_outline.h"
 #include "host/hatching/tracing/traced_drawing.h"

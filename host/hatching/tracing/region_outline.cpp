@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/core/evenly_spaced.h"
+#include "host/core/statistics.h"
 #include "host/hatching/tracing/drawing_filters.h"
 #include "host/hatching/tracing/thinning.h"
 

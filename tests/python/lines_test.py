@@ -99,7 +99,7 @@ class LinesTest(PackageTest):
         refused("feature_size", feature_size=0)
         refused("inkk", error=exemplar.DataError, style="inkk")
         refused("no faces", error=exemplar.MeshError, mesh=exemplar.Mesh([], []))
-        refused("no extent", error=exemplar.MeshError, mesh=exemplar.Mesh(0 * CUBE, CUBE_FACES))
+        refused("every face has two corners", error=exemplar.MeshError, mesh=exemplar.Mesh(0 * CUBE, CUBE_FACES))
         self.raises(exemplar.UsageError, "'hills'", exemplar.draw_lines(self.cup).polylines, "hills")
         self.raises(exemplar.DataError, "/proc", exemplar.draw_lines(self.cup).write, "/proc/none/a.svg")
 

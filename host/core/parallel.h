@@ -5,8 +5,8 @@
 
 namespace exemplar {
 
-/// Calls run(body, begin, end) for consecutive ranges that cover [0, count), as parallel_ranges does. It is a function, not a
-/// template, so that TBB's loop is compiled once and not for every body.
+/// Calls run(body, begin, end) for consecutive ranges that cover [0, count), as parallel_ranges does. It is a function,
+/// not a template, so that TBB's loop is compiled once and not for every body.
 void run_parallel_ranges(std::size_t count, std::size_t grain, const void* body,
                          void (*run)(const void* body, std::size_t begin, std::size_t end));
 

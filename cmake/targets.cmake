@@ -25,13 +25,16 @@ endif()
 if(exemplar_march)
   target_compile_options(exemplar_options INTERFACE -march=${exemplar_march})
 endif()
-if(EXEMPLAR_SANITIZE OR EXEMPLAR_FUZZERS)
+if(EXEMPLAR_SANITIZE)
   set(exemplar_sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all)
   target_compile_options(exemplar_options INTERFACE
                          "$<BUILD_INTERFACE:${exemplar_sanitizers};-O1;-g1;-fno-omit-frame-pointer>")
   target_link_options(exemplar_options INTERFACE ${exemplar_sanitizers})
 endif()
-if(EXEMPLAR_FUZZERS)
+# What libFuzzer follows. Other compilers than Clang have no libFuzzer.
+set(EXEMPLAR_FUZZERS OFF)
+if(EXEMPLAR_SANITIZE AND CMAKE_CXX_COMPILER_ID MATCHES Clang)
+  set(EXEMPLAR_FUZZERS ON)
   # Neither Ninja nor ccache sees that compiling reads this file: a copy whose name changes with it tells them.
   set(exemplar_ignored ${PROJECT_SOURCE_DIR}/tests/fuzz/libraries.ignore)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${exemplar_ignored})
@@ -44,9 +47,15 @@ if(EXEMPLAR_FUZZERS)
 endif()
 
 # exemplar_unity(TARGET): compiles the sources of TARGET several at a time. Most of the time to compile a source goes into the
-# headers of libraries, which a batch reads once (docs/building.md). EXEMPLAR_UNITY=OFF compiles each source alone.
+# headers of libraries, which a batch reads once (docs/building.md). EXEMPLAR_UNITY=OFF compiles each source alone;
+# EXEMPLAR_UNITY_EXCEPT does so for the libraries that one is changing.
 function(exemplar_unity target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${EXEMPLAR_UNITY} UNITY_BUILD_BATCH_SIZE ${EXEMPLAR_UNITY_BATCH})
+  set(batches ${EXEMPLAR_UNITY})
+  string(REPLACE exemplar_ "" name ${target})
+  if(name IN_LIST EXEMPLAR_UNITY_EXCEPT)
+    set(batches OFF)
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${batches} UNITY_BUILD_BATCH_SIZE ${EXEMPLAR_UNITY_BATCH})
 endfunction()
 
 # exemplar_library(NAME DIR DEPENDENCY...): the static library exemplar_NAME of all sources in DIR and its folders. Those of

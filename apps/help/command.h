@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -8,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace CLI {  // NOLINT(readability-identifier-naming): of another library
@@ -126,5 +128,28 @@ class Command {
     std::deque<Option> options_;
     std::deque<std::unique_ptr<Command>> subcommands_;
 };
+
+/// The words of an option and the values that they stand for.
+template <typename T>
+using Choices = std::vector<std::pair<std::string, T>>;
+
+/// Returns the word of a value, which must be one of the choices.
+template <typename T>
+const std::string& word_of(const T& value, const Choices<T>& choices) {
+    return std::ranges::find(choices, value, &std::pair<std::string, T>::second)->first;
+}
+
+/// Adds an option that sets `variable` (a T or std::optional<T>) to the value of a word. The choices must outlive
+/// parsing.
+template <typename T, typename Variable>
+Option* add_choice(Command& command, const std::string& name, Variable& variable, const Choices<T>& choices,
+                   const std::string& description) {
+    std::vector<std::string> words;
+    for (const auto& [word, value] : choices) words.push_back(word);
+    const auto set = [&variable, &choices](const std::string& given) {
+        variable = std::ranges::find(choices, given, &std::pair<std::string, T>::first)->second;
+    };
+    return command.add_word_option(name, set, description)->check(one_of(words));
+}
 
 }  // namespace exemplar

@@ -5,7 +5,6 @@
 
 #include <charconv>
 #include <cstdio>
-#include <map>
 
 #include "apps/help/help_pages.h"
 #include "apps/viewer/scene/hatched_still.h"
@@ -19,32 +18,21 @@
 namespace exemplar {
 namespace {
 
-template <typename T>
-using Names = std::map<std::string, T>;
-
-const Names<SurfacePaint> k_paint_choices{
-    {"plain", SurfacePaint::plain},         {"labels", SurfacePaint::faces},
-    {"mean", SurfacePaint::mean_curvature}, {"gauss", SurfacePaint::gaussian_curvature},
-    {"k1", SurfacePaint::first_curvature},  {"k2", SurfacePaint::second_curvature},
-    {"normals", SurfacePaint::normals}};
-const Names<SurfaceLight> k_lights{{"smooth", SurfaceLight::smooth},
-                                   {"flat", SurfaceLight::flat},
-                                   {"steps", SurfaceLight::steps},
-                                   {"none", SurfaceLight::none}};
-const Names<ShownCurvature> k_sources{
-    {"estimated", ShownCurvature::estimated}, {"learned", ShownCurvature::learned}, {"both", ShownCurvature::both}};
-const Names<ViewSide> k_sides{{"front", ViewSide::front}, {"back", ViewSide::back}, {"left", ViewSide::left},
-                              {"right", ViewSide::right}, {"top", ViewSide::top},   {"bottom", ViewSide::bottom}};
-
-template <typename T>
-void add_choice(Command& app, const std::string& name, std::optional<T>& value, const std::string& help,
-                const Names<T>& names) {
-    std::vector<std::string> words;
-    for (const auto& [word, meaning] : names) words.push_back(word);
-    app.add_word_option(
-           name, [&value, &names](const std::string& word) { value = names.at(word); }, help)
-        ->check(one_of(words));
-}
+const Choices<SurfacePaint> k_paint_choices{{"gauss", SurfacePaint::gaussian_curvature},
+                                            {"k1", SurfacePaint::first_curvature},
+                                            {"k2", SurfacePaint::second_curvature},
+                                            {"labels", SurfacePaint::faces},
+                                            {"mean", SurfacePaint::mean_curvature},
+                                            {"normals", SurfacePaint::normals},
+                                            {"plain", SurfacePaint::plain}};
+const Choices<SurfaceLight> k_lights{{"flat", SurfaceLight::flat},
+                                     {"none", SurfaceLight::none},
+                                     {"smooth", SurfaceLight::smooth},
+                                     {"steps", SurfaceLight::steps}};
+const Choices<ShownCurvature> k_sources{
+    {"both", ShownCurvature::both}, {"estimated", ShownCurvature::estimated}, {"learned", ShownCurvature::learned}};
+const Choices<ViewSide> k_sides{{"back", ViewSide::back}, {"bottom", ViewSide::bottom}, {"front", ViewSide::front},
+                                {"left", ViewSide::left}, {"right", ViewSide::right},   {"top", ViewSide::top}};
 
 std::vector<std::string> line_words() {
     std::vector<std::string> names{"none"};
@@ -100,10 +88,10 @@ void add_options(Command& app, ViewerOptions& options, std::string& size) {
     app.add_option("--style", options.style, "style of the drawing: a built-in name or a file")
         ->check(completion_words(builtin_style_names()))
         ->type_name("NAME|FILE");
-    add_choice(app, "--paint", options.paint, "colors: labels, curvature (mean, gauss, k1, k2), ...", k_paint_choices);
-    add_choice(app, "--light", options.light, "shading", k_lights);
-    add_choice(app, "--curvature", options.source, "curvature that is shown", k_sources);
-    add_choice(app, "--side", options.side, "side to look from", k_sides);
+    add_choice(app, "--paint", options.paint, k_paint_choices, "colors: labels, curvature (mean, gauss, k1, k2), ...");
+    add_choice(app, "--light", options.light, k_lights, "shading");
+    add_choice(app, "--curvature", options.source, k_sources, "curvature that is shown");
+    add_choice(app, "--side", options.side, k_sides, "side to look from");
     app.add_flag("--parallel", options.parallel, "parallel projection");
     app.add_option("--size", size, "size of window or pictures, in pixels")->capture_default_str()->type_name("WxH");
     app.add_option("--device", options.device, "Vulkan device: index or part of its name (see 'exemplar devices')")

@@ -8,7 +8,7 @@
 #include "host/animation/read_formats.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
-#include "host/mesh/io/io_text.h"
+#include "host/core/text.h"
 
 namespace exemplar {
 namespace {
@@ -26,7 +26,7 @@ std::string read_content(const fs::path& path) {
 Animation read_unchecked(const fs::path& path, const ReadAnimationOptions& options) {
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) return animation_io::read_folder(path, options);
-    const std::string extension = mesh_io::lower_case(path.extension().string());
+    const std::string extension = lower_case(path.extension().string());
     const bool is_gltf = extension == ".gltf" || extension == ".glb";
     if (!is_gltf && fs::exists(path, ignored))
         throw MeshError(path.string() +

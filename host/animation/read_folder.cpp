@@ -35,9 +35,9 @@ ShapeFiles shape_files(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(folder)) {
         const fs::path& path = entry.path();
         const auto known = mesh_extensions();
-        const bool is_mesh = std::ranges::find(known, mesh_io::lower_case(path.extension().string())) != known.end();
+        const bool is_mesh = std::ranges::find(known, lower_case(path.extension().string())) != known.end();
         if (!is_mesh || !entry.is_regular_file() || path.filename().string().starts_with('.')) continue;
-        const std::string stem = mesh_io::lower_case(path.stem().string());
+        const std::string stem = lower_case(path.stem().string());
         if (stem == "rest")
             set_once(files.rest, path);
         else if (stem == "neutral")
@@ -52,7 +52,7 @@ ShapeFiles shape_files(const fs::path& folder) {
 void check_files(const ShapeFiles& files, const fs::path& folder) {
     if (files.frames.empty())
         throw MeshError(folder.string() + ": the folder holds no meshes to animate; put one file a frame in it");
-    const auto extension = [](const fs::path& path) { return mesh_io::lower_case(path.extension().string()); };
+    const auto extension = [](const fs::path& path) { return lower_case(path.extension().string()); };
     for (const fs::path& path : files.frames)
         if (extension(path) != extension(files.frames.front()))
             throw MeshError(fmt::format("{}: {} and {} are of different formats; keep one kind", folder.string(),

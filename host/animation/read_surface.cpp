@@ -8,9 +8,9 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/core/text.h"
 #include "host/mesh/editing/drawable_mesh.h"
 #include "host/mesh/io/io.h"
-#include "host/mesh/io/io_text.h"
 
 namespace exemplar {
 namespace {
@@ -36,7 +36,7 @@ SurfaceFile read_surface(const fs::path& path, const ReadAnimationOptions& optio
     if (!fs::exists(path, ignored))
         throw DataError(fmt::format("{}: no such file or folder{}", path.string(), suggest_file(path)));
     const bool is_folder = fs::is_directory(path, ignored);
-    const std::string extension = mesh_io::lower_case(path.extension().string());
+    const std::string extension = lower_case(path.extension().string());
     if (!is_folder && extension != ".glb" && extension != ".gltf") return read_still(path);
     try {
         return {read_animation(path, options), {}, {}};

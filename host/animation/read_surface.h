@@ -11,7 +11,7 @@ namespace exemplar {
 
 /// The surface in a file or folder, with its motions if it has any.
 struct SurfaceFile {
-    /// Of a mesh: a sequence without clips, whose shape at rest is the mesh as drawable_mesh() returns it.
+    /// A mesh becomes a sequence without clips; its shape at rest is the result of drawable_mesh().
     Animation animation;
     std::optional<FaceLabels> labels;  ///< in a mesh file, see MeshFile
     std::string why_still;             ///< why a glTF file that was read as a mesh is no animation

@@ -6,8 +6,8 @@
 #include "host/animation/write_animation.h"
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
+#include "host/core/text.h"
 #include "host/mesh/io/io.h"
-#include "host/mesh/io/io_text.h"
 
 namespace exemplar {
 namespace {
@@ -26,7 +26,7 @@ void require_no_meshes(const fs::path& folder) {
     std::error_code ignored;
     const auto known = mesh_extensions();
     for (const auto& entry : fs::directory_iterator(folder, ignored))
-        if (std::ranges::find(known, mesh_io::lower_case(entry.path().extension().string())) != known.end())
+        if (std::ranges::find(known, lower_case(entry.path().extension().string())) != known.end())
             throw DataError(fmt::format("{}: holds {} already; write to an empty folder", folder.string(),
                                         entry.path().filename().string()));
 }

@@ -2,6 +2,10 @@
 
 namespace exemplar {
 
+nlohmann::json parse_json(std::string_view text) {
+    return nlohmann::json::parse(text);
+}
+
 nlohmann::json parse_json(std::string_view text, const nlohmann::json::parser_callback_t& callback, bool throws,
                           bool ignore_comments) {
     return nlohmann::json::parse(text, callback, throws, ignore_comments);

@@ -12,6 +12,8 @@ namespace exemplar {
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
 /// Returns " (did you mean 'X'?)" with the nearest candidate, or an empty string.
 std::string suggestion(std::string_view word, std::span<const std::string> candidates);
+/// Returns `text` with the letters A to Z in lower case, whatever the locale.
+std::string lower_case(std::string_view text);
 /// Compares runs of digits as numbers, so that "2.off" comes before "10.off". Strings that differ only in leading
 /// zeros compare as text.
 bool natural_less(std::string_view a, std::string_view b);

@@ -114,9 +114,7 @@ Loaded load_one(const fs::path& path, const fs::path& labels_folder) {
 }  // namespace
 
 bool is_mesh_file(const fs::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return std::tolower(c); });
+    const std::string extension = lower_case(path.extension().string());
     const auto known = mesh_extensions();
     return std::find(known.begin(), known.end(), extension) != known.end();
 }

@@ -161,6 +161,11 @@ TEST(Text, TellsUtf8FromOtherEncodings) {
         EXPECT_FALSE(is_utf8(bad)) << bad;
 }
 
+TEST(Text, LowersOnlyTheLettersAToZ) {
+    EXPECT_EQ(lower_case("Cow_7.OFF"), "cow_7.off");
+    EXPECT_EQ(lower_case("@[`{\xc3\x84"), "@[`{\xc3\x84") << "neighbors of the letters, and bytes of others";
+}
+
 TEST(Text, CountsInSingularAndPlural) {
     EXPECT_EQ(counted(0, "pose"), "0 poses");
     EXPECT_EQ(counted(1, "pose"), "1 pose");

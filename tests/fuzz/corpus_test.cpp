@@ -9,8 +9,8 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
-#include "tests/fuzz/promises.h"
-#include "tests/fuzz/readers.h"
+#include "tests/fuzz/support/promises.h"
+#include "tests/fuzz/support/readers.h"
 
 namespace exemplar::fuzz {
 

@@ -26,7 +26,7 @@ constexpr const char* k_page = "index.html";
 // Bounds of what is shown: a mesh of 5,000 faces takes 80 kB of the page, a row of a table at most 2 kB.
 constexpr std::size_t k_max_views = 48, k_views_per_category = 6, k_max_shown_faces = 5000;
 constexpr std::int64_t k_max_read_faces = 200'000;  ///< of a shape that is to be shown: each is read and simplified
-constexpr std::size_t k_max_rows = 200, k_least_sure = 50, k_max_labels = 255;
+constexpr std::size_t k_max_rows = 200, k_uncertain_rows = 50, k_max_labels = 255;
 constexpr std::size_t k_max_text = 300;  ///< bytes of a name or an error
 
 std::string shown_text(const std::string& text) {
@@ -136,7 +136,7 @@ ReportTable problem_table(Catalog& catalog, std::int64_t all) {
 
 ReportTable least_sure_table(CatalogRun& run) {
     std::vector<CatalogRun::Labeled> shapes =
-        chosen_shapes(run, fmt::format("state = 'done' ORDER BY confidence, shape LIMIT {}", k_least_sure));
+        chosen_shapes(run, fmt::format("state = 'done' ORDER BY confidence, shape LIMIT {}", k_uncertain_rows));
     std::ranges::stable_sort(shapes, {}, [](const auto& shape) { return shape.record.confidence; });
     ReportTable table{"Least sure",
                       "Labeled shapes whose labels are the least probable ones: look at these first.",
@@ -182,9 +182,9 @@ void add_mesh(ReportData& group, const ShownShape& shape, const CatalogRun::Labe
 /// Adds views of examples of a category, the least sure first; their meshes are kept in `meshes`.
 void add_views(Catalog& catalog, CatalogRun& run, const std::string& category, std::size_t views,
                std::deque<ShownShape>& meshes, ReportData& group) {
-    const std::size_t least_sure = (views + 1) / 2;
+    const std::size_t uncertain = (views + 1) / 2;
     for (const std::int64_t id :
-         example_shapes(catalog, run.id(), category, least_sure, views - least_sure, k_max_read_faces))
+         example_shapes(catalog, run.id(), category, uncertain, views - uncertain, k_max_read_faces))
         run.for_each(
             [&](const CatalogRun::Labeled& labeled) {
                 const std::filesystem::path labels = run.record_path(labeled.shape).replace_extension(".ply");

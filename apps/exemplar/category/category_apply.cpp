@@ -25,7 +25,7 @@ struct CategoryApplyCommand {
     std::filesystem::path model;
     std::filesystem::path cache = default_feature_folder();
     std::vector<std::filesystem::path> meshes;
-    std::optional<double> least_confidence;
+    std::optional<double> min_confidence;
 };
 
 /// The two most probable categories.
@@ -67,9 +67,9 @@ void run_category_apply(const CategoryApplyCommand& options) {
     if (std::filesystem::is_directory(options.model))
         throw ModelError(fmt::format("{}: is a folder; give the model file before the meshes", options.model.string()));
     CategoryModel model = load_category_model(options.model);
-    if (options.least_confidence) {
-        require_least_confidence(*options.least_confidence);
-        model.least_confidence = *options.least_confidence;
+    if (options.min_confidence) {
+        require_min_confidence(*options.min_confidence);
+        model.min_confidence = *options.min_confidence;
     }
     const std::vector<std::filesystem::path> meshes = meshes_of_arguments(options.meshes);
     const std::filesystem::path cache = usable_cache(options.cache, options.common.quiet);
@@ -90,7 +90,7 @@ void run_category_apply(const CategoryApplyCommand& options) {
     progress.finish();
     write_report(options.common, {{"model", options.model.string()},
                                   {"categories", model.category_names},
-                                  {"least_confidence", model.least_confidence},
+                                  {"least_confidence", model.min_confidence},
                                   {"meshes", results}});
     if (meshes.size() == 1 && !failures.empty()) throw MeshError(failures.front());
     for (const std::string& failure : failures) fmt::print(stderr, "error: {}\n", failure);
@@ -111,7 +111,7 @@ void add_category_apply_command(Command& category) {
         ->required()
         ->type_name("");
     command
-        ->add_option("--least-confidence", options->least_confidence,
+        ->add_option("--least-confidence", options->min_confidence,
                      "a shape of less is called unknown, from 0 (never) to 1; without it as the model was trained")
         ->check(in_range(0.0, 1.0))
         ->type_name("SHARE");

@@ -129,7 +129,7 @@ nlohmann::json describe_counts(const CategorizedShapes& all, const Counts& count
 void run_category_evaluate(const CategoryEvaluateCommand& options) {
     const auto limits = apply_common_options(options.common);
     const Stopwatch watch;
-    require_least_confidence(options.training.least_confidence);
+    require_min_confidence(options.training.min_confidence);
     const CategoryTrials trials = make_category_trials(options.trials, options.training.seed);
     if (!options.common.quiet)
         for (const std::string& remark : trials.remarks) fmt::print(stderr, "warning: {}\n", remark);
@@ -149,7 +149,7 @@ void run_category_evaluate(const CategoryEvaluateCommand& options) {
     print_counts(all, counts);
     nlohmann::json json = describe_counts(all, counts);
     json["splits"] = std::move(tests);
-    json["least_confidence"] = options.training.least_confidence;
+    json["least_confidence"] = options.training.min_confidence;
     json["remarks"] = trials.remarks;
     json["seconds"] = {{"all", watch.wall()}, {"cpu", watch.cpu()}};
     write_report(options.common, json);

@@ -122,7 +122,7 @@ void add_category_options(Command& command, CategoryTrainingOptions& training, F
         ->check(whole_number(1, k_max_samples));
     command.add_flag("--orientation", features.orientation, "add coordinates, for shapes that share an orientation");
     command
-        .add_option("--least-confidence", training.least_confidence,
+        .add_option("--least-confidence", training.min_confidence,
                     "a shape of less is called unknown, from 0 (never) to 1")
         ->capture_default_str()
         ->check(in_range(0.0, 1.0))

@@ -30,7 +30,7 @@ nlohmann::json describe_training(const CategoryTrainCommand& options, const std:
             {"categories", std::move(listed)},
             {"training_meshes", model.provenance},
             {"held_out", describe_category_report(report)},
-            {"least_confidence", model.least_confidence}};
+            {"least_confidence", model.min_confidence}};
 }
 
 /// Throws before the long work if the categories cannot be learned.
@@ -48,7 +48,7 @@ void run_category_train(const CategoryTrainCommand& options) {
     const auto limits = apply_common_options(options.common);
     const Stopwatch watch;
     require_output_file(options.out);
-    require_least_confidence(options.training.least_confidence);
+    require_min_confidence(options.training.min_confidence);
     const std::vector<CategoryMeshes> categories = categories_of_arguments(options.sources);
     require_learnable(categories);
     for (const CategoryMeshes& category : categories) require_not_replaced(options.out, category.meshes);

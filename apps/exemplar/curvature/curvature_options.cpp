@@ -13,44 +13,18 @@
 namespace exemplar {
 namespace {
 
-/// The words of an option and the values that they stand for.
-template <typename Value>
-using NamedValues = std::vector<std::pair<std::string, Value>>;
-
-const NamedValues<RobustEstimator> k_robust_names{{"none", RobustEstimator::none},
-                                                  {"cauchy", RobustEstimator::cauchy},
-                                                  {"geman-mcclure", RobustEstimator::geman_mcclure}};
-const NamedValues<Learner> k_learner_names = [] {
-    NamedValues<Learner> names;
+const Choices<RobustEstimator> k_robust_names{{"none", RobustEstimator::none},
+                                              {"cauchy", RobustEstimator::cauchy},
+                                              {"geman-mcclure", RobustEstimator::geman_mcclure}};
+const Choices<Learner> k_learner_names = [] {
+    Choices<Learner> names;
     for (const Learner learner :
          {Learner::additive, Learner::averaged, Learner::network, Learner::global, Learner::local})
         names.emplace_back(name_of(learner), learner);
     return names;
 }();
-const NamedValues<AttributeSet> k_attribute_names{{"tensor", AttributeSet::tensor},
-                                                  {"principal", AttributeSet::principal}};
-const NamedValues<bool> k_independent_names{{"ica", true}, {"pca", false}};
-
-template <typename Value>
-const std::string& word_of(const Value& value, const NamedValues<Value>& names) {
-    return std::ranges::find(names, value, &std::pair<std::string, Value>::second)->first;
-}
-
-template <typename Value>
-void add_named_option(Command& command, const std::string& option, Value& value, const NamedValues<Value>& names,
-                      const std::string& help) {
-    std::vector<std::string> words;
-    for (const auto& [word, of] : names) words.push_back(word);
-    command
-        .add_word_option(
-            option,
-            [&value, &names](const std::string& given) {
-                value = std::ranges::find(names, given, &std::pair<std::string, Value>::first)->second;
-            },
-            help)
-        ->default_str(word_of(value, names))
-        ->check(one_of(words));
-}
+const Choices<AttributeSet> k_attribute_names{{"tensor", AttributeSet::tensor}, {"principal", AttributeSet::principal}};
+const Choices<bool> k_independent_names{{"ica", true}, {"pca", false}};
 
 /// Components of little variance in training are also small in other motions of a rig, but not in other folds of
 /// cloth.
@@ -70,13 +44,17 @@ void add_curvature_options(Command& command, CurvatureArguments& arguments) {
                     "width of the diffusion of measured curvature, in median edge lengths; 0 is none")
         ->capture_default_str()
         ->check(in_range(0.0, 20.0));
-    add_named_option(command, "--robust", training.truth.robust, k_robust_names,
-                     "estimator for noisy meshes: none, cauchy or geman-mcclure");
-    add_named_option(command, "--learner", training.learner, k_learner_names,
-                     "local, additive (rigs), or averaged, network, global (as in the thesis)");
-    add_named_option(command, "--attributes", training.attributes, k_attribute_names,
-                     "tensor: seven numbers that stay smooth; principal: the thesis' eight");
-    add_named_option(command, "--bases", training.independent, k_independent_names, "ica or pca");
+    add_choice(command, "--robust", training.truth.robust, k_robust_names,
+               "estimator for noisy meshes: none, cauchy or geman-mcclure")
+        ->default_str(word_of(training.truth.robust, k_robust_names));
+    add_choice(command, "--learner", training.learner, k_learner_names,
+               "local, additive (rigs), or averaged, network, global (as in the thesis)")
+        ->default_str(word_of(training.learner, k_learner_names));
+    add_choice(command, "--attributes", training.attributes, k_attribute_names,
+               "tensor: seven numbers that stay smooth; principal: the thesis' eight")
+        ->default_str(word_of(training.attributes, k_attribute_names));
+    add_choice(command, "--bases", training.independent, k_independent_names, "ica or pca")
+        ->default_str(word_of(training.independent, k_independent_names));
     command.add_option("--variance", training.variance, "share of the variance that bases keep")
         ->capture_default_str()
         ->check(in_range(0.01, 1.0));

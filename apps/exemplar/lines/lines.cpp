@@ -12,7 +12,6 @@
 #include "host/core/errors.h"
 #include "host/core/freed_memory.h"
 #include "host/core/text.h"
-#include "host/mesh/io/io_text.h"
 
 namespace exemplar {
 namespace {
@@ -197,7 +196,7 @@ void add_svg_options(Command& command, LinesArguments& arguments) {
 }  // namespace
 
 LinesOutput lines_output_of(const std::filesystem::path& path) {
-    const std::string extension = mesh_io::lower_case(path.extension().string());
+    const std::string extension = lower_case(path.extension().string());
     if (extension == ".svg") return LinesOutput::svg;
     if (extension == ".png") return LinesOutput::picture;
     for (const char* video : {".mp4", ".mkv", ".webm", ".mov"})

@@ -7,9 +7,9 @@
 
 #include "host/animation/read_surface.h"
 #include "host/core/errors.h"
+#include "host/core/text.h"
 #include "host/data/corpus.h"
 #include "host/mesh/io/io.h"
-#include "host/mesh/io/io_text.h"
 
 namespace exemplar {
 namespace {
@@ -68,7 +68,7 @@ Document read_document(const fs::path& path) {
 
 void add_labels(Document& document, const fs::path& path) {
     const std::size_t polygons = document.animation.rest.source_face_count;
-    if (mesh_io::lower_case(path.extension().string()) == ".seg")
+    if (lower_case(path.extension().string()) == ".seg")
         color_by(document, segments_as_labels(read_seg(path, polygons)));
     else
         color_by(document, read_labels_txt(path, polygons));

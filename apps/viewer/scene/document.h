@@ -24,8 +24,7 @@ struct Document {
 };
 
 /// Reads a mesh (with the labels in it, in NAME_labels.txt or in NAME.seg beside it), an animation or a folder of
-/// meshes. Errors in
-/// labels become warnings. Throws as read_surface.
+/// meshes. Errors in labels become warnings. Throws as read_surface.
 Document read_document(const std::filesystem::path& path);
 
 /// Colors the surface by a NAME_labels.txt or .seg file. Throws DataError if it does not fit the surface.

@@ -79,10 +79,6 @@ class ViewerState {
     bool show_panels = true, show_help = false, show_times = false;
 
   private:
-    // The parts of perform(): actions of the animation, of the camera, and of what is shown.
-    bool play(Action action);
-    bool look(Action action, ViewSize view);
-    bool show(Action action);
     void open_document(const std::filesystem::path& path, ViewSize view);
     void open_labels(const std::filesystem::path& path);
     std::unique_ptr<Document> document_;  // scenes refer to it

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <tuple>
 
@@ -80,12 +79,6 @@ void copy_timestamps(VkPhysicalDevice device, float period, DeviceInfo& info) {
     info.timestamp_period = info.timestamp_bits ? period : 0.0f;
 }
 
-std::string lower(std::string_view text) {
-    std::string result(text);
-    std::ranges::transform(result, result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return result;
-}
-
 std::string device_list(std::span<const DeviceInfo> devices) {
     std::string list;
     for (const DeviceInfo& device : devices)
@@ -98,7 +91,7 @@ std::string device_list(std::span<const DeviceInfo> devices) {
 std::string suggest_name(std::span<const DeviceInfo> devices, std::string_view wanted) {
     std::vector<std::string> candidates;
     for (const DeviceInfo& device : devices) {
-        const std::string name = lower(device.name);
+        const std::string name = lower_case(device.name);
         candidates.push_back(name);
         for (std::size_t begin = 0; begin < name.size();) {
             const std::size_t end = std::min(name.find(' ', begin), name.size());
@@ -106,7 +99,7 @@ std::string suggest_name(std::span<const DeviceInfo> devices, std::string_view w
             begin = end + 1;
         }
     }
-    return suggestion(lower(wanted), candidates);
+    return suggestion(lower_case(wanted), candidates);
 }
 
 std::size_t best_device(std::span<const DeviceInfo> devices) {
@@ -123,10 +116,11 @@ const DeviceInfo* find_device(std::span<const DeviceInfo> devices, std::string_v
     const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
     const bool number = error == std::errc{} && end == wanted.data() + wanted.size();
     if (number && index < devices.size()) return &devices[index];
-    const std::string part = lower(wanted);
+    const std::string part = lower_case(wanted);
     const DeviceInfo* best = nullptr;
     for (const DeviceInfo& device : devices)
-        if (lower(device.name).find(part) != std::string::npos && (!best || is_better(device, *best))) best = &device;
+        if (lower_case(device.name).find(part) != std::string::npos && (!best || is_better(device, *best)))
+            best = &device;
     return best;
 }
 
@@ -190,7 +184,8 @@ std::uint64_t buffer_limit(const DeviceInfo& info, std::uint64_t wanted) {
 bool is_better(const DeviceInfo& a, const DeviceInfo& b) {
     // D13 in docs/portability.md. Among GPUs of one type, the one with more memory is the larger one.
     const auto rank = [](const DeviceInfo& d) {
-        const bool other_cpu_driver = d.type == DeviceType::cpu && lower(d.name).find("llvmpipe") == std::string::npos;
+        const bool other_cpu_driver =
+            d.type == DeviceType::cpu && lower_case(d.name).find("llvmpipe") == std::string::npos;
         return std::tuple(!d.unusable.empty(), d.type, other_cpu_driver, ~d.memory);
     };
     return rank(a) < rank(b);

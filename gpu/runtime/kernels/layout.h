@@ -19,6 +19,7 @@ struct StructLayout {
     std::string_view name;
     std::size_t bytes = 0;
     std::vector<FieldLayout> fields;
+    std::size_t alignment = 1;  ///< C++ pads the structure to a multiple of it
 };
 
 /// Returns the layout of T: the one declared with EXEMPLAR_LAYOUT, or only the size for a plain scalar or vector.
@@ -27,7 +28,7 @@ StructLayout layout_of() {
     if constexpr (requires { describe_layout(static_cast<const T*>(nullptr)); })
         return describe_layout(static_cast<const T*>(nullptr));
     else
-        return {.name = "a plain value", .bytes = sizeof(T), .fields = {}};
+        return {.name = "a plain value", .bytes = sizeof(T), .fields = {}, .alignment = alignof(T)};
 }
 
 }  // namespace exemplar
@@ -43,8 +44,9 @@ StructLayout layout_of() {
 #define EXEMPLAR_EACH_FIELD(Struct, field, ...) \
     EXEMPLAR_LAYOUT_FIELD(Struct, field) __VA_OPT__(EXEMPLAR_EACH_AGAIN EXEMPLAR_PARENTHESES(Struct, __VA_ARGS__))
 #define EXEMPLAR_EACH_AGAIN() EXEMPLAR_EACH_FIELD
-#define EXEMPLAR_LAYOUT(Struct, ...)                                                                   \
-    static_assert(std::is_standard_layout_v<Struct> && std::is_trivially_copyable_v<Struct>);          \
-    inline ::exemplar::StructLayout describe_layout(const Struct*) {                                   \
-        return {#Struct, sizeof(Struct), {EXEMPLAR_EXPAND(EXEMPLAR_EACH_FIELD(Struct, __VA_ARGS__))}}; \
+#define EXEMPLAR_LAYOUT(Struct, ...)                                                                                \
+    static_assert(std::is_standard_layout_v<Struct> && std::is_trivially_copyable_v<Struct>);                       \
+    inline ::exemplar::StructLayout describe_layout(const Struct*) {                                                \
+        return {                                                                                                    \
+            #Struct, sizeof(Struct), {EXEMPLAR_EXPAND(EXEMPLAR_EACH_FIELD(Struct, __VA_ARGS__))}, alignof(Struct)}; \
     }

@@ -10,11 +10,11 @@
 namespace exemplar {
 namespace {
 
-// C++ pads a structure with a vec4 to a multiple of 16 bytes, shaders end it after its last member.
+// C++ pads a structure to its alignment; shaders end it after its last member.
 void pad_push_constants(const ProgramInterface& interface, Reflection& reflection) {
-    constexpr std::size_t k_alignment = 16;
-    const std::size_t padded = (reflection.push_bytes + k_alignment - 1) / k_alignment * k_alignment;
-    if (interface.push_constants && interface.push_constants->bytes == padded) reflection.push_bytes = padded;
+    if (!interface.push_constants) return;
+    const std::size_t alignment = interface.push_constants->alignment;
+    reflection.push_bytes = (reflection.push_bytes + alignment - 1) / alignment * alignment;
 }
 
 void check_declarations(const Shader& shader, const Reflection& reflection, const ProgramInterface& interface) {

@@ -2,7 +2,7 @@
 
 namespace exemplar {
 
-/// What model files say of themselves (docs/formats.md).
+/// Kind and format version in the metadata of a model file (docs/formats.md).
 constexpr const char* k_model_kind = "exemplar curvature";
 constexpr int k_model_version = 3;
 

@@ -68,8 +68,8 @@ RunTotals summarize_run(Catalog& catalog, std::int64_t run) {
 }
 
 std::vector<std::int64_t> example_shapes(Catalog& catalog, std::int64_t run, const std::string& category,
-                                         std::size_t least_sure, std::size_t others, std::int64_t max_faces) {
-    // In order of confidence, the k-th of n others has rank least_sure + (all - least_sure) k / n.
+                                         std::size_t uncertain, std::size_t others, std::int64_t max_faces) {
+    // In order of confidence, the k-th of n others has rank uncertain + (all - uncertain) k / n.
     Statement query = catalog.database().prepare(
         "WITH ranked AS (SELECT shape, row_number() OVER (ORDER BY confidence, shape) AS rank, count(*) OVER () AS n "
         "FROM labels JOIN shapes ON shapes.id = shape WHERE run = ?1 AND state = 'done' "
@@ -77,7 +77,7 @@ std::vector<std::int64_t> example_shapes(Catalog& catalog, std::int64_t run, con
         "steps(k) AS (SELECT 1 WHERE ?5 > 0 UNION ALL SELECT k + 1 FROM steps WHERE k < ?5) "
         "SELECT shape FROM ranked WHERE rank <= ?4 OR rank IN (SELECT ?4 + (n - ?4) * k / ?5 FROM steps) "
         "ORDER BY rank");
-    query.bind(run, category, max_faces, limit(least_sure), limit(others));
+    query.bind(run, category, max_faces, limit(uncertain), limit(others));
     std::vector<std::int64_t> shapes;
     while (query.step()) shapes.push_back(query.integer(0));
     return shapes;

@@ -50,10 +50,10 @@ struct RunTotals {
 };
 RunTotals summarize_run(Catalog& catalog, std::int64_t run);
 
-/// Chooses labeled shapes of a category as examples: the numbers of the `least_sure` ones, and of `others` more,
+/// Chooses labeled shapes of a category as examples: the numbers of the `uncertain` ones, and of `others` more,
 /// spread evenly over the rest in order of confidence up to the surest one, without repetition. Considers only
 /// shapes of at most `max_faces` faces.
 std::vector<std::int64_t> example_shapes(Catalog& catalog, std::int64_t run, const std::string& category,
-                                         std::size_t least_sure, std::size_t others, std::int64_t max_faces);
+                                         std::size_t uncertain, std::size_t others, std::int64_t max_faces);
 
 }  // namespace exemplar

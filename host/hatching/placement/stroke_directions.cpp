@@ -30,7 +30,7 @@ struct Corners {
 
 /// Returns the direction at half the angle of (c, s), a vector of that length, with the sign nearer to `heading`.
 Direction half_angle(std::int32_t c, std::int32_t s, std::int32_t length, Direction heading) {
-    // Of the two equivalent formulas, takes the one without cancellation.
+    // Both formulas give the half angle; the chosen one does not cancel.
     const Direction half = c >= 0 ? direction_of(length + c, s) : direction_of(s, length - c);
     return dot(half, heading) < 0 ? -half : half;
 }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "host/core/errors.h"
 #include "host/core/text.h"
@@ -14,11 +13,6 @@ namespace exemplar {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool same_letters(const std::string& a, const std::string& b) {
-    const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
-    return std::ranges::equal(a, b, {}, lower, lower);
-}
 
 /// Returns whether a file holds a model that recognizes categories. False if it holds no model at all: load_model
 /// reports that.
@@ -73,7 +67,7 @@ void require_same_features(const BatchModels& models) {
 
 const BatchModel* BatchModels::of_category(const std::string& category) const {
     const auto found =
-        std::ranges::find_if(models, [&](const auto& model) { return same_letters(model.name, category); });
+        std::ranges::find_if(models, [&](const auto& model) { return lower_case(model.name) == lower_case(category); });
     return found == models.end() ? nullptr : &*found;
 }
 

@@ -27,7 +27,7 @@ Json describe_category(const CategoryModel& model) {
             {"sharpness", model.sharpness},
             {"evidence_slope", model.confidence.slope},
             {"evidence_offset", model.confidence.offset},
-            {"least_confidence", model.least_confidence},
+            {"least_confidence", model.min_confidence},
             {"seed", model.seed},
             {"provenance", model.provenance}};
 }
@@ -47,7 +47,7 @@ void read_category_description(const TensorFile& file, CategoryModel& model) {
     model.sharpness = json.at("sharpness").get<double>();
     model.confidence.slope = json.at("evidence_slope").get<double>();
     model.confidence.offset = json.at("evidence_offset").get<double>();
-    model.least_confidence = json.at("least_confidence").get<double>();
+    model.min_confidence = json.at("least_confidence").get<double>();
     model.seed = whole_value(file, json.at("seed"));
     model.provenance = json.at("provenance").get<std::vector<std::string>>();
 }
@@ -65,7 +65,7 @@ void check_category_description(const TensorFile& file, const CategoryModel& mod
     if (!(model.confidence.slope >= 0) || !std::isfinite(model.confidence.slope) ||
         !std::isfinite(model.confidence.offset))
         inconsistent(file, "more evidence makes it less sure");
-    if (!(model.least_confidence >= 0 && model.least_confidence <= 1))
+    if (!(model.min_confidence >= 0 && model.min_confidence <= 1))
         inconsistent(file, "its least confidence is not from 0 to 1");
 }
 

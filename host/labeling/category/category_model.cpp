@@ -8,6 +8,7 @@
 #include "host/learn/softmax.h"
 
 namespace exemplar {
+
 std::vector<double> CategoryScores::of(std::span<const float> descriptor) const {
     const std::size_t count = mean.size();
     std::vector<double> squashed(count);
@@ -35,11 +36,12 @@ CategoryPrediction recognize(const CategoryModel& model, const ShapeDescriptor& 
     CategoryPrediction prediction;
     const auto best = std::ranges::max_element(scores);
     std::vector<double> probability = scores;
+    // The largest is subtracted before the product, which could overflow.
     for (double& p : probability) p = model.sharpness * (p - *best);
     softmax(std::span(probability));
     prediction.probability.assign(probability.begin(), probability.end());
     prediction.confidence = static_cast<float>(model.confidence.probability(category_evidence(scores)));
-    if (static_cast<double>(prediction.confidence) >= model.least_confidence)
+    if (static_cast<double>(prediction.confidence) >= model.min_confidence)
         prediction.category = static_cast<std::int32_t>(best - scores.begin());
     return prediction;
 }

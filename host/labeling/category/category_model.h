@@ -39,9 +39,9 @@ struct CategoryModel {
     FeatureOptions feature_options;
     std::vector<std::string> features;  ///< the face features that descriptors are computed from, in order
     CategoryScores scores;
-    double sharpness = 10;          ///< P(category | it is a known one) = softmax(sharpness H)
-    LogisticCurve confidence;       ///< probability that the best category is right, by category_evidence
-    double least_confidence = 0.5;  ///< shapes with a lower confidence are called unknown; in [0, 1]
+    double sharpness = 10;        ///< P(category | it is a known one) = softmax(sharpness H)
+    LogisticCurve confidence;     ///< probability that the best category is right, by category_evidence
+    double min_confidence = 0.5;  ///< shapes with a lower confidence are called unknown; in [0, 1]
     std::uint64_t seed = 0;
     std::vector<std::string> provenance;  ///< one line per training mesh: category, name and content hash
 

@@ -262,7 +262,7 @@ CategoryReport report_of(const std::vector<HeldOutShape>& items, const std::vect
     CategoryReport report;
     report.strangers_made_up = model.category_count() == 2;
     for (std::size_t i = 0; i < items.size(); ++i) {
-        const bool known = model.confidence.probability(items[i].evidence) >= model.least_confidence;
+        const bool known = model.confidence.probability(items[i].evidence) >= model.min_confidence;
         if (items[i].stranger) {
             report.strangers_unknown += known ? 0 : weights[i];
             continue;
@@ -309,20 +309,20 @@ void require_category_sizes(std::span<const std::string> names, std::span<const 
             "each category has one mesh: nothing tells how alike meshes of a category are; give two of one at least");
 }
 
-void require_least_confidence(double least_confidence) {
-    if (!(least_confidence >= 0 && least_confidence <= 1))
-        throw UsageError(fmt::format("a least confidence of {}; give one from 0 to 1", least_confidence));
+void require_min_confidence(double min_confidence) {
+    if (!(min_confidence >= 0 && min_confidence <= 1))
+        throw UsageError(fmt::format("a least confidence of {}; give one from 0 to 1", min_confidence));
 }
 
 CategoryModel train_categories(const CategorizedShapes& training, const CategoryTrainingOptions& options,
                                CategoryReport& report) {
     require_usable(training);
-    require_least_confidence(options.least_confidence);
+    require_min_confidence(options.min_confidence);
     CategoryModel model;
     model.category_names = training.category_names;
     model.feature_options = training.feature_options;
     model.features = training.shapes.front().features;
-    model.least_confidence = options.least_confidence;
+    model.min_confidence = options.min_confidence;
     model.seed = options.seed;
     model.provenance = training.provenance;
     const Problem problem{&training};

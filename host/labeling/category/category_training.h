@@ -19,8 +19,8 @@ struct CategorizedShapes {
 };
 
 struct CategoryTrainingOptions {
-    std::uint64_t seed = 1;         ///< of all random choices
-    double least_confidence = 0.5;  ///< of the model: shapes with a lower confidence are called unknown; in [0, 1]
+    std::uint64_t seed = 1;       ///< of all random choices
+    double min_confidence = 0.5;  ///< of the model: shapes with a lower confidence are called unknown; in [0, 1]
 };
 
 /// How well held-out shapes were recognized. Shares are means over the categories, in [0, 1].
@@ -37,7 +37,7 @@ struct CategoryReport {
 /// shapes of a category are).
 void require_category_sizes(std::span<const std::string> names, std::span<const std::size_t> counts);
 /// Throws UsageError unless the confidence is in [0, 1].
-void require_least_confidence(double least_confidence);
+void require_min_confidence(double min_confidence);
 
 /// Trains a model by ridge regression of the squashed descriptors (see CategoryScores) on one target per category.
 /// All categories have the same total weight, however many shapes they have.
@@ -45,10 +45,10 @@ void require_least_confidence(double least_confidence);
 /// Held-out shapes calibrate the confidence, a logistic function of the evidence: shapes of the categories, in up to
 /// ten folds drawn at random (by seed), and "strangers", for which their whole category is held out. It assumes that
 /// one shape in five is a stranger. The only shape of a category is in no fold. With two categories, none can be held
-/// out: means of descriptors of both stand for strangers, a weak substitute. options.least_confidence is stored in the
+/// out: means of descriptors of both stand for strangers, a weak substitute. options.min_confidence is stored in the
 /// model and changes nothing else of it. docs/labeling.md explains the choices.
 ///
-/// Throws UsageError for what require_category_sizes and require_least_confidence refuse, and for shapes with
+/// Throws UsageError for what require_category_sizes and require_min_confidence refuse, and for shapes with
 /// different features.
 CategoryModel train_categories(const CategorizedShapes& training, const CategoryTrainingOptions& options,
                                CategoryReport& report);

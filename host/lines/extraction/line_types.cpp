@@ -1,7 +1,7 @@
+#include "host/core/text.h"
 #include "host/lines/extraction/lines.h"
 
 #include <algorithm>
-#include <cctype>
 #include <string>
 
 namespace exemplar {
@@ -38,9 +38,8 @@ std::optional<LineType> line_type_named(std::string_view name) {
 
 std::optional<LineType> line_type_from_prefix(std::string_view word) {
     constexpr std::size_t k_min_letters = 3;
-    std::string name(word);
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return c == '-' ? '_' : static_cast<char>(std::tolower(c)); });
+    std::string name = lower_case(word);
+    std::ranges::replace(name, '-', '_');
     if (name == "highlights") return LineType::suggestive_highlights;
     if (name.size() >= k_min_letters)
         for (const LineType type : k_line_types)

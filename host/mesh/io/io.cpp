@@ -67,7 +67,7 @@ std::span<const std::string_view> mesh_extensions() {
 }
 
 MeshFile read_mesh(const fs::path& path) {
-    const std::string extension = mesh_io::lower_case(path.extension().string());
+    const std::string extension = lower_case(path.extension().string());
     if (std::ranges::find(k_extensions, extension) == k_extensions.end()) {
         const std::vector<std::string> known(k_extensions.begin(), k_extensions.end());
         mesh_io::fail(path.string(), fmt::format("'{}' is not a mesh format Exemplar reads; use one of {}{}", extension,
@@ -78,7 +78,7 @@ MeshFile read_mesh(const fs::path& path) {
 }
 
 std::uint64_t external_buffer_bytes(const fs::path& path) {
-    if (mesh_io::lower_case(path.extension().string()) != ".gltf") return 0;
+    if (lower_case(path.extension().string()) != ".gltf") return 0;
     try {
         return mesh_io::gltf_external_buffer_bytes(read_content(path), path.string());
     } catch (const std::exception&) {  // read_mesh reports it

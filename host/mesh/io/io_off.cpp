@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "host/core/files.h"
+#include "host/core/text.h"
 #include "host/mesh/io/io_formats.h"
 #include "host/mesh/io/io_polygons.h"
 #include "host/mesh/io/io_text.h"

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstring>
 
+#include "host/core/text.h"
 #include "host/mesh/editing/weld.h"
 #include "host/mesh/io/io_formats.h"
 #include "host/mesh/io/io_polygons.h"

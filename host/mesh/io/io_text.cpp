@@ -57,13 +57,6 @@ std::string_view take_word(std::string_view& line) {
     return word;
 }
 
-std::string lower_case(std::string_view text) {
-    std::string lower(text);
-    for (char& c : lower)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return lower;
-}
-
 namespace {
 
 /// Removes a leading plus sign, which from_chars does not accept.

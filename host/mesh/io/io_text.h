@@ -27,7 +27,6 @@ bool is_space(char c);
 std::string_view trimmed(std::string_view text);
 /// Removes the first word from `line` and returns it (words are separated by white space); empty if none is left.
 std::string_view take_word(std::string_view& line);
-std::string lower_case(std::string_view text);
 
 /// Walks through the lines of a text file in memory and the words of each line. Lines end with LF, CR LF or CR.
 /// Errors are MeshError "NAME:LINE: MESSAGE".

@@ -203,9 +203,9 @@ TEST(Categories, TheLeastConfidenceIsTheOnlyDifferenceThatItMakes) {
     const CategorizedShapes shapes = made_up_shapes({4, 4, 4});
     CategoryReport usual_report, strict_report, lax_report;
     const CategoryModel usual = train_categories(shapes, {}, usual_report);
-    CategoryModel strict = train_categories(shapes, {.least_confidence = 1}, strict_report);
-    train_categories(shapes, {.least_confidence = 0}, lax_report);
-    EXPECT_EQ(strict.least_confidence, 1);
+    CategoryModel strict = train_categories(shapes, {.min_confidence = 1}, strict_report);
+    train_categories(shapes, {.min_confidence = 0}, lax_report);
+    EXPECT_EQ(strict.min_confidence, 1);
     Random random(8);
     EXPECT_EQ(recognize(usual, made_up_shape(1, random)).category, 1);
     EXPECT_EQ(recognize(strict, made_up_shape(1, random)).category, -1);
@@ -213,10 +213,10 @@ TEST(Categories, TheLeastConfidenceIsTheOnlyDifferenceThatItMakes) {
     EXPECT_EQ(strict_report.nearest_right, usual_report.nearest_right);
     EXPECT_EQ(lax_report.called_unknown, 0);
     EXPECT_EQ(lax_report.strangers_unknown, 0);
-    strict.least_confidence = usual.least_confidence;
+    strict.min_confidence = usual.min_confidence;
     EXPECT_EQ(bytes_of(strict), bytes_of(usual));
     for (const double bad : {-0.1, 1.1, static_cast<double>(NAN)})
-        EXPECT_THROW(train_categories(shapes, {.least_confidence = bad}, usual_report), UsageError) << bad;
+        EXPECT_THROW(train_categories(shapes, {.min_confidence = bad}, usual_report), UsageError) << bad;
 }
 
 TEST(Categories, OtherFeaturesAreRefused) {

@@ -1,4 +1,4 @@
-#include "tests/fuzz/allocation.h"
+#include "tests/fuzz/support/allocation.h"
 
 #include <malloc.h>
 
@@ -16,6 +16,7 @@
 #endif
 #ifdef EXEMPLAR_SANITIZED
 #include <sanitizer/allocator_interface.h>
+#include <sanitizer/asan_interface.h>
 #endif
 
 namespace exemplar::fuzz {
@@ -60,6 +61,12 @@ std::size_t peak_bytes() {
 }
 void reset_peak() {
     peak = live.load();
+}
+
+void free_unwound_frames() {
+#ifdef EXEMPLAR_SANITIZED
+    __asan_handle_no_return();
+#endif
 }
 
 }  // namespace exemplar::fuzz

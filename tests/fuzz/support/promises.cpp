@@ -1,4 +1,4 @@
-#include "tests/fuzz/promises.h"
+#include "tests/fuzz/support/promises.h"
 
 #include <algorithm>
 #include <cmath>

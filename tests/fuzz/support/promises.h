@@ -7,7 +7,7 @@
 #include "host/animation/animation.h"
 #include "host/curvature/model/model.h"
 #include "host/mesh/io/io.h"
-#include "tests/fuzz/allocation.h"
+#include "tests/fuzz/support/allocation.h"
 
 namespace exemplar::fuzz {
 
@@ -50,6 +50,7 @@ bool accepts(std::string_view name, std::size_t size, MemoryBound bound, Read&& 
     } catch (const E& error) {
         accepted = false;
         message = error.what();
+        free_unwound_frames();
     }
     const std::size_t used = peak_bytes() - before;
     require(used <= bound.fixed + bound.per_byte * size,

@@ -1,4 +1,4 @@
-#include "tests/fuzz/readers.h"
+#include "tests/fuzz/support/readers.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -29,7 +29,7 @@
 #include "host/lines/strokes/style.h"
 #include "host/mesh/io/io_formats.h"
 #include "host/mesh/io/io_text.h"
-#include "tests/fuzz/promises.h"
+#include "tests/fuzz/support/promises.h"
 #include "tests/support/mesh_files.h"
 
 namespace exemplar::fuzz {

@@ -2,7 +2,7 @@
 #include "host/core/errors.h"
 #include "host/core/random.h"
 #include "host/curvature/model/model.h"
-#include "tests/fuzz/promises.h"
+#include "tests/fuzz/support/promises.h"
 
 namespace exemplar::fuzz {
 namespace {

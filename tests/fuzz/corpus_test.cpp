@@ -9,6 +9,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "tests/fuzz/support/allocation.h"
 #include "tests/fuzz/support/promises.h"
 #include "tests/fuzz/support/readers.h"
 
@@ -63,6 +64,7 @@ TEST_P(Corpus, EveryFileMayBeCutAnywhere) {
             } catch (const BrokenPromise& broken) {
                 FAIL() << broken.what();
             }
+            free_unwound_frames();
         }
     }
 }

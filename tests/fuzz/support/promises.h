@@ -50,7 +50,6 @@ bool accepts(std::string_view name, std::size_t size, MemoryBound bound, Read&& 
     } catch (const E& error) {
         accepted = false;
         message = error.what();
-        free_unwound_frames();
     }
     const std::size_t used = peak_bytes() - before;
     require(used <= bound.fixed + bound.per_byte * size,

@@ -12,7 +12,6 @@
 #include "host/mesh/editing/simplify.h"
 #include "host/mesh/editing/validate.h"
 #include "host/mesh/io/io.h"
-#include "host/mesh/io/io_text.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/long_work.h"
@@ -93,7 +92,7 @@ std::vector<MeshPointer> read_labeled(const std::variant<fs::path, std::vector<f
 }
 
 void write_mesh_file(const MeshObject& object, const fs::path& path) {
-    const std::string extension = mesh_io::lower_case(path.extension().string());
+    const std::string extension = lower_case(path.extension().string());
     std::function<void()> writer;
     if (extension == ".off") writer = [&] { write_off(path, *object.mesh); };
     if (extension == ".obj") writer = [&] { write_obj(path, *object.mesh); };

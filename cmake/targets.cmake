@@ -6,7 +6,7 @@ target_include_directories(exemplar_options INTERFACE $<BUILD_INTERFACE:${PROJEC
 set(exemplar_warnings -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
                       $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi> $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
 target_compile_options(exemplar_options INTERFACE "$<BUILD_INTERFACE:${exemplar_warnings}>")
-# A product and a sum are two operations, each rounded, so that results do not depend on what is compiled together. Eigen fuses
+# A product and a sum are two operations, each rounded, so that no batch changes the last bits of results. Eigen fuses
 # them itself where the machine can.
 target_compile_options(exemplar_options INTERFACE "$<BUILD_INTERFACE:-ffp-contract=off>")
 # GCC collects its garbage from 512 MB on instead of 128: 7 % less time for a batch, at a quarter more memory.
@@ -35,7 +35,7 @@ if(EXEMPLAR_SANITIZE)
   target_link_options(exemplar_options INTERFACE ${exemplar_sanitizers})
 endif()
 # exemplar_followed: the compiler's options that let libFuzzer follow its input. They are for code that reads files, as their counters
-# make loops up to twice as slow. Other compilers than Clang have no libFuzzer.
+# make loops two to three times as slow. Other compilers than Clang have no libFuzzer.
 if(EXEMPLAR_SANITIZE AND CMAKE_CXX_COMPILER_ID MATCHES Clang)
   # Neither Ninja nor ccache sees that compiling reads this file: a copy whose name changes with it tells them.
   set(exemplar_ignored ${PROJECT_SOURCE_DIR}/tests/fuzz/libraries.ignore)

@@ -56,7 +56,7 @@ VertexCurvature device_curvature(const TriangleMesh& mesh) {
 }
 
 // Per vertex, the least height of the faces around it: the length that differences of normals are divided by.
-std::vector<double> least_heights(const TriangleMesh& mesh) {
+std::vector<double> min_heights(const TriangleMesh& mesh) {
     std::vector<double> heights(mesh.vertex_count(), std::numeric_limits<double>::infinity());
     for (const auto& [a, b, c] : mesh.faces) {
         const auto at = [&](std::uint32_t v) -> Vec3d { return mesh.vertices[v].cast<double>(); };
@@ -70,8 +70,8 @@ std::vector<double> least_heights(const TriangleMesh& mesh) {
 
 // Smoothing gives a vertex that only faces without area have what the other vertices of these faces have, and so its
 // error.
-std::vector<double> least_heights_of_smoothed(const TriangleMesh& mesh) {
-    const std::vector<double> heights = least_heights(mesh);
+std::vector<double> smoothed_min_heights(const TriangleMesh& mesh) {
+    const std::vector<double> heights = min_heights(mesh);
     std::vector<double> smoothed = heights;
     for (const Face& face : mesh.faces)
         for (const std::uint32_t v : face)
@@ -80,7 +80,7 @@ std::vector<double> least_heights_of_smoothed(const TriangleMesh& mesh) {
     return smoothed;
 }
 
-// `heights` are those of least_heights or least_heights_of_smoothed.
+// `heights` are those of min_heights or smoothed_min_heights.
 void expect_near_curvature(const TriangleMesh& mesh, const std::vector<double>& heights, const VertexCurvature& actual,
                            const VertexCurvature& expected, double tolerance) {
     ASSERT_EQ(actual.k1.size(), expected.k1.size());
@@ -101,7 +101,7 @@ void expect_near_curvature(const TriangleMesh& mesh, const std::vector<double>& 
 }
 
 void expect_curvature_parity(const TriangleMesh& mesh, double tolerance = k_curvature_tolerance) {
-    expect_near_curvature(mesh, least_heights(mesh), device_curvature(mesh), estimate_curvature(mesh, true), tolerance);
+    expect_near_curvature(mesh, min_heights(mesh), device_curvature(mesh), estimate_curvature(mesh, true), tolerance);
 }
 
 // Smoothed in units of the mesh at rest, of a frame of it.
@@ -112,7 +112,7 @@ void expect_smoothed_parity(const TriangleMesh& rest, const std::vector<Vec3>& v
     options.smoothing_unit = reference.median_edge_length(rest.vertices);
     TriangleMesh frame = rest;
     frame.vertices = vertices;
-    expect_near_curvature(frame, least_heights_of_smoothed(frame), actual, reference.estimate(vertices, options),
+    expect_near_curvature(frame, smoothed_min_heights(frame), actual, reference.estimate(vertices, options),
                           k_curvature_tolerance);
 }
 
@@ -340,7 +340,7 @@ TEST(SmoothedCurvatureParity, TheScaleOfTheBindSpaceDoesNotMatter) {
     TriangleMesh frame = tube.rest;
     frame.vertices = frame_vertices(tube, tube.clips[0], 1);
     CurvatureEstimator reference(frame.faces, frame.vertex_count());
-    expect_near_curvature(frame, least_heights(frame),
+    expect_near_curvature(frame, min_heights(frame),
                           test_support::download_curvature(*snapshot.first, *snapshot.second, *snapshot.derivative),
                           reference.estimate(frame.vertices, options),
                           10 * k_curvature_tolerance);  // posed in another order of sums

@@ -91,9 +91,9 @@ DrawnLines draw(const Scene& scene, LineType type, bool parallel, const LineStyl
 
 constexpr float k_place_tolerance = 5e-3f;  // pixels
 
-/// The least cosine between normals that two computations may have at a point of a stroke: a normal is across the line
-/// from the point before to the one after, and turns by what their places differ over the length of that line.
-float least_cosine(const Stroke& stroke, std::size_t at) {
+/// The smallest cosine between normals that two computations may have at a point of a stroke: a normal is across the
+/// line from the point before to the one after, and turns by what their places differ over the length of that line.
+float min_cosine(const Stroke& stroke, std::size_t at) {
     const auto& before = stroke.points[at == 0 ? 0 : at - 1];
     const auto& after = stroke.points[std::min(at + 1, stroke.points.size() - 1)];
     const float turn = 2 * k_place_tolerance / std::max((after.position - before.position).norm(), 1e-6f);
@@ -117,7 +117,7 @@ TEST_P(StrokeParity, PointsAreDrawnWhereTheReferenceDrawsThem) {
                 ASSERT_NEAR(place.y, point.position.y(), k_place_tolerance);
                 ASSERT_NEAR(place.z, point.width, 1e-3f * point.width + 1e-4f);
                 ASSERT_NEAR(place.w, point.opacity, 1e-3f);
-                ASSERT_GT(normal.x * point.normal.x() + normal.y * point.normal.y(), least_cosine(stroke, i));
+                ASSERT_GT(normal.x * point.normal.x() + normal.y * point.normal.y(), min_cosine(stroke, i));
             }
         EXPECT_EQ(at, drawn.points.size());
     }

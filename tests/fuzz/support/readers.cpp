@@ -450,10 +450,4 @@ std::span<const Reader> readers() {
     return k_readers;
 }
 
-const Reader& reader_of(std::string_view name) {
-    const auto found = std::ranges::find(k_readers, name, &Reader::name);
-    if (found == k_readers.end()) throw std::out_of_range("no reader is called " + std::string(name));
-    return *found;
-}
-
 }  // namespace exemplar::fuzz

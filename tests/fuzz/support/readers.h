@@ -14,7 +14,5 @@ struct Reader {
 };
 
 std::span<const Reader> readers();
-/// Throws std::out_of_range if there is none of that name.
-const Reader& reader_of(std::string_view name);
 
 }  // namespace exemplar::fuzz

@@ -10,7 +10,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <stdexcept>
 #include <tuple>
 
 #include "host/animation/check_animation.h"

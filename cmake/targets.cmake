@@ -58,10 +58,13 @@ function(exemplar_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${batches} UNITY_BUILD_BATCH_SIZE ${EXEMPLAR_UNITY_BATCH})
 endfunction()
 
-# exemplar_library(NAME DIR DEPENDENCY...): the static library exemplar_NAME of all sources in DIR and its folders. Those of
-# host/ and gpu/ are noted for cmake/install.cmake.
+# exemplar_library(NAME DIR DEPENDENCY...): the static library exemplar_NAME of all sources in DIR and its folders, but for
+# folders that are a library already. Those of host/ and gpu/ are noted for cmake/install.cmake.
 function(exemplar_library name dir)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${dir}/*.cpp)
+  get_property(taken GLOBAL PROPERTY exemplar_taken_sources)
+  list(REMOVE_ITEM sources ${taken})
+  set_property(GLOBAL APPEND PROPERTY exemplar_taken_sources ${sources})
   add_library(exemplar_${name} STATIC ${sources})
   exemplar_unity(exemplar_${name})
   target_link_libraries(exemplar_${name} PUBLIC exemplar_options ${ARGN})

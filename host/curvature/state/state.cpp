@@ -1,6 +1,5 @@
 #include "host/curvature/state/state.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -23,14 +22,13 @@ constexpr float k_min_joint_weight = 1e-3f;
 
 /// Returns the mean rotation of a node: the principal axis of its quaternions as points in four dimensions.
 Quaternionf mean_rotation(std::span<const Pose* const> poses, std::size_t node) {
-    Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(4, 4);
     for (const Pose* pose : poses) {
         const Eigen::Vector4d q = pose->nodes[node].rotation.coeffs().cast<double>();
         sum += q * q.transpose();
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(sum);
     Quaternionf mean;
-    mean.coeffs() = solver.eigenvectors().col(3).cast<float>();
+    mean.coeffs() = symmetric_eigen(sum).vectors.col(3).cast<float>();
     return mean.normalized();
 }
 

@@ -46,6 +46,12 @@ if(EXEMPLAR_SANITIZE AND CMAKE_CXX_COMPILER_ID MATCHES Clang)
   set(exemplar_followed -fsanitize=fuzzer-no-link -fsanitize-coverage-ignorelist=${exemplar_ignored_copy})
 endif()
 
+# A batch takes 1 to 2 GB of memory to compile: Ninja compiles no more at a time than this machine holds.
+cmake_host_system_information(RESULT exemplar_megabytes QUERY TOTAL_PHYSICAL_MEMORY)
+math(EXPR exemplar_compile_jobs "${exemplar_megabytes} / 1500 + 1")
+set_property(GLOBAL PROPERTY JOB_POOLS compile=${exemplar_compile_jobs})
+set(CMAKE_JOB_POOL_COMPILE compile)
+
 # exemplar_unity(TARGET): compiles the sources of TARGET several at a time. Most of the time to compile a source goes into the
 # headers of libraries, which a batch reads once (docs/building.md). EXEMPLAR_UNITY=OFF compiles each source alone;
 # EXEMPLAR_UNITY_EXCEPT does so for the libraries that one is changing.

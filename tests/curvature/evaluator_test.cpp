@@ -6,17 +6,10 @@
 #include "host/curvature/model/model.h"
 #include "tests/support/bending_tube.h"
 #include "tests/support/resident_bytes.h"
+#include "tests/support/sanitizer.h"
 
 namespace exemplar {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool k_keeps_freed_memory = true;
-#elif defined(__has_feature)
-constexpr bool k_keeps_freed_memory = __has_feature(address_sanitizer);
-#else
-constexpr bool k_keeps_freed_memory = false;
-#endif
 
 TEST(CurvatureEvaluator, TenThousandFramesNeitherGrowNorChange) {
     const Animation tube = shapes::bending_tube();
@@ -46,7 +39,7 @@ TEST(CurvatureEvaluator, TenThousandFramesNeitherGrowNorChange) {
             ASSERT_EQ(again.k1, first[f].k1) << "frame " << i;
             ASSERT_EQ(again.derivative, first[f].derivative) << "frame " << i;
         }
-        if (!k_keeps_freed_memory) {
+        if (!test_support::k_sanitized) {  // sanitizers keep freed memory
             EXPECT_LE(test_support::resident_bytes(), before + 1'000'000);
         }
     }

@@ -8,13 +8,7 @@
 #include <cstdlib>
 #include <new>
 
-#if defined(__SANITIZE_ADDRESS__)  // GCC
-#define EXEMPLAR_SANITIZED
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)  // Clang
-#define EXEMPLAR_SANITIZED
-#endif
-#endif
+#include "tests/support/sanitizer.h"
 #ifdef EXEMPLAR_SANITIZED
 #include <sanitizer/allocator_interface.h>
 #include <sanitizer/asan_interface.h>

@@ -22,7 +22,7 @@ constexpr float k_min_joint_weight = 1e-3f;
 
 /// Returns the mean rotation of a node: the principal axis of its quaternions as points in four dimensions.
 Quaternionf mean_rotation(std::span<const Pose* const> poses, std::size_t node) {
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(4, 4);
+    Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
     for (const Pose* pose : poses) {
         const Eigen::Vector4d q = pose->nodes[node].rotation.coeffs().cast<double>();
         sum += q * q.transpose();

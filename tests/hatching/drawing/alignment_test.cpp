@@ -13,7 +13,6 @@
 #include "host/hatching/drawing/drawing_alignment.h"
 #include "host/hatching/drawing/drawing_input.h"
 #include "tests/hatching/measurement/test_drawings.h"
-#include "tests/support/sanitizer.h"
 
 namespace exemplar {
 namespace {
@@ -126,14 +125,13 @@ TEST_P(Alignment, FindsWhereTheDrawingLies) {
 
 const auto k_name_of_scan = [](const auto& alignment) { return alignment.param.name; };
 INSTANTIATE_TEST_SUITE_P(Scans, Alignment,
-                         testing::ValuesIn(test_support::fewer_if_sanitized<AlignmentCase>(
-                             {{"cow_tilted", cow, -500, 1.6, 7.3, 820, 640},
-                              {"cow_half_blank", cow, -5, 2.3, -4.1, 1100, 900},
-                              {"cow_on_its_side", cow, -30, 1.3, 92.5, 700, 760},
-                              {"cow_upside_down_small", cow, -500, 0.8, 175, 500, 400},
-                              {"blob_tilted", blob, -500, 1.4, -9.2, 700, 600},
-                              {"blob_part_blank", blob, -35, 1.9, 3, 900, 800},
-                              {"star_part_blank", star, -35, 1.2, -5, 700, 500}})),
+                         testing::Values(AlignmentCase{"cow_tilted", cow, -500, 1.6, 7.3, 820, 640},
+                                         AlignmentCase{"cow_half_blank", cow, -5, 2.3, -4.1, 1100, 900},
+                                         AlignmentCase{"cow_on_its_side", cow, -30, 1.3, 92.5, 700, 760},
+                                         AlignmentCase{"cow_upside_down_small", cow, -500, 0.8, 175, 500, 400},
+                                         AlignmentCase{"blob_tilted", blob, -500, 1.4, -9.2, 700, 600},
+                                         AlignmentCase{"blob_part_blank", blob, -35, 1.9, 3, 900, 800},
+                                         AlignmentCase{"star_part_blank", star, -35, 1.2, -5, 700, 500}),
                          k_name_of_scan);
 
 TEST(SameFrame, IsKeptAsItIs) {

@@ -15,7 +15,6 @@
 #include "host/hatching/fields/hatching_fields.h"
 #include "host/hatching/measurement/stroke_measurements.h"
 #include "tests/hatching/measurement/test_drawings.h"
-#include "tests/support/sanitizer.h"
 
 namespace exemplar {
 namespace {
@@ -148,10 +147,8 @@ std::vector<DrawingCase> crossed_drawings() {
 }
 
 const auto k_name_of = [](const auto& drawing) { return drawing.param.name; };
-INSTANTIATE_TEST_SUITE_P(Straight, Extraction, testing::ValuesIn(test_support::fewer_if_sanitized(straight_drawings())),
-                         k_name_of);
-INSTANTIATE_TEST_SUITE_P(Crossed, Extraction, testing::ValuesIn(test_support::fewer_if_sanitized(crossed_drawings())),
-                         k_name_of);
+INSTANTIATE_TEST_SUITE_P(Straight, Extraction, testing::ValuesIn(straight_drawings()), k_name_of);
+INSTANTIATE_TEST_SUITE_P(Crossed, Extraction, testing::ValuesIn(crossed_drawings()), k_name_of);
 
 InkStroke arc(const Vec2& center, float radius, float from, float to, float width, float tone) {
     InkStroke stroke{{}, width, tone};

@@ -178,7 +178,10 @@ void read_local_shape(const Reading& reading, bool is_local, std::size_t vertex_
     local.unit = reading.floats("state.local_unit", {1})[0];
     const Floats mean = reading.floats("state.local_mean", {LocalShapeState::k_numbers * local.vertex.size()});
     const Floats map = as_floats(reading.halves("state.local_map", {is_local ? k_any : 0}));
-    if (!is_local) return;
+    if (!is_local) {
+        reading.require(local.unit == LocalShapeState().unit, "state.local_unit is of another kind of state");
+        return;
+    }
     reading.rows(local.begin, state.controls.size(), local.vertex.size(), "the vertices of the patches");
     reading.below(local.vertex, vertex_count, "state.local_vertex");
     reading.require(local.unit > 0, "state.local_unit is not positive");
@@ -188,7 +191,7 @@ void read_local_shape(const Reading& reading, bool is_local, std::size_t vertex_
     state.source = std::move(local);
 }
 
-/// Reads the arrays of all kinds of state; those of other kinds must be empty.
+/// Reads the arrays of all kinds of state; those of other kinds must be as they are written, empty or 1.
 void read_state(const Reading& reading, CurvatureModel& model) {
     const bool is_local = !reading.file.get<std::uint32_t>("state.local_begin", {k_any}).empty();
     const bool is_sequence = model.kind == AnimationKind::sequence;

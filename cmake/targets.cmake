@@ -31,7 +31,7 @@ endif()
 if(EXEMPLAR_SANITIZE)
   set(exemplar_sanitizers -fsanitize=address,undefined -fno-sanitize-recover=all)
   target_compile_options(exemplar_options INTERFACE
-                         "$<BUILD_INTERFACE:${exemplar_sanitizers};-O1;-g1;-fno-omit-frame-pointer>")
+                         "$<BUILD_INTERFACE:${exemplar_sanitizers};-O2;-g1;-fno-omit-frame-pointer>")
   target_link_options(exemplar_options INTERFACE ${exemplar_sanitizers})
 endif()
 # exemplar_followed: the compiler's options that let libFuzzer follow its input. They are for code that reads files, as their counters

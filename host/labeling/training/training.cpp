@@ -29,7 +29,7 @@ constexpr std::size_t k_pairwise_stages = 2;  ///< base features, then with the 
 /// mesh to mesh, than the classifier of all meshes.
 constexpr double k_max_unary_loss_ratio = 1.05, k_max_pairwise_loss_ratio = 1;
 constexpr float k_sliver = 0.02F;  ///< share of a label's largest piece in the mesh
-constexpr std::size_t k_invalid_index = static_cast<std::size_t>(-1);
+constexpr std::size_t k_no_mesh = static_cast<std::size_t>(-1);
 constexpr std::uint64_t k_unary_task = 1000, k_pairwise_task = 2000, k_fold_task = 1;
 
 using PerMesh = std::vector<std::vector<float>>;
@@ -344,13 +344,13 @@ void train_crf(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& fea
     PerMesh smallest;
     for (std::size_t m = 0; m < features.size(); ++m)
         smallest.push_back(smallest_pieces(features[m], corpus.meshes[m].label, classes));
-    model.smallest_component = smallest_of_others(smallest, k_invalid_index);
+    model.smallest_component = smallest_of_others(smallest, k_no_mesh);
 
     const std::vector<std::vector<std::int32_t>> truth = learnable_labels(corpus, folds);
     std::vector<CrfExample> examples;
     for (std::size_t m = 0; m < features.size(); ++m)
         examples.push_back({&features[m], make_crf_terms(features[m], probabilities[m], classes, boundary[m]), truth[m],
-                            smallest_of_others(smallest, features.size() > 1 ? m : k_invalid_index)});
+                            smallest_of_others(smallest, features.size() > 1 ? m : k_no_mesh)});
     const std::vector<bool> touching = touching_labels(corpus, features);
     Progress progress("searching CRF parameters", crf_search_evaluations(classes, touching));
     const Stopwatch watch;

@@ -2,7 +2,15 @@
 
 #include <numeric>
 
+#include "host/learn/golden_section.h"
+
 namespace exemplar {
+namespace {
+
+constexpr double k_min_r = 0.05;
+constexpr int k_r_steps = 24;  // golden sections of log r: r is found to a few hundred-thousandths
+
+}  // namespace
 
 void RegressionBoosting::normalize() {
     const double total = std::accumulate(weights_.begin(), weights_.end(), 0.0);
@@ -20,16 +28,10 @@ RegressionBoosting::Step RegressionBoosting::best_step(std::span<const double> h
         return sum / std::sqrt(r);
     };
     if (is_first_round_) return {objective(1), 1};
-    // The objective is convex in log r, as a sum of convex functions, so golden-section search finds the minimum.
-    constexpr double k_golden = 0.6180339887498949, k_min_r = 0.05;
-    double low = std::log(k_min_r), high = std::log(max_r);
-    for (int step = 0; step < 24; ++step) {
-        const double a = high - k_golden * (high - low), b = low + k_golden * (high - low);
-        const bool left = objective(std::exp(a)) < objective(std::exp(b));
-        (left ? high : low) = left ? b : a;
-    }
-    const double r = std::exp(0.5 * (low + high));
-    return {objective(r), r};
+    // The objective is convex in log r, as a sum of convex functions.
+    const auto [log_r, value] = golden_section_minimum([&](double log_of) { return objective(std::exp(log_of)); },
+                                                       std::log(k_min_r), std::log(max_r), k_r_steps);
+    return {value, std::exp(log_r)};
 }
 
 }  // namespace exemplar

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/core/parallel.h"
+#include "host/learn/golden_section.h"
 #include "host/learn/softmax.h"
 
 namespace exemplar {
@@ -13,7 +14,7 @@ namespace {
 
 constexpr float k_label_noise = 0.01F;
 constexpr double k_min_scale = 0.02, k_max_scale = 10;
-constexpr int k_steps = 16;  // golden sections of the scale's logarithm: to about a thousandth of its range
+constexpr int k_scale_steps = 16;  // golden sections of the scale's logarithm: to about a thousandth of its range
 constexpr std::size_t k_calibration_block = 4096;
 
 struct Scored {
@@ -55,26 +56,14 @@ double total_loss(const Scored& set, Link link, float scale) {
         .first;
 }
 
-/// Golden-section search over the logarithm of the scale.
+/// Searches over the logarithm of the scale; returns the scale and its loss.
 std::pair<float, double> best_scale(const Scored& set, Link link) {
-    const double golden = (std::sqrt(5.0) - 1) / 2;
     const auto loss_at = [&](double log_scale) {
         return total_loss(set, link, static_cast<float>(std::exp(log_scale)));
     };
-    double low = std::log(k_min_scale), high = std::log(k_max_scale);
-    double left = high - golden * (high - low), right = low + golden * (high - low);
-    double loss_left = loss_at(left), loss_right = loss_at(right);
-    for (int step = 0; step < k_steps; ++step) {
-        if (loss_left < loss_right) {
-            high = right, right = left, loss_right = loss_left;
-            loss_left = loss_at(left = high - golden * (high - low));
-        } else {
-            low = left, left = right, loss_left = loss_right;
-            loss_right = loss_at(right = low + golden * (high - low));
-        }
-    }
-    return loss_left < loss_right ? std::pair{static_cast<float>(std::exp(left)), loss_left}
-                                  : std::pair{static_cast<float>(std::exp(right)), loss_right};
+    const auto [log_scale, loss] =
+        golden_section_minimum(loss_at, std::log(k_min_scale), std::log(k_max_scale), k_scale_steps);
+    return {static_cast<float>(std::exp(log_scale)), loss};
 }
 
 }  // namespace

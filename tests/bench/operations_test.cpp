@@ -55,12 +55,16 @@ TEST(Profiling, KernelsAreTimedRightlyAfterSomethingWasDrawn) {
     prepared("shaded pictures", drawing, 10'000).run();
     const Operation operation = prepared("multiply-adds", calculating, 131'072);
     operation.run();
-    calculating.reset();
-    const Stopwatch watch;
-    operation.run();
-    const double wall = 1e3 * watch.wall(), kernel = calculating.milliseconds("runtime/multiply_add.comp");
-    EXPECT_GT(kernel, 0.5 * wall);
-    EXPECT_LT(kernel, 1.01 * wall);
+    double largest_share = 0;  // of several runs, as another process may take the processor's time in between
+    for (int run = 0; run < 20; ++run) {
+        calculating.reset();
+        const Stopwatch watch;
+        operation.run();
+        const double wall = 1e3 * watch.wall(), kernel = calculating.milliseconds("runtime/multiply_add.comp");
+        EXPECT_LT(kernel, 1.01 * wall);
+        largest_share = std::max(largest_share, kernel / wall);
+    }
+    EXPECT_GT(largest_share, 0.5);
 }
 
 class OperationTest : public ::testing::TestWithParam<std::size_t> {

@@ -7,7 +7,7 @@ set(exemplar_warnings -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-c
                       $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi> $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
 target_compile_options(exemplar_options INTERFACE "$<BUILD_INTERFACE:${exemplar_warnings}>")
 # A product and a sum are two operations, each rounded, so that no batch changes the last bits of results. Eigen fuses
-# them itself where the machine can.
+# them itself where the machine can; exemplar_fuse below names the sources where the compiler may.
 target_compile_options(exemplar_options INTERFACE "$<BUILD_INTERFACE:-ffp-contract=off>")
 # GCC collects its garbage from 512 MB on instead of 128: 7 % less time for a batch, at a quarter more memory.
 target_compile_options(exemplar_options INTERFACE "$<BUILD_INTERFACE:$<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=524288>>")
@@ -62,6 +62,12 @@ function(exemplar_unity target)
     set(batches OFF)
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${batches} UNITY_BUILD_BATCH_SIZE ${EXEMPLAR_UNITY_BATCH})
+endfunction()
+
+# exemplar_fuse(SOURCE...): lets the compiler fuse products and sums in sources that are little else and run for each frame. They are
+# compiled alone, so that no batch decides what is fused.
+function(exemplar_fuse)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON COMPILE_OPTIONS -ffp-contract=fast)
 endfunction()
 
 # exemplar_library(NAME DIR DEPENDENCY...): the static library exemplar_NAME of all sources in DIR and its folders, but for

@@ -27,12 +27,6 @@ std::vector<Vec3d> vertex_area_vectors(const TriangleMesh& mesh) {
 
 }  // namespace
 
-Vec3 unit_or_up(const Vec3d& v) {
-    const double length = v.norm();
-    if (!(length > 0) || !std::isfinite(length)) return Vec3::UnitZ();
-    return (v / length).cast<float>();
-}
-
 BoundingBox bounding_box(const TriangleMesh& mesh) {
     BoundingBox box{Vec3d::Constant(std::numeric_limits<double>::infinity()),
                     Vec3d::Constant(-std::numeric_limits<double>::infinity())};

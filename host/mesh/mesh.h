@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -36,7 +37,11 @@ struct BoundingBox {
     double diagonal() const { return (high - low).norm(); }
 };
 /// Returns v / |v|, or +z if v is zero or not finite.
-Vec3 unit_or_up(const Vec3d& v);
+inline Vec3 unit_or_up(const Vec3d& v) {
+    const double length = v.norm();
+    if (!(length > 0) || !std::isfinite(length)) return Vec3::UnitZ();
+    return (v / length).cast<float>();
+}
 /// Returns the box around all vertices that faces refer to; `low` is above `high` if there are no faces.
 BoundingBox bounding_box(const TriangleMesh& mesh);
 

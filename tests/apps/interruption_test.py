@@ -113,7 +113,7 @@ class Interruption(ProgramTest):
 
     def check_folder(self, folder, temporary_allowed):
         for path in (self.folder / folder).rglob("*"):
-            if path.is_dir() or path.suffix in (".db-wal", ".db-shm"):  # parts of a database
+            if path.is_dir() or path.suffix in (".db-journal", ".db-wal", ".db-shm"):  # parts of a database
                 continue
             if path.suffix == ".tmp":
                 self.assertTrue(temporary_allowed, path)

@@ -17,7 +17,7 @@ from unittest import mock
 from cluster import SlurmCluster, SlurmError, marked_processes, missing_programs
 
 SKIPPED = 77
-ALL_SECONDS = 280   # of the whole test, less than ctest's limit, so that all is cleared away
+ALL_SECONDS = 560   # of the whole test, less than ctest's limit, so that all is cleared away
 DOWN_SECONDS = 60   # until a dead node is seen as such (measured: 16)
 AGAIN_SECONDS = 60  # until a requeued task runs again (measured: 6)
 

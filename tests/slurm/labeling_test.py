@@ -19,7 +19,7 @@ from cluster import SlurmCluster, marked_processes
 from cluster_test import main
 from program import PROGRAM
 
-ALL_SECONDS = 560  # of the whole test, less than ctest's limit
+ALL_SECONDS = 840  # of the whole test, less than ctest's limit
 TASKS = 4
 SHAPES = 48
 FEW = 4

@@ -3,18 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "host/mesh/curvature/tensor_equations.h"
-
 namespace exemplar {
 
 namespace {
-
-template <std::size_t N>
-std::array<float, N> rounded(const std::array<double, N>& values) {
-    std::array<float, N> result;
-    for (std::size_t i = 0; i < N; ++i) result[i] = static_cast<float>(values[i]);
-    return result;
-}
 
 /// Returns the area of the part of a triangle nearest to each corner (Meyer et al. 2003), from its squared edge
 /// lengths. At an obtuse angle the Voronoi cells are cut off at the opposite edge.
@@ -73,25 +64,6 @@ void measure_face(const std::array<Vec3, 3>& corners, FaceFit& fit) {
     fit.frame.tangent = (e0 * inverse).cast<float>();
     fit.frame.normal = (n / twice_area).cast<float>();
     fit.frame.bitangent = fit.frame.normal.cross(fit.frame.tangent);
-}
-
-Form fit_form(const FaceFit& fit, const std::array<Vec3, 3>& normals) {
-    TensorEquations<3> equations;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Vec3 change = normals[(i + 2) % 3] - normals[(i + 1) % 3];
-        equations.add(fit.edge[i].x(), fit.edge[i].y(),
-                      {fit.frame.tangent.dot(change), fit.frame.bitangent.dot(change)});
-    }
-    return rounded(equations.solve());
-}
-
-FormDerivative fit_derivative(const FaceFit& fit, const std::array<Form, 3>& forms) {
-    TensorEquations<4> equations;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Form &to = forms[(i + 2) % 3], &from = forms[(i + 1) % 3];
-        equations.add(fit.edge[i].x(), fit.edge[i].y(), {to[0] - from[0], to[1] - from[1], to[2] - from[2]});
-    }
-    return rounded(equations.solve());
 }
 
 }  // namespace exemplar

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "host/animation/check_animation.h"
 #include "host/animation/read_formats.h"
@@ -30,6 +31,28 @@ void set_once(fs::path& place, const fs::path& path) {
     place = path;
 }
 
+/// Returns a file's name up to the number at its end.
+std::string before_number(const fs::path& path) {
+    std::string stem = path.stem().string();
+    while (!stem.empty() && stem.back() >= '0' && stem.back() <= '9') stem.pop_back();
+    return stem;
+}
+
+/// Turns around frames like walk-1 and walk-2, which natural order puts before walk0, if there are also frames like
+/// walk0: the hyphen is then a minus.
+void order_negative_numbers(std::vector<fs::path>& frames) {
+    std::set<std::string> beginnings;
+    for (const fs::path& path : frames) beginnings.insert(before_number(path));
+    for (auto first = frames.begin(); first != frames.end();) {
+        const std::string beginning = before_number(*first);
+        const auto last =
+            std::find_if(first, frames.end(), [&](const fs::path& p) { return before_number(p) != beginning; });
+        if (beginning.ends_with('-') && beginnings.contains(beginning.substr(0, beginning.size() - 1)))
+            std::reverse(first, last);
+        first = last;
+    }
+}
+
 ShapeFiles shape_files(const fs::path& folder) {
     ShapeFiles files;
     for (const auto& entry : fs::directory_iterator(folder)) {
@@ -46,6 +69,7 @@ ShapeFiles shape_files(const fs::path& folder) {
             files.frames.push_back(path);
     }
     std::ranges::sort(files.frames, natural_less, [](const fs::path& path) { return path.filename().string(); });
+    order_negative_numbers(files.frames);
     return files;
 }
 

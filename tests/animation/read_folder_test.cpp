@@ -52,6 +52,16 @@ TEST_F(Folder, FramesAreInNaturalOrder) {
     EXPECT_THAT(animation.warnings, IsEmpty());
 }
 
+TEST_F(Folder, AHyphenIsAMinusBesideNumbersWithoutOne) {
+    for (const int i : {-10, -2, -1, 0, 1}) add("walk" + std::to_string(i) + ".obj", obj(static_cast<float>(i)));
+    EXPECT_THAT(heights(), ElementsAre(-10, -2, -1, 0, 1));
+}
+
+TEST_F(Folder, AHyphenIsNoMinusIfAllNumbersHaveIt) {
+    for (const int i : {1, 2, 10}) add("walk-" + std::to_string(i) + ".obj", obj(static_cast<float>(i)));
+    EXPECT_THAT(heights(), ElementsAre(1, 2, 10));
+}
+
 TEST_F(Folder, TheRestShapeIsNoFrame) {
     add("Rest.obj", obj(7));
     add("0.obj", obj(1));

@@ -24,6 +24,9 @@ std::string read_content(const fs::path& path) {
         std::string content = read_file(path);
         if (mesh_io::trimmed(content).empty())
             throw MeshError(path.string() + ": the file is empty; save or copy the mesh again");
+        if (content.starts_with("version https://git-lfs.github.com/spec/"))
+            throw MeshError(path.string() +
+                            ": is a pointer of Git LFS in place of the file; fetch it with 'git lfs pull'");
         return content;
     } catch (const DataError& error) {
         throw MeshError(error.what());
@@ -53,6 +56,7 @@ void check_extension(std::string_view extension, std::string_view content, const
 MeshFile read_content_as(std::string_view extension, std::string_view content, const fs::path& path) {
     const std::string name = path.string();
     check_extension(extension, content, name);
+    if (extension != ".stl" && extension != ".glb") mesh_io::refuse_utf16(content, name);
     if (extension == ".off") return mesh_io::read_off(content, name);
     if (extension == ".obj") return mesh_io::read_obj(content, name);
     if (extension == ".ply") return mesh_io::read_ply(content, name);

@@ -168,7 +168,7 @@ class BodyReader {
                 need(Role::z, "z");
                 vertex_count_ = element.count;
             } else if (element.name == "face") {
-                need(Role::corners, "vertex_indices that is a list of integers");
+                if (element.count > 0) need(Role::corners, "vertex_indices that is a list of integers");
                 content_.has_labels = std::ranges::find(roles, Role::label) != roles.end();
                 content_.has_confidence = std::ranges::find(roles, Role::confidence) != roles.end();
             } else if (element.name == "tristrips") {

@@ -1,6 +1,7 @@
 // Reads STL: unconnected triangles as text or binary; corners at the same position become one vertex.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
@@ -27,11 +28,12 @@ bool is_binary(std::string_view content) {
     const bool has_count = content.size() >= k_count_end;
     if (has_count && content.size() == k_count_end + k_triangle_bytes * std::uint64_t{triangle_count_field(content)})
         return true;
-    const std::string_view start = content.substr(0, 512);
+    const std::string_view start = without_mark(content).substr(0, 512);
     return !lower_case(trimmed(start)).starts_with("solid") || start.find('\0') != std::string_view::npos;
 }
 
-/// Reads the triangles of text files, with lines like `vertex 1 0 0` in any case.
+/// Reads the triangles of text files, with lines like `vertex 1 0 0` in any case. Some programs write all of it on one
+/// line.
 class AsciiStl {
   public:
     AsciiStl(std::string_view content, const std::string& name) : cursor_(content, name) {}
@@ -39,8 +41,7 @@ class AsciiStl {
     void read(PolygonList& polygons) {
         cursor_.need_line("solid");
         expect("solid");
-        while (cursor_.next_line()) {
-            const std::string keyword = lower_case(cursor_.word());
+        for (std::string keyword = next_keyword(); !keyword.empty(); keyword = next_keyword()) {
             if (keyword == "facet")
                 read_facet(polygons);
             else if (keyword == "endsolid")
@@ -58,26 +59,49 @@ class AsciiStl {
         const std::string_view word = cursor_.word();
         if (lower_case(word) != keyword) cursor_.fail(fmt::format("{} is expected, not {}", keyword, quote(word)));
     }
+    /// Returns the next facet or endsolid on this line, else the first word of the next line; empty at the end of the
+    /// file. Names of solids are skipped. They may contain such words, so `facet` counts only before `normal`, and
+    /// `endsolid` only if a facet has ended on this line.
+    std::string next_keyword() {
+        while (!cursor_.rest().empty()) {
+            std::string word = lower_case(cursor_.word());
+            std::string_view rest = cursor_.rest();
+            if (word == "facet" && lower_case(take_word(rest)) == "normal") return word;
+            if (word == "endsolid" && facet_line_ == cursor_.line_number()) return word;
+        }
+        return cursor_.next_line() ? lower_case(cursor_.word()) : std::string();
+    }
+    /// Goes to a keyword: the next one on this line, else the first word of the next line.
+    void go_to(std::string_view keyword, std::string_view expected) {
+        constexpr std::array<std::string_view, 8> k_keywords{"solid",  "facet",   "outer",    "loop",
+                                                             "vertex", "endloop", "endfacet", "endsolid"};
+        while (!cursor_.rest().empty()) {
+            std::string_view rest = cursor_.rest();
+            if (std::ranges::find(k_keywords, lower_case(take_word(rest))) != k_keywords.end()) return expect(keyword);
+            cursor_.word();
+        }
+        cursor_.need_line(expected);
+        expect(keyword);
+    }
     void read_facet(PolygonList& polygons) {
-        cursor_.need_line("outer loop");
-        expect("outer");
+        go_to("outer", "outer loop");
         expect("loop");
         std::array<std::uint32_t, 3> corners;
         for (std::uint32_t& corner : corners) {
-            cursor_.need_line("a vertex");
-            expect("vertex");
+            go_to("vertex", "a vertex");
             const float x = cursor_.number("the x of a vertex"), y = cursor_.number("the y of a vertex");
             corner = welder_.add({x, y, cursor_.number("the z of a vertex")}, polygons.vertices);
         }
-        cursor_.need_line("endloop");
-        expect("endloop");
-        cursor_.need_line("endfacet");
-        expect("endfacet");
+        go_to("endloop", "endloop");
+        go_to("endfacet", "endfacet");
+        facet_line_ = cursor_.line_number();
+        ended_ = false;
         polygons.add(corners);
     }
     TextCursor cursor_;
     VertexWelder welder_;
     bool ended_ = false;
+    std::size_t facet_line_ = 0;  ///< the line on which the last facet ended
 };
 
 float little_endian_float(const char* bytes) {
@@ -86,12 +110,24 @@ float little_endian_float(const char* bytes) {
     return value;
 }
 
+/// Throws if the file is text.
+void refuse_other_text(std::string_view content, const std::string& name) {
+    refuse_utf16(content, name);
+    const std::string_view start = content.substr(0, 512);
+    const auto is_control = [](char c) { return c >= 0 && c < ' ' && !is_space(c); };
+    if (std::ranges::any_of(start, is_control)) return;
+    std::string_view line = trimmed(start);
+    fail(name + ":1",
+         fmt::format("an STL file in text begins with the word solid, not with {}", quote(take_word(line))));
+}
+
 void read_binary(std::string_view content, const std::string& name, PolygonList& polygons,
                  std::vector<std::string>& warnings) {
     if (content.size() < k_count_end)
         fail(name, fmt::format("byte {}: an STL file begins with the word solid or has at least {} bytes",
                                content.size(), k_count_end));
     const std::uint64_t count = triangle_count_field(content), end = k_count_end + k_triangle_bytes * count;
+    if (end > content.size()) refuse_other_text(content, name);
     if (end > content.size())
         fail(name, fmt::format("byte {}: {} triangles need {} bytes, but the file has {}; it is cut off or no STL file",
                                k_header_bytes, count, end, content.size()));

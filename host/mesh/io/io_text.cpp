@@ -101,9 +101,19 @@ std::optional<std::int64_t> parse_integer(std::string_view word) {
     return value;
 }
 
+std::string_view without_mark(std::string_view text) {
+    constexpr std::string_view k_mark = "\xef\xbb\xbf";
+    if (text.starts_with(k_mark)) text.remove_prefix(k_mark.size());
+    return text;
+}
+
+void refuse_utf16(std::string_view text, const std::string& name) {
+    if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) fail(name, "is text in UTF-16; save it as UTF-8");
+}
+
 TextCursor::TextCursor(std::string_view text, std::string name, char comment)
     : text_(text), name_(std::move(name)), comment_(comment) {
-    if (text_.starts_with("\xef\xbb\xbf")) next_ = 3;  // byte order mark
+    next_ = text_.size() - without_mark(text_).size();
     const bool old_mac = text_.find('\n') == std::string_view::npos && text_.find('\r') != std::string_view::npos;
     line_end_ = old_mac ? '\r' : '\n';
 }

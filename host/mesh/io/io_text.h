@@ -28,6 +28,11 @@ std::string_view trimmed(std::string_view text);
 /// Removes the first word from `line` and returns it (words are separated by white space); empty if none is left.
 std::string_view take_word(std::string_view& line);
 
+/// Returns `text` without the byte order mark of UTF-8 that some editors put before it.
+std::string_view without_mark(std::string_view text);
+/// Throws if `text` begins with the byte order mark of UTF-16.
+void refuse_utf16(std::string_view text, const std::string& name);
+
 /// Walks through the lines of a text file in memory and the words of each line. Lines end with LF, CR LF or CR.
 /// Errors are MeshError "NAME:LINE: MESSAGE".
 class TextCursor {

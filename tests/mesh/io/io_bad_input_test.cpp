@@ -59,6 +59,15 @@ TEST(BadFile, ContentOfAnotherFormat) {
     EXPECT_THAT(read_error("a.obj", " {\"asset\":{}}"), HasSubstr(".gltf"));
 }
 
+TEST(BadFile, PointersOfGitLfsAndOtherEncodings) {
+    const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n";
+    for (const auto extension : mesh_extensions())
+        EXPECT_THAT(read_error(file_with(extension), pointer), AllOf(HasSubstr("Git LFS"), HasSubstr("git lfs pull")));
+    for (const std::string name : {"a.off", "a.obj", "a.ply", "a.gltf"})
+        for (const std::string mark : {"\xff\xfe", "\xfe\xff"})
+            EXPECT_THAT(read_error(name, mark + std::string("v\0 \0", 4)), HasSubstr("UTF-16; save it as UTF-8"));
+}
+
 TEST(BadFile, GarbageInEveryFormat) {
     std::string garbage;
     for (int i = 0; i < 4000; ++i) garbage += static_cast<char>((i * 7919 + i * i * 31) % 256);
@@ -102,7 +111,12 @@ TEST(BadFile, Off) {
                             {"OFF\n3 1 0\n" + vertices + "3 0 1 4294967296\n", ":6: ", "4294967296"},
                             {"OFF\n3 1 0\n" + vertices + "3 0 1 1.5\n", ":6: ", "'1.5'"},
                             {"OFF\n3 1 0\n" + vertices + "-3 0 1 2\n", ":6: ", "-3 corners"},
-                            {"OFF\n3 1 0\n" + vertices + "2000000000 0 1 2\n", ":6: ", "2000000000"}});
+                            {"OFF\n3 1 0\n" + vertices + "2000000000 0 1 2\n", ":6: ", "2000000000"},
+                            {"OFF 3 1 0 0 0 0 1 0 0 0 1 0 3 0 1", ":1: ", "cannot have 3 corners in what is left"},
+                            {"OFF 3 1 0 0 0 0 1 0 0 0 1 0 3 0 1 2 7", ":1: ", "more numbers follow"},
+                            {"OFF 3 1 0 0 0 0 1 0 0 0 1 0 9 0 1 2", ":1: ", "cannot have 9 corners in what is left"},
+                            {"OFF\n3 2 0\n0 0 0 1 0 0\n0 1 0\n3 0 1 2 3 0 1 2\n7 7\n", ":6: ", "more numbers follow"},
+                            {"OFF\n3 1 0\n" + vertices + "3 0 1\n\n\n# end\nx\n", ":10: ", "'x'"}});
 }
 
 TEST(BadFile, Obj) {
@@ -157,8 +171,8 @@ TEST(BadFile, PlyHeader) {
                     ""),
           ": ", "labels twice"},
          {ascii_ply("element vertex 0\nproperty float x\nproperty float y\n", ""), ": ", "no property z"},
-         {ascii_ply("element vertex 0\n" + xyz + "element face 0\nproperty int label\n", ""), ": ", "vertex_indices"},
-         {ascii_ply("element vertex 0\n" + xyz + "element face 0\nproperty list uchar float vertex_indices\n", ""),
+         {ascii_ply("element vertex 0\n" + xyz + "element face 1\nproperty int label\n", ""), ": ", "vertex_indices"},
+         {ascii_ply("element vertex 0\n" + xyz + "element face 1\nproperty list uchar float vertex_indices\n", ""),
           ": ", "integers"},
          {ascii_ply("element vertex 0\n" + xyz + "element tristrips 0\nproperty int length\n", ""), ": ",
           "tristrips has no property vertex_indices"},
@@ -220,18 +234,25 @@ TEST(BadFile, PlyBinaryBody) {
 TEST(BadFile, Stl) {
     const std::string facet =
         "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
-    expect_errors("a.stl",
-                  {{"solid\n", ":1: ", "endsolid"},
-                   {"solid\n" + facet, ":8: ", "endsolid"},
-                   {"solid\nfacet\n", ":2: ", "outer loop"},
-                   {"solid\nface\nendsolid\n", ":2: ", "'face'"},
-                   {"solidity\n" + facet + "endsolid\n", ":1: ", "solid is expected"},
-                   {"solid\nfacet\nouter loop\nvertex 0 0\n", ":4: ", "z of a vertex"},
-                   {"solid\nfacet\nouter loop\nvertex 0 0 q\n", ":4: ", "'q'"},
-                   {"solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 0 0 0\nendloop\n", ":6: ", "vertex is expected"},
-                   {"solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\n",
-                    ":7: ", "endloop is expected"},
-                   {"solid\nfacet\nouter ring\n", ":3: ", "loop is expected"}});
+    expect_errors(
+        "a.stl",
+        {{"solid\n", ":1: ", "endsolid"},
+         {"solid\n" + facet, ":8: ", "endsolid"},
+         {"solid\nfacet\n", ":2: ", "outer loop"},
+         {"solid\nface\nendsolid\n", ":2: ", "'face'"},
+         {"solidity\n" + facet + "endsolid\n", ":1: ", "solid is expected"},
+         {"solid\nfacet\nouter loop\nvertex 0 0\n", ":4: ", "z of a vertex"},
+         {"solid\nfacet\nouter loop\nvertex 0 0 q\n", ":4: ", "'q'"},
+         {"solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 0 0 0\nendloop\n", ":6: ", "vertex is expected"},
+         {"solid\nfacet\nouter loop\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\nvertex 0 0 0\n",
+          ":7: ", "endloop is expected"},
+         {"solid\nfacet\nouter ring\n", ":3: ", "loop is expected"},
+         {"solid a facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 endloop endfacet endsolid",
+          ":1: ", "vertex is expected, not 'endloop'"},
+         {"solid a facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet",
+          ":1: ", "endsolid"},
+         {"\xff\xfe" + std::string(100, ' '), ": ", "UTF-16"},
+         {"<html><body>" + std::string(100, ' '), ":1: ", "begins with the word solid, not with '<html><body>'"}});
     const std::string binary = mesh_files::binary_stl({{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 0, 0, 1, 0, 0, 0, 1, 0}});
     for (std::size_t size = 1; size < binary.size(); ++size)
         EXPECT_THAT(read_error("a.stl", binary.substr(0, size)), HasSubstr("byte "));

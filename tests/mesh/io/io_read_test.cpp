@@ -71,6 +71,21 @@ TEST(ReadOff, TakesAllLineEndsAndExtensionCase) {
     }
 }
 
+TEST(ReadOff, AnyWhiteSpaceSeparatesNumbers) {
+    for (const char* const text :
+         {"OFF 3 1 0 0 0 0 1 0 0 0 1 0 3 0 1 2", "OFF 3 1 0\n0 0 0 1 0 0 0 1 0\n3 0 1 2\n",
+          "OFF\n3 1 0 0 0 0 1 0 0\n0 1 0 3\n0 1 2\n", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0\n1\n2\n",
+          "OFF\n3 1 0\n0 0 0\n1 0 0 9 9\n0 1\n0 9\n3 0 1\n2 255 0 0\n",
+          "OFF\n3\n1\n0\n0\n0\n0\n1\n0\n0\n0\n1\n0\n3\n0\n1\n2\n", "OFF\n3 1\n0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+          "COFF 3 1 0\n0 0 0 1 1 1 1 1 0 0 1 1 1 1\n0 1 0 1 1 1 1 3 0 1 2\n",
+          "CNOFF 3 1 0 0 0 0 1 1 1 1 0 0 1 1 0 0 1 1 1 1 0 0 1 0 1 0 1 1 1 1 0 0 1 3 0 1 2"}) {
+        const MeshFile file = read_as("a.off", text);
+        EXPECT_EQ(file.mesh.vertices, (V{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << text;
+        EXPECT_THAT(file.mesh.faces, ElementsAre(Face{0, 1, 2})) << text;
+        EXPECT_THAT(file.warnings, IsEmpty()) << text;
+    }
+}
+
 TEST(ReadOff, NumbersBeyondFloatsBecomeInfinityOrZero) {
     const MeshFile file = read_as("a.off", "OFF\n3 0 0\nnan inf -inf\n1e39 -1e39 1e999\n1e-60 -1e-999 0\n");
     const V& v = file.mesh.vertices;
@@ -280,6 +295,21 @@ TEST(ReadStl, BinaryMayBeginWithSolidAndHaveBytesLeftOver) {
     EXPECT_THAT(file.mesh.faces, SizeIs(1));
     ASSERT_THAT(file.warnings, SizeIs(1));
     EXPECT_THAT(file.warnings[0], HasSubstr("4 bytes"));
+}
+
+TEST(ReadStl, AllOnOneLineWithAMarkAndWithKeywordsInNames) {
+    const std::string facet = "facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet";
+    const std::string lines =
+        "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    for (const std::string& text : {"solid x " + facet + " endsolid x", "solid " + facet + "\nendsolid a solid facet\n",
+                                    "solid facet of a solid\n" + lines + "endsolid facet of a solid\n",
+                                    "\xef\xbb\xbfsolid x\n" + lines + "endsolid x\n"}) {
+        const MeshFile file = read_as("a.stl", text);
+        EXPECT_EQ(file.mesh.vertices, (V{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << text;
+        EXPECT_THAT(file.mesh.faces, ElementsAre(Face{0, 1, 2})) << text;
+    }
+    EXPECT_THAT(read_as("a.stl", "solid a " + facet + " endsolid a solid b " + facet + " endsolid b").mesh.faces,
+                SizeIs(2));
 }
 
 TEST(ReadStl, SeveralSolidsAndAnyCase) {

@@ -116,6 +116,13 @@ class OffReader {
     void need_number(std::string_view what) {
         if (trimmed(cursor_.rest()).empty()) cursor_.need_line(what);
     }
+    /// Throws if an element that began on line `first` ends in the middle of another: a number was missing, and that of
+    /// the next element was taken.
+    void check_line_end(std::size_t first, std::string_view element) {
+        if (layout_ == Layout::over_lines && cursor_.line_number() != first && !trimmed(cursor_.rest()).empty())
+            cursor_.fail(fmt::format("{} from line {} on ends in the middle of this line; a number is missing there",
+                                     element, first));
+    }
     /// Moves to the next line if this one has no number left and the layout allows that.
     void need_more(std::string_view what) {
         if (layout_ != Layout::one_per_line) need_number(what);
@@ -133,9 +140,11 @@ class OffReader {
         vertices.reserve(vertex_count_);
         for (std::size_t v = 0; v < vertex_count_; ++v) {
             begin("a vertex");
+            const std::size_t line = cursor_.line_number();
             const float x = number("the x of a vertex"), y = number("the y of a vertex");
             vertices.push_back({x, y, number("the z of a vertex")});
             for (int i = 0; i < extra_numbers_ && layout_ == Layout::shared; ++i) number("a color or normal");
+            check_line_end(line, "a vertex");
         }
     }
 
@@ -143,7 +152,9 @@ class OffReader {
         polygons.reserve_polygons(face_count_);
         for (std::size_t f = 0; f < face_count_; ++f) {
             begin("a face");
+            const std::size_t line = cursor_.line_number();
             read_face(f, polygons);
+            check_line_end(line, "a face");
         }
     }
     void read_face(std::size_t f, PolygonList& polygons) {

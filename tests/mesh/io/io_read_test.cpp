@@ -75,8 +75,8 @@ TEST(ReadOff, AnyWhiteSpaceSeparatesNumbers) {
     for (const char* const text :
          {"OFF 3 1 0 0 0 0 1 0 0 0 1 0 3 0 1 2", "OFF 3 1 0\n0 0 0 1 0 0 0 1 0\n3 0 1 2\n",
           "OFF\n3 1 0 0 0 0 1 0 0\n0 1 0 3\n0 1 2\n", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0\n1\n2\n",
-          "OFF\n3 1 0\n0 0 0\n1 0 0 9 9\n0 1\n0 9\n3 0 1\n2 255 0 0\n",
-          "OFF\n3\n1\n0\n0\n0\n0\n1\n0\n0\n0\n1\n0\n3\n0\n1\n2\n", "OFF\n3 1\n0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+          "OFF\n3 1 0\n0 0 0\n1 0 0 9 9\n0 1\n0\n3 0 1\n2\n", "OFF\n3\n1\n0\n0\n0\n0\n1\n0\n0\n0\n1\n0\n3\n0\n1\n2\n",
+          "OFF\n3 1\n0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
           "COFF 3 1 0\n0 0 0 1 1 1 1 1 0 0 1 1 1 1\n0 1 0 1 1 1 1 3 0 1 2\n",
           "CNOFF 3 1 0 0 0 0 1 1 1 1 0 0 1 1 0 0 1 1 1 1 0 0 1 0 1 0 1 1 1 1 0 0 1 3 0 1 2"}) {
         const MeshFile file = read_as("a.off", text);

@@ -1,5 +1,8 @@
 #include "apps/exemplar/lines/frame_drawer.h"
 
+#include <array>
+#include <cstdlib>
+
 #include "gpu/lines/device_style.h"
 #include "gpu/lines/face_types.h"
 
@@ -11,6 +14,16 @@ CurvatureOptions measured_curvature(const LinesJob& job, const LinesSource& sour
     return {.derivatives = true, .smoothing = job.source.measuring.smoothing};
 }
 
+/// Returns the pixels that differ visibly between two pictures of one size.
+InkMask difference_of(const Image& a, const Image& b) {
+    constexpr int k_visible = 16;  // of 255
+    InkMask ink(a.width, a.height, 1);
+    for (std::size_t i = 0; i < a.data.size(); ++i)
+        if (std::abs(int{a.data[i]} - int{b.data[i]}) > k_visible)
+            ink.data[i / static_cast<std::size_t>(a.channels)] = 1;
+    return ink;
+}
+
 }  // namespace
 
 FrameDrawer::FrameDrawer(const LinesJob& job, LinesSource& source, const StrokeView& view)
@@ -20,7 +33,7 @@ FrameDrawer::FrameDrawer(const LinesJob& job, LinesSource& source, const StrokeV
                 source.model() ? &*source.model() : nullptr),
       stream_(device_) {
     const DeviceStyle style = device_style(job.style);
-    renderer_.view().set_textures(style.textures);
+    for (const std::size_t view : {0, 1}) renderer_.view(view).set_textures(style.textures);
     picture_.view = view;
     apply_style(style, job.types, picture_);
 }
@@ -34,6 +47,20 @@ Image FrameDrawer::draw(std::size_t frame, CurvatureSource from) {
     Image image = renderer_.view().render(stream_, renderer_.snapshot(), picture_);
     flicker_.push_back(renderer_.view().coherence().flicker());
     return image;
+}
+
+/// Draws the last surface in another view, so that textures in the first one stay where they are.
+Image FrameDrawer::redraw(std::uint32_t families) {
+    LinePicture picture = picture_;
+    picture.families = families;
+    return renderer_.view(1).render(stream_, renderer_.snapshot(), picture);
+}
+
+OutlineCheck FrameDrawer::check_outline_of(std::size_t frame) {
+    const Image bare = redraw(0);
+    const std::uint32_t contours = picture_.families & line_families(std::array{LineType::contours});
+    return check_outline(source_.mesh(frame), picture_.view.camera, difference_of(redraw(picture_.families), bare),
+                         difference_of(redraw(contours), bare));
 }
 
 LineFlicker FrameDrawer::flicker() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "gpu/runtime/device/device.h"
 #include "host/imaging/image.h"
 #include "host/lines/extraction/face_types.h"
+#include "host/lines/outline_check.h"
 
 namespace exemplar {
 
@@ -23,6 +25,9 @@ class FrameDrawer {
     /// Draws a frame by that curvature. With a model, curvature is measured as in its training.
     Image draw(std::size_t frame, CurvatureSource from);
 
+    /// Compares the ink of the last picture's lines with the outline of the surface in it.
+    OutlineCheck check_outline_of(std::size_t frame);
+
     /// Returns the mean flicker over all pictures but the first, each compared with the one before.
     LineFlicker flicker() const;
 
@@ -34,6 +39,7 @@ class FrameDrawer {
     const std::string& device_name() const { return device_.info().name; }
 
   private:
+    Image redraw(std::uint32_t families);
     LinesSource& source_;
     Device device_;
     AnimationRenderer renderer_;

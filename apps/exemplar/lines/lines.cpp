@@ -206,6 +206,16 @@ LinesOutput lines_output_of(const std::filesystem::path& path) {
                                  path.string(), extension));
 }
 
+nlohmann::json report_outline(const LinesJob& job, const OutlineCheck& check) {
+    if (!job.common.quiet)
+        fmt::print("outline: {:.1f} % of the silhouette has a line within {} pixels; {:.1f} % of contours are on no edge\n",
+                   100 * check.outlined_share(), k_outline_reach, 100 * check.stray_share());
+    return {{"silhouette_pixels", check.silhouette},
+            {"outlined", check.outlined_share()},
+            {"contour_pixels", check.contours},
+            {"stray", check.stray_share()}};
+}
+
 nlohmann::json describe_job(const LinesJob& job, const LinesSource& source, const StrokeView& view) {
     std::vector<float> matrix;
     const Eigen::Matrix4f view_projection = view.camera.view_projection();
@@ -251,6 +261,9 @@ void add_lines_command(Command& app) {
     command->add_flag("--compare", job.compare,
                       "draws each frame twice, by the curvature of --model on the left and by measured on the right, "
                       "and prints the share of faces that carry a line by one but not by the other");
+    command->add_flag("--check", job.check,
+                      "prints the share of the surface's silhouette that has a line, and of contours that are on no "
+                      "edge of it");
     add_frame_options(*command, job.source.frames, "", "draw");
     command
         ->add_option("--fps", job.source.frames_per_second, "frames a second that clips of glTF files are sampled at")

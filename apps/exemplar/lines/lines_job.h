@@ -7,6 +7,7 @@
 #include "apps/exemplar/lines/lines_camera.h"
 #include "apps/exemplar/lines/lines_source.h"
 #include "host/lines/drawing_svg.h"
+#include "host/lines/outline_check.h"
 #include "host/lines/strokes/style.h"
 
 namespace exemplar {
@@ -26,11 +27,15 @@ struct LinesJob {
     std::filesystem::path out;
     LinesOutput output = LinesOutput::svg;
     bool compare = false;  ///< pictures show lines of learned curvature beside those of measured
+    bool check = false;    ///< whether the outline is compared with that of the surface
     SvgOptions svg;
 };
 
 /// Returns the report of a job, without the parts that depend on the kind of output.
 nlohmann::json describe_job(const LinesJob& job, const LinesSource& source, const StrokeView& view);
+
+/// Prints and returns how well the lines of all frames show the outline.
+nlohmann::json report_outline(const LinesJob& job, const OutlineCheck& check);
 
 /// Draws on the host and writes an SVG file, with frames as an animation.
 void write_lines_svg(const LinesJob& job);

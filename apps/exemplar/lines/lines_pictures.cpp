@@ -61,7 +61,12 @@ void write_lines_pictures(const LinesJob& job) {
     FrameDrawer drawer(job, source, view);
     std::optional<LinesComparison> comparison;
     if (job.compare) comparison.emplace(job, source, drawer);
-    const DrawFrame draw = [&](std::size_t frame) { return comparison ? comparison->draw(frame) : drawer.draw(frame); };
+    OutlineCheck outline;
+    const DrawFrame draw = [&](std::size_t frame) {
+        Image image = comparison ? comparison->draw(frame) : drawer.draw(frame);
+        if (job.check) outline.add(drawer.check_outline_of(frame));
+        return image;
+    };
     const int width = job.compare ? 2 * view.width : view.width;
     const double prepared = watch.wall();
     watch = {};
@@ -88,6 +93,7 @@ void write_lines_pictures(const LinesJob& job) {
                 "pixels\n",
                 100 * flicker.appeared, flicker.slip);
     }
+    if (job.check) report["outline"] = report_outline(job, outline);
     if (comparison) {
         comparison->print();
         report["comparison"] = comparison->describe();

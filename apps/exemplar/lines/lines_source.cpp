@@ -55,6 +55,13 @@ std::vector<Vec3> LinesSource::vertices(std::size_t frame) const {
     return frame_vertices(animation_, animation_.clips[ref.clip], ref.frame);
 }
 
+TriangleMesh LinesSource::mesh(std::size_t frame) const {
+    TriangleMesh mesh;
+    mesh.vertices = vertices(frame);
+    mesh.faces = animation_.rest.faces;
+    return mesh;
+}
+
 void LinesSource::predict(std::size_t frame) {
     estimator_->estimate(vertices_, {.derivatives = false});  // for its normals
     const FrameRef& ref = frames_[frame];

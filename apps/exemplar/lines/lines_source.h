@@ -41,6 +41,7 @@ class LinesSource {
     std::span<const Face> faces() const { return animation_.rest.faces; }  ///< of the uncut surface
     std::size_t vertex_count() const { return animation_.rest.vertex_count(); }
     std::vector<Vec3> vertices(std::size_t frame) const;
+    TriangleMesh mesh(std::size_t frame) const;  ///< the uncut surface at a frame
     /// The surface at a frame, cut open along edges of the split angle; valid until the next call.
     LineSurface surface(std::size_t frame);
     /// The uncut surface, without normals and curvature, for creases and boundaries; null if no edges were cut.

@@ -45,6 +45,10 @@ nlohmann::json describe_types(const LinesJob& job, std::span<const Drawing> draw
     return types;
 }
 
+OutlineCheck check_drawing(const Drawing& drawing, const LinesSource& source, std::size_t frame, const Camera& camera) {
+    return check_outline(source.mesh(frame), camera, ink_of(drawing), ink_of(drawing, LineType::contours));
+}
+
 }  // namespace
 
 void write_lines_svg(const LinesJob& job) {
@@ -56,6 +60,7 @@ void write_lines_svg(const LinesJob& job) {
     double curvature = watch.wall();
     std::vector<Drawing> drawings;
     Drawing::Seconds seconds;
+    OutlineCheck outline;
     const std::size_t count = source.frame_count();
     Progress progress = count > 1 ? Progress("drawing", count) : Progress();
     for (std::size_t frame = 0; frame < count; ++frame) {
@@ -64,6 +69,7 @@ void write_lines_svg(const LinesJob& job) {
         const LineSurface surface = source.surface(frame);
         curvature += watch.wall();
         drawings.push_back(draw_lines(surface, job.types, job.style, view, source.edges()));
+        if (job.check) outline.add(check_drawing(drawings.back(), source, frame, view.camera));
         seconds.lines += drawings.back().seconds.lines;
         seconds.visibility += drawings.back().seconds.visibility;
         seconds.strokes += drawings.back().seconds.strokes;
@@ -79,6 +85,7 @@ void write_lines_svg(const LinesJob& job) {
         fmt::print("{}: {} of {}, {:.0f} pixels long\n", job.out.string(), counted(summary.paths, "path"),
                    counted(drawings.size(), "frame"), summary.length);
     nlohmann::json report = describe_job(job, source, view);
+    if (job.check) report["outline"] = report_outline(job, outline);
     report["types"] = describe_types(job, drawings);
     report["paths"] = summary.paths;
     report["points"] = summary.points;

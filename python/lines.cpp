@@ -14,6 +14,7 @@
 #include "host/core/text.h"
 #include "host/lines/drawing.h"
 #include "host/lines/drawing_svg.h"
+#include "host/lines/extraction/cut_surface.h"
 #include "host/lines/extraction/drawable_surface.h"
 #include "host/lines/strokes/style.h"
 #include "host/lines/strokes/view_point.h"
@@ -49,25 +50,23 @@ struct LineDrawing {
 };
 using LineDrawingPointer = std::shared_ptr<LineDrawing>;
 
-LineDrawing drawn(const LinesJob& job, const MeshObject& mesh, const LineSurface& surface, const LineSurface* edges) {
+LineDrawing drawn(const LinesJob& job, const MeshObject& mesh, const LineSurface& surface) {
     const float size = job.feature_size ? *job.feature_size : feature_size(surface.vertices, surface.curvature);
     if (!(size > 0))
         throw MeshError(mesh.name + ": has no extent, all vertices are at one place; there is nothing to draw");
     const TriangleMesh extent = without_loose_vertices(*mesh.mesh);
     const StrokeView view = stroke_view(job.view, extent, size);
-    return {draw_lines(surface, job.types, job.style, view, edges), job.style, view,
-            fs::path(mesh.name).stem().string()};
+    return {draw_lines(surface, job.types, job.style, view), job.style, view, fs::path(mesh.name).stem().string()};
 }
 
 /// By curvature that is measured here.
 LineDrawing draw_measured(const LinesJob& job, const MeshObject& mesh) {
     const DrawableMesh drawable = drawable_mesh(*mesh.mesh, mesh.name);
-    DrawableOptions options{job.smoothing, std::ranges::any_of(job.types, needs_curvature), {}};
-    if (std::ranges::find(job.types, LineType::creases) != job.types.end())
-        options.split_angle = job.style.thresholds(LineType::creases).crease_angle;
+    const DrawableOptions options{job.smoothing, std::ranges::any_of(job.types, needs_curvature),
+                                  job.style.thresholds(LineType::creases).crease_angle};
     DrawableSurface surface(drawable.mesh.faces, drawable.mesh.vertices, options);
     surface.measure(drawable.mesh.vertices);
-    return drawn(job, mesh, surface.surface(), surface.edges());
+    return drawn(job, mesh, surface.surface());
 }
 
 /// By curvature that is given, of the vertices as they are.
@@ -79,8 +78,9 @@ LineDrawing draw_given(const LinesJob& job, const MeshObject& mesh, const Vertex
         throw UsageError("curvature: has no derivatives, which these types of lines need");
     require_usable(*mesh.mesh, mesh.name);
     const std::vector<Vec3> normals = vertex_normals(*mesh.mesh);
-    const std::vector<FaceNeighbors> neighbors = build_face_neighbors(mesh.mesh->faces, mesh.mesh->vertex_count());
-    return drawn(job, mesh, {mesh.mesh->faces, mesh.mesh->vertices, normals, curvature, neighbors}, nullptr);
+    const CutSurface cut(mesh.mesh->faces, mesh.mesh->vertices, normals, curvature,
+                         job.style.thresholds(LineType::creases).crease_angle);
+    return drawn(job, mesh, cut.surface());
 }
 
 void set_thresholds(DrawingStyle& style, const std::map<std::string, float>& thresholds) {

@@ -2,9 +2,9 @@
 
 #include <cstddef>
 #include <deque>
-#include <optional>
 
 #include "gpu/curvature/animated_surface.h"
+#include "gpu/lines/cut_animation.h"
 #include "gpu/lines/line_renderer.h"
 #include "gpu/lines/line_surface.h"
 #include "gpu/runtime/device/device.h"
@@ -18,23 +18,22 @@ namespace exemplar {
 /// Renders an animated surface in lines: owns the surface, its curvature, and the renderers of its views.
 class AnimationRenderer {
   public:
-    /// `estimated`, `model`: see set_curvature. The animation must outlive this. Throws as GpuSurface, GpuLineSurface
-    /// and set_curvature.
+    /// `estimated`: how curvature is estimated. `model`: of learned curvature, null: none; it must fit the animation
+    /// (require_compatible) and need not outlive this. `crease_angle`: see mark_sharp_edges; the surface is cut open
+    /// along sharp edges unless there is a model, which knows the surface as a whole. The animation must outlive this.
+    /// Throws as GpuSurface, GpuLineSurface and GpuAnimatedSurface.
     AnimationRenderer(Device& device, const Animation& animation, const CurvatureOptions& estimated,
-                      const CurvatureModel* model = nullptr);
-
-    /// Sets how curvature is estimated, and the model of learned curvature; null: none. The model must fit the
-    /// animation (require_compatible) and need not outlive this. No recorded work may still await submission. Throws as
-    /// GpuAnimatedSurface.
-    void set_curvature(const CurvatureOptions& estimated, const CurvatureModel* model);
+                      const CurvatureModel* model = nullptr, float crease_angle = LineThresholds{}.crease_angle);
 
     /// Records the surface at a frame, or in any other shape (see GpuAnimatedSurface).
     void record(Stream& stream, FrameRef frame, CurvatureSource source);
-    void record(Stream& stream, const SurfaceShape& shape, CurvatureSource source);
+    void record(Stream& stream, const SurfaceShape& shape, CurvatureSource source) {
+        moving_.record(stream, cut_.shape(shape), source);
+    }
     /// Records curvature from another source for the shape of the last call.
-    void record_again(Stream& stream, CurvatureSource source) { moving_->record_again(stream, source); }
+    void record_again(Stream& stream, CurvatureSource source) { moving_.record_again(stream, source); }
     /// Returns the surface that was recorded last.
-    GpuCurvedSurface snapshot() const { return moving_->snapshot(); }
+    GpuCurvedSurface snapshot() const { return moving_.snapshot(); }
 
     const GpuLineSurface& line_surface() const { return line_surface_; }
     /// Returns the renderer of a view, which is made at its first use; views are numbered without gaps. Throws as
@@ -43,9 +42,10 @@ class AnimationRenderer {
 
   private:
     const Animation& animation_;
+    CutAnimation cut_;
     GpuSurface surface_;
     GpuLineSurface line_surface_;
-    std::optional<GpuAnimatedSurface> moving_;
+    GpuAnimatedSurface moving_;
     std::deque<LineRenderer> views_;
 };
 

@@ -31,8 +31,8 @@ GpuChains::GpuChains(GpuLineExtraction& lines) : lines_(lines) {
     check_texels(device, 4 * room, "the chains of a surface's lines");
     link_kernel_ = Kernel(device, shaders::lines_links_comp,
                           {.push_constants = layout_of<shared::LinkParameters>(),
-                           .elements = {layout_of<vec4>(), layout_of<uvec4>(), layout_of<uvec4>(), k_word, k_word,
-                                        k_word, k_word, layout_of<uvec4>()}});
+                           .elements = {layout_of<vec4>(), layout_of<uvec4>(), layout_of<uvec4>(), layout_of<uvec4>(),
+                                        k_word, k_word, k_word, k_word, layout_of<uvec4>()}});
     node_kernel_ = Kernel(device, shaders::lines_nodes_comp, {.elements = {k_word, layout_of<vec4>()}});
     jump_kernel_ = Kernel(device, shaders::lines_jump_comp, {.elements = {layout_of<uvec4>()}});
     rank_kernel_ = Kernel(device, shaders::lines_rank_comp, {.elements = {layout_of<uvec4>(), k_word}});
@@ -62,8 +62,8 @@ void GpuChains::record(Stream& stream, const Buffer& vertices, const Camera& cam
                           k_nodes = offsetof(LineCounts, node_groups), k_rounds = offsetof(LineCounts, round_groups);
     stream.dispatch_indirect(
         link_kernel_, counts, k_segments,
-        {vertices, surface.surface().faces(), surface.neighbors(), surface.face_begin(), surface.vertex_faces(),
-         lines_.face_counts(), lines_.face_groups(), lines_.segments(), counts, picture_ends_, links_},
+        {vertices, surface.surface().faces(), surface.joined_faces(), surface.neighbors(), surface.face_begin(),
+         surface.vertex_faces(), lines_.face_counts(), lines_.face_groups(), lines_.segments(), counts, picture_ends_, links_},
         parameters);
     stream.dispatch_indirect(node_kernel_, counts, k_nodes, {links_, picture_ends_, counts, nodes_});
     for (std::size_t round = 0; round < rounds_; ++round) {

@@ -87,9 +87,10 @@ GpuLineExtraction::Kernels GpuLineExtraction::make_kernels(std::uint32_t familie
     const StructLayout field = layout_of<FieldParameters>(), face = layout_of<FaceLineParameters>();
     Kernels kernels;
     kernels.fields = kernel(shaders::lines_fields_comp, field, std::vector<StructLayout>(7, four));
-    kernels.count = kernel(shaders::lines_count_comp, face, {four, words, words, four, four, word, word});
+    kernels.count = kernel(shaders::lines_count_comp, face, {four, words, words, four, four, words, word, word});
     kernels.segments = kernel(shaders::lines_segments_comp, face,
-                              {four, words, words, four, four, word, word, layout_of<shared::LineSegmentRecord>()});
+                              {four, words, words, four, four, words, word, word,
+                               layout_of<shared::LineSegmentRecord>()});
     if (families & 1u << shared::k_apparent_ridges)
         kernels.ridges =
             kernel(shaders::lines_apparent_ridges_comp, field, {four, four, four, four, word, words, four, four});
@@ -150,21 +151,23 @@ void GpuLineExtraction::record(Stream& stream, const GpuCurvedSurface& snapshot,
     std::swap(face_groups_, old_face_groups_);
     record_fields(stream, kernels, snapshot, families, options);
     const std::uint32_t faces = surface.face_count();
-    const FaceLineParameters parameters{.faces = faces,
+    const FaceLineParameters parameters{.eye = options.eye,
+                                        .faces = faces,
                                         .vertices = surface.vertex_count(),
                                         .crease_angle = options.thresholds[shared::k_creases],
                                         .max_segments = static_cast<std::uint32_t>(room_)};
     stream.dispatch(
         kernels.count, faces,
-        {snapshot.vertices, surface.faces(), surface_.neighbors(), fields_, directions_, face_counts_, face_groups_},
+        {snapshot.vertices, surface.faces(), surface_.neighbors(), fields_, directions_, surface_.joined_faces(),
+         face_counts_, face_groups_},
         parameters);
     stream.dispatch(
         scan_kernel_, 1, {face_groups_, counts_},
         shared::ScanParameters{.groups = static_cast<std::uint32_t>(divide_up(faces, shared::k_count_group)),
                                .most = static_cast<std::uint32_t>(room_)});
     stream.dispatch(kernels.segments, faces,
-                    {snapshot.vertices, surface.faces(), surface_.neighbors(), fields_, directions_, face_counts_,
-                     face_groups_, segments_},
+                    {snapshot.vertices, surface.faces(), surface_.neighbors(), fields_, directions_,
+                     surface_.joined_faces(), face_counts_, face_groups_, segments_},
                     parameters);
 }
 

@@ -1,10 +1,8 @@
 #include "host/lines/drawing.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <iterator>
-#include <optional>
 
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
@@ -27,85 +25,79 @@ constexpr std::array k_order = {LineType::suggestive_highlights,
                                 LineType::contours};
 static_assert(k_order.size() == k_line_types.size());
 
-bool is_edge(LineType type) {
-    return type == LineType::creases || type == LineType::boundaries;
+bool contains(std::span<const LineType> types, LineType type) {
+    return std::find(types.begin(), types.end(), type) != types.end();
 }
 
-LineOptions options_of(LineType type, const DrawingStyle& style, const StrokeView& view) {
+LineOptions options_of(LineType type, std::span<const LineType> types, const DrawingStyle& style,
+                       const StrokeView& view) {
     LineOptions options;
     options.parallel_eye = view.camera.projection(3, 3) != 0;
     options.eye = options.parallel_eye ? view.camera.to_eye(Vec3::Zero()) : view.camera.position();
     options.feature_size = view.feature_size;
     options.thresholds = style.thresholds(type);
     options.front_facing_only = true;
+    options.contours_at_boundaries = !contains(types, LineType::boundaries);
+    options.no_creases_on_outline = contains(types, LineType::contours);
     return options;
 }
-
-/// A surface with its index for visibility, which is built once.
-struct Drawn {
-    explicit Drawn(const LineSurface& of) : surface(of), visibility(of) {}
-    LineSurface surface;
-    LineVisibility visibility;
-};
 
 /// Makes the layers of a drawing one after the other, and adds up the time of the steps.
 class Drawer {
   public:
-    Drawer(const DrawingStyle& style, const StrokeView& view, const VisibilityOptions& visibility, Drawing& drawing)
-        : style_(style), view_(view), visibility_(visibility), drawing_(drawing) {}
+    Drawer(const LineSurface& surface, std::span<const LineType> types, const DrawingStyle& style,
+           const StrokeView& view, const VisibilityOptions& visibility, Drawing& drawing)
+        : surface_(surface),
+          types_(types),
+          style_(style),
+          view_(view),
+          options_(visibility),
+          drawing_(drawing),
+          visibility_(surface) {
+        lap(drawing_.seconds.visibility);
+    }
 
-    Drawn prepare(const LineSurface& surface) {
-        Drawn drawn(surface);
-        lap(drawing_.seconds.visibility);
-        return drawn;
-    }
-    std::vector<LineSegment> find(const Drawn& drawn, LineType type) {
-        std::vector<LineSegment> segments = extract_lines(drawn.surface, type, options_of(type, style_, view_));
+    void add(LineType type) {
+        const LineOptions options = options_of(type, types_, style_, view_);
+        const std::vector<LineSegment> segments = extract_lines(surface_, type, options);
         lap(drawing_.seconds.lines);
-        return segments;
-    }
-    /// Adds the strokes of segments of the type `found` to a layer, whose type may be another.
-    void add(const Drawn& drawn, LineType found, const std::vector<LineSegment>& segments, DrawingLayer& layer) {
         VisibleParts visible =
-            drawn.visibility.visible_parts(found, segments, view_.camera, view_.width, view_.height, visibility_);
+            visibility_.visible_parts(type, segments, view_.camera, view_.width, view_.height, options_);
         lap(drawing_.seconds.visibility);
-        const LineSurface& surface = drawn.surface;
-        const std::vector<Chain> chains = chain_segments(surface.faces, surface.neighbors, segments);
-        if (!is_edge(found)) close_gaps(chains, k_short_gap, visible);
-        const LineStyle& line = style_.of(layer.type);
-        std::vector<Stroke> strokes = make_strokes(surface, layer.type, segments, chains, &visible, view_,
-                                                   style_.thresholds(layer.type), line.thickness);
-        layer.segments += segments.size();
-        std::move(strokes.begin(), strokes.end(), std::back_inserter(layer.strokes));
+        const std::vector<Chain> chains = chain_segments(surface_.joined_faces(), surface_.neighbors, segments);
+        close_gaps(smooth_ones(type, chains, segments), k_short_gap, visible);
+        DrawingLayer& layer = drawing_.layers.emplace_back();
+        layer.type = type;
+        layer.segments = segments.size();
+        layer.strokes = make_strokes(surface_, type, segments, chains, &visible, view_, style_.thresholds(type),
+                                     style_.of(type).thickness);
         lap(drawing_.seconds.strokes);
     }
 
   private:
+    /// Returns the chains that do not run along edges, whose visibility is exact.
+    static std::vector<Chain> smooth_ones(LineType type, const std::vector<Chain>& chains,
+                                          const std::vector<LineSegment>& segments) {
+        std::vector<Chain> result;
+        std::ranges::copy_if(chains, std::back_inserter(result), [&](const Chain& chain) {
+            return !runs_along_edge(type, segments[chain.links.front().segment]);
+        });
+        return result;
+    }
     void lap(double& seconds) {
         seconds += watch_.wall();
         watch_ = {};
     }
+
+    const LineSurface& surface_;
+    std::span<const LineType> types_;
     const DrawingStyle& style_;
     const StrokeView& view_;
-    const VisibilityOptions& visibility_;
+    const VisibilityOptions& options_;
     Drawing& drawing_;
     Stopwatch watch_;
+    LineVisibility visibility_;
 };
-
-/// Moves the creases on the outline, with one face turned to the eye and the other away, to the end. Returns where
-/// they begin.
-std::vector<LineSegment>::iterator outlines_of(const LineSurface& surface, const Camera& camera,
-                                               std::vector<LineSegment>& creases) {
-    const auto faces_eye = [&](std::uint32_t f) {
-        const auto& [a, b, c] = surface.faces[f];
-        const Vec3 &p = surface.vertices[a], &q = surface.vertices[b], &r = surface.vertices[c];
-        return (q - p).cross(r - p).dot(camera.to_eye(p)) > 0;
-    };
-    return std::stable_partition(creases.begin(), creases.end(), [&](const LineSegment& segment) {
-        const std::uint32_t across = surface.neighbors[segment.face][segment.places[0] - k_at_corner];
-        return across > k_max_neighbor_code || faces_eye(segment.face) == faces_eye(across / 4);
-    });
-}
 
 }  // namespace
 
@@ -114,31 +106,15 @@ std::span<const LineType> drawing_order() {
 }
 
 Drawing draw_lines(const LineSurface& surface, std::span<const LineType> types, const DrawingStyle& style,
-                   const StrokeView& view, const LineSurface* edges, const VisibilityOptions& visibility) {
+                   const StrokeView& view, const VisibilityOptions& visibility) {
     Drawing drawing;
     drawing.width = view.width;
     drawing.height = view.height;
-    const auto wanted = [&](LineType type) { return std::find(types.begin(), types.end(), type) != types.end(); };
-    Drawer drawer(style, view, visibility, drawing);
-    const Drawn smooth = drawer.prepare(surface);
-    std::optional<Drawn> own_edges;
-    if (edges && (wanted(LineType::creases) || wanted(LineType::boundaries))) own_edges.emplace(drawer.prepare(*edges));
-    const Drawn& sharp = own_edges ? *own_edges : smooth;
-    std::vector<LineSegment> outlines;
+    Drawer drawer(surface, types, style, view, visibility, drawing);
     for (const LineType type : k_order) {
-        if (!wanted(type)) continue;
+        if (!contains(types, type)) continue;
         check_interrupt();
-        DrawingLayer& layer = drawing.layers.emplace_back();
-        layer.type = type;
-        const Drawn& drawn = is_edge(type) ? sharp : smooth;
-        std::vector<LineSegment> segments = drawer.find(drawn, type);
-        if (type == LineType::creases && wanted(LineType::contours)) {
-            const auto begin = outlines_of(drawn.surface, view.camera, segments);
-            outlines.assign(begin, segments.end());
-            segments.erase(begin, segments.end());
-        }
-        drawer.add(drawn, type, segments, layer);
-        if (type == LineType::contours && !outlines.empty()) drawer.add(sharp, LineType::creases, outlines, layer);
+        drawer.add(type);
     }
     return drawing;
 }

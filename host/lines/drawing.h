@@ -33,12 +33,10 @@ std::span<const LineType> drawing_order();
 
 /// Draws all lines of some types as a camera sees them, with thresholds and thickness of the style. Hidden parts are
 /// marked in the strokes; in lines across smooth surfaces hidden gaps of up to three pixels are closed (close_gaps).
-/// Creases and boundaries are found on `edges`, the same surface with the same faces, if `surface` was cut open
-/// along its creases (split_at_creases); null: on `surface`. If contours are drawn, creases on the outline (one face
-/// turned to the eye, one away) are drawn as contours. Throws UsageError as extract_lines and make_strokes do.
+/// If contours are drawn, creases on the outline are drawn as contours only, and so are boundaries if they are not
+/// drawn as such. Throws UsageError as extract_lines and make_strokes do.
 Drawing draw_lines(const LineSurface& surface, std::span<const LineType> types, const DrawingStyle& style,
-                   const StrokeView& view, const LineSurface* edges = nullptr,
-                   const VisibilityOptions& visibility = {});
+                   const StrokeView& view, const VisibilityOptions& visibility = {});
 
 /// Returns one drawing with `right` beside `left`. Throws UsageError if their layers or heights differ.
 Drawing side_by_side(Drawing left, const Drawing& right);

@@ -5,8 +5,8 @@
 // Counts the segments of each face, so that segments.comp can write them in the order of the faces. One face per
 // invocation: reads 16 bytes and the fields of its corners (48 per family, from caches), writes 4, and 4 per group.
 // Per face: the number of segments before it in its group << 8 | its own.
-layout(set = 0, binding = 5, std430) writeonly buffer Counts { uint counts[]; };
-layout(set = 0, binding = 6, std430) writeonly buffer Groups { uint groups[]; };
+layout(set = 0, binding = 6, std430) writeonly buffer Counts { uint counts[]; };
+layout(set = 0, binding = 7, std430) writeonly buffer Groups { uint groups[]; };
 
 uint found = 0;
 void emit(uint family, uint first_place, uint second_place, vec3 first_end, vec3 second_end, vec2 strength) {

@@ -1,9 +1,10 @@
 // Finds the segments of lines in a face (host/lines/extraction/lines.cpp). The including shader declares
-// `positions`, `faces`, `neighbors`, `fields`, `directions`, the constant `k_families` and FaceLineParameters
+// `positions`, `faces`, `joined_faces`, `neighbors`, `fields`, `directions`, the constant `k_families` and FaceLineParameters
 // `parameters`, and defines what is done with each segment:
 //   void emit(uint family, uint first_place, uint second_place, vec3 first_end, vec3 second_end, vec2 strength)
 #ifndef EXEMPLAR_FACE_LINES_GLSL
 #define EXEMPLAR_FACE_LINES_GLSL
+#include "shaders/lib/eye.glsl"
 #include "shaders/lib/when.glsl"
 #include "shaders/shared/lines.h"
 
@@ -94,24 +95,110 @@ vec3 face_cross(uvec3 face) {
     return cross(texelFetch(positions, int(face.y)).xyz - origin, texelFetch(positions, int(face.z)).xyz - origin);
 }
 
-void add_edges(uint family, uint face, uvec3 corners) {
-    const uvec3 across = texelFetch(neighbors, int(face)).xyz;
+uint next_side(uint side) {
+    return side == 2u ? 0u : side + 1u;
+}
+vec3 position_of(uvec3 corners, uint corner) {
+    return texelFetch(positions, int(corners[corner])).xyz;
+}
+
+// Emits the part from x to y of a side.
+void emit_side(uint family, uint side, vec2 part, float strength) {
+    const uint next = next_side(side);
+    emit(family, part.x > 0.0 ? k_place_inside : k_place_corner + side,
+         part.y < 1.0 ? k_place_inside : k_place_corner + next, on_side(side, part.x), on_side(side, part.y), vec2(strength));
+}
+
+// Where a face at an edge lies as the eye sees it, in units of its height over the edge: aside of it in the picture, and
+// nearer to the eye (host/lines/extraction/outline_edges.cpp).
+vec2 seen_face(vec3 opposite, vec3 origin, vec3 axis, vec3 across) {
+    vec3 height = opposite - origin;
+    height -= dot(height, axis) * axis;
+    return vec2(dot(across, height), dot(cross(across, axis), height)) / max(length(height), 1e-37);
+}
+
+// Returns whether the faces at a side and across it are on one side of the edge as the eye sees them.
+bool is_outline(uvec3 corners, uint side, uvec3 others, uint other_side) {
+    const vec3 origin = position_of(corners, side), end = position_of(corners, next_side(side));
+    const vec3 axis = normalize(end - origin);
+    const vec3 across = normalize(cross(axis, to_eye(parameters.eye, 0.5 * (origin + end))));
+    const vec2 a = seen_face(position_of(corners, next_side(next_side(side))), origin, axis, across);
+    const vec2 b = seen_face(position_of(others, next_side(next_side(other_side))), origin, axis, across);
+    const bool a_edge_on = !(abs(a.x) > k_edge_on_sine), b_edge_on = !(abs(b.x) > k_edge_on_sine);
+    if (a_edge_on) return !b_edge_on && a.y < 0.0;
+    if (b_edge_on) return b.y < 0.0;
+    return (a.x > 0.0) == (b.x > 0.0);
+}
+
+// Returns the part of a sharp side that is a contour, from x to y; none if they are equal.
+vec2 contour_along(uvec3 corners, uint side, uvec3 others, uint other_side, uint face, uint other) {
+    if (is_outline(corners, side, others, other_side)) return vec2(0.0, 1.0);
+    const uint next = next_side(side), other_next = next_side(other_side);
+    // Not consistently oriented.
+    if (texelFetch(joined_faces, int(face))[side] != texelFetch(joined_faces, int(other))[other_next]) return vec2(0.0);
+    const vec2 own = vec2(texelFetch(fields, int(corners[side])).x, texelFetch(fields, int(corners[next])).x);
+    const vec2 across = vec2(texelFetch(fields, int(others[other_next])).x, texelFetch(fields, int(others[other_side])).x);
+    const bvec2 faces_eye = greaterThan(own, vec2(0.0)), other_faces_eye = greaterThan(across, vec2(0.0));
+    const bvec2 differs = notEqual(faces_eye, other_faces_eye);
+    if (all(differs)) return vec2(0.0, 1.0);
+    if (!any(differs) && faces_eye.x == faces_eye.y) return vec2(0.0);
+    vec2 part = vec2(differs.x ? 0.0 : 1.0, differs.y ? 1.0 : 0.0);
+    if (faces_eye.x != faces_eye.y) {
+        const float zero = own.x / (own.x - own.y);
+        part = vec2(min(part.x, zero), max(part.y, zero));
+    }
+    if (other_faces_eye.x != other_faces_eye.y) {
+        const float zero = across.x / (across.x - across.y);
+        part = vec2(min(part.x, zero), max(part.y, zero));
+    }
+    return part;
+}
+
+bool has_neighbor(uint across) {
+    return across < k_blocked_side;
+}
+// Edges with two faces are found in the one of the smaller code.
+bool owns_edge(uint face, uint side, uint across) {
+    return 4u * face + side < (across & k_max_side_code);
+}
+
+void add_creases(uint face, uvec3 corners) {
+    const uvec3 sides = texelFetch(neighbors, int(face)).xyz;
     for (uint i = 0; i < 3; ++i) {
-        float strength = 1.0;
-        if (family == k_boundaries) {
-            if (across[i] != k_boundary_side) continue;
-        } else if (across[i] == k_nonmanifold_side) {
-            strength = 3.14159265;
-        } else {
-            if (across[i] > k_max_side_code || across[i] / 4u < face) continue;
-            const vec3 a = face_cross(corners), b = face_cross(texelFetch(faces, int(across[i] / 4u)).xyz);
+        if (!has_neighbor(sides[i]) || !owns_edge(face, i, sides[i])) continue;
+        const uint code = sides[i] & k_max_side_code;
+        const uvec3 others = texelFetch(faces, int(code / 4u)).xyz;
+        float strength = 3.14159265;
+        if ((sides[i] & k_crowded_side) == 0u) {
+            const vec3 a = face_cross(corners), b = face_cross(others);
             if (!(dot(a, a) > 0.0 && dot(b, b) > 0.0)) continue;
             strength = atan(length(cross(a, b)), dot(a, b));
-            if (!(strength > parameters.crease_angle)) continue;
         }
-        const uint next = i == 2u ? 0u : i + 1u;
-        emit(family, k_place_corner + i, k_place_corner + next, on_side(i, 0.0), on_side(next, 0.0), vec2(strength));
+        if (!(strength > parameters.crease_angle)) continue;
+        // On the outline they are contours.
+        if ((k_families & 1u << k_edge_contours) != 0u && is_outline(corners, i, others, code % 4u)) continue;
+        emit_side(k_creases, i, vec2(0.0, 1.0), strength);
     }
+}
+
+void add_boundaries(uint family, uint face) {
+    const uvec3 sides = texelFetch(neighbors, int(face)).xyz;
+    for (uint i = 0; i < 3; ++i)
+        if (sides[i] == k_boundary_side) emit_side(family, i, vec2(0.0, 1.0), 1.0);
+}
+
+// Boundaries are contours if they are not drawn as such.
+void add_edge_contours(uint face, uvec3 corners) {
+    const uvec3 sides = texelFetch(neighbors, int(face)).xyz;
+    for (uint i = 0; i < 3; ++i) {
+        const uint code = sides[i] & k_max_side_code;
+        when (has_neighbor(sides[i]) && (sides[i] & k_sharp_side) != 0u && owns_edge(face, i, sides[i])) {
+            const uvec3 others = texelFetch(faces, int(code / 4u)).xyz;
+            const vec2 part = contour_along(corners, i, others, code % 4u, face, code / 4u);
+            if (part.x < part.y) emit_side(k_edge_contours, i, part, 1.0);
+        }
+    }
+    if ((k_families & 1u << k_boundaries) == 0u) add_boundaries(k_edge_contours, face);
 }
 
 mat3 three(samplerBuffer source, uint slot, uvec3 corners) {
@@ -146,8 +233,9 @@ void find_lines(uint face) {
     find_lines_of(k_apparent_ridges, face, corners);
     find_lines_of(k_first_highlights, face, corners);
     find_lines_of(k_second_highlights, face, corners);
-    if ((k_families & 1u << k_creases) != 0u) add_edges(k_creases, face, corners);
-    if ((k_families & 1u << k_boundaries) != 0u) add_edges(k_boundaries, face, corners);
+    if ((k_families & 1u << k_creases) != 0u) add_creases(face, corners);
+    if ((k_families & 1u << k_boundaries) != 0u) add_boundaries(k_boundaries, face);
+    if ((k_families & 1u << k_edge_contours) != 0u) add_edge_contours(face, corners);
 }
 
 #endif

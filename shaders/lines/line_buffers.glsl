@@ -12,5 +12,6 @@ layout(set = 0, binding = 1) uniform usamplerBuffer faces;      // three corners
 layout(set = 0, binding = 2) uniform usamplerBuffer neighbors;  // across three sides each
 layout(set = 0, binding = 3) uniform samplerBuffer fields;
 layout(set = 0, binding = 4) uniform samplerBuffer directions;
+layout(set = 0, binding = 5) uniform usamplerBuffer joined_faces;  // before the surface was cut open
 
 #endif

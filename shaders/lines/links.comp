@@ -10,16 +10,17 @@ layout(local_size_x = k_count_group) in;
 layout(push_constant) uniform Push { LinkParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer positions;
 layout(set = 0, binding = 1) uniform usamplerBuffer faces;
-layout(set = 0, binding = 2) uniform usamplerBuffer neighbors;
-layout(set = 0, binding = 3) uniform usamplerBuffer face_begin;  // per vertex and one more
-layout(set = 0, binding = 4) uniform usamplerBuffer vertex_faces;
-layout(set = 0, binding = 5) uniform usamplerBuffer face_counts;
-layout(set = 0, binding = 6) uniform usamplerBuffer groups;
-layout(set = 0, binding = 7) uniform usamplerBuffer segments;
-layout(set = 0, binding = 8, std430) readonly buffer Counts { LineCounts counts; };
+layout(set = 0, binding = 2) uniform usamplerBuffer joined_faces;  // before the surface was cut open
+layout(set = 0, binding = 3) uniform usamplerBuffer neighbors;
+layout(set = 0, binding = 4) uniform usamplerBuffer face_begin;  // per vertex of the joined faces and one more
+layout(set = 0, binding = 5) uniform usamplerBuffer vertex_faces;
+layout(set = 0, binding = 6) uniform usamplerBuffer face_counts;
+layout(set = 0, binding = 7) uniform usamplerBuffer groups;
+layout(set = 0, binding = 8) uniform usamplerBuffer segments;
+layout(set = 0, binding = 9, std430) readonly buffer Counts { LineCounts counts; };
 // Two per segment: pixels, depth, view depth.
-layout(set = 0, binding = 9, std430) writeonly buffer Ends { vec4 picture_ends[]; };
-layout(set = 0, binding = 10, std430) writeonly buffer Links { uvec2 links[]; };
+layout(set = 0, binding = 10, std430) writeonly buffer Ends { vec4 picture_ends[]; };
+layout(set = 0, binding = 11, std430) writeonly buffer Links { uvec2 links[]; };
 #include "shaders/lines/face_segments.glsl"
 #include "shaders/lines/in_picture.glsl"
 #include "shaders/lines/segments.glsl"
@@ -48,7 +49,8 @@ uint link_at(LineSegmentRecord segment, uint self, uint vertex) {
             const uint kind = texelFetch(segments, int(2u * i)).y;
             if ((kind & k_kind_family) != family_of(segment)) continue;
             for (uint end = 0; end < 2; ++end) {
-                if (texelFetch(faces, int(face))[place_of(kind, end) - k_place_corner] != vertex) continue;
+                const uint place = place_of(kind, end);
+                if (place == k_place_inside || texelFetch(joined_faces, int(face))[place - k_place_corner] != vertex) continue;
                 ++ends;
                 if (2u * i + end != self) found = 2u * i + end;
             }
@@ -61,7 +63,7 @@ uint link_of(LineSegmentRecord segment, uint index, uint end) {
     const uint place = place_of(segment.kind, end);
     if (place == k_place_inside) return k_no_link;
     if (place < k_place_corner) return link_across(segment, place);
-    return link_at(segment, 2u * index + end, texelFetch(faces, int(segment.face))[place - k_place_corner]);
+    return link_at(segment, 2u * index + end, texelFetch(joined_faces, int(segment.face))[place - k_place_corner]);
 }
 
 void main() {

@@ -4,9 +4,9 @@
 
 // Writes the segments of each face at their positions. One face per invocation: reads 4 bytes, for faces with lines
 // also what count.comp reads, and writes 32 per segment.
-layout(set = 0, binding = 5, std430) readonly buffer Counts { uint counts[]; };
-layout(set = 0, binding = 6, std430) readonly buffer Groups { uint groups[]; };  // number before each group
-layout(set = 0, binding = 7, std430) writeonly buffer Segments { LineSegmentRecord segments[]; };
+layout(set = 0, binding = 6, std430) readonly buffer Counts { uint counts[]; };
+layout(set = 0, binding = 7, std430) readonly buffer Groups { uint groups[]; };  // number before each group
+layout(set = 0, binding = 8, std430) writeonly buffer Segments { LineSegmentRecord segments[]; };
 
 uint this_face, next_segment;
 void emit(uint family, uint first_place, uint second_place, vec3 first_end, vec3 second_end, vec2 strength) {

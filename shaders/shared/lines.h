@@ -4,7 +4,8 @@
 
 SHARED_BEGIN
 
-// Families of lines, in the order of exemplar::LineType; principal highlights are two families.
+// Families of lines, in the order of exemplar::LineType; principal highlights are two families, and contours along
+// edges are one of their own.
 const uint k_contours = 0;
 const uint k_suggestive_contours = 1;
 const uint k_suggestive_highlights = 2;
@@ -15,14 +16,15 @@ const uint k_first_highlights = 6;   // along e1
 const uint k_second_highlights = 7;  // along e2
 const uint k_creases = 8;
 const uint k_boundaries = 9;
-const uint k_line_families = 10;
+const uint k_edge_contours = 10;  // contours along edges of the mesh
+const uint k_line_families = 11;
 
 const uint k_field_families = 0xffu;      // bit sets: families found with fields
 const uint k_curvature_families = 0xfeu;  // with fields of curvature
 const uint k_axis_families = 0xf8u;       // with fields that have directions
 const uint k_extremum_families = 0x38u;   // that are extrema along these directions
 const uint k_highlight_families = 0xc0u;
-const uint k_edge_families = 0x300u;  // that are edges of the mesh
+const uint k_edge_families = 0x700u;  // that are edges of the mesh
 
 // A field has a vec4 per vertex: value, strength, margin and front of exemplar::LineField. The fields of all
 // requested families follow each other, as do the directions of those that have some. The bits of the requested
@@ -35,15 +37,22 @@ struct FieldParameters {
     float feature_size;
 };
 
-// Codes of what is across the sides of a face: exemplar::k_no_neighbor, k_nonmanifold_neighbors and k_max_neighbor_code.
+// Codes of what is across the sides of a face: exemplar::k_no_neighbor, k_blocked_side, k_sharp_side, k_crowded_side and
+// k_max_neighbor_code.
 const uint k_boundary_side = 0xffffffffu;
-const uint k_nonmanifold_side = 0xfffffffeu;
-const uint k_max_side_code = 0xfffffffcu;
+const uint k_blocked_side = 0xfffffffeu;
+const uint k_sharp_side = 0x80000000u;
+const uint k_crowded_side = 0x40000000u;
+const uint k_max_side_code = 0x3fffffffu;
+
+// A face is seen edge-on if the sine of the angle between it and the ray to the eye is at most this.
+const float k_edge_on_sine = 1e-4f;
 
 // Faces per group when segments are counted, and segments per group when points are counted.
 const uint k_count_group = 64;
 
 struct FaceLineParameters {
+    vec4 eye;  // as in FieldParameters
     uint faces;
     uint vertices;
     float crease_angle;  // radians
@@ -161,7 +170,7 @@ struct StrokeDrawParameters {
 
 #ifdef __cplusplus
 EXEMPLAR_LAYOUT(FieldParameters, eye, low_thresholds, high_thresholds, vertices, feature_size)
-EXEMPLAR_LAYOUT(FaceLineParameters, faces, vertices, crease_angle, max_segments)
+EXEMPLAR_LAYOUT(FaceLineParameters, eye, faces, vertices, crease_angle, max_segments)
 EXEMPLAR_LAYOUT(LineSegmentRecord, face, kind, first_strength, second_strength, ends)
 EXEMPLAR_LAYOUT(ScanParameters, groups, most)
 EXEMPLAR_LAYOUT(LinkParameters, matrix, width, height)

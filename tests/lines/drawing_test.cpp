@@ -10,7 +10,7 @@
 
 #include "host/core/errors.h"
 #include "host/imaging/image.h"
-#include "host/lines/extraction/split_surface.h"
+#include "host/lines/extraction/cut_surface.h"
 #include "tests/lines/drawn_scene.h"
 
 namespace exemplar {
@@ -120,14 +120,9 @@ TEST(Drawings, KeepTheirLayersInOrder) {
 
 TEST(Drawings, OfACutCubeHaveItsOutlineAndNothingElseAsContours) {
     const Scene cube(shapes::box(1, 1, 1, 3));
-    const SplitSurface split = split_at_creases(cube.mesh.faces, cube.mesh.vertices, cube.neighbors, 0.7f);
-    const std::vector<Vec3> positions = split.positions(cube.mesh.vertices);
-    CurvatureEstimator estimator(split.faces, positions.size());
-    const VertexCurvature& curvature = estimator.estimate(positions, {});
-    const LineSurface cut{split.faces, positions, estimator.normals(), curvature, cube.neighbors},
-        edges = cube.surface();
+    const CutSurface cut(cube.mesh.faces, cube.mesh.vertices, cube.normals, cube.curvature);
     const std::array types = {LineType::creases, LineType::contours, LineType::boundaries};
-    const Drawing drawing = draw_lines(cut, types, load_style("technical"), cube.view, &edges);
+    const Drawing drawing = draw_lines(cut.surface(), types, load_style("technical"), cube.view);
     // Of a cube's nine visible edges six are its outline, three meet in front; three more are hidden.
     const auto visible = [](const DrawingLayer& layer) {
         std::size_t runs = 0;

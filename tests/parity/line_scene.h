@@ -44,8 +44,10 @@ struct Scene : MeasuredSurface {
     GpuLineSurface line_surface;
     Buffer vertices, device_normals, first, second, derivative;
 
-    explicit Scene(TriangleMesh given)
-        : MeasuredSurface(std::move(given)), device_surface(shared_device(), mesh), line_surface(device_surface) {
+    explicit Scene(TriangleMesh given, bool cut = false)
+        : MeasuredSurface(std::move(given), cut),
+          device_surface(shared_device(), mesh),
+          line_surface(device_surface, neighbors, joined) {
         bring();
     }
     /// The same faces, elsewhere.
@@ -114,6 +116,7 @@ inline Found extract_on_device(const Scene& scene, GpuLineExtraction& lines, std
 
 using exemplar::family_of;
 inline std::uint32_t family_of(LineType type, const LineSegment& segment) {
+    if (type == LineType::contours && runs_along_edge(type, segment)) return shared::k_edge_contours;
     const LineType types[] = {type};
     const std::uint32_t families = line_families(types);
     return static_cast<std::uint32_t>(std::countr_zero(families)) + segment.family;

@@ -46,7 +46,16 @@ float end_difference(const LineSegmentRecord& a, const LineSegmentRecord& b) {
                      std::abs(a.ends.w - b.ends.w)});
 }
 
-void expect_same_lines(const Scene& scene, const std::vector<LineType>& types, const LineOptions& options) {
+/// As draw_lines sets them for types that are drawn together.
+LineOptions drawn_together(LineOptions options, const std::vector<LineType>& types) {
+    const auto has = [&](LineType type) { return std::ranges::find(types, type) != types.end(); };
+    options.contours_at_boundaries = !has(LineType::boundaries);
+    options.no_creases_on_outline = has(LineType::contours);
+    return options;
+}
+
+void expect_same_lines(const Scene& scene, const std::vector<LineType>& types, LineOptions options) {
+    options = drawn_together(options, types);
     std::vector<LineSegmentRecord> expected;
     for (const LineType type : types)
         for (const LineSegment& segment : extract_lines(scene.surface(), type, options))
@@ -82,8 +91,8 @@ void expect_same_lines(const Scene& scene, const std::vector<LineType>& types, c
 class LineParity : public ::testing::TestWithParam<LineType> {};
 
 TEST_P(LineParity, SegmentsAreThoseOfTheReference) {
-    for (const TriangleMesh& mesh : {lumpy(), mixed()}) {
-        const Scene scene(mesh);
+    for (const bool cut : {false, true}) {
+        const Scene scene(cut ? mixed() : lumpy(), cut);
         for (const bool parallel : {false, true}) {
             LineOptions options{
                 .eye = parallel ? Vec3(Vec3(3.07f, 2.11f, 4.23f).normalized()) : Vec3(6.13f, 4.29f, 8.41f),
@@ -99,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(AllTypes, LineParity, ::testing::ValuesIn(k_line_types)
                          [](const auto& type) { return std::string(name_of(type.param)); });
 
 TEST(LineParityOfAll, TypesAtOnceAreThoseOneByOne) {
-    const Scene scene(mixed());
+    const Scene scene(mixed(), true);
     expect_same_lines(scene, {k_line_types.begin(), k_line_types.end()},
                       {.eye = {6.13f, 4.29f, 8.41f}, .feature_size = scene.size(), .thresholds = {}});
 }

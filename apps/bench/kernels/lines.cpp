@@ -49,7 +49,7 @@ int width_for(const Device& device) {
 struct CurvedTorus {
     CurvedTorus(Device& device, std::size_t vertices)
         : mesh(wavy_torus(static_cast<std::uint32_t>(vertices))),
-          neighbors(build_face_neighbors(mesh.faces, mesh.vertex_count())) {
+          neighbors(build_face_neighbors(mesh.faces, mesh.vertices)) {
         CurvatureEstimator estimator(mesh.faces, mesh.vertex_count());
         curvature = estimator.estimate(mesh.vertices, {.derivatives = true, .smoothing = 1});
         normals = estimator.normals();

@@ -40,7 +40,7 @@ std::vector<Drawing> draw_demo_frames(const CurvatureModel& model, const Animati
     StrokeView view = view_of_frames(animation, frames, k_demo_width, k_demo_height);
     view.feature_size = model.feature_size;
     const std::vector<Face>& faces = animation.rest.faces;
-    const std::vector<FaceNeighbors> neighbors = build_face_neighbors(faces, animation.rest.vertex_count());
+    const std::vector<FaceNeighbors> neighbors = build_face_neighbors(faces, animation.rest.vertices);
     std::vector<Drawing> drawings;
     Progress progress("drawing a figure in lines", frames.size());
     for (const FrameRef& frame : frames) {

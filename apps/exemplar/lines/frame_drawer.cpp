@@ -30,7 +30,7 @@ FrameDrawer::FrameDrawer(const LinesJob& job, LinesSource& source, const StrokeV
     : source_(source),
       device_({.name = job.common.device}),
       renderer_(device_, source.animation(), measured_curvature(job, source),
-                source.model() ? &*source.model() : nullptr),
+                source.model() ? &*source.model() : nullptr, job.source.measuring.crease_angle),
       stream_(device_) {
     const DeviceStyle style = device_style(job.style);
     for (const std::size_t view : {0, 1}) renderer_.view(view).set_textures(style.textures);

@@ -45,7 +45,7 @@ LinesSource::LinesSource(const LinesSourceArguments& arguments) : arguments_(arg
         evaluator_ = std::make_unique<CurvatureEvaluator>(*model_);
     }
     DrawableOptions measuring = arguments.measuring;
-    if (model_) measuring.split_angle.reset();
+    if (model_) measuring.cut = false;
     drawable_ = std::make_unique<DrawableSurface>(faces(), vertices(0), measuring);
     if (model_) estimator_ = std::make_unique<CurvatureEstimator>(faces(), vertex_count());
 }

@@ -42,10 +42,8 @@ class LinesSource {
     std::size_t vertex_count() const { return animation_.rest.vertex_count(); }
     std::vector<Vec3> vertices(std::size_t frame) const;
     TriangleMesh mesh(std::size_t frame) const;  ///< the uncut surface at a frame
-    /// The surface at a frame, cut open along edges of the split angle; valid until the next call.
+    /// The surface at a frame, cut open along sharp edges; valid until the next call.
     LineSurface surface(std::size_t frame);
-    /// The uncut surface, without normals and curvature, for creases and boundaries; null if no edges were cut.
-    const LineSurface* edges() const { return drawable_->edges(); }
     /// Feature size of the first frame, or of the model's training. It is constant, so that lines do not flicker.
     float feature_size();
 

@@ -68,7 +68,7 @@ void write_lines_svg(const LinesJob& job) {
         watch = {};
         const LineSurface surface = source.surface(frame);
         curvature += watch.wall();
-        drawings.push_back(draw_lines(surface, job.types, job.style, view, source.edges()));
+        drawings.push_back(draw_lines(surface, job.types, job.style, view));
         if (job.check) outline.add(check_drawing(drawings.back(), source, frame, view.camera));
         seconds.lines += drawings.back().seconds.lines;
         seconds.visibility += drawings.back().seconds.visibility;

@@ -36,13 +36,16 @@ CurvatureOptions measuring_options(const CurvatureModel* model) {
 }
 
 SurfaceScene::SurfaceScene(Device& device, const Document& document)
-    : document_(document), renderer_(device, document.animation, measuring_options(nullptr)) {}
+    : document_(document), device_(device) {
+    renderer_ = std::make_unique<AnimationRenderer>(device, document.animation, measuring_options(nullptr));
+}
 
 void SurfaceScene::set_model(std::shared_ptr<const CurvatureModel> model) {
     CurvatureOptions options = measuring_options(model.get());
     options.robust = RobustEstimator::none;  // which the device does not have
     if (model) require_compatible(*model, document_.animation);
-    renderer_.set_curvature(options, model.get());
+    renderer_ = std::make_unique<AnimationRenderer>(device_, document_.animation, options, model.get());
+    colored_views_ = styled_views_ = 0;
     feature_size_ = model ? model->feature_size : 0;
     model_ = std::move(model);
 }
@@ -58,8 +61,8 @@ void SurfaceScene::prepare_views(std::size_t count, const ViewSettings& settings
         styled_views_ = 0;
     }
     for (; !document_.face_colors.empty() && colored_views_ < count; ++colored_views_)
-        renderer_.view(colored_views_).set_face_colors(document_.face_colors);
-    for (; styled_views_ < count; ++styled_views_) renderer_.view(styled_views_).set_textures(style_.textures);
+        renderer_->view(colored_views_).set_face_colors(document_.face_colors);
+    for (; styled_views_ < count; ++styled_views_) renderer_->view(styled_views_).set_textures(style_.textures);
 }
 
 LinePicture SurfaceScene::picture_of(const OrbitCamera& camera, VkExtent2D extent, const ViewSettings& settings) const {
@@ -80,14 +83,14 @@ void SurfaceScene::record(Stream& stream, const SurfaceShape& shape, const Orbit
     const bool curved = settings.needs_curvature();
     const bool learned = model_ && settings.source != ShownCurvature::estimated;
     if (curved) find_feature_size();
-    renderer_.record(stream, shape,
+    renderer_->record(stream, shape,
                      !curved   ? CurvatureSource::none
                      : learned ? CurvatureSource::learned
                                : CurvatureSource::estimated);
     prepare_views(extents.size(), settings);
     for (std::size_t i = 0; i < extents.size(); ++i) {
-        if (i > 0) renderer_.record_again(stream, CurvatureSource::estimated);
-        renderer_.view(i).record(stream, renderer_.snapshot(), picture_of(camera, extents[i], settings));
+        if (i > 0) renderer_->record_again(stream, CurvatureSource::estimated);
+        renderer_->view(i).record(stream, renderer_->snapshot(), picture_of(camera, extents[i], settings));
     }
 }
 

@@ -32,14 +32,15 @@ class SurfaceScene {
     void record(Stream& stream, const SurfaceShape& shape, const OrbitCamera& camera,
                 std::span<const VkExtent2D> extents, const ViewSettings& settings);
     /// Holds the picture of a view when the recorded work is done.
-    Canvas& canvas(std::size_t view) { return renderer_.view(view).canvas(); }
+    Canvas& canvas(std::size_t view) { return renderer_->view(view).canvas(); }
 
   private:
     void find_feature_size();
     void prepare_views(std::size_t count, const ViewSettings& settings);
     LinePicture picture_of(const OrbitCamera& camera, VkExtent2D extent, const ViewSettings& settings) const;
     const Document& document_;
-    AnimationRenderer renderer_;
+    Device& device_;
+    std::unique_ptr<AnimationRenderer> renderer_;  // made anew for another model
     std::shared_ptr<const CurvatureModel> model_;
     float feature_size_ = 0;  // 0: not yet found
     DeviceStyle style_;

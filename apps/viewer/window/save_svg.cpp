@@ -5,6 +5,7 @@
 #include "apps/viewer/scene/surface_scene.h"
 #include "host/core/errors.h"
 #include "host/lines/drawing_svg.h"
+#include "host/lines/extraction/cut_surface.h"
 #include "host/mesh/curvature/curvature_estimator.h"
 
 namespace exemplar {
@@ -20,14 +21,12 @@ VertexCurvature learned_curvature(const ViewerState& state, const SurfaceShape& 
 struct HostFrame {
     const std::vector<Face>& faces;
     std::vector<Vec3> vertices;
-    std::vector<FaceNeighbors> neighbors;
     CurvatureEstimator estimator;
     VertexCurvature estimated;
 
     HostFrame(const ViewerState& state, const SurfaceShape& shape)
         : faces(state.document().animation.rest.faces),
           vertices(vertices_of(state.document().animation, shape)),
-          neighbors(build_face_neighbors(faces, vertices.size())),
           estimator(faces, vertices.size()),
           estimated(estimator.estimate(vertices, measuring_options(state.model().get()))) {}
 
@@ -38,8 +37,10 @@ struct HostFrame {
             .height = size.height,
             .unit_depth = state.camera.distance(),
             .feature_size = state.model() ? state.model()->feature_size : feature_size(vertices, curvature)};
-        return draw_lines({faces, vertices, estimator.normals(), curvature, neighbors}, state.settings.shown_lines(),
-                          state.settings.style, view);
+        const DrawingStyle& style = state.settings.style;
+        const CutSurface cut(faces, vertices, estimator.normals(), curvature,
+                             style.thresholds(LineType::creases).crease_angle);
+        return draw_lines(cut.surface(), state.settings.shown_lines(), style, view);
     }
 };
 

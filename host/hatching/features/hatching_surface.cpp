@@ -147,7 +147,7 @@ class Measurement {
 
     HatchingSurface run() {
         measure_curvature(surface_, 0);
-        surface_.neighbors = build_face_neighbors(surface_.mesh.faces, surface_.mesh.vertex_count());
+        surface_.neighbors = build_face_neighbors(surface_.mesh.faces, surface_.mesh.vertices);
         done("curvature");
         surface_.descriptors = descriptors();
         done("descriptors");

@@ -4,9 +4,11 @@ namespace exemplar {
 
 DrawableSurface::DrawableSurface(std::span<const Face> faces, std::span<const Vec3> first,
                                  const DrawableOptions& options)
-    : faces_(faces), options_(options), neighbors_(build_face_neighbors(faces, first.size())) {
-    if (options.split_angle) split_ = split_at_creases(faces, first, neighbors_, *options.split_angle);
-    if (split_ && split_->source.size() == first.size()) split_.reset();  // there are no creases
+    : faces_(faces), options_(options), neighbors_(build_face_neighbors(faces, first)) {
+    mark_sharp_edges(faces, first, options.crease_angle, neighbors_);
+    if (!options.cut) return;
+    split_ = split_at_sharp_edges(faces, first.size(), neighbors_);
+    if (split_->source.size() == first.size()) split_.reset();  // nothing is cut
 }
 
 void DrawableSurface::measure(std::span<const Vec3> vertices) {
@@ -20,14 +22,11 @@ void DrawableSurface::measure(std::span<const Vec3> vertices) {
     options.smoothing = smoothing_unit_ > 0 ? options_.smoothing : 0;
     options.smoothing_unit = smoothing_unit_;
     curvature_ = &estimator_->estimate(at, options);
-    if (!split_) return;
-    no_normals_.assign(vertices.size(), Vec3::UnitZ());
-    edges_.emplace(LineSurface{faces_, vertices_, no_normals_, no_curvature_, neighbors_});
 }
 
 LineSurface DrawableSurface::surface() const {
     if (!split_) return {faces_, vertices_, estimator_->normals(), *curvature_, neighbors_};
-    return {split_->faces, split_vertices_, estimator_->normals(), *curvature_, neighbors_};
+    return {split_->faces, split_vertices_, estimator_->normals(), *curvature_, neighbors_, faces_};
 }
 
 }  // namespace exemplar

@@ -14,26 +14,24 @@ namespace exemplar {
 struct DrawableOptions {
     double smoothing = 1;     ///< of curvature, in median edge lengths of the first measured shape
     bool derivatives = true;  ///< whether to compute derivatives of curvature, which some line types need
-    /// Edges with a larger angle (radians) are cut, so that curvature and normals are not smoothed across them;
-    /// none: nothing is cut.
-    std::optional<float> split_angle;
+    float crease_angle = LineThresholds{}.crease_angle;  ///< of edges that are sharp, see mark_sharp_edges
+    /// Whether the surface is cut open along sharp edges, so that curvature and normals are not smoothed across them.
+    bool cut = true;
 };
 
 /// A surface with measured curvature to draw lines of, for one shape after the other with the same faces.
 class DrawableSurface {
   public:
-    /// `first`: the shape whose edges above the split angle are cut open. Faces must outlive this.
+    /// `first`: the shape whose sharp edges are cut open. Faces must outlive this.
     DrawableSurface(std::span<const Face> faces, std::span<const Vec3> first, const DrawableOptions& options);
     DrawableSurface(const DrawableSurface&) = delete;
     DrawableSurface& operator=(const DrawableSurface&) = delete;
 
     /// Measures the surface with these vertices, which must stay valid until the next call.
     void measure(std::span<const Vec3> vertices);
-    /// Returns the measured surface, cut open along edges above the split angle.
+    /// Returns the measured surface, cut open along sharp edges.
     LineSurface surface() const;
-    /// Returns the uncut surface without meaningful normals and curvature, to find creases and boundaries on; null
-    /// if the surface was not cut.
-    const LineSurface* edges() const { return edges_ ? &*edges_ : nullptr; }
+    /// Neighbors of the faces, with sharp edges marked.
     const std::vector<FaceNeighbors>& neighbors() const { return neighbors_; }
 
   private:
@@ -44,9 +42,7 @@ class DrawableSurface {
     std::optional<CurvatureEstimator> estimator_;
     double smoothing_unit_ = 0;  ///< median edge length of the first measured shape
     std::span<const Vec3> vertices_;
-    std::vector<Vec3> split_vertices_, no_normals_;
-    VertexCurvature no_curvature_;
-    std::optional<LineSurface> edges_;
+    std::vector<Vec3> split_vertices_;
     const VertexCurvature* curvature_ = nullptr;
 };
 

@@ -56,6 +56,11 @@ bool needs_curvature(LineType type) {
     return type != LineType::contours && type != LineType::creases && type != LineType::boundaries;
 }
 
+bool runs_along_edge(LineType type, const LineSegment& segment) {
+    return type == LineType::creases || type == LineType::boundaries ||
+           (type == LineType::contours && segment.family == k_family_along_edges);
+}
+
 std::optional<LineFading> line_fading(LineType type, const LineThresholds& thresholds) {
     switch (type) {
         case LineType::suggestive_contours:

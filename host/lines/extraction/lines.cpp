@@ -11,6 +11,7 @@
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
 #include "host/lines/extraction/line_fields.h"
+#include "host/lines/extraction/outline_edges.h"
 
 namespace exemplar {
 
@@ -23,7 +24,7 @@ using Corners = std::array<const LineField*, 3>;
 
 /// The segments of one face.
 struct FaceLines {
-    std::array<LineSegment, 3> segments;
+    std::array<LineSegment, 4> segments;  // of contours one in the face and one per side
     std::size_t count = 0;
 };
 
@@ -135,27 +136,48 @@ float angle_between(const LineSurface& surface, std::size_t f, std::size_t g) {
     return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+/// Adds a part of side `i` of a face.
+void add_side(std::size_t i, const SidePart& part, float strength, std::uint8_t family, FaceLines& lines) {
+    LineSegment& segment = lines.segments[lines.count++];
+    segment.family = family;
+    for (std::size_t end : {0, 1}) {
+        const float at = end == 0 ? part.from : part.to;
+        segment.ends[end] = on_edge(i, at);
+        segment.places[end] = k_inside_face;
+        if (at == 0 || at == 1) segment.places[end] = static_cast<SegmentEnd>(k_at_corner + (at == 0 ? i : (i + 1) % 3));
+        segment.strength[end] = strength;
+    }
+}
+
 /// Adds the sides of face `f` that are creases or boundaries.
-void add_edges(const LineSurface& surface, std::size_t f, LineType type, float crease_angle, FaceLines& lines) {
-    for (std::size_t i = 0; i < 3; ++i) {
+void add_edges(const LineSurface& surface, std::uint32_t f, LineType type, const LineOptions& options,
+               FaceLines& lines) {
+    for (std::uint32_t i = 0; i < 3; ++i) {
         const std::uint32_t across = surface.neighbors[f][i];
         float strength = 1;
         if (type == LineType::boundaries) {
             if (across != k_no_neighbor) continue;
-        } else if (across == k_nonmanifold_neighbors) {
-            strength = std::numbers::pi_v<float>;
         } else {
-            if (across > k_max_neighbor_code || across / 4 < f) continue;
-            strength = angle_between(surface, f, across / 4);
-            if (!(strength > crease_angle)) continue;
+            if (!has_neighbor(across) || !owns_edge(f, i, across)) continue;
+            const bool crowded = (across & k_crowded_side) != 0;
+            strength = crowded ? std::numbers::pi_v<float> : angle_between(surface, f, neighbor_face(across));
+            if (!(strength > options.thresholds.crease_angle)) continue;
+            if (options.no_creases_on_outline && is_outline(surface, f, i, options)) continue;
         }
-        LineSegment& segment = lines.segments[lines.count++];
-        for (std::size_t end : {0, 1}) {
-            const std::size_t corner = (i + end) % 3;
-            segment.ends[end] = on_edge(corner, 0);
-            segment.places[end] = static_cast<SegmentEnd>(k_at_corner + corner);
-            segment.strength[end] = strength;
-        }
+        add_side(i, {0, 1}, strength, 0, lines);
+    }
+}
+
+/// Adds the parts of the sides of face `f` that are contours.
+void add_contour_edges(const LineSurface& surface, std::uint32_t f, const LineOptions& options, FaceLines& lines) {
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        const std::uint32_t across = surface.neighbors[f][i];
+        SidePart part;
+        if (across == k_no_neighbor)
+            part.to = options.contours_at_boundaries ? 1 : 0;
+        else if (has_neighbor(across) && (across & k_sharp_side) && owns_edge(f, i, across))
+            part = contour_along(surface, f, i, options);
+        if (part.from < part.to) add_side(i, part, 1, k_family_along_edges, lines);
     }
 }
 
@@ -217,7 +239,7 @@ void for_each_face(const LineSurface& surface, LineType type, const LineOptions&
         [&](std::size_t f) {
             const auto& [a, b, c] = surface.faces[f];
             FaceLines lines;
-            if (fields.empty()) add_edges(surface, f, type, options.thresholds.crease_angle, lines);
+            if (fields.empty()) add_edges(surface, static_cast<std::uint32_t>(f), type, options, lines);
             for (std::size_t family = 0; family < fields.size(); ++family) {
                 const std::vector<LineField>& field = fields[family];
                 const Corners corners = {&field[a], &field[b], &field[c]};
@@ -229,6 +251,8 @@ void for_each_face(const LineSurface& surface, LineType type, const LineOptions&
                 for (std::size_t i = before; i < lines.count; ++i)
                     lines.segments[i].family = static_cast<std::uint8_t>(family);
             }
+            if (type == LineType::contours && !surface.neighbors.empty())
+                add_contour_edges(surface, static_cast<std::uint32_t>(f), options, lines);
             use(f, lines);
         },
         k_face_grain);

@@ -16,7 +16,7 @@ namespace exemplar {
 /// Curves on a surface that a line drawing shows. n is the unit normal, w the unit vector to the eye, k1 and k2 are
 /// the principal curvatures, and kr is the normal curvature along the projection of w into the surface.
 enum class LineType {
-    contours,               ///< n.w = 0
+    contours,               ///< where the surface turns away from the eye: n.w = 0, and along sharp edges
     suggestive_contours,    ///< kr = 0, increasing towards the eye (DeCarlo et al. 2003, 2004)
     suggestive_highlights,  ///< kr = 0, decreasing towards the eye (DeCarlo and Rusinkiewicz 2007)
     ridges,                 ///< convex extremum of the larger-magnitude curvature along its direction
@@ -78,8 +78,13 @@ struct LineSurface {
     std::span<const Vec3> vertices;
     std::span<const Vec3> normals;     ///< unit, per vertex
     const VertexCurvature& curvature;  ///< with derivatives; may be empty if no type needs it (needs_curvature)
-    /// Neighbors of the faces; only creases and boundaries need them.
+    /// Neighbors of the faces. Creases, boundaries, and contours along sharp edges are found by them only.
     std::span<const FaceNeighbors> neighbors{};
+    /// The faces before the surface was cut open along its sharp edges (SplitSurface); empty: it is not cut.
+    std::span<const Face> uncut{};
+
+    /// Returns the faces with the vertices that they share across all edges.
+    std::span<const Face> joined_faces() const { return uncut.empty() ? faces : uncut; }
 };
 
 struct LineOptions {
@@ -89,6 +94,10 @@ struct LineOptions {
     LineThresholds thresholds;
     /// Whether to cut off ridges and valleys where n.w <= 0. View-dependent lines other than contours always are.
     bool front_facing_only = false;
+    /// Whether contours include all edges of a single face. If boundaries are drawn as well, they need not.
+    bool contours_at_boundaries = false;
+    /// Whether creases on the outline are left out. If contours are drawn as well, they are among these.
+    bool no_creases_on_outline = false;
 
     /// Returns the unit vector from a point to the eye.
     Vec3 to_eye(const Vec3& point) const { return parallel_eye ? eye : Vec3((eye - point).normalized()); }
@@ -101,7 +110,8 @@ constexpr SegmentEnd k_at_corner = 3, k_inside_face = 6;
 /// A straight piece of a line within one face.
 struct LineSegment {
     std::uint32_t face = 0;
-    /// Principal highlights: the principal direction, 0 or 1; others: 0. Different families are never joined.
+    /// Principal highlights: the principal direction, 0 or 1; contours: 0, or k_family_along_edges; others: 0.
+    /// Different families are never joined.
     std::uint8_t family = 0;
     std::array<SegmentEnd, 2> places{k_inside_face, k_inside_face};
     /// Both ends in barycentric coordinates of the face, so that they move with its corners. For contours,
@@ -113,9 +123,15 @@ struct LineSegment {
     std::array<float, 2> strength{};
 };
 
+/// LineSegment::family of contours along edges of faces.
+constexpr std::uint8_t k_family_along_edges = 1;
+/// Returns whether a segment runs along an edge of its face: creases, boundaries, and such contours.
+bool runs_along_edge(LineType type, const LineSegment& segment);
+
 /// Returns the segments of all lines of a type, ordered by face. A face has at most one segment, except for
 /// principal highlights (two, one per direction), ridges, valleys and apparent ridges (three, which meet at its
-/// center), and creases and boundaries (one per side, in the first face of an edge). Throws UsageError if sizes of
+/// center), and those along edges (one per side, in the first face of an edge). Contours run across smooth parts,
+/// where n.w is zero, and along sharp edges (contour_along). Throws UsageError if sizes of
 /// the surface's arrays differ, or the feature size is not positive where curvature is needed.
 std::vector<LineSegment> extract_lines(const LineSurface& surface, LineType type, const LineOptions& options);
 

@@ -9,8 +9,17 @@
 
 namespace exemplar {
 
-/// A mesh cut open along its creases, so that normals and curvature are not smoothed across them. Contours of a box
-/// or a machine part are then those of its smooth sides, and do not wind about its edges.
+/// Marks the edges that a surface is not smooth across (k_sharp_side): those of more than two faces, those whose
+/// faces meet at more than `crease_angle` (radians), and those where the surface is too coarse to pass for a smooth
+/// one. The smooth surface through a regular polygon with sides h, which meet at an angle of a, is off its sides by
+/// h a / 8; the edge is sharp if this is more than a four hundredth of the diagonal of the box around all faces, some
+/// two pixels of a picture that shows it whole, with h the larger height of both faces over the edge. Throws
+/// UsageError if neighbors are not those of the faces, MeshError if a face has a vertex that does not exist.
+void mark_sharp_edges(std::span<const Face> faces, std::span<const Vec3> vertices, float crease_angle,
+                      std::span<FaceNeighbors> neighbors);
+
+/// A mesh cut open along its sharp edges, so that normals and curvature are not smoothed across them. Contours of a
+/// box or a machine part are then those of its smooth sides, and do not wind about its edges.
 struct SplitSurface {
     std::vector<Face> faces;            ///< same number and order, with new vertices
     std::vector<std::uint32_t> source;  ///< per new vertex: the old one at its position
@@ -19,10 +28,9 @@ struct SplitSurface {
     std::vector<Vec3> positions(std::span<const Vec3> vertices) const;
 };
 
-/// Splits each vertex into one per group of its faces that are connected across edges other than creases. A crease
-/// is an edge whose faces meet at more than `crease_angle` (radians) or which does not have two faces. Throws
-/// UsageError if neighbors are not those of the faces, MeshError if a face has a vertex that does not exist.
-SplitSurface split_at_creases(std::span<const Face> faces, std::span<const Vec3> vertices,
-                              std::span<const FaceNeighbors> neighbors, float crease_angle);
+/// Splits each vertex into one per group of its faces that are connected across edges that are not sharp. The first
+/// group keeps the number of the vertex, so without sharp edges the mesh stays as it is. Throws as mark_sharp_edges.
+SplitSurface split_at_sharp_edges(std::span<const Face> faces, std::size_t vertex_count,
+                                  std::span<const FaceNeighbors> neighbors);
 
 }  // namespace exemplar

@@ -144,7 +144,7 @@ class StrokeMaker {
         replace_lost_positions(own);
         if (chain.closed) own.back().position = own.front().position;
         set_parameters(own);
-        if (type_ == LineType::creases || type_ == LineType::boundaries)
+        if (!chain.links.empty() && runs_along_edge(type_, segments_[chain.links.front().segment]))
             set_normals(chain.closed, own);
         else
             own = ChainSmoother(own, chain.closed, thickness_.taper > 0).smoothed_points();

@@ -77,8 +77,8 @@ struct Stroke {
 /// Makes the strokes of chains, in their order. `visible`: the visible parts of each segment; null: all are visible.
 /// Position: zero sets and extrema zigzag from face to face, so each point, except the ends of open chains, moves to
 /// the mean of the chain in a window around it: to each side up to the second next point, but 3 to 10 pixels and at
-/// most 8 points, within the chain. Creases and boundaries are not moved. Normal: perpendicular to the chord of the
-/// window, or of creases and boundaries, to that from the second point before to the second after. Parameter: arc
+/// most 8 points, within the chain. Lines along edges are not moved. Normal: perpendicular to the chord of the
+/// window, or of lines along edges, to that from the second point before to the second after. Parameter: arc
 /// length in pixels before points are moved. Width: stroke_width() of the depth and the radial curvature,
 /// interpolated from the vertices ((k1 u^2 + k2 v^2) / (u^2 + v^2), the mean curvature where the eye is along the
 /// normal, or 0 without curvature). With a taper it is multiplied by the straightness() of the window and by

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -22,6 +23,9 @@ constexpr float k_precision = 0.05f;         // precision of changes of visibili
 constexpr std::size_t k_max_samples = 4096;  // of one segment
 constexpr float k_same_pixels = 0.01f;       // points of a chain closer than this are one
 constexpr int k_max_hits = 64;               // ignored hits of one ray, at most
+constexpr float k_inward_pixels = 0.2f;      // from an edge to the point that stands for it, in a face at the edge
+constexpr float k_max_inward = 0.1f;         // the same, in heights of the face
+constexpr float k_edge_on = 1e-3f;           // cosine between a face's normal and the ray to the eye, at most
 
 TriangleMesh mesh_of(const LineSurface& surface) {
     TriangleMesh mesh;
@@ -42,7 +46,7 @@ std::vector<std::uint8_t> closed_components(std::span<const FaceNeighbors> neigh
     DisjointSets sets(neighbors.size());
     for (std::uint32_t f = 0; f < neighbors.size(); ++f)
         for (const std::uint32_t across : neighbors[f])
-            if (across <= k_max_neighbor_code) sets.join(f, across / 4);
+            if (has_neighbor(across)) sets.join(f, neighbor_face(across));
     std::vector<std::uint8_t> closed_set(neighbors.size(), 1), closed(neighbors.size());
     for (std::uint32_t f = 0; f < neighbors.size(); ++f)
         for (const std::uint32_t across : neighbors[f])
@@ -57,28 +61,29 @@ LineVisibility::LineVisibility(const LineSurface& surface)
     : surface_(checked(surface)), rays_(mesh_of(surface)), vertex_begin_(surface.vertices.size() + 1, 0) {
     closed_ = surface.neighbors.size() == surface.faces.size()
                   ? closed_components(surface.neighbors)
-                  : closed_components(build_face_neighbors(surface.faces, surface.vertices.size()));
-    for (const Face& face : surface.faces)
+                  : closed_components(build_face_neighbors(surface.faces, surface.vertices));
+    const std::span<const Face> faces = surface.joined_faces();
+    for (const Face& face : faces)
         for (const std::uint32_t v : face) ++vertex_begin_[v + 1];
     for (std::size_t v = 1; v < vertex_begin_.size(); ++v) vertex_begin_[v] += vertex_begin_[v - 1];
     vertex_faces_.resize(3 * surface.faces.size());
     std::vector<std::uint32_t> next = vertex_begin_;
-    for (std::uint32_t f = 0; f < surface.faces.size(); ++f)
-        for (const std::uint32_t v : surface.faces[f]) vertex_faces_[next[v]++] = f;
+    for (std::uint32_t f = 0; f < faces.size(); ++f)
+        for (const std::uint32_t v : faces[f]) vertex_faces_[next[v]++] = f;
     float largest = 0;
     for (const Vec3& p : surface.vertices) largest = std::max(largest, p.cwiseAbs().maxCoeff());
     rounding_ = 8 * std::numeric_limits<float>::epsilon() * largest;
 }
 
 bool LineVisibility::touch(std::uint32_t face, std::uint32_t other) const {
-    for (const std::uint32_t a : surface_.faces[face])
-        for (const std::uint32_t b : surface_.faces[other])
+    for (const std::uint32_t a : surface_.joined_faces()[face])
+        for (const std::uint32_t b : surface_.joined_faces()[other])
             if (a == b) return true;
     return false;
 }
 
 bool LineVisibility::are_near(std::uint32_t face, std::uint32_t other) const {
-    for (const std::uint32_t v : surface_.faces[other])
+    for (const std::uint32_t v : surface_.joined_faces()[other])
         for (const std::uint32_t between : faces_at(v))
             if (touch(face, between)) return true;
     return false;
@@ -93,15 +98,17 @@ class LineVisibility::Query {
           segment_(segment),
           camera_(camera),
           matrix_(matrix),
+          half_size_(0.5f * static_cast<float>(width), 0.5f * static_cast<float>(height)),
           face_(scene.surface_.faces[segment.face]) {
         room_ = {1 + 2 * options.margin / static_cast<float>(width),
                  1 + 2 * options.margin / static_cast<float>(height)};
         const auto corner = [&](std::size_t i) -> const Vec3& { return scene.surface_.vertices[face_[i]]; };
         cross_ = (corner(1) - corner(0)).cross(corner(2) - corner(0));
         for (std::size_t i = 0; i < 3; ++i) longest_ = std::max(longest_, (corner((i + 1) % 3) - corner(i)).norm());
-        edge_ = type == LineType::creases || type == LineType::boundaries;
-        contour_bends_away_ = type == LineType::contours && bends_away();
-        contour_ = type == LineType::contours;
+        edge_ = runs_along_edge(type, segment);
+        contour_ = type == LineType::contours && !edge_;
+        contour_bends_away_ = contour_ && bends_away();
+        if (edge_) find_faces_at_edge();
     }
 
     /// Returns the point at t from the first end (0) to the second (1).
@@ -116,10 +123,46 @@ class LineVisibility::Query {
         const float w = clip.w();
         if (!(w > 0 && clip.z() >= 0 && clip.z() <= w)) return false;
         if (std::abs(clip.x()) > w * room_.x() || std::abs(clip.y()) > w * room_.y()) return false;
-        return !hidden(p, t);
+        if (edge_) return is_edge_visible(p);
+        return !hidden(p, segment_.face, overlooks_near_faces(camera_.to_eye(p), t));
     }
 
   private:
+    /// A face at the edge that the segment runs along, and its corner that is not on the edge.
+    struct FaceAtEdge {
+        std::uint32_t face, opposite;
+    };
+    /// Finds the faces that stand for an edge: those at it that are not seen edge-on.
+    void find_faces_at_edge() {
+        std::uint32_t opposite = 0;
+        while (opposite < 2 && (segment_.ends[0][opposite] != 0 || segment_.ends[1][opposite] != 0)) ++opposite;
+        add_face_at_edge(segment_.face, opposite);
+        if (scene_.surface_.neighbors.empty()) return;
+        const std::uint32_t across = scene_.surface_.neighbors[segment_.face][(opposite + 1) % 3];
+        if (has_neighbor(across)) add_face_at_edge(neighbor_face(across), (neighbor_code(across) % 4 + 2) % 3);
+    }
+    void add_face_at_edge(std::uint32_t face, std::uint32_t opposite) {
+        const Face& corners = scene_.surface_.faces[face];
+        const auto at = [&](std::uint32_t i) -> const Vec3& { return scene_.surface_.vertices[corners[i]]; };
+        const Vec3 normal = (at(1) - at(0)).cross(at(2) - at(0)).stableNormalized();
+        if (std::abs(normal.dot(camera_.to_eye(point(0.5f)))) > k_edge_on)
+            at_edge_[at_edge_count_++] = {face, corners[opposite]};
+    }
+    /// Returns whether a face at the edge is visible close to a point of it. The point itself may lie exactly in front
+    /// of or behind others, as all edges of a box do that is seen from the front.
+    bool is_edge_visible(const Vec3& p) const {
+        for (std::size_t i = 0; i < at_edge_count_; ++i) {
+            const Vec3 inward = scene_.surface_.vertices[at_edge_[i].opposite] - p;
+            const float pixels = (in_picture(p + k_max_inward * inward) - in_picture(p)).norm() / k_max_inward;
+            const float share = pixels > 0 ? std::min(k_max_inward, k_inward_pixels / pixels) : k_max_inward;
+            if (!hidden(p + share * inward, at_edge_[i].face, false)) return true;
+        }
+        return false;
+    }
+    Vec2 in_picture(const Vec3& p) const {
+        const Eigen::Vector4f clip = matrix_ * p.homogeneous();
+        return (clip.head<2>() / clip.w()).cwiseProduct(half_size_);
+    }
     float weight(std::size_t corner, float t) const {
         const float a = segment_.ends[0][corner], b = segment_.ends[1][corner];
         return a + t * (b - a);
@@ -153,31 +196,30 @@ class LineVisibility::Query {
     }
     /// Returns whether nearby faces may lie in front of the point without hiding it; see visible_parts.
     bool overlooks_near_faces(const Vec3& to_eye, float t) const {
-        if (edge_) return false;
         if (contour_) return contour_bends_away_ || !scene_.closed_[segment_.face];
         float cosine = 0;
         for (std::size_t i = 0; i < 3; ++i) cosine += weight(i, t) * scene_.surface_.normals[face_[i]].dot(to_eye);
         return cosine > 0 && !(cross_.dot(to_eye) > 0);
     }
-    bool hidden(const Vec3& p, float t) const {
+    /// Returns whether something is in front of a point of a face.
+    bool hidden(const Vec3& p, std::uint32_t face, bool overlooks) const {
         const Vec3 to_eye = camera_.to_eye(p);
-        const bool overlooks = overlooks_near_faces(to_eye, t);
         // Hits in front of the near plane do not count.
         const float to_near_plane = depth_from_near(p) / std::max(1e-6f, to_eye.dot(backward()));
         float near = scene_.rounding_;
         for (int hits = 0; hits < k_max_hits; ++hits) {
             const auto hit = scene_.rays_.first_hit(p, to_eye, near);
             if (!hit || hit->distance > to_near_plane) return false;
-            if (!is_overlooked(*hit, overlooks)) return true;
+            if (!is_overlooked(*hit, face, overlooks)) return true;
             near = hit->distance + std::max(scene_.rounding_, hit->distance * 1e-6f);
         }
         return true;
     }
-    bool is_overlooked(const RayScene::Hit& hit, bool overlooks) const {
-        if (hit.face == segment_.face) return true;
+    bool is_overlooked(const RayScene::Hit& hit, std::uint32_t face, bool overlooks) const {
+        if (hit.face == face) return true;
         if (hit.distance > k_near_edges * longest_) return false;
-        if (hit.distance <= k_touching_edges * longest_ && scene_.touch(segment_.face, hit.face)) return true;
-        return overlooks && scene_.are_near(segment_.face, hit.face);
+        if (hit.distance <= k_touching_edges * longest_ && scene_.touch(face, hit.face)) return true;
+        return overlooks && scene_.are_near(face, hit.face);
     }
     Vec3 backward() const { return camera_.view.block<1, 3>(2, 0).transpose(); }
     /// Returns the distance from the near plane to the point along the camera's axis.
@@ -190,11 +232,14 @@ class LineVisibility::Query {
     const LineSegment& segment_;
     const Camera& camera_;
     const Eigen::Matrix4f& matrix_;
+    Vec2 half_size_;
     const Face& face_;
     Vec2 room_;
     Vec3 cross_;
     float longest_ = 0;
     bool edge_ = false, contour_ = false, contour_bends_away_ = false;
+    std::array<FaceAtEdge, 2> at_edge_{};
+    std::size_t at_edge_count_ = 0;
 };
 
 namespace {

@@ -54,8 +54,9 @@ class LineVisibility {
     /// leave the surface through nearby faces: those within three times the longest edge of the line's face that
     /// touch a face touching it. They do not hide a contour with positive radial curvature (without curvature: where
     /// n.w grows towards the eye), which its own surface does not hide, nor one on an open surface, which may be
-    /// seen from behind. Nor do they hide other lines where the normals face the eye and the face does not. Creases
-    /// and boundaries lie on the polygons themselves, so for them no nearby face is ignored.
+    /// seen from behind. Nor do they hide other lines where the normals face the eye and the face does not. A line
+    /// along an edge lies on the polygons themselves. It is visible where one of the faces at it is, close to the edge;
+    /// no nearby face is ignored.
     VisibleParts visible_parts(LineType type, std::span<const LineSegment> segments, const Camera& camera, int width,
                                int height, const VisibilityOptions& options = {}) const;
 

@@ -11,20 +11,19 @@ TEST(DrawableSurfaces, AreCutOpenAlongTheirCreases) {
     const TriangleMesh mesh = shapes::box(1, 1, 1, 3);
     DrawableSurface cut(mesh.faces, mesh.vertices, {1, false, 0.7f});
     cut.measure(mesh.vertices);
-    ASSERT_NE(cut.edges(), nullptr);
-    EXPECT_EQ(cut.edges()->vertices.size(), mesh.vertex_count());
+    EXPECT_EQ(cut.surface().uncut.data(), mesh.faces.data());
     EXPECT_EQ(cut.surface().vertices.size(), 6 * 16);
     for (const Vec3& normal : cut.surface().normals) EXPECT_NEAR(normal.cwiseAbs().maxCoeff(), 1, 1e-5);
 
-    DrawableSurface whole(mesh.faces, mesh.vertices, {1, false, {}});
+    DrawableSurface whole(mesh.faces, mesh.vertices, {1, false, 0.7f, false});
     whole.measure(mesh.vertices);
-    EXPECT_EQ(whole.edges(), nullptr);
+    EXPECT_TRUE(whole.surface().uncut.empty());
     EXPECT_EQ(whole.surface().vertices.size(), mesh.vertex_count());
 }
 
 TEST(DrawableSurfaces, AreSmoothedByTheSameWidthAsTheyGrow) {
     const TriangleMesh mesh = shapes::icosphere(3, 1);
-    DrawableSurface surface(mesh.faces, mesh.vertices, {1, true, {}});
+    DrawableSurface surface(mesh.faces, mesh.vertices, {1, true});
     surface.measure(mesh.vertices);
     EXPECT_NEAR(surface.surface().curvature.k1[0], 1, 0.05);
     const TriangleMesh grown = shapes::scaled(mesh, 2);

@@ -5,27 +5,35 @@
 
 #include "host/lines/extraction/face_neighbors.h"
 #include "host/lines/extraction/lines.h"
+#include "host/lines/extraction/split_surface.h"
 #include "host/mesh/curvature/curvature_estimator.h"
 
 namespace exemplar::test_support {
 
-/// A mesh with estimated curvature and neighbors.
+/// A mesh with estimated curvature and neighbors, cut open along its sharp edges if wanted.
 struct MeasuredSurface {
     TriangleMesh mesh;
     std::vector<Vec3> normals;
     VertexCurvature curvature;
     std::vector<FaceNeighbors> neighbors;
+    std::vector<Face> joined;
 
-    explicit MeasuredSurface(TriangleMesh shape) : mesh(std::move(shape)) {
+    explicit MeasuredSurface(TriangleMesh shape, bool cut = false)
+        : mesh(std::move(shape)), neighbors(build_face_neighbors(mesh.faces, mesh.vertices)), joined(mesh.faces) {
+        if (cut) {
+            mark_sharp_edges(mesh.faces, mesh.vertices, LineThresholds{}.crease_angle, neighbors);
+            const SplitSurface split = split_at_sharp_edges(mesh.faces, mesh.vertex_count(), neighbors);
+            mesh.vertices = split.positions(mesh.vertices);
+            mesh.faces = split.faces;
+        }
         measure();
-        neighbors = build_face_neighbors(mesh.faces, mesh.vertex_count());
     }
     void measure() {
         CurvatureEstimator estimator(mesh.faces, mesh.vertex_count());
         curvature = estimator.estimate(mesh.vertices, {.derivatives = true, .smoothing = 1});
         normals = estimator.normals();
     }
-    LineSurface surface() const { return {mesh.faces, mesh.vertices, normals, curvature, neighbors}; }
+    LineSurface surface() const { return {mesh.faces, mesh.vertices, normals, curvature, neighbors, joined}; }
 };
 
 }  // namespace exemplar::test_support

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
+#include <cmath>
+#include <numbers>
+#include <vector>
 
 #include "host/core/errors.h"
 #include "tests/support/shapes.h"
@@ -10,8 +12,21 @@
 namespace exemplar {
 namespace {
 
+std::vector<FaceNeighbors> marked(const TriangleMesh& mesh, float angle) {
+    std::vector<FaceNeighbors> neighbors = build_face_neighbors(mesh.faces, mesh.vertices);
+    mark_sharp_edges(mesh.faces, mesh.vertices, angle, neighbors);
+    return neighbors;
+}
+
 SplitSurface split(const TriangleMesh& mesh, float angle) {
-    return split_at_creases(mesh.faces, mesh.vertices, build_face_neighbors(mesh.faces, mesh.vertex_count()), angle);
+    return split_at_sharp_edges(mesh.faces, mesh.vertex_count(), marked(mesh, angle));
+}
+
+std::size_t count_sharp(const TriangleMesh& mesh, float angle) {
+    std::size_t count = 0;
+    for (const FaceNeighbors& sides : marked(mesh, angle))
+        for (const std::uint32_t across : sides) count += has_neighbor(across) && (across & k_sharp_side) ? 1 : 0;
+    return count / 2;
 }
 
 void expect_same_places(const TriangleMesh& mesh, const SplitSurface& surface) {
@@ -27,7 +42,23 @@ TEST(SplitSurfaces, OfACubeAreSixSquares) {
     const SplitSurface surface = split(mesh, 0.7f);
     expect_same_places(mesh, surface);
     EXPECT_EQ(surface.source.size(), 6 * 16);
-    EXPECT_EQ(split(mesh, 1.6f).source.size(), mesh.vertex_count());
+    for (std::uint32_t v = 0; v < mesh.vertex_count(); ++v) EXPECT_EQ(surface.source[v], v);
+}
+
+TEST(SharpEdges, AreThoseOfCoarseSurfacesToo) {
+    // The sides of a regular prism are off a cylinder by 1 - cos(pi / n) radii; its diagonal is 2.24 radii.
+    for (const std::uint32_t n : {6u, 12u, 18u, 40u}) {
+        const TriangleMesh prism = shapes::cylinder(1, 1, n, 1, false);
+        const double off = 1 - std::cos(std::numbers::pi / n);
+        EXPECT_EQ(count_sharp(prism, 3), off > 0.0025 * 2.24 ? n : 0) << n;
+    }
+}
+
+TEST(SharpEdges, AreNotOfFacesWithoutArea) {
+    TriangleMesh mesh = shapes::grid(1, 1, 1);
+    mesh.vertices.push_back(0.5f * (mesh.vertices[mesh.faces[0][0]] + mesh.vertices[mesh.faces[0][1]]));
+    mesh.faces.push_back({mesh.faces[0][1], mesh.faces[0][0], 4});
+    EXPECT_EQ(count_sharp(mesh, 0.1f), 0);
 }
 
 TEST(SplitSurfaces, OfSmoothOnesAreTheSame) {
@@ -58,12 +89,14 @@ TEST(SplitSurfaces, AreOpenAtEdgesOfThreeFaces) {
 
 TEST(SplitSurfaces, RefuseWhatDoesNotFit) {
     const TriangleMesh mesh = shapes::grid(1, 1, 1);
-    auto neighbors = build_face_neighbors(mesh.faces, mesh.vertex_count());
-    EXPECT_THROW(split_at_creases(mesh.faces, std::span(mesh.vertices).first(2), neighbors, 1), MeshError);
+    auto neighbors = build_face_neighbors(mesh.faces, mesh.vertices);
+    EXPECT_THROW(mark_sharp_edges(mesh.faces, std::span(mesh.vertices).first(2), 1, neighbors), MeshError);
+    EXPECT_THROW(split_at_sharp_edges(mesh.faces, 2, neighbors), MeshError);
     neighbors[0][2] = 4 * 7;
-    EXPECT_THROW(split_at_creases(mesh.faces, mesh.vertices, neighbors, 1), UsageError);
+    EXPECT_THROW(mark_sharp_edges(mesh.faces, mesh.vertices, 1, neighbors), UsageError);
     neighbors.pop_back();
-    EXPECT_THROW(split_at_creases(mesh.faces, mesh.vertices, neighbors, 1), UsageError);
+    EXPECT_THROW(mark_sharp_edges(mesh.faces, mesh.vertices, 1, neighbors), UsageError);
+    EXPECT_THROW(split_at_sharp_edges(mesh.faces, mesh.vertex_count(), neighbors), UsageError);
 }
 
 }  // namespace

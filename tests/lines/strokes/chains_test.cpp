@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <array>
 #include <algorithm>
 #include <map>
 #include <numbers>
@@ -256,7 +258,7 @@ TEST(Chains, RefuseWhatDoesNotFit) {
 
 TEST(FaceNeighbors, AreMutualAndShareTheEdge) {
     const TriangleMesh mesh = lumpy_sphere(2);
-    const auto neighbors = build_face_neighbors(mesh.faces, mesh.vertex_count());
+    const auto neighbors = build_face_neighbors(mesh.faces, mesh.vertices);
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f)
         for (std::uint32_t i = 0; i < 3; ++i) {
             const std::uint32_t across = neighbors[f][i];
@@ -270,7 +272,7 @@ TEST(FaceNeighbors, AreMutualAndShareTheEdge) {
 TEST(FaceNeighbors, DoNotNeedAnOrientation) {
     TriangleMesh mesh = shapes::grid(1, 1, 1);
     std::swap(mesh.faces[1][1], mesh.faces[1][2]);
-    const auto neighbors = build_face_neighbors(mesh.faces, mesh.vertex_count());
+    const auto neighbors = build_face_neighbors(mesh.faces, mesh.vertices);
     EXPECT_EQ(neighbors[0][2], 4u * 1 + 2);
     EXPECT_EQ(neighbors[1][2], 4u * 0 + 2);
 }
@@ -278,29 +280,48 @@ TEST(FaceNeighbors, DoNotNeedAnOrientation) {
 TEST(FaceNeighbors, EndAtBoundaries) {
     const TriangleMesh mesh = shapes::cylinder(1, 2, 8, 2, false);
     std::size_t free = 0;
-    for (const FaceNeighbors& sides : build_face_neighbors(mesh.faces, mesh.vertex_count()))
+    for (const FaceNeighbors& sides : build_face_neighbors(mesh.faces, mesh.vertices))
         free += static_cast<std::size_t>(std::count(sides.begin(), sides.end(), k_no_neighbor));
     EXPECT_EQ(free, 16);
 }
 
-TEST(FaceNeighbors, OfAFanAreMany) {
-    const TriangleMesh mesh = fan();
-    const auto neighbors = build_face_neighbors(mesh.faces, mesh.vertex_count());
-    EXPECT_EQ(neighbors[0], (FaceNeighbors{k_nonmanifold_neighbors, k_no_neighbor, k_no_neighbor}));
-    for (std::size_t f : {1, 2}) EXPECT_EQ(neighbors[f], (FaceNeighbors{k_blocked_side, k_no_neighbor, k_no_neighbor}));
+TEST(FaceNeighbors, AroundACrowdedEdgeAreTheOutermostTwo) {
+    // Seen along the edge, faces at these degrees; the widest gap is from the last of `ends` to the first.
+    const auto expect = [](const std::vector<float>& degrees, std::array<std::size_t, 2> ends) {
+        TriangleMesh mesh;
+        mesh.vertices = {{0, 0, 0}, {0, 0, 1}};
+        for (std::uint32_t i = 0; i < degrees.size(); ++i) {
+            const float angle = degrees[i] * std::numbers::pi_v<float> / 180;
+            mesh.vertices.push_back({std::cos(angle), std::sin(angle), 0.3f});
+            mesh.faces.push_back(i % 2 ? Face{1, 0, i + 2} : Face{0, 1, i + 2});
+        }
+        const auto neighbors = build_face_neighbors(mesh.faces, mesh.vertices);
+        for (std::size_t f = 0; f < degrees.size(); ++f) {
+            const std::uint32_t across = neighbors[f][0];
+            if (f != ends[0] && f != ends[1]) {
+                EXPECT_EQ(across, k_blocked_side);
+                continue;
+            }
+            EXPECT_TRUE(has_neighbor(across) && (across & k_sharp_side) && (across & k_crowded_side));
+            EXPECT_EQ(neighbor_face(across), f == ends[0] ? ends[1] : ends[0]);
+        }
+    };
+    expect({0, 90, 180}, {0, 2});
+    expect({100, 20, 60, 80}, {0, 1});
+    expect({-170, 175, 90, 0}, {0, 3});
 }
 
 TEST(FaceNeighbors, OfDegenerateFacesAreBlockedWhereThereIsNoEdge) {
     const std::vector<Face> faces = {{0, 0, 1}, {2, 2, 2}};
-    const auto neighbors = build_face_neighbors(faces, 3);
+    const auto neighbors = build_face_neighbors(faces, std::vector<Vec3>(3, Vec3::Zero()));
     EXPECT_EQ(neighbors[0], (FaceNeighbors{k_blocked_side, 4u * 0 + 2, 4u * 0 + 1}));  // there and back
     EXPECT_EQ(neighbors[1], (FaceNeighbors{k_blocked_side, k_blocked_side, k_blocked_side}));
 }
 
 TEST(FaceNeighbors, RefuseVerticesThatAreNotThere) {
     const std::vector<Face> faces = {{0, 1, 2}, {0, 2, 3}};
-    EXPECT_THROW(build_face_neighbors(faces, 3), MeshError);
-    EXPECT_TRUE(build_face_neighbors({}, 0).empty());
+    EXPECT_THROW(build_face_neighbors(faces, std::vector<Vec3>(3, Vec3::Zero())), MeshError);
+    EXPECT_TRUE(build_face_neighbors({}, {}).empty());
 }
 
 TEST(Creases, AreWhereFacesMeetAtTheAngle) {

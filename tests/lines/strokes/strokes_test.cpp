@@ -18,7 +18,7 @@ struct Ribbon {
     TriangleMesh mesh = shapes::grid(4, 1, 4);  // x and y in [0, 4]
     std::vector<Vec3> normals;
     VertexCurvature curvature;
-    std::vector<FaceNeighbors> neighbors = build_face_neighbors(mesh.faces, mesh.vertex_count());
+    std::vector<FaceNeighbors> neighbors = build_face_neighbors(mesh.faces, mesh.vertices);
     std::vector<LineSegment> segments;
     std::vector<Chain> chains;
     StrokeView view;
@@ -145,7 +145,7 @@ struct Ball {
     TriangleMesh mesh = shapes::icosphere(4, 1);
     std::vector<Vec3> normals;
     VertexCurvature curvature;
-    std::vector<FaceNeighbors> neighbors = build_face_neighbors(mesh.faces, mesh.vertex_count());
+    std::vector<FaceNeighbors> neighbors = build_face_neighbors(mesh.faces, mesh.vertices);
     std::vector<LineSegment> segments;
     std::vector<Chain> chains;
     StrokeView view;

@@ -130,12 +130,16 @@ bool is_outline(uvec3 corners, uint side, uvec3 others, uint other_side) {
     return (a.x > 0.0) == (b.x > 0.0);
 }
 
+// Returns whether the faces at an edge run along it in opposite directions.
+bool oriented_alike(uint face, uint side, uint other, uint other_side) {
+    return texelFetch(joined_faces, int(face))[side] != texelFetch(joined_faces, int(other))[other_side];
+}
+
 // Returns the part of a sharp side that is a contour, from x to y; none if they are equal.
 vec2 contour_along(uvec3 corners, uint side, uvec3 others, uint other_side, uint face, uint other) {
     if (is_outline(corners, side, others, other_side)) return vec2(0.0, 1.0);
     const uint next = next_side(side), other_next = next_side(other_side);
-    // Not consistently oriented.
-    if (texelFetch(joined_faces, int(face))[side] != texelFetch(joined_faces, int(other))[other_next]) return vec2(0.0);
+    if (!oriented_alike(face, side, other, other_side)) return vec2(0.0);
     const vec2 own = vec2(texelFetch(fields, int(corners[side])).x, texelFetch(fields, int(corners[next])).x);
     const vec2 across = vec2(texelFetch(fields, int(others[other_next])).x, texelFetch(fields, int(others[other_side])).x);
     const bvec2 faces_eye = greaterThan(own, vec2(0.0)), other_faces_eye = greaterThan(across, vec2(0.0));
@@ -170,7 +174,8 @@ void add_creases(uint face, uvec3 corners) {
         const uvec3 others = texelFetch(faces, int(code / 4u)).xyz;
         float strength = 3.14159265;
         if ((sides[i] & k_crowded_side) == 0u) {
-            const vec3 a = face_cross(corners), b = face_cross(others);
+            const vec3 a = face_cross(corners);
+            const vec3 b = oriented_alike(face, i, code / 4u, code % 4u) ? face_cross(others) : -face_cross(others);
             if (!(dot(a, a) > 0.0 && dot(b, b) > 0.0)) continue;
             strength = atan(length(cross(a, b)), dot(a, b));
         }

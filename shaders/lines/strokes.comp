@@ -163,8 +163,9 @@ void main() {
     const SmoothedPoint drawn = smoothed_point(point, kind);
     const bool last = (kind & k_point_last) != 0u;
     const uint begin_end = walked & 1u;
+    const bool along_edge = (1u << (kind & k_kind_family) & k_edge_families) != 0u;
     const float width = thickness(uvec2(walked >> 1, last ? 1u - begin_end : begin_end), look) *
-                        tapered(point, drawn.straightness, look);
+                        (along_edge ? 1.0 : tapered(point, drawn.straightness, look));
     const float above = max(more.w - look.threshold, 0.0);
     const float opacity = look.fade > 0.0 ? above / (above + look.fade) : 1.0;
     strokes[2 * point] = vec4(drawn.at, width, opacity);

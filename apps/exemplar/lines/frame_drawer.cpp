@@ -33,7 +33,7 @@ FrameDrawer::FrameDrawer(const LinesJob& job, LinesSource& source, const StrokeV
                 source.model() ? &*source.model() : nullptr, job.source.measuring.crease_angle),
       stream_(device_) {
     const DeviceStyle style = device_style(job.style);
-    for (const std::size_t view : {0, 1}) renderer_.view(view).set_textures(style.textures);
+    for (const std::size_t i : {0, 1}) renderer_.view(i).set_textures(style.textures);
     picture_.view = view;
     apply_style(style, job.types, picture_);
 }

@@ -129,9 +129,12 @@ Vec3 face_cross(const LineSurface& surface, std::size_t face) {
     return (surface.vertices[b] - origin).cross(surface.vertices[c] - origin);
 }
 
-/// Returns the angle between the normals of two faces, or zero if one is degenerate and has no normal.
-float angle_between(const LineSurface& surface, std::size_t f, std::size_t g) {
-    const Vec3 a = face_cross(surface, f), b = face_cross(surface, g);
+/// Returns the angle between the normals of the faces at a side, one of them turned around if they are not oriented
+/// alike, or zero if one is degenerate and has no normal.
+float angle_across(const LineSurface& surface, std::uint32_t f, std::uint32_t side, std::uint32_t across) {
+    const Vec3 a = face_cross(surface, f);
+    Vec3 b = face_cross(surface, neighbor_face(across));
+    if (!oriented_alike(surface.joined_faces(), f, side, across)) b = -b;
     if (!(a.squaredNorm() > 0) || !(b.squaredNorm() > 0)) return 0;
     return std::atan2(a.cross(b).norm(), a.dot(b));
 }
@@ -160,7 +163,7 @@ void add_edges(const LineSurface& surface, std::uint32_t f, LineType type, const
         } else {
             if (!has_neighbor(across) || !owns_edge(f, i, across)) continue;
             const bool crowded = (across & k_crowded_side) != 0;
-            strength = crowded ? std::numbers::pi_v<float> : angle_between(surface, f, neighbor_face(across));
+            strength = crowded ? std::numbers::pi_v<float> : angle_across(surface, f, i, across);
             if (!(strength > options.thresholds.crease_angle)) continue;
             if (options.no_creases_on_outline && is_outline(surface, f, i, options)) continue;
         }

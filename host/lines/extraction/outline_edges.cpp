@@ -72,9 +72,7 @@ SidePart contour_along(const LineSurface& surface, std::uint32_t face, std::uint
     if (is_outline(surface, face, side, options)) return {0, 1};
     const std::uint32_t other = neighbor_face(surface.neighbors[face][side]),
                         j = neighbor_code(surface.neighbors[face][side]) % 4;
-    const std::span<const Face> joined = surface.joined_faces();
-    // Where both faces run along the edge in one direction, one of them is inside out, and normals tell nothing.
-    if (joined[face][side] != joined[other][(j + 1) % 3]) return {};
+    if (!oriented_alike(surface.joined_faces(), face, side, surface.neighbors[face][side])) return {};
     const auto facing = [&](std::uint32_t f, std::uint32_t corner) {
         const std::uint32_t v = surface.faces[f][corner % 3];
         return surface.normals[v].dot(options.to_eye(surface.vertices[v]));

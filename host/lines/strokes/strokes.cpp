@@ -144,7 +144,8 @@ class StrokeMaker {
         replace_lost_positions(own);
         if (chain.closed) own.back().position = own.front().position;
         set_parameters(own);
-        if (!chain.links.empty() && runs_along_edge(type_, segments_[chain.links.front().segment]))
+        const bool along_edge = !chain.links.empty() && runs_along_edge(type_, segments_[chain.links.front().segment]);
+        if (along_edge)
             set_normals(chain.closed, own);
         else
             own = ChainSmoother(own, chain.closed, thickness_.taper > 0).smoothed_points();
@@ -154,7 +155,7 @@ class StrokeMaker {
             add_link(chain.links[i], own[i], own[i + 1], stroke.points);
         if (!own.empty()) stroke.points.push_back(own.back());
         finish_last_point(stroke);
-        if (thickness_.taper > 0) taper(stroke);
+        if (!along_edge && thickness_.taper > 0) taper(stroke);
         return stroke;
     }
 

@@ -83,7 +83,8 @@ struct Stroke {
 /// interpolated from the vertices ((k1 u^2 + k2 v^2) / (u^2 + v^2), the mean curvature where the eye is along the
 /// normal, or 0 without curvature). With a taper it is multiplied by the straightness() of the window and by
 /// stroke_taper() of the distance along the chain to the nearest end of the point's visible run. Runs of closed
-/// chains continue across their first point; if everything is visible, they are not tapered.
+/// chains continue across their first point; if everything is visible, they are not tapered. Nor are lines along edges,
+/// which go on around corners as other strokes.
 /// Throws UsageError if sizes do not fit, or a thickness is out of range (width, epsilon and most positive, least in
 /// [0, most], taper not negative).
 std::vector<Stroke> make_strokes(const LineSurface& surface, LineType type, std::span<const LineSegment> segments,

@@ -207,10 +207,13 @@ class LineVisibility::Query {
         // Hits in front of the near plane do not count.
         const float to_near_plane = depth_from_near(p) / std::max(1e-6f, to_eye.dot(backward()));
         float near = scene_.rounding_;
+        bool behind_other = false;  // which is hidden itself if a face follows that is overlooked
         for (int hits = 0; hits < k_max_hits; ++hits) {
             const auto hit = scene_.rays_.first_hit(p, to_eye, near);
-            if (!hit || hit->distance > to_near_plane) return false;
-            if (!is_overlooked(*hit, face, overlooks)) return true;
+            if (!hit || hit->distance > to_near_plane) return behind_other;
+            const bool overlooked = is_overlooked(*hit, face, overlooks);
+            if (!overlooked && !(overlooks && hit->distance <= k_near_edges * longest_)) return true;
+            behind_other = !overlooked;
             near = hit->distance + std::max(scene_.rounding_, hit->distance * 1e-6f);
         }
         return true;

@@ -60,11 +60,11 @@ void GpuChains::record(Stream& stream, const Buffer& vertices, const Camera& cam
     put_matrix(camera.view_projection(), parameters.matrix);
     constexpr std::size_t k_segments = offsetof(LineCounts, segment_groups),
                           k_nodes = offsetof(LineCounts, node_groups), k_rounds = offsetof(LineCounts, round_groups);
-    stream.dispatch_indirect(
-        link_kernel_, counts, k_segments,
-        {vertices, surface.surface().faces(), surface.joined_faces(), surface.neighbors(), surface.face_begin(),
-         surface.vertex_faces(), lines_.face_counts(), lines_.face_groups(), lines_.segments(), counts, picture_ends_, links_},
-        parameters);
+    stream.dispatch_indirect(link_kernel_, counts, k_segments,
+                             {vertices, surface.surface().faces(), surface.joined_faces(), surface.neighbors(),
+                              surface.face_begin(), surface.vertex_faces(), lines_.face_counts(), lines_.face_groups(),
+                              lines_.segments(), counts, picture_ends_, links_},
+                             parameters);
     stream.dispatch_indirect(node_kernel_, counts, k_nodes, {links_, picture_ends_, counts, nodes_});
     for (std::size_t round = 0; round < rounds_; ++round) {
         const bool back = round % 2 != 0;

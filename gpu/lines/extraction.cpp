@@ -88,9 +88,9 @@ GpuLineExtraction::Kernels GpuLineExtraction::make_kernels(std::uint32_t familie
     Kernels kernels;
     kernels.fields = kernel(shaders::lines_fields_comp, field, std::vector<StructLayout>(7, four));
     kernels.count = kernel(shaders::lines_count_comp, face, {four, words, words, four, four, words, word, word});
-    kernels.segments = kernel(shaders::lines_segments_comp, face,
-                              {four, words, words, four, four, words, word, word,
-                               layout_of<shared::LineSegmentRecord>()});
+    kernels.segments =
+        kernel(shaders::lines_segments_comp, face,
+               {four, words, words, four, four, words, word, word, layout_of<shared::LineSegmentRecord>()});
     if (families & 1u << shared::k_apparent_ridges)
         kernels.ridges =
             kernel(shaders::lines_apparent_ridges_comp, field, {four, four, four, four, word, words, four, four});
@@ -156,11 +156,10 @@ void GpuLineExtraction::record(Stream& stream, const GpuCurvedSurface& snapshot,
                                         .vertices = surface.vertex_count(),
                                         .crease_angle = options.thresholds[shared::k_creases],
                                         .max_segments = static_cast<std::uint32_t>(room_)};
-    stream.dispatch(
-        kernels.count, faces,
-        {snapshot.vertices, surface.faces(), surface_.neighbors(), fields_, directions_, surface_.joined_faces(),
-         face_counts_, face_groups_},
-        parameters);
+    stream.dispatch(kernels.count, faces,
+                    {snapshot.vertices, surface.faces(), surface_.neighbors(), fields_, directions_,
+                     surface_.joined_faces(), face_counts_, face_groups_},
+                    parameters);
     stream.dispatch(
         scan_kernel_, 1, {face_groups_, counts_},
         shared::ScanParameters{.groups = static_cast<std::uint32_t>(divide_up(faces, shared::k_count_group)),

@@ -9,7 +9,9 @@ LineSegment read_segment(const shared::LineSegmentRecord& record) {
     LineSegment segment;
     segment.face = record.face;
     const std::uint32_t family = family_of(record);
-    segment.family = family == shared::k_second_highlights ? 1 : family == shared::k_edge_contours ? k_family_along_edges : 0;
+    segment.family = family == shared::k_second_highlights ? 1
+                     : family == shared::k_edge_contours   ? k_family_along_edges
+                                                           : 0;
     segment.places = {static_cast<SegmentEnd>(record.kind >> shared::k_kind_first_place & shared::k_kind_place),
                       static_cast<SegmentEnd>(record.kind >> shared::k_kind_second_place & shared::k_kind_place)};
     const shared::vec4& e = record.ends;

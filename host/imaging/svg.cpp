@@ -66,9 +66,10 @@ std::string svg_color(const Color& color) {
 }
 
 void SvgPath::add(const Vec2& point) {
-    append_number(static_cast<double>(point.x()), 2, data_);
+    const Vec2 inside = point.cwiseMax(0).cwiseMin(most_);
+    append_number(static_cast<double>(inside.x()), 2, data_);
     data_ += ' ';
-    append_number(static_cast<double>(point.y()), 2, data_);
+    append_number(static_cast<double>(inside.y()), 2, data_);
 }
 
 void SvgPath::add(char command, const Vec2& point) {

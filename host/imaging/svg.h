@@ -23,6 +23,8 @@ std::string svg_color(const Color& color);
 /// Builds the data of a path, with coordinates to a hundredth.
 class SvgPath {
   public:
+    /// Points beyond [0, most] are moved to its border: plotters draw what is outside of the picture, too.
+    explicit SvgPath(const Vec2& most) : most_(most) {}
     void move_to(const Vec2& point) { add('M', point); }
     void line_to(const Vec2& point) { add('L', point); }
     /// A cubic Bezier curve with two control points.
@@ -33,6 +35,7 @@ class SvgPath {
   private:
     void add(char command, const Vec2& point);
     void add(const Vec2& point);
+    Vec2 most_;
     std::string data_;
 };
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
@@ -139,6 +141,72 @@ Drawing side_by_side(Drawing left, const Drawing& right) {
     return left;
 }
 
+namespace {
+
+/// Returns the point at t on the way from a to b.
+StrokePoint point_between(const StrokePoint& a, const StrokePoint& b, float t) {
+    StrokePoint point = a;
+    point.position += t * (b.position - a.position);
+    const Vec2 normal = a.normal + t * (b.normal - a.normal);
+    if (normal.squaredNorm() > 0) point.normal = normal.normalized();
+    for (float StrokePoint::*const member :
+         {&StrokePoint::depth, &StrokePoint::width, &StrokePoint::opacity, &StrokePoint::parameter})
+        point.*member = std::lerp(a.*member, b.*member, t);
+    return point;
+}
+
+/// Returns the part of the way from a to b within [0, most], as shares of the way; empty if the first is larger.
+std::pair<float, float> part_within(const Vec2& a, const Vec2& b, const Vec2& most) {
+    float from = 0, to = 1;
+    for (int axis = 0; axis < 2; ++axis) {
+        const float way = b[axis] - a[axis];
+        if (way == 0) {
+            if (a[axis] < 0 || a[axis] > most[axis]) return {1, 0};
+            continue;
+        }
+        const float at_zero = -a[axis] / way, at_most = (most[axis] - a[axis]) / way;
+        from = std::max(from, std::min(at_zero, at_most));
+        to = std::min(to, std::max(at_zero, at_most));
+    }
+    return {from, to};
+}
+
+/// Joins the last run of a closed stroke with the first, in which it continues; parameters keep increasing.
+void join_last_with_first(std::vector<StrokeRun>& runs, float length) {
+    std::vector<StrokePoint>& last = runs.back().points;
+    for (std::size_t i = 1; i < runs.front().points.size(); ++i) {
+        last.push_back(runs.front().points[i]);
+        last.back().parameter += length;
+    }
+    runs.erase(runs.begin());
+}
+
+}  // namespace
+
+std::vector<StrokeRun> within_picture(const StrokeRun& run, int width, int height) {
+    const Vec2 most(static_cast<float>(width), static_cast<float>(height));
+    std::vector<StrokeRun> parts;
+    bool goes_on = false;  // whether the last part reaches the point that comes next
+    for (std::size_t i = 0; i + 1 < run.points.size(); ++i) {
+        const StrokePoint &a = run.points[i], &b = run.points[i + 1];
+        const auto [from, to] = part_within(a.position, b.position, most);
+        if (!(from < to)) {
+            goes_on = false;
+            continue;
+        }
+        if (!goes_on || from > 0) parts.push_back({{from > 0 ? point_between(a, b, from) : a}, false});
+        parts.back().points.push_back(to < 1 ? point_between(a, b, to) : b);
+        goes_on = to == 1;
+    }
+    if (!run.closed || parts.empty()) return parts;
+    const bool starts = part_within(run.points[0].position, run.points[1].position, most).first == 0;
+    if (parts.size() == 1 && parts.front().points.size() == run.points.size() && goes_on)
+        parts.front().closed = true;
+    else if (parts.size() > 1 && goes_on && starts)
+        join_last_with_first(parts, run.points.back().parameter - run.points.front().parameter);
+    return parts;
+}
+
 std::vector<StrokeRun> visible_runs(const Stroke& stroke) {
     const std::vector<StrokePoint>& points = stroke.points;
     std::vector<StrokeRun> runs;
@@ -154,14 +222,7 @@ std::vector<StrokeRun> visible_runs(const Stroke& stroke) {
         runs.front().closed = true;
         return runs;
     }
-    // The last run continues in the first.
-    const float length = points.back().parameter;
-    std::vector<StrokePoint>& last = runs.back().points;
-    for (std::size_t i = 1; i < runs.front().points.size(); ++i) {
-        last.push_back(runs.front().points[i]);
-        last.back().parameter += length;
-    }
-    runs.erase(runs.begin());
+    join_last_with_first(runs, points.back().parameter);
     return runs;
 }
 

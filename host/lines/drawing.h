@@ -49,6 +49,9 @@ struct StrokeRun {
 /// Returns the visible runs of a stroke in order. A run across the start of a closed stroke is one piece, along
 /// which parameters keep increasing.
 std::vector<StrokeRun> visible_runs(const Stroke& stroke);
+/// Returns the parts of a run within the picture, in order; width and height in pixels. A part of a closed run across
+/// its start is one piece.
+std::vector<StrokeRun> within_picture(const StrokeRun& run, int width, int height);
 /// Returns the length of a run in pixels.
 float length_of(const StrokeRun& run);
 

@@ -21,6 +21,10 @@ constexpr float k_min_cosine = 0.7f;    // between a chord and the tangent; belo
 constexpr float k_min_width = 0.05f;    // pixels; thinner paths are left out
 constexpr float k_min_opacity = 0.02f;  // paler ones, too
 
+struct SvgSize {
+    int width = 0, height = 0;  ///< pixels
+};
+
 /// A part of a run that becomes one path.
 struct SvgPiece {
     std::vector<StrokePoint> points;
@@ -125,14 +129,25 @@ void apply_fading(SvgFading fading, StrokeRun& run) {
     }
 }
 
+/// Returns the parts of a stroke that are drawn, fading as wanted.
+std::vector<StrokeRun> drawn_runs(const Stroke& stroke, const SvgSize& size, const SvgOptions& options) {
+    std::vector<StrokeRun> drawn;
+    for (const StrokeRun& visible : visible_runs(stroke))
+        for (StrokeRun& run : within_picture(visible, size.width, size.height)) {
+            if (length_of(run) < options.shortest) continue;
+            apply_fading(options.fading, run);
+            drawn.push_back(std::move(run));
+        }
+    return drawn;
+}
+
 /// Returns the pieces of a layer, stroke by stroke.
-std::vector<SvgPiece> pieces_of(std::span<const Stroke> strokes, const SvgOptions& options, SvgSummary& summary) {
+std::vector<SvgPiece> pieces_of(std::span<const Stroke> strokes, const SvgSize& size, const SvgOptions& options,
+                                SvgSummary& summary) {
     std::vector<SvgPiece> pieces;
     for (const Stroke& stroke : strokes)
-        for (StrokeRun& run : visible_runs(stroke)) {
-            if (length_of(run) < options.shortest) continue;
+        for (const StrokeRun& run : drawn_runs(stroke, size, options)) {
             summary.length += static_cast<double>(length_of(run));
-            apply_fading(options.fading, run);
             for (SvgPiece& piece : pieces_of(run, options)) {
                 if (piece.width < k_min_width || piece.opacity < k_min_opacity) continue;
                 if (options.tolerance > 0)
@@ -188,8 +203,8 @@ Vec2 control_point(const StrokePoint& at, const Vec2& other) {
     return at.position + std::min(length / 3, k_max_bulge / std::max(sine, 1e-6f)) * tangent;
 }
 
-std::string center_line(const SvgPiece& piece, bool curves) {
-    SvgPath path;
+std::string center_line(const SvgPiece& piece, bool curves, const Vec2& most) {
+    SvgPath path(most);
     path.move_to(piece.begin());
     const std::size_t count = piece.points.size() - (piece.closed && !curves ? 1 : 0);
     for (std::size_t i = 1; i < count; ++i) {
@@ -209,10 +224,10 @@ Vec2 side(const StrokePoint& point, float sign) {
 
 /// Returns the outline of a piece: along its right side, around its end, back along its left side and around its
 /// beginning. The outline of a closed piece is a ring.
-std::string outline(const SvgPiece& piece) {
+std::string outline(const SvgPiece& piece, const Vec2& most) {
     constexpr float k_round = 0.3f;  // ends wider than this, in pixels, are half circles
     const std::vector<StrokePoint>& points = piece.points;
-    SvgPath path;
+    SvgPath path(most);
     path.move_to(side(points.front(), 1));
     for (std::size_t i = 1; i < points.size(); ++i) path.line_to(side(points[i], 1));
     const auto turn = [&](const StrokePoint& end, bool round, const Vec2& to, float forward) {
@@ -241,14 +256,19 @@ std::string outline(const SvgPiece& piece) {
 class SvgWriter {
   public:
     /// Without a background, pale strokes are transparent.
-    SvgWriter(SvgDocument& document, const std::optional<Color>& background, const SvgOptions& options)
-        : document_(document), background_(background), options_(options) {}
+    SvgWriter(SvgDocument& document, const SvgSize& size, const std::optional<Color>& background,
+              const SvgOptions& options)
+        : document_(document),
+          size_(size),
+          most_(static_cast<float>(size.width), static_cast<float>(size.height)),
+          background_(background),
+          options_(options) {}
 
-    void add_background(int width, int height) {
+    void add_background() {
         if (!options_.background || !background_) return;
         document_.open_layer("background");
-        document_.add("rect", std::vector<SvgAttribute>{{"width", svg_number(width)},
-                                                        {"height", svg_number(height)},
+        document_.add("rect", std::vector<SvgAttribute>{{"width", svg_number(size_.width)},
+                                                        {"height", svg_number(size_.height)},
                                                         {"fill", svg_color(*background_)}});
         document_.close();
     }
@@ -259,7 +279,7 @@ class SvgWriter {
             attributes = {
                 {"fill", "none"}, {"stroke", color}, {"stroke-linecap", "round"}, {"stroke-linejoin", "round"}};
         document_.open_layer(layer.name, attributes);
-        for (const SvgPiece& piece : ordered(pieces_of(layer.strokes, options_, summary_), options_.form))
+        for (const SvgPiece& piece : ordered(pieces_of(layer.strokes, size_, options_, summary_), options_.form))
             add_piece(piece, layer);
         document_.close();
     }
@@ -268,7 +288,8 @@ class SvgWriter {
   private:
     void add_piece(const SvgPiece& piece, const SvgLayer& layer) {
         const bool lines = options_.form == SvgForm::lines;
-        std::vector<SvgAttribute> attributes = {{"d", lines ? center_line(piece, options_.curves) : outline(piece)}};
+        std::vector<SvgAttribute> attributes = {
+            {"d", lines ? center_line(piece, options_.curves, most_) : outline(piece, most_)}};
         if (lines) attributes.emplace_back("stroke-width", svg_number(static_cast<double>(piece.width)));
         const float opacity = piece.opacity * layer.opacity;
         if (opacity < 0.995f && background_)
@@ -289,6 +310,8 @@ class SvgWriter {
     }
 
     SvgDocument& document_;
+    SvgSize size_;
+    Vec2 most_;  // coordinates
     const std::optional<Color>& background_;
     const SvgOptions& options_;
     SvgSummary summary_;
@@ -329,8 +352,8 @@ SvgSummary write_layers_svg(const std::filesystem::path& path, int width, int he
                             const std::optional<Color>& background, std::span<const SvgLayer> layers,
                             const SvgOptions& options) {
     SvgDocument document(width, height, options.title);
-    SvgWriter writer(document, background, options);
-    writer.add_background(width, height);
+    SvgWriter writer(document, {width, height}, background, options);
+    writer.add_background();
     for (const SvgLayer& layer : layers) {
         check_interrupt();
         writer.add_layer(layer);
@@ -343,8 +366,8 @@ SvgSummary write_drawing_svg(const std::filesystem::path& path, std::span<const 
                              const DrawingStyle& style, const SvgOptions& options) {
     check_frames(frames, options);
     SvgDocument document(frames[0].width, frames[0].height, options.title);
-    SvgWriter writer(document, style.background, options);
-    writer.add_background(frames[0].width, frames[0].height);
+    SvgWriter writer(document, {frames[0].width, frames[0].height}, style.background, options);
+    writer.add_background();
     for (std::size_t f = 0; f < frames.size(); ++f) {
         check_interrupt();
         if (frames.size() > 1) {

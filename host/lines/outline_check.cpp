@@ -121,8 +121,7 @@ InkMask ink_of(const Drawing& drawing, std::optional<LineType> only) {
         if (only && layer.type != *only) continue;
         for (const Stroke& stroke : layer.strokes)
             for (std::size_t i = 0; i + 1 < stroke.points.size(); ++i)
-                if (stroke.points[i].visible)
-                    mark_piece(stroke.points[i].position, stroke.points[i + 1].position, ink);
+                if (stroke.points[i].visible) mark_piece(stroke.points[i].position, stroke.points[i + 1].position, ink);
     }
     return ink;
 }

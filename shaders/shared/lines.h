@@ -37,8 +37,8 @@ struct FieldParameters {
     float feature_size;
 };
 
-// Codes of what is across the sides of a face: exemplar::k_no_neighbor, k_blocked_side, k_sharp_side, k_crowded_side and
-// k_max_neighbor_code.
+// Codes of what is across the sides of a face: exemplar::k_no_neighbor, k_blocked_side, k_sharp_side, k_crowded_side
+// and k_max_neighbor_code.
 const uint k_boundary_side = 0xffffffffu;
 const uint k_blocked_side = 0xfffffffeu;
 const uint k_sharp_side = 0x80000000u;
@@ -56,7 +56,7 @@ struct FaceLineParameters {
     uint faces;
     uint vertices;
     float crease_angle;  // radians
-    uint max_segments;  // capacity
+    uint max_segments;   // capacity
 };
 
 // A segment. `ends` has two barycentric coordinates of each end, those of the second and the third corner.

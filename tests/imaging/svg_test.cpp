@@ -38,7 +38,7 @@ struct CommaPoint : std::numpunct<char> {
 TEST(SvgNumbers, DoNotDependOnTheLocale) {
     const std::locale before = std::locale::global(std::locale(std::locale::classic(), new CommaPoint));
     const std::string number = svg_number(12345.25);
-    SvgPath path;
+    SvgPath path(Vec2(2000, 2000));
     path.move_to({1.5f, 2000.25f});
     std::locale::global(before);
     EXPECT_EQ(number, "12345.25");
@@ -58,9 +58,9 @@ TEST(SvgText, IsEscaped) {
 TEST(SvgDocuments, NestLayersAndGroups) {
     SvgDocument document(30, 20, "A & B");
     document.open_layer("ink", std::vector<SvgAttribute>{{"fill", "none"}});
-    SvgPath path;
+    SvgPath path(Vec2(2000, 2000));
     path.move_to({0, 1});
-    path.line_to({2.5f, -3});
+    path.line_to({2.5f, -3});  // moved to the border
     path.curve_to({1, 2}, {3, 4}, {5, 6});
     path.close();
     document.add("path", std::vector<SvgAttribute>{{"d", path.data()}});
@@ -75,7 +75,7 @@ TEST(SvgDocuments, NestLayersAndGroups) {
               "width=\"30px\" height=\"20px\" viewBox=\"0 0 30 20\">\n"
               "  <title>A &amp; B</title>\n"
               "  <g id=\"layer1\" inkscape:groupmode=\"layer\" inkscape:label=\"ink\" fill=\"none\">\n"
-              "    <path d=\"M0 1L2.5 -3C1 2 3 4 5 6Z\"/>\n"
+              "    <path d=\"M0 1L2.5 0C1 2 3 4 5 6Z\"/>\n"
               "    <g id=\"layer2\" inkscape:groupmode=\"layer\" inkscape:label=\"inner\">\n"
               "    </g>\n"
               "  </g>\n"

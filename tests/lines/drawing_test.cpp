@@ -166,6 +166,47 @@ TEST(VisibleRuns, AreWhatIsVisible) {
     EXPECT_TRUE(visible_runs({}).empty());
 }
 
+StrokeRun run_through(const std::vector<Vec2>& points, bool closed) {
+    StrokeRun run;
+    run.closed = closed;
+    float parameter = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (i > 0) parameter += (points[i] - points[i - 1]).norm();
+        run.points.emplace_back();
+        run.points.back().position = points[i];
+        run.points.back().parameter = parameter;
+        run.points.back().width = points[i].x();
+    }
+    return run;
+}
+
+TEST(RunsWithinThePicture, EndAtItsBorder) {
+    const auto runs = within_picture(run_through({{-10, 5}, {30, 5}, {30, 8}, {5, 8}}, false), 20, 10);
+    ASSERT_EQ(runs.size(), 2);
+    EXPECT_EQ(runs[0].points.front().position, Vec2(0, 5));
+    EXPECT_EQ(runs[0].points.back().position, Vec2(20, 5));
+    EXPECT_EQ(runs[0].points.back().width, 20);
+    EXPECT_EQ(runs[0].points.front().parameter, 10);
+    EXPECT_EQ(runs[1].points.front().position, Vec2(20, 8));
+    EXPECT_EQ(runs[1].points.back().position, Vec2(5, 8));
+    EXPECT_TRUE(within_picture(run_through({{-5, -3}, {30, -3}}, false), 20, 10).empty());
+}
+
+TEST(RunsWithinThePicture, StayClosedOrGoOnAcrossTheirStart) {
+    const std::vector<Vec2> square = {{2, 2}, {8, 2}, {8, 8}, {2, 8}, {2, 2}};
+    const auto whole = within_picture(run_through(square, true), 20, 10);
+    ASSERT_EQ(whole.size(), 1);
+    EXPECT_TRUE(whole[0].closed);
+    EXPECT_EQ(whole[0].points.size(), 5);
+    const auto cut = within_picture(run_through(square, true), 6, 10);
+    ASSERT_EQ(cut.size(), 1);
+    EXPECT_FALSE(cut[0].closed);
+    EXPECT_EQ(cut[0].points.front().position, Vec2(6, 8));
+    EXPECT_EQ(cut[0].points.back().position, Vec2(6, 2));
+    for (std::size_t i = 1; i < cut[0].points.size(); ++i)
+        EXPECT_GT(cut[0].points[i].parameter, cut[0].points[i - 1].parameter);
+}
+
 TEST(DrawingsSideBySide, KeepWhatBothShow) {
     Stroke stroke;
     stroke.points = {{.position = {1, 2}}, {.position = {3, 4}, .visible = false}};

@@ -206,8 +206,9 @@ LinesOutput lines_output_of(const std::filesystem::path& path) {
 
 nlohmann::json report_outline(const LinesJob& job, const OutlineCheck& check) {
     if (!job.common.quiet)
-        fmt::print("outline: {:.1f} % of the silhouette has a line within {} pixels; {:.1f} % of contours are on no edge\n",
-                   100 * check.outlined_share(), k_outline_reach, 100 * check.stray_share());
+        fmt::print(
+            "outline: {:.1f} % of the silhouette has a line within {} pixels; {:.1f} % of contours are on no edge\n",
+            100 * check.outlined_share(), k_outline_reach, 100 * check.stray_share());
     return {{"silhouette_pixels", check.silhouette},
             {"outlined", check.outlined_share()},
             {"contour_pixels", check.contours},

@@ -35,8 +35,7 @@ CurvatureOptions measuring_options(const CurvatureModel* model) {
     return options;
 }
 
-SurfaceScene::SurfaceScene(Device& device, const Document& document)
-    : document_(document), device_(device) {
+SurfaceScene::SurfaceScene(Device& device, const Document& document) : document_(document), device_(device) {
     renderer_ = std::make_unique<AnimationRenderer>(device, document.animation, measuring_options(nullptr));
 }
 
@@ -84,9 +83,9 @@ void SurfaceScene::record(Stream& stream, const SurfaceShape& shape, const Orbit
     const bool learned = model_ && settings.source != ShownCurvature::estimated;
     if (curved) find_feature_size();
     renderer_->record(stream, shape,
-                     !curved   ? CurvatureSource::none
-                     : learned ? CurvatureSource::learned
-                               : CurvatureSource::estimated);
+                      !curved   ? CurvatureSource::none
+                      : learned ? CurvatureSource::learned
+                                : CurvatureSource::estimated);
     prepare_views(extents.size(), settings);
     for (std::size_t i = 0; i < extents.size(); ++i) {
         if (i > 0) renderer_->record_again(stream, CurvatureSource::estimated);

@@ -43,8 +43,8 @@ constexpr bool owns_edge(std::uint32_t face, std::uint32_t side, std::uint32_t a
     return 4 * face + side < neighbor_code(across);
 }
 
-/// Returns whether both faces at an edge are oriented alike, so that they run along it in opposite directions. `across`:
-/// of the side of `face`; `faces`: as they were before a surface was cut open.
+/// Returns whether both faces at an edge are oriented alike, so that they run along it in opposite directions.
+/// `across`: of the side of `face`; `faces`: as they were before a surface was cut open.
 inline bool oriented_alike(std::span<const Face> faces, std::uint32_t face, std::uint32_t side, std::uint32_t across) {
     return faces[face][side] != faces[neighbor_face(across)][neighbor_code(across) % 4];
 }

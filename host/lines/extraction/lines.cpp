@@ -147,7 +147,8 @@ void add_side(std::size_t i, const SidePart& part, float strength, std::uint8_t 
         const float at = end == 0 ? part.from : part.to;
         segment.ends[end] = on_edge(i, at);
         segment.places[end] = k_inside_face;
-        if (at == 0 || at == 1) segment.places[end] = static_cast<SegmentEnd>(k_at_corner + (at == 0 ? i : (i + 1) % 3));
+        if (at == 0 || at == 1)
+            segment.places[end] = static_cast<SegmentEnd>(k_at_corner + (at == 0 ? i : (i + 1) % 3));
         segment.strength[end] = strength;
     }
 }

@@ -53,7 +53,8 @@ void mark_sharp_edges(std::span<const Face> faces, std::span<const Vec3> vertice
     const float most = 8 * k_max_deviation * diagonal_of(faces, vertices);
     // Faces without area have no normal, so their edges are not sharp.
     const auto is_sharp = [&](std::uint32_t f, std::uint32_t side, std::uint32_t g) {
-        const Vec3 a = cross_of(f), b = (oriented_alike(faces, f, side, neighbors[f][side]) ? 1.0f : -1.0f) * cross_of(g);
+        const Vec3 a = cross_of(f),
+                   b = (oriented_alike(faces, f, side, neighbors[f][side]) ? 1.0f : -1.0f) * cross_of(g);
         if (!(a.squaredNorm() > 0) || !(b.squaredNorm() > 0)) return false;
         const float angle = std::atan2(a.cross(b).norm(), a.dot(b));
         if (angle > crease_angle) return true;

@@ -152,6 +152,24 @@ TEST(Visibility, OfACoarseBallsContourIsWhole) {
     }
 }
 
+TEST(Visibility, OfAThinShellsContourIsThatOfItsOutside) {
+    // The inner side is nearer to the outer one than the polygons are to a smooth ball.
+    TriangleMesh inside = shapes::icosphere(3, 0.995f);
+    for (Face& face : inside.faces) std::swap(face[1], face[2]);
+    const Scene shell(shapes::joined(shapes::icosphere(3, 1), inside));
+    const std::size_t outer = shapes::icosphere(3, 1).face_count();
+    const Camera camera = camera_at({3, 2, 6});
+    std::vector<LineSegment> contour = lines(shell, LineType::contours, camera);
+    std::erase_if(contour, [&](const LineSegment& segment) { return segment.face >= outer; });
+    const VisibleParts visible =
+        LineVisibility(shell.surface()).visible_parts(LineType::contours, contour, camera, k_size, k_size);
+    for (std::size_t s = 0; s < contour.size(); ++s) {
+        ASSERT_EQ(visible.of(s).size(), 1) << s;
+        EXPECT_EQ(visible.of(s)[0].from, 0);
+        EXPECT_EQ(visible.of(s)[0].to, 1);
+    }
+}
+
 TEST(Visibility, BehindABallEndsAtItsOutline) {
     // A ball of radius 1 at the origin, and one of radius 1.5 behind it and to its side.
     const Vec3 eye(0, 0, 10), behind(1.2f, 0.3f, -4);

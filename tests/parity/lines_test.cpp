@@ -141,7 +141,7 @@ TEST(LineParityOfAll, WhatThereIsNoRoomForIsCountedAndLeftOut) {
 
 TEST(LineParityOfAll, FacesCarryTheLinesOfTheReference) {
     const Scene scene(mixed());
-    const LineOptions options =
+    LineOptions options =
         drawn_together({.eye = {6.13f, 4.29f, 8.41f}, .feature_size = scene.size(), .thresholds = {}},
                        {k_line_types.begin(), k_line_types.end()});
     options.thresholds.principal_highlights = 0.001f;  // so that there are some

@@ -11,6 +11,9 @@
 #include "host/core/parallel.h"
 #include "host/core/statistics.h"
 #include "host/mesh/editing/drawable_mesh.h"
+#include "host/mesh/editing/merge_coincident_faces.h"
+#include "host/mesh/editing/orient_faces.h"
+#include "host/mesh/editing/remove_faces.h"
 #include "host/mesh/io/io_text.h"
 
 namespace exemplar {
@@ -105,6 +108,12 @@ class RigCheck {
     const Rig& rig_;
 };
 
+/// Takes the triangles of a mesh for the faces of its file.
+void number_triangles(TriangleMesh& mesh) {
+    mesh.source_face.clear();
+    mesh.source_face_count = static_cast<std::uint32_t>(mesh.face_count());
+}
+
 void check_rest(Animation& animation) {
     TriangleMesh& rest = animation.rest;
     const auto fail = [&](const std::string& message) { throw MeshError(animation.name + ": " + message); };
@@ -123,9 +132,28 @@ void check_rest(Animation& animation) {
         fmt::format("{} faces without area in any frame were left out (two of their corners "
                     "are one place)",
                     removed));
-    if (!is_of_triangles) return;
-    rest.source_face.clear();
-    rest.source_face_count = static_cast<std::uint32_t>(rest.face_count());
+    if (is_of_triangles) number_triangles(rest);
+}
+
+/// Returns the vertices of the surface at rest, posed if it has a rig.
+std::vector<Vec3> rest_shape(const Animation& animation) {
+    std::vector<Vec3> vertices = animation.rest.vertices;
+    if (!animation.rig.bones.empty())
+        pose_vertices(animation.rig, animation.rest.vertices, rest_pose(animation.rig), vertices);
+    return vertices;
+}
+
+/// Keeps one of the faces that lie on each other, and turns faces outward, by the shape at rest.
+void prepare_faces(Animation& animation) {
+    const bool is_of_triangles = animation.rest.source_face.empty();
+    TriangleMesh shape = animation.rest;
+    shape.vertices = rest_shape(animation);
+    const std::size_t removed = merge_coincident_faces(shape);
+    warn_of_coincident_faces(removed, animation.warnings);
+    warn_of_turned_faces(orient_faces(shape), animation.warnings);
+    shape.vertices = std::move(animation.rest.vertices);
+    animation.rest = std::move(shape);
+    if (removed > 0 && is_of_triangles) number_triangles(animation.rest);
 }
 
 void check_counts(const Animation& animation, const Clip& clip) {
@@ -236,9 +264,7 @@ std::vector<std::vector<Vec3>> some_frames(const Animation& animation) {
         frames[i] = frame_vertices(animation, *clip, frame);
     });
     if (!frames.empty()) return frames;
-    frames.push_back(animation.rest.vertices);
-    if (!animation.rig.bones.empty())
-        pose_vertices(animation.rig, animation.rest.vertices, rest_pose(animation.rig), frames.front());
+    frames.push_back(rest_shape(animation));
     return frames;
 }
 
@@ -311,6 +337,7 @@ void check_animation(Animation& animation) {
         if (animation.rig.bones.empty()) throw MeshError(animation.name + ": the rig has no bones");
         clean_influences(animation.rig, animation.name, animation.warnings);
     }
+    prepare_faces(animation);
     for (Clip& clip : animation.clips) {
         check_counts(animation, clip);
         drop_broken_frames(animation, clip);

@@ -3,8 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "host/core/errors.h"
 #include "tests/animation/made_up_gltf.h"
+#include "tests/support/shapes.h"
 
 namespace exemplar {
 namespace {
@@ -122,6 +126,39 @@ TEST(CheckAnimation, FacesThatNameAVertexTwiceGoWithTheirSources) {
     EXPECT_THAT(animation.rest.faces, SizeIs(3));
     EXPECT_THAT(animation.rest.source_face, ElementsAre(0, 1, 1));
     EXPECT_EQ(animation.rest.source_face_count, 2u);
+}
+
+TEST(CheckAnimation, FacesThatLieOnOthersGoAndOthersFaceOutwardAtRest) {
+    const TriangleMesh box = shapes::box(1, 2, 3, 2);
+    Animation animation;
+    animation.rest = box;
+    for (Face& face : animation.rest.faces) std::swap(face[1], face[2]);
+    for (const auto& [a, b, c] : box.faces) animation.rest.faces.push_back({b, c, a});
+    animation.rest.source_face_count = static_cast<std::uint32_t>(animation.rest.face_count());
+    check_animation(animation);
+    EXPECT_EQ(animation.rest.faces, box.faces);
+    EXPECT_THAT(animation.rest.source_face, IsEmpty());
+    EXPECT_EQ(animation.rest.source_face_count, box.face_count());
+    EXPECT_THAT(animation.warnings, ElementsAre(HasSubstr("48 faces lie on others"), HasSubstr("inside out")));
+}
+
+TEST(CheckAnimation, TheRestPoseDecidesWhatFacesOutward) {
+    // The bone mirrors the surface: what faces outward before skinning is inside out in the pose.
+    Animation animation;
+    animation.kind = AnimationKind::skeleton;
+    animation.rest = shapes::box(1, 2, 3, 2);
+    const std::vector<Face> faces = animation.rest.faces;
+    Rig& rig = animation.rig;
+    rig.nodes.resize(1);
+    rig.nodes[0].parent = k_invalid_index;
+    rig.nodes[0].rest.scale = {-1, 1, 1};
+    rig.bones = {{}};
+    rig.influences.assign(animation.rest.vertex_count(), {0, 1.0f});
+    for (std::uint32_t v = 0; v <= animation.rest.vertex_count(); ++v) rig.influence_begin.push_back(v);
+    check_animation(animation);
+    ASSERT_EQ(animation.rest.face_count(), faces.size());
+    for (std::size_t f = 0; f < faces.size(); ++f)
+        EXPECT_EQ(animation.rest.faces[f], (Face{faces[f][0], faces[f][2], faces[f][1]}));
 }
 
 TEST(CheckAnimation, CollapsedFacesAndStillClipsAreRemarked) {

@@ -2,33 +2,38 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
 #include "host/core/errors.h"
 #include "host/core/text.h"
+#include "host/mesh/editing/merge_coincident_faces.h"
+#include "host/mesh/editing/orient_faces.h"
+#include "host/mesh/editing/remove_faces.h"
+#include "host/mesh/editing/remove_flat_faces.h"
 #include "host/mesh/editing/validate.h"
 #include "host/mesh/editing/weld.h"
 
 namespace exemplar {
 
-std::size_t remove_collapsed_faces(TriangleMesh& mesh) {
-    std::vector<Face> faces;
-    std::vector<std::uint32_t> source_face;
-    for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
-        const auto& [a, b, c] = mesh.faces[f];
-        if (a == b || b == c || c == a) continue;
-        faces.push_back(mesh.faces[f]);
-        source_face.push_back(mesh.source_of(f));
-    }
-    const std::size_t removed = mesh.face_count() - faces.size();
-    if (removed == 0) return 0;
-    mesh.faces = std::move(faces);
-    mesh.source_face = std::move(source_face);
-    return removed;
+void warn_of_coincident_faces(std::size_t removed, std::vector<std::string>& warnings) {
+    if (removed > 0)
+        warnings.push_back(
+            fmt::format("{} on others; one of each was kept", counted(removed, "face lies", "faces lie")));
+}
+
+void warn_of_turned_faces(const OrientationChange& change, std::vector<std::string>& warnings) {
+    if (change.turned_faces > 0)
+        warnings.push_back(
+            fmt::format("{} turned around to agree with neighboring faces", counted(change.turned_faces, "face")));
+    if (change.turned_pieces == 0) return;
+    if (change.pieces == 1)
+        warnings.emplace_back("the surface is inside out; its faces were turned around");
+    else
+        warnings.push_back(fmt::format("{} of {} connected pieces {} inside out; {} faces were turned around",
+                                       change.turned_pieces, change.pieces, change.turned_pieces == 1 ? "was" : "were",
+                                       change.turned_pieces == 1 ? "its" : "their"));
 }
 
 DrawableMesh drawable_mesh(const TriangleMesh& mesh, const std::string& name) {
-    const MeshReport report = require_usable(mesh, name);
+    require_usable(mesh, name);
     DrawableMesh drawable{welded(mesh), {}};
     const std::size_t removed = remove_collapsed_faces(drawable.mesh);
     if (drawable.mesh.faces.empty())
@@ -36,10 +41,14 @@ DrawableMesh drawable_mesh(const TriangleMesh& mesh, const std::string& name) {
     if (removed > 0)
         drawable.warnings.push_back(
             fmt::format("{} left out, two of whose corners are at one place", counted(removed, "face")));
-    if (report.inside_out) {
-        for (Face& face : drawable.mesh.faces) std::swap(face[1], face[2]);
-        drawable.warnings.emplace_back("the surface is inside out; its faces were turned around");
+    std::size_t coincident = merge_coincident_faces(drawable.mesh);
+    if (const std::size_t flat = remove_flat_faces(drawable.mesh); flat > 0) {
+        drawable.warnings.push_back(fmt::format("{} without area left out", counted(flat, "face")));
+        coincident += merge_coincident_faces(drawable.mesh);
     }
+    if (drawable.mesh.faces.empty()) throw MeshError(name + ": no face has an area; there is nothing to draw");
+    warn_of_coincident_faces(coincident, drawable.warnings);
+    warn_of_turned_faces(orient_faces(drawable.mesh), drawable.warnings);
     return drawable;
 }
 

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "host/core/errors.h"
+#include "host/mesh/editing/area_vector.h"
 
 namespace exemplar {
 namespace {
@@ -21,17 +21,11 @@ void find_vertex_defects(const TriangleMesh& mesh, MeshReport& report) {
     }
 }
 
-/// Returns twice the area vector of a face.
-Vec3d doubled_area(const TriangleMesh& mesh, const Face& face) {
-    const Vec3d a = mesh.vertices[face[0]].cast<double>();
-    return (mesh.vertices[face[1]].cast<double>() - a).cross(mesh.vertices[face[2]].cast<double>() - a);
-}
-
 void find_degenerate_faces(const TriangleMesh& mesh, MeshReport& report) {
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) {
         const Face& face = mesh.faces[f];
         const bool repeats = face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
-        if (repeats || doubled_area(mesh, face).isZero(0)) report.degenerate_faces.push_back(f);
+        if (repeats || doubled_area_vector(mesh, face).isZero(0)) report.degenerate_faces.push_back(f);
     }
 }
 
@@ -91,7 +85,7 @@ double signed_volume(const TriangleMesh& mesh) {
     const Vec3d origin = mesh.vertices[0].cast<double>();
     double six_volumes = 0;
     for (const Face& face : mesh.faces)
-        six_volumes += doubled_area(mesh, face).dot(mesh.vertices[face[0]].cast<double>() - origin);
+        six_volumes += doubled_area_vector(mesh, face).dot(mesh.vertices[face[0]].cast<double>() - origin);
     return six_volumes / 6;
 }
 

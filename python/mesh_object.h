@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/core/errors.h"
+#include "host/mesh/io/io.h"
 #include "host/mesh/labels.h"
 #include "host/mesh/mesh.h"
 
@@ -20,6 +21,7 @@ struct MeshObject {
     std::shared_ptr<const FaceLabels> labels;              ///< a label per TRIANGLE; null: there are none
     std::shared_ptr<const std::vector<float>> confidence;  ///< per triangle; null: there are none
     std::vector<std::string> warnings;
+    Polygons polygons;  ///< of the file; empty if it has only triangles
 };
 using MeshPointer = std::shared_ptr<MeshObject>;
 

@@ -67,6 +67,7 @@ MeshPointer read_mesh_file(const fs::path& path) {
         MeshPointer object = make_mesh(std::move(file.mesh), path.string(), std::move(file.warnings));
         if (file.labels) object->labels = triangle_labels(*object->mesh, *file.labels);
         object->confidence = triangle_confidence(*object->mesh, file.confidence);
+        object->polygons = std::move(file.polygons);
         return object;
     });
 }
@@ -99,7 +100,8 @@ void write_mesh_file(const MeshObject& object, const fs::path& path) {
     if (extension == ".ply")
         writer = [&] {
             const FaceLabels labels = object.labels ? source_labels(object) : FaceLabels{};
-            write_ply(path, *object.mesh, object.labels ? &labels : nullptr, source_confidence(object));
+            write_ply(path, *object.mesh, object.labels ? &labels : nullptr, source_confidence(object),
+                      &object.polygons);
         };
     if (extension == ".glb")
         writer = [&] {
@@ -198,7 +200,15 @@ using MeshClass = py::class_<MeshObject, MeshPointer>;
 void add_arrays(MeshClass& mesh) {
     mesh.def_property_readonly(
             "vertices", [](const MeshObject& self) { return list_view(self.mesh, self.mesh->vertices); },
-            "Positions (n x 3 float32): a read-only view, without a copy.")
+            "Positions (n x 3 float32) relative to `origin`: a read-only view, without a copy.")
+        .def_property_readonly(
+            "origin",
+            [](const MeshObject& self) {
+                const Vec3d& origin = self.mesh->origin;
+                return py::make_tuple(origin[0], origin[1], origin[2]);
+            },
+            "What is to be added to `vertices` for the coordinates of the file (x, y, z): zero, but for files with\n"
+            "geographic coordinates, which floats cannot hold.")
         .def_property_readonly(
             "faces", [](const MeshObject& self) { return list_view(self.mesh, self.mesh->faces); },
             "Vertices of each triangle (m x 3 uint32), counter-clockwise seen from outside: a read-only view.")

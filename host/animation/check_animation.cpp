@@ -14,6 +14,7 @@
 #include "host/mesh/editing/merge_coincident_faces.h"
 #include "host/mesh/editing/orient_faces.h"
 #include "host/mesh/editing/remove_faces.h"
+#include "host/mesh/editing/validate.h"
 #include "host/mesh/io/io_text.h"
 
 namespace exemplar {
@@ -127,6 +128,7 @@ void check_rest(Animation& animation) {
     const bool is_of_triangles = rest.source_face.empty();
     const std::size_t removed = remove_collapsed_faces(rest);
     if (rest.faces.empty()) fail("the surface has no faces");
+    if (const std::string fault = size_fault(rest); !fault.empty()) fail(fault);
     if (removed == 0) return;
     animation.warnings.push_back(
         fmt::format("{} faces without area in any frame were left out (two of their corners "

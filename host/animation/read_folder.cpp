@@ -111,6 +111,13 @@ std::string difference(const TriangleMesh& first, const TriangleMesh& other) {
     return {};
 }
 
+/// Returns the vertices of a mesh relative to `origin`, that of the file with which the animation began.
+std::vector<Vec3> vertices_from(const Vec3d& origin, TriangleMesh mesh) {
+    if (mesh.origin != origin)
+        for (Vec3& p : mesh.vertices) p = (p.cast<double>() + (mesh.origin - origin)).cast<float>();
+    return std::move(mesh.vertices);
+}
+
 /// Reads the vertex positions of each file, which must have the topology of `first` (of file `first_path`). Throws
 /// for the first file, in order, with a fault.
 std::vector<std::vector<Vec3>> read_shapes(const std::vector<fs::path>& paths, const TriangleMesh& first,
@@ -123,7 +130,7 @@ std::vector<std::vector<Vec3>> read_shapes(const std::vector<fs::path>& paths, c
             if (const std::string what = difference(first, mesh); !what.empty())
                 faults[i] = fmt::format("{}: has {}, unlike {}; all files need one topology", paths[i].string(), what,
                                         first_path.filename().string());
-            shapes[i] = std::move(mesh.vertices);
+            shapes[i] = vertices_from(first.origin, std::move(mesh));
         } catch (const MeshError& error) {
             faults[i] = error.what();
         }

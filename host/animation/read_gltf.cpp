@@ -9,6 +9,7 @@
 #include "host/animation/read_formats.h"
 #include "host/animation/weld_rig.h"
 #include "host/mesh/io/io_gltf_file.h"
+#include "host/mesh/io/io_origin.h"
 
 namespace exemplar::animation_io {
 namespace {
@@ -96,6 +97,8 @@ Animation read_gltf(std::string_view content, const std::string& name, const std
     weld_rig(animation);
     animation.kind = gltf_kind(gltf, links, animation.rig);
     animation.rest.source_face_count = static_cast<std::uint32_t>(animation.rest.face_count());
+    if (std::string far = mesh_io::far_position_warning(animation.rest); !far.empty())
+        animation.warnings.push_back(std::move(far));
     return animation;
 }
 

@@ -25,6 +25,9 @@ struct TriangleMesh {
     std::vector<std::uint32_t> source_face;
     /// Number of polygons in the file; equals faces.size() if the file held only triangles.
     std::uint32_t source_face_count = 0;
+    /// Added to `vertices`, gives the coordinates of the file. Zero, but for files whose position would take up the
+    /// precision of floats, such as geographic ones (see mesh_io::origin_for_floats).
+    Vec3d origin = Vec3d::Zero();
 
     std::size_t vertex_count() const { return vertices.size(); }
     std::size_t face_count() const { return faces.size(); }

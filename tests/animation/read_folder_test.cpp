@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -176,6 +177,29 @@ TEST_F(Folder, ANeutralMeshMakesTheOthersBlendShapes) {
     pose_vertices(animation.rig, animation.rest.vertices, pose, posed);
     EXPECT_EQ(posed[3], Vec3(0, 0, 2));
     EXPECT_EQ(posed[1], Vec3(1, 0, 0));
+}
+
+TEST_F(Folder, FramesFarFromTheOriginAreInOneFrameOfReference) {
+    const auto tetrahedron = [](double x) {  // moves 2 units a frame, and shrinks
+        const double y = 4581234.1, s = x < 431235 ? 1 : 0.25;
+        return fmt::format("v {} {} 1\nv {} {} 1\nv {} {} 1\nv {} {} {}\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n", x, y,
+                           x + s, y, x, y + s, x, y, 1 + s);
+    };
+    for (const int i : {1, 2, 3}) add(fmt::format("{}.obj", i), tetrahedron(431231.03 + 2 * i));
+    const Animation animation = read();
+    const std::vector<std::vector<Vec3>>& frames = animation.clips.at(0).frames;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double x = 431231.03 + 2 * static_cast<double>(i + 1), s = x < 431235 ? 1 : 0.25;
+        const Vec3d at = animation.rest.origin + frames[i][0].cast<double>(),
+                    tip = (frames[i][1] - frames[i][0]).cast<double>();
+        EXPECT_LT((at - Vec3d(x, 4581234.1, 1)).norm(), 1e-6) << i;
+        EXPECT_NEAR(tip[0], s, 1e-6) << i;
+    }
+}
+
+TEST_F(Folder, FramesThatAreTooLargeAreRefused) {
+    add("1.obj", "v 0 0 0\nv 1e30 0 0\nv 0 1e30 0\nf 1 2 3\n");
+    EXPECT_THAT(error(), HasSubstr("too large"));
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ nlohmann::json apply_to(const std::filesystem::path& path, const LabelingModel& 
         of_file(path, [&] { return label_mesh(model, file.mesh, cache, backend.labeling()); });
     const LabeledOutput output = make_labeled_output(file.mesh, model, labeling);
     const std::filesystem::path stem = options.out / path.stem();
-    write_labeled_files(stem, file.mesh, output, options.gltf);
+    write_labeled_files(stem, file, output, options.gltf);
     if (options.png) backend.render_png(stem.string() + ".png", file.mesh, triangle_colors(model, labeling));
 
     nlohmann::json json = describe_output(file.mesh, model, labeling);

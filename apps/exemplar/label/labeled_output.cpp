@@ -23,11 +23,12 @@ LabeledOutput make_labeled_output(const TriangleMesh& mesh, const LabelingModel&
     return output;
 }
 
-void write_labeled_files(const std::filesystem::path& stem, const TriangleMesh& mesh, const LabeledOutput& output,
+void write_labeled_files(const std::filesystem::path& stem, const MeshFile& file, const LabeledOutput& output,
                          bool gltf) {
+    const TriangleMesh& mesh = file.mesh;
     write_labels_txt(stem.string() + "_labels.txt", output.labels);
     write_seg(stem.string() + ".seg", mesh, output.labels);
-    write_ply(stem.string() + ".ply", mesh, &output.labels, output.confidence);
+    write_ply(stem.string() + ".ply", mesh, &output.labels, output.confidence, &file.polygons);
     if (gltf) write_gltf(stem.string() + ".glb", mesh, output.labels);
 }
 

@@ -15,8 +15,8 @@ struct LabeledOutput {
 };
 LabeledOutput make_labeled_output(const TriangleMesh& mesh, const LabelingModel& model, const FaceLabeling& labeling);
 
-/// Writes STEM_labels.txt, STEM.ply, STEM.seg and, with `gltf`, STEM.glb.
-void write_labeled_files(const std::filesystem::path& stem, const TriangleMesh& mesh, const LabeledOutput& output,
+/// Writes, for the mesh of a file, STEM_labels.txt, STEM.ply, STEM.seg and, with `gltf`, STEM.glb.
+void write_labeled_files(const std::filesystem::path& stem, const MeshFile& file, const LabeledOutput& output,
                          bool gltf);
 
 /// The color of each triangle's label.

@@ -278,6 +278,7 @@ SimplifiedMesh simplify_mesh(const TriangleMesh& mesh, std::size_t faces) {
     }
     const UnitFrame frame(mesh);
     TriangleMesh unit = mesh;
+    result.mesh.origin = mesh.origin;
     for (Vec3& v : unit.vertices) v = frame.to_unit(v);
     const Clustering clustering(unit, std::max<std::size_t>(faces / k_faces_per_vertex, 4));
     result.mesh.vertices = clustering.best_points();

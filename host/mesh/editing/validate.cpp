@@ -161,9 +161,23 @@ MeshReport validate_mesh(const TriangleMesh& mesh) {
     return report;
 }
 
+std::string size_fault(const TriangleMesh& mesh) {
+    constexpr double k_largest = 1e12, k_smallest = 1e-12;
+    if (mesh.faces.empty()) return {};
+    const double size = bounding_box(mesh).diagonal();
+    if (size > k_largest)
+        return fmt::format("the mesh is too large ({:.2g} across) for computations in floats; scale it to below {:.0e}",
+                           size, k_largest);
+    if (size > 0 && size < k_smallest)
+        return fmt::format("the mesh is too small ({:.2g} across) for computations in floats; scale it to above {:.0e}",
+                           size, k_smallest);
+    return {};
+}
+
 MeshReport require_usable(const TriangleMesh& mesh, const std::string& name) {
     MeshReport report = validate_mesh(mesh);
     if (!report.usable()) throw MeshError(name + ": " + report.messages().front());
+    if (const std::string fault = size_fault(mesh); !fault.empty()) throw MeshError(name + ": " + fault);
     return report;
 }
 

@@ -28,7 +28,11 @@ struct MeshReport {
     std::vector<std::string> messages() const;
 };
 MeshReport validate_mesh(const TriangleMesh& mesh);
-/// Throws MeshError naming `name` if the mesh is empty or not finite; returns the report otherwise.
+/// Returns what is wrong with the size of a mesh, and the mend; empty if nothing is. Its bounding box must have a
+/// diagonal of 1e-12 to 1e12, or none: curvature and its derivatives are computed in floats, whose range (1e-38 to
+/// 3e38) holds third powers of such lengths and of their inverses.
+std::string size_fault(const TriangleMesh& mesh);
+/// Throws MeshError naming `name` if the mesh is empty, not finite, or of a size_fault; returns the report otherwise.
 MeshReport require_usable(const TriangleMesh& mesh, const std::string& name);
 
 }  // namespace exemplar

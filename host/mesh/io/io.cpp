@@ -10,6 +10,7 @@
 #include "host/core/text.h"
 #include "host/mesh/io/io_formats.h"
 #include "host/mesh/io/io_gltf_file.h"
+#include "host/mesh/io/io_origin.h"
 #include "host/mesh/io/io_text.h"
 
 namespace exemplar {
@@ -78,7 +79,10 @@ MeshFile read_mesh(const fs::path& path) {
                                                  fmt::join(known, " "), suggestion(extension, known)));
     }
     const std::string content = read_content(path);
-    return read_content_as(extension, content, path);
+    MeshFile file = read_content_as(extension, content, path);
+    if (std::string warning = mesh_io::far_position_warning(file.mesh); !warning.empty())
+        file.warnings.push_back(std::move(warning));
+    return file;
 }
 
 std::uint64_t external_buffer_bytes(const fs::path& path) {

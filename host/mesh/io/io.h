@@ -13,6 +13,12 @@
 
 namespace exemplar {
 
+/// Polygons as lists of vertex numbers.
+struct Polygons {
+    std::vector<std::uint32_t> corner_counts;  ///< per polygon; any number
+    std::vector<std::uint32_t> corners;        ///< of one polygon after the other
+};
+
 /// The content of a mesh file.
 struct MeshFile {
     TriangleMesh mesh;
@@ -22,6 +28,8 @@ struct MeshFile {
     /// Per source face, from a PLY float property `confidence` (see write_ply): as read, NaN for triangles of strips.
     /// Empty in all other files.
     std::vector<float> confidence;
+    /// The source faces as they are in the file, for write_ply. Empty if all are triangles.
+    Polygons polygons;
     /// One-line remarks about what was repaired or left out while reading.
     std::vector<std::string> warnings;
 };
@@ -40,15 +48,18 @@ std::uint64_t external_buffer_bytes(const std::filesystem::path& path);
 /// Returns the extensions that read_mesh accepts, lower case with dot.
 std::span<const std::string_view> mesh_extensions();
 
-/// All writers write triangles, in the order of `mesh` unless said otherwise, and replace a file only when the new
-/// one is complete. They throw DataError if they cannot write, UsageError if labels do not fit the mesh.
+/// All writers write triangles, in the order of `mesh` unless said otherwise, in the file's frame (mesh.origin), and
+/// replace a file only when the new one is complete. They throw DataError if they cannot write, UsageError if labels do
+/// not fit the mesh.
 void write_off(const std::filesystem::path& path, const TriangleMesh& mesh);
 void write_obj(const std::filesystem::path& path, const TriangleMesh& mesh);
-/// Writes binary little-endian PLY. If given, labels add per face an int property `label` and uchar red, green, blue
+/// Writes binary little-endian PLY, with double coordinates if the mesh has an origin. If given, labels add per face an
+/// int property `label` and uchar red, green, blue
 /// (`comment label INDEX NAME` lines name them), and confidences a float `confidence`. Both are per source face of
-/// `mesh`; each triangle is written with those of its source face, -1 and gray where unlabeled.
+/// `mesh`; each triangle is written with those of its source face, -1 and gray where unlabeled. If `polygons` are given
+/// and not empty, they are written in place of the triangles: one per source face, of vertices of `mesh`.
 void write_ply(const std::filesystem::path& path, const TriangleMesh& mesh, const FaceLabels* labels = nullptr,
-               std::span<const float> confidence = {});
+               std::span<const float> confidence = {}, const Polygons* polygons = nullptr);
 /// Writes binary glTF (.glb) with one primitive and one named, colored material per label that occurs, so triangles
 /// are in order of label. Unlabeled ones come first, with an unnamed gray material. Throws MeshError if a vertex is
 /// not finite or there are no faces: glTF can express neither.

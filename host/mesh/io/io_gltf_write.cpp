@@ -89,6 +89,7 @@ OrderedJson document_of(const TriangleMesh& mesh, const FaceLabels& labels, cons
     document["scene"] = 0;
     document["scenes"] = {{{"nodes", {0}}}};
     document["nodes"] = {{{"mesh", 0}}};
+    if (!mesh.origin.isZero(0)) document["nodes"][0]["translation"] = {mesh.origin[0], mesh.origin[1], mesh.origin[2]};
     document["meshes"] = {{{"primitives", primitives}}};
     document["materials"] = materials;
     document["accessors"] = accessors;

@@ -28,7 +28,7 @@ struct ObjContent {
     PolygonList polygons;
     std::vector<std::size_t> face_line;  ///< per polygon
     std::vector<std::uint32_t> corners;  ///< of the current face
-    std::array<float, 3> position;       ///< of the current vertex, as checked
+    std::array<double, 3> position;      ///< of the current vertex, as checked
     std::size_t line = 0;
     std::string name;
 
@@ -94,10 +94,10 @@ class CheckedLines : public std::streambuf {
         }
     }
     void check_vertex(std::string_view line) {
-        for (float& coordinate : obj_.position) {
+        for (double& coordinate : obj_.position) {
             const std::string_view word = take_word(line);
             if (word.empty()) obj_.fail(obj_.line, "a vertex needs three coordinates");
-            const auto value = parse_float(word);
+            const auto value = parse_number(word);
             if (!value) obj_.fail(obj_.line, fmt::format("a coordinate should be a number, not {}", quote(word)));
             coordinate = *value;
         }
@@ -131,13 +131,13 @@ class CheckedLines : public std::streambuf {
 /// The library reads nan as 0 and does not round exactly, so the checked numbers are used.
 void on_vertex(void* user_data, tinyobj::real_t, tinyobj::real_t, tinyobj::real_t, tinyobj::real_t) {
     ObjContent& obj = *static_cast<ObjContent*>(user_data);
-    obj.polygons.vertices.push_back({obj.position[0], obj.position[1], obj.position[2]});
+    obj.polygons.positions.push_back({obj.position[0], obj.position[1], obj.position[2]});
 }
 
 /// Indices count from 1, or back from the latest vertex if negative; positive ones may name vertices yet to come.
 void on_face(void* user_data, tinyobj::index_t* indices, int count) {
     ObjContent& obj = *static_cast<ObjContent*>(user_data);
-    const auto vertex_count = static_cast<std::int64_t>(obj.polygons.vertices.size());
+    const auto vertex_count = static_cast<std::int64_t>(obj.polygons.positions.size());
     obj.corners.clear();
     for (int i = 0; i < count; ++i) {
         const std::int64_t index = indices[i].vertex_index;
@@ -153,9 +153,9 @@ void check_corners(const ObjContent& obj) {
     std::size_t begin = 0;
     for (std::size_t f = 0; f < obj.polygons.size(); ++f) {
         for (std::uint32_t corner : obj.polygons.corners().subspan(begin, obj.polygons.corner_counts()[f]))
-            if (corner >= obj.polygons.vertices.size())
+            if (corner >= obj.polygons.positions.size())
                 obj.fail(obj.face_line[f], fmt::format("the face names vertex {}, but the file has {} vertices",
-                                                       corner + 1, obj.polygons.vertices.size()));
+                                                       corner + 1, obj.polygons.positions.size()));
         begin += obj.polygons.corner_counts()[f];
     }
 }
@@ -174,10 +174,10 @@ MeshFile read_obj(std::string_view content, const std::string& name) {
     const bool read = tinyobj::LoadObjWithCallback(stream, callbacks, &obj, nullptr, &warning, &error);
     if (!lines.error().empty()) throw MeshError(lines.error());
     if (!read || !error.empty()) obj.fail(obj.line, std::string(trimmed(error)));
-    if (obj.polygons.vertices.empty()) mesh_io::fail(name, "no line of this file is an OBJ vertex (v x y z)");
+    if (obj.polygons.positions.empty()) mesh_io::fail(name, "no line of this file is an OBJ vertex (v x y z)");
     check_corners(obj);
     MeshFile file;
-    file.mesh = std::move(obj.polygons).triangulate(file.warnings);
+    std::move(obj.polygons).triangulate_into(file);
     return file;
 }
 
@@ -189,7 +189,7 @@ void write_obj(const std::filesystem::path& path, const TriangleMesh& mesh) {
         text += 'v';
         for (int i = 0; i < 3; ++i) {
             text += ' ';
-            mesh_io::append_number(text, p[i]);
+            mesh_io::append_coordinate(text, mesh, p, i);
         }
         text += '\n';
     }

@@ -38,10 +38,10 @@ class OffReader {
         read_counts();
         MeshFile file;
         PolygonList polygons;
-        read_vertices(polygons.vertices);
+        read_vertices(polygons.positions);
         read_faces(polygons);
         check_end(file.warnings);
-        file.mesh = std::move(polygons).triangulate(file.warnings);
+        std::move(polygons).triangulate_into(file);
         return file;
     }
 
@@ -127,7 +127,7 @@ class OffReader {
     void need_more(std::string_view what) {
         if (layout_ != Layout::one_per_line) need_number(what);
     }
-    float number(std::string_view what) {
+    double number(std::string_view what) {
         need_more(what);
         return cursor_.number(what);
     }
@@ -136,12 +136,12 @@ class OffReader {
         return cursor_.integer(what);
     }
 
-    void read_vertices(std::vector<Vec3>& vertices) {
+    void read_vertices(std::vector<Vec3d>& vertices) {
         vertices.reserve(vertex_count_);
         for (std::size_t v = 0; v < vertex_count_; ++v) {
             begin("a vertex");
             const std::size_t line = cursor_.line_number();
-            const float x = number("the x of a vertex"), y = number("the y of a vertex");
+            const double x = number("the x of a vertex"), y = number("the y of a vertex");
             vertices.push_back({x, y, number("the z of a vertex")});
             for (int i = 0; i < extra_numbers_ && layout_ == Layout::shared; ++i) number("a color or normal");
             check_line_end(line, "a vertex");
@@ -205,7 +205,7 @@ void write_off(const std::filesystem::path& path, const TriangleMesh& mesh) {
     std::string text = fmt::format("OFF\n{} {} 0\n", mesh.vertex_count(), mesh.face_count());
     for (const Vec3& p : mesh.vertices) {
         for (int i = 0; i < 3; ++i) {
-            mesh_io::append_number(text, p[i]);
+            mesh_io::append_coordinate(text, mesh, p, i);
             text += i < 2 ? ' ' : '\n';
         }
     }

@@ -186,12 +186,12 @@ class BodyReader {
                                       "or the file is cut off",
                                       element.count, element.shown));
         const std::vector<Role> roles = roles_of(element);
-        if (element.name == "vertex") content_.polygons.vertices.reserve(element.count);
+        if (element.name == "vertex") content_.polygons.positions.reserve(element.count);
         if (element.name == "face") content_.polygons.reserve_polygons(element.count);
         for (row_ = 0; row_ < element.count; ++row_) {
             values_.begin_row(element.shown);
             for (std::size_t p = 0; p < roles.size(); ++p) read_property(element.properties[p], roles[p]);
-            if (element.name == "vertex") content_.polygons.vertices.push_back(position_);
+            if (element.name == "vertex") content_.polygons.positions.push_back(position_);
             if (element.name == "face") content_.polygons.add(corners_);
             if (element.name == "tristrips") end_strip();
         }
@@ -220,13 +220,13 @@ class BodyReader {
         const double value = values_.value(property.type, property.shown);
         switch (role) {
             case Role::x:
-                position_.x() = static_cast<float>(value);
+                position_.x() = value;
                 break;
             case Role::y:
-                position_.y() = static_cast<float>(value);
+                position_.y() = value;
                 break;
             case Role::z:
-                position_.z() = static_cast<float>(value);
+                position_.z() = value;
                 break;
             case Role::label:
                 add_label(value);
@@ -272,7 +272,7 @@ class BodyReader {
     PlyContent content_;
     std::optional<std::uint64_t> vertex_count_;
     std::uint64_t row_ = 0;
-    Vec3 position_ = Vec3::Zero();
+    Vec3d position_ = Vec3d::Zero();
     std::vector<std::uint32_t> corners_;
 };
 
@@ -311,7 +311,7 @@ MeshFile read_ply(std::string_view content, const std::string& name) {
     PlyContent body = header.encoding == PlyEncoding::ascii
                           ? BodyReader(AsciiValues(content, name, header), name, header).read(file.warnings)
                           : BodyReader(BinaryValues(content, name, header), name, header).read(file.warnings);
-    file.mesh = std::move(body.polygons).triangulate(file.warnings);
+    std::move(body.polygons).triangulate_into(file);
     if (body.has_labels) file.labels = named_labels(std::move(body.labels), header.label_names);
     file.confidence = std::move(body.confidence);
     return file;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "host/mesh/io/io_origin.h"
+
 namespace exemplar::mesh_io {
 namespace {
 
@@ -128,6 +130,12 @@ void PolygonList::add(std::span<const std::uint32_t> corners) {
 
 TriangleMesh PolygonList::triangulate(std::vector<std::string>& warnings) && {
     TriangleMesh mesh;
+    if (!positions.empty()) {
+        mesh.origin = origin_for_floats(positions, corners_);
+        vertices.reserve(positions.size());
+        for (const Vec3d& position : positions) vertices.push_back((position - mesh.origin).cast<float>());
+        positions = {};
+    }
     mesh.vertices = std::move(vertices);
     mesh.source_face_count = static_cast<std::uint32_t>(size());
     std::size_t triangles = 0, dropped = 0, first_dropped = 0;
@@ -148,6 +156,12 @@ TriangleMesh PolygonList::triangulate(std::vector<std::string>& warnings) && {
         warnings.push_back(fmt::format(
             "{} faces have fewer than three corners and were left out (the first is face {})", dropped, first_dropped));
     return mesh;
+}
+
+void PolygonList::triangulate_into(MeshFile& file) && {
+    file.mesh = std::move(*this).triangulate(file.warnings);
+    if (std::ranges::all_of(corner_count_, [](std::uint32_t count) { return count == 3; })) return;
+    file.polygons = {std::move(corner_count_), std::move(corners_)};
 }
 
 }  // namespace exemplar::mesh_io

@@ -11,7 +11,8 @@ namespace exemplar::mesh_io {
 /// Collects the vertices and polygons of a file, in the file's order, and turns them into a TriangleMesh.
 class PolygonList {
   public:
-    std::vector<Vec3> vertices;
+    std::vector<Vec3> vertices;    ///< of files that hold floats
+    std::vector<Vec3d> positions;  ///< of all other files, in place of `vertices`
 
     /// Reserves memory for `polygons` triangles; callers bound it by the size of the file.
     void reserve_polygons(std::size_t polygons);
@@ -21,9 +22,12 @@ class PolygonList {
     std::span<const std::uint32_t> corners() const { return corners_; }
     std::span<const std::uint32_t> corner_counts() const { return corner_count_; }
 
-    /// Cuts the polygons into triangles and moves everything into a mesh. Polygons with fewer than three corners
-    /// give no triangle but keep their source face number; a line in `warnings` counts them.
+    /// Cuts the polygons into triangles and moves everything into a mesh, whose origin is that of its positions.
+    /// Polygons with fewer than three corners give no triangle but keep their source face number; a line in `warnings`
+    /// counts them.
     TriangleMesh triangulate(std::vector<std::string>& warnings) &&;
+    /// Triangulates into the mesh of a file, which keeps the polygons if not all are triangles.
+    void triangulate_into(MeshFile& file) &&;
 
   private:
     std::vector<std::uint32_t> corners_, corner_count_;

@@ -89,8 +89,8 @@ class AsciiStl {
         std::array<std::uint32_t, 3> corners;
         for (std::uint32_t& corner : corners) {
             go_to("vertex", "a vertex");
-            const float x = cursor_.number("the x of a vertex"), y = cursor_.number("the y of a vertex");
-            corner = welder_.add({x, y, cursor_.number("the z of a vertex")}, polygons.vertices);
+            const float x = coordinate("the x of a vertex"), y = coordinate("the y of a vertex");
+            corner = welder_.add({x, y, coordinate("the z of a vertex")}, polygons.vertices);
         }
         go_to("endloop", "endloop");
         go_to("endfacet", "endfacet");
@@ -98,6 +98,8 @@ class AsciiStl {
         ended_ = false;
         polygons.add(corners);
     }
+    float coordinate(std::string_view what) { return static_cast<float>(cursor_.number(what)); }
+
     TextCursor cursor_;
     VertexWelder welder_;
     bool ended_ = false;
@@ -159,7 +161,7 @@ MeshFile read_stl(std::string_view content, const std::string& name) {
         read_binary(content, name, polygons, file.warnings);
     else
         AsciiStl(content, name).read(polygons);
-    file.mesh = std::move(polygons).triangulate(file.warnings);
+    std::move(polygons).triangulate_into(file);
     return file;
 }
 

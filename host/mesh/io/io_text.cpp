@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <charconv>
+#include <cmath>
 #include <limits>
 
 #include "host/core/errors.h"
@@ -79,6 +81,11 @@ float clamped_number(std::string_view word) {
     return negative ? -magnitude : magnitude;
 }
 
+bool is_halfway_between_floats(double value) {
+    constexpr std::uint64_t k_below_float = (std::uint64_t{1} << 29) - 1, k_halfway = std::uint64_t{1} << 28;
+    return (std::bit_cast<std::uint64_t>(value) & k_below_float) == k_halfway;
+}
+
 }  // namespace
 
 std::optional<float> parse_float(std::string_view word) {
@@ -90,6 +97,21 @@ std::optional<float> parse_float(std::string_view word) {
     if (error == std::errc::result_out_of_range) return clamped_number(word);
     if (error != std::errc()) return std::nullopt;
     return value;
+}
+
+std::optional<double> parse_number(std::string_view word) {
+    double value = 0;
+    const std::string_view digits = without_plus(word);
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    const double magnitude = std::abs(value);
+    const bool is_float = error == std::errc() && end == digits.data() + digits.size() &&
+                          magnitude >= std::numeric_limits<float>::min() &&
+                          magnitude < double{std::numeric_limits<float>::max()};
+    if (is_float && !is_halfway_between_floats(value)) return value;
+    const std::optional<float> rounded = parse_float(word);
+    if (!rounded || !is_float) return rounded;
+    // Digits that the double does not hold may decide to which float it is rounded.
+    return static_cast<float>(value) == *rounded ? value : std::nextafter(value, double{*rounded});
 }
 
 std::optional<std::int64_t> parse_integer(std::string_view word) {
@@ -143,9 +165,9 @@ void TextCursor::need_line(std::string_view expected) {
         fail(fmt::format("the file ends where {} should be; it is cut off or its counts are wrong", expected));
 }
 
-float TextCursor::number(std::string_view what) {
+double TextCursor::number(std::string_view what) {
     const std::string_view taken = word();
-    const auto value = parse_float(taken);
+    const auto value = parse_number(taken);
     if (!value) fail_word(taken, what, "a number");
     return *value;
 }

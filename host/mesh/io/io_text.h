@@ -19,6 +19,8 @@ std::string quote(std::string_view text);
 /// Parses all of `word` as a number: decimal, with or without sign and exponent, or nan or inf; returns nothing if
 /// it is none. A value too large or small for a float becomes infinity or zero.
 std::optional<float> parse_float(std::string_view word);
+/// Parses as parse_float does, with the precision of a double. Rounded to a float, the result is that of parse_float.
+std::optional<double> parse_number(std::string_view word);
 /// Parses all of `word` as a decimal integer; returns nothing if it is none.
 std::optional<std::int64_t> parse_integer(std::string_view word);
 
@@ -60,7 +62,7 @@ class TextCursor {
         line_ = {tail.data(), static_cast<std::size_t>(line_.data() + line_.size() - tail.data())};
     }
     /// Takes a number, or throws an error that names `what`.
-    float number(std::string_view what);
+    double number(std::string_view what);
     std::int64_t integer(std::string_view what);
 
     [[noreturn]] void fail(const std::string& message) const;

@@ -7,6 +7,8 @@
 #include <string>
 #include <type_traits>
 
+#include "host/mesh/mesh.h"
+
 /// Fast, locale-free building of file contents in memory.
 namespace exemplar::mesh_io {
 
@@ -16,6 +18,14 @@ void append_number(std::string& text, T value) {
     std::array<char, 32> digits;
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
     text.append(digits.data(), end);
+}
+
+/// Appends coordinate `i` of a vertex in the file's frame: as a double if the mesh has an origin on that axis.
+inline void append_coordinate(std::string& text, const TriangleMesh& mesh, const Vec3& vertex, int i) {
+    if (mesh.origin[i] == 0)
+        append_number(text, vertex[i]);
+    else
+        append_number(text, mesh.origin[i] + double{vertex[i]});
 }
 
 /// Appends the bytes of a value as they lie in memory; files are little-endian, as are the machines Exemplar runs on.

@@ -184,5 +184,23 @@ TEST(Validate, RequireUsableNamesTheMesh) {
                 AllOf(HasSubstr("x.off: 1 vertex"), Not(HasSubstr("\n"))));
 }
 
+TEST(Validate, RefusesSizesWhoseThirdPowersFloatsCannotHold) {
+    const auto message = [](float size) {
+        return mesh_files::error_of<MeshError>(
+            [&] { require_usable(shapes::scaled(shapes::icosphere(1, 1), size), "x.off"); });
+    };
+    EXPECT_THAT(message(1e13F),
+                AllOf(HasSubstr("x.off: the mesh is too large (3.5e+13 across)"), HasSubstr("scale it")));
+    EXPECT_THAT(message(3e38F), HasSubstr("too large"));
+    EXPECT_THAT(message(1e-13F),
+                AllOf(HasSubstr("x.off: the mesh is too small (3.5e-13 across)"), HasSubstr("scale it")));
+    EXPECT_THAT(message(3e-43F), HasSubstr("too small"));
+    for (const float size : {1e-6F, 1e-11F, 1e6F, 1e11F})
+        EXPECT_TRUE(require_usable(shapes::scaled(shapes::icosphere(1, 1), size), "x.off").clean()) << size;
+    TriangleMesh loose = shapes::icosphere(1, 1);
+    loose.vertices.push_back({3e38F, 0, 0});
+    EXPECT_TRUE(size_fault(loose).empty()) << "vertices without a face do not count";
+}
+
 }  // namespace
 }  // namespace exemplar

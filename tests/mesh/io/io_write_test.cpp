@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -283,6 +284,53 @@ TEST(Writers, EmptyMeshesAreWrittenAndReadBack) {
     write_ply(folder / "a.ply", {});
     EXPECT_EQ(read_mesh(folder / "a.off").mesh.face_count(), 0u);
     EXPECT_EQ(read_mesh(folder / "a.ply").mesh.vertex_count(), 0u);
+}
+
+TEST(WritePly, KeepsThePolygonsOfAFile) {
+    const std::string off =
+        "OFF\n6 4 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n2 0 0\n2 1 1\n4 0 1 2 3\n2 0 1\n3 1 4 2\n5 1 4 5 2 3\n";
+    const MeshFile file = mesh_files::read_as("a.off", off);
+    EXPECT_THAT(file.polygons.corner_counts, ElementsAre(4, 2, 3, 5));
+    const FaceLabels labels{{"a", "b"}, {0, 1, -1, 1}};
+    const std::vector<float> confidence{0.1f, 0.2f, 0.3f, 0.4f};
+    const TemporaryFolder folder;
+    write_ply(folder / "b.ply", file.mesh, &labels, confidence, &file.polygons);
+    EXPECT_THAT(read_file(folder / "b.ply"), HasSubstr("element face 4\n"));
+    const MeshFile again = read_mesh(folder / "b.ply");
+    EXPECT_EQ(again.polygons.corner_counts, file.polygons.corner_counts);
+    EXPECT_EQ(again.polygons.corners, file.polygons.corners);
+    EXPECT_EQ(again.mesh.faces, file.mesh.faces);
+    EXPECT_EQ(again.mesh.source_face, file.mesh.source_face);
+    EXPECT_EQ(again.labels->label, labels.label);
+    EXPECT_EQ(again.confidence, confidence);
+}
+
+TEST(WritePly, CountsOfManyCornersTakeMoreThanAByte) {
+    std::string off = "OFF\n300 2 0\n", polygon = "300";
+    for (int i = 0; i < 300; ++i) {
+        off += fmt::format("{} {} 0\n", std::cos(i * 0.02), std::sin(i * 0.02));
+        polygon += fmt::format(" {}", i);
+    }
+    const MeshFile file = mesh_files::read_as("a.off", off + polygon + "\n3 0 1 2\n");
+    const TemporaryFolder folder;
+    write_ply(folder / "b.ply", file.mesh, nullptr, {}, &file.polygons);
+    EXPECT_THAT(read_mesh(folder / "b.ply").polygons.corner_counts, ElementsAre(300, 3));
+}
+
+TEST(WritePly, RefusesPolygonsOfAnotherMesh) {
+    const TemporaryFolder folder;
+    const auto write = [&](const Polygons& polygons) {
+        return error_of<UsageError>([&] { write_ply(folder / "b.ply", small_mesh(), nullptr, {}, &polygons); });
+    };
+    EXPECT_THAT(write({{4, 2}, {0, 1, 2, 3, 0, 1}}), HasSubstr("polygons"));
+    EXPECT_THAT(write({{4, 2, 3}, {0, 1, 2, 3, 0, 1, 1, 3, 9}}), HasSubstr("polygons"));
+    EXPECT_THAT(write({{4, 2, 3}, {0, 1, 2, 3, 0, 1, 1, 3}}), HasSubstr("polygons"));
+}
+
+TEST(ReadPolygons, AreKeptOnlyIfNotAllAreTriangles) {
+    EXPECT_TRUE(mesh_files::read_as("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").polygons.corners.empty());
+    const MeshFile quad = mesh_files::read_as("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
+    EXPECT_THAT(quad.polygons.corners, ElementsAre(0, 1, 2, 3));
 }
 
 }  // namespace

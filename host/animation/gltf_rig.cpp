@@ -66,7 +66,7 @@ class RigReader {
     void read_primitive(std::uint32_t node, const tinygltf::Primitive& primitive) {
         std::vector<Vec3>& vertices = animation_.rest.vertices;
         const auto first = static_cast<std::uint32_t>(vertices.size());
-        const std::vector<Vec3> positions = gltf_.positions(primitive.attributes.at("POSITION"));
+        const std::vector<Vec3> positions = gltf_.vectors(primitive.attributes.at("POSITION"));
         vertices.insert(vertices.end(), positions.begin(), positions.end());
         for (Face face : gltf_.triangles(primitive, positions.size())) {
             for (std::uint32_t& corner : face) corner += first;
@@ -113,15 +113,14 @@ class RigReader {
     }
 
     void read_offsets(MorphTarget& target, int accessor, std::uint32_t first, std::size_t vertex_count) {
-        const std::vector<float> offsets = gltf_.numbers(accessor, 3);
-        if (offsets.size() != 3 * vertex_count)
+        const std::vector<Vec3> offsets = gltf_.vectors(accessor);
+        if (offsets.size() != vertex_count)
             gltf_.fail(fmt::format("morph target {} moves {} vertices of {} (accessor {})", mesh_io::quote(target.name),
-                                   offsets.size() / 3, vertex_count, accessor));
+                                   offsets.size(), vertex_count, accessor));
         for (std::size_t v = 0; v < vertex_count; ++v) {
-            const Vec3 offset(offsets[3 * v], offsets[3 * v + 1], offsets[3 * v + 2]);
-            if (offset == Vec3::Zero()) continue;
+            if (offsets[v] == Vec3::Zero()) continue;
             target.vertices.push_back(first + static_cast<std::uint32_t>(v));
-            target.offsets.push_back(offset);
+            target.offsets.push_back(offsets[v]);
         }
     }
 

@@ -322,6 +322,15 @@ TEST(ReadGltfAnimation, SparseMorphTargetsNeedNoBufferView) {
     EXPECT_THAT(target.offsets, ElementsAre(Vec3(7, 8, 9)));
 }
 
+TEST(ReadGltfAnimation, MorphTargetsWithoutBufferViewMoveNothing) {
+    Gltf gltf = face({"open", "nothing"});
+    gltf.json["accessors"][2].erase("bufferView");
+    const Animation animation = gltf.read();
+    ASSERT_THAT(animation.rig.targets, SizeIs(2));
+    EXPECT_THAT(animation.rig.targets[0].vertices, SizeIs(1));
+    EXPECT_THAT(animation.rig.targets[1].vertices, IsEmpty());
+}
+
 TEST(ReadGltfAnimation, ASkeletonKeepsItsMorphTargets) {
     Gltf gltf = bending_arm();
     std::vector<float> offsets(18, 0);

@@ -95,7 +95,7 @@ class SceneReader {
     std::vector<std::uint32_t> read_vertices(int accessor, const Eigen::Affine3d& transform) {
         const bool moves = !transform.matrix().isIdentity(0);
         std::vector<std::uint32_t> vertices;
-        for (Vec3 position : gltf_.positions(accessor)) {
+        for (Vec3 position : gltf_.vectors(accessor)) {
             if (moves) position = (transform * position.cast<double>()).cast<float>();
             vertices.push_back(welder_.add(position, polygons_.vertices));
         }

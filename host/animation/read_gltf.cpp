@@ -24,15 +24,15 @@ bool weights_agree(const Animation& animation, std::uint32_t a, std::uint32_t b)
 
 /// Returns for each morph target the first one of its name that always has the same weight, else itself. A head that
 /// is cut into meshes (skin, lashes, teeth) has each target once per mesh.
-std::vector<std::uint32_t> equal_targets(const Animation& animation, const GltfLinks& links) {
+std::vector<std::uint32_t> equal_targets(const Animation& animation, const mesh_io::GltfSurface& surface) {
     std::map<std::string, std::vector<std::uint32_t>> firsts;
     std::vector<std::uint32_t> first(animation.rig.targets.size());
     for (std::uint32_t t = 0; t < first.size(); ++t) {
         first[t] = t;
-        if (!links.target_is_named[t]) continue;
+        if (!surface.target_is_named[t]) continue;
         std::vector<std::uint32_t>& same_name = firsts[animation.rig.targets[t].name];
         const auto other = std::ranges::find_if(same_name, [&](std::uint32_t f) {
-            return links.target_node[f] != links.target_node[t] && weights_agree(animation, f, t);
+            return surface.target_node[f] != surface.target_node[t] && weights_agree(animation, f, t);
         });
         if (other == same_name.end())
             same_name.push_back(t);
@@ -48,8 +48,8 @@ void append(MorphTarget& target, const MorphTarget& more) {
     target.offsets.insert(target.offsets.end(), more.offsets.begin(), more.offsets.end());
 }
 
-void merge_targets(Animation& animation, const GltfLinks& links) {
-    const std::vector<std::uint32_t> first = equal_targets(animation, links);
+void merge_targets(Animation& animation, const mesh_io::GltfSurface& surface) {
+    const std::vector<std::uint32_t> first = equal_targets(animation, surface);
     std::vector<MorphTarget>& targets = animation.rig.targets;
     std::vector<MorphTarget> kept;
     std::vector<std::uint32_t> kept_column, place(first.size());
@@ -87,14 +87,19 @@ Animation read_gltf(std::string_view content, const std::string& name, const std
                     const ReadAnimationOptions& options) {
     const tinygltf::Model model = mesh_io::load_gltf(content, name, folder, mesh_io::GltfContent::animation);
     mesh_io::GltfReader gltf(model, name);
+    mesh_io::GltfSurface surface = mesh_io::read_gltf_surface(gltf, name);
     Animation animation;
     animation.name = name;
-    const GltfLinks links = read_gltf_rig(gltf, animation);
+    animation.rest.vertices = std::move(surface.vertices);
+    animation.rest.faces = std::move(surface.faces);
+    animation.warnings = std::move(surface.warnings);
+    GltfLinks links{{}, surface.targets};
+    animation.rig = rig_of_surface(gltf, surface, links.rig_node, animation.warnings);
     animation.clips = read_gltf_clips(gltf, links, options, animation);
-    merge_targets(animation, links);
+    merge_targets(animation, surface);
     make_names_unique(animation.rig.targets);
     weld_rig(animation);
-    animation.kind = gltf_kind(gltf, links, animation.rig);
+    animation.kind = gltf_kind(gltf, surface, animation.rig);
     animation.rest.source_face_count = static_cast<std::uint32_t>(animation.rest.face_count());
     return animation;
 }

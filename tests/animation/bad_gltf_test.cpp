@@ -125,7 +125,7 @@ TEST(BadGltfAnimation, MorphTargetsThatDoNotFit) {
 TEST(BadGltfAnimation, NothingThatMoves) {
     EXPECT_THAT(error_of(face({})), HasSubstr("neither a skin of several joints nor a morph target"));
     EXPECT_THAT(gltf_error_after([&](Gltf&, Json& json) { json["scenes"][0]["nodes"] = {k_upper}; }),
-                HasSubstr("neither a skin of several joints nor a morph target"));
+                HasSubstr("no node of its scene has a mesh"));
     // Joint 1 weighs 0.0005 once the weights of each vertex sum to one.
     EXPECT_THAT(gltf_error_after([](Gltf& gltf, Json& json) {
                     std::vector<float> weights;

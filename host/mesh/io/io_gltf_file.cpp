@@ -90,10 +90,15 @@ Json parse_document(std::string_view text, const std::string& name) {
     }
 }
 
+/// Removes what applications and extensions add, but for the extension that copies meshes.
 void drop_extras(Json& value) {
+    constexpr const char* k_copies = "EXT_mesh_gpu_instancing";
     if (value.is_object()) {
         value.erase("extras");
+        const Json::json_pointer place(std::string("/extensions/") + k_copies);
+        Json copies = value.contains(place) ? std::move(value[place]) : Json();
         value.erase("extensions");
+        if (copies.is_object()) value["extensions"][k_copies] = std::move(copies);
     }
     if (value.is_structured())
         for (Json& child : value) drop_extras(child);
@@ -128,14 +133,13 @@ Json named_materials(const Json& materials) {
     return kept;
 }
 
-/// Keeps only what geometry and part names need and, if wanted, skins, morph targets and animations.
+/// Keeps only what the surface and part names need and, if wanted, animations.
 Json cut_down(const Json& document, GltfContent wanted) {
     Json kept = Json::object();
-    for (const char* key : {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews"})
+    for (const char* key : {"asset", "scene", "scenes", "nodes", "meshes", "skins", "accessors", "bufferViews"})
         if (const auto it = document.find(key); it != document.end()) kept[key] = *it;
-    if (wanted == GltfContent::animation)
-        for (const char* key : {"skins", "animations"})
-            if (const auto it = document.find(key); it != document.end()) kept[key] = *it;
+    if (const auto it = document.find("animations"); it != document.end() && wanted == GltfContent::animation)
+        kept["animations"] = *it;
     if (const auto it = document.find("materials"); it != document.end() && it->is_array())
         kept["materials"] = named_materials(*it);
     drop_extras(kept);

@@ -11,8 +11,8 @@ class Model;
 
 namespace exemplar::mesh_io {
 
-/// What is kept of a glTF file: triangles, nodes and material names; or also skins, morph targets and animations.
-enum class GltfContent { geometry, animation };
+/// What is kept of a glTF file: triangles, nodes, skins, morph targets and material names; or also animations.
+enum class GltfContent { still, animation };
 
 /// Loads glTF 2.0 (.gltf or .glb, told apart by content) through tinygltf. The library trusts parts of its input
 /// (chunk lengths, deep nesting), so the file is first checked and cut down to the `wanted` content, and its buffers

@@ -52,8 +52,7 @@ AnimationKind gltf_kind(const mesh_io::GltfReader& gltf, const mesh_io::GltfSurf
             if (is_used[bone]) used.insert(bone);
         if (used.size() >= 2) return AnimationKind::skeleton;
     }
-    if (!rig.targets.empty()) return AnimationKind::blend_shapes;
-    gltf.fail("there is neither a skin of several joints nor a morph target; export with the armature or shape keys");
+    return rig.targets.empty() ? AnimationKind::sequence : AnimationKind::blend_shapes;
 }
 
 }  // namespace exemplar::animation_io

@@ -21,8 +21,9 @@ Rig rig_of_surface(const mesh_io::GltfReader& gltf, const mesh_io::GltfSurface& 
                    std::vector<std::uint32_t>& rig_node, std::vector<std::string>& warnings);
 
 /// Returns `skeleton` if vertices follow several joints of one skin, else (or in a file with
-/// k_blend_shapes_generator) `blend_shapes`. Takes the final rig, because a joint whose vertices were welded to
-/// others, or whose weights were rounded away, moves nothing. Throws MeshError if there is no morph target either.
+/// k_blend_shapes_generator) `blend_shapes` if there are morph targets, else `sequence`: whole meshes move at most.
+/// Takes the final rig, because a joint whose vertices were welded to others, or whose weights were rounded away, moves
+/// nothing.
 AnimationKind gltf_kind(const mesh_io::GltfReader& gltf, const mesh_io::GltfSurface& surface, const Rig& rig);
 
 }  // namespace exemplar::animation_io

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "host/animation/gltf_clips.h"
 #include "host/animation/gltf_rig.h"
@@ -81,6 +84,57 @@ void make_names_unique(std::vector<MorphTarget>& targets) {
     }
 }
 
+/// Throws the reason why a surface without skin and morph targets does not move.
+[[noreturn]] void fail_still(const mesh_io::GltfReader& gltf, const std::string& name) {
+    const std::string lacks = "there is neither a skin of several joints nor a morph target";
+    if (gltf.model().animations.empty())
+        throw NoMotionError(
+            fmt::format("{}: {}; export with the armature or shape keys, or animate nodes", name, lacks));
+    gltf.fail(fmt::format("{}, and none of its {} animations moves a node of the surface", lacks,
+                          gltf.model().animations.size()));
+}
+
+/// Throws if the frames of a sequence take far more memory than the file, or 4 GiB.
+void check_frame_bytes(const mesh_io::GltfReader& gltf, const Animation& animation) {
+    constexpr double k_free_bytes = 64 << 20, k_bytes_per_byte = 1024, k_most_bytes = 4.0 * (1 << 30);
+    const double most = std::min(k_free_bytes + k_bytes_per_byte * static_cast<double>(gltf.bytes()), k_most_bytes);
+    const std::size_t frames = animation.frame_count(), vertices = animation.rest.vertex_count();
+    if (static_cast<double>(frames) * static_cast<double>(vertices * sizeof(Vec3)) > most)
+        gltf.fail(
+            fmt::format("the {} frames of {} vertices take more than {:.0f} MB; read fewer frames per second, or "
+                        "simplify the meshes",
+                        frames, vertices, most / (1 << 20)));
+}
+
+/// Replaces the rig, whose nodes carry whole meshes, by the positions of the vertices in each frame.
+void bake(const mesh_io::GltfReader& gltf, Animation& animation) {
+    if (animation.clips.empty()) fail_still(gltf, animation.name);
+    check_frame_bytes(gltf, animation);
+    const auto posed = [&](const Pose& pose) {
+        std::vector<Vec3> vertices;
+        pose_vertices(animation.rig, animation.rest.vertices, pose, vertices);
+        return vertices;
+    };
+    std::vector<std::vector<Vec3>> frames;
+    for (const Clip& clip : animation.clips)
+        for (const Pose& pose : clip.poses) frames.push_back(posed(pose));
+    if (std::ranges::all_of(frames, [&](const auto& frame) { return frame == frames.front(); }))
+        fail_still(gltf, animation.name);
+    animation.rest.vertices = posed(rest_pose(animation.rig));
+    animation.rig = {};
+    const std::vector<std::uint32_t> welded_before = animation.vertex_of_source;
+    weld_shapes(animation, frames);
+    const std::vector<std::uint32_t> welded_now = std::exchange(animation.vertex_of_source, {});
+    for (const std::uint32_t v : welded_before) animation.vertex_of_source.push_back(welded_now[v]);
+    auto frame = frames.begin();
+    for (Clip& clip : animation.clips) {
+        const auto end = frame + static_cast<std::ptrdiff_t>(clip.poses.size());
+        clip.frames.assign(std::move_iterator(frame), std::move_iterator(end));
+        clip.poses.clear();
+        frame = end;
+    }
+}
+
 }  // namespace
 
 Animation read_gltf(std::string_view content, const std::string& name, const std::filesystem::path& folder,
@@ -100,6 +154,7 @@ Animation read_gltf(std::string_view content, const std::string& name, const std
     make_names_unique(animation.rig.targets);
     weld_rig(animation);
     animation.kind = gltf_kind(gltf, surface, animation.rig);
+    if (animation.kind == AnimationKind::sequence) bake(gltf, animation);
     animation.rest.source_face_count = static_cast<std::uint32_t>(animation.rest.face_count());
     return animation;
 }

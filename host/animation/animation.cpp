@@ -72,25 +72,9 @@ std::vector<Affine> bone_transforms(const Rig& rig, const Pose& pose) {
     return bones;
 }
 
-void morph(const Rig& rig, std::span<const Vec3> rest, std::span<const float> weights, std::vector<Vec3>& out) {
-    out.assign(rest.begin(), rest.end());
-    for (std::size_t t = 0; t < rig.targets.size(); ++t) {
-        if (weights[t] == 0) continue;
-        const MorphTarget& target = rig.targets[t];
-        for (std::size_t i = 0; i < target.vertices.size(); ++i)
-            out[target.vertices[i]] += weights[t] * target.offsets[i];
-    }
-}
-
 void pose_vertices(const Rig& rig, std::span<const Vec3> rest, const Pose& pose, std::vector<Vec3>& out) {
     morph(rig, rest, pose.weights, out);
-    const std::vector<Affine> bones = bone_transforms(rig, pose);
-    for (std::size_t v = 0; v < out.size(); ++v) {
-        Eigen::Matrix<float, 3, 4> blended = Eigen::Matrix<float, 3, 4>::Zero();
-        for (const Influence& influence : rig.influences_of(v))
-            blended += influence.weight * bones[influence.bone].matrix();
-        out[v] = blended * out[v].homogeneous();
-    }
+    skin_vertices(rig, bone_transforms(rig, pose), out);
 }
 
 std::vector<Vec3> frame_vertices(const Animation& animation, const Clip& clip, std::size_t frame) {

@@ -10,12 +10,10 @@
 #include <vector>
 
 #include "host/mesh/mesh.h"
+#include "host/mesh/skin.h"
 #include "host/mesh/topology.h"
 
 namespace exemplar {
-
-/// An affine map: a linear part and a translation.
-using Affine = Eigen::Transform<float, 3, Eigen::AffineCompact>;
 
 /// Transform of a node relative to its parent: scale, then rotation, then translation.
 struct NodeTransform {
@@ -30,40 +28,9 @@ struct RigNode {
     NodeTransform rest;
 };
 
-/// A node that vertices are bound to: a joint of a skin, or a node that carries a mesh without a skin.
-struct Bone {
-    std::uint32_t node = 0;
-    Affine inverse_bind = Affine::Identity();  ///< from the space of the rest mesh to that of the node
-};
-
-struct Influence {
-    std::uint32_t bone = 0;
-    float weight = 0;  ///< in (0, 1]; those of a vertex sum to one
-};
-
-/// A blend shape: offsets that are added to the rest vertices at full weight. Vertices that it does not move are
-/// left out.
-struct MorphTarget {
-    std::string name;
-    std::vector<std::uint32_t> vertices;  ///< in increasing order
-    std::vector<Vec3> offsets;            ///< one per entry of `vertices`
-    float rest_weight = 0;
-};
-
-/// How a pose deforms the surface: v = sum_b w_b world(b) inverse_bind_b (rest_v + sum_t weight_t offset_tv), linear
-/// blend skinning after morphing, as glTF 2.0 defines it.
-struct Rig {
+/// How a pose deforms the surface: bones follow nodes.
+struct Rig : Skin {
     std::vector<RigNode> nodes;  ///< parents before children
-    std::vector<Bone> bones;
-    /// Compressed rows: the influences on vertex v are influences[influence_begin[v] .. influence_begin[v + 1]), by
-    /// increasing bone; at least one each.
-    std::vector<std::uint32_t> influence_begin;
-    std::vector<Influence> influences;
-    std::vector<MorphTarget> targets;
-
-    std::span<const Influence> influences_of(std::size_t v) const {
-        return {influences.data() + influence_begin[v], influences.data() + influence_begin[v + 1]};
-    }
 };
 
 /// The animation parameters of one frame.
@@ -123,8 +90,6 @@ std::vector<Affine> node_transforms(const Rig& rig, const Pose& pose);
 /// skinning.
 std::vector<Affine> bone_transforms(const Rig& rig, const Pose& pose);
 
-/// Adds the morph targets to the vertices of `rest`, before skinning.
-void morph(const Rig& rig, std::span<const Vec3> rest, std::span<const float> weights, std::vector<Vec3>& out);
 /// Computes the posed vertices: morphing, then linear blend skinning. The reference for the device's kernels.
 void pose_vertices(const Rig& rig, std::span<const Vec3> rest, const Pose& pose, std::vector<Vec3>& out);
 

@@ -7,12 +7,6 @@
 
 namespace exemplar {
 
-/// Brings the influences of a rig into the form that Rig promises: by increasing bone, each at least 1e-4, summing
-/// to one. A vertex without weight is bound to the first bone that it lists (with whatever weight), else to the
-/// first of all. Appends warnings; throws MeshError that begins with `name` if a weight is not finite or a bone does
-/// not exist.
-void clean_influences(Rig& rig, const std::string& name, std::vector<std::string>& warnings);
-
 /// Returns whether all numbers of a pose, or of the vertices of a frame, are finite.
 bool is_finite(const Pose& pose);
 bool is_finite(const std::vector<Vec3>& frame);

@@ -156,7 +156,7 @@ class ClipReader {
         if (channel.target_node < 0) return;
         gltf_.item(gltf_.model().nodes, channel.target_node, "node");
         const auto node = static_cast<std::size_t>(channel.target_node);
-        const GltfLinks::Targets& targets = links_.targets[node];
+        const mesh_io::GltfSurface::Targets& targets = links_.targets[node];
         Track track;
         track.target = links_.rig_node[node];
         track.width = 3;

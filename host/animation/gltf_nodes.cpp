@@ -12,25 +12,6 @@ namespace {
 
 using mesh_io::GltfReader;
 
-[[noreturn]] void fail_tree(const GltfReader& gltf, std::uint32_t node) {
-    gltf.fail(fmt::format("node {} has two parents or is its own ancestor", node));
-}
-
-/// Returns the nodes depth first from the roots, children in the file's order.
-std::vector<std::uint32_t> depth_first(const GltfReader& gltf, const std::vector<std::uint32_t>& roots) {
-    const auto& nodes = gltf.model().nodes;
-    std::vector<std::uint32_t> order, stack(roots.rbegin(), roots.rend());
-    while (!stack.empty()) {
-        const std::uint32_t node = stack.back();
-        stack.pop_back();
-        order.push_back(node);
-        const std::vector<int>& children = nodes[node].children;
-        for (auto child = children.rbegin(); child != children.rend(); ++child)
-            stack.push_back(static_cast<std::uint32_t>(*child));
-    }
-    return order;
-}
-
 /// Decomposes `linear`, by polar decomposition, into the rotation and axis scales whose product is nearest to it;
 /// equal to it unless it shears.
 void decompose(const Eigen::Matrix3d& linear, NodeTransform& transform, double& shear) {
@@ -45,36 +26,6 @@ void decompose(const Eigen::Matrix3d& linear, NodeTransform& transform, double& 
 }
 
 }  // namespace
-
-GltfTree read_gltf_tree(const GltfReader& gltf) {
-    const auto& nodes = gltf.model().nodes;
-    GltfTree tree;
-    tree.parent.assign(nodes.size(), k_invalid_index);
-    for (std::uint32_t i = 0; i < nodes.size(); ++i)
-        for (const int child : nodes[i].children) {
-            gltf.item(nodes, child, "node");
-            std::uint32_t& parent = tree.parent[static_cast<std::size_t>(child)];
-            if (parent != k_invalid_index) fail_tree(gltf, static_cast<std::uint32_t>(child));
-            parent = i;
-        }
-    std::vector<std::uint32_t> roots;
-    for (std::uint32_t i = 0; i < nodes.size(); ++i)
-        if (tree.parent[i] == k_invalid_index) roots.push_back(i);
-    tree.order = depth_first(gltf, roots);
-    if (tree.order.size() < nodes.size()) {
-        std::vector<bool> reached(nodes.size(), false);
-        for (const std::uint32_t i : tree.order) reached[i] = true;
-        fail_tree(gltf, static_cast<std::uint32_t>(std::ranges::find(reached, false) - reached.begin()));
-    }
-    tree.in_scene.assign(nodes.size(), false);
-    for (const int root : gltf.root_nodes()) {
-        gltf.item(nodes, root, "node");
-        tree.in_scene[static_cast<std::size_t>(root)] = true;
-    }
-    for (const std::uint32_t i : tree.order)
-        if (tree.parent[i] != k_invalid_index && tree.in_scene[tree.parent[i]]) tree.in_scene[i] = true;
-    return tree;
-}
 
 NodeTransform read_gltf_transform(const GltfReader& gltf, int index, std::vector<std::string>& warnings) {
     constexpr double k_visible_shear = 1e-3;

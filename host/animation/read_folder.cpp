@@ -152,16 +152,6 @@ Animation begin(const fs::path& folder, const fs::path& first) {
     return animation;
 }
 
-/// Welds vertices that coincide in all shapes.
-void weld(Animation& animation, std::vector<std::vector<Vec3>>& shapes) {
-    std::vector<const std::vector<Vec3>*> all{&animation.rest.vertices};
-    for (const std::vector<Vec3>& shape : shapes) all.push_back(&shape);
-    animation.vertex_of_source = group_inseparable(all);
-    animation.rest.vertices = first_of_groups(animation.rest.vertices, animation.vertex_of_source);
-    weld_faces(animation.rest.faces, animation.vertex_of_source);
-    for (std::vector<Vec3>& shape : shapes) shape = first_of_groups(shape, animation.vertex_of_source);
-}
-
 /// Returns the folder's name, also for "a/b/" and ".".
 std::string name_of_folder(const fs::path& folder) {
     std::error_code ignored;
@@ -178,7 +168,7 @@ Animation read_sequence(const fs::path& folder, const ShapeFiles& files, const R
                 std::ranges::find_if(frames, [](const std::vector<Vec3>& frame) { return is_finite(frame); });
             whole != frames.end())
             animation.rest.vertices = *whole;
-    weld(animation, frames);
+    weld_shapes(animation, frames);
     animation.kind = AnimationKind::sequence;
     animation.clips.push_back({.name = name_of_folder(folder),
                                .frames_per_second = options.frames_per_second,
@@ -202,7 +192,7 @@ Animation read_blend_shapes(const fs::path& folder, const ShapeFiles& files) {
     if (!files.rest.empty()) paths.push_back(files.rest);
     Animation animation = begin(folder, files.neutral);
     std::vector<std::vector<Vec3>> shapes = read_shapes(paths, animation.rest, files.neutral);
-    weld(animation, shapes);
+    weld_shapes(animation, shapes);
     animation.kind = AnimationKind::blend_shapes;
     Rig& rig = animation.rig;
     rig.nodes = {{.name = name_of_folder(folder), .parent = k_invalid_index, .rest = {}}};

@@ -29,6 +29,18 @@ SurfaceFile read_still(const fs::path& path) {
     return surface;
 }
 
+/// Reads a file whose animation is at fault as a mesh, and warns of `reason`. If it holds no mesh either, reading it
+/// says what is wrong.
+SurfaceFile read_still_because(const fs::path& path, const std::string& reason) {
+    SurfaceFile still = read_still(path);
+    still.why_still = reason;
+    const std::string prefix = path.string() + ": ";
+    const std::string_view without = std::string_view(reason).substr(reason.starts_with(prefix) ? prefix.size() : 0);
+    still.animation.warnings.push_back(
+        fmt::format("it is shown as a still, since its animation has a fault: {}", without));
+    return still;
+}
+
 }  // namespace
 
 SurfaceFile read_surface(const fs::path& path, const ReadAnimationOptions& options) {
@@ -40,12 +52,13 @@ SurfaceFile read_surface(const fs::path& path, const ReadAnimationOptions& optio
     if (!is_folder && extension != ".glb" && extension != ".gltf") return read_still(path);
     try {
         return {read_animation(path, options), {}, {}};
-    } catch (const MeshError& error) {
-        if (is_folder) throw;
-        // If the file holds neither an animation nor a mesh, reading it as a mesh says what is wrong.
+    } catch (const NoMotionError& error) {
         SurfaceFile still = read_still(path);
         still.why_still = error.what();
         return still;
+    } catch (const MeshError& error) {
+        if (is_folder) throw;
+        return read_still_because(path, error.what());
     }
 }
 

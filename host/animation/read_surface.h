@@ -14,7 +14,9 @@ struct SurfaceFile {
     /// A mesh becomes a sequence without clips; its shape at rest is the result of drawable_mesh().
     Animation animation;
     std::optional<FaceLabels> labels;  ///< in a mesh file, see MeshFile
-    std::string why_still;             ///< why a glTF file that was read as a mesh is no animation
+    /// Why a glTF file that was read as a mesh is no animation. Also a warning of `animation` if the file has what
+    /// could move.
+    std::string why_still;
 };
 
 /// Reads a folder as an animation, a glTF file as an animation or else as a mesh, and any other file as a mesh (see

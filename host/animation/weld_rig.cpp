@@ -135,4 +135,13 @@ void weld_faces(std::vector<Face>& faces, const std::vector<std::uint32_t>& grou
         for (std::uint32_t& corner : face) corner = groups[corner];
 }
 
+void weld_shapes(Animation& animation, std::vector<std::vector<Vec3>>& shapes) {
+    std::vector<const std::vector<Vec3>*> all{&animation.rest.vertices};
+    for (const std::vector<Vec3>& shape : shapes) all.push_back(&shape);
+    animation.vertex_of_source = group_inseparable(all);
+    animation.rest.vertices = first_of_groups(animation.rest.vertices, animation.vertex_of_source);
+    weld_faces(animation.rest.faces, animation.vertex_of_source);
+    for (std::vector<Vec3>& shape : shapes) shape = first_of_groups(shape, animation.vertex_of_source);
+}
+
 }  // namespace exemplar::animation_io

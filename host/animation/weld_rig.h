@@ -25,4 +25,7 @@ std::vector<T> first_of_groups(const std::vector<T>& values, const std::vector<s
 /// Replaces vertices by groups in the faces.
 void weld_faces(std::vector<Face>& faces, const std::vector<std::uint32_t>& groups);
 
+/// Welds vertices that coincide in the rest shape and in all `shapes` (vertex positions). Fills vertex_of_source.
+void weld_shapes(Animation& animation, std::vector<std::vector<Vec3>>& shapes);
+
 }  // namespace exemplar::animation_io

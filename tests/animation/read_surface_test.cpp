@@ -46,6 +46,29 @@ TEST(ReadSurface, AGltfFileIsAnAnimationIfItMoves) {
     EXPECT_THAT(mesh.why_still, HasSubstr("neither a skin"));
 }
 
+TEST(ReadSurface, AnAnimationThatCannotBeReadIsTold) {
+    const TemporaryFolder folder;
+    const auto read = [&](const made_up::Gltf& gltf) {
+        mesh_files::write_bytes(folder / "a.glb", gltf.bytes());
+        return read_surface(folder / "a.glb").animation;
+    };
+    made_up::Gltf few = made_up::bending_arm();
+    few.json["animations"][0]["samplers"][0]["input"] = few.accessor<float>({0, 1, 2}, "SCALAR");
+    const Animation still = read(few);
+    EXPECT_FALSE(still.moves());
+    EXPECT_THAT(still.rest.faces, SizeIs(4));
+    EXPECT_THAT(made_up::warnings_of(still),
+                testing::AllOf(HasSubstr("shown as a still"), HasSubstr("clip 'bend', accessor"),
+                               HasSubstr("3 keys need 12 numbers"), testing::Not(HasSubstr("a.glb"))));
+    // Nothing of the surface follows the camera.
+    made_up::Gltf camera = made_up::face({});
+    camera.json["nodes"].push_back({{"name", "camera"}});
+    camera.json["animations"] = made_up::Json::array({{{"name", "flight"}}});
+    camera.channel(0, 1, "translation", {0, 1}, camera.accessor<float>({0, 0, 0, 1, 0, 0}, "VEC3"));
+    EXPECT_THAT(made_up::warnings_of(read(camera)), HasSubstr("none of its 1 animations moves a node of the surface"));
+    EXPECT_THAT(read(made_up::face({})).warnings, IsEmpty());
+}
+
 TEST(ReadSurface, AFolderIsAnAnimationOrRefused) {
     const TemporaryFolder folder;
     EXPECT_THROW(read_surface(folder.path()), MeshError);

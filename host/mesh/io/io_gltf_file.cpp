@@ -4,17 +4,14 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
-#include <charconv>
+#include <array>
 #include <cstring>
-#include <fstream>
-#include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
 #include <vector>
 
 #include "host/core/json_text.h"
+#include "host/mesh/io/io_gltf_buffers.h"
 #include "host/mesh/io/io_text.h"
 #include "host/mesh/io/io_write_text.h"
 
@@ -93,10 +90,15 @@ Json parse_document(std::string_view text, const std::string& name) {
     }
 }
 
+/// Removes what applications and extensions add, but for the extension that copies meshes.
 void drop_extras(Json& value) {
+    constexpr const char* k_copies = "EXT_mesh_gpu_instancing";
     if (value.is_object()) {
         value.erase("extras");
+        const Json::json_pointer place(std::string("/extensions/") + k_copies);
+        Json copies = value.contains(place) ? std::move(value[place]) : Json();
         value.erase("extensions");
+        if (copies.is_object()) value["extensions"][k_copies] = std::move(copies);
     }
     if (value.is_structured())
         for (Json& child : value) drop_extras(child);
@@ -131,14 +133,13 @@ Json named_materials(const Json& materials) {
     return kept;
 }
 
-/// Keeps only what geometry and part names need and, if wanted, skins, morph targets and animations.
+/// Keeps only what the surface and part names need and, if wanted, animations.
 Json cut_down(const Json& document, GltfContent wanted) {
     Json kept = Json::object();
-    for (const char* key : {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "bufferViews", "buffers"})
+    for (const char* key : {"asset", "scene", "scenes", "nodes", "meshes", "skins", "accessors", "bufferViews"})
         if (const auto it = document.find(key); it != document.end()) kept[key] = *it;
-    if (wanted == GltfContent::animation)
-        for (const char* key : {"skins", "animations"})
-            if (const auto it = document.find(key); it != document.end()) kept[key] = *it;
+    if (const auto it = document.find("animations"); it != document.end() && wanted == GltfContent::animation)
+        kept["animations"] = *it;
     if (const auto it = document.find("materials"); it != document.end() && it->is_array())
         kept["materials"] = named_materials(*it);
     drop_extras(kept);
@@ -150,185 +151,56 @@ Json cut_down(const Json& document, GltfContent wanted) {
     return kept;
 }
 
-/// Throws if the file needs compressed, quantized or instanced geometry, which cannot be read. Extensions of
-/// appearance do not matter.
+/// Throws unless the file is of version 2; version 1 had objects in place of lists.
+void check_version(const Json& document, const std::string& name) {
+    const Json::json_pointer place("/asset/version");
+    const std::string version =
+        document.contains(place) && document[place].is_string() ? document[place].get<std::string>() : std::string();
+    const bool of_objects = std::ranges::any_of(std::array{"meshes", "nodes", "accessors"}, [&](const char* key) {
+        return document.contains(key) && document[key].is_object();
+    });
+    if (of_objects || (!version.empty() && !version.starts_with("2.")))
+        fail(name, fmt::format("glTF of version {} is not supported, only 2.0; export it again as glTF 2.0",
+                               quote(version.empty() ? "1.0" : version)));
+    if (version.empty()) fail(name, "this JSON is no glTF 2.0: it has no version (asset.version)");
+}
+
+/// Throws if the file needs an extension that may change its geometry and is not read. Those of appearance do not
+/// matter.
 void check_extensions(const Json& document, const std::string& name) {
+    constexpr std::array k_read{"KHR_mesh_quantization", "EXT_mesh_gpu_instancing"};
+    constexpr std::array k_appearance{"material", "texture", "light", "image", "xmp", "metadata", "feature"};
     const auto required = document.find("extensionsRequired");
     if (required == document.end() || !required->is_array()) return;
     for (const Json& extension : *required) {
         const std::string word = extension.is_string() ? extension.get<std::string>() : std::string();
-        for (const char* part : {"compression", "quantization", "instancing"})
-            if (word.find(part) != std::string::npos)
-                fail(name, fmt::format("the file needs the extension {}, which is not supported; export it without",
-                                       quote(word)));
+        const auto is_part = [&](const char* part) { return word.find(part) != std::string::npos; };
+        if (std::ranges::find(k_read, word) == k_read.end() && std::ranges::none_of(k_appearance, is_part))
+            fail(name, fmt::format("the file needs the extension {}, which is not supported; export it without",
+                                   quote(word)));
     }
-}
-
-/// Returns the file that an address names relative to the glTF file, decoded as the library decodes it (%20 and +)
-/// and normalized, so that equal files give equal text. Returns an empty string if it lies outside the folder, or if
-/// a % is not followed by two digits, which the library would decode to anything.
-std::string file_of_uri(const std::string& uri) {
-    std::string decoded;
-    for (std::size_t i = 0; i < uri.size(); ++i) {
-        if (uri[i] != '%') {
-            decoded += uri[i] == '+' ? ' ' : uri[i];
-            continue;
-        }
-        unsigned char value = 0;
-        const char *digits = uri.data() + i + 1, *end = digits + 2;
-        if (uri.size() < i + 3 || std::from_chars(digits, end, value, 16).ptr != end || value == 0) return {};
-        decoded += static_cast<char>(value);
-        i += 2;
-    }
-    const fs::path path = fs::path(decoded).lexically_normal();
-    const bool inside = path.is_relative() && !path.empty() && *path.begin() != "..";
-    return inside ? path.string() : std::string();
-}
-
-std::string normal_path(const std::string& path) {
-    return fs::path(path).lexically_normal().string();
-}
-
-/// The content of external buffers by the path that the library asks for. It opens no file itself.
-using BufferFiles = std::map<std::string, std::vector<unsigned char>>;
-
-/// Maximum size of external buffers, and of the glTF file itself.
-constexpr std::uint64_t k_max_bytes = std::numeric_limits<std::uint32_t>::max() / 2;
-
-fs::path folder_of_buffers(const fs::path& folder) {
-    return folder.empty() ? fs::path(".") : folder;
-}
-
-/// Reads external buffers, only from the folder of the glTF file (refusing links that lead out of it) and only as
-/// many bytes as the JSON declares.
-class BufferReader {
-  public:
-    BufferReader(const fs::path& folder, const std::string& name) : folder_(folder_of_buffers(folder)), name_(name) {}
-
-    /// `place` is the result of file_of_uri for buffer `index`.
-    void read(std::size_t index, const std::string& place, const Json& buffer) {
-        const std::string what = fmt::format("buffer {}, {},", index, quote(place));
-        const fs::path path = inside(place, what);
-        const std::uint64_t bytes = checked_size(path, buffer, what);
-        if (!seen_.insert(path).second) fail(name_, fmt::format("{} is the same file as another; merge the two", what));
-        std::vector<unsigned char> content(bytes);
-        std::ifstream file(path, std::ios::binary);
-        file.read(reinterpret_cast<char*>(content.data()), static_cast<std::streamsize>(bytes));
-        if (!file) fail(name_, what + " cannot be read");
-        files_[normal_path((folder_ / place).string())] = std::move(content);
-    }
-    BufferFiles take() { return std::move(files_); }
-
-  private:
-    /// Returns the path with links resolved; throws if it is outside of the folder.
-    fs::path inside(const std::string& place, const std::string& what) const {
-        std::error_code error;
-        const fs::path root = fs::canonical(folder_, error);
-        fs::path path = error ? fs::path() : fs::canonical(folder_ / place, error);
-        if (error) fail(name_, fmt::format("{} cannot be read: {}", what, error.message()));
-        if (*path.lexically_relative(root).begin() == "..")
-            fail(name_, what + " is a link that leads out of the folder of this file; put a copy in its place");
-        if (!fs::is_regular_file(path, error)) fail(name_, what + " is no file");
-        return path;
-    }
-    std::uint64_t checked_size(const fs::path& path, const Json& buffer, const std::string& what) {
-        const auto declared = buffer.find("byteLength");
-        if (declared == buffer.end() || !declared->is_number_unsigned()) fail(name_, what + " has no byteLength");
-        std::error_code error;
-        const auto bytes = declared->get<std::uint64_t>(), found = std::uint64_t{fs::file_size(path, error)};
-        if (error) fail(name_, fmt::format("{} cannot be read: {}", what, error.message()));
-        if (found != bytes)
-            fail(name_, fmt::format("{} has {} bytes instead of {}; copy or export it again", what, found, bytes));
-        if (bytes > k_max_bytes - all_bytes_) fail(name_, "its buffers are larger than 2 GiB; split it");
-        all_bytes_ += bytes;
-        return bytes;
-    }
-
-    fs::path folder_;
-    const std::string& name_;
-    BufferFiles files_;
-    std::set<fs::path> seen_;
-    std::uint64_t all_bytes_ = 0;
-};
-
-/// Checks that no two buffers share bytes: the first may be the binary chunk, every other has an address of its own.
-/// Returns the external ones.
-BufferFiles read_buffers(const Json& document, const GltfChunks& chunks, const std::string& name,
-                         const fs::path& folder) {
-    const auto buffers = document.find("buffers");
-    if (buffers == document.end() || !buffers->is_array()) return {};
-    std::set<std::string> seen;
-    std::vector<std::pair<std::size_t, std::string>> in_files;
-    for (std::size_t i = 0; i < buffers->size(); ++i) {
-        const Json& buffer = (*buffers)[i];
-        const bool has_uri = buffer.is_object() && buffer.contains("uri") && buffer["uri"].is_string();
-        if (!has_uri) {
-            if (i > 0 || chunks.binary.empty())
-                fail(name, fmt::format("buffer {} has no bytes: neither uri nor binary chunk", i));
-            continue;
-        }
-        const auto uri = buffer["uri"].get<std::string>();
-        const bool embedded = uri.starts_with("data:");
-        const std::string place = embedded ? uri : file_of_uri(uri);
-        if (place.empty()) fail(name, fmt::format("buffer {} is no file in the folder of this one: {}", i, quote(uri)));
-        if (!seen.insert(place).second)
-            fail(name, fmt::format("buffer {} has the same uri as another; merge the two", i));
-        if (!embedded) in_files.emplace_back(i, place);
-    }
-    BufferReader reader(folder, name);
-    for (const auto& [index, place] : in_files) reader.read(index, place, (*buffers)[index]);
-    return reader.take();
-}
-
-/// Returns the input for the library: .glb with the cut-down JSON if there is a binary chunk, else the JSON.
-std::string rebuilt(const Json& document, const GltfChunks& chunks) {
-    std::string json = json_text(document);
-    return chunks.binary.empty() ? json : binary_gltf(std::move(json), chunks.binary);
-}
-
-/// Returns callbacks that give the library the files already read, and nothing else.
-tinygltf::FsCallbacks callbacks_for(BufferFiles* files) {
-    tinygltf::FsCallbacks callbacks{};
-    callbacks.FileExists = [](const std::string& path, void* data) {
-        return static_cast<BufferFiles*>(data)->contains(normal_path(path));
-    };
-    callbacks.ExpandFilePath = [](const std::string& path, void*) { return path; };
-    callbacks.ReadWholeFile = [](std::vector<unsigned char>* out, std::string*, const std::string& path, void* data) {
-        *out = std::move((*static_cast<BufferFiles*>(data))[normal_path(path)]);
-        return true;
-    };
-    callbacks.WriteWholeFile = [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) {
-        return false;
-    };
-    callbacks.user_data = files;
-    return callbacks;
 }
 
 /// Returns the first line of the library's error message.
 std::string first_line(const std::string& text) {
     const std::string_view line = trimmed(std::string_view(text).substr(0, text.find('\n')));
-    return line.empty() ? "tinygltf cannot read it" : printable(line, 200);
+    return line.empty() ? "no reason is known" : printable(line, 200);
 }
 
-tinygltf::Model load_model(const std::string& bytes, const std::string& name, const fs::path& folder,
-                           BufferFiles files) {
+/// Has tinygltf read the JSON, which names no files.
+tinygltf::Model parse_model(const Json& document, const std::string& name) {
+    const std::string json = json_text(document);
     tinygltf::TinyGLTF loader;
     tinygltf::Model model;
     std::string error, warning;
-    const std::string base = folder_of_buffers(folder).string();
-    loader.SetFsCallbacks(callbacks_for(&files));
-    const auto size = static_cast<unsigned>(bytes.size());
     bool loaded = false;
     try {
-        if (bytes.starts_with("glTF"))
-            loaded = loader.LoadBinaryFromMemory(&model, &error, &warning,
-                                                 reinterpret_cast<const unsigned char*>(bytes.data()), size, base);
-        else
-            loaded = loader.LoadASCIIFromString(&model, &error, &warning, bytes.data(), size, base);
+        loaded = loader.LoadASCIIFromString(&model, &error, &warning, json.data(), static_cast<unsigned>(json.size()),
+                                            std::string());
     } catch (const std::exception& exception) {
         error = exception.what();
     }
-    if (!loaded) fail(name, first_line(error));
+    if (!loaded) fail(name, fmt::format("the JSON is no valid glTF ({}); export it again", first_line(error)));
     return model;
 }
 
@@ -336,30 +208,24 @@ tinygltf::Model load_model(const std::string& bytes, const std::string& name, co
 
 tinygltf::Model load_gltf(std::string_view content, const std::string& name, const fs::path& folder,
                           GltfContent wanted) {
-    if (content.size() > k_max_bytes) fail(name, "the file is larger than 2 GiB; split it");
+    if (content.size() > k_max_gltf_bytes) fail(name, "the file is larger than 2 GiB; split it");
     GltfChunks chunks;
     if (content.starts_with("glTF"))
         chunks = binary_chunks(content, name);
     else
         chunks.json = content;
     const Json document = parse_document(chunks.json, name);
+    check_version(document, name);
     check_extensions(document, name);
-    BufferFiles files = read_buffers(document, chunks, name, folder);
-    return load_model(rebuilt(cut_down(document, wanted), chunks), name, folder, std::move(files));
+    GltfBuffers buffers = read_gltf_buffers(document, chunks.binary, name, folder);
+    tinygltf::Model model = parse_model(cut_down(document, wanted), name);
+    model.buffers.resize(buffers.size());
+    for (std::size_t i = 0; i < buffers.size(); ++i) model.buffers[i].data = std::move(buffers[i]);
+    return model;
 }
 
 std::uint64_t gltf_external_buffer_bytes(std::string_view json, const std::string& name) {
-    const Json document = parse_document(json, name);
-    const auto buffers = document.find("buffers");
-    if (buffers == document.end() || !buffers->is_array()) return 0;
-    std::uint64_t bytes = 0;
-    for (const Json& buffer : *buffers) {
-        if (!buffer.is_object() || !buffer.contains("uri") || !buffer.contains("byteLength")) continue;
-        const Json &uri = buffer["uri"], &length = buffer["byteLength"];
-        if (!uri.is_string() || uri.get_ref<const std::string&>().starts_with("data:")) continue;
-        if (length.is_number_unsigned()) bytes += std::min(length.get<std::uint64_t>(), k_max_bytes);
-    }
-    return std::min(bytes, k_max_bytes);  // more is not read
+    return external_bytes_of(parse_document(json, name));
 }
 
 std::string binary_gltf(std::string json, std::string_view binary) {

@@ -11,14 +11,13 @@ class Model;
 
 namespace exemplar::mesh_io {
 
-/// What is kept of a glTF file: triangles, nodes and material names; or also skins, morph targets and animations.
-enum class GltfContent { geometry, animation };
+/// What is kept of a glTF file: triangles, nodes, skins, morph targets and material names; or also animations.
+enum class GltfContent { still, animation };
 
 /// Loads glTF 2.0 (.gltf or .glb, told apart by content) through tinygltf. The library trusts parts of its input
-/// (chunk lengths, deep nesting, many buffers that share one chunk), so the file is first checked and cut down to
-/// the `wanted` content. The result must be checked again before it is used (GltfReader). External buffers are read
-/// from `folder` only, and not through links that lead out of it; the library opens no file. Throws MeshError that
-/// begins with `name`.
+/// (chunk lengths, deep nesting), so the file is first checked and cut down to the `wanted` content, and its buffers
+/// are read here (read_gltf_buffers). The result must be checked again before it is used (GltfReader). Throws MeshError
+/// that begins with `name`.
 tinygltf::Model load_gltf(std::string_view content, const std::string& name, const std::filesystem::path& folder,
                           GltfContent wanted);
 

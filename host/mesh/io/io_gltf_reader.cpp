@@ -6,14 +6,18 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "host/mesh/io/io_text.h"
 
 namespace exemplar::mesh_io {
 namespace {
 
-/// Bounds the number of elements read: a file can reference a mesh many times at a few bytes each.
-constexpr std::uint64_t k_free_elements = 300'000, k_elements_per_byte = 2;
+/// Bounds what is read, as a file can repeat a mesh many times, and claim zeros, at a few bytes each: 64 MiB, which are
+/// about 3 million triangles, and more for larger files. The result takes up to ten times as much memory.
+constexpr std::uint64_t k_free_bytes = 64 << 20, k_read_bytes_per_byte = 8;
+/// A small element is a number of four bytes in the result.
+constexpr std::uint64_t k_min_element_bytes = 4;
 
 int gltf_type(int components) {
     switch (components) {
@@ -35,14 +39,16 @@ std::vector<std::uint32_t> unpacked(const std::vector<unsigned char>& bytes, std
     return values;
 }
 
-/// Decodes normalized integers of type T.
+/// Decodes numbers of type T; normalized integers become fractions of the largest (glTF 2.0, section 3.6.2.2).
 template <typename T>
-std::vector<float> fractions(const std::vector<unsigned char>& bytes) {
+std::vector<float> numbers_of(const std::vector<unsigned char>& bytes, bool normalized) {
     std::vector<float> values(bytes.size() / sizeof(T));
     for (std::size_t i = 0; i < values.size(); ++i) {
         T value;
         std::memcpy(&value, bytes.data() + i * sizeof(T), sizeof(T));
-        values[i] = std::max(static_cast<float>(value) / static_cast<float>(std::numeric_limits<T>::max()), -1.0f);
+        values[i] = static_cast<float>(value);
+        if constexpr (std::is_integral_v<T>)
+            if (normalized) values[i] = std::max(values[i] / static_cast<float>(std::numeric_limits<T>::max()), -1.0f);
     }
     return values;
 }
@@ -51,9 +57,7 @@ std::vector<float> fractions(const std::vector<unsigned char>& bytes) {
 
 GltfReader::GltfReader(const tinygltf::Model& model, const std::string& name) : model_(model), name_(name) {
     for (const tinygltf::Buffer& buffer : model.buffers) bytes_ += buffer.data.size();
-    elements_left_ = k_free_elements + k_elements_per_byte * bytes_;
-    if (!model.asset.version.starts_with("2."))
-        fail("glTF of version " + quote(model.asset.version) + " is not supported, only 2");
+    bytes_left_ = k_free_bytes + k_read_bytes_per_byte * bytes_;
 }
 
 void GltfReader::fail(const std::string& message) const {
@@ -111,21 +115,23 @@ GltfReader::Bytes GltfReader::view_elements(int index, int view_index, std::size
 GltfReader::Bytes GltfReader::accessor_elements(int index, int components, std::size_t size) {
     const tinygltf::Accessor& accessor = item(model_.accessors, index, "accessor");
     if (accessor.type != gltf_type(components)) fail(fmt::format("accessor {} has the wrong type for its use", index));
-    if (accessor.count > elements_left_)
-        fail(
-            fmt::format("the {} elements of accessor {} are far more than the file holds; its count is wrong, or "
-                        "the scene repeats its meshes: merge or remove copies",
-                        accessor.count, index));
-    elements_left_ -= accessor.count;
-    Bytes elements;
-    if (accessor.bufferView >= 0)
-        elements = view_elements(index, accessor.bufferView, accessor.byteOffset, accessor.count, size);
-    else if (accessor.sparse.isSparse && accessor.count <= bytes_)
-        elements.resize(accessor.count * size, 0);
-    else
-        fail(fmt::format("accessor {} has neither a buffer view nor sparse values for its elements", index));
+    charge(index, accessor.count, size);
+    Bytes elements = accessor.bufferView < 0  // then they are zeros
+                         ? Bytes(accessor.count * size, 0)
+                         : view_elements(index, accessor.bufferView, accessor.byteOffset, accessor.count, size);
     if (accessor.sparse.isSparse) replace_sparse(index, size, elements);
     return elements;
+}
+
+void GltfReader::charge(int index, std::size_t count, std::size_t size) {
+    const std::uint64_t element = std::max<std::uint64_t>(size, k_min_element_bytes);
+    if (count > bytes_left_ / element)
+        fail(
+            fmt::format("with the {} elements of accessor {} the scene is larger than the {} MB that are read of a "
+                        "file of this size; its count is wrong, or the scene repeats its meshes: split the scene, or "
+                        "remove copies",
+                        count, index, (k_free_bytes + k_read_bytes_per_byte * bytes_) >> 20));
+    bytes_left_ -= count * element;
 }
 
 void GltfReader::replace_sparse(int index, std::size_t size, Bytes& elements) const {
@@ -167,41 +173,36 @@ std::vector<std::uint32_t> GltfReader::integers(int accessor, int components) {
     return unpacked(accessor_elements(accessor, components, size * static_cast<std::size_t>(components)), size);
 }
 
-std::vector<float> GltfReader::numbers(int accessor, int components) {
+std::vector<float> GltfReader::numbers(int accessor, int components, GltfIntegers integers) {
     const tinygltf::Accessor& source = item(model_.accessors, accessor, "accessor");
-    const auto elements = [&](std::size_t size) {
-        return accessor_elements(accessor, components, size * static_cast<std::size_t>(components));
-    };
-    if (source.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT && !source.normalized)
+    if (source.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT && !source.normalized &&
+        integers == GltfIntegers::normalized)
         fail(fmt::format("accessor {} holds numbers that are neither floats nor normalized", accessor));
+    const auto read = [&]<typename T>(T) {
+        return numbers_of<T>(accessor_elements(accessor, components, sizeof(T) * static_cast<std::size_t>(components)),
+                             source.normalized);
+    };
     switch (source.componentType) {
-        case TINYGLTF_COMPONENT_TYPE_FLOAT: {
-            const Bytes bytes = elements(sizeof(float));
-            std::vector<float> values(bytes.size() / sizeof(float));
-            if (!bytes.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
-            return values;
-        }
+        case TINYGLTF_COMPONENT_TYPE_FLOAT:
+            return read(float{});
         case TINYGLTF_COMPONENT_TYPE_BYTE:
-            return fractions<std::int8_t>(elements(1));
+            return read(std::int8_t{});
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            return fractions<std::uint8_t>(elements(1));
+            return read(std::uint8_t{});
         case TINYGLTF_COMPONENT_TYPE_SHORT:
-            return fractions<std::int16_t>(elements(2));
+            return read(std::int16_t{});
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            return fractions<std::uint16_t>(elements(2));
+            return read(std::uint16_t{});
         default:
-            fail(fmt::format("accessor {} holds numbers of a type that cannot be normalized", accessor));
+            fail(fmt::format("accessor {} holds numbers of 32-bit integers, which glTF does not allow here", accessor));
     }
 }
 
-std::vector<Vec3> GltfReader::positions(int accessor) {
-    if (item(model_.accessors, accessor, "accessor").componentType != TINYGLTF_COMPONENT_TYPE_FLOAT)
-        fail(fmt::format("accessor {} holds positions that are no floats, which is not supported", accessor));
-    const Bytes bytes = accessor_elements(accessor, 3, sizeof(Vec3));
-    std::vector<Vec3> positions(bytes.size() / sizeof(Vec3));
-    for (std::size_t i = 0; i < positions.size(); ++i)
-        std::memcpy(positions[i].data(), bytes.data() + i * sizeof(Vec3), sizeof(Vec3));
-    return positions;
+std::vector<Vec3> GltfReader::vectors(int accessor) {
+    const std::vector<float> components = numbers(accessor, 3, GltfIntegers::any);
+    std::vector<Vec3> vectors(components.size() / 3);
+    for (std::size_t i = 0; i < vectors.size(); ++i) vectors[i] = Eigen::Map<const Vec3>(components.data() + 3 * i);
+    return vectors;
 }
 
 bool GltfReader::has_triangles(const tinygltf::Primitive& primitive) {

@@ -14,6 +14,9 @@ struct Primitive;
 
 namespace exemplar::mesh_io {
 
+/// Which integers may stand for numbers: those that an accessor calls normalized, or also plain ones.
+enum class GltfIntegers { normalized, any };
+
 /// Checked access to a model that tinygltf loaded: every index, count and offset is checked before it is used. All
 /// functions throw MeshError that begins with the file's name. `model` and `name` must outlive the reader.
 class GltfReader {
@@ -39,11 +42,11 @@ class GltfReader {
 
     /// Returns the unsigned integers of an accessor, element by element; `components` is 1 (SCALAR) or 4 (VEC4).
     std::vector<std::uint32_t> integers(int accessor, int components);
-    /// Returns the numbers of an accessor, element by element, which must be floats or normalized integers of one or
-    /// two bytes; `components` is 1 (SCALAR), 3 (VEC3), 4 (VEC4) or 16 (MAT4).
-    std::vector<float> numbers(int accessor, int components);
-    /// Returns the positions of an accessor, which must be floats.
-    std::vector<Vec3> positions(int accessor);
+    /// Returns the numbers of an accessor, element by element: floats, or integers of one or two bytes as `integers`
+    /// says; `components` is 1 (SCALAR), 3 (VEC3), 4 (VEC4) or 16 (MAT4).
+    std::vector<float> numbers(int accessor, int components, GltfIntegers integers = GltfIntegers::normalized);
+    /// Returns the positions or offsets of an accessor of VEC3, which may be quantized (KHR_mesh_quantization).
+    std::vector<Vec3> vectors(int accessor);
 
     /// Returns whether the primitive holds triangles (as a list, a strip or a fan).
     static bool has_triangles(const tinygltf::Primitive& primitive);
@@ -57,12 +60,15 @@ class GltfReader {
     [[noreturn]] void fail_item(const char* what, int index, std::size_t size) const;
     Bytes view_elements(int index, int view_index, std::size_t offset, std::size_t count, std::size_t size) const;
     Bytes accessor_elements(int index, int components, std::size_t size);
+    /// Throws if `count` more elements of `size` bytes are too many.
+    void charge(int index, std::size_t count, std::size_t size);
     void replace_sparse(int index, std::size_t size, Bytes& elements) const;
     std::size_t index_bytes(int component_type, int index) const;
 
     const tinygltf::Model& model_;
     const std::string& name_;
-    std::uint64_t bytes_ = 0, elements_left_ = 0;
+    std::uint64_t bytes_ = 0;       ///< size of all buffers
+    std::uint64_t bytes_left_ = 0;  ///< that may still be read
 };
 
 }  // namespace exemplar::mesh_io

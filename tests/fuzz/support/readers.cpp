@@ -37,11 +37,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr MemoryBound k_usual_bound{256 * 1024, 64};
-/// Copies of a mesh cost a glTF file next to nothing, so 300,000 corners are free.
-constexpr MemoryBound k_gltf_bound{48 * 1024 * 1024, 1024};
+/// Copies of a mesh cost a glTF file next to nothing, so 64 MiB of vertices and corners are free; the result takes up
+/// to ten times as much.
+constexpr MemoryBound k_gltf_bound{640 * 1024 * 1024, 1024};
 
 /// Frames of clips between two keys cost next to nothing as well.
-constexpr MemoryBound k_animation_bound{160 * 1024 * 1024, 4096};
+constexpr MemoryBound k_animation_bound{800 * 1024 * 1024, 4096};
 
 /// Where files are kept that a reader or writer wants to have a path; goes away with the program. In memory where that
 /// is possible, as a disk would take most of the time. Holds what a glTF file or a list may name.

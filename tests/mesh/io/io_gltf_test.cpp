@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -51,6 +52,63 @@ TEST(ReadGltf, BinaryChunkDataUriAndFileBesideIt) {
     mesh_files::write_bytes(folder / "my buffer.bin", tetrahedron_positions() + tetrahedron_indices());
     mesh_files::write_bytes(folder / "a.gltf", tetrahedron_gltf("'uri':'my%20buffer.bin',"));
     expect_tetrahedron(read_mesh(folder / "a.gltf"));
+}
+
+TEST(ReadGltf, DataUrisOfAnyMediaTypeAndEncoding) {
+    const std::string base64 =
+        "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAACAAEAAAABAAMAAAADAAIAAQACAAMA";
+    for (const std::string head : {"data:;base64,", "data:application/octet-stream;charset=utf-8;base64,",
+                                   "data:binary/octet-stream;base64,", "data:application/gltf-buffer;base64,"}) {
+        const std::string uri = "'uri':'" + head + base64 + "',";
+        std::string json = tetrahedron_gltf(uri);
+        expect_tetrahedron(read_as("a.gltf", json));
+        json.insert(json.rfind("]}"), json_text(",{" + uri + "'byteLength':72}"));  // the same for the indices
+        const std::string view = json_text("{'buffer':0,'byteOffset':48");
+        json.replace(json.find(view), view.size(), json_text("{'buffer':1,'byteOffset':48"));
+        expect_tetrahedron(read_as("a.gltf", json));
+    }
+    std::string escaped;  // percent-encoded in place of base64
+    const std::string bytes = tetrahedron_positions() + tetrahedron_indices();
+    for (const char byte : bytes) escaped += fmt::format("%{:02X}", static_cast<unsigned char>(byte));
+    expect_tetrahedron(read_as("a.gltf", tetrahedron_gltf("'uri':'data:," + escaped + "',")));
+}
+
+TEST(ReadGltf, APlusInTheNameOfABufferIsAPlus) {
+    const mesh_files::TemporaryFolder folder;
+    mesh_files::write_bytes(folder / "robot+arm.bin", tetrahedron_positions() + tetrahedron_indices());
+    for (const std::string name : {"robot+arm.bin", "robot%2Barm.bin"}) {
+        mesh_files::write_bytes(folder / "a.gltf", tetrahedron_gltf("'uri':'" + name + "',"));
+        expect_tetrahedron(read_mesh(folder / "a.gltf"));
+    }
+}
+
+TEST(ReadGltf, ElementsWithoutBufferViewAreZeros) {
+    std::string json = tetrahedron_gltf("");
+    json.replace(json.find("\"bufferView\":0,"), 15, "");
+    const TriangleMesh mesh = read_as("a.glb", glb_of(json, tetrahedron_positions() + tetrahedron_indices())).mesh;
+    EXPECT_EQ(mesh.vertices, (V{{0, 0, 0}}));
+    EXPECT_THAT(mesh.faces, SizeIs(4));
+}
+
+TEST(ReadGltf, ManyNodesMayShareAMesh) {
+    // Of a mesh of a thousand triangles, in 500 places; the file has 42 kB.
+    constexpr int k_triangles = 1000, k_nodes = 500;
+    std::string binary, nodes, roots;
+    for (int i = 0; i < 3 * k_triangles; ++i)
+        for (const float x : {float(i), float(i % 3 == 1), float(i % 3 == 2)}) binary += bytes_of(x);
+    for (int i = 0; i < k_nodes; ++i) {
+        nodes += fmt::format("{}{{'mesh':0,'translation':[0,0,{}]}}", i ? "," : "", 5 * i);
+        roots += fmt::format("{}{}", i ? "," : "", i);
+    }
+    const std::string json = json_text(
+        "{'asset':{'version':'2.0'},'scenes':[{'nodes':[" + roots + "]}],'nodes':[" + nodes +
+        "],'meshes':[{'primitives':[{'attributes':{'POSITION':0}}]}],'accessors':[{'bufferView':0,'componentType':5126,"
+        "'count':3000,'type':'VEC3'}],'bufferViews':[{'buffer':0,'byteLength':36000}],'buffers':[{'byteLength':36000}]"
+        "}");
+    const TriangleMesh mesh = read_as("a.glb", glb_of(json, binary)).mesh;
+    EXPECT_THAT(mesh.faces, SizeIs(k_triangles * k_nodes));
+    EXPECT_THAT(mesh.vertices, SizeIs(3 * k_triangles * k_nodes));
+    EXPECT_EQ(mesh.vertices.back(), Vec3(2999, 0, 5 * 499 + 1));
 }
 
 TEST(ReadGltf, ExtensionNeedNotMatchTheContainer) {

@@ -39,11 +39,11 @@ class FlatFaceRemoval {
   public:
     explicit FlatFaceRemoval(TriangleMesh& mesh) : mesh_(mesh) {}
 
-    /// Returns the number of flat faces of the given mesh.
+    /// Returns the number of flat faces that were removed.
     std::size_t run() {
         for (std::uint32_t f = 0; f < mesh_.face_count(); ++f) enqueue_if_flat(f);
         const std::size_t found = flat_.size();
-        if (found == 0) return 0;
+        if (found == 0 || found == mesh_.face_count()) return 0;
         prepare();
         while (!flat_.empty()) {
             const FlatFace flat = flat_.top();

@@ -120,8 +120,14 @@ TEST(RemoveFlatFaces, EndsOnHeapsOfFlatFaces) {
     for (std::uint32_t i = 0; i < k_points; ++i)
         for (std::uint32_t j = 0; j < i; ++j)
             for (std::uint32_t k = 0; k < j; ++k) mesh.faces.push_back({i, j, k});
-    EXPECT_GT(remove_flat_faces(mesh), 0);
-    EXPECT_TRUE(mesh.faces.empty());
+    TriangleMesh line = mesh;
+    EXPECT_EQ(remove_flat_faces(line), 0);
+    EXPECT_EQ(line.faces, mesh.faces);
+
+    mesh = shapes::joined(mesh, shapes::grid(1, 1, 1));
+    const std::vector<Face> sheet(mesh.faces.end() - 2, mesh.faces.end());
+    EXPECT_EQ(remove_flat_faces(mesh), line.face_count());
+    EXPECT_EQ(mesh.faces, sheet);
 }
 
 TEST(RemoveFlatFaces, DoesNotDependOnTheOrderOfFaces) {

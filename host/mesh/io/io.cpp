@@ -10,6 +10,7 @@
 #include "host/core/text.h"
 #include "host/mesh/io/io_formats.h"
 #include "host/mesh/io/io_gltf_file.h"
+#include "host/mesh/io/io_import.h"
 #include "host/mesh/io/io_origin.h"
 #include "host/mesh/io/io_text.h"
 
@@ -18,7 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 6> k_extensions{".off", ".obj", ".ply", ".stl", ".gltf", ".glb"};
+constexpr std::array<std::string_view, 10> k_extensions{".off", ".obj", ".ply", ".stl", ".gltf",
+                                                        ".glb", ".fbx", ".dae", ".3mf", ".3ds"};
+/// The last of these, which are read by exemplar-import.
+constexpr std::span k_imported = std::span(k_extensions).last<4>();
 
 std::string read_content(const fs::path& path) {
     try {
@@ -57,6 +61,7 @@ void check_extension(std::string_view extension, std::string_view content, const
 MeshFile read_content_as(std::string_view extension, std::string_view content, const fs::path& path) {
     const std::string name = path.string();
     check_extension(extension, content, name);
+    if (std::ranges::find(k_imported, extension) != k_imported.end()) return mesh_io::read_imported(path);
     if (extension != ".stl" && extension != ".glb") mesh_io::refuse_utf16(content, name);
     if (extension == ".off") return mesh_io::read_off(content, name);
     if (extension == ".obj") return mesh_io::read_obj(content, name);

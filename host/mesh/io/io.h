@@ -34,7 +34,8 @@ struct MeshFile {
     std::vector<std::string> warnings;
 };
 
-/// Reads OFF, OBJ, PLY (ascii, binary little and big endian), STL (ascii, binary) or glTF 2.0 (.gltf, .glb). The
+/// Reads OFF, OBJ, PLY (ascii, binary little and big endian), STL (ascii, binary), glTF 2.0 (.gltf, .glb), or, through
+/// the program exemplar-import, FBX, COLLADA (.dae), 3MF and 3DS. The
 /// extension selects the format and is checked against the content. Cuts polygons into triangles; welds vertices of
 /// STL and of glTF seams by exact position. Each triangle of a PLY triangle strip is a source face without a label.
 /// Of glTF, reads the triangles of the default scene with the transforms of their nodes. Keeps coordinates that are

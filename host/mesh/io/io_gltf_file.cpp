@@ -12,6 +12,7 @@
 
 #include "host/core/json_text.h"
 #include "host/mesh/io/io_gltf_buffers.h"
+#include "host/mesh/io/io_gltf_compression.h"
 #include "host/mesh/io/io_text.h"
 #include "host/mesh/io/io_write_text.h"
 
@@ -90,15 +91,15 @@ Json parse_document(std::string_view text, const std::string& name) {
     }
 }
 
-/// Removes what applications and extensions add, but for the extension that copies meshes.
+/// Removes what applications and extensions add, but for the extensions that hold geometry.
 void drop_extras(Json& value) {
-    constexpr const char* k_copies = "EXT_mesh_gpu_instancing";
+    constexpr std::array k_kept{"EXT_mesh_gpu_instancing", "EXT_meshopt_compression", "KHR_draco_mesh_compression"};
     if (value.is_object()) {
         value.erase("extras");
-        const Json::json_pointer place(std::string("/extensions/") + k_copies);
-        Json copies = value.contains(place) ? std::move(value[place]) : Json();
+        const Json all = value.contains("extensions") ? std::move(value["extensions"]) : Json();
         value.erase("extensions");
-        if (copies.is_object()) value["extensions"][k_copies] = std::move(copies);
+        for (const char* key : k_kept)
+            if (all.is_object() && all.contains(key) && all[key].is_object()) value["extensions"][key] = all[key];
     }
     if (value.is_structured())
         for (Json& child : value) drop_extras(child);
@@ -168,7 +169,8 @@ void check_version(const Json& document, const std::string& name) {
 /// Throws if the file needs an extension that may change its geometry and is not read. Those of appearance do not
 /// matter.
 void check_extensions(const Json& document, const std::string& name) {
-    constexpr std::array k_read{"KHR_mesh_quantization", "EXT_mesh_gpu_instancing"};
+    constexpr std::array k_read{"KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",
+                                "KHR_draco_mesh_compression"};
     constexpr std::array k_appearance{"material", "texture", "light", "image", "xmp", "metadata", "feature"};
     const auto required = document.find("extensionsRequired");
     if (required == document.end() || !required->is_array()) return;
@@ -218,7 +220,9 @@ tinygltf::Model load_gltf(std::string_view content, const std::string& name, con
     check_version(document, name);
     check_extensions(document, name);
     GltfBuffers buffers = read_gltf_buffers(document, chunks.binary, name, folder);
-    tinygltf::Model model = parse_model(cut_down(document, wanted), name);
+    Json plain = cut_down(document, wanted);
+    expand_compressed(plain, buffers, name);
+    tinygltf::Model model = parse_model(plain, name);
     model.buffers.resize(buffers.size());
     for (std::size_t i = 0; i < buffers.size(); ++i) model.buffers[i].data = std::move(buffers[i]);
     return model;

@@ -153,9 +153,9 @@ std::size_t CatalogWork::total() {
 }
 
 void BatchWriter::write_labels(BatchShape& shape, const fs::path& target) const {
-    const LabeledOutput output = make_labeled_output(shape.mesh, shape.model->model, shape.labeling);
-    write_labeled_files(target, shape.mesh, output, gltf_);
-    const nlohmann::json described = describe_output(shape.mesh, shape.model->model, shape.labeling);
+    const LabeledOutput output = make_labeled_output(shape.file.mesh, shape.model->model, shape.labeling);
+    write_labeled_files(target, shape.file, output, gltf_);
+    const nlohmann::json described = describe_output(shape.file.mesh, shape.model->model, shape.labeling);
     shape.record.labels = described["labels"];
     shape.record.confidence = described["confidence"];
 }

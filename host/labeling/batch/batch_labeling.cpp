@@ -138,8 +138,8 @@ class Batch {
         if (hash != shape.hash) look_again(item);
         item.record.content = content_of(shape);
         if (!shape.problem.empty()) throw MeshError(shape.problem);
-        item.mesh = read_mesh(shape.path).mesh;
-        item.memory.resize(memory_for(item.mesh.face_count(), 0));
+        item.file = read_mesh(shape.path);
+        item.memory.resize(memory_for(item.file.mesh.face_count(), 0));
         item.record.seconds["read"] = watch.wall();
     }
     /// Describes the shape anew, as its file has changed since it was cataloged.
@@ -154,11 +154,11 @@ class Batch {
 
     void compute_features_of(BatchShape& item) {
         const Stopwatch watch;
-        arena_.execute([&] { item.prepared = working_features(models_.features, item.mesh, options_.cache); });
+        arena_.execute([&] { item.prepared = working_features(models_.features, item.file.mesh, options_.cache); });
         item.record.features = item.prepared.cache_entry;
         choose_model(item);
         item.memory.resize(k_bytes_per_shape + bytes_of(item.prepared.features) + memory_of_scores(item) +
-                           100 * item.mesh.face_count());
+                           100 * item.file.mesh.face_count());
         item.record.seconds["features"] = watch.wall();
     }
     /// Chooses the model by the category that the user gave, otherwise by the recognized one.
@@ -237,7 +237,7 @@ class Batch {
         const Stopwatch watch;
         item.labeling = finish_labeling(item.model->model, item.prepared, std::move(item.scores));
         item.prepared = {};
-        item.memory.resize(k_bytes_per_shape + 200 * item.mesh.face_count());
+        item.memory.resize(k_bytes_per_shape + 200 * item.file.mesh.face_count());
         item.record.model = item.model->name;
         item.record.model_hash = item.model->hash;
         item.record.seconds["cut"] = watch.wall();

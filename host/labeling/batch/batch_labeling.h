@@ -14,6 +14,7 @@
 #include "host/labeling/batch/batch_models.h"
 #include "host/labeling/inference/labeler.h"
 #include "host/labeling/inference/mesh_labeling.h"
+#include "host/mesh/io/io.h"
 
 namespace exemplar {
 
@@ -28,11 +29,11 @@ struct BatchShape {
     CatalogShape shape;
     bool changed = false;  ///< the file differs from its catalog entry; `shape` describes the new content
     MemoryBudget::Share memory;
-    TriangleMesh mesh;                  ///< as read
+    MeshFile file;                      ///< as read
     WorkingFeatures prepared;           ///< its features, until its labels are cut
     const BatchModel* model = nullptr;  ///< the model that labels it
     FaceScores scores;
-    FaceLabeling labeling;  ///< per triangle of `mesh`
+    FaceLabeling labeling;  ///< per triangle of the mesh
     ShapeRecord record;     ///< complete except run, worker and labels, which the writer sets
 };
 

@@ -1,10 +1,10 @@
-#include "host/mesh/io/io_gltf_nodes.h"
-
+// Reads the hierarchy of the nodes of a glTF file.
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
 #include <algorithm>
 
+#include "host/mesh/io/io_gltf_surface.h"
 #include "host/mesh/topology.h"
 
 namespace exemplar::mesh_io {

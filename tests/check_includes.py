@@ -43,7 +43,7 @@ ROOMS = {
     'host/learn': ['', 'regression', 'components', 'boosting'],
     'host/lines': ['extraction', 'strokes', ''],
     'host/mesh': ['', 'queries', 'editing', 'curvature', 'io'],
-    'host/synth': ['modeling', 'shapes', 'animations', 'damage', 'hatching'],
+    'host/synth': ['modeling', 'shapes', 'animations', 'damage', 'arrangements', 'hatching'],
     'gpu/curvature': ['surface', 'learned', ''],
     'gpu/runtime': ['device', 'kernels', 'record', 'measure'],
     'apps/bench': ['kernels', ''],

@@ -65,7 +65,10 @@ std::size_t count_exact_radii(const PreparedMesh& prepared, std::size_t radii) {
 }  // namespace
 
 PcaFamily::PcaFamily(const PreparedMesh& prepared, std::size_t radii)
-    : prepared_(&prepared), radii_(radii), exact_radii_(count_exact_radii(prepared, radii)) {
+    : prepared_(&prepared),
+      radii_(radii),
+      exact_radii_(count_exact_radii(prepared, radii)),
+      cut_short_(prepared.face_count(), {exact_radii_, 0.0}) {
     unary_.rows = prepared.face_count();
     for (std::size_t scale = 0; scale < radii_; ++scale) {
         for (const char* column : k_columns) unary_.add(at_radius(std::string("pca.") + column, k_radii[scale]));
@@ -90,32 +93,39 @@ void PcaFamily::measure(std::uint32_t face, Neighborhood neighborhood) {
     std::size_t added = 0;
     for (std::size_t scale = 0; scale < exact_radii_; ++scale) {
         const float radius = static_cast<float>(k_radii[scale]) * prepared_->median_distance;
-        const std::size_t end = count_within(neighborhood, radius, k_min_region_faces);
+        const bool complete = radius < neighborhood.complete_distance;
+        const std::size_t end =
+            complete ? count_within(neighborhood, radius, k_min_region_faces) : neighborhood.faces.size();
         for (; added < end; ++added) {
-            const std::uint32_t near = neighborhood[added].face;
+            const std::uint32_t near = neighborhood.faces[added].face;
             const Vec3 offset = prepared_->center[near] - prepared_->center[face];
             moments.add(offset.cast<double>(), static_cast<double>(prepared_->area_share[near]));
         }
         keep(scale, face, moments);
+        if (!complete) cut_short_[face].first_scale = std::min(cut_short_[face].first_scale, scale);
     }
+    cut_short_[face].area_share = moments.sums[0];
 }
 
+/// Sums the samples' cells. Where they hold less than the nearest faces of a region that was cut short, because there
+/// are few samples, those faces represent it better.
 void PcaFamily::measure_large_radii() {
-    if (exact_radii_ == radii_) return;
+    const auto none = [&](const CutShort& cut) { return cut.first_scale == radii_; };
+    if (std::ranges::all_of(cut_short_, none)) return;
     const std::vector<SampleCell> cells = sample_cells(*prepared_);
     const std::size_t samples = cells.size();
     parallel_ranges(unary_.rows, 64, [&](std::size_t begin, std::size_t end) {
         std::vector<float> distance;
         gather_distances(*prepared_, begin, end, distance);
         for (std::size_t f = begin; f < end; ++f) {
-            for (std::size_t scale = exact_radii_; scale < radii_; ++scale) {
+            for (std::size_t scale = cut_short_[f].first_scale; scale < radii_; ++scale) {
                 const float radius = static_cast<float>(k_radii[scale]) * prepared_->median_distance;
                 SurfaceMoments moments;
                 for (std::size_t s = 0; s < samples; ++s) {
                     const float share = cells[s].share_within(distance[(f - begin) * samples + s], radius);
                     if (share > 0.0F) moments.add(cells[s].moments, static_cast<double>(share));
                 }
-                keep(scale, f, moments);
+                if (scale >= exact_radii_ || moments.sums[0] > cut_short_[f].area_share) keep(scale, f, moments);
             }
         }
     });

@@ -101,17 +101,17 @@ void add_sample(float* bins, const std::array<float, k_rings + 1>& edges, float 
 ShapeContextFamily::ShapeContextFamily(const PreparedMesh& prepared)
     : prepared_(&prepared),
       edges_(log_bin_edges<k_rings>(prepared.far_distance)),
-      fine_(prepared.face_count() * k_rings * k_sectors, 0.0F) {
-    if (prepared.samples_are_all_faces()) return;
-    near_ = edges_[k_near_rings];
-}
+      near_radius_(prepared.samples_are_all_faces() ? 0.0F : edges_[k_near_rings]),
+      near_(prepared.face_count(), near_radius_),
+      fine_(prepared.face_count() * k_rings * k_sectors, 0.0F) {}
 
 void ShapeContextFamily::measure(std::uint32_t face, Neighborhood neighborhood) {
     float* bins = fine_.data() + face * k_rings * k_sectors;
     const Vec3 &normal = prepared_->normal[face], &center = prepared_->center[face];
+    near_[face] = std::min(near_radius_, neighborhood.complete_distance);
     std::size_t ring = 0;
-    for (const auto& [near, distance] : neighborhood) {
-        if (distance >= near_) break;
+    for (const auto& [near, distance] : neighborhood.faces) {
+        if (distance >= near_[face]) break;
         while (edges_[ring + 1] <= distance) ++ring;
         const Vec3 offset = prepared_->center[near] - center;
         const float position = sector_position(normal.x(), normal.y(), normal.z(), offset.x(), offset.y(), offset.z());
@@ -134,7 +134,7 @@ void ShapeContextFamily::measure_far() {
             float* bins = fine_.data() + f * k_rings * k_sectors;
             const float* of_face = distance.data() + (f - begin) * count;
             for (std::size_t s = 0; s < count; ++s) {
-                add_sample(bins, edges_, near_, of_face[s], samples.radius[s], position[s], samples.weight[s]);
+                add_sample(bins, edges_, near_[f], of_face[s], samples.radius[s], position[s], samples.weight[s]);
             }
         }
     });

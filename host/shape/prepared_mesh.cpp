@@ -78,16 +78,38 @@ struct NearFace {
     Eigen::Vector2d offset;
 };
 
+/// Collects faces around vertex `v`, `face` among them: all, or where there are more than k_max_fan those that edges at
+/// the vertex join to `face`, nearest first, until there are as many. The tip of a cone of n faces would otherwise
+/// cost n steps for each of them.
+void faces_around(const PreparedMesh& prepared, std::uint32_t face, std::uint32_t v,
+                  std::vector<std::uint32_t>& around) {
+    constexpr std::size_t k_max_fan = 128;
+    const std::span<const std::uint32_t> all = prepared.topology.faces_of_vertex(v);
+    around.assign(all.begin(), all.size() > k_max_fan ? all.begin() : all.end());
+    if (all.size() <= k_max_fan) return;
+    around.push_back(face);
+    // Whole rings of the search, so that both sides of the face end equally far from it.
+    for (std::size_t done = 0, ring = 1; done < ring && ring < k_max_fan; ring = around.size())
+        for (; done < ring; ++done)
+            for (const std::uint32_t e : prepared.topology.edges_of_face(around[done])) {
+                const Edge& edge = prepared.topology.edges[e];
+                if (edge.is_boundary() || (edge.vertex[0] != v && edge.vertex[1] != v)) continue;
+                const std::uint32_t next = edge.face[edge.face[0] == around[done] ? 1 : 0];
+                if (std::ranges::find(around, next) == around.end()) around.push_back(next);
+            }
+}
+
 /// Collects the faces that share a vertex with `face`, itself included, once per shared vertex. Weights are areas
 /// times the cosine between the normals: faces at a right angle to each other do not mix, so that the edges of a box
 /// stay sharp.
 void find_near_faces(const PreparedMesh& prepared, const std::vector<float>& areas, const std::vector<Vec3>& normals,
-                     std::uint32_t face, std::vector<NearFace>& near) {
+                     std::uint32_t face, std::vector<std::uint32_t>& around, std::vector<NearFace>& near) {
     const Vec3 &center = prepared.center[face], &normal = normals[face];
     const Vec3 x = normal.unitOrthogonal(), y = normal.cross(x);
     near.clear();
     for (const std::uint32_t v : prepared.mesh.faces[face]) {
-        for (const std::uint32_t f : prepared.topology.faces_of_vertex(v)) {
+        faces_around(prepared, face, v, around);
+        for (const std::uint32_t f : around) {
             const Vec3 from = prepared.center[f] - center;
             near.push_back({f,
                             static_cast<double>(areas[f] * std::max(normals[f].dot(normal), 0.0F)),
@@ -125,9 +147,10 @@ std::vector<Vec3> smoothed_normals(const PreparedMesh& prepared, const std::vect
     for (int pass = 0; pass < k_passes; ++pass) {
         const std::vector<Vec3> previous = normals;
         parallel_ranges(normals.size(), 1024, [&](std::size_t begin, std::size_t end) {
+            std::vector<std::uint32_t> around;
             std::vector<NearFace> near;
             for (std::size_t f = begin; f < end; ++f) {
-                find_near_faces(prepared, areas, previous, static_cast<std::uint32_t>(f), near);
+                find_near_faces(prepared, areas, previous, static_cast<std::uint32_t>(f), around, near);
                 const Vec3d sum = regressed_normal(near, previous);
                 if (const double length = sum.norm(); length > 0.0) normals[f] = (sum / length).cast<float>();
             }

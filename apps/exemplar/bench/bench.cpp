@@ -23,15 +23,16 @@ struct BenchOptions {
     bool full = false, quick = false;
 };
 
-constexpr std::array<BenchPart, 9> k_parts{{{"features", false, bench_features},
-                                            {"train", false, bench_training},
-                                            {"label", false, bench_labeling},
-                                            {"boosting", false, bench_boosting},
-                                            {"scoring", false, bench_scoring},
-                                            {"cut", false, bench_cut},
-                                            {"curvature", false, bench_curvature},
-                                            {"lines", false, bench_lines},
-                                            {"scaling", true, bench_scaling}}};
+constexpr std::array<BenchPart, 10> k_parts{{{"features", false, bench_features},
+                                             {"train", false, bench_training},
+                                             {"label", false, bench_labeling},
+                                             {"boosting", false, bench_boosting},
+                                             {"scoring", false, bench_scoring},
+                                             {"cut", false, bench_cut},
+                                             {"curvature", false, bench_curvature},
+                                             {"lines", false, bench_lines},
+                                             {"scaling", true, bench_scaling},
+                                             {"arrangements", true, bench_arrangements}}};
 
 std::vector<std::string> part_names() {
     std::vector<std::string> names;
@@ -90,7 +91,9 @@ void add_bench_command(Command& app) {
     command->add_option("--only", options->only, fmt::format("measure only these: {}", fmt::join(part_names(), " ")))
         ->check(completion_words(part_names()))
         ->type_name("NAME");
-    command->add_flag("--full", options->full, "also how costs grow up to two million faces, which takes many minutes");
+    command->add_flag("--full", options->full,
+                      "also how costs grow up to two million faces, and with faces arranged on purpose to cost much, "
+                      "which takes many minutes");
     command->add_flag("--quick", options->quick, "one run of each, and none on one thread that takes long");
     add_device_option(*command, options->common);
     add_common_options(*command, options->common);

@@ -79,5 +79,6 @@ void bench_curvature(BenchContext& context, const std::function<void(const Bench
 void bench_lines(BenchContext& context, const std::function<void(const BenchRow&)>& row);
 // bench_scaling.cpp
 void bench_scaling(BenchContext& context, const std::function<void(const BenchRow&)>& row);
+void bench_arrangements(BenchContext& context, const std::function<void(const BenchRow&)>& row);
 
 }  // namespace exemplar

@@ -9,6 +9,7 @@
 #include "host/core/progress.h"
 #include "host/labeling/inference/mesh_labeling.h"
 #include "host/labeling/training/training.h"
+#include "host/synth/arrangements/arrangements.h"
 #include "host/synth/shapes/shapes.h"
 
 namespace exemplar {
@@ -43,9 +44,9 @@ void add_exponent(const char* what, const char* key, const std::vector<double>& 
     result.numbers[std::string(key) + "_at_end"] = end;
 }
 
-void report_growth(const Growth& growth, const std::function<void(const BenchRow&)>& row) {
+void report_growth(const char* part, const Growth& growth, const std::function<void(const BenchRow&)>& row) {
     for (std::size_t i = 0; i < growth.costs.size(); ++i) {
-        BenchRow result{.name = "scaling",
+        BenchRow result{.name = part,
                         .what = fmt::format("{}, {:.0f} faces", growth.what, growth.faces[i]),
                         .cost = growth.costs[i]};
         if (i + 1 == growth.costs.size() && i > 0) {
@@ -84,8 +85,23 @@ void bench_scaling(BenchContext& context, const std::function<void(const BenchRo
         progress.advance(1, fmt::format("{} faces", mesh.face_count()));
     }
     progress.finish();
-    report_growth(labeling, row);
-    report_growth(cut, row);
+    report_growth("scaling", labeling, row);
+    report_growth("scaling", cut, row);
+}
+
+void bench_arrangements(BenchContext& context, const std::function<void(const BenchRow&)>& row) {
+    const std::vector<std::size_t> sizes = context.quick() ? std::vector<std::size_t>{5'000, 10'000}
+                                                           : std::vector<std::size_t>{5'000, 10'000, 20'000, 40'000};
+    const auto add = [&](std::string_view name, const std::function<TriangleMesh(std::size_t)>& make) {
+        Growth growth{fmt::format("features, {}", name), {}, {}, {}, {}};
+        for (const std::size_t size : sizes) {
+            const TriangleMesh mesh = make(size);
+            growth.add(mesh.face_count(), measure(1, [&] { compute_features(mesh); }));
+        }
+        report_growth("arrangements", growth, row);
+    };
+    add("an ordinary shape", [](std::size_t faces) { return make_shape("fourleg", 1, faces).mesh; });
+    for (const Arrangement& arrangement : arrangements()) add(arrangement.name, arrangement.make);
 }
 
 }  // namespace exemplar

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -65,6 +66,11 @@ struct InteriorEdges {
     DualGraph graph;                                         ///< its nodes ("faces") are interior edges
 };
 InteriorEdges interior_edges(const PreparedMesh& prepared);
+/// Returns the maximum size of an edge's neighborhood on a mesh of `edges` interior edges, see max_neighborhood: a 64th
+/// of the edges, at least 256 and at most 1,024. Those of ordinary meshes are smaller than a 90th.
+constexpr std::size_t max_edge_neighborhood(std::size_t edges) {
+    return std::clamp<std::size_t>(edges / 64, 256, 1024);
+}
 /// Dihedral angles (A.2a), 50 columns. The same searches find the edges near each edge: `near`.
 FeatureMatrix dihedral_features(const PreparedMesh& prepared, const InteriorEdges& edges, EdgeNeighborhood& near);
 /// Curvature and its derivatives (A.2b), 16 columns.

@@ -25,8 +25,8 @@ struct FeatureOptions {
 };
 
 /// For each interior edge, the interior edges near it, itself included (at distance 0), by rising geodesic distance
-/// between midpoints. Used by the pairwise contextual features (A.2e). Range b of B = k_bins begins at (10^(b / B) -
-/// 1) / 9 of 5% of the median geodesic distance.
+/// between midpoints: all, or the nearest max_edge_neighborhood. Used by the pairwise contextual features (A.2e). Range
+/// b of B = k_bins begins at (10^(b / B) - 1) / 9 of 5% of the median geodesic distance.
 struct EdgeNeighborhood {
     static constexpr std::size_t k_bins = 5;  ///< logarithmic distance ranges up to 5% of the median geodesic distance
     std::vector<std::uint32_t> begin;         ///< E + 1 offsets
@@ -58,6 +58,6 @@ struct MeshFeatures {
 MeshFeatures compute_features(const TriangleMesh& mesh, const FeatureOptions& options = {});
 
 /// Version of the feature values, part of model files and cache keys; changes whenever the values change.
-constexpr int k_feature_version = 6;
+constexpr int k_feature_version = 7;
 
 }  // namespace exemplar

@@ -39,7 +39,7 @@ void CurvatureFamily::measure(std::uint32_t face, Neighborhood neighborhood) {
     const auto patch_of = [&](double share) {
         const std::size_t end = count_within(neighborhood, static_cast<float>(share) * median, k_min_patch_faces);
         for (; added < end; ++added) {
-            const std::uint32_t near = neighborhood[added].face;
+            const std::uint32_t near = neighborhood.faces[added].face;
             patch.add(prepared_->center[near], prepared_->normal[near], prepared_->area_share[near]);
         }
         PatchCurvature result = patch.solve();

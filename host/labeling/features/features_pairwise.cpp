@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "host/core/parallel.h"
 #include "host/labeling/features/feature_families.h"
@@ -46,8 +47,8 @@ std::array<float, k_scales> mean_dihedrals(const PreparedMesh& prepared, const I
     std::size_t added = 0;
     for (std::size_t scale = 0; scale < k_dihedral_radii.size(); ++scale) {
         const float radius = static_cast<float>(k_dihedral_radii[scale]) * prepared.median_distance;
-        for (; added < near.size() && near[added].distance <= radius; ++added) {
-            const std::uint32_t other = near[added].face;
+        for (; added < near.faces.size() && near.faces[added].distance <= radius; ++added) {
+            const std::uint32_t other = near.faces[added].face;
             length += static_cast<double>(edges.length[other]);
             sum += static_cast<double>(edges.length[other]) * static_cast<double>(edges.dihedral[other]);
         }
@@ -62,22 +63,27 @@ struct NeighborBlock {
     std::vector<std::uint8_t> bin;
     void add(Neighborhood near, const std::array<float, EdgeNeighborhood::k_bins + 1>& limits) {
         std::uint8_t current = 0;
-        for (const auto& [other, distance] : near) {
+        for (const auto& [other, distance] : near.faces) {
             while (current + 1U < EdgeNeighborhood::k_bins && limits[current + 1U] <= distance) ++current;
             edge.push_back(other);
             bin.push_back(current);
         }
-        count.push_back(static_cast<std::uint32_t>(near.size()));
+        count.push_back(static_cast<std::uint32_t>(near.faces.size()));
     }
 };
 
-EdgeNeighborhood join_blocks(const std::vector<NeighborBlock>& blocks) {
+EdgeNeighborhood join_blocks(std::vector<NeighborBlock> blocks) {
     EdgeNeighborhood joined;
     joined.begin.push_back(0);
-    for (const NeighborBlock& block : blocks) {
+    std::size_t size = 0;
+    for (const NeighborBlock& block : blocks) size += block.edge.size();
+    joined.edge.reserve(size);
+    joined.bin.reserve(size);
+    for (NeighborBlock& block : blocks) {
         for (const std::uint32_t count : block.count) joined.begin.push_back(joined.begin.back() + count);
         joined.edge.insert(joined.edge.end(), block.edge.begin(), block.edge.end());
         joined.bin.insert(joined.bin.end(), block.bin.begin(), block.bin.end());
+        block = {};  // blocks and the whole need not be in memory together
     }
     return joined;
 }
@@ -127,13 +133,14 @@ FeatureMatrix dihedral_features(const PreparedMesh& prepared, const InteriorEdge
         for (int exponent = 1; exponent <= k_exponents; ++exponent) matrix.add(fmt::format("{}^{}", name, exponent));
     }
     const float reach = static_cast<float>(k_context_radius) * prepared.median_distance;
+    const std::size_t max_edges = max_edge_neighborhood(matrix.rows);
     const auto limits = log_bin_edges<EdgeNeighborhood::k_bins>(reach);
     std::vector<NeighborBlock> blocks((matrix.rows + k_block - 1) / k_block);
     parallel_for(blocks.size(), [&](std::size_t b) {
         GeodesicSearch search(edges.graph);
         for (std::size_t e = b * k_block; e < std::min((b + 1) * k_block, matrix.rows); ++e) {
             const auto edge = static_cast<std::uint32_t>(e);
-            const Neighborhood found = search.within(edge, reach);
+            const Neighborhood found = find_bounded_neighborhood(search, edge, reach, 2, max_edges);
             blocks[b].add(found, limits);
             const auto means = mean_dihedrals(prepared, edges, edge, found);
             for (std::size_t scale = 0; scale < k_scales; ++scale) {
@@ -143,7 +150,7 @@ FeatureMatrix dihedral_features(const PreparedMesh& prepared, const InteriorEdge
             }
         }
     });
-    near = join_blocks(blocks);
+    near = join_blocks(std::move(blocks));
     return matrix;
 }
 

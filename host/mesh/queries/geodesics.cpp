@@ -12,7 +12,8 @@ namespace {
 constexpr float k_infinity = std::numeric_limits<float>::infinity();
 
 /// Relaxes arcs, never beyond `radius`, until the queue is empty; `distance` must hold the tentative distances.
-/// Calls settle(face, distance) for each face whose distance has become final.
+/// Calls settle(face, distance) for each face whose distance has become final; ends early, with entries left in the
+/// queue, when that returns false.
 template <typename Settle>
 void run_dijkstra(const DualGraph& graph, DistanceQueue& queue, float* distance, float radius, Settle&& settle) {
     const std::uint32_t* begin = graph.begin.data();
@@ -20,7 +21,7 @@ void run_dijkstra(const DualGraph& graph, DistanceQueue& queue, float* distance,
     while (!queue.empty()) {
         const auto [d, face] = queue.pop();
         if (d > distance[face]) continue;  // a shorter path was found since
-        settle(face, d);
+        if (!settle(face, d)) return;
         for (std::uint32_t a = begin[face]; a != begin[face + 1]; ++a) {
             const auto [neighbor, length] = arcs[a];
             const float candidate = d + length;
@@ -59,24 +60,38 @@ DualGraph build_dual_graph(const TriangleMesh& mesh, const Topology& topology) {
 
 GeodesicSearch::GeodesicSearch(const DualGraph& graph) : graph_(&graph), distance_(graph.face_count(), k_infinity) {}
 
-std::span<const GeodesicSearch::Reached> GeodesicSearch::within(std::uint32_t source, float radius) {
+std::span<const GeodesicSearch::Reached> GeodesicSearch::within(std::uint32_t source, float radius,
+                                                                std::size_t max_faces) {
     reached_.clear();
+    complete_distance_ = k_infinity;
     if (!(radius >= 0)) return reached_;
     distance_[source] = 0;
     queue_.push(0, source);
     run_dijkstra(*graph_, queue_, distance_.data(), radius, [&](std::uint32_t face, float distance) {
+        if (reached_.size() == max_faces) {
+            complete_distance_ = distance_[face];
+            distance_[face] = k_infinity;
+            return false;
+        }
         reached_.push_back({face, distance});
+        return true;
     });
-    // Every face with a tentative distance within the radius was settled, so `reached_` holds all faces touched.
+    leave_out_queued();
+    // Every other face with a tentative distance was settled, so `reached_` holds the rest of the faces touched.
     for (const Reached& reached : reached_) distance_[reached.face] = k_infinity;
     return reached_;
+}
+
+/// Empties the queue after a search that ended early.
+void GeodesicSearch::leave_out_queued() {
+    while (!queue_.empty()) distance_[queue_.pop().face] = k_infinity;
 }
 
 void GeodesicSearch::distances(std::uint32_t source, std::span<float> out) {
     std::ranges::fill(out, k_infinity);
     out[source] = 0;
     queue_.push(0, source);
-    run_dijkstra(*graph_, queue_, out.data(), k_infinity, [](std::uint32_t, float) {});
+    run_dijkstra(*graph_, queue_, out.data(), k_infinity, [](std::uint32_t, float) { return true; });
 }
 
 std::vector<float> distances_from_sources(const DualGraph& graph, std::span<const std::uint32_t> sources) {
@@ -153,7 +168,10 @@ class FarthestPointSampler {
         samples_.push_back(face);
         distance_[face] = 0;
         queue_.push(0, face);
-        run_dijkstra(graph_, queue_, distance_.data(), k_infinity, [&](std::uint32_t f, float) { cell_[f] = sample; });
+        run_dijkstra(graph_, queue_, distance_.data(), k_infinity, [&](std::uint32_t f, float) {
+            cell_[f] = sample;
+            return true;
+        });
     }
     /// Returns the face farthest from all samples that is not a sample itself; there must be one.
     std::uint32_t take_farthest() {

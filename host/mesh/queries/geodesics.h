@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -31,17 +33,26 @@ class GeodesicSearch {
         float distance;
     };
     explicit GeodesicSearch(const DualGraph& graph);
-    /// Returns all faces within `radius` of `source` (itself included), by increasing distance. The cost depends
-    /// only on the faces reached. The span is valid until the next call.
-    std::span<const Reached> within(std::uint32_t source, float radius);
+    /// Returns the faces within `radius` of `source` (itself included), by increasing distance: all of them, or the
+    /// first `max_faces` (at least 1) if there are more. The cost depends only on the faces returned. The span is valid
+    /// until the next call.
+    std::span<const Reached> within(std::uint32_t source, float radius, std::size_t max_faces = k_all_faces);
+    /// Returns a distance below which the last call of `within` has left out no face: infinity if it returned all faces
+    /// within its radius, else the distance of the nearest face that it left out.
+    float complete_distance() const { return complete_distance_; }
     /// Computes the distance from `source` to every face; infinity in other components. out.size() == face count.
     void distances(std::uint32_t source, std::span<float> out);
 
+    static constexpr std::size_t k_all_faces = std::numeric_limits<std::size_t>::max();
+
   private:
+    void leave_out_queued();
+
     const DualGraph* graph_;
     DistanceQueue queue_;
     std::vector<float> distance_;  ///< infinity everywhere between calls
     std::vector<Reached> reached_;
+    float complete_distance_ = std::numeric_limits<float>::infinity();
 };
 
 /// Returns the distances from each source to each face: sources x F, row-major, computed in parallel.

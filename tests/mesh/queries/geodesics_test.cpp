@@ -132,6 +132,25 @@ TEST(Geodesics, WithinGivesTheFacesInsideTheRadiusInOrder) {
     EXPECT_TRUE(search.within(17, -1).empty());
 }
 
+TEST(Geodesics, WithinGivesTheNearestFacesOfABoundedNumber) {
+    const DualGraph graph = graph_of(lumpy_sphere(3, 2));
+    GeodesicSearch search(graph);
+    const auto found = search.within(17, k_infinity);
+    const std::vector<GeodesicSearch::Reached> all(found.begin(), found.end());
+    EXPECT_EQ(search.complete_distance(), k_infinity);
+    for (const std::size_t bound : {std::size_t{1}, std::size_t{2}, std::size_t{100}, all.size() - 1}) {
+        const auto reached = search.within(17, k_infinity, bound);
+        ASSERT_EQ(reached.size(), bound);
+        for (std::size_t i = 0; i < bound; ++i) EXPECT_EQ(reached[i].distance, all[i].distance);
+        EXPECT_EQ(search.complete_distance(), all[bound].distance);
+        // What the bounded search has left out is not seen by the next.
+        EXPECT_EQ(search.within(17, k_infinity).size(), all.size());
+        EXPECT_EQ(search.complete_distance(), k_infinity);
+    }
+    EXPECT_EQ(search.within(17, k_infinity, all.size()).size(), all.size());
+    EXPECT_EQ(search.complete_distance(), k_infinity);
+}
+
 TEST(Geodesics, WithinAndDistancesMayAlternate) {
     const DualGraph graph = graph_of(lumpy_sphere(2, 2));
     GeodesicSearch search(graph);

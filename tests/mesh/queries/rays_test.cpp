@@ -1,11 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "host/core/parallel.h"
 #include "host/mesh/queries/rays.h"
+#include "host/mesh/queries/sliver_groups.h"
 #include "tests/support/shapes.h"
 
 namespace exemplar {
@@ -49,6 +53,73 @@ TEST(RayScene, AgreesWithTestingEveryFace) {
         EXPECT_EQ(found->face, expected->face);
     }
     EXPECT_GT(hits, 500);
+}
+
+/// A cone closed by another below, with two vertices of n faces each, and a small ball in it.
+TriangleMesh cone_around_a_ball(std::uint32_t n) {
+    TriangleMesh cone;
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const double turn = 2 * std::numbers::pi * i / n;
+        cone.vertices.push_back(shapes::detail::vec3(std::cos(turn), std::sin(turn), 0));
+    }
+    cone.vertices.push_back({0, 0, 1.5f});
+    cone.vertices.push_back({0, 0, -0.5f});
+    for (std::uint32_t i = 0; i < n; ++i) {
+        cone.faces.push_back({i, (i + 1) % n, n});
+        cone.faces.push_back({(i + 1) % n, i, n + 1});
+    }
+    return shapes::joined(cone, shapes::icosphere(2, 0.2f));
+}
+
+TEST(RayScene, AgreesWithTestingEveryFaceOfAFan) {
+    Random random(2);
+    const TriangleMesh mesh = cone_around_a_ball(1500);
+    ASSERT_FALSE(group_slivers(mesh).empty());
+    const RayScene scene(mesh);
+    const std::vector<Vec3> centers = face_centers(mesh);
+    std::size_t other_face = 0;
+    for (int i = 0; i < 400; ++i) {
+        const auto from = static_cast<std::uint32_t>(random.index(mesh.face_count()));
+        const Vec3 direction = random_direction(random);
+        const auto expected = naive_hit(mesh, centers[from], direction, from),
+                   found = scene.first_hit_from(from, centers[from], direction);
+        if (expected && expected->distance < 1e-3f) continue;  // along the surface, to a neighbor
+        ASSERT_EQ(expected.has_value(), found.has_value()) << i;
+        if (!found) continue;
+        EXPECT_NEAR(found->distance, expected->distance, 1e-4) << i;
+        other_face += found->face != expected->face;  // on the edge between two
+    }
+    EXPECT_LE(other_face, 4u);
+}
+
+TEST(SliverGroups, HoldEachSliverOnceInNarrowFrames) {
+    constexpr std::uint32_t n = 5000;
+    const TriangleMesh mesh = cone_around_a_ball(n);
+    const std::vector<SliverGroup> groups = group_slivers(mesh);
+    std::vector<int> times(mesh.face_count(), 0);
+    std::uint32_t wide = 0;
+    for (const SliverGroup& group : groups) {
+        EXPECT_LE(group.faces.size(), 100u);
+        EXPECT_NEAR(group.rotation.determinant(), 1, 1e-5);
+        for (const std::uint32_t f : group.faces) {
+            ++times[f];
+            Vec3 size = Vec3::Zero();
+            for (int k = 0; k < 2; ++k) {
+                const Vec3 edge =
+                    mesh.vertices[mesh.faces[f][static_cast<std::size_t>(k) + 1]] - mesh.vertices[mesh.faces[f][0]];
+                size = size.cwiseMax((group.rotation * edge).cwiseAbs());
+            }
+            wide += size.y() > 0.25f || size.z() > 0.1f;  // unrotated most are
+        }
+    }
+    EXPECT_LT(wide, n / 5);  // few groups span two places
+    EXPECT_EQ(std::ranges::count_if(times, [](int t) { return t > 1; }), 0);
+    EXPECT_GT(std::ranges::count(times, 1), n);  // but for those along an axis
+    EXPECT_LT(groups.size(), 400u);
+    EXPECT_EQ(std::accumulate(times.begin() + 2 * n, times.end(), 0), 0);  // the ball has none
+    EXPECT_TRUE(group_slivers(mesh, 2 * mesh.face_count()).empty());
+    EXPECT_TRUE(group_slivers(shapes::icosphere(4, 1)).empty());
+    EXPECT_TRUE(group_slivers({}).empty());
 }
 
 TEST(RayScene, NearIsTheLeastDistance) {

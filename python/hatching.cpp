@@ -20,9 +20,9 @@
 #include "host/hatching/style/style_learning.h"
 #include "host/hatching/view_hatching.h"
 #include "host/imaging/png.h"
+#include "host/mesh/editing/drawable_mesh.h"
 #include "host/mesh/editing/loose_vertices.h"
 #include "host/mesh/editing/validate.h"
-#include "host/mesh/editing/weld.h"
 #include "host/synth/hatching/hatched_drawing.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
@@ -44,7 +44,7 @@ class Scene {
           const std::string& device)
         : device_({.name = device}),
           title_(fs::path(mesh.name).stem().string()),
-          surface_(cached_surface(without_loose_vertices(welded(*mesh.mesh)), cache)) {
+          surface_(cached_surface(without_loose_vertices(drawable_mesh(*mesh.mesh, mesh.name).mesh), cache)) {
         const Camera camera = camera_at(point, surface_.mesh);
         view_ = {camera, light_from(camera, light), point.width, point.height};
         pixels_.emplace(surface_, view_, device_.tools().images);

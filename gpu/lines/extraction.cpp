@@ -170,4 +170,10 @@ void GpuLineExtraction::record(Stream& stream, const GpuCurvedSurface& snapshot,
                     parameters);
 }
 
+std::size_t GpuLineExtraction::dropped() const {
+    shared::LineCounts counts{};
+    counts_.download(std::span(&counts, 1));
+    return counts.dropped_segments;
+}
+
 }  // namespace exemplar

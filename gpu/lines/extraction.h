@@ -56,6 +56,8 @@ class GpuLineExtraction {
     /// shared::LineCounts: number of segments, and the arguments of later indirect commands.
     const Buffer& counts() const { return counts_; }
     Buffer& counts() { return counts_; }
+    /// Returns how many segments of the last record had no room, once it is done.
+    std::size_t dropped() const;
     std::size_t room() const { return room_; }
     const GpuLineSurface& surface() const { return surface_; }
 

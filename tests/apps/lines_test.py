@@ -1,6 +1,7 @@
 """Line drawings of meshes and animations, as SVG, pictures and videos."""
 
 import json
+import re
 import shutil
 import subprocess
 import unittest
@@ -61,6 +62,27 @@ class Lines(ProgramTest):
         self.call("lines", "--types", "crease,bound", "--threshold", "crease=30", "cube.off", "--out", "order.svg")
         front = self.draw("cube.off", "--types", "crease", "--view", "front", "--fov", "0", "--style", "technical")
         self.assertEqual(len(self.paths(front)), 4)
+
+    def test_the_outline_is_complete(self):
+        for source, types in [("cube.off", "contours"), ("shapes/human_001.off", "contours,suggestive")]:
+            for out in ["check.svg", "check.png"]:
+                with self.subTest(source=source, out=out):
+                    done = self.call("lines", source, "--types", types, "--check", "--out", out, "--json", "check.json")
+                    self.assertIn("% of the silhouette", done.stdout)
+                    outline = json.loads((self.folder / "check.json").read_text())["outline"]
+                    self.assertGreater(outline["silhouette_pixels"], 500)
+                    self.assertGreater(outline["outlined"], 0.97)
+                    self.assertLess(outline["stray"], 0.05)
+        self.call("lines", "cube.off", "--types", "highlights", "--check", "--out", "none.svg", "--json", "none.json")
+        self.assertEqual(json.loads((self.folder / "none.json").read_text())["outline"]["outlined"], 0)
+
+    def test_no_path_leaves_the_picture(self):
+        near = ["--eye", "0.8,0.6,2", "--fov", "30", "--types", "creases,contours"]
+        for form in [[], ["--curves"], ["--form", "outlines"]]:
+            root = self.draw("cube.off", *near, *form, "--size", "300x200")
+            points = [float(n) for path in self.paths(root) for n in re.findall(r"-?[0-9.]+", path.get("d"))]
+            self.assertGreater(len(points), 8)
+            self.assertTrue(all(0 <= x <= 300 for x in points[::2]) and all(0 <= y <= 200 for y in points[1::2]))
 
     def test_every_type_every_style_and_both_forms(self):
         for style in ["ink", "pencil", "charcoal", "brush", "technical", "blueprint", "colored"]:

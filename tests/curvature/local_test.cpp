@@ -7,6 +7,7 @@
 #include "host/core/files.h"
 #include "host/curvature/learning/training.h"
 #include "host/curvature/model/evaluation.h"
+#include "host/curvature/model/tiling.h"
 #include "host/data/safetensors.h"
 #include "tests/support/bending_tube.h"
 #include "tests/support/shapes.h"
@@ -61,6 +62,16 @@ TEST(LocalLearner, PredictsMotionItHasNotSeen) {
             EXPECT_LT(result.attributes[3].rms, 0.4 * result.attributes[3].zero_order_rms);
         }
     }
+}
+
+TEST(LocalLearner, RefusesMoreComponentsThanAModelNumbersBeforeItMeasures) {
+    const Animation sheet = waving_sheet();
+    CurvatureTraining options;
+    options.learner = Learner::local;
+    options.sequence.max_inputs = k_max_components;
+    CurvatureTrainingReport report;
+    EXPECT_THROW(train_curvature(sheet, frames_of_clip(sheet, 0), options, report), UsageError);
+    EXPECT_EQ(report.seconds_truth, 0);
 }
 
 TEST(LocalLearner, IsEvaluatedAsItsStateIsRead) {

@@ -136,14 +136,15 @@ TEST(LineParityOfAll, WhatThereIsNoRoomForIsCountedAndLeftOut) {
     ASSERT_GT(all.counts.segments, 100u);
     EXPECT_EQ(some.counts.segments, 100u);
     EXPECT_EQ(some.counts.dropped_segments, all.counts.segments - 100);
+    EXPECT_EQ(small.dropped(), all.counts.segments - 100);
+    EXPECT_EQ(enough.dropped(), 0u);
     for (std::size_t i = 0; i < 100; ++i) ASSERT_EQ(some.segments[i].face, all.segments[i].face);
 }
 
 TEST(LineParityOfAll, FacesCarryTheLinesOfTheReference) {
     const Scene scene(mixed());
-    LineOptions options =
-        drawn_together({.eye = {6.13f, 4.29f, 8.41f}, .feature_size = scene.size(), .thresholds = {}},
-                       {k_line_types.begin(), k_line_types.end()});
+    LineOptions options = drawn_together({.eye = {6.13f, 4.29f, 8.41f}, .feature_size = scene.size(), .thresholds = {}},
+                                         {k_line_types.begin(), k_line_types.end()});
     options.thresholds.principal_highlights = 0.001f;  // so that there are some
     FaceTypes expected(scene.mesh.face_count());
     add_face_types(scene.surface(), k_line_types, options, expected);

@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
 #include "apps/exemplar/arguments.h"
 #include "gpu/hatching/hatching_device.h"
 #include "host/core/errors.h"
+#include "host/mesh/editing/drawable_mesh.h"
 #include "host/mesh/editing/loose_vertices.h"
-#include "host/mesh/editing/weld.h"
 #include "host/mesh/io/io.h"
 
 namespace exemplar {
@@ -46,9 +50,12 @@ struct HatchScene::Impl {
 
 HatchScene::HatchScene(const HatchSceneArguments& arguments, const std::string& device, bool quiet)
     : impl_(std::make_unique<Impl>(device)) {
-    const MeshFile file = read_mesh(arguments.mesh);
+    MeshFile file = read_mesh(arguments.mesh);
+    DrawableMesh drawable = drawable_mesh(file.mesh, arguments.mesh.string());
+    file.mesh = std::move(drawable.mesh);
+    std::ranges::move(drawable.warnings, std::back_inserter(file.warnings));
     mesh_warnings(file, arguments.mesh, quiet);
-    impl_->surface = cached_surface(without_loose_vertices(welded(file.mesh)),
+    impl_->surface = cached_surface(without_loose_vertices(file.mesh),
                                     usable_cache(arguments.cache, quiet, "measured surfaces"));
     impl_->view = hatching_view(arguments, impl_->surface.mesh);
     impl_->pixels = std::make_unique<PixelFeatures>(impl_->surface, impl_->view, impl_->device.tools().images);

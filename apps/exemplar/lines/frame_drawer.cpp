@@ -1,5 +1,6 @@
 #include "apps/exemplar/lines/frame_drawer.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 
@@ -46,6 +47,7 @@ Image FrameDrawer::draw(std::size_t frame, CurvatureSource from) {
     renderer_.record(stream_, source_.frames()[frame], from);
     Image image = renderer_.view().render(stream_, renderer_.snapshot(), picture_);
     flicker_.push_back(renderer_.view().coherence().flicker());
+    if (picture_.families != 0) dropped_ = std::max(dropped_, renderer_.view().strokes().chains().lines().dropped());
     return image;
 }
 

@@ -31,6 +31,9 @@ class FrameDrawer {
     /// Returns the mean flicker over all pictures but the first, each compared with the one before.
     LineFlicker flicker() const;
 
+    /// Returns the most segments of lines of one picture that the device had no room for.
+    std::size_t dropped_segments() const { return dropped_; }
+
     /// Returns the line types of the faces in the last picture.
     FaceTypes face_types();
     /// The same as seen from another eye.
@@ -46,6 +49,7 @@ class FrameDrawer {
     Stream stream_;
     LinePicture picture_;
     std::vector<LineFlicker> flicker_;
+    std::size_t dropped_ = 0;
     std::optional<GpuLineExtraction> elsewhere_;  // made at first use
 };
 

@@ -54,6 +54,11 @@ void write_frames(const LinesJob& job, LinesSource& source, const DrawFrame& dra
 void write_lines_pictures(const LinesJob& job) {
     Stopwatch watch;
     LinesSource source(job.source);
+    if (job.compare && source.model()->truth.robust != RobustEstimator::none)
+        throw UsageError(
+            fmt::format("{}: was trained with --robust, and the device does not measure curvature so; --compare needs "
+                        "a model trained without, or use 'exemplar curvature evaluate'",
+                        job.source.model.string()));
     const StrokeView view = view_of(job.camera, source);
     if (job.output == LinesOutput::picture && source.frame_count() > 1)
         throw UsageError(fmt::format("{}: {} frames are no single picture; give a folder or one frame (--frames 0)",
@@ -83,6 +88,11 @@ void write_lines_pictures(const LinesJob& job) {
     if (!job.common.quiet)
         fmt::print("{}: {} of {} x {}, drawn on {}\n", job.out.string(), counted(source.frame_count(), "frame"), width,
                    view.height, drawer.device_name());
+    if (const std::size_t dropped = drawer.dropped_segments(); dropped > 0 && !job.common.quiet)
+        fmt::print(stderr,
+                   "warning: {}: in the worst frame {} of lines had no room on the device and are left out; draw fewer "
+                   "--types, raise thresholds, or write an SVG file\n",
+                   job.out.string(), counted(dropped, "piece"));
     nlohmann::json report = describe_job(job, source, view);
     if (source.frame_count() > 1 && !comparison) {
         const LineFlicker flicker = drawer.flicker();

@@ -233,6 +233,12 @@ void learn_local(const Animation& animation, std::span<const FrameRef> frames, s
     Stopwatch watch;
     const TriangleMesh rest = layout_shape(animation, frames.front());
     model.segments = segment_patches(rest, surface_patches(rest, options.sequence.patch_vertices));
+    const std::size_t most = model.segments.count() * options.sequence.max_inputs;
+    if (most > k_max_components)  // before all the work
+        throw UsageError(
+            fmt::format("{}: {} patches of up to {} inputs are more than a model can number ({}); make patches larger "
+                        "(--patch) or allow them fewer inputs (--patch-inputs)",
+                        animation.name, model.segments.count(), options.sequence.max_inputs, k_max_components));
     const auto unit = static_cast<float>(model.truth.smoothing_unit);
     model.state = local_reader(rest, model.segments, unit > 0 ? unit : 1.0f);
     const std::vector<SurfaceSnapshot> snapshots = read_snapshots(animation, model.segments, frames, model.truth);

@@ -138,8 +138,9 @@ BasisTiles make_tiles(const AttributeFrames& frames, std::span<const Vec3> rest,
                       const Eigen::Ref<const Eigen::MatrixXf>& means, const std::vector<VertexBasis>& bases,
                       const TilingOptions& options) {
     for (const VertexBasis& basis : bases)
-        if (basis.first_component + static_cast<std::size_t>(basis.basis.cols()) > 65536)
-            throw UsageError("a model can have 65536 components at most; keep less of the variance");
+        if (basis.first_component + static_cast<std::size_t>(basis.basis.cols()) > k_max_components)
+            throw UsageError(
+                fmt::format("a model can have {} components at most; keep less of the variance", k_max_components));
     BasisTiles tiles;
     tiles.set = frames.set;
     tiles.vertex_count = frames.vertex_count();

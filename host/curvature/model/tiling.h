@@ -30,9 +30,12 @@ struct TilingOptions {
 /// Points with close positions mostly lie near each other.
 std::vector<std::uint32_t> curve_places(std::span<const Vec3> points);
 
+/// Components that a model can number, with 16 bits.
+constexpr std::size_t k_max_components = 65536;
+
 /// Cuts bases into tiles. The vertices of a segment are ordered along a space-filling curve through `rest`, so that
 /// the sixteen of a tile lie near each other. The weakest entries are dropped as `options` allow. means: attributes
-/// x vertices. Throws UsageError if there are more than 65536 components.
+/// x vertices. Throws UsageError if there are more than k_max_components.
 BasisTiles make_tiles(const AttributeFrames& frames, std::span<const Vec3> rest,
                       const Eigen::Ref<const Eigen::MatrixXf>& means, const std::vector<VertexBasis>& bases,
                       const TilingOptions& options);

@@ -213,8 +213,8 @@ void refuse_misfits(const DrawingAlignment& alignment, const AlignmentOptions& o
         fmt::format("the drawing does not fit the view: at best its border lies on {:.0f}% of the object's ({:.0f}% "
                     "needed), with a "
                     "residual of {:.1f} pixels, and {:.0f}% of its ink outside ({:.0f}% allowed); draw over this view, "
-                    "crop the scan "
-                    "to the drawing, or give where it lies",
+                    "or crop the scan "
+                    "to the drawing",
                     100 * static_cast<double>(alignment.explained), 100 * static_cast<double>(options.min_explained),
                     static_cast<double>(alignment.residual), 100 * static_cast<double>(alignment.outside),
                     100 * static_cast<double>(options.max_outside)));

@@ -55,8 +55,8 @@ HatchScene::HatchScene(const HatchSceneArguments& arguments, const std::string& 
     file.mesh = std::move(drawable.mesh);
     std::ranges::move(drawable.warnings, std::back_inserter(file.warnings));
     mesh_warnings(file, arguments.mesh, quiet);
-    impl_->surface = cached_surface(without_loose_vertices(file.mesh),
-                                    usable_cache(arguments.cache, quiet, "measured surfaces"));
+    impl_->surface =
+        cached_surface(without_loose_vertices(file.mesh), usable_cache(arguments.cache, quiet, "measured surfaces"));
     impl_->view = hatching_view(arguments, impl_->surface.mesh);
     impl_->pixels = std::make_unique<PixelFeatures>(impl_->surface, impl_->view, impl_->device.tools().images);
 }

@@ -42,7 +42,7 @@ ROOMS = {
     'host/labeling': ['features', 'inference', 'training', 'evaluation', 'category', 'batch'],
     'host/learn': ['', 'regression', 'components', 'boosting'],
     'host/lines': ['extraction', 'strokes', ''],
-    'host/mesh': ['', 'queries', 'editing', 'curvature', 'io'],
+    'host/mesh': ['', 'queries', 'editing', 'curvature', 'io', 'gltf'],
     'host/synth': ['modeling', 'shapes', 'animations', 'damage', 'arrangements', 'hatching'],
     'gpu/curvature': ['surface', 'learned', ''],
     'gpu/runtime': ['device', 'kernels', 'record', 'measure'],

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "host/animation/animation.h"
-#include "host/mesh/io/io_gltf_reader.h"
+#include "host/mesh/gltf/gltf_reader.h"
 
 namespace exemplar::animation_io {
 

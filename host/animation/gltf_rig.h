@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "host/animation/animation.h"
-#include "host/mesh/io/io_gltf_reader.h"
-#include "host/mesh/io/io_gltf_surface.h"
+#include "host/mesh/gltf/gltf_reader.h"
+#include "host/mesh/gltf/gltf_surface.h"
 
 namespace exemplar::animation_io {
 

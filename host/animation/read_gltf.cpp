@@ -11,7 +11,7 @@
 #include "host/animation/gltf_rig.h"
 #include "host/animation/read_formats.h"
 #include "host/animation/weld_rig.h"
-#include "host/mesh/io/io_gltf_file.h"
+#include "host/mesh/gltf/gltf_file.h"
 #include "host/mesh/io/io_origin.h"
 
 namespace exemplar::animation_io {

@@ -12,7 +12,7 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/json_text.h"
-#include "host/mesh/io/io_gltf_file.h"
+#include "host/mesh/gltf/gltf_file.h"
 #include "host/mesh/io/io_write_text.h"
 
 namespace exemplar {

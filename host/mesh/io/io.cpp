@@ -9,7 +9,6 @@
 #include "host/core/files.h"
 #include "host/core/text.h"
 #include "host/mesh/io/io_formats.h"
-#include "host/mesh/io/io_gltf_file.h"
 #include "host/mesh/io/io_import.h"
 #include "host/mesh/io/io_origin.h"
 #include "host/mesh/io/io_text.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "host/mesh/io/io_gltf_surface.h"
+#include "host/mesh/gltf/gltf_surface.h"
 #include "host/mesh/topology.h"
 
 namespace exemplar::mesh_io {

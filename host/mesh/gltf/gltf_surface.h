@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "host/mesh/io/io_gltf_reader.h"
+#include "host/mesh/gltf/gltf_reader.h"
 #include "host/mesh/skin.h"
 
 namespace exemplar::mesh_io {

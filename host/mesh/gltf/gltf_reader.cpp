@@ -1,4 +1,4 @@
-#include "host/mesh/io/io_gltf_reader.h"
+#include "host/mesh/gltf/gltf_reader.h"
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>

@@ -21,9 +21,6 @@ enum class GltfContent { still, animation };
 tinygltf::Model load_gltf(std::string_view content, const std::string& name, const std::filesystem::path& folder,
                           GltfContent wanted);
 
-/// Returns the total size of the external buffers that the JSON of a .gltf file declares. Throws MeshError.
-std::uint64_t gltf_external_buffer_bytes(std::string_view json, const std::string& name);
-
 /// Returns the bytes of a .glb file with this JSON chunk and binary chunk.
 std::string binary_gltf(std::string json, std::string_view binary);
 

@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "host/mesh/io/io_gltf_buffers.h"
+#include "host/mesh/gltf/gltf_buffers.h"
 
 namespace exemplar::mesh_io {
 

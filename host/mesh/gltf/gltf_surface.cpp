@@ -1,4 +1,4 @@
-#include "host/mesh/io/io_gltf_surface.h"
+#include "host/mesh/gltf/gltf_surface.h"
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>

@@ -1,4 +1,4 @@
-#include "host/mesh/io/io_gltf_file.h"
+#include "host/mesh/gltf/gltf_file.h"
 
 #include <fmt/format.h>
 #include <tiny_gltf.h>
@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "host/core/json_text.h"
-#include "host/mesh/io/io_gltf_buffers.h"
-#include "host/mesh/io/io_gltf_compression.h"
+#include "host/mesh/gltf/gltf_buffers.h"
+#include "host/mesh/gltf/gltf_compression.h"
+#include "host/mesh/io/io_formats.h"
 #include "host/mesh/io/io_text.h"
 #include "host/mesh/io/io_write_text.h"
 

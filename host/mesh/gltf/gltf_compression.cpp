@@ -1,4 +1,4 @@
-#include "host/mesh/io/io_gltf_compression.h"
+#include "host/mesh/gltf/gltf_compression.h"
 
 #include <draco/compression/decode.h>
 #include <fmt/format.h>

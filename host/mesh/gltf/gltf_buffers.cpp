@@ -1,4 +1,4 @@
-#include "host/mesh/io/io_gltf_buffers.h"
+#include "host/mesh/gltf/gltf_buffers.h"
 
 #include <fmt/format.h>
 

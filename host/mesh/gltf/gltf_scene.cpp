@@ -3,10 +3,10 @@
 #include <tiny_gltf.h>
 
 #include "host/mesh/editing/weld.h"
+#include "host/mesh/gltf/gltf_file.h"
+#include "host/mesh/gltf/gltf_reader.h"
+#include "host/mesh/gltf/gltf_surface.h"
 #include "host/mesh/io/io_formats.h"
-#include "host/mesh/io/io_gltf_file.h"
-#include "host/mesh/io/io_gltf_reader.h"
-#include "host/mesh/io/io_gltf_surface.h"
 #include "host/mesh/io/io_text.h"
 
 namespace exemplar::mesh_io {

@@ -15,7 +15,8 @@ namespace exemplar {
 
 namespace {
 
-constexpr float k_max_deviation = 0.0025f;  // of a smooth surface from its faces, in diagonals
+// Of a smooth surface from its faces, in diagonals; the smaller one where faces meet at more than the angle of creases.
+constexpr float k_max_deviation = 0.0025f, k_max_deviation_at_creases = 0.0008f;
 
 void check_neighbors(std::span<const Face> faces, std::size_t vertex_count, std::span<const FaceNeighbors> neighbors) {
     if (neighbors.size() != faces.size())
@@ -50,14 +51,14 @@ void mark_sharp_edges(std::span<const Face> faces, std::span<const Vec3> vertice
         const auto& [a, b, c] = faces[f];
         return (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]);
     };
-    const float most = 8 * k_max_deviation * diagonal_of(faces, vertices);
+    const float diagonal = diagonal_of(faces, vertices);
     // Faces without area have no normal, so their edges are not sharp.
     const auto is_sharp = [&](std::uint32_t f, std::uint32_t side, std::uint32_t g) {
         const Vec3 a = cross_of(f),
                    b = (oriented_alike(faces, f, side, neighbors[f][side]) ? 1.0f : -1.0f) * cross_of(g);
         if (!(a.squaredNorm() > 0) || !(b.squaredNorm() > 0)) return false;
         const float angle = std::atan2(a.cross(b).norm(), a.dot(b));
-        if (angle > crease_angle) return true;
+        const float most = 8 * diagonal * (angle > crease_angle ? k_max_deviation_at_creases : k_max_deviation);
         const float length = (vertices[faces[f][(side + 1) % 3]] - vertices[faces[f][side]]).norm();
         return angle * std::max(a.norm(), b.norm()) > most * length;
     };

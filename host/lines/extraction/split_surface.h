@@ -9,11 +9,12 @@
 
 namespace exemplar {
 
-/// Marks the edges that a surface is not smooth across (k_sharp_side): those of more than two faces, those whose
-/// faces meet at more than `crease_angle` (radians), and those where the surface is too coarse to pass for a smooth
-/// one. The smooth surface through a regular polygon with sides h, which meet at an angle of a, is off its sides by
-/// h a / 8; the edge is sharp if this is more than a four hundredth of the diagonal of the box around all faces, some
-/// two pixels of a picture that shows it whole, with h the larger height of both faces over the edge. Throws
+/// Marks the edges that a surface is not smooth across (k_sharp_side): those of more than two faces, and those where
+/// it cannot pass for a smooth one. The smooth surface through a regular polygon with sides h, which meet at an angle
+/// of a, is off its sides by h a / 8; h is the larger height of both faces over the edge. The edge is sharp if this is
+/// more than a four hundredth of the diagonal of the box around all faces, some two pixels of a picture that shows it
+/// whole. At angles above `crease_angle` (radians) a third of that is enough; smaller ones are in the round ends of
+/// finely cut surfaces, as ears and hooves. Throws
 /// UsageError if neighbors are not those of the faces, MeshError if a face has a vertex that does not exist.
 void mark_sharp_edges(std::span<const Face> faces, std::span<const Vec3> vertices, float crease_angle,
                       std::span<FaceNeighbors> neighbors);

@@ -107,7 +107,7 @@ class Layout:
             for target in targets:
                 passed = [(target, row) for row in range(layer[subject] - 1, layer[target] - 1, -1)]
                 self.links.update(itertools.pairwise([(subject, layer[subject]), *passed]))
-        nodes = sorted({node for link in self.links for node in link},
+        nodes = sorted({node for link in self.links for node in link} | {(subject, layer[subject]) for subject in graph},
                        key=lambda node: (TOPS.index(node[0].split('/')[0]), node))
         self.rows = [[node for node in nodes if node[1] == row] for row in range(max(layer.values()) + 1)]
         self.width = {node: box_width[node[0]] if self.is_box(node) else 0 for node in nodes}
@@ -159,8 +159,10 @@ class Layout:
             for row in self.rows:
                 near = [self.above[node] + self.below[node] for node in row]
                 pulls = [[self.pull(node, n) for n in nodes] for node, nodes in zip(row, near)]
-                wanted = [mean([x[n] for n in nodes], pull) for nodes, pull in zip(near, pulls)]
-                x.update(zip(row, self.spread(row, wanted, [sum(pull) for pull in pulls])))
+                # Boxes without arrows stay where they are.
+                wanted = [mean([x[n] for n in nodes], pull) if nodes else x[node]
+                          for node, nodes, pull in zip(row, near, pulls)]
+                x.update(zip(row, self.spread(row, wanted, [sum(pull) or 1 for pull in pulls])))
         return x
 
     def pull(self, a, b):

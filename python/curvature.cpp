@@ -56,7 +56,7 @@ CurvaturePointer measured(const MeshObject& mesh, bool derivatives, double smoot
     require_range("smoothing", smoothing, 0, 100);
     const CurvatureOptions options{.derivatives = derivatives, .smoothing = smoothing, .robust = robust_of(robust)};
     return std::make_shared<VertexCurvature>(long_result([&] {
-        require_usable(*mesh.mesh, mesh.name);
+        require_drawable(*mesh.mesh, mesh.name);
         CurvatureEstimator estimator(mesh.mesh->faces, mesh.mesh->vertex_count());
         CurvatureOptions possible = options;
         // A mesh whose vertices are all at one point has no length scale for smoothing.

@@ -76,7 +76,7 @@ LineDrawing draw_given(const LinesJob& job, const MeshObject& mesh, const Vertex
                                      mesh.mesh->vertex_count()));
     if (curvature.derivative.empty() && std::ranges::any_of(job.types, needs_curvature))
         throw UsageError("curvature: has no derivatives, which these types of lines need");
-    require_usable(*mesh.mesh, mesh.name);
+    require_drawable(*mesh.mesh, mesh.name);
     const std::vector<Vec3> normals = vertex_normals(*mesh.mesh);
     const CutSurface cut(mesh.mesh->faces, mesh.mesh->vertices, normals, curvature,
                          job.style.thresholds(LineType::creases).crease_angle);

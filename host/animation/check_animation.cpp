@@ -89,7 +89,7 @@ void check_rest(Animation& animation) {
     const bool is_of_triangles = rest.source_face.empty();
     const std::size_t removed = remove_collapsed_faces(rest);
     if (rest.faces.empty()) fail("the surface has no faces");
-    if (const std::string fault = size_fault(rest); !fault.empty()) fail(fault);
+    if (const std::string fault = size_fault(rest, k_drawable_sizes); !fault.empty()) fail(fault);
     if (removed == 0) return;
     animation.warnings.push_back(
         fmt::format("{} faces without area in any frame were left out (two of their corners "

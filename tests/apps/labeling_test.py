@@ -201,7 +201,7 @@ class Apply(WithModel):
                 with self.subTest(kind=kind, content=content):
                     self.refused_file(f"nothing.{kind}", content, ["the file is empty", "again"])
         self.refused_file("nothing.stl", b"solid nothing\nendsolid nothing\n", ["no faces", "again"])
-        self.refused_file("nothing.gltf", b'{"asset": {"version": "2.0"}}', ["no faces", "again"])
+        self.refused_file("nothing.gltf", b'{"asset": {"version": "2.0"}}', ["no node", "export"])
 
     def test_point_clouds_say_so(self):
         points = b"0 0 0\n1 0 0\n0 1 0\n"

@@ -38,7 +38,7 @@ struct CommaPoint : std::numpunct<char> {
 TEST(SvgNumbers, DoNotDependOnTheLocale) {
     const std::locale before = std::locale::global(std::locale(std::locale::classic(), new CommaPoint));
     const std::string number = svg_number(12345.25);
-    SvgPath path(Vec2(2000, 2000));
+    SvgPath path(Vec2(3000, 3000));
     path.move_to({1.5f, 2000.25f});
     std::locale::global(before);
     EXPECT_EQ(number, "12345.25");
@@ -58,7 +58,7 @@ TEST(SvgText, IsEscaped) {
 TEST(SvgDocuments, NestLayersAndGroups) {
     SvgDocument document(30, 20, "A & B");
     document.open_layer("ink", std::vector<SvgAttribute>{{"fill", "none"}});
-    SvgPath path(Vec2(2000, 2000));
+    SvgPath path(Vec2(3000, 3000));
     path.move_to({0, 1});
     path.line_to({2.5f, -3});  // moved to the border
     path.curve_to({1, 2}, {3, 4}, {5, 6});

@@ -75,9 +75,12 @@ std::size_t expect_same_chains(const Scene& scene, const std::vector<LineType>& 
 
 TEST(ChainParity, ChainsAreThoseOfTheReference) {
     const Scene scene(mixed()), smooth(lumpy());
+    // Together with contours, creases lack those on the outline, and contours lack boundaries.
+    const std::vector<LineType> apart = {k_line_types.begin() + 1, k_line_types.end()};
     std::size_t one_by_one = 0;
-    for (const LineType type : k_line_types) one_by_one += expect_same_chains(scene, {type});
-    EXPECT_EQ(expect_same_chains(scene, {k_line_types.begin(), k_line_types.end()}), one_by_one);
+    for (const LineType type : apart) one_by_one += expect_same_chains(scene, {type});
+    EXPECT_EQ(expect_same_chains(scene, apart), one_by_one);
+    EXPECT_GT(expect_same_chains(scene, {k_line_types.begin(), k_line_types.end()}), 100u);
     EXPECT_GT(expect_same_chains(smooth, {k_line_types.begin(), k_line_types.end() - 2}), 20u);
 }
 

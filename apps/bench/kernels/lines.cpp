@@ -128,8 +128,10 @@ double share(std::size_t part, std::size_t of) {
 
 // Allows for faces that a line only touches: device and host may disagree on them.
 Difference missing_segments(const Drawn& drawn, const CurvedTorus& torus, const StrokeView& view) {
-    const LineOptions options{
-        .eye = view.camera.position(), .feature_size = view.feature_size, .thresholds = low_thresholds()};
+    const LineOptions options{.eye = view.camera.position(),
+                              .feature_size = view.feature_size,
+                              .thresholds = low_thresholds(),
+                              .no_creases_on_outline = true};
     using Key = std::tuple<std::uint32_t, std::uint8_t, SegmentEnd, SegmentEnd>;
     std::size_t wanted = 0, missing = 0;
     for (const LineType type : k_line_types) {

@@ -307,7 +307,7 @@ std::vector<std::string> descriptor_names() {
 }
 
 HatchingSurface measure_surface(const TriangleMesh& mesh) {
-    require_usable(mesh, "mesh");
+    require_drawable(mesh, "mesh");
     return Measurement(mesh).run();
 }
 

@@ -33,7 +33,7 @@ void warn_of_turned_faces(const OrientationChange& change, std::vector<std::stri
 }
 
 DrawableMesh drawable_mesh(const TriangleMesh& mesh, const std::string& name) {
-    require_usable(mesh, name);
+    require_drawable(mesh, name);
     DrawableMesh drawable{welded(mesh), {}};
     const std::size_t removed = remove_collapsed_faces(drawable.mesh);
     if (drawable.mesh.faces.empty())

@@ -161,24 +161,35 @@ MeshReport validate_mesh(const TriangleMesh& mesh) {
     return report;
 }
 
-std::string size_fault(const TriangleMesh& mesh) {
-    constexpr double k_largest = 1e12, k_smallest = 1e-12;
+std::string size_fault(const TriangleMesh& mesh, const SizeRange& range) {
     if (mesh.faces.empty()) return {};
     const double size = bounding_box(mesh).diagonal();
-    if (size > k_largest)
+    if (size > range.largest)
         return fmt::format("the mesh is too large ({:.2g} across) for computations in floats; scale it to below {:.0e}",
-                           size, k_largest);
-    if (size > 0 && size < k_smallest)
+                           size, range.largest);
+    if (size > 0 && size < range.smallest)
         return fmt::format("the mesh is too small ({:.2g} across) for computations in floats; scale it to above {:.0e}",
-                           size, k_smallest);
+                           size, range.smallest);
     return {};
 }
 
-MeshReport require_usable(const TriangleMesh& mesh, const std::string& name) {
+namespace {
+
+MeshReport require_sized(const TriangleMesh& mesh, const std::string& name, const SizeRange& range) {
     MeshReport report = validate_mesh(mesh);
     if (!report.usable()) throw MeshError(name + ": " + report.messages().front());
-    if (const std::string fault = size_fault(mesh); !fault.empty()) throw MeshError(name + ": " + fault);
+    if (const std::string fault = size_fault(mesh, range); !fault.empty()) throw MeshError(name + ": " + fault);
     return report;
+}
+
+}  // namespace
+
+MeshReport require_usable(const TriangleMesh& mesh, const std::string& name) {
+    return require_sized(mesh, name, k_usable_sizes);
+}
+
+MeshReport require_drawable(const TriangleMesh& mesh, const std::string& name) {
+    return require_sized(mesh, name, k_drawable_sizes);
 }
 
 }  // namespace exemplar

@@ -28,11 +28,18 @@ struct MeshReport {
     std::vector<std::string> messages() const;
 };
 MeshReport validate_mesh(const TriangleMesh& mesh);
-/// Returns what is wrong with the size of a mesh, and the mend; empty if nothing is. Its bounding box must have a
-/// diagonal of 1e-12 to 1e12, or none: curvature and its derivatives are computed in floats, whose range (1e-38 to
-/// 3e38) holds third powers of such lengths and of their inverses.
-std::string size_fault(const TriangleMesh& mesh);
-/// Throws MeshError naming `name` if the mesh is empty, not finite, or of a size_fault; returns the report otherwise.
+/// Diagonals of the bounding box of a mesh that can be computed with in floats, whose range is 1e-38 to 3e38.
+struct SizeRange {
+    double smallest, largest;
+};
+constexpr SizeRange k_usable_sizes{1e-19, 1e19};    ///< whose squares are floats
+constexpr SizeRange k_drawable_sizes{1e-12, 1e12};  ///< whose third powers and their inverses are: for curvature
+/// Returns what is wrong with the size of a mesh, and the mend; empty if nothing is, or it has no extent.
+std::string size_fault(const TriangleMesh& mesh, const SizeRange& range);
+/// Throws MeshError naming `name` if the mesh is empty, not finite, or not of k_usable_sizes; returns the report
+/// otherwise.
 MeshReport require_usable(const TriangleMesh& mesh, const std::string& name);
+/// The same for curvature, lines and hatching, which need k_drawable_sizes.
+MeshReport require_drawable(const TriangleMesh& mesh, const std::string& name);
 
 }  // namespace exemplar

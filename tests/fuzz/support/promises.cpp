@@ -44,7 +44,7 @@ void require_report(const TriangleMesh& mesh) {
         usable = false;
         require_readable(error.what());
     }
-    require(usable == (report.usable() && size_fault(mesh).empty()), "what is not usable is refused");
+    require(usable == (report.usable() && size_fault(mesh, k_usable_sizes).empty()), "what is not usable is refused");
 }
 
 void require_rig(const Rig& rig, std::size_t vertex_count) {

@@ -184,10 +184,10 @@ TEST(Validate, RequireUsableNamesTheMesh) {
                 AllOf(HasSubstr("x.off: 1 vertex"), Not(HasSubstr("\n"))));
 }
 
-TEST(Validate, RefusesSizesWhoseThirdPowersFloatsCannotHold) {
+TEST(Validate, RefusesSizesWhosePowersFloatsCannotHold) {
     const auto message = [](float size) {
         return mesh_files::error_of<MeshError>(
-            [&] { require_usable(shapes::scaled(shapes::icosphere(1, 1), size), "x.off"); });
+            [&] { require_drawable(shapes::scaled(shapes::icosphere(1, 1), size), "x.off"); });
     };
     EXPECT_THAT(message(1e13F),
                 AllOf(HasSubstr("x.off: the mesh is too large (3.5e+13 across)"), HasSubstr("scale it")));
@@ -196,10 +196,14 @@ TEST(Validate, RefusesSizesWhoseThirdPowersFloatsCannotHold) {
                 AllOf(HasSubstr("x.off: the mesh is too small (3.5e-13 across)"), HasSubstr("scale it")));
     EXPECT_THAT(message(3e-43F), HasSubstr("too small"));
     for (const float size : {1e-6F, 1e-11F, 1e6F, 1e11F})
+        EXPECT_TRUE(require_drawable(shapes::scaled(shapes::icosphere(1, 1), size), "x.off").clean()) << size;
+    for (const float size : {1e-18F, 1e-13F, 1e13F, 1e18F})
         EXPECT_TRUE(require_usable(shapes::scaled(shapes::icosphere(1, 1), size), "x.off").clean()) << size;
+    for (const float size : {3e-43F, 1e20F})
+        EXPECT_THROW(require_usable(shapes::scaled(shapes::icosphere(1, 1), size), "x.off"), MeshError) << size;
     TriangleMesh loose = shapes::icosphere(1, 1);
     loose.vertices.push_back({3e38F, 0, 0});
-    EXPECT_TRUE(size_fault(loose).empty()) << "vertices without a face do not count";
+    EXPECT_TRUE(size_fault(loose, k_usable_sizes).empty()) << "vertices without a face do not count";
 }
 
 }  // namespace

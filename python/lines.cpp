@@ -50,8 +50,8 @@ struct LineDrawing {
 };
 using LineDrawingPointer = std::shared_ptr<LineDrawing>;
 
-LineDrawing drawn(const LinesJob& job, const MeshObject& mesh, const LineSurface& surface) {
-    const float size = job.feature_size ? *job.feature_size : feature_size(surface.vertices, surface.curvature);
+LineDrawing drawn(const LinesJob& job, const MeshObject& mesh, const LineSurface& surface, float measured_size) {
+    const float size = job.feature_size ? *job.feature_size : measured_size;
     if (!(size > 0))
         throw MeshError(mesh.name + ": has no extent, all vertices are at one place; there is nothing to draw");
     const TriangleMesh extent = without_loose_vertices(*mesh.mesh);
@@ -63,10 +63,11 @@ LineDrawing drawn(const LinesJob& job, const MeshObject& mesh, const LineSurface
 LineDrawing draw_measured(const LinesJob& job, const MeshObject& mesh) {
     const DrawableMesh drawable = drawable_mesh(*mesh.mesh, mesh.name);
     const DrawableOptions options{job.smoothing, std::ranges::any_of(job.types, needs_curvature),
-                                  job.style.thresholds(LineType::creases).crease_angle};
+                                  job.style.thresholds(LineType::creases).crease_angle, true,
+                                  std::ranges::find(job.types, LineType::creases) != job.types.end()};
     DrawableSurface surface(drawable.mesh.faces, drawable.mesh.vertices, options);
     surface.measure(drawable.mesh.vertices);
-    return drawn(job, mesh, surface.surface());
+    return drawn(job, mesh, surface.surface(), surface.feature_size());
 }
 
 /// By curvature that is given, of the vertices as they are.
@@ -80,7 +81,7 @@ LineDrawing draw_given(const LinesJob& job, const MeshObject& mesh, const Vertex
     const std::vector<Vec3> normals = vertex_normals(*mesh.mesh);
     const CutSurface cut(mesh.mesh->faces, mesh.mesh->vertices, normals, curvature,
                          job.style.thresholds(LineType::creases).crease_angle);
-    return drawn(job, mesh, cut.surface());
+    return drawn(job, mesh, cut.surface(), feature_size(mesh.mesh->vertices, curvature));
 }
 
 void set_thresholds(DrawingStyle& style, const std::map<std::string, float>& thresholds) {

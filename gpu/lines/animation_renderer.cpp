@@ -3,9 +3,9 @@
 namespace exemplar {
 
 AnimationRenderer::AnimationRenderer(Device& device, const Animation& animation, const CurvatureOptions& estimated,
-                                     const CurvatureModel* model, float crease_angle)
+                                     const CurvatureModel* model, float crease_angle, bool cut)
     : animation_(animation),
-      cut_(animation, first_shape(animation), crease_angle, model == nullptr),
+      cut_(animation, first_shape(animation), crease_angle, cut && model == nullptr),
       surface_(device, cut_.first()),
       line_surface_(surface_, cut_.neighbors(), cut_.joined_faces()),
       moving_(surface_, cut_.animation(), estimated) {

@@ -19,11 +19,12 @@ namespace exemplar {
 class AnimationRenderer {
   public:
     /// `estimated`: how curvature is estimated. `model`: of learned curvature, null: none; it must fit the animation
-    /// (require_compatible) and need not outlive this. `crease_angle`: see mark_sharp_edges; the surface is cut open
-    /// along sharp edges unless there is a model, which knows the surface as a whole. The animation must outlive this.
-    /// Throws as GpuSurface, GpuLineSurface and GpuAnimatedSurface.
+    /// (require_compatible) and need not outlive this. `crease_angle`: see mark_sharp_edges. `cut`: whether the surface
+    /// is cut open along sharp edges, normals and curvature; with a model, which knows it as a whole, it is not. The
+    /// animation must outlive this. Throws as GpuSurface, GpuLineSurface and GpuAnimatedSurface.
     AnimationRenderer(Device& device, const Animation& animation, const CurvatureOptions& estimated,
-                      const CurvatureModel* model = nullptr, float crease_angle = LineThresholds{}.crease_angle);
+                      const CurvatureModel* model = nullptr, float crease_angle = LineThresholds{}.crease_angle,
+                      bool cut = true);
 
     /// Records the surface at a frame, or in any other shape (see GpuAnimatedSurface).
     void record(Stream& stream, FrameRef frame, CurvatureSource source);

@@ -66,7 +66,8 @@ class Drawer {
         VisibleParts visible =
             visibility_.visible_parts(type, segments, view_.camera, view_.width, view_.height, options_);
         lap(drawing_.seconds.visibility);
-        const std::vector<Chain> chains = chain_segments(surface_.joined_faces(), surface_.neighbors, segments);
+        const std::vector<Chain> chains =
+            chain_segments(surface_.joined_faces(), surface_.neighbors, segments, type != LineType::contours);
         close_gaps(smooth_ones(type, chains, segments), k_short_gap, visible);
         DrawingLayer& layer = drawing_.layers.emplace_back();
         layer.type = type;

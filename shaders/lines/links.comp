@@ -27,13 +27,16 @@ layout(set = 0, binding = 11, std430) writeonly buffer Links { uvec2 links[]; };
 
 uint link_across(LineSegmentRecord segment, uint side) {
     const uint across = texelFetch(neighbors, int(segment.face))[side];
-    if (across > k_max_side_code) return k_no_link;
-    const uvec2 others = segments_of(across / 4u, counts.segments);
+    // Contours end at sharp edges, where they are not where the other side has them.
+    const uint stops = k_crowded_side | (family_of(segment) == k_contours ? k_sharp_side : 0u);
+    if (across >= k_blocked_side || (across & stops) != 0u) return k_no_link;
+    const uint code = across & k_max_side_code;
+    const uvec2 others = segments_of(code / 4u, counts.segments);
     for (uint i = others.x; i < others.y; ++i) {
         const uint kind = texelFetch(segments, int(2u * i)).y;
         if ((kind & k_kind_family) != family_of(segment)) continue;
         for (uint end = 0; end < 2; ++end)
-            if (place_of(kind, end) == across % 4u) return 2u * i + end;
+            if (place_of(kind, end) == code % 4u) return 2u * i + end;
     }
     return k_no_link;
 }

@@ -297,8 +297,11 @@ class Lines(ProgramTest):
         self.draw("flat.off", "--types", "all")
         fan = [(0, 0, 0), (0, 0, 1), (1, 0, 0.5), (-0.5, 0.8, 0.5), (-0.5, -0.8, 0.5)]
         write_off(self.folder / "fan.off", fan, [(0, 1, 2), (0, 1, 3), (1, 0, 4)])
-        layers = self.layers(self.draw("fan.off", "--types", "all"))
+        layers = self.layers(self.draw("fan.off", "--types", "creases,boundaries"))
         self.assertGreaterEqual(len(self.paths(layers["creases"])), 1)
+        layers = self.layers(self.draw("fan.off", "--types", "all"))  # in which it is on the outline
+        self.assertEqual(len(self.paths(layers["creases"])), 0)
+        self.assertGreaterEqual(len(self.paths(layers["contours"])), 1)
 
 
 if __name__ == "__main__":

@@ -15,6 +15,14 @@ CurvatureOptions measured_curvature(const LinesJob& job, const LinesSource& sour
     return {.derivatives = true, .smoothing = job.source.measuring.smoothing};
 }
 
+/// Returns whether the device cuts the surface open. It cuts curvature as well, and so the valleys and ridges of a
+/// smooth surface that has sharp edges there; where they are drawn without creases, it does not.
+bool cuts(const std::vector<LineType>& types) {
+    const auto has = [&](LineType type) { return std::ranges::find(types, type) != types.end(); };
+    return has(LineType::creases) ||
+           !(has(LineType::ridges) || has(LineType::valleys) || has(LineType::apparent_ridges));
+}
+
 /// Returns the pixels that differ visibly between two pictures of one size.
 InkMask difference_of(const Image& a, const Image& b) {
     constexpr int k_visible = 16;  // of 255
@@ -31,7 +39,7 @@ FrameDrawer::FrameDrawer(const LinesJob& job, LinesSource& source, const StrokeV
     : source_(source),
       device_({.name = job.common.device}),
       renderer_(device_, source.animation(), measured_curvature(job, source),
-                source.model() ? &*source.model() : nullptr, job.source.measuring.crease_angle),
+                source.model() ? &*source.model() : nullptr, job.source.measuring.crease_angle, cuts(job.types)),
       stream_(device_) {
     const DeviceStyle style = device_style(job.style);
     for (const std::size_t i : {0, 1}) renderer_.view(i).set_textures(style.textures);

@@ -117,6 +117,8 @@ LinesJob job_of(const LinesArguments& arguments) {
     job.svg.fading = choice<SvgFading>(fading, "--fading", fading_words());
     job.svg.background = !arguments.no_background;
     job.source.measuring.derivatives = std::any_of(job.types.begin(), job.types.end(), needs_curvature);
+    job.source.measuring.cut_curvature =
+        std::find(job.types.begin(), job.types.end(), LineType::creases) != job.types.end();
     job.source.measuring.crease_angle = job.style.thresholds(LineType::creases).crease_angle;
     job.source.first_frame_only = job.output == LinesOutput::svg || job.output == LinesOutput::picture;
     if (arguments.no_background) job.style.background.reset();

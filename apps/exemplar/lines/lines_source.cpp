@@ -87,8 +87,8 @@ float LinesSource::feature_size() {
         if (model_) {
             feature_size_ = model_->feature_size;
         } else {
-            const LineSurface first = surface(0);
-            feature_size_ = exemplar::feature_size(first.vertices, first.curvature);
+            surface(0);
+            feature_size_ = drawable_->feature_size();
         }
     }
     if (!(*feature_size_ > 0))

@@ -15,6 +15,11 @@ std::vector<T> gathered(const std::vector<T>& values, std::span<const std::uint3
 
 }  // namespace
 
+VertexCurvature curvature_after_cut(const VertexCurvature& curvature, std::span<const std::uint32_t> source) {
+    return {gathered(curvature.k1, source), gathered(curvature.k2, source), gathered(curvature.e1, source),
+            gathered(curvature.e2, source), gathered(curvature.derivative, source)};
+}
+
 CutSurface::CutSurface(std::span<const Face> faces, std::span<const Vec3> vertices, std::span<const Vec3> normals,
                        const VertexCurvature& curvature, float crease_angle)
     : faces_(faces),
@@ -32,8 +37,7 @@ CutSurface::CutSurface(std::span<const Face> faces, std::span<const Vec3> vertic
     cut_.vertices = split_->positions(vertices);
     cut_.faces = split_->faces;
     cut_normals_ = vertex_normals(cut_);
-    cut_curvature_ = {gathered(curvature.k1, source), gathered(curvature.k2, source), gathered(curvature.e1, source),
-                      gathered(curvature.e2, source), gathered(curvature.derivative, source)};
+    cut_curvature_ = curvature_after_cut(curvature, source);
 }
 
 LineSurface CutSurface::surface() const {

@@ -9,6 +9,9 @@
 
 namespace exemplar {
 
+/// Returns the curvature of the vertices of a cut surface, each that of the one it was cut from (SplitSurface::source).
+VertexCurvature curvature_after_cut(const VertexCurvature& curvature, std::span<const std::uint32_t> source);
+
 /// A surface with known curvature, cut open along its sharp edges to draw lines of it. Normals are those of its smooth
 /// parts; curvature stays as it is. (DrawableSurface measures curvature, too.)
 class CutSurface {

@@ -46,7 +46,8 @@ void check_segments(std::span<const Face> faces, std::span<const FaceNeighbors> 
 
 /// Returns all ends at which lines may continue, sorted so that those at one edge or vertex are adjacent.
 std::vector<Junction> sorted_junctions(std::span<const Face> faces, std::span<const FaceNeighbors> neighbors,
-                                       std::span<const LineSegment> segments) {
+                                       std::span<const LineSegment> segments, bool across_sharp_edges) {
+    const std::uint32_t stops = k_crowded_side | (across_sharp_edges ? 0 : k_sharp_side);
     std::vector<Junction> junctions;
     junctions.reserve(2 * segments.size());
     for (std::uint32_t s = 0; s < segments.size(); ++s)
@@ -60,8 +61,8 @@ std::vector<Junction> sorted_junctions(std::span<const Face> faces, std::span<co
                 continue;
             }
             const std::uint32_t own = 4 * segment.face + place, across = neighbors[segment.face][place];
-            if (across > k_max_neighbor_code) continue;
-            junctions.push_back({segment.family, false, std::min(own, across), own, 2 * s + e});
+            if (!has_neighbor(across) || (across & stops) != 0) continue;
+            junctions.push_back({segment.family, false, std::min(own, neighbor_code(across)), own, 2 * s + e});
         }
     std::sort(junctions.begin(), junctions.end());
     return junctions;
@@ -69,8 +70,8 @@ std::vector<Junction> sorted_junctions(std::span<const Face> faces, std::span<co
 
 /// Returns for each end the one that continues it, or k_no_end.
 std::vector<End> joined_ends(std::span<const Face> faces, std::span<const FaceNeighbors> neighbors,
-                             std::span<const LineSegment> segments) {
-    const std::vector<Junction> junctions = sorted_junctions(faces, neighbors, segments);
+                             std::span<const LineSegment> segments, bool across_sharp_edges) {
+    const std::vector<Junction> junctions = sorted_junctions(faces, neighbors, segments, across_sharp_edges);
     std::vector<End> joined(2 * segments.size(), k_no_end);
     for (std::size_t first = 0, last = 0; first < junctions.size(); first = last) {
         while (last < junctions.size() && junctions[last].where() == junctions[first].where()) ++last;
@@ -98,9 +99,9 @@ bool follow(End entry, std::uint32_t stop, const std::vector<End>& joined, std::
 }  // namespace
 
 std::vector<Chain> chain_segments(std::span<const Face> faces, std::span<const FaceNeighbors> neighbors,
-                                  std::span<const LineSegment> segments) {
+                                  std::span<const LineSegment> segments, bool across_sharp_edges) {
     check_segments(faces, neighbors, segments);
-    const std::vector<End> joined = joined_ends(faces, neighbors, segments);
+    const std::vector<End> joined = joined_ends(faces, neighbors, segments, across_sharp_edges);
     std::vector<Chain> chains;
     std::vector<bool> used(segments.size(), false);
     for (std::uint32_t s = 0; s < segments.size(); ++s) {

@@ -22,11 +22,12 @@ struct Chain {
 };
 
 /// Joins the segments of one line type, as returned by extract_lines, to chains; each segment is in exactly one
-/// chain. Two segments of a family are joined if they end on the two sides of an edge with exactly two faces, or at
-/// a vertex where no third segment ends. The segment with the smallest index of a chain is traversed from its first
-/// end to its second; a closed chain starts with it. Chains are ordered by this index, so the result is
-/// deterministic. Throws UsageError if a segment's face does not exist or neighbors are not those of the faces.
+/// chain. Two segments of a family are joined if they end on the two sides of an edge with exactly two faces (with
+/// `across_sharp_edges` false: that is not marked as sharp), or at a vertex where no third segment ends. The segment
+/// with the smallest index of a chain is traversed from its first end to its second; a closed chain starts with it.
+/// Chains are ordered by this index, so the result is deterministic. Throws UsageError if a segment's face does not
+/// exist or neighbors are not those of the faces.
 std::vector<Chain> chain_segments(std::span<const Face> faces, std::span<const FaceNeighbors> neighbors,
-                                  std::span<const LineSegment> segments);
+                                  std::span<const LineSegment> segments, bool across_sharp_edges = true);
 
 }  // namespace exemplar

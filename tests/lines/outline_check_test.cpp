@@ -11,14 +11,14 @@
 namespace exemplar {
 namespace {
 
-using test_support::Scene;
+using OutlinedScene = test_support::Scene;
 
-InkMask none(const Scene& scene) {
+InkMask none(const OutlinedScene& scene) {
     return InkMask(scene.view.width, scene.view.height, 1);
 }
 
 TEST(OutlineChecks, FindALineForEveryPixelOfTheSilhouette) {
-    const Scene ball(shapes::icosphere(4, 1));
+    const OutlinedScene ball(shapes::icosphere(4, 1));
     const Drawing drawing = test_support::draw(ball, load_style("ink"), std::array{LineType::contours});
     const InkMask ink = ink_of(drawing, LineType::contours);
     const OutlineCheck check = check_outline(ball.mesh, ball.view.camera, ink, ink);
@@ -32,7 +32,7 @@ TEST(OutlineChecks, FindALineForEveryPixelOfTheSilhouette) {
 
 TEST(OutlineChecks, CountContoursWithoutAnEdge) {
     // The middle row of a ball's picture: ends at the outline, and nothing but ball between.
-    const Scene ball(shapes::icosphere(4, 1));
+    const OutlinedScene ball(shapes::icosphere(4, 1));
     InkMask row = none(ball);
     for (int x = 0; x < row.width; ++x) row.pixel(x, row.height / 2)[0] = 1;
     const OutlineCheck check = check_outline(ball.mesh, ball.view.camera, none(ball), row);
@@ -46,7 +46,7 @@ TEST(OutlineChecks, OfDrawingsOfManyShapesAreComplete) {
                                shapes::grid(3, 2, 1),      shapes::torus(3, 1, 12, 7),
                                shapes::torus(3, 1, 60, 30)};
     for (const TriangleMesh& mesh : shapes) {
-        const Scene scene(mesh);
+        const OutlinedScene scene(mesh);
         DrawableSurface surface(mesh.faces, mesh.vertices, {.derivatives = false});
         surface.measure(mesh.vertices);
         const Drawing drawing =

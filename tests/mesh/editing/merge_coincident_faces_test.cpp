@@ -42,7 +42,7 @@ TEST(MergeCoincidentFaces, LeavesOrdinarySurfacesAsTheyAre) {
 TEST(MergeCoincidentFaces, KeepsTheFirstOfFacesWithTheSameVertices) {
     const TriangleMesh ball = shapes::icosphere(2, 1);
     std::vector<Face> copies = ball.faces, backs = ball.faces;
-    for (Face& face : copies) std::ranges::rotate(face, face.begin() + 1);
+    for (Face& face : copies) std::rotate(face.begin(), face.begin() + 1, face.end());
     for (Face& face : backs) std::swap(face[0], face[2]);
     TriangleMesh mesh = with_more_faces(with_more_faces(ball, backs), copies);
     EXPECT_EQ(merge_coincident_faces(mesh), 2 * ball.face_count());

@@ -42,7 +42,7 @@ double volume_of(const TriangleMesh& mesh) {
 }
 /// The faces in a form that depends neither on their order nor on their first corners.
 std::vector<Face> in_order(std::vector<Face> faces) {
-    for (Face& face : faces) std::ranges::rotate(face, std::ranges::min_element(face));
+    for (Face& face : faces) std::rotate(face.begin(), std::ranges::min_element(face), face.end());
     std::ranges::sort(faces);
     return faces;
 }

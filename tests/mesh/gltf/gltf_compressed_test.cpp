@@ -32,7 +32,7 @@ std::vector<Triangle> triangles_of(const TriangleMesh& mesh) {
         Triangle triangle;
         for (std::size_t i = 0; i < 3; ++i)
             for (std::size_t k = 0; k < 3; ++k) triangle[i][k] = mesh.vertices[face[i]][static_cast<Eigen::Index>(k)];
-        std::ranges::rotate(triangle, std::ranges::min_element(triangle));
+        std::rotate(triangle.begin(), std::ranges::min_element(triangle), triangle.end());
         triangles.push_back(triangle);
     }
     std::ranges::sort(triangles);

@@ -59,7 +59,7 @@ TEST(ReadGltf, DataUrisOfAnyMediaTypeAndEncoding) {
         "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAACAAEAAAABAAMAAAADAAIAAQACAAMA";
     for (const std::string head : {"data:;base64,", "data:application/octet-stream;charset=utf-8;base64,",
                                    "data:binary/octet-stream;base64,", "data:application/gltf-buffer;base64,"}) {
-        const std::string uri = "'uri':'" + head + base64 + "',";
+        const std::string uri = fmt::format("'uri':'{}{}',", head, base64);
         std::string json = tetrahedron_gltf(uri);
         expect_tetrahedron(read_as("a.gltf", json));
         json.insert(json.rfind("]}"), json_text(",{" + uri + "'byteLength':72}"));  // the same for the indices

@@ -105,9 +105,11 @@ std::string zip_of(const std::vector<std::pair<std::string, std::string>>& files
         const std::string about = bytes_of(std::uint16_t{20}) + std::string(8, '\0') + bytes_of(crc32_of(content)) +
                                   bytes_of(size) + bytes_of(size) + bytes_of(static_cast<std::uint16_t>(name.size())) +
                                   std::string(2, '\0');
-        directory += "PK\1\2" + bytes_of(std::uint16_t{20}) + about + std::string(10, '\0') +
-                     bytes_of(static_cast<std::uint32_t>(bytes.size())) + name;
-        bytes += "PK\3\4" + about + name + content;
+        directory
+            .append("PK\1\2" + bytes_of(std::uint16_t{20}) + about + std::string(10, '\0') +
+                    bytes_of(static_cast<std::uint32_t>(bytes.size())))
+            .append(name);
+        bytes.append("PK\3\4").append(about).append(name).append(content);
     }
     const auto count = bytes_of(static_cast<std::uint16_t>(files.size()));
     return bytes + directory + "PK\5\6" + std::string(4, '\0') + count + count +

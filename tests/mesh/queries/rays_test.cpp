@@ -93,8 +93,8 @@ TEST(RayScene, AgreesWithTestingEveryFaceOfAFan) {
 }
 
 TEST(SliverGroups, HoldEachSliverOnceInNarrowFrames) {
-    constexpr std::uint32_t n = 5000;
-    const TriangleMesh mesh = cone_around_a_ball(n);
+    constexpr std::uint32_t k_around = 5000;
+    const TriangleMesh mesh = cone_around_a_ball(k_around);
     const std::vector<SliverGroup> groups = group_slivers(mesh);
     std::vector<int> times(mesh.face_count(), 0);
     std::uint32_t wide = 0;
@@ -112,11 +112,11 @@ TEST(SliverGroups, HoldEachSliverOnceInNarrowFrames) {
             wide += size.y() > 0.25f || size.z() > 0.1f;  // unrotated most are
         }
     }
-    EXPECT_LT(wide, n / 5);  // few groups span two places
+    EXPECT_LT(wide, k_around / 5);  // few groups span two places
     EXPECT_EQ(std::ranges::count_if(times, [](int t) { return t > 1; }), 0);
-    EXPECT_GT(std::ranges::count(times, 1), n);  // but for those along an axis
+    EXPECT_GT(std::ranges::count(times, 1), k_around);  // but for those along an axis
     EXPECT_LT(groups.size(), 400u);
-    EXPECT_EQ(std::accumulate(times.begin() + 2 * n, times.end(), 0), 0);  // the ball has none
+    EXPECT_EQ(std::accumulate(times.begin() + 2 * k_around, times.end(), 0), 0);  // the ball has none
     EXPECT_TRUE(group_slivers(mesh, 2 * mesh.face_count()).empty());
     EXPECT_TRUE(group_slivers(shapes::icosphere(4, 1)).empty());
     EXPECT_TRUE(group_slivers({}).empty());

@@ -22,10 +22,10 @@
 namespace exemplar {
 namespace {
 
-constexpr std::array k_views = {"three-quarter", "front", "side", "top"};
-constexpr std::array k_types = {LineType::suggestive_contours, LineType::boundaries, LineType::contours};
-constexpr std::size_t k_faces = 4000;      // of a generated shape
-constexpr double k_complete_share = 0.95;  // of the silhouette
+constexpr std::array k_outline_views = {"three-quarter", "front", "side", "top"};
+constexpr std::array k_outline_types = {LineType::suggestive_contours, LineType::boundaries, LineType::contours};
+constexpr std::size_t k_outline_faces = 4000;  // of a generated shape
+constexpr double k_complete_share = 0.95;      // of the silhouette
 
 struct OutlineBenchOptions {
     CommonOptions common;
@@ -47,12 +47,12 @@ void add_drawings(const TriangleMesh& mesh, OutlineRow& row) {
     surface.measure(vertices);
     const float unit = feature_size(surface.surface().vertices, surface.surface().curvature);
     const DrawingStyle style = load_style("ink");
-    for (const char* view : k_views) {
+    for (const char* view : k_outline_views) {
         check_interrupt();
         ViewPoint point;
         point.view = view;
         const StrokeView seen = stroke_view(point, drawable.mesh, unit);
-        const Drawing drawing = draw_lines(surface.surface(), k_types, style, seen);
+        const Drawing drawing = draw_lines(surface.surface(), k_outline_types, style, seen);
         const OutlineCheck check =
             check_outline(drawable.mesh, seen.camera, ink_of(drawing), ink_of(drawing, LineType::contours));
         ++row.drawings;
@@ -81,7 +81,7 @@ nlohmann::json describe_row(const OutlineRow& row) {
 OutlineRow row_of_damage(const Damage& damage) {
     OutlineRow row{.name = std::string(damage.name), .check = {}};
     for (const std::string_view kind : synth_kinds())
-        add_drawings(damage.apply(make_shape(kind, 1, k_faces).mesh, 1).mesh, row);
+        add_drawings(damage.apply(make_shape(kind, 1, k_outline_faces).mesh, 1).mesh, row);
     return row;
 }
 

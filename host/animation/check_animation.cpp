@@ -99,7 +99,7 @@ void check_rest(Animation& animation) {
 }
 
 /// Returns the vertices of the surface at rest, posed if it has a rig.
-std::vector<Vec3> rest_shape(const Animation& animation) {
+std::vector<Vec3> posed_at_rest(const Animation& animation) {
     std::vector<Vec3> vertices = animation.rest.vertices;
     if (!animation.rig.bones.empty())
         pose_vertices(animation.rig, animation.rest.vertices, rest_pose(animation.rig), vertices);
@@ -110,7 +110,7 @@ std::vector<Vec3> rest_shape(const Animation& animation) {
 void prepare_faces(Animation& animation) {
     const bool is_of_triangles = animation.rest.source_face.empty();
     TriangleMesh shape = animation.rest;
-    shape.vertices = rest_shape(animation);
+    shape.vertices = posed_at_rest(animation);
     const std::size_t removed = merge_coincident_faces(shape);
     warn_of_coincident_faces(removed, animation.warnings);
     warn_of_turned_faces(orient_faces(shape), animation.warnings);
@@ -227,7 +227,7 @@ std::vector<std::vector<Vec3>> some_frames(const Animation& animation) {
         frames[i] = frame_vertices(animation, *clip, frame);
     });
     if (!frames.empty()) return frames;
-    frames.push_back(rest_shape(animation));
+    frames.push_back(posed_at_rest(animation));
     return frames;
 }
 

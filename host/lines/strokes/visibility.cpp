@@ -25,7 +25,7 @@ constexpr float k_same_pixels = 0.01f;       // points of a chain closer than th
 constexpr int k_max_hits = 64;               // ignored hits of one ray, at most
 constexpr float k_inward_pixels = 0.2f;      // from an edge to the point that stands for it, in a face at the edge
 constexpr float k_max_inward = 0.1f;         // the same, in heights of the face
-constexpr float k_edge_on = 1e-3f;           // cosine between a face's normal and the ray to the eye, at most
+constexpr float k_least_cosine = 1e-3f;      // between a normal and the ray to the eye; less is seen edge-on
 
 TriangleMesh mesh_of(const LineSurface& surface) {
     TriangleMesh mesh;
@@ -145,7 +145,7 @@ class LineVisibility::Query {
         const Face& corners = scene_.surface_.faces[face];
         const auto at = [&](std::uint32_t i) -> const Vec3& { return scene_.surface_.vertices[corners[i]]; };
         const Vec3 normal = (at(1) - at(0)).cross(at(2) - at(0)).stableNormalized();
-        if (std::abs(normal.dot(camera_.to_eye(point(0.5f)))) > k_edge_on)
+        if (std::abs(normal.dot(camera_.to_eye(point(0.5f)))) > k_least_cosine)
             at_edge_[at_edge_count_++] = {face, corners[opposite]};
     }
     /// Returns whether a face at the edge is visible close to a point of it. The point itself may lie exactly in front

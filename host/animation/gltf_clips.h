@@ -7,7 +7,7 @@
 
 namespace exemplar::animation_io {
 
-/// What the channels of a glTF file drive.
+/// The nodes and morph targets of a surface that the channels of a glTF file move.
 struct GltfLinks {
     std::vector<std::uint32_t>
         rig_node;  ///< per node of the file; k_invalid_index if the surface does not depend on it

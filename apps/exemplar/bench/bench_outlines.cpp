@@ -36,7 +36,7 @@ struct OutlineBenchOptions {
 struct OutlineRow {
     std::string name;
     std::size_t drawings = 0, complete = 0;
-    double least = 1;  // share of the silhouette that has a line
+    double worst = 1;  // share of the silhouette that has a line
     OutlineCheck check;
 };
 
@@ -57,7 +57,7 @@ void add_drawings(const TriangleMesh& mesh, OutlineRow& row) {
             check_outline(drawable.mesh, seen.camera, ink_of(drawing), ink_of(drawing, LineType::contours));
         ++row.drawings;
         row.complete += check.outlined_share() >= k_complete_share ? 1 : 0;
-        row.least = std::min(row.least, check.outlined_share());
+        row.worst = std::min(row.worst, check.outlined_share());
         row.check.add(check);
     }
 }
@@ -65,7 +65,7 @@ void add_drawings(const TriangleMesh& mesh, OutlineRow& row) {
 void print_row(const OutlineRow& row) {
     fmt::print("{:<28}{:>9}{:>12.1f}{:>10.1f}{:>10.1f}{:>10.1f}\n", row.name, row.drawings,
                100 * static_cast<double>(row.complete) / static_cast<double>(row.drawings),
-               100 * row.check.outlined_share(), 100 * row.least, 100 * row.check.stray_share());
+               100 * row.check.outlined_share(), 100 * row.worst, 100 * row.check.stray_share());
 }
 
 nlohmann::json describe_row(const OutlineRow& row) {
@@ -73,7 +73,7 @@ nlohmann::json describe_row(const OutlineRow& row) {
             {"drawings", row.drawings},
             {"complete", row.complete},
             {"outlined", row.check.outlined_share()},
-            {"least_outlined", row.least},
+            {"worst_outlined", row.worst},
             {"stray", row.check.stray_share()}};
 }
 
@@ -92,7 +92,7 @@ void run_outline_bench(const OutlineBenchOptions& options) {
         print_row(row);
         rows.push_back(std::move(row));
     };
-    fmt::print("{:<28}{:>9}{:>12}{:>10}{:>10}{:>10}\n", "%", "drawings", "95 % or more", "outlined", "least", "stray");
+    fmt::print("{:<28}{:>9}{:>12}{:>10}{:>10}{:>10}\n", "%", "drawings", "95 % or more", "outlined", "worst", "stray");
     if (options.meshes.empty()) {
         for (const Damage& damage : damages()) add(row_of_damage(damage));
     } else {
@@ -107,7 +107,7 @@ void run_outline_bench(const OutlineBenchOptions& options) {
     for (const OutlineRow& row : rows) {
         all.drawings += row.drawings;
         all.complete += row.complete;
-        all.least = std::min(all.least, row.least);
+        all.worst = std::min(all.worst, row.worst);
         all.check.add(row.check);
         described.push_back(describe_row(row));
     }

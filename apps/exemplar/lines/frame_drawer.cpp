@@ -42,7 +42,8 @@ FrameDrawer::FrameDrawer(const LinesJob& job, LinesSource& source, const StrokeV
                 source.model() ? &*source.model() : nullptr, job.source.measuring.crease_angle, cuts(job.types)),
       stream_(device_) {
     const DeviceStyle style = device_style(job.style);
-    for (const std::size_t i : {0, 1}) renderer_.view(i).set_textures(style.textures);
+    renderer_.view().set_textures(style.textures);
+    if (job.check) renderer_.view(1).set_textures(style.textures);  // for redraw()
     picture_.view = view;
     apply_style(style, job.types, picture_);
 }

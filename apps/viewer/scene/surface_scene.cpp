@@ -40,6 +40,7 @@ SurfaceScene::SurfaceScene(Device& device, const Document& document) : document_
 }
 
 void SurfaceScene::set_model(std::shared_ptr<const CurvatureModel> model) {
+    if (!model && !model_) return;  // a document opens without one, and its renderer is made already
     CurvatureOptions options = measuring_options(model.get());
     options.robust = RobustEstimator::none;  // which the device does not have
     if (model) require_compatible(*model, document_.animation);

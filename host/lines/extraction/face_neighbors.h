@@ -11,9 +11,9 @@
 
 namespace exemplar {
 
-/// What is across the three sides of a face (side i runs from corner i to the next): 4 * face + side of another
-/// face, with the flags below, or one of the two constants. Lines continue across a side if it is at most
-/// k_max_neighbor_code.
+/// The neighbors of a face across its three sides; side i runs from corner i to the next. Each is a code, 4 * face +
+/// side of the other face, with the flags below, or one of the two constants. Lines continue across a side whose entry
+/// is at most k_max_neighbor_code.
 using FaceNeighbors = std::array<std::uint32_t, 3>;
 /// No other face has the edge.
 constexpr std::uint32_t k_no_neighbor = std::numeric_limits<std::uint32_t>::max();

@@ -11,7 +11,8 @@ namespace {
 
 constexpr float k_edge_on = 1e-4f;  // sine of the angle between a face and the ray to the eye, at most
 
-/// Where a face at an edge lies as the eye sees it, in units of its height over the edge.
+/// The direction from an edge into one of its faces, at right angles to the edge and of unit length, as the eye sees
+/// it.
 struct SeenFace {
     float aside = 0;   ///< to one side of the edge in the picture; near zero: seen edge-on
     float nearer = 0;  ///< towards the eye

@@ -15,7 +15,8 @@ namespace exemplar {
 
 namespace {
 
-// Of a smooth surface from its faces, in diagonals; the smaller one where faces meet at more than the angle of creases.
+// The largest distance of a smooth surface from the faces of the mesh, as a share of the diagonal. Edges at more than
+// the crease angle have the smaller bound.
 constexpr float k_max_deviation = 0.0025f, k_max_deviation_at_creases = 0.0008f;
 
 void check_neighbors(std::span<const Face> faces, std::size_t vertex_count, std::span<const FaceNeighbors> neighbors) {

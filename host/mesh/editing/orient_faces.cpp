@@ -73,7 +73,7 @@ SurfacePieces walk_pieces(const TriangleMesh& mesh, const Topology& topology) {
     return pieces;
 }
 
-/// What the edges of a piece tell.
+/// Counts over the edges of a piece, from which its orientation is decided.
 struct PieceEdges {
     bool is_closed = true;           ///< all its edges have two faces
     std::size_t disagreeing = 0;     ///< edges between faces of opposite orientation in the file

@@ -6,7 +6,8 @@
 
 namespace exemplar {
 
-/// What orient_faces turned around. A piece is a set of faces that are connected across edges of exactly two faces.
+/// The numbers of pieces and faces that orient_faces turned around. A piece is a set of faces that are connected across
+/// edges of exactly two faces.
 struct OrientationChange {
     std::size_t pieces = 0;         ///< of the surface
     std::size_t turned_pieces = 0;  ///< that faced inward

@@ -23,16 +23,16 @@ double longest_edge(const TriangleMesh& mesh, const Face& face) {
     return std::sqrt(std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()}));
 }
 
-/// Returns, for each vertex, the least of the longest edges of the faces around it. Faces that are a point or not
-/// finite do not count; infinity for a vertex without any other.
-std::vector<double> least_face_lengths(const TriangleMesh& mesh) {
-    std::vector<double> least(mesh.vertex_count(), std::numeric_limits<double>::infinity());
+/// Returns, for each vertex, the length of the shortest face around it; the length of a face is that of its longest
+/// edge. Faces that are a point or not finite do not count; infinity for a vertex without any other.
+std::vector<double> shortest_face_lengths(const TriangleMesh& mesh) {
+    std::vector<double> shortest(mesh.vertex_count(), std::numeric_limits<double>::infinity());
     for (const Face& face : mesh.faces) {
         const double length = longest_edge(mesh, face);
         if (!(length > 0)) continue;
-        for (const std::uint32_t v : face) least[v] = std::min(least[v], length);
+        for (const std::uint32_t v : face) shortest[v] = std::min(shortest[v], length);
     }
-    return least;
+    return shortest;
 }
 
 /// Finds, for each vertex, an earlier one that is as near as rounding. A vertex has a radius, the rounding divided by a
@@ -49,7 +49,7 @@ class NearVertices {
 
     /// Returns the vertex that replaces each vertex, itself if it stays. One that replaces others stays.
     std::vector<std::uint32_t> representatives() {
-        const std::vector<double> length = least_face_lengths(mesh_);
+        const std::vector<double> length = shortest_face_lengths(mesh_);
         std::vector<std::uint32_t> representative(mesh_.vertex_count());
         first_.reserve(mesh_.vertex_count());
         for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v) {

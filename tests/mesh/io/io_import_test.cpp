@@ -22,7 +22,7 @@ class ReadImported : public testing::Test {
     void SetUp() override {
         const auto program =
             std::filesystem::read_symlink("/proc/self/exe").parent_path().parent_path() / "exemplar-import";
-        if (!std::filesystem::exists(program)) GTEST_SKIP() << "built without assimp";
+        if (!std::filesystem::exists(program)) GTEST_SKIP() << "exemplar-import is not built; it needs libassimp-dev";
     }
 };
 

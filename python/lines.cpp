@@ -14,7 +14,6 @@
 #include "host/core/text.h"
 #include "host/lines/drawing.h"
 #include "host/lines/drawing_svg.h"
-#include "host/lines/extraction/cut_surface.h"
 #include "host/lines/extraction/drawable_surface.h"
 #include "host/lines/strokes/style.h"
 #include "host/lines/strokes/view_point.h"
@@ -62,9 +61,10 @@ LineDrawing drawn(const LinesJob& job, const MeshObject& mesh, const LineSurface
 /// By curvature that is measured here.
 LineDrawing draw_measured(const LinesJob& job, const MeshObject& mesh) {
     const DrawableMesh drawable = drawable_mesh(*mesh.mesh, mesh.name);
-    const DrawableOptions options{job.smoothing, std::ranges::any_of(job.types, needs_curvature),
-                                  job.style.thresholds(LineType::creases).crease_angle, true,
-                                  std::ranges::find(job.types, LineType::creases) != job.types.end()};
+    const DrawableOptions options{
+        .curvature = {.derivatives = std::ranges::any_of(job.types, needs_curvature), .smoothing = job.smoothing},
+        .crease_angle = job.style.thresholds(LineType::creases).crease_angle,
+        .cut_curvature = std::ranges::find(job.types, LineType::creases) != job.types.end()};
     DrawableSurface surface(drawable.mesh.faces, drawable.mesh.vertices, options);
     surface.measure(drawable.mesh.vertices);
     return drawn(job, mesh, surface.surface(), surface.feature_size());
@@ -79,8 +79,9 @@ LineDrawing draw_given(const LinesJob& job, const MeshObject& mesh, const Vertex
         throw UsageError("curvature: has no derivatives, which these types of lines need");
     require_drawable(*mesh.mesh, mesh.name);
     const std::vector<Vec3> normals = vertex_normals(*mesh.mesh);
-    const CutSurface cut(mesh.mesh->faces, mesh.mesh->vertices, normals, curvature,
-                         job.style.thresholds(LineType::creases).crease_angle);
+    DrawableSurface cut(mesh.mesh->faces, mesh.mesh->vertices,
+                        {.crease_angle = job.style.thresholds(LineType::creases).crease_angle});
+    cut.take(mesh.mesh->vertices, normals, curvature);
     return drawn(job, mesh, cut.surface(), feature_size(mesh.mesh->vertices, curvature));
 }
 

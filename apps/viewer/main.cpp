@@ -105,6 +105,7 @@ void add_options(Command& app, ViewerOptions& options, std::string& size) {
     app.add_flag("--plain", options.plain_window, "shows no panels to begin with");
     app.add_flag("--quiet", options.quiet, "no progress and no remarks");
     app.add_option("--lose-device-at", options.losing_frame, "")->hide();
+    app.add_option("--fail-at", options.failing_frame, "")->hide();
 }
 
 void require_still_options(const ViewerOptions& options) {

@@ -196,8 +196,4 @@ void Swapchain::present(const WindowImage& image) {
         check(result, "show an image in the window");
 }
 
-void Swapchain::abandon() {
-    stale_ = true;
-}
-
 }  // namespace exemplar

@@ -44,8 +44,6 @@ class Swapchain {
     /// Shows the image once the submission with its order is done. It must be in VK_IMAGE_LAYOUT_PRESENT_SRC_KHR.
     /// Throws as acquire does.
     void present(const WindowImage& image);
-    /// Discards an image that was acquired but not drawn.
-    void abandon();
 
   private:
     // Semaphores are kept, since one may only be destroyed when nothing waits for it any more.

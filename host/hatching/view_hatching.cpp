@@ -8,7 +8,7 @@
 #include "host/hatching/fields/occlusion_barriers.h"
 #include "host/hatching/refinement/stroke_relaxation.h"
 #include "host/hatching/refinement/tone_matching.h"
-#include "host/lines/extraction/cut_surface.h"
+#include "host/lines/extraction/drawable_surface.h"
 
 namespace exemplar {
 
@@ -38,8 +38,9 @@ Drawing feature_curves(const HatchingSurface& surface, const HatchingView& view,
         const Vec3 middle = (0.5 * (box.low + box.high)).cast<float>();
         stroke_view.unit_depth = std::max(-(view.camera.view * middle.homogeneous()).z(), 1e-20f);
     }
-    const CutSurface cut(surface.mesh.faces, surface.mesh.vertices, surface.normals, surface.line_curvature,
-                         style.thresholds(LineType::creases).crease_angle);
+    DrawableSurface cut(surface.mesh.faces, surface.mesh.vertices,
+                        {.crease_angle = style.thresholds(LineType::creases).crease_angle});
+    cut.take(surface.mesh.vertices, surface.normals, surface.line_curvature);
     return draw_lines(cut.surface(), types, style, stroke_view);
 }
 

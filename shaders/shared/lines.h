@@ -26,6 +26,10 @@ const uint k_extremum_families = 0x38u;   // that are extrema along these direct
 const uint k_highlight_families = 0xc0u;
 const uint k_edge_families = 0x700u;  // that are edges of the mesh
 
+struct GatherParameters {
+    uint vertices;  // of the cut surface
+};
+
 // A field has a vec4 per vertex: value, strength, margin and front of exemplar::LineField. The fields of all
 // requested families follow each other, as do the directions of those that have some. The bits of the requested
 // families are constant 0 of the kernels.

@@ -366,6 +366,12 @@ class InWindow(Viewer):
         time.sleep(2)
         self.closes_well(process)
 
+    def test_what_cannot_be_drawn_is_closed_with_a_message(self):
+        process, _ = self.open("figure_001.glb", "--size", "640x480", "--fail-at", "2")
+        self.until(lambda: self.xdotool("search", "--name", "^Exemplar$", check=False).strip(),
+                   "the title of a window without a document")
+        self.closes_well(process)
+
     def test_ends_after_as_many_frames_as_asked(self):
         output = self.view("figure_001.glb", "--frames", "40", "--size", "320x240").stdout
         self.assertRegex(output, r"first frame after \d+ ms")

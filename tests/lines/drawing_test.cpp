@@ -10,7 +10,7 @@
 
 #include "host/core/errors.h"
 #include "host/imaging/image.h"
-#include "host/lines/extraction/cut_surface.h"
+#include "host/lines/extraction/drawable_surface.h"
 #include "tests/lines/drawn_scene.h"
 
 namespace exemplar {
@@ -120,7 +120,8 @@ TEST(Drawings, KeepTheirLayersInOrder) {
 
 TEST(Drawings, OfACutCubeHaveItsOutlineAndNothingElseAsContours) {
     const Scene cube(shapes::box(1, 1, 1, 3));
-    const CutSurface cut(cube.mesh.faces, cube.mesh.vertices, cube.normals, cube.curvature);
+    DrawableSurface cut(cube.mesh.faces, cube.mesh.vertices);
+    cut.take(cube.mesh.vertices, cube.normals, cube.curvature);
     const std::array types = {LineType::creases, LineType::contours, LineType::boundaries};
     const Drawing drawing = draw_lines(cut.surface(), types, load_style("technical"), cube.view);
     // Of a cube's nine visible edges six are its outline, three meet in front; three more are hidden.

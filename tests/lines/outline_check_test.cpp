@@ -47,7 +47,7 @@ TEST(OutlineChecks, OfDrawingsOfManyShapesAreComplete) {
                                shapes::torus(3, 1, 60, 30)};
     for (const TriangleMesh& mesh : shapes) {
         const OutlinedScene scene(mesh);
-        DrawableSurface surface(mesh.faces, mesh.vertices, {.derivatives = false});
+        DrawableSurface surface(mesh.faces, mesh.vertices, {.curvature = {.derivatives = false, .smoothing = 1}});
         surface.measure(mesh.vertices);
         const Drawing drawing =
             draw_lines(surface.surface(), std::array{LineType::contours}, load_style("ink"), scene.view);

@@ -263,7 +263,8 @@ TEST(SmoothedCurvatureParity, MeshesOfAnyScale) {
 
 // Each row lies whole in the tile of its vertex, and each vertex is in one.
 TEST(NearVertices, AreTiledToTheLimit) {
-    const NearVertices rows = build_near_vertices(waved(shapes::icosphere(3, 1), 0.2f), 0.4, 1'000'000);
+    const NearVertices rows =
+        build_near_vertices(waved(shapes::icosphere(3, 1), 0.2f), {.radius = 0.4, .reach = 0.4}, 1'000'000);
     for (const std::size_t most : {std::size_t{40}, std::size_t{1000}, rows.texels.size() + 4})
         for (const std::size_t alignment : {1u, 4u, 16u}) {
             std::uint32_t next = 0;
@@ -290,7 +291,7 @@ TEST(SmoothedCurvatureParity, RefusesWhatTheDeviceCannotDo) {
     refused({.smoothing = std::numeric_limits<double>::infinity()});
     refused({.smoothing = 1, .smoothing_unit = std::numeric_limits<double>::quiet_NaN()});
     refused({.robust = RobustEstimator::cauchy});
-    EXPECT_THROW(build_near_vertices(surface.rest(), 1, 41), UsageError);
+    EXPECT_THROW(build_near_vertices(surface.rest(), {.radius = 1, .reach = 1}, 41), UsageError);
 }
 
 // Fourth powers of lengths would leave the range of single precision.

@@ -90,7 +90,7 @@ void run_draw(HatchDrawJob& job) {
     job.output = lines_output_of(job.out);
     job.source.input = job.scene.mesh;
     job.source.first_frame_only = job.is_single_picture();
-    job.source.measuring.derivatives = false;
+    job.source.measuring.curvature.derivatives = false;
     job.source.quiet = job.common.quiet;
     if (job.output == LinesOutput::folder)
         require_output_folder(job.out);

@@ -12,15 +12,7 @@ namespace {
 
 CurvatureOptions measured_curvature(const LinesJob& job, const LinesSource& source) {
     if (source.model()) return source.model()->truth;
-    return {.derivatives = true, .smoothing = job.source.measuring.smoothing};
-}
-
-/// Returns whether the device cuts the surface open. It cuts curvature as well, and so the valleys and ridges of a
-/// smooth surface that has sharp edges there; where they are drawn without creases, it does not.
-bool cuts(const std::vector<LineType>& types) {
-    const auto has = [&](LineType type) { return std::ranges::find(types, type) != types.end(); };
-    return has(LineType::creases) ||
-           !(has(LineType::ridges) || has(LineType::valleys) || has(LineType::apparent_ridges));
+    return {.derivatives = true, .smoothing = job.source.measuring.curvature.smoothing};
 }
 
 /// Returns the pixels that differ visibly between two pictures of one size.
@@ -39,8 +31,9 @@ FrameDrawer::FrameDrawer(const LinesJob& job, LinesSource& source, const StrokeV
     : source_(source),
       device_({.name = job.common.device}),
       renderer_(device_, source.animation(), measured_curvature(job, source),
-                source.model() ? &*source.model() : nullptr, job.source.measuring.crease_angle, cuts(job.types)),
+                source.model() ? &*source.model() : nullptr, job.source.measuring.crease_angle),
       stream_(device_) {
+    renderer_.set_cut_curvature(job.source.measuring.cut_curvature);
     const DeviceStyle style = device_style(job.style);
     renderer_.view().set_textures(style.textures);
     if (job.check) renderer_.view(1).set_textures(style.textures);  // for redraw()

@@ -116,7 +116,7 @@ LinesJob job_of(const LinesArguments& arguments) {
                                                                 : "width";
     job.svg.fading = choice<SvgFading>(fading, "--fading", fading_words());
     job.svg.background = !arguments.no_background;
-    job.source.measuring.derivatives = std::any_of(job.types.begin(), job.types.end(), needs_curvature);
+    job.source.measuring.curvature.derivatives = std::any_of(job.types.begin(), job.types.end(), needs_curvature);
     job.source.measuring.cut_curvature =
         std::find(job.types.begin(), job.types.end(), LineType::creases) != job.types.end();
     job.source.measuring.crease_angle = job.style.thresholds(LineType::creases).crease_angle;
@@ -166,7 +166,7 @@ void add_look_options(Command& command, LinesArguments& arguments) {
         ->delimiter(',')
         ->allow_extra_args(false);
     command
-        .add_option("--smoothing", arguments.job.source.measuring.smoothing,
+        .add_option("--smoothing", arguments.job.source.measuring.curvature.smoothing,
                     "width, in edge lengths, that measured curvature is smoothed with")
         ->capture_default_str()
         ->check(in_range(0.0, 100.0));

@@ -44,9 +44,7 @@ LinesSource::LinesSource(const LinesSourceArguments& arguments) : arguments_(arg
         require_compatible(*model_, animation_);
         evaluator_ = std::make_unique<CurvatureEvaluator>(*model_);
     }
-    DrawableOptions measuring = arguments.measuring;
-    if (model_) measuring.cut = false;
-    drawable_ = std::make_unique<DrawableSurface>(faces(), vertices(0), measuring);
+    drawable_ = std::make_unique<DrawableSurface>(faces(), vertices(0), arguments.measuring);
     if (model_) estimator_ = std::make_unique<CurvatureEstimator>(faces(), vertex_count());
 }
 
@@ -65,8 +63,9 @@ TriangleMesh LinesSource::mesh(std::size_t frame) const {
 void LinesSource::predict(std::size_t frame) {
     estimator_->estimate(vertices_, {.derivatives = false});  // for its normals
     const FrameRef& ref = frames_[frame];
-    curvature_ = &evaluator_->evaluate(animation_.rig, shape_at(animation_, ref.clip, ref.frame), vertices_,
-                                       estimator_->normals());
+    const VertexCurvature& learned = evaluator_->evaluate(animation_.rig, shape_at(animation_, ref.clip, ref.frame),
+                                                          vertices_, estimator_->normals());
+    drawable_->take(vertices_, estimator_->normals(), learned);
 }
 
 LineSurface LinesSource::surface(std::size_t frame) {
@@ -78,7 +77,6 @@ LineSurface LinesSource::surface(std::size_t frame) {
             drawable_->measure(vertices_);
         current_ = frame;
     }
-    if (model_) return {faces(), vertices_, estimator_->normals(), *curvature_, neighbors()};
     return drawable_->surface();
 }
 

@@ -50,7 +50,6 @@ class LinesSource {
     const Animation& animation() const { return animation_; }
     const std::vector<FrameRef>& frames() const { return frames_; }
     const std::optional<CurvatureModel>& model() const { return model_; }
-    const std::vector<FaceNeighbors>& neighbors() const { return drawable_->neighbors(); }
 
   private:
     void predict(std::size_t frame);
@@ -60,12 +59,11 @@ class LinesSource {
     bool animated_ = false;
     std::vector<FrameRef> frames_;
     std::optional<CurvatureModel> model_;
-    std::unique_ptr<DrawableSurface> drawable_;      ///< with a model only its neighbors are used
+    std::unique_ptr<DrawableSurface> drawable_;
     std::unique_ptr<CurvatureEstimator> estimator_;  ///< for normals, with a model
     std::unique_ptr<CurvatureEvaluator> evaluator_;
     std::vector<Vec3> vertices_;
-    const VertexCurvature* curvature_ = nullptr;  ///< learned
-    std::optional<std::size_t> current_;          ///< the frame that surface() has made
+    std::optional<std::size_t> current_;  ///< the frame that surface() has made
     std::optional<float> feature_size_;
 };
 

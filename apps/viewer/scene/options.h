@@ -27,7 +27,8 @@ struct ViewerOptions {
     std::optional<ShownCurvature> source;
     std::optional<ViewSide> side;
     bool parallel = false;
-    std::optional<std::size_t> losing_frame;  ///< tests: the device counts as lost at this frame
+    // Tests: the device counts as lost after so many frames, or drawing fails.
+    std::optional<std::size_t> losing_frame, failing_frame;
 };
 
 /// Opens the files that the options name, in a view of that size. Throws an Error if that fails.

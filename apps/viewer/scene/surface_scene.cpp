@@ -32,6 +32,7 @@ PaintLook look_of(const ViewSettings& settings, float feature_size) {
 CurvatureOptions measuring_options(const CurvatureModel* model) {
     CurvatureOptions options = model ? model->truth : CurvatureTraining{}.truth;
     options.derivatives = true;
+    options.robust = RobustEstimator::none;
     return options;
 }
 
@@ -41,10 +42,9 @@ SurfaceScene::SurfaceScene(Device& device, const Document& document) : document_
 
 void SurfaceScene::set_model(std::shared_ptr<const CurvatureModel> model) {
     if (!model && !model_) return;  // a document opens without one, and its renderer is made already
-    CurvatureOptions options = measuring_options(model.get());
-    options.robust = RobustEstimator::none;  // which the device does not have
     if (model) require_compatible(*model, document_.animation);
-    renderer_ = std::make_unique<AnimationRenderer>(device_, document_.animation, options, model.get());
+    renderer_ =
+        std::make_unique<AnimationRenderer>(device_, document_.animation, measuring_options(model.get()), model.get());
     colored_views_ = styled_views_ = 0;
     feature_size_ = model ? model->feature_size : 0;
     model_ = std::move(model);
@@ -83,6 +83,7 @@ void SurfaceScene::record(Stream& stream, const SurfaceShape& shape, const Orbit
     const bool curved = settings.needs_curvature();
     const bool learned = model_ && settings.source != ShownCurvature::estimated;
     if (curved) find_feature_size();
+    renderer_->set_cut_curvature(settings.shows(LineType::creases));
     renderer_->record(stream, shape,
                       !curved   ? CurvatureSource::none
                       : learned ? CurvatureSource::learned

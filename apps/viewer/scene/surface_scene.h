@@ -16,7 +16,7 @@
 namespace exemplar {
 
 /// Returns how curvature is measured: as in the training of the model, so that both can be compared; null: by the
-/// defaults of training.
+/// defaults of training. It is never measured by robust fits, which the device does not have.
 CurvatureOptions measuring_options(const CurvatureModel* model);
 
 /// A document on the device, drawn with the viewer's settings in one view or in two side by side.

@@ -29,6 +29,10 @@ struct ViewSettings {
     std::uint64_t style_version = 1;                          ///< increment it when the style is changed
 
     bool shows_lines() const { return std::ranges::find(lines, true) != lines.end(); }
+    bool shows(LineType type) const {
+        const auto shown = shown_lines();
+        return std::ranges::find(shown, type) != shown.end();
+    }
     std::vector<LineType> shown_lines() const {
         std::vector<LineType> types;
         for (std::size_t i = 0; i < lines.size(); ++i)

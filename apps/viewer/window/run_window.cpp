@@ -46,7 +46,12 @@ std::vector<std::filesystem::path> free_names(const std::string& stem, const std
     }
 }
 
-/// Everything on the device. It is replaced when the device is lost.
+/// What is shown cannot be drawn, as it cannot be measured or takes more memory than the device has.
+struct UndrawableError : Error {
+    using Error::Error;
+};
+
+/// Everything on the device. It is replaced when the device is lost, or a frame could not be recorded to its end.
 class Session {
   public:
     Session(Window& window, Interface& interface, const std::string& device)
@@ -57,14 +62,16 @@ class Session {
           interface_renderer_(device_, swapchain_.format(), interface.fonts()),
           renderer_(device_) {}
 
-    /// Draws and shows a frame; nothing if the window has no pixels. Returns whether it did.
-    bool draw(ViewerState& state, InterfaceRequests& requests);
+    /// Draws and shows a frame; nothing if the window has no pixels. Returns whether it did. Throws UndrawableError.
+    /// `fails`: for tests, whether drawing fails.
+    bool draw(ViewerState& state, InterfaceRequests& requests, bool fails);
     Image picture() { return renderer_.read(); }
     Device& device() { return device_; }
 
   private:
     void follow(ViewerState& state);
-    void record(const ViewerState& state, const WindowImage& image);
+    void record_scene(const ViewerState& state, bool fails);
+    void record(const WindowImage& image);
     Window& window_;
     Interface& interface_;
     Device device_;
@@ -89,21 +96,33 @@ void Session::follow(ViewerState& state) {
     }
 }
 
-bool Session::draw(ViewerState& state, InterfaceRequests& requests) {
+// Memory that curvature takes is only taken when lines or colors need it: here, and not in follow().
+void Session::record_scene(const ViewerState& state, bool fails) {
+    try {
+        if (fails) throw DeviceMemoryError("the device has no memory left, as the command line asked for");
+        renderer_.record(state, interface_.view().size());
+    } catch (const DeviceLostError&) {
+        throw;
+    } catch (const Error& error) {
+        throw UndrawableError(error.what());
+    }
+}
+
+bool Session::draw(ViewerState& state, InterfaceRequests& requests, bool fails) {
     const std::optional<WindowImage> image = swapchain_.acquire(window_.pixels());
     if (!image) return false;
     requests = interface_.lay_out(state, image->extent);
     follow(state);
-    record(state, *image);
+    record_scene(state, fails);
+    record(*image);
     renderer_.stream().submit(image->order);
     swapchain_.present(*image);
     renderer_.finish(state.times);
     return true;
 }
 
-void Session::record(const ViewerState& state, const WindowImage& image) {
+void Session::record(const WindowImage& image) {
     Stream& stream = renderer_.stream();
-    renderer_.record(state, interface_.view().size());
     stream.transition(image.image, VK_IMAGE_ASPECT_COLOR_BIT, VK_IMAGE_LAYOUT_UNDEFINED,
                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, k_image_acquired);
     renderer_.blit(image.image, interface_.view().pixels);
@@ -147,7 +166,7 @@ class Viewer {
     ViewerState state_;
     std::size_t frames_ = 0;
     int restless_ = k_settling_frames;
-    bool fitted_ = false, lost_ = false;
+    bool fitted_ = false, lost_ = false, failed_ = false;
 };
 
 void Viewer::set_title() {
@@ -226,7 +245,7 @@ void Viewer::run_session(Session& session) {
         state_.collect_hatching();
         for (const std::filesystem::path& path : window_.take_drops()) open(path);
         InterfaceRequests requests;
-        if (!session.draw(state_, requests)) {
+        if (!session.draw(state_, requests, options_.failing_frame == frames_ && !std::exchange(failed_, true))) {
             window_.wait(0.1);
             restless_ = k_settling_frames;  // draws as soon as the window can show it
             continue;
@@ -249,17 +268,23 @@ void Viewer::run_session(Session& session) {
 
 void Viewer::run() {
     constexpr int k_max_losses = 3;
-    for (int losses = 0; !ended(); ++losses) {
+    int losses = 0;
+    while (!ended()) {
         std::shared_ptr<const ValidationLog> log;
         try {
             Session session(window_, interface_, options_.device);
             log = session.device().validation_log();
             run_session(session);
+        } catch (const UndrawableError& error) {
+            if (!state_.has_document()) throw;
+            state_.messages.error(error.what());
+            state_.close();
+            set_title();
         } catch (const DeviceLostError& error) {
-            if (losses >= k_max_losses) throw;
+            if (++losses > k_max_losses) throw;
             state_.messages.error(error.what());
         } catch (const SurfaceLostError& error) {
-            if (losses >= k_max_losses) throw;
+            if (++losses > k_max_losses) throw;
             state_.messages.error(error.what());
         }
         if (log) require_no_validation_messages(*log);

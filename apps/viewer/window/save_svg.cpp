@@ -5,55 +5,66 @@
 #include "apps/viewer/scene/surface_scene.h"
 #include "host/core/errors.h"
 #include "host/lines/drawing_svg.h"
-#include "host/lines/extraction/cut_surface.h"
-#include "host/mesh/curvature/curvature_estimator.h"
+#include "host/lines/extraction/drawable_surface.h"
 
 namespace exemplar {
 namespace {
 
-VertexCurvature learned_curvature(const ViewerState& state, const SurfaceShape& shape, std::span<const Vec3> vertices,
-                                  std::span<const Vec3> normals) {
-    CurvatureEvaluator evaluator(*state.model());
-    return evaluator.evaluate(state.document().animation.rig, shape, vertices, normals);
+/// Measured as the window shows it.
+DrawableOptions drawable_options(const ViewerState& state) {
+    return {.curvature = measuring_options(state.model().get()),
+            .crease_angle = state.settings.style.thresholds(LineType::creases).crease_angle,
+            .cut_curvature = state.settings.shows(LineType::creases)};
 }
 
 /// The surface at one frame, on the host.
-struct HostFrame {
-    const std::vector<Face>& faces;
-    std::vector<Vec3> vertices;
-    CurvatureEstimator estimator;
-    VertexCurvature estimated;
-
+class HostFrame {
+  public:
     HostFrame(const ViewerState& state, const SurfaceShape& shape)
-        : faces(state.document().animation.rest.faces),
-          vertices(vertices_of(state.document().animation, shape)),
-          estimator(faces, vertices.size()),
-          estimated(estimator.estimate(vertices, measuring_options(state.model().get()))) {}
+        : vertices_(vertices_of(state.document().animation, shape)),
+          surface_(state.document().animation.rest.faces, first_shape(state.document().animation).vertices,
+                   drawable_options(state)) {}
 
-    Drawing draw(const ViewerState& state, const VertexCurvature& curvature, ViewSize size) const {
-        const StrokeView view{
-            .camera = state.camera.camera(size),
-            .width = size.width,
-            .height = size.height,
-            .unit_depth = state.camera.distance(),
-            .feature_size = state.model() ? state.model()->feature_size : feature_size(vertices, curvature)};
-        const DrawingStyle& style = state.settings.style;
-        const CutSurface cut(faces, vertices, estimator.normals(), curvature,
-                             style.thresholds(LineType::creases).crease_angle);
-        return draw_lines(cut.surface(), state.settings.shown_lines(), style, view);
+    Drawing draw_measured(const ViewerState& state, ViewSize size) {
+        surface_.measure(vertices_);
+        return draw(state, state.model() ? state.model()->feature_size : surface_.feature_size(), size);
     }
+    Drawing draw_learned(const ViewerState& state, const SurfaceShape& shape, ViewSize size) {
+        const Animation& animation = state.document().animation;
+        const std::vector<Vec3> normals = normals_of(animation.rest.faces);
+        CurvatureEvaluator evaluator(*state.model());
+        surface_.take(vertices_, normals, evaluator.evaluate(animation.rig, shape, vertices_, normals));
+        return draw(state, state.model()->feature_size, size);
+    }
+
+  private:
+    std::vector<Vec3> normals_of(const std::vector<Face>& faces) const {
+        TriangleMesh mesh;
+        mesh.vertices = vertices_;
+        mesh.faces = faces;
+        return vertex_normals(mesh);
+    }
+    Drawing draw(const ViewerState& state, float feature_size, ViewSize size) const {
+        const StrokeView view{.camera = state.camera.camera(size),
+                              .width = size.width,
+                              .height = size.height,
+                              .unit_depth = state.camera.distance(),
+                              .feature_size = feature_size};
+        return draw_lines(surface_.surface(), state.settings.shown_lines(), state.settings.style, view);
+    }
+    std::vector<Vec3> vertices_;
+    DrawableSurface surface_;
 };
 
 Drawing drawing_of(const ViewerState& state, ViewSize size) {
     const SurfaceShape shape = state.shape();
-    const HostFrame saved(state, shape);
-    if (!state.model() || state.settings.source == ShownCurvature::estimated)
-        return saved.draw(state, saved.estimated, size);
-    const VertexCurvature learned = learned_curvature(state, shape, saved.vertices, saved.estimator.normals());
-    if (!state.shows_both()) return saved.draw(state, learned, size);
+    HostFrame frame(state, shape);
+    if (!state.model() || state.settings.source == ShownCurvature::estimated) return frame.draw_measured(state, size);
+    if (!state.shows_both()) return frame.draw_learned(state, shape, size);
     const ViewSize left{std::max(size.width / 2, 1), size.height};
     const ViewSize right{std::max(size.width - left.width, 1), size.height};
-    return side_by_side(saved.draw(state, learned, left), saved.draw(state, saved.estimated, right));
+    const Drawing learned = frame.draw_learned(state, shape, left);
+    return side_by_side(learned, frame.draw_measured(state, right));
 }
 
 }  // namespace

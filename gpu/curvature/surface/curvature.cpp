@@ -13,6 +13,7 @@
 #include "gpu/curvature/surface/near_vertices.h"
 #include "host/core/errors.h"
 #include "host/core/memory_budget.h"
+#include "host/mesh/curvature/near_flood.h"
 
 namespace exemplar {
 namespace {
@@ -32,18 +33,15 @@ double squared_radius(double width) {
     return 2 * shared::k_diffusion_cutoff / kept_variance() * width * width;
 }
 
-// Standard deviation in mesh units; 0 for no smoothing.
-double smoothing_width(const GpuSurface& surface, const CurvatureOptions& options) {
+// Returns the standard deviation in mesh units; 0 for no smoothing. `edge`: the median length.
+double smoothing_width(const CurvatureOptions& options, double edge) {
     if (!(options.smoothing >= 0 && std::isfinite(options.smoothing) && options.smoothing_unit >= 0 &&
           std::isfinite(options.smoothing_unit)))
         throw UsageError(fmt::format("smoothing by {} x {}: give a width that is finite and not negative",
                                      options.smoothing, options.smoothing_unit));
     if (options.robust != RobustEstimator::none)
         throw UsageError("robust fits of curvature run on the host only; use CurvatureEstimator");
-    if (!(options.smoothing > 0)) return 0;
-    if (options.smoothing_unit > 0) return options.smoothing * options.smoothing_unit;
-    const TriangleMesh& rest = surface.rest();
-    return options.smoothing * CurvatureEstimator(rest.faces, rest.vertex_count()).median_edge_length(rest.vertices);
+    return options.smoothing * (options.smoothing_unit > 0 ? options.smoothing_unit : edge);
 }
 
 // Bindings of a kernel: where the rows of a list of vertices begin, the list, and `attributes` buffers of vec4 per
@@ -64,15 +62,17 @@ Buffer attribute(const GpuSurface& surface) {
 
 }  // namespace
 
-GpuCurvature::Diffusion::Diffusion(const GpuSurface& surface, double width, bool with_derivatives)
+GpuCurvature::Diffusion::Diffusion(const GpuSurface& surface, double width, std::size_t enough, bool with_derivatives)
     : angular_components(attribute(surface)),
       forms(surface.device(), shaders::curvature_smooth_forms_comp,
             gathering_interface<DiffusionParameters>(5, false)) {
     const DeviceInfo& info = surface.device().info();
     // A device may claim more memory than the machine has, and building the lists takes a few copies of them.
     const std::size_t max_bytes = std::min<std::size_t>(info.max_allocation, usable_memory() / 16);
-    const NearVertices rows = build_near_vertices(surface.rest(), k_smoothing_reach * std::sqrt(squared_radius(width)),
-                                                  max_bytes / sizeof(uvec4));
+    const double radius = std::sqrt(squared_radius(width));
+    const NearVertices rows =
+        build_near_vertices(surface.rest(), {.radius = radius, .reach = k_smoothing_reach * radius, .enough = enough},
+                            max_bytes / sizeof(uvec4));
     near_begin = Buffer::of<std::uint32_t>(surface.device(), rows.begin);
     near = Buffer::of<uvec4>(surface.device(), rows.texels);
     const double scaled = width * static_cast<double>(surface.scale());
@@ -101,9 +101,11 @@ void GpuCurvature::Diffusion::record(Stream& stream, const Kernel& kernel, const
 
 GpuCurvature::GpuCurvature(const GpuSurface& surface, const CurvatureOptions& options)
     : surface_(surface), normals_(surface), first_(attribute(surface)), second_(attribute(surface)) {
-    const double width = smoothing_width(surface, options);
+    const TriangleMesh& rest = surface.rest();
+    const double edge = CurvatureEstimator(rest.faces, rest.vertex_count()).median_edge_length(rest.vertices);
+    const double width = smoothing_width(options, edge);
     const bool smoothed = width > 0 && std::isfinite(width);
-    if (smoothed) diffusion_.emplace(surface, width, options.derivatives);
+    if (smoothed) diffusion_.emplace(surface, width, enough_near_vertices(width / edge), options.derivatives);
     curvature_kernel_ = Kernel(surface.device(), shaders::curvature_curvature_comp,
                                gathering_interface<SurfaceParameters>(4, smoothed));
     if (!options.derivatives) return;

@@ -47,7 +47,7 @@ class GpuCurvature {
             shared::DiffusionParameters parameters;
             std::size_t offset, bytes;  // in `near`
         };
-        Diffusion(const GpuSurface& surface, double width, bool derivatives);
+        Diffusion(const GpuSurface& surface, double width, std::size_t enough, bool derivatives);
         // `sixth`, `seventh`: the bindings in which the kernels differ.
         void record(Stream& stream, const Kernel& kernel, const Buffer& vertices, const Buffer& normals,
                     const Buffer& sixth, const Buffer& seventh) const;

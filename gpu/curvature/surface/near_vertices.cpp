@@ -9,6 +9,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
+#include "host/mesh/curvature/near_flood.h"
 #include "host/mesh/vertex_neighbors.h"
 
 namespace exemplar {
@@ -17,36 +18,6 @@ namespace {
 using shared::uvec4;
 
 constexpr std::size_t k_chunk = 1024;  // vertices
-
-// Floods the surface from one vertex after another.
-class Flood {
-  public:
-    Flood(const TriangleMesh& mesh, const VertexNeighbors& neighbors, double radius)
-        : mesh_(mesh),
-          neighbors_(neighbors),
-          limit_(static_cast<float>(radius * radius)),
-          seen_by_(mesh.vertex_count(), k_nobody) {}
-
-    /// Returns the vertices around `center` in breadth-first order; valid until the next call.
-    std::span<const std::uint32_t> around(std::uint32_t center) {
-        reached_ = {center};
-        seen_by_[center] = center;
-        for (std::size_t next = 0; next < reached_.size(); ++next)
-            for (const std::uint32_t v : neighbors_.of(reached_[next])) {
-                if (seen_by_[v] == center) continue;
-                seen_by_[v] = center;
-                if ((mesh_.vertices[v] - mesh_.vertices[center]).squaredNorm() < limit_) reached_.push_back(v);
-            }
-        return std::span(reached_).subspan(1);
-    }
-
-  private:
-    static constexpr std::uint32_t k_nobody = 0xffffffffu;
-    const TriangleMesh& mesh_;
-    const VertexNeighbors& neighbors_;
-    float limit_;
-    std::vector<std::uint32_t> seen_by_, reached_;
-};
 
 // Appends the row of a vertex; returns its length in texels.
 std::uint32_t append_row(std::uint32_t vertex, std::span<const std::uint32_t> others, std::vector<uvec4>& texels) {
@@ -62,22 +33,34 @@ std::uint32_t append_row(std::uint32_t vertex, std::span<const std::uint32_t> ot
 
 }  // namespace
 
-NearVertices build_near_vertices(const TriangleMesh& mesh, double radius, std::size_t max_texels_per_range) {
+NearVertices build_near_vertices(const TriangleMesh& mesh, const NearBall& ball, std::size_t max_texels_per_range) {
     const std::size_t count = mesh.vertex_count();
     const VertexNeighbors neighbors = build_vertex_neighbors(mesh.faces, count);
     std::vector<std::vector<uvec4>> chunks((count + k_chunk - 1) / k_chunk);
     std::vector<std::uint32_t> lengths(count);
     std::atomic<std::size_t> total = 0;
+    const auto inside = static_cast<float>(ball.radius * ball.radius);
+    const auto reached = static_cast<float>(ball.reach * ball.reach);
     parallel_ranges(chunks.size(), 1, [&](std::size_t begin, std::size_t end) {
-        Flood flood(mesh, neighbors, radius);
+        NearFlood flood(neighbors, ball.enough);
         for (std::size_t v = begin * k_chunk; v < std::min(end * k_chunk, count); ++v) {
             const auto vertex = static_cast<std::uint32_t>(v);
-            lengths[v] = append_row(vertex, flood.around(vertex), chunks[v / k_chunk]);
+            const Vec3& center = mesh.vertices[v];
+            lengths[v] = append_row(vertex,
+                                    flood.around(vertex,
+                                                 [&](std::uint32_t other) {
+                                                     const float squared =
+                                                         (mesh.vertices[other] - center).squaredNorm();
+                                                     return squared < inside    ? Nearness::inside
+                                                            : squared < reached ? Nearness::margin
+                                                                                : Nearness::outside;
+                                                 }),
+                                    chunks[v / k_chunk]);
             if ((total += lengths[v]) > max_texels_per_range)
                 throw UsageError(fmt::format(
                     "smoothing over {:.3g} mesh units reaches too many of {} vertices for the memory there is "
                     "({} texels of four); smooth less (--smoothing 0: not at all), or simplify the mesh",
-                    radius, count, max_texels_per_range));
+                    ball.reach, count, max_texels_per_range));
         }
     });
     NearVertices near;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "host/mesh/mesh.h"
@@ -16,9 +17,16 @@ struct NearVertices {
     std::vector<shared::uvec4> texels;
 };
 
-/// Finds for each vertex those that are connected to it by edges inside the ball of this radius (mesh units) around
-/// it, without itself. Throws UsageError if they take more than `max_texels_per_range`.
-NearVertices build_near_vertices(const TriangleMesh& mesh, double radius, std::size_t max_texels_per_range);
+/// The ball around a vertex whose vertices are near, in mesh units.
+struct NearBall {
+    double radius = 0;
+    double reach = 0;  ///< radius within which vertices are listed; at least `radius`
+    std::size_t enough = std::numeric_limits<std::size_t>::max();  ///< see NearFlood; of vertices within `radius`
+};
+
+/// Finds for each vertex those that are connected to it by edges inside the ball around it, without itself. Throws
+/// UsageError if they take more than `max_texels_per_range`.
+NearVertices build_near_vertices(const TriangleMesh& mesh, const NearBall& ball, std::size_t max_texels_per_range);
 
 /// Rows of consecutive vertices: the rows of vertices [first, first + count) are in texels
 /// [first_texel, first_texel + texels).

@@ -1,46 +1,72 @@
 #include "host/lines/extraction/drawable_surface.h"
 
-#include "host/lines/extraction/cut_surface.h"
-
 namespace exemplar {
+
+namespace {
+
+template <typename T>
+std::vector<T> gathered(const std::vector<T>& values, std::span<const std::uint32_t> source) {
+    std::vector<T> result;
+    if (values.empty()) return result;
+    result.reserve(source.size());
+    for (const std::uint32_t v : source) result.push_back(values[v]);
+    return result;
+}
+
+// Returns the curvature of the vertices of a cut surface, each that of the one it was cut from (SplitSurface::source).
+VertexCurvature after_cut(const VertexCurvature& curvature, std::span<const std::uint32_t> source) {
+    return {gathered(curvature.k1, source), gathered(curvature.k2, source), gathered(curvature.e1, source),
+            gathered(curvature.e2, source), gathered(curvature.derivative, source)};
+}
+
+}  // namespace
 
 DrawableSurface::DrawableSurface(std::span<const Face> faces, std::span<const Vec3> first,
                                  const DrawableOptions& options)
-    : faces_(faces), options_(options), neighbors_(build_face_neighbors(faces, first)) {
-    mark_sharp_edges(faces, first, options.crease_angle, neighbors_);
-    if (!options.cut) return;
-    split_ = split_at_sharp_edges(faces, first.size(), neighbors_);
-    cut_.faces = split_->faces;
-    if (split_->source.size() == first.size()) split_.reset();  // nothing is cut
+    : faces_(faces), options_(options), edges_(find_sharp_edges(faces, first, options.crease_angle)) {
+    if (edges_.split) cut_.faces = edges_.split->faces;
 }
 
 void DrawableSurface::measure(std::span<const Vec3> vertices) {
+    std::span<const Vec3> measured = vertices;
+    if (measures_parts()) {
+        cut_.vertices = edges_.split->positions(vertices);
+        measured = cut_.vertices;
+    }
+    if (!estimator_) estimator_.emplace(measures_parts() ? std::span<const Face>(cut_.faces) : faces_, measured.size());
+    CurvatureOptions& options = options_.curvature;
+    if (options.smoothing_unit == 0) options.smoothing_unit = estimator_->median_edge_length(measured);
+    if (options.smoothing_unit == 0) options.smoothing = 0;  // all vertices are at one place
+    measured_ = &estimator_->estimate(measured, options);
+    if (!measures_parts()) return take(vertices, estimator_->normals(), *measured_);
+    vertices_ = measured;
+    normals_ = estimator_->normals();
+    curvature_ = measured_;
+}
+
+void DrawableSurface::take(std::span<const Vec3> vertices, std::span<const Vec3> normals,
+                           const VertexCurvature& curvature) {
     vertices_ = vertices;
-    if (split_) cut_.vertices = split_->positions(vertices);
-    const bool cut = split_ && options_.cut_curvature;
-    const std::span<const Vec3> at = cut ? std::span<const Vec3>(cut_.vertices) : vertices;
-    if (!estimator_) estimator_.emplace(cut ? std::span<const Face>(cut_.faces) : faces_, at.size());
-    if (smoothing_unit_ == 0) smoothing_unit_ = estimator_->median_edge_length(at);
-    CurvatureOptions options;
-    options.derivatives = options_.derivatives;
-    options.smoothing = smoothing_unit_ > 0 ? options_.smoothing : 0;
-    options.smoothing_unit = smoothing_unit_;
-    curvature_ = &estimator_->estimate(at, options);
-    if (!split_ || cut) return;
+    normals_ = normals;
+    curvature_ = &curvature;
+    if (!edges_.split) return;
+    cut_.vertices = edges_.split->positions(vertices);
     cut_normals_ = vertex_normals(cut_);
-    cut_curvature_ = curvature_after_cut(*curvature_, split_->source);
+    cut_curvature_ = after_cut(curvature, edges_.split->source);
+    vertices_ = cut_.vertices;
+    normals_ = cut_normals_;
+    curvature_ = &cut_curvature_;
 }
 
 LineSurface DrawableSurface::surface() const {
-    if (!split_) return {faces_, vertices_, estimator_->normals(), *curvature_, neighbors_};
-    if (options_.cut_curvature)
-        return {cut_.faces, cut_.vertices, estimator_->normals(), *curvature_, neighbors_, faces_};
-    return {cut_.faces, cut_.vertices, cut_normals_, cut_curvature_, neighbors_, faces_};
+    if (!edges_.split) return {faces_, vertices_, normals_, *curvature_, edges_.neighbors};
+    return {cut_.faces, vertices_, normals_, *curvature_, edges_.neighbors, faces_};
 }
 
 float DrawableSurface::feature_size() const {
-    const bool cut = split_ && options_.cut_curvature;
-    return exemplar::feature_size(cut ? std::span<const Vec3>(cut_.vertices) : vertices_, *curvature_);
+    // Where curvature is that of the whole surface, so is its unit: cutting changes neither.
+    const std::size_t count = measured_->k1.size();
+    return exemplar::feature_size(vertices_.first(count), *measured_);
 }
 
 }  // namespace exemplar

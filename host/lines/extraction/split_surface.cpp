@@ -116,4 +116,12 @@ SplitSurface split_at_sharp_edges(std::span<const Face> faces, std::size_t verte
     return split;
 }
 
+SharpEdges find_sharp_edges(std::span<const Face> faces, std::span<const Vec3> vertices, float crease_angle) {
+    SharpEdges edges{build_face_neighbors(faces, vertices), {}};
+    mark_sharp_edges(faces, vertices, crease_angle, edges.neighbors);
+    SplitSurface split = split_at_sharp_edges(faces, vertices.size(), edges.neighbors);
+    if (split.source.size() > vertices.size()) edges.split = std::move(split);
+    return edges;
+}
+
 }  // namespace exemplar

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,5 +34,14 @@ struct SplitSurface {
 /// group keeps the number of the vertex, so without sharp edges the mesh stays as it is. Throws as mark_sharp_edges.
 SplitSurface split_at_sharp_edges(std::span<const Face> faces, std::size_t vertex_count,
                                   std::span<const FaceNeighbors> neighbors);
+
+/// The sharp edges of a surface.
+struct SharpEdges {
+    std::vector<FaceNeighbors> neighbors;  ///< of the faces, with sharp edges marked
+    std::optional<SplitSurface> split;     ///< the surface cut open along them; none if that changes nothing
+};
+
+/// Finds the sharp edges (mark_sharp_edges) and cuts the surface open along them.
+SharpEdges find_sharp_edges(std::span<const Face> faces, std::span<const Vec3> vertices, float crease_angle);
 
 }  // namespace exemplar

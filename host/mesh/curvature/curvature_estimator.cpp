@@ -233,10 +233,10 @@ const RobustFits* CurvatureEstimator::Parts::robust_fits(const CurvatureOptions&
 TensorDiffusion* CurvatureEstimator::Parts::prepared_diffusion(std::span<const Vec3> vertices,
                                                                const CurvatureOptions& options) {
     if (!(options.smoothing > 0)) return nullptr;
-    const double unit = options.smoothing_unit > 0 ? options.smoothing_unit : around().median_edge_length(vertices);
-    const double width = options.smoothing * unit;
+    const double edge = around().median_edge_length(vertices);
+    const double width = options.smoothing * (options.smoothing_unit > 0 ? options.smoothing_unit : edge);
     if (!(width > 0 && std::isfinite(width))) return nullptr;
-    around().diffusion.prepare(vertices, frames, areas, width);
+    around().diffusion.prepare(vertices, frames, areas, width, enough_near_vertices(width / edge));
     return &around().diffusion;
 }
 

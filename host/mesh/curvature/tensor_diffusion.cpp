@@ -1,6 +1,7 @@
 #include "host/mesh/curvature/tensor_diffusion.h"
 
 #include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
 #include <atomic>
@@ -64,17 +65,17 @@ TensorDiffusion::TensorDiffusion(const VertexNeighbors& neighbors, std::size_t m
       chunks_((neighbors.vertex_count() + k_chunk - 1) / k_chunk) {}
 
 void TensorDiffusion::prepare(std::span<const Vec3> vertices, const std::vector<TangentFrame>& frames,
-                              const std::vector<float>& areas, double width) {
+                              const std::vector<float>& areas, double width, std::size_t enough) {
     std::atomic<std::size_t> total = 0;
+    tbb::enumerable_thread_specific<NearFlood> floods(*neighbors_, enough);
     parallel_for(chunks_.size(), [&](std::size_t c) {
-        Workspace& workspace = workspaces_.local();
-        workspace.visited.resize(vertices.size(), 0);
+        NearFlood& flood = floods.local();
         Chunk& chunk = chunks_[c];
         chunk.entries.clear();
         chunk.end.clear();
         for (std::size_t v = c * k_chunk; v < std::min((c + 1) * k_chunk, vertices.size()); ++v) {
             const std::size_t before = chunk.entries.size();
-            add_kernel(static_cast<std::uint32_t>(v), vertices, frames, areas, width, chunk, workspace);
+            add_kernel(static_cast<std::uint32_t>(v), vertices, frames, areas, width, chunk, flood);
             const std::size_t more = chunk.entries.size() - before;
             if (total.fetch_add(more, std::memory_order_relaxed) + more > max_entries_)
                 throw UsageError(fmt::format(
@@ -87,11 +88,7 @@ void TensorDiffusion::prepare(std::span<const Vec3> vertices, const std::vector<
 
 void TensorDiffusion::add_kernel(std::uint32_t center, std::span<const Vec3> vertices,
                                  const std::vector<TangentFrame>& frames, const std::vector<float>& areas, double width,
-                                 Chunk& chunk, Workspace& workspace) const {
-    if (++workspace.run == 0) {
-        std::fill(workspace.visited.begin(), workspace.visited.end(), 0u);
-        workspace.run = 1;
-    }
+                                 Chunk& chunk, NearFlood& flood) const {
     const auto inverse = static_cast<float>(-0.5 * k_kept / (width * width));
     const auto limit = static_cast<float>(2 * k_cutoff / k_kept * width * width);
     const TangentFrame& frame = frames[center];
@@ -99,20 +96,17 @@ void TensorDiffusion::add_kernel(std::uint32_t center, std::span<const Vec3> ver
     // A vertex without faces, or with degenerate faces only, keeps its value.
     float total = std::max(areas[center], std::numeric_limits<float>::min()) * static_cast<float>(1 - k_rest);
     chunk.entries.push_back({center, total, {}});
-    workspace.visited[center] = workspace.run;
-    for (std::size_t next = first; next < chunk.entries.size(); ++next)
-        for (const std::uint32_t vertex : neighbors_->of(chunk.entries[next].vertex)) {
-            if (workspace.visited[vertex] == workspace.run) continue;
-            workspace.visited[vertex] = workspace.run;
-            const float squared = (vertices[vertex] - vertices[center]).squaredNorm();
-            if (!(squared < limit)) continue;
-            const TangentFrame& there = frames[vertex];
-            // Transport over a sharp fold has no meaning; the cosine fades it out.
-            const float cosine = std::max(there.normal.dot(frame.normal), 0.0f);
-            const float weight = areas[vertex] * cosine * (std::exp(squared * inverse) - static_cast<float>(k_rest));
-            chunk.entries.push_back({vertex, weight, rotation_to(there, frame.tangent, frame.normal)});
-            total += weight;
-        }
+    flood.around(center, [&](std::uint32_t vertex) {
+        const float squared = (vertices[vertex] - vertices[center]).squaredNorm();
+        if (!(squared < limit)) return Nearness::outside;
+        const TangentFrame& there = frames[vertex];
+        // Transport over a sharp fold has no meaning; the cosine fades it out.
+        const float cosine = std::max(there.normal.dot(frame.normal), 0.0f);
+        const float weight = areas[vertex] * cosine * (std::exp(squared * inverse) - static_cast<float>(k_rest));
+        chunk.entries.push_back({vertex, weight, rotation_to(there, frame.tangent, frame.normal)});
+        total += weight;
+        return Nearness::inside;
+    });
     for (std::size_t i = first; i < chunk.entries.size(); ++i) chunk.entries[i].weight /= total;
     chunk.end.push_back(chunk.entries.size());
 }

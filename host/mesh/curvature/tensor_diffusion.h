@@ -1,12 +1,11 @@
 #pragma once
 
-#include <tbb/enumerable_thread_specific.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "host/mesh/curvature/near_flood.h"
 #include "host/mesh/curvature/tangent_tensors.h"
 #include "host/mesh/mesh.h"
 #include "host/mesh/vertex_neighbors.h"
@@ -25,11 +24,11 @@ class TensorDiffusion {
     /// `max_bytes` is the maximum memory of all kernels together.
     TensorDiffusion(const VertexNeighbors& neighbors, std::size_t max_bytes);
 
-    /// Builds the kernel of each vertex. `width` is its standard deviation in mesh units, positive and finite.
-    /// Throws UsageError if the kernels exceed the memory limit: where some edges are much longer than usual, as
-    /// around the tip of a cone, each kernel may cover a large part of the surface.
+    /// Builds the kernel of each vertex. `width` is its standard deviation in mesh units, positive and finite. Kernels
+    /// end with the ring in which they have `enough` vertices (see NearFlood). Throws UsageError if the kernels exceed
+    /// the memory limit.
     void prepare(std::span<const Vec3> vertices, const std::vector<TangentFrame>& frames,
-                 const std::vector<float>& areas, double width);
+                 const std::vector<float>& areas, double width, std::size_t enough);
     void apply(std::vector<Form>& forms);
     void apply(std::vector<FormDerivative>& derivatives);
 
@@ -44,19 +43,14 @@ class TensorDiffusion {
         std::vector<Entry> entries;
         std::vector<std::size_t> end;
     };
-    struct Workspace {
-        std::vector<std::uint32_t> visited;  ///< the last run that visited each vertex
-        std::uint32_t run = 0;
-    };
     template <typename Tensor>
     void apply_to(std::vector<Tensor>& tensors, std::vector<Tensor>& scratch);
     void add_kernel(std::uint32_t center, std::span<const Vec3> vertices, const std::vector<TangentFrame>& frames,
-                    const std::vector<float>& areas, double width, Chunk& chunk, Workspace& workspace) const;
+                    const std::vector<float>& areas, double width, Chunk& chunk, NearFlood& flood) const;
 
     const VertexNeighbors* neighbors_;
     std::size_t max_entries_;
     std::vector<Chunk> chunks_;
-    tbb::enumerable_thread_specific<Workspace> workspaces_;
     std::vector<Form> form_scratch_;
     std::vector<FormDerivative> derivative_scratch_;
 };

@@ -21,10 +21,12 @@ struct MeasuredSurface {
     explicit MeasuredSurface(TriangleMesh shape, bool cut = false)
         : mesh(std::move(shape)), neighbors(build_face_neighbors(mesh.faces, mesh.vertices)), joined(mesh.faces) {
         if (cut) {
-            mark_sharp_edges(mesh.faces, mesh.vertices, LineThresholds{}.crease_angle, neighbors);
-            const SplitSurface split = split_at_sharp_edges(mesh.faces, mesh.vertex_count(), neighbors);
-            mesh.vertices = split.positions(mesh.vertices);
-            mesh.faces = split.faces;
+            SharpEdges edges = find_sharp_edges(mesh.faces, mesh.vertices, LineThresholds{}.crease_angle);
+            neighbors = std::move(edges.neighbors);
+            if (edges.split) {
+                mesh.vertices = edges.split->positions(mesh.vertices);
+                mesh.faces = std::move(edges.split->faces);
+            }
         }
         measure();
     }

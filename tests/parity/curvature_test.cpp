@@ -13,6 +13,7 @@
 #include "host/core/errors.h"
 #include "host/curvature/state/samples.h"
 #include "host/mesh/curvature/curvature.h"
+#include "host/mesh/curvature/near_flood.h"
 #include "tests/gpu/support/environment.h"
 #include "tests/parity/many_frames.h"
 #include "tests/parity/surfaces.h"
@@ -188,6 +189,14 @@ TEST(CurvatureParity, ClashingOrientationsStayFinite) {
         ASSERT_NEAR(actual.e1[v].norm(), 1.0f, 1e-5f) << "vertex " << v;
         for (const float d : actual.derivative[v]) ASSERT_TRUE(std::isfinite(d)) << "vertex " << v;
     }
+}
+
+// A fine ball beside a coarse floor: without a bound, the kernel of each vertex of the ball would hold all of it.
+TEST(SmoothedCurvatureParity, KernelsThatAreBounded) {
+    const TriangleMesh ball = waved(shapes::icosphere(4, 0.5f), 0.1f);
+    ASSERT_GT(ball.vertex_count(), 4 * enough_near_vertices(1));
+    const TriangleMesh mesh = shapes::joined(ball, shapes::grid(60, 60, 100));
+    expect_smoothed_parity(mesh, mesh.vertices, 1);
 }
 
 TEST(SmoothedCurvatureParity, OddNumbersOfVerticesAndFaces) {

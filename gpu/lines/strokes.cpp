@@ -72,7 +72,7 @@ GpuStrokes::GpuStrokes(const GpuChains& chains) : chains_(chains) {
         Kernel(device, shaders::lines_strokes_comp,
                {.push_constants = layout_of<StrokeParameters>(),
                 .elements = {layout_of<vec4>(), layout_of<std::uint32_t>(), layout_of<uvec4>(), layout_of<uvec4>(),
-                             layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>()}});
+                             layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<uvec4>()}});
     visible_ = Buffer(device, 2 * room * sizeof(std::uint32_t));
     strokes_ = Buffer(device, 2 * room * sizeof(vec4));
     looks_ = Buffer(device, sizeof(StrokeLooks));
@@ -98,7 +98,7 @@ void GpuStrokes::record(Stream& stream, const GpuCurvedSurface& snapshot, const 
                              parameters);
     stream.dispatch_indirect(stroke_kernel_, counts, k_points,
                              {chains_.points(), visible_, lines.segments(), faces, snapshot.vertices, first, second,
-                              counts, looks_, strokes_},
+                              lines.surface().neighbors(), counts, looks_, strokes_},
                              parameters);
 }
 

@@ -19,6 +19,19 @@ layout(location = 2) flat out uvec2 seen;  // bits of the visible samples, and n
 layout(location = 3) flat out vec4 color;
 layout(location = 4) flat out vec3 texture_of;  // 1 + first texel, period, direction along the chain
 
+// Returns the normal at an end of the piece from a point to the next. A line along edges may turn back where it is
+// hidden: a normal half way between both directions would leave no width to the piece that is seen.
+vec2 normal_at(int point, bool next) {
+    const int at = next ? point + 1 : point;
+    const vec2 normal = texelFetch(strokes, 2 * at + 1).xy;
+    const uint kind = floatBitsToUint(texelFetch(points, 2 * at + 1).x);
+    if ((1u << (kind & k_kind_family) & k_edge_families) == 0u || (kind & (next ? k_point_last : k_point_first)) != 0u)
+        return normal;
+    const bool alone = texelFetch(visible, 2 * (next ? at : at - 1)).x == 0u;
+    const vec2 on = texelFetch(strokes, 2 * point + 2).xy - texelFetch(strokes, 2 * point).xy;
+    return alone && on != vec2(0.0) ? normalize(vec2(-on.y, on.x)) : normal;
+}
+
 void main() {
     const int corner = gl_VertexIndex % 6, point = gl_VertexIndex / 6;
     // Two triangles: 0 1 2, 2 1 3. Odd corners are at the next point, corners 2 and 3 on the other side.
@@ -35,7 +48,7 @@ void main() {
     const vec4 stroke = texelFetch(strokes, 2 * at);  // place, width, opacity
     const StrokeLook look = looks[floatBitsToUint(kind.x) & k_kind_family];
     const float reach = 0.5 * stroke.z + 1.0;
-    const vec2 pixel = stroke.xy + side * reach * texelFetch(strokes, 2 * at + 1).xy;
+    const vec2 pixel = stroke.xy + side * reach * normal_at(point, next);
     along = vec4(side * reach, 0.5 * stroke.z, stroke.w * look.color.a, next ? 1.0 : 0.0);
     const vec2 phase = phases[point];
     const vec2 coordinates = texture_ends(phase, phases[point + 1], texelFetch(points, 2 * point).w,

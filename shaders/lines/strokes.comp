@@ -15,10 +15,11 @@ layout(set = 0, binding = 3) uniform usamplerBuffer faces;
 layout(set = 0, binding = 4) uniform samplerBuffer positions;
 layout(set = 0, binding = 5) uniform samplerBuffer first;
 layout(set = 0, binding = 6) uniform samplerBuffer second;
-layout(set = 0, binding = 7, std430) readonly buffer Counts { LineCounts counts; };
-layout(set = 0, binding = 8, std430) readonly buffer Looks { StrokeLook looks[]; };  // per family
+layout(set = 0, binding = 7) uniform usamplerBuffer neighbors;
+layout(set = 0, binding = 8, std430) readonly buffer Counts { LineCounts counts; };
+layout(set = 0, binding = 9, std430) readonly buffer Looks { StrokeLook looks[]; };  // per family
 // Two per point: position, width, opacity; normal.
-layout(set = 0, binding = 9, std430) writeonly buffer Strokes { vec4 strokes[]; };
+layout(set = 0, binding = 10, std430) writeonly buffer Strokes { vec4 strokes[]; };
 #include "shaders/lines/segments.glsl"
 #include "shaders/lines/stroke_points.glsl"
 
@@ -82,6 +83,18 @@ Side side_of(int point, int way) {
     return result;
 }
 
+// Returns the direction along a chain from a point to one some pixels on; zero at the end.
+vec2 direction(int point, int way) {
+    vec2 on = vec2(0.0);
+    int next = point;
+    for (int i = 0; i < k_smoothing_window_points && !(length(on) >= float(k_min_smoothing_window)); ++i) {
+        next = neighbor(next, way);
+        on = place_of_point(next) - place_of_point(point);
+    }
+    const float size = length(on);
+    return size > 0.0 ? on / size : vec2(0.0);
+}
+
 // A smoothed point: its position, its normal, and exemplar::straightness.
 struct SmoothedPoint {
     vec2 at;
@@ -93,13 +106,9 @@ SmoothedPoint smoothed_point(int point, uint kind) {
     vec2 tangent = vec2(0.0), there = here;
     float straightness = 1.0;
     if ((1u << (kind & k_kind_family) & k_edge_families) != 0u) {
-        int before = point, after = point;
-        for (int i = 0; i < k_smoothing_window_reach; ++i) {
-            before = neighbor(before, -1);
-            after = neighbor(after, 1);
-        }
-        tangent = place_of_point(after) - place_of_point(before);
-        if (tangent == vec2(0.0)) tangent = place_of_point(neighbor(point, 1)) - place_of_point(neighbor(point, -1));
+        const vec2 ahead = direction(point, 1);
+        tangent = ahead - direction(point, -1);
+        if (!(length(tangent) > k_least_tangent)) tangent = ahead;
     } else {
         const Side before = side_of(point, -1), after = side_of(point, 1);
         tangent = after.end - before.end;
@@ -112,13 +121,33 @@ SmoothedPoint smoothed_point(int point, uint kind) {
     return SmoothedPoint(there, size > 0.0 ? vec2(-tangent.y, tangent.x) / size : vec2(0.0, 1.0), straightness);
 }
 
+// Returns the segment at a point, and which end of it is there.
+uvec2 segment_end(int point) {
+    const vec4 more = texelFetch(points, 2 * point + 1);
+    const uint walked = floatBitsToUint(more.z), begin_end = walked & 1u;
+    const bool last = (floatBitsToUint(more.x) & k_point_last) != 0u;
+    return uvec2(walked >> 1, last ? 1u - begin_end : begin_end);
+}
+
+// Returns whether a contour ends at a point on an edge, along which another goes on.
+bool goes_on_along_edge(int point) {
+    const uvec2 at = segment_end(point);
+    const uvec2 head = texelFetch(segments, int(2u * at.x)).xy;
+    const uint place = place_of(head.y, at.y);
+    if ((head.y & k_kind_family) != k_contours || place >= k_place_corner) return false;
+    const uint across = texelFetch(neighbors, int(head.x))[place];
+    return across >= k_blocked_side || (across & k_sharp_side) != 0u;
+}
+
 float thickness(uvec2 walked_end, StrokeLook look) {
     const LineSegmentRecord segment = segment_at(walked_end.x);
+    // Curvature along an edge is that of the edge, and not of the faces at it.
+    const bool curved = parameters.curved != 0u && family_of(segment) != k_edge_contours;
     const vec3 weights = end_of(segment, walked_end.y);
     const uvec3 corners = texelFetch(faces, int(segment.face)).xyz;
     float curvature = 0.0, z = 0.0;
     for (uint i = 0; i < 3; ++i) {
-        if (parameters.curved != 0u) curvature += weights[i] * radial_curvature(int(corners[i]));
+        if (curved) curvature += weights[i] * radial_curvature(int(corners[i]));
         z += weights[i] * (dot(parameters.axis.xyz, texelFetch(positions, int(corners[i])).xyz) + parameters.axis.w);
     }
     z = parameters.parallel != 0u ? 1.0 : max(z / parameters.unit_depth, 1e-6);
@@ -130,7 +159,7 @@ float visible_length(int point, int way, float most) {
     float sum = 0.0;
     for (uint i = 0; i < k_max_taper_points && sum < most; ++i) {
         const int next = neighbor(point, way);
-        if (next == point) return sum;
+        if (next == point) return goes_on_along_edge(point) ? most : sum;
         const int link = way > 0 ? (next == point + 1 ? point : next - 1) : next;
         const uint mask = texelFetch(visible, 2 * link).x, samples = texelFetch(visible, 2 * link + 1).x;
         const uint all = samples == 32u ? 0xffffffffu : (1u << samples) - 1u;
@@ -158,13 +187,11 @@ void main() {
     if (point >= int(counts.points)) return;
 
     const vec4 more = texelFetch(points, 2 * point + 1);
-    const uint kind = floatBitsToUint(more.x), walked = floatBitsToUint(more.z);
+    const uint kind = floatBitsToUint(more.x);
     const StrokeLook look = looks[kind & k_kind_family];
     const SmoothedPoint drawn = smoothed_point(point, kind);
-    const bool last = (kind & k_point_last) != 0u;
-    const uint begin_end = walked & 1u;
     const bool along_edge = (1u << (kind & k_kind_family) & k_edge_families) != 0u;
-    const float width = thickness(uvec2(walked >> 1, last ? 1u - begin_end : begin_end), look) *
+    const float width = thickness(segment_end(point), look) *
                         (along_edge ? 1.0 : tapered(point, drawn.straightness, look));
     const float above = max(more.w - look.threshold, 0.0);
     const float opacity = look.fade > 0.0 ? above / (above + look.fade) : 1.0;

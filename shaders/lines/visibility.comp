@@ -41,15 +41,21 @@ float facing(int vertex) {
     return dot(normal, to_eye(parameters.eye, texelFetch(positions, vertex).xyz));
 }
 
+// Returns the distance of a place from the line through the origin.
+float distance_from_line(vec3 place, vec3 line) {
+    const float squared = dot(line, line);
+    return squared > 0.0 ? length(cross(place, line)) * inversesqrt(squared) : length(place);
+}
+
 // Returns how far a segment may be behind the depth image; negative: it is hidden for certain. A contour of smooth
 // normals lies up to an edge behind the outline of its faces, unless radial curvature is not positive, where the
 // surface itself hides it. Near an outline, faces may turn away where the smooth surface does not yet.
 float tolerance_of(uint index) {
-    const uvec2 head = texelFetch(segments, int(2u * index)).xy;
-    const uvec3 corners = texelFetch(faces, int(head.x)).xyz;
+    const LineSegmentRecord segment = segment_at(index);
+    const uvec3 corners = texelFetch(faces, int(segment.face)).xyz;
     const vec3 a = texelFetch(positions, int(corners.x)).xyz, b = texelFetch(positions, int(corners.y)).xyz,
                c = texelFetch(positions, int(corners.z)).xyz;
-    const uint family = head.y & k_kind_family;
+    const uint family = family_of(segment);
     bool behind = parameters.curved == 0u;
     if (parameters.curved != 0u && family == k_contours) {
         behind = radial_curvature(int(corners.x)) + radial_curvature(int(corners.y)) + radial_curvature(int(corners.z)) > 0.0;
@@ -62,8 +68,12 @@ float tolerance_of(uint index) {
             behind = behind && facing(int(corners.x)) + facing(int(corners.y)) + facing(int(corners.z)) > 0.0;
     }
     if ((1u << family & k_edge_families) != 0u) behind = false;
+    if (!behind) return k_depth_tolerance * parameters.unit_depth;
+    const mat3 corner_places = mat3(a, b, c);
+    const vec3 from = corner_places * end_of(segment, 0u), along = corner_places * end_of(segment, 1u) - from;
     const float longest = sqrt(max(dot(b - a, b - a), max(dot(c - b, c - b), dot(a - c, a - c))));
-    return k_depth_tolerance * parameters.unit_depth + (behind ? k_edge_tolerance * longest : 0.0);
+    const float aside = max(distance_from_line(a - from, along), max(distance_from_line(b - from, along), distance_from_line(c - from, along)));
+    return k_depth_tolerance * parameters.unit_depth + min(k_edge_tolerance * longest, k_aside_tolerance * aside);
 }
 
 void main() {

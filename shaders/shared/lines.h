@@ -128,9 +128,11 @@ const uint k_point_closed = 0x40u;
 const float k_sample_spacing = 1.0f;
 
 // Maximum depth of lines behind the depth image: k_depth_tolerance unit depths and, for contours and lines on faces
-// that turn away although the smooth surface does not, k_edge_tolerance times the longest edge of their face.
+// that turn away although the smooth surface does not, k_edge_tolerance times the longest edge of their face. Long
+// faces reach less far beside a line along them: k_aside_tolerance times the distance of their corners from it.
 const float k_depth_tolerance = 2e-3f;
 const float k_edge_tolerance = 1.5f;
+const float k_aside_tolerance = 4.0f;
 
 // The look of the strokes of a family: exemplar::StrokeThickness, color, fading and texture.
 struct StrokeLook {
@@ -150,6 +152,8 @@ const int k_min_smoothing_window = 3;  // pixels
 const int k_max_smoothing_window = 10;
 const int k_smoothing_window_points = 8;
 const int k_smoothing_window_reach = 2;
+// The least sum of two unit directions along a line for the line to have a tangent between them; it turns back below.
+const float k_least_tangent = 1e-3f;
 const uint k_texture_width = 256;
 const uint k_texture_height = 32;
 

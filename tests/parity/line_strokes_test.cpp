@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -77,7 +78,8 @@ DrawnLines draw(const Scene& scene, LineType type, bool parallel, const LineStyl
     renderer.strokes().visible().download(std::span(drawn.visible));
 
     drawn.segments = segments_of_type(records, type).segments;
-    const std::vector<Chain> chains = chain_segments(scene.mesh.faces, scene.neighbors, drawn.segments);
+    const std::vector<Chain> chains =
+        chain_segments(scene.joined, scene.neighbors, drawn.segments, type != LineType::contours);
     // The device orders chains by the segment they start with.
     std::map<std::uint32_t, Stroke> by_start;
     std::vector<Stroke> strokes =
@@ -100,27 +102,50 @@ float min_cosine(const Stroke& stroke, std::size_t at) {
     return std::min(0.99f, 1 - 0.5f * turn * turn);
 }
 
+void expect_strokes_of_the_reference(const DrawnLines& drawn) {
+    std::size_t at = 0;
+    for (const Stroke& stroke : drawn.expected)
+        for (std::size_t i = 0; i < stroke.points.size(); ++i) {
+            const StrokePoint& point = stroke.points[i];
+            ASSERT_LT(at, drawn.points.size());
+            const vec4 &place = drawn.strokes[2 * at], &normal = drawn.strokes[2 * at + 1];
+            ++at;
+            ASSERT_NEAR(place.x, point.position.x(), k_place_tolerance);
+            ASSERT_NEAR(place.y, point.position.y(), k_place_tolerance);
+            ASSERT_NEAR(place.z, point.width, 1e-3f * point.width + 1e-4f);
+            ASSERT_NEAR(place.w, point.opacity, 1e-3f);
+            ASSERT_GT(normal.x * point.normal.x() + normal.y * point.normal.y(), min_cosine(stroke, i));
+        }
+    EXPECT_EQ(at, drawn.points.size());
+}
+
 class StrokeParity : public ::testing::TestWithParam<LineType> {};
 
 TEST_P(StrokeParity, PointsAreDrawnWhereTheReferenceDrawsThem) {
     const Scene scene(mixed());
-    for (const bool parallel : {false, true}) {
-        const DrawnLines drawn = draw(scene, GetParam(), parallel);
-        std::size_t at = 0;
-        for (const Stroke& stroke : drawn.expected)
-            for (std::size_t i = 0; i < stroke.points.size(); ++i) {
-                const StrokePoint& point = stroke.points[i];
-                ASSERT_LT(at, drawn.points.size());
-                const vec4 &place = drawn.strokes[2 * at], &normal = drawn.strokes[2 * at + 1];
-                ++at;
-                ASSERT_NEAR(place.x, point.position.x(), k_place_tolerance);
-                ASSERT_NEAR(place.y, point.position.y(), k_place_tolerance);
-                ASSERT_NEAR(place.z, point.width, 1e-3f * point.width + 1e-4f);
-                ASSERT_NEAR(place.w, point.opacity, 1e-3f);
-                ASSERT_GT(normal.x * point.normal.x() + normal.y * point.normal.y(), min_cosine(stroke, i));
-            }
-        EXPECT_EQ(at, drawn.points.size());
+    for (const bool parallel : {false, true}) expect_strokes_of_the_reference(draw(scene, GetParam(), parallel));
+}
+
+TEST(StrokesOfACan, AreThoseOfTheReference) {
+    const Scene can(shapes::cylinder(1, 2, 24, 3, true), true);
+    for (const bool parallel : {false, true}) expect_strokes_of_the_reference(draw(can, LineType::contours, parallel));
+}
+
+// Contours of its side, whose ends are on its rims.
+TEST(StrokesOfACan, KeepTheirWidthWhereTheyMeetItsRims) {
+    const Scene can(shapes::cylinder(1, 2, 24, 3, true), true);
+    LineStyle tapered;
+    tapered.thickness.taper = 40;
+    const DrawnLines drawn = draw(can, LineType::contours, false, tapered);
+    std::size_t ends = 0;
+    float narrowest = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < drawn.points.size(); ++i) {
+        if ((drawn.points[i].kind & shared::k_kind_family) != shared::k_contours) continue;
+        ends += (drawn.points[i].kind & (shared::k_point_first | shared::k_point_last)) != 0;
+        narrowest = std::min(narrowest, drawn.strokes[2 * i].z);
     }
+    EXPECT_EQ(ends, 4);
+    EXPECT_GT(narrowest, 1);
 }
 
 bool seen_by_rays(const DrawnLines& drawn, const LinePoint& from, float t) {

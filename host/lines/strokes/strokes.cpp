@@ -155,7 +155,8 @@ class StrokeMaker {
             add_link(chain.links[i], own[i], own[i + 1], stroke.points);
         if (!own.empty()) stroke.points.push_back(own.back());
         finish_last_point(stroke);
-        if (!along_edge && thickness_.taper > 0) taper(stroke);
+        if (!along_edge && thickness_.taper > 0)
+            taper(stroke, goes_on_along_edge(chain, 0), goes_on_along_edge(chain, 1));
         return stroke;
     }
 
@@ -165,12 +166,14 @@ class StrokeMaker {
         const LineSegment& segment = segments_[link.segment];
         const float s = link.reversed ? 1 - t : t;
         const Face& face = surface_.faces[segment.face];
+        // Curvature along an edge is that of the edge, and not of the faces at it.
+        const bool curved = type_ != LineType::contours || segment.family != k_family_along_edges;
         Vec3 place = Vec3::Zero();
         float curvature = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const float weight = segment.ends[0][i] + s * (segment.ends[1][i] - segment.ends[0][i]);
             place += weight * surface_.vertices[face[i]];
-            curvature += weight * radial_curvature(face[i]);
+            if (curved) curvature += weight * radial_curvature(face[i]);
         }
         const Vec3 projected = view_.camera.project(place, view_.width, view_.height);
         const float depth = -backward_.dot(place) - view_.camera.view(2, 3);
@@ -208,13 +211,19 @@ class StrokeMaker {
                                                           : std::clamp<std::ptrdiff_t>(i, 0, last))]
                 .position;
         };
-        for (std::ptrdiff_t i = 0; i <= last; ++i)
-            for (const std::ptrdiff_t reach : {2, 1}) {
-                const Vec2 tangent = at(i + reach) - at(i - reach);
-                if (!(tangent.squaredNorm() > 0)) continue;
-                points[static_cast<std::size_t>(i)].normal = across(tangent);
-                break;
-            }
+        // Returns the direction from a point to one some pixels on, so that steps of less do not turn normals.
+        const auto direction = [&](std::ptrdiff_t i, std::ptrdiff_t way) {
+            Vec2 on = Vec2::Zero();
+            for (std::ptrdiff_t k = 1; k <= k_smoothing_window_points && !(on.norm() >= k_min_smoothing_window); ++k)
+                on = at(i + k * way) - at(i);
+            return Vec2(on.normalized());
+        };
+        for (std::ptrdiff_t i = 0; i <= last; ++i) {
+            const Vec2 ahead = direction(i, 1), tangent = ahead - direction(i, -1);
+            const bool turns_back = !(tangent.norm() > k_least_tangent);
+            if (const Vec2 chosen = turns_back ? ahead : tangent; chosen.squaredNorm() > 0)
+                points[static_cast<std::size_t>(i)].normal = across(chosen);
+        }
     }
     /// Adds the first point of a link, those where visibility changes, and enough others for tapers.
     void add_link(const ChainLink& link, const StrokePoint& first, const StrokePoint& last,
@@ -276,14 +285,26 @@ class StrokeMaker {
         last = stroke.points.front();
         last.parameter = parameter;
     }
-    void taper(Stroke& stroke) const {
+    /// Returns whether a contour ends on an edge, along which another goes on. `end`: 0 for its first, 1 for its last.
+    bool goes_on_along_edge(const Chain& chain, std::size_t end) const {
+        if (type_ != LineType::contours || chain.closed || chain.links.empty() || surface_.neighbors.empty())
+            return false;
+        const ChainLink& link = end == 0 ? chain.links.front() : chain.links.back();
+        const LineSegment& segment = segments_[link.segment];
+        const SegmentEnd place = segment.places[link.reversed ? 1 - end : end];
+        if (place >= k_at_corner) return false;
+        const std::uint32_t across = surface_.neighbors[segment.face][place];
+        return !has_neighbor(across) || (across & k_sharp_side) != 0;
+    }
+    /// `first_goes_on`, `last_goes_on`: whether the stroke keeps its width to that end.
+    void taper(Stroke& stroke, bool first_goes_on, bool last_goes_on) const {
         constexpr float k_far = std::numeric_limits<float>::max();
         std::vector<StrokePoint>& points = stroke.points;
         if (points.size() < 2) return;
         const float length = points.back().parameter;
         // Distances to the nearest ends of visible runs behind and ahead; closed chains take two rounds.
         std::vector<float> distance(points.size(), k_far);
-        float end = stroke.closed ? -k_far : 0;
+        float end = stroke.closed || first_goes_on ? -k_far : 0;
         const auto is_end = [&](std::size_t i) {
             return !points[i].visible || (i > 0 ? !points[i - 1].visible : stroke.closed && !before_first(points));
         };
@@ -294,7 +315,7 @@ class StrokeMaker {
             }
             if (!stroke.closed) break;
         }
-        end = stroke.closed ? k_far : length;
+        end = stroke.closed || last_goes_on ? k_far : length;
         for (const float lap : {stroke.closed ? length : 0.0f, 0.0f}) {
             for (std::size_t i = points.size(); i-- > 0;) {
                 if (is_end(i)) end = points[i].parameter + lap;

@@ -46,6 +46,8 @@ inline float straightness(float across, float length) {
 /// points, and the number of points whose distance is the length.
 constexpr float k_min_smoothing_window = 3, k_max_smoothing_window = 10;
 constexpr int k_smoothing_window_points = 8, k_smoothing_window_reach = 2;
+/// The least sum of two unit directions along a line for the line to have a tangent between them; it turns back below.
+constexpr float k_least_tangent = 1e-3f;
 
 /// Camera, picture and units that strokes are made for.
 struct StrokeView {
@@ -78,13 +80,13 @@ struct Stroke {
 /// Position: zero sets and extrema zigzag from face to face, so each point, except the ends of open chains, moves to
 /// the mean of the chain in a window around it: to each side up to the second next point, but 3 to 10 pixels and at
 /// most 8 points, within the chain. Lines along edges are not moved. Normal: perpendicular to the chord of the
-/// window, or of lines along edges, to that from the second point before to the second after. Parameter: arc
-/// length in pixels before points are moved. Width: stroke_width() of the depth and the radial curvature,
-/// interpolated from the vertices ((k1 u^2 + k2 v^2) / (u^2 + v^2), the mean curvature where the eye is along the
-/// normal, or 0 without curvature). With a taper it is multiplied by the straightness() of the window and by
-/// stroke_taper() of the distance along the chain to the nearest end of the point's visible run. Runs of closed
-/// chains continue across their first point; if everything is visible, they are not tapered. Nor are lines along edges,
-/// which go on around corners as other strokes.
+/// window, or of lines along edges, half way between the directions to both sides. Parameter: arc length in pixels
+/// before points are moved. Width: stroke_width() of the depth and the radial curvature, interpolated from the vertices
+/// ((k1 u^2 + k2 v^2) / (u^2 + v^2), the mean curvature where the eye is along the normal, or 0 without curvature and
+/// for contours along edges). With a taper it is multiplied by the straightness() of the window and by stroke_taper()
+/// of the distance along the chain to the nearest end of the point's visible run. Runs of closed chains continue
+/// across their first point; if everything is visible, they are not tapered. Nor are lines along edges, which go on
+/// around corners as other strokes, and ends of contours on sharp edges, along which other contours go on.
 /// Throws UsageError if sizes do not fit, or a thickness is out of range (width, epsilon and most positive, least in
 /// [0, most], taper not negative).
 std::vector<Stroke> make_strokes(const LineSurface& surface, LineType type, std::span<const LineSegment> segments,

@@ -17,7 +17,9 @@ namespace exemplar {
 namespace {
 
 constexpr std::size_t k_segment_grain = 64;  // segments that one thread takes at a time
-constexpr float k_near_edges = 3;            // reach of ignored nearby faces, in edges of the point's face
+// Reach of ignored nearby faces: in edges of the point's face, and at most in distances of its corners from the line,
+// so that long faces reach less far beside a line that runs along them.
+constexpr float k_near_edges = 3, k_near_asides = 8;
 constexpr float k_touching_edges = 1e-3f;    // the same for faces that touch the point's face, for any line
 constexpr float k_precision = 0.05f;         // precision of changes of visibility, in pixels
 constexpr std::size_t k_max_samples = 4096;  // of one segment
@@ -105,10 +107,11 @@ class LineVisibility::Query {
         const auto corner = [&](std::size_t i) -> const Vec3& { return scene.surface_.vertices[face_[i]]; };
         cross_ = (corner(1) - corner(0)).cross(corner(2) - corner(0));
         for (std::size_t i = 0; i < 3; ++i) longest_ = std::max(longest_, (corner((i + 1) % 3) - corner(i)).norm());
+        near_ = std::min(k_near_edges * longest_, k_near_asides * largest_distance_from_line(face_));
         edge_ = runs_along_edge(type, segment);
         contour_ = type == LineType::contours && !edge_;
         contour_bends_away_ = contour_ && bends_away();
-        if (edge_) find_faces_at_edge();
+        if (edge_) find_faces_at_edge(type == LineType::contours);
     }
 
     /// Returns the point at t from the first end (0) to the second (1).
@@ -123,7 +126,7 @@ class LineVisibility::Query {
         const float w = clip.w();
         if (!(w > 0 && clip.z() >= 0 && clip.z() <= w)) return false;
         if (std::abs(clip.x()) > w * room_.x() || std::abs(clip.y()) > w * room_.y()) return false;
-        if (edge_) return is_edge_visible(p);
+        if (edge_) return is_edge_visible(p) || (turns_away_ && !hidden(p, segment_.face, true));
         return !hidden(p, segment_.face, overlooks_near_faces(camera_.to_eye(p), t));
     }
 
@@ -132,21 +135,30 @@ class LineVisibility::Query {
     struct FaceAtEdge {
         std::uint32_t face, opposite;
     };
-    /// Finds the faces that stand for an edge: those at it that are not seen edge-on.
-    void find_faces_at_edge() {
+    /// Finds the faces that stand for an edge: those at it that are not seen edge-on. `smooth`: whether the edge may be
+    /// a contour by its smooth normals alone, while the polygons at it turn away already.
+    void find_faces_at_edge(bool smooth) {
         std::uint32_t opposite = 0;
         while (opposite < 2 && (segment_.ends[0][opposite] != 0 || segment_.ends[1][opposite] != 0)) ++opposite;
-        add_face_at_edge(segment_.face, opposite);
+        const float cosine = add_face_at_edge(segment_.face, opposite);
         if (scene_.surface_.neighbors.empty()) return;
         const std::uint32_t across = scene_.surface_.neighbors[segment_.face][(opposite + 1) % 3];
-        if (has_neighbor(across)) add_face_at_edge(neighbor_face(across), (neighbor_code(across) % 4 + 2) % 3);
+        if (!has_neighbor(across)) return;
+        const std::uint32_t other = neighbor_face(across), corner = (neighbor_code(across) % 4 + 2) % 3;
+        const float other_cosine = add_face_at_edge(other, corner);
+        const Face& corners = scene_.surface_.faces[other];
+        const bool convex = cross_.dot(scene_.surface_.vertices[corners[corner]] - point(0.5f)) < 0;
+        turns_away_ = smooth && convex && std::max(cosine, other_cosine) < k_least_cosine;
+        near_ = std::min(near_, k_near_asides * largest_distance_from_line(corners));
     }
-    void add_face_at_edge(std::uint32_t face, std::uint32_t opposite) {
+    /// Returns the cosine between its normal and the ray to the eye.
+    float add_face_at_edge(std::uint32_t face, std::uint32_t opposite) {
         const Face& corners = scene_.surface_.faces[face];
         const auto at = [&](std::uint32_t i) -> const Vec3& { return scene_.surface_.vertices[corners[i]]; };
         const Vec3 normal = (at(1) - at(0)).cross(at(2) - at(0)).stableNormalized();
-        if (std::abs(normal.dot(camera_.to_eye(point(0.5f)))) > k_least_cosine)
-            at_edge_[at_edge_count_++] = {face, corners[opposite]};
+        const float cosine = normal.dot(camera_.to_eye(point(0.5f)));
+        if (std::abs(cosine) > k_least_cosine) at_edge_[at_edge_count_++] = {face, corners[opposite]};
+        return cosine;
     }
     /// Returns whether a face at the edge is visible close to a point of it. The point itself may lie exactly in front
     /// of or behind others, as all edges of a box do that is seen from the front.
@@ -212,7 +224,7 @@ class LineVisibility::Query {
             const auto hit = scene_.rays_.first_hit(p, to_eye, near);
             if (!hit || hit->distance > to_near_plane) return behind_other;
             const bool overlooked = is_overlooked(*hit, face, overlooks);
-            if (!overlooked && !(overlooks && hit->distance <= k_near_edges * longest_)) return true;
+            if (!overlooked && !(overlooks && hit->distance <= near_)) return true;
             behind_other = !overlooked;
             near = hit->distance + std::max(scene_.rounding_, hit->distance * 1e-6f);
         }
@@ -220,9 +232,19 @@ class LineVisibility::Query {
     }
     bool is_overlooked(const RayScene::Hit& hit, std::uint32_t face, bool overlooks) const {
         if (hit.face == face) return true;
-        if (hit.distance > k_near_edges * longest_) return false;
+        if (hit.distance > near_) return false;
         if (hit.distance <= k_touching_edges * longest_ && scene_.touch(face, hit.face)) return true;
         return overlooks && scene_.are_near(face, hit.face);
+    }
+    /// Returns the largest distance of a corner of the face from the line through the segment.
+    float largest_distance_from_line(const Face& face) const {
+        const Vec3 from = point(0), along = (point(1) - from).stableNormalized();
+        float largest = 0;
+        for (const std::uint32_t v : face) {
+            const Vec3 corner = scene_.surface_.vertices[v] - from;
+            largest = std::max(largest, (corner - corner.dot(along) * along).norm());
+        }
+        return largest;
     }
     Vec3 backward() const { return camera_.view.block<1, 3>(2, 0).transpose(); }
     /// Returns the distance from the near plane to the point along the camera's axis.
@@ -239,8 +261,9 @@ class LineVisibility::Query {
     const Face& face_;
     Vec2 room_;
     Vec3 cross_;
-    float longest_ = 0;
-    bool edge_ = false, contour_ = false, contour_bends_away_ = false;
+    float longest_ = 0;  // edge of the face
+    float near_ = 0;     // distance up to which nearby faces may be ignored
+    bool edge_ = false, turns_away_ = false, contour_ = false, contour_bends_away_ = false;
     std::array<FaceAtEdge, 2> at_edge_{};
     std::size_t at_edge_count_ = 0;
 };

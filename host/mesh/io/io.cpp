@@ -84,8 +84,8 @@ MeshFile read_mesh(const fs::path& path) {
     }
     const std::string content = read_content(path);
     MeshFile file = read_content_as(extension, content, path);
-    if (std::string warning = mesh_io::far_position_warning(file.mesh); !warning.empty())
-        file.warnings.push_back(std::move(warning));
+    for (const std::string& warning : {mesh_io::far_position_warning(file.mesh), mesh_io::degrees_warning(file.mesh)})
+        if (!warning.empty()) file.warnings.push_back(warning);
     return file;
 }
 

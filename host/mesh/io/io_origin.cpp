@@ -69,4 +69,18 @@ std::string far_position_warning(const TriangleMesh& mesh) {
         distance / size, size / (distance * std::numeric_limits<float>::epsilon()));
 }
 
+std::string degrees_warning(const TriangleMesh& mesh) {
+    constexpr double k_needle = 1000;
+    const BoundingBox box = bounding_box(mesh);
+    const Vec3d extent = box.high - box.low;
+    int degrees = 0;
+    for (int i = 0; i < 3; ++i)
+        degrees += mesh.origin[i] != 0 && std::abs(mesh.origin[i]) <= 180 && extent[i] * k_needle < extent.maxCoeff();
+    if (degrees < 2) return {};
+    return fmt::format(
+        "the mesh is a needle of {:.2g} x {:.2g} x {:.2g}; if its coordinates are degrees of longitude and latitude, "
+        "project them to meters",
+        extent[0], extent[1], extent[2]);
+}
+
 }  // namespace exemplar::mesh_io

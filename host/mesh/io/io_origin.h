@@ -17,4 +17,9 @@ Vec3d origin_for_floats(std::span<const Vec3d> positions, std::span<const std::u
 /// Returns a warning if the position of a mesh leaves too little of the precision of its floats; else empty.
 std::string far_position_warning(const TriangleMesh& mesh);
 
+/// Returns a warning if coordinates seem to be degrees of longitude and latitude beside a height, which makes a needle
+/// of every surface: if two were centered (origin_for_floats) within 180 of zero, and the mesh is a thousand times as
+/// long as it is wide on both. Else empty.
+std::string degrees_warning(const TriangleMesh& mesh);
+
 }  // namespace exemplar::mesh_io

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "host/core/errors.h"
+#include "host/lines/extraction/drawable_surface.h"
 #include "host/mesh/curvature/curvature_estimator.h"
 #include "tests/support/shapes.h"
 
@@ -113,6 +114,28 @@ TEST(Strokes, AreThinWhereTheyTurnBack) {
     };
     EXPECT_NEAR(width_at_fold(1), 0, 1e-3);
     EXPECT_NEAR(width_at_fold(0), 4, 1e-3);  // strokes that do not taper are even
+}
+
+TEST(Strokes, OfContoursKeepTheirWidthWhereTheyEndOnSharpEdges) {
+    const TriangleMesh can = shapes::cylinder(1, 2, 24, 3, true);
+    DrawableSurface cut(can.faces, can.vertices);
+    cut.measure(can.vertices);
+    const LineSurface surface = cut.surface();
+    StrokeView view{
+        .camera = fit_camera(can, {3, 2, 4}, 1), .width = 400, .height = 400, .unit_depth = 10, .feature_size = 1};
+    LineOptions options;
+    options.eye = view.camera.position();
+    const std::vector<LineSegment> segments = extract_lines(surface, LineType::contours, options);
+    const std::vector<Chain> chains = chain_segments(surface.joined_faces(), surface.neighbors, segments, false);
+    const std::vector<Stroke> strokes =
+        make_strokes(surface, LineType::contours, segments, chains, nullptr, view, {}, {.taper = 40});
+    std::size_t across = 0;
+    for (std::size_t i = 0; i < chains.size(); ++i) {
+        if (runs_along_edge(LineType::contours, segments[chains[i].links[0].segment])) continue;
+        ++across;
+        for (const StrokePoint& point : strokes[i].points) EXPECT_GT(point.width, 0.5f);
+    }
+    EXPECT_EQ(across, 2);
 }
 
 TEST(Strokes, HavePointsWhereVisibilityChanges) {

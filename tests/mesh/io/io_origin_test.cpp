@@ -84,6 +84,15 @@ TEST(Origin, EachAxisHasItsOwnUnit) {
     EXPECT_LT(largest, 1e-11);
 }
 
+TEST(Origin, DegreesBesideAHeightGiveAWarning) {
+    const TriangleMesh ball = shapes::icosphere(3, 1);
+    const MeshFile file = read_as("a.off", off_at(ball, {11.5, 48.1, 500}, {1e-5, 1e-5, 1}));
+    ASSERT_EQ(file.warnings.size(), 1U);
+    EXPECT_THAT(file.warnings[0], testing::AllOf(HasSubstr("degrees"), HasSubstr("project them to meters")));
+    EXPECT_THAT(read_as("a.off", off_at(ball, k_place)).warnings, IsEmpty());
+    EXPECT_THAT(read_as("a.off", off_at(ball, {0, 0, 0}, {1e-5, 1e-5, 1})).warnings, IsEmpty());
+}
+
 TEST(Origin, OrdinaryFilesAreReadBitForBitAsFloats) {
     std::mt19937 random(7);
     const auto coordinate = [&](double middle) {

@@ -83,14 +83,6 @@ TEST(OutlineChecks, OfDrawingsOfManyShapesAreComplete) {
     }
 }
 
-TEST(OutlineChecks, OfADeepHoleFindNoLineBesideIt) {
-    // The contours of its wall run along faces as long as the hole is deep.
-    const TriangleMesh pipe = revolved({{1, -1.5f}, {1, 1.5f}, {0.4f, 1.5f}, {0.4f, -1.5f}}, 48);
-    const OutlineCheck check = checked_drawing(pipe, {0.6f, 0.35f, 1});
-    EXPECT_GT(check.outlined_share(), 0.999);
-    EXPECT_LT(check.stray_share(), 0.002);
-}
-
 TEST(OutlineChecks, OfAChamferThatJustTurnsAwayAreComplete) {
     // Smooth normals of the chamfer face the eye on the outline where its polygons do not.
     const TriangleMesh flange =

@@ -3,12 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "apps/exemplar/bench/bench_data.h"
 #include "apps/exemplar/bench/bench_rows.h"
 #include "host/core/progress.h"
 #include "host/labeling/inference/mesh_labeling.h"
 #include "host/labeling/training/training.h"
+#include "host/lines/drawing.h"
+#include "host/lines/extraction/drawable_surface.h"
+#include "host/lines/strokes/style.h"
+#include "host/lines/strokes/view_point.h"
+#include "host/mesh/editing/drawable_mesh.h"
 #include "host/synth/arrangements/arrangements.h"
 #include "host/synth/shapes/shapes.h"
 
@@ -57,6 +63,15 @@ void report_growth(const char* part, const Growth& growth, const std::function<v
     }
 }
 
+/// Draws what `exemplar lines` draws by default.
+void draw_lines_of(const TriangleMesh& mesh) {
+    const DrawableMesh drawable = drawable_mesh(mesh, "arrangement");
+    DrawableSurface surface(drawable.mesh.faces, drawable.mesh.vertices);
+    surface.measure(drawable.mesh.vertices);
+    constexpr std::array k_types{LineType::contours, LineType::suggestive_contours, LineType::boundaries};
+    draw_lines(surface.surface(), k_types, load_style("ink"), stroke_view({}, drawable.mesh, surface.feature_size()));
+}
+
 }  // namespace
 
 void bench_scaling(BenchContext& context, const std::function<void(const BenchRow&)>& row) {
@@ -93,12 +108,15 @@ void bench_arrangements(BenchContext& context, const std::function<void(const Be
     const std::vector<std::size_t> sizes = context.quick() ? std::vector<std::size_t>{5'000, 10'000}
                                                            : std::vector<std::size_t>{5'000, 10'000, 20'000, 40'000};
     const auto add = [&](std::string_view name, const std::function<TriangleMesh(std::size_t)>& make) {
-        Growth growth{fmt::format("features, {}", name), {}, {}, {}, {}};
+        Growth features{fmt::format("features, {}", name), {}, {}, {}, {}};
+        Growth lines{fmt::format("line drawing, {}", name), {}, {}, {}, {}};
         for (const std::size_t size : sizes) {
             const TriangleMesh mesh = make(size);
-            growth.add(mesh.face_count(), measure(1, [&] { compute_features(mesh); }));
+            features.add(mesh.face_count(), measure(1, [&] { compute_features(mesh); }));
+            lines.add(mesh.face_count(), measure(1, [&] { draw_lines_of(mesh); }));
         }
-        report_growth("arrangements", growth, row);
+        report_growth("arrangements", features, row);
+        report_growth("arrangements", lines, row);
     };
     add("an ordinary shape", [](std::size_t faces) { return make_shape("fourleg", 1, faces).mesh; });
     for (const Arrangement& arrangement : arrangements()) add(arrangement.name, arrangement.make);

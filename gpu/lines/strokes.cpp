@@ -63,11 +63,11 @@ StrokeLooks plain_looks(const LineThresholds& thresholds, const StrokeThickness&
 GpuStrokes::GpuStrokes(const GpuChains& chains) : chains_(chains) {
     Device& device = chains.lines().surface().surface().device();
     const std::size_t room = 2 * chains.lines().room();
-    visibility_kernel_ =
-        Kernel(device, shaders::lines_visibility_comp,
-               {.push_constants = layout_of<StrokeParameters>(),
-                .elements = {layout_of<float>(), layout_of<vec4>(), layout_of<uvec4>(), layout_of<uvec4>(),
-                             layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>()}});
+    visibility_kernel_ = Kernel(
+        device, shaders::lines_visibility_comp,
+        {.push_constants = layout_of<StrokeParameters>(),
+         .elements = {layout_of<float>(), layout_of<vec4>(), layout_of<uvec4>(), layout_of<uvec4>(), layout_of<vec4>(),
+                      layout_of<vec4>(), layout_of<vec4>(), layout_of<uvec4>(), layout_of<vec4>()}});
     stroke_kernel_ =
         Kernel(device, shaders::lines_strokes_comp,
                {.push_constants = layout_of<StrokeParameters>(),
@@ -92,10 +92,11 @@ void GpuStrokes::record(Stream& stream, const GpuCurvedSurface& snapshot, const 
     const StrokeParameters parameters = stroke_parameters(view, curved, lines.surface().is_closed());
     const Buffer &faces = lines.surface().surface().faces(), &first = curved ? *snapshot.first : snapshot.vertices,
                  &second = curved ? *snapshot.second : snapshot.vertices;
-    stream.dispatch_indirect(visibility_kernel_, counts, k_points,
-                             {BufferRange(depths, 0, wanted), chains_.points(), lines.segments(), faces,
-                              snapshot.vertices, first, second, counts, visible_},
-                             parameters);
+    stream.dispatch_indirect(
+        visibility_kernel_, counts, k_points,
+        {BufferRange(depths, 0, wanted), chains_.points(), lines.segments(), faces, snapshot.vertices, first, second,
+         lines.surface().neighbors(), snapshot.normals, counts, visible_},
+        parameters);
     stream.dispatch_indirect(stroke_kernel_, counts, k_points,
                              {chains_.points(), visible_, lines.segments(), faces, snapshot.vertices, first, second,
                               lines.surface().neighbors(), counts, looks_, strokes_},

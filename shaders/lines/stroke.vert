@@ -19,9 +19,10 @@ layout(location = 2) flat out uvec2 seen;  // bits of the visible samples, and n
 layout(location = 3) flat out vec4 color;
 layout(location = 4) flat out vec3 texture_of;  // 1 + first texel, period, direction along the chain
 
-// Returns the normal at an end of the piece from a point to the next. A line along edges may turn back where it is
-// hidden: a normal half way between both directions would leave no width to the piece that is seen.
-vec2 normal_at(int point, bool next) {
+// Returns what is across a stroke of unit width at an end of the piece from a point to the next. Lines along edges have
+// corners, and normals half way between the directions of both sides there: they are so much longer that the stroke
+// keeps its width. Where a line turns back and is hidden on the other side, the piece that is seen ends by itself.
+vec2 across_at(int point, bool next) {
     const int at = next ? point + 1 : point;
     const vec2 normal = texelFetch(strokes, 2 * at + 1).xy;
     const uint kind = floatBitsToUint(texelFetch(points, 2 * at + 1).x);
@@ -29,7 +30,9 @@ vec2 normal_at(int point, bool next) {
         return normal;
     const bool alone = texelFetch(visible, 2 * (next ? at : at - 1)).x == 0u;
     const vec2 on = texelFetch(strokes, 2 * point + 2).xy - texelFetch(strokes, 2 * point).xy;
-    return alone && on != vec2(0.0) ? normalize(vec2(-on.y, on.x)) : normal;
+    if (on == vec2(0.0)) return normal;
+    const vec2 own = normalize(vec2(-on.y, on.x));
+    return alone ? own : normal / max(dot(normal, own), 0.5);
 }
 
 void main() {
@@ -48,7 +51,7 @@ void main() {
     const vec4 stroke = texelFetch(strokes, 2 * at);  // place, width, opacity
     const StrokeLook look = looks[floatBitsToUint(kind.x) & k_kind_family];
     const float reach = 0.5 * stroke.z + 1.0;
-    const vec2 pixel = stroke.xy + side * reach * normal_at(point, next);
+    const vec2 pixel = stroke.xy + side * reach * across_at(point, next);
     along = vec4(side * reach, 0.5 * stroke.z, stroke.w * look.color.a, next ? 1.0 : 0.0);
     const vec2 phase = phases[point];
     const vec2 coordinates = texture_ends(phase, phases[point + 1], texelFetch(points, 2 * point).w,

@@ -15,8 +15,10 @@ layout(set = 0, binding = 3) uniform usamplerBuffer faces;
 layout(set = 0, binding = 4) uniform samplerBuffer positions;
 layout(set = 0, binding = 5) uniform samplerBuffer first;
 layout(set = 0, binding = 6) uniform samplerBuffer second;
-layout(set = 0, binding = 7, std430) readonly buffer Counts { LineCounts counts; };
-layout(set = 0, binding = 8, std430) writeonly buffer Visible { uvec2 visible[]; };
+layout(set = 0, binding = 7) uniform usamplerBuffer neighbors;
+layout(set = 0, binding = 8) uniform samplerBuffer normals;
+layout(set = 0, binding = 9, std430) readonly buffer Counts { LineCounts counts; };
+layout(set = 0, binding = 10, std430) writeonly buffer Visible { uvec2 visible[]; };
 #include "shaders/lines/segments.glsl"
 #include "shaders/lines/stroke_points.glsl"
 
@@ -41,6 +43,25 @@ float facing(int vertex) {
     return dot(normal, to_eye(parameters.eye, texelFetch(positions, vertex).xyz));
 }
 
+bool is_at_sharp_edge(int face) {
+    const uvec3 across = texelFetch(neighbors, face).xyz;
+    for (uint side = 0; side < 3; ++side)
+        if (across[side] < k_blocked_side && (across[side] & k_sharp_side) != 0u) return true;
+    return false;
+}
+
+float facing_of(uint vertex, vec3 place) {
+    return dot(texelFetch(normals, int(vertex)).xyz, to_eye(parameters.eye, place));
+}
+
+// Returns whether n.w, which is linear in a face, grows towards the eye: the surface then bends away from the ray.
+bool grows_to_eye(uvec3 corners, mat3 places) {
+    const vec3 a = places[0], b = places[1], c = places[2], across = cross(b - a, c - a);
+    const vec3 gradient = facing_of(corners.x, a) * cross(across, c - b) + facing_of(corners.y, b) * cross(across, a - c) +
+                          facing_of(corners.z, c) * cross(across, b - a);
+    return dot(gradient, to_eye(parameters.eye, (a + b + c) / 3.0)) > 0.0;
+}
+
 // Returns the distance of a place from the line through the origin.
 float distance_from_line(vec3 place, vec3 line) {
     const float squared = dot(line, line);
@@ -58,7 +79,9 @@ float tolerance_of(uint index) {
     const uint family = family_of(segment);
     bool behind = parameters.curved == 0u;
     if (parameters.curved != 0u && family == k_contours) {
-        behind = radial_curvature(int(corners.x)) + radial_curvature(int(corners.y)) + radial_curvature(int(corners.z)) > 0.0;
+        behind = is_at_sharp_edge(int(segment.face))
+                     ? grows_to_eye(corners, mat3(a, b, c))
+                     : radial_curvature(int(corners.x)) + radial_curvature(int(corners.y)) + radial_curvature(int(corners.z)) > 0.0;
         if (!behind && parameters.closed != 0u) return -1.0;
     }
     if (parameters.curved != 0u && family != k_contours) {
@@ -73,7 +96,10 @@ float tolerance_of(uint index) {
     const vec3 from = corner_places * end_of(segment, 0u), along = corner_places * end_of(segment, 1u) - from;
     const float longest = sqrt(max(dot(b - a, b - a), max(dot(c - b, c - b), dot(a - c, a - c))));
     const float aside = max(distance_from_line(a - from, along), max(distance_from_line(b - from, along), distance_from_line(c - from, along)));
-    return k_depth_tolerance * parameters.unit_depth + min(k_edge_tolerance * longest, k_aside_tolerance * aside);
+    // Beside a line that points to the eye, what is aside is as much nearer.
+    const float slant = distance_from_line(to_eye(parameters.eye, from), along);
+    const float reach = min(k_edge_tolerance * longest, k_aside_tolerance * aside / max(slant, 1e-3));
+    return k_depth_tolerance * parameters.unit_depth + reach;
 }
 
 void main() {

@@ -129,7 +129,8 @@ const float k_sample_spacing = 1.0f;
 
 // Maximum depth of lines behind the depth image: k_depth_tolerance unit depths and, for contours and lines on faces
 // that turn away although the smooth surface does not, k_edge_tolerance times the longest edge of their face. Long
-// faces reach less far beside a line along them: k_aside_tolerance times the distance of their corners from it.
+// faces reach less far beside a line along them: k_aside_tolerance times the distance of their corners from it, over
+// the sine of its angle with the ray to the eye.
 const float k_depth_tolerance = 2e-3f;
 const float k_edge_tolerance = 1.5f;
 const float k_aside_tolerance = 4.0f;

@@ -17,8 +17,8 @@ namespace exemplar {
 namespace {
 
 constexpr std::size_t k_segment_grain = 64;  // segments that one thread takes at a time
-// Reach of ignored nearby faces: in edges of the point's face, and at most in distances of its corners from the line,
-// so that long faces reach less far beside a line that runs along them.
+// Reach of ignored nearby faces: in edges of the point's face, and at most in distances of its corners from the line
+// (over the sine of its angle with the ray to the eye), so that long faces reach less far beside a line along them.
 constexpr float k_near_edges = 3, k_near_asides = 8;
 constexpr float k_touching_edges = 1e-3f;    // the same for faces that touch the point's face, for any line
 constexpr float k_precision = 0.05f;         // precision of changes of visibility, in pixels
@@ -107,7 +107,7 @@ class LineVisibility::Query {
         const auto corner = [&](std::size_t i) -> const Vec3& { return scene.surface_.vertices[face_[i]]; };
         cross_ = (corner(1) - corner(0)).cross(corner(2) - corner(0));
         for (std::size_t i = 0; i < 3; ++i) longest_ = std::max(longest_, (corner((i + 1) % 3) - corner(i)).norm());
-        near_ = std::min(k_near_edges * longest_, k_near_asides * largest_distance_from_line(face_));
+        near_ = std::min(k_near_edges * longest_, reach_aside(face_));
         edge_ = runs_along_edge(type, segment);
         contour_ = type == LineType::contours && !edge_;
         contour_bends_away_ = contour_ && bends_away();
@@ -149,7 +149,7 @@ class LineVisibility::Query {
         const Face& corners = scene_.surface_.faces[other];
         const bool convex = cross_.dot(scene_.surface_.vertices[corners[corner]] - point(0.5f)) < 0;
         turns_away_ = smooth && convex && std::max(cosine, other_cosine) < k_least_cosine;
-        near_ = std::min(near_, k_near_asides * largest_distance_from_line(corners));
+        near_ = std::min(near_, reach_aside(corners));
     }
     /// Returns the cosine between its normal and the ray to the eye.
     float add_face_at_edge(std::uint32_t face, std::uint32_t opposite) {
@@ -181,10 +181,10 @@ class LineVisibility::Query {
     }
     /// Returns whether the surface at a contour bends away from the ray to the eye, i.e. radial curvature is
     /// positive, so that it does not hide the contour. Measured curvature is more reliable here than a face's
-    /// normals.
+    /// normals, but for faces at sharp edges, where it may be that of the edge.
     bool bends_away() const {
         const VertexCurvature& c = scene_.surface_.curvature;
-        if (c.k1.size() != scene_.surface_.vertices.size()) return grows_to_eye();
+        if (c.k1.size() != scene_.surface_.vertices.size() || is_at_sharp_edge()) return grows_to_eye();
         float bend = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::uint32_t v = face_[i];
@@ -193,6 +193,12 @@ class LineVisibility::Query {
             bend += weight(i, 0.5f) * (c.k1[v] * along_1 * along_1 + c.k2[v] * along_2 * along_2);
         }
         return bend > 0;
+    }
+    bool is_at_sharp_edge() const {
+        return !scene_.surface_.neighbors.empty() &&
+               std::ranges::any_of(scene_.surface_.neighbors[segment_.face], [](std::uint32_t across) {
+                   return has_neighbor(across) && (across & k_sharp_side) != 0;
+               });
     }
     /// Returns the same without curvature: whether n.w, which is linear in the face, grows towards the eye.
     bool grows_to_eye() const {
@@ -236,15 +242,16 @@ class LineVisibility::Query {
         if (hit.distance <= k_touching_edges * longest_ && scene_.touch(face, hit.face)) return true;
         return overlooks && scene_.are_near(face, hit.face);
     }
-    /// Returns the largest distance of a corner of the face from the line through the segment.
-    float largest_distance_from_line(const Face& face) const {
+    /// Returns how far nearby faces may be ignored beside the line, by the distances of the corners of a face from it.
+    float reach_aside(const Face& face) const {
         const Vec3 from = point(0), along = (point(1) - from).stableNormalized();
+        const float slant = along.cross(camera_.to_eye(from)).norm();
         float largest = 0;
         for (const std::uint32_t v : face) {
             const Vec3 corner = scene_.surface_.vertices[v] - from;
             largest = std::max(largest, (corner - corner.dot(along) * along).norm());
         }
-        return largest;
+        return k_near_asides * largest / std::max(slant, 1e-3f);
     }
     Vec3 backward() const { return camera_.view.block<1, 3>(2, 0).transpose(); }
     /// Returns the distance from the near plane to the point along the camera's axis.

@@ -53,12 +53,12 @@ class LineVisibility {
     /// A contour of smooth normals lies up to about an edge behind the outline of the polygons, so a ray from it may
     /// leave the surface through nearby faces: those within three times the longest edge of the line's face (less
     /// beside a line along a long face) that touch a face touching it. They do not hide, and nor does what is behind
-    /// them (the inner side of a thin shell, say), a contour with positive radial curvature (without curvature: where
-    /// n.w grows towards the eye), which its own surface does not hide, nor one on an open surface, which may be seen
-    /// from behind. Nor do they hide other lines where the normals face the eye and the face does not. A line along an
-    /// edge lies on the polygons themselves. It is visible where one of the faces at it is, close to the edge, and no
-    /// nearby face is ignored, unless it is a contour on a convex edge whose faces both turn away already where smooth
-    /// normals do not yet.
+    /// them (the inner side of a thin shell, say), a contour with positive radial curvature (without curvature, and at
+    /// sharp edges: where n.w grows towards the eye), which its own surface does not hide, nor one on an open surface,
+    /// which may be seen from behind. Nor do they hide other lines where the normals face the eye and the face does
+    /// not. A line along an edge lies on the polygons themselves. It is visible where one of the faces at it is, close
+    /// to the edge, and no nearby face is ignored, unless it is a contour on a convex edge whose faces both turn away
+    /// already where smooth normals do not yet.
     VisibleParts visible_parts(LineType type, std::span<const LineSegment> segments, const Camera& camera, int width,
                                int height, const VisibilityOptions& options = {}) const;
 

@@ -141,13 +141,11 @@ bool goes_on_along_edge(int point) {
 
 float thickness(uvec2 walked_end, StrokeLook look) {
     const LineSegmentRecord segment = segment_at(walked_end.x);
-    // Curvature along an edge is that of the edge, and not of the faces at it.
-    const bool curved = parameters.curved != 0u && family_of(segment) != k_edge_contours;
     const vec3 weights = end_of(segment, walked_end.y);
     const uvec3 corners = texelFetch(faces, int(segment.face)).xyz;
     float curvature = 0.0, z = 0.0;
     for (uint i = 0; i < 3; ++i) {
-        if (curved) curvature += weights[i] * radial_curvature(int(corners[i]));
+        if (parameters.curved != 0u) curvature += weights[i] * radial_curvature(int(corners[i]));
         z += weights[i] * (dot(parameters.axis.xyz, texelFetch(positions, int(corners[i])).xyz) + parameters.axis.w);
     }
     z = parameters.parallel != 0u ? 1.0 : max(z / parameters.unit_depth, 1e-6);

@@ -166,14 +166,12 @@ class StrokeMaker {
         const LineSegment& segment = segments_[link.segment];
         const float s = link.reversed ? 1 - t : t;
         const Face& face = surface_.faces[segment.face];
-        // Curvature along an edge is that of the edge, and not of the faces at it.
-        const bool curved = type_ != LineType::contours || segment.family != k_family_along_edges;
         Vec3 place = Vec3::Zero();
         float curvature = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             const float weight = segment.ends[0][i] + s * (segment.ends[1][i] - segment.ends[0][i]);
             place += weight * surface_.vertices[face[i]];
-            if (curved) curvature += weight * radial_curvature(face[i]);
+            curvature += weight * radial_curvature(face[i]);
         }
         const Vec3 projected = view_.camera.project(place, view_.width, view_.height);
         const float depth = -backward_.dot(place) - view_.camera.view(2, 3);

@@ -82,11 +82,11 @@ struct Stroke {
 /// most 8 points, within the chain. Lines along edges are not moved. Normal: perpendicular to the chord of the
 /// window, or of lines along edges, half way between the directions to both sides. Parameter: arc length in pixels
 /// before points are moved. Width: stroke_width() of the depth and the radial curvature, interpolated from the vertices
-/// ((k1 u^2 + k2 v^2) / (u^2 + v^2), the mean curvature where the eye is along the normal, or 0 without curvature and
-/// for contours along edges). With a taper it is multiplied by the straightness() of the window and by stroke_taper()
-/// of the distance along the chain to the nearest end of the point's visible run. Runs of closed chains continue
-/// across their first point; if everything is visible, they are not tapered. Nor are lines along edges, which go on
-/// around corners as other strokes, and ends of contours on sharp edges, along which other contours go on.
+/// ((k1 u^2 + k2 v^2) / (u^2 + v^2), the mean curvature where the eye is along the normal, or 0 without curvature).
+/// With a taper it is multiplied by the straightness() of the window and by stroke_taper() of the distance along the
+/// chain to the nearest end of the point's visible run. Runs of closed chains continue across their first point; if
+/// everything is visible, they are not tapered. Nor are lines along edges, which go on around corners as other
+/// strokes, and ends of contours on sharp edges, along which other contours go on.
 /// Throws UsageError if sizes do not fit, or a thickness is out of range (width, epsilon and most positive, least in
 /// [0, most], taper not negative).
 std::vector<Stroke> make_strokes(const LineSurface& surface, LineType type, std::span<const LineSegment> segments,

@@ -3,6 +3,7 @@
 // that moves it as binary glTF (nothing if nothing could move). That library's readers have a history of crashes, so
 // they run in this process, whose memory and time are bounded, and not in those that users start. After an error,
 // writes one line and returns 1.
+#include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <sys/resource.h>
@@ -55,6 +56,8 @@ int import_file(const std::string& path, bool with_motion) {
                                                             aiComponent_COLORS | aiComponent_TEXCOORDS |
                                                             aiComponent_TEXTURES | aiComponent_LIGHTS |
                                                             aiComponent_CAMERAS);
+    // Else the library draws bones and cameras of files without meshes.
+    importer.SetPropertyInteger(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, 1);
     const aiScene* const source = importer.ReadFile(path, aiProcess_RemoveComponent);
     if (!source || !source->mRootNode) return fail_to_read(importer.GetErrorString());
     // For FBX the library puts 1 in place of the weights at rest of morph targets. They are usually 0.

@@ -178,9 +178,13 @@ double weight_at(const WeightKeys& keys, double time, double at_rest) {
 
 std::vector<WeightKeys> weight_keys(const aiMeshMorphAnim& channel, std::size_t targets, double tick) {
     std::vector<WeightKeys> keys(targets);
-    for (const aiMeshMorphKey& key : sorted_keys(channel.mKeys, channel.mNumKeys))
+    for (unsigned k = 0; k < channel.mNumKeys; ++k) {
+        const aiMeshMorphKey& key = channel.mKeys[k];
         for (unsigned i = 0; i < key.mNumValuesAndWeights; ++i)
-            if (key.mValues[i] < targets) keys[key.mValues[i]].emplace_back(key.mTime * tick, key.mWeights[i]);
+            if (key.mValues[i] < targets && std::isfinite(key.mTime))
+                keys[key.mValues[i]].emplace_back(key.mTime * tick, key.mWeights[i]);
+    }
+    for (WeightKeys& of_target : keys) std::ranges::stable_sort(of_target, {}, &WeightKeys::value_type::first);
     return keys;
 }
 

@@ -20,6 +20,20 @@
 #include "apps/import/write.h"
 #include "host/core/text.h"
 
+#if defined(__SANITIZE_ADDRESS__)  // GCC
+#define EXEMPLAR_ADDRESS_SANITIZER
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)  // Clang
+#define EXEMPLAR_ADDRESS_SANITIZER
+#endif
+#endif
+#ifdef EXEMPLAR_ADDRESS_SANITIZER
+/// The library keeps memory for good after errors.
+extern "C" int __lsan_is_turned_off() {  // NOLINT: a name of the sanitizer
+    return 1;
+}
+#endif
+
 namespace exemplar::import {
 namespace {
 
@@ -30,7 +44,7 @@ void bound_this_process(std::uint64_t file_bytes) {
     const rlim_t seconds = 60 + file_bytes / k_megabyte;
     const rlimit memory{2048 * k_megabyte + 200 * file_bytes, 2048 * k_megabyte + 200 * file_bytes};
     const rlimit time{seconds, seconds + 1}, core{0, 0};
-#ifndef __SANITIZE_ADDRESS__  // which reserves far more
+#ifndef EXEMPLAR_ADDRESS_SANITIZER  // which reserves far more
     setrlimit(RLIMIT_AS, &memory);
 #endif
     setrlimit(RLIMIT_CPU, &time);

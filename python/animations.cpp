@@ -131,10 +131,12 @@ void add_animations(py::module_& module) {
                                counted(self.animation.rest.vertex_count(), "vertex", "vertices"),
                                counted(self.frames.size(), "frame"));
         });
-    module.def(
-        "read_animation", &read_animation_file, py::arg("path"), py::kw_only(), py::arg("frames_per_second") = 30.0,
-        "Reads an animation: a glTF file with a skin or morph targets, a folder with a mesh a frame, or a folder of\n"
-        "blend shapes. Clips of glTF files are sampled at frames_per_second (0.1 to 1000). Raises MeshError.");
+    module.def("read_animation", &read_animation_file, py::arg("path"), py::kw_only(),
+               py::arg("frames_per_second") = 30.0,
+               "Reads an animation: a glTF file with a skin or morph targets (where exemplar-import is installed also "
+               "an FBX or\n"
+               "COLLADA file), a folder with a mesh a frame, or a folder of blend shapes. Clips of files are sampled "
+               "at frames_per_second (0.1 to 1000). Raises MeshError.");
 }
 
 }  // namespace exemplar::python

@@ -309,7 +309,8 @@ void add_meshes(py::module_& module) {
     add_mesh(module);
     module.def(
         "read_mesh", &read_mesh_file, py::arg("path"),
-        "Reads a mesh file: OFF, OBJ, PLY, STL or glTF 2.0, by its extension. Polygons are cut into triangles. A\n"
+        "Reads a mesh file: OFF, OBJ, PLY, STL or glTF 2.0, by its extension; where exemplar-import is installed also\n"
+        "FBX, COLLADA, 3MF and 3DS. Polygons are cut into triangles. A\n"
         "PLY with a `label` for each face comes with labels. Raises MeshError with file and line or byte.");
     module.def(
         "read_labeled", &read_labeled, py::arg("sources"), py::arg("labels_folder") = "",

@@ -4,6 +4,7 @@
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/commands.h"
+#include "apps/exemplar/common_options.h"
 #include "host/core/errors.h"
 #include "host/core/stopwatch.h"
 #include "host/data/npy.h"
@@ -71,7 +72,7 @@ void add_features_command(Command& app) {
     Command* command =
         app.add_subcommand("features", "Computes the features of a mesh (faces x features, float32 .npy)");
     command->footer("Example:\n  exemplar features horse.off --out horse.npy --names horse.json");
-    command->add_option("MESH", options->mesh, "mesh file: OFF, OBJ, PLY, STL or glTF")->required()->type_name("");
+    command->add_option("MESH", options->mesh, k_mesh_argument)->required()->type_name("");
     command->add_option("--out", options->out, "array to write, NumPy format")->required()->type_name("FILE");
     command->add_option("--names", options->names, "also write the feature names, a JSON list")->type_name("FILE");
     command->add_flag("--pairwise", options->pairwise, "features of the interior edges instead of the faces");

@@ -12,6 +12,8 @@ int run(int argc, char** argv) {
     Command app("exemplar", "Learns geometry processing from examples and runs what it learned on the GPU.");
     app.footer(
         "'exemplar SUBCOMMAND --help' shows the options of each.\n"
+        "Meshes are OFF, OBJ, PLY, STL and glTF files, and where exemplar-import is installed FBX, COLLADA, 3MF and "
+        "3DS.\n"
         "Exit codes: 0 done, 1 error (one line says what), 2 wrong usage, 130 interrupted.\n\nExample:\n"
         "  exemplar synth human --count 8 --seed 1 --out shapes\n"
         "  exemplar label train shapes --out human.safetensors\n"

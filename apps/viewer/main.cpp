@@ -68,7 +68,10 @@ ViewSize parse_size(const std::string& text) {
 }
 
 void add_options(Command& app, ViewerOptions& options, std::string& size) {
-    app.add_option("FILE", options.file, "mesh (OFF, OBJ, PLY, STL, glTF), animation (glTF), or folder of meshes")
+    app.add_option("FILE", options.file,
+                   "mesh (OFF, OBJ, PLY, STL, glTF, and where exemplar-import is installed FBX, COLLADA, 3MF, 3DS), "
+                   "animation (glTF, "
+                   "FBX, COLLADA), or folder of meshes")
         ->type_name("");
     app.add_option("--model", options.model, "model of the animation's curvature, .safetensors")->type_name("FILE");
     app.add_option("--hatching", options.hatching, "style of 'exemplar hatch train' for hatched stills, .safetensors")

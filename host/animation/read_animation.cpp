@@ -9,6 +9,7 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/text.h"
+#include "host/mesh/io/io_import.h"
 
 namespace exemplar {
 namespace {
@@ -27,10 +28,14 @@ Animation read_unchecked(const fs::path& path, const ReadAnimationOptions& optio
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) return animation_io::read_folder(path, options);
     const std::string extension = lower_case(path.extension().string());
-    const bool is_gltf = extension == ".gltf" || extension == ".glb";
-    if (!is_gltf && fs::exists(path, ignored))
+    const bool is_gltf = extension == ".gltf" || extension == ".glb", exists = fs::exists(path, ignored);
+    if (exists && mesh_io::is_imported(extension))
+        return animation_io::animation_of_import(mesh_io::run_import(path, mesh_io::ImportContent::animation),
+                                                 path.string(), options);
+    if (!is_gltf && exists)
         throw MeshError(path.string() +
-                        ": one file is an animation only as glTF (.gltf, .glb); name the folder that holds the frames");
+                        ": one file is an animation only as glTF (.gltf, .glb), FBX or COLLADA (.dae); name the folder "
+                        "that holds the frames");
     return animation_io::read_gltf(read_content(path), path.string(), path.parent_path(), options);
 }
 

@@ -11,6 +11,7 @@
 #include "host/core/text.h"
 #include "host/mesh/editing/drawable_mesh.h"
 #include "host/mesh/io/io.h"
+#include "host/mesh/io/io_import.h"
 
 namespace exemplar {
 namespace {
@@ -49,7 +50,8 @@ SurfaceFile read_surface(const fs::path& path, const ReadAnimationOptions& optio
         throw DataError(fmt::format("{}: no such file or folder{}", path.string(), suggest_file(path)));
     const bool is_folder = fs::is_directory(path, ignored);
     const std::string extension = lower_case(path.extension().string());
-    if (!is_folder && extension != ".glb" && extension != ".gltf") return read_still(path);
+    if (!is_folder && extension != ".glb" && extension != ".gltf" && !mesh_io::is_imported(extension))
+        return read_still(path);
     try {
         return {read_animation(path, options), {}, {}};
     } catch (const NoMotionError& error) {

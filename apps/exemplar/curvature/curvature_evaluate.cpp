@@ -6,6 +6,7 @@
 
 #include "apps/exemplar/animation_arguments.h"
 #include "apps/exemplar/arguments.h"
+#include "apps/exemplar/common_options.h"
 #include "apps/exemplar/curvature/curvature_options.h"
 #include "apps/exemplar/curvature/curvature_pictures.h"
 #include "host/core/stopwatch.h"
@@ -65,7 +66,7 @@ void add_curvature_evaluate_command(Command& curvature) {
         ->add_option("--pictures", options->pictures,
                      "folder for pictures of three frames: lines by measured, learned and zero-order curvature")
         ->type_name("DIR");
-    command->add_option("--fps", options->frames_per_second, "frames a second that clips of glTF files are sampled at")
+    command->add_option("--fps", options->frames_per_second, k_fps_option)
         ->capture_default_str()
         ->check(in_range(0.1, 1000.0));
     command->add_option("--seed", options->seed, "seed of random expressions, for blend shapes without a clip")

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/exemplar/arguments.h"
+#include "apps/exemplar/common_options.h"
 #include "host/core/text.h"
 #include "host/mesh/io/io_text.h"
 
@@ -36,7 +37,7 @@ double suitable_sparsity(AnimationKind kind) {
 
 void add_curvature_options(Command& command, CurvatureArguments& arguments) {
     CurvatureTraining& training = arguments.training;
-    command.add_option("--fps", arguments.frames_per_second, "frames a second that clips of glTF files are sampled at")
+    command.add_option("--fps", arguments.frames_per_second, k_fps_option)
         ->capture_default_str()
         ->check(in_range(0.1, 1000.0));
     command

@@ -9,6 +9,7 @@
 
 #include "apps/exemplar/animation_arguments.h"
 #include "apps/exemplar/arguments.h"
+#include "apps/exemplar/common_options.h"
 #include "apps/exemplar/curvature/curvature_options.h"
 #include "host/core/errors.h"
 #include "host/core/statistics.h"
@@ -157,9 +158,7 @@ void add_curvature_study_command(Command& curvature) {
         "Each row differs from the training asked for in one thing. Frames that are learned from are never tested on.\n"
         "MB are those of means and bases, which a frame reads.\n\nExample:\n"
         "  exemplar curvature study figure.glb --frames :100 --json study.json");
-    command->add_option("ANIM", options->animation, "animation: glTF file, or a folder of meshes")
-        ->required()
-        ->type_name("");
+    command->add_option("ANIM", options->animation, k_animation_argument)->required()->type_name("");
     add_frame_options(*command, options->frames, "", "learn from");
     command->add_option("--test", options->test, "another motion of the same surface to test on; default: ANIM")
         ->type_name("ANIM");

@@ -4,6 +4,7 @@
 
 #include "apps/exemplar/animation_arguments.h"
 #include "apps/exemplar/arguments.h"
+#include "apps/exemplar/common_options.h"
 #include "apps/exemplar/curvature/curvature_options.h"
 #include "host/core/stopwatch.h"
 #include "host/core/text.h"
@@ -58,9 +59,7 @@ void add_curvature_train_command(Command& curvature) {
     Command* command = curvature.add_subcommand("train", "Learns curvature from the poses of an animation");
     command->footer(
         "Example:\n  exemplar curvature train figure.glb --clips walk,run --out figure.safetensors --seed 1");
-    command->add_option("ANIM", options->animation, "animation: glTF file, or a folder of meshes")
-        ->required()
-        ->type_name("");
+    command->add_option("ANIM", options->animation, k_animation_argument)->required()->type_name("");
     command->add_option("--out", options->out, "model file to write, .safetensors")->required()->type_name("FILE");
     add_frame_options(*command, options->frames, "", "learn from");
     add_curvature_options(*command, options->curvature);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "apps/exemplar/arguments.h"
+#include "apps/exemplar/common_options.h"
 #include "apps/exemplar/hatch/hatch_draw.h"
 #include "apps/help/command.h"
 #include "host/core/errors.h"
@@ -103,8 +104,7 @@ void run_draw(HatchDrawJob& job) {
 
 void add_frames_options(Command& command, HatchDrawJob& job) {
     add_frame_options(command, job.source.frames, "", "draw");
-    command
-        .add_option("--fps", job.source.frames_per_second, "frames a second that clips of glTF files are sampled at")
+    command.add_option("--fps", job.source.frames_per_second, k_fps_option)
         ->capture_default_str()
         ->check(in_range(0.1, 1000.0));
     command
@@ -159,9 +159,7 @@ void add_hatch_draw_command(Command& hatch) {
         "  exemplar hatch draw mine.safetensors figure.glb --frames 0:60 --out walk.mp4\n"
         "  exemplar hatch draw mine.safetensors cow.obj --turn 3 --out turning");
     command->add_option("STYLE", arguments->style, "style file of 'exemplar hatch train'")->required()->type_name("");
-    command->add_option("MESH", arguments->scene.mesh, "mesh (OFF, OBJ, PLY, STL, glTF) or animation (glTF, folder)")
-        ->required()
-        ->type_name("");
+    command->add_option("MESH", arguments->scene.mesh, k_surface_argument)->required()->type_name("");
     command
         ->add_option("--out", arguments->out,
                      "what to write: .svg, .png, .mp4, or a folder for a picture of each frame")

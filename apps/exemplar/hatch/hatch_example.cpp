@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "apps/exemplar/arguments.h"
+#include "apps/exemplar/common_options.h"
 #include "apps/exemplar/hatch/hatch_scene.h"
 #include "apps/help/command.h"
 #include "host/core/errors.h"
@@ -54,7 +55,7 @@ void add_hatch_example_command(Command& hatch) {
         ->required()
         ->check(completion_words(hatching_rule_names()))
         ->type_name("");
-    command->add_option("MESH", arguments->scene.mesh, "mesh (OFF, OBJ, PLY, STL, glTF)")->required()->type_name("");
+    command->add_option("MESH", arguments->scene.mesh, k_mesh_argument)->required()->type_name("");
     command->add_option("--out", arguments->out, "the drawing to write (PNG)")->required()->type_name("FILE");
     command->add_option("--seed", arguments->seed, "of the hand's jitter")
         ->capture_default_str()

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "apps/exemplar/arguments.h"
+#include "apps/exemplar/common_options.h"
 #include "apps/exemplar/hatch/hatch_scene.h"
 #include "host/core/text.h"
 #include "host/hatching/drawing/aligned_drawing.h"
@@ -43,7 +44,7 @@ void add_hatch_template_command(Command& hatch) {
         "hand\n"
         "in the strokes alone, as PNG: dark on light, at any resolution.\n\nExample:\n"
         "  exemplar hatch template bunny.off --view three-quarter --size 1000x1000 --out bunny.png");
-    command->add_option("MESH", arguments->scene.mesh, "mesh (OFF, OBJ, PLY, STL, glTF)")->required()->type_name("");
+    command->add_option("MESH", arguments->scene.mesh, k_mesh_argument)->required()->type_name("");
     command->add_option("--out", arguments->out, "the picture to write (PNG)")->required()->type_name("FILE");
     add_hatch_scene_options(*command, arguments->scene);
     add_device_option(*command, arguments->common);

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "apps/exemplar/arguments.h"
+#include "apps/exemplar/common_options.h"
 #include "apps/exemplar/lines/lines_comparison.h"
 #include "apps/exemplar/lines/lines_job.h"
 #include "apps/help/command.h"
@@ -248,8 +249,7 @@ void add_lines_command(Command& app) {
         "  exemplar lines figure.glb --model figure.safetensors --frames 0:40 --style pencil --out walk.mp4\n"
         "  exemplar lines figure.glb --model figure.safetensors --frames 40: --compare --out unseen");
     LinesJob& job = arguments->job;
-    command->add_option("INPUT", job.source.input, "mesh (OFF, OBJ, PLY, STL, glTF) or animation (glTF, folder)")
-        ->type_name("");
+    command->add_option("INPUT", job.source.input, k_surface_argument)->type_name("");
     command->add_option("--out", job.out, "what to write: .svg, .png, .mp4, or a folder for a picture of each frame")
         ->type_name("FILE|FOLDER");
     add_look_options(*command, *arguments);
@@ -266,8 +266,7 @@ void add_lines_command(Command& app) {
                       "prints the share of the surface's silhouette that has a line, and of contours that are on no "
                       "edge of it");
     add_frame_options(*command, job.source.frames, "", "draw");
-    command
-        ->add_option("--fps", job.source.frames_per_second, "frames a second that clips of glTF files are sampled at")
+    command->add_option("--fps", job.source.frames_per_second, k_fps_option)
         ->capture_default_str()
         ->check(in_range(0.1, 1000.0));
     add_device_option(*command, job.common);

@@ -20,8 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 10> k_extensions{".off", ".obj", ".ply", ".stl", ".gltf",
                                                         ".glb", ".fbx", ".dae", ".3mf", ".3ds"};
-/// The last of these, which are read by exemplar-import.
-constexpr std::span k_imported = std::span(k_extensions).last<4>();
 
 std::string read_content(const fs::path& path) {
     try {
@@ -60,7 +58,8 @@ void check_extension(std::string_view extension, std::string_view content, const
 MeshFile read_content_as(std::string_view extension, std::string_view content, const fs::path& path) {
     const std::string name = path.string();
     check_extension(extension, content, name);
-    if (std::ranges::find(k_imported, extension) != k_imported.end()) return mesh_io::read_imported(path);
+    if (mesh_io::is_imported(extension))
+        return mesh_io::mesh_of_import(mesh_io::run_import(path, mesh_io::ImportContent::still), name);
     if (extension != ".stl" && extension != ".glb") mesh_io::refuse_utf16(content, name);
     if (extension == ".off") return mesh_io::read_off(content, name);
     if (extension == ".obj") return mesh_io::read_obj(content, name);

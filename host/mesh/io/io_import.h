@@ -1,15 +1,32 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "host/mesh/io/io.h"
 
 namespace exemplar::mesh_io {
 
-/// Reads a format of the Open Asset Import Library (FBX, COLLADA, 3MF, 3DS) in a process of its own, the program
-/// exemplar-import: it lies beside this program, in the folder above, or in PATH, and bounds its memory and time.
-/// Vertices at equal positions are joined. Throws MeshError naming `path` if the file cannot be read, if the process
-/// crashed or met a bound, and if there is no such program (Exemplar was built without the library).
-MeshFile read_imported(const std::filesystem::path& path);
+/// What exemplar-import is asked for: the meshes at rest (as PLY), or the scene and what moves it (as binary glTF).
+enum class ImportContent { still, animation };
+
+/// Returns whether exemplar-import reads files with this extension (lower case, with dot).
+bool is_imported(std::string_view extension);
+
+/// Has the program exemplar-import read a file with the Open Asset Import Library (FBX, COLLADA, 3MF, 3DS), and returns
+/// what it wrote. The program lies beside this one, in the folder above, or in PATH. It bounds its memory and processor
+/// time, and is ended after five times as long or if it writes far more than such a file holds. Throws MeshError naming
+/// `path` if the file cannot be read, if the process crashed or met a bound, and if there is no such program (Exemplar
+/// was built without the library).
+std::string run_import(const std::filesystem::path& path, ImportContent wanted);
+
+/// Takes the lines of warnings from the front of what exemplar-import wrote.
+std::vector<std::string> take_import_warnings(std::string_view& output);
+
+/// Reads what exemplar-import wrote of the file `name` as a still. Vertices at equal positions are joined. The output
+/// is checked like a file from elsewhere. Throws MeshError that begins with `name`.
+MeshFile mesh_of_import(std::string_view output, const std::string& name);
 
 }  // namespace exemplar::mesh_io

@@ -97,7 +97,7 @@ void require_promises(const MeshFile& file) {
 void require_promises(const Animation& animation) {
     require_faces(animation.rest);
     require(!animation.rest.faces.empty(), "a surface has faces");
-    require_rig(animation.rig, animation.rest.vertex_count());
+    if (animation.has_rig()) require_rig(animation.rig, animation.rest.vertex_count());
     for (const std::uint32_t v : animation.vertex_of_source)
         require(v < animation.rest.vertex_count(), "vertices of the file are vertices");
     for (const std::string& warning : animation.warnings) require_readable(warning);

@@ -27,6 +27,7 @@
 #include "host/labeling/inference/model.h"
 #include "host/lines/strokes/style.h"
 #include "host/mesh/io/io_formats.h"
+#include "host/mesh/io/io_import.h"
 #include "host/mesh/io/io_text.h"
 #include "tests/fuzz/support/promises.h"
 #include "tests/support/mesh_files.h"
@@ -43,6 +44,9 @@ constexpr MemoryBound k_gltf_bound{640 * 1024 * 1024, 1024};
 
 /// Frames of clips between two keys cost next to nothing as well.
 constexpr MemoryBound k_animation_bound{800 * 1024 * 1024, 4096};
+
+/// exemplar-import may write 256 MiB for any file, and a still may take some times as much.
+constexpr MemoryBound k_import_bound{std::size_t{2} << 30, 4096};
 
 /// Where files are kept that a reader or writer wants to have a path; goes away with the program. In memory where that
 /// is possible, as a disk would take most of the time. Holds what a glTF file or a list may name.
@@ -426,7 +430,44 @@ bool reads_style(std::string_view content) {
     return true;
 }
 
-constexpr std::array<Reader, 17> k_readers{{{"off", reads_off},
+/// Reads what exemplar-import wrote, damaged by the file that it read.
+bool reads_import_output(std::string_view content) {
+    std::string_view scene = content;
+    mesh_io::take_import_warnings(scene);
+    if (!scene.empty() && !scene.starts_with("glTF")) {
+        MeshFile file;
+        return reads_mesh("x.fbx", content, k_usual_bound, file, mesh_io::mesh_of_import);
+    }
+    Animation animation;
+    const auto read = [&] {
+        animation = animation_io::animation_of_import(content, "x.fbx", {});
+        check_animation(animation);
+    };
+    if (!accepts<MeshError>("x.fbx", content.size(), k_animation_bound, read)) return false;
+    require_promises(animation);
+    return true;
+}
+
+std::string_view imported_extension_of(std::string_view content) {
+    if (content.starts_with("MM")) return ".3ds";
+    if (content.starts_with("PK")) return ".3mf";
+    return content.substr(0, 64).find("FBX") != content.npos ? ".fbx" : ".dae";
+}
+
+/// Reads a file by exemplar-import, as a mesh and as an animation.
+bool reads_import(std::string_view content) {
+    const fs::path path = scratch_file("x" + std::string(imported_extension_of(content)), content);
+    MeshFile file;
+    const auto read_still = [&] { file = read_mesh(path); };
+    if (!accepts<MeshError>(path.string(), content.size(), k_import_bound, read_still)) return false;
+    require_promises(file);
+    Animation animation;
+    const auto read_moving = [&] { animation = read_animation(path); };
+    if (accepts<MeshError>(path.string(), content.size(), k_import_bound, read_moving)) require_promises(animation);
+    return true;
+}
+
+constexpr std::array<Reader, 19> k_readers{{{"off", reads_off},
                                             {"obj", reads_obj},
                                             {"ply", reads_ply},
                                             {"stl", reads_stl},
@@ -442,7 +483,9 @@ constexpr std::array<Reader, 17> k_readers{{{"off", reads_off},
                                             {"list", reads_list},
                                             {"shard", reads_shard},
                                             {"record", reads_record},
-                                            {"style", reads_style}}};
+                                            {"style", reads_style},
+                                            {"import_output", reads_import_output},
+                                            {"import", reads_import, true}}};
 
 }  // namespace
 

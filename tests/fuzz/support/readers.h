@@ -11,6 +11,7 @@ struct Reader {
     /// Reads the content of a file; throws BrokenPromise, or what the reader throws though it should not. Returns
     /// whether the reader accepted the content.
     bool (*keeps_promises)(std::string_view content);
+    bool starts_process = false;  ///< whether it needs exemplar-import, and takes 50 ms for a file
 };
 
 std::span<const Reader> readers();

@@ -42,7 +42,7 @@ constexpr std::uint64_t k_megabyte = std::uint64_t{1} << 20;
 /// Bounds memory by 2 GB and 200 times the file, time by a minute and a second for each megabyte.
 void bound_this_process(std::uint64_t file_bytes) {
     const rlim_t seconds = 60 + file_bytes / k_megabyte;
-    const rlimit memory{2048 * k_megabyte + 200 * file_bytes, 2048 * k_megabyte + 200 * file_bytes};
+    [[maybe_unused]] const rlimit memory{2048 * k_megabyte + 200 * file_bytes, 2048 * k_megabyte + 200 * file_bytes};
     const rlimit time{seconds, seconds + 1}, core{0, 0};
 #ifndef EXEMPLAR_ADDRESS_SANITIZER  // which reserves far more
     setrlimit(RLIMIT_AS, &memory);

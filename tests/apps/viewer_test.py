@@ -107,6 +107,12 @@ class Headless(Viewer):
         for picture in (left, half[2]):  # the model also has its own unit of smoothing
             self.assertLess(sum(abs(a - b) for a, b in zip(picture, right)) / 30000, 3)
 
+    def test_says_that_the_device_measures_otherwise_than_a_robust_model(self):
+        self.call("curvature", "train", "figure_001.glb", "--out", "r.safetensors", "--robust", "cauchy", "--augment",
+                  "10")
+        shown = self.view("figure_001.glb", "--model", "r.safetensors", "--headless", "--frames", "1", "--size", "64x64")
+        self.assertIn("r.safetensors was trained with --robust", shown.stderr)
+
     def test_lines_and_styles_are_drawn(self):
         arguments = ["figure_001.glb", "--size", "200x150", "--first-frame", "3"]
         none = self.picture(*arguments, "--lines", "none", "--light", "none")

@@ -7,9 +7,11 @@
 #include <tuple>
 
 #include "apps/bench/kernels/surfaces.h"
+#include "embedded/curvature_normals_comp.h"
 #include "embedded/lines_apparent_ridges_comp.h"
 #include "embedded/lines_count_comp.h"
 #include "embedded/lines_fields_comp.h"
+#include "embedded/lines_gather_comp.h"
 #include "embedded/lines_jump_comp.h"
 #include "embedded/lines_links_comp.h"
 #include "embedded/lines_nodes_comp.h"
@@ -24,6 +26,7 @@
 #include "embedded/lines_visibility_comp.h"
 #include "embedded/lines_votes_comp.h"
 #include "embedded/lines_write_traces_comp.h"
+#include "gpu/lines/cut_surface.h"
 #include "gpu/lines/line_renderer.h"
 #include "gpu/lines/segment_records.h"
 #include "host/lines/extraction/face_neighbors.h"
@@ -273,10 +276,61 @@ std::map<std::string, Work> LineDrawing::work() const {
             {"lines/write_traces.comp", of(points, 128 + 16, 30)}};
 }
 
+// Every fourth vertex is cut into two.
+SplitSurface split_of(const TriangleMesh& mesh) {
+    SplitSurface split{mesh.faces, {}};
+    const auto vertices = static_cast<std::uint32_t>(mesh.vertex_count());
+    for (std::uint32_t v = 0; v < vertices; ++v) split.source.push_back(v);
+    for (std::uint32_t v = 0; v < vertices; v += 4) split.source.push_back(v);
+    return split;
+}
+
+struct CuttingOpen {
+    CuttingOpen(Device& device, Profiler& profiler, std::size_t vertices)
+        : torus(device, vertices),
+          split(split_of(torus.mesh)),
+          surface(device, torus.mesh),
+          stream(device, &profiler),
+          cut(surface, split, {}) {}
+    void run() {
+        cut.record(stream, torus.snapshot());
+        stream.finish();
+    }
+    std::vector<Difference> differences() const {
+        std::vector<Vec3> directions;
+        for (const std::uint32_t v : split.source) directions.push_back(torus.curvature.e1[v]);
+        const GpuCurvedSurface device = cut.snapshot();
+        return {{"positions",
+                 largest_difference(flattened(vectors_of(device.vertices), 1),
+                                    flattened(split.positions(torus.mesh.vertices), 1)),
+                 0},
+                {"principal directions",
+                 largest_difference(flattened(vectors_of(*device.first), 1), flattened(directions, 1)), 0}};
+    }
+    // Four vectors are gathered per vertex. Normals read a ring of six faces, as in estimated curvature.
+    std::map<std::string, Work> work() const {
+        const auto vertices = static_cast<double>(split.source.size());
+        return {{"lines/gather.comp", {.bytes = vertices * 4 * (4 + 16 + 16), .operations = vertices * 4}},
+                {"curvature/normals.comp", {.bytes = vertices * 68, .operations = vertices * 360}}};
+    }
+
+    CurvedTorus torus;
+    SplitSurface split;
+    GpuSurface surface;
+    Stream stream;
+    GpuCutSurface cut;
+};
+
 }  // namespace
 
 std::vector<OperationKind> line_operations() {
-    return {{"line drawing",
+    return {{"cutting open along edges",
+             "vertices",
+             {5'000, 20'000, 100'000},
+             {&shaders::lines_gather_comp, &shaders::curvature_normals_comp},
+             {},
+             prepare_as<CuttingOpen>},
+            {"line drawing",
              "vertices",
              {5'000, 20'000, 100'000},
              {&shaders::lines_view_curvature_comp, &shaders::lines_fields_comp, &shaders::lines_apparent_ridges_comp,

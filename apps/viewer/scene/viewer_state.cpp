@@ -81,6 +81,10 @@ void ViewerState::open_model(const fs::path& path) {
     if (!document_)
         throw UsageError(fmt::format("{} is a model: open the animation first that it was learned on", path.string()));
     require_compatible(*model, document_->animation);
+    if (model->truth.robust != RobustEstimator::none)
+        messages.remark(fmt::format(
+            "{} was trained with --robust; measured curvature beside it is not, as the device does not measure so",
+            path.filename().string()));
     set_model(std::move(model), path.filename().string());
 }
 

@@ -225,6 +225,7 @@ inline std::pair<std::string, std::string> fbx_motion(int target, const std::str
                                                       const std::string& channel, const std::vector<double>& times,
                                                       const std::vector<double>& values) {
     std::vector<std::int64_t> ticks;
+    ticks.reserve(times.size());
     for (const double time : times) ticks.push_back(static_cast<std::int64_t>(time * 46186158000.0));
     const std::string objects = fmt::format(
         "\tAnimationStack: 50, \"AnimStack::Take\", \"\" {{\n\t\tProperties70:  {{\n\t\t\tP: \"LocalStop\", \"KTime\", "

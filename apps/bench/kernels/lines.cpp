@@ -298,6 +298,7 @@ struct CuttingOpen {
     }
     std::vector<Difference> differences() const {
         std::vector<Vec3> directions;
+        directions.reserve(split.source.size());
         for (const std::uint32_t v : split.source) directions.push_back(torus.curvature.e1[v]);
         const GpuCurvedSurface device = cut.snapshot();
         return {{"positions",

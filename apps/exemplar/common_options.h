@@ -14,8 +14,7 @@ inline constexpr const char* k_mesh_argument =
     "mesh: OFF, OBJ, PLY, STL, glTF, and where exemplar-import is installed FBX, COLLADA, 3MF, 3DS";
 inline constexpr const char* k_surface_argument =
     "mesh (OFF, OBJ, PLY, STL, glTF, and where exemplar-import is installed FBX, COLLADA, 3MF, 3DS) or animation "
-    "(glTF, "
-    "FBX, COLLADA, folder)";
+    "(glTF, FBX, COLLADA, folder)";
 inline constexpr const char* k_animation_argument =
     "animation: glTF file, FBX or COLLADA file where exemplar-import is installed, or a folder of meshes";
 inline constexpr const char* k_fps_option = "frames a second that clips of files, not of folders, are sampled at";

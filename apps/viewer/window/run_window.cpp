@@ -46,7 +46,7 @@ std::vector<std::filesystem::path> free_names(const std::string& stem, const std
     }
 }
 
-/// What is shown cannot be drawn, as it cannot be measured or takes more memory than the device has.
+/// The open document cannot be drawn: its curvature cannot be measured, or the device has too little memory for it.
 struct UndrawableError : Error {
     using Error::Error;
 };

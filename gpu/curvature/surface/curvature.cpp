@@ -102,7 +102,9 @@ void GpuCurvature::Diffusion::record(Stream& stream, const Kernel& kernel, const
 GpuCurvature::GpuCurvature(const GpuSurface& surface, const CurvatureOptions& options)
     : surface_(surface), normals_(surface), first_(attribute(surface)), second_(attribute(surface)) {
     const TriangleMesh& rest = surface.rest();
-    const double edge = CurvatureEstimator(rest.faces, rest.vertex_count()).median_edge_length(rest.vertices);
+    const double edge = options.smoothing > 0
+                            ? CurvatureEstimator(rest.faces, rest.vertex_count()).median_edge_length(rest.vertices)
+                            : 0;
     const double width = smoothing_width(options, edge);
     const bool smoothed = width > 0 && std::isfinite(width);
     if (smoothed) diffusion_.emplace(surface, width, enough_near_vertices(width / edge), options.derivatives);

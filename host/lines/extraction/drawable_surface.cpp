@@ -64,7 +64,8 @@ LineSurface DrawableSurface::surface() const {
 }
 
 float DrawableSurface::feature_size() const {
-    // Where curvature is that of the whole surface, so is its unit: cutting changes neither.
+    // The vertices that were measured: of the cut surface all of them, or the first ones, which are those of the whole
+    // surface.
     const std::size_t count = measured_->k1.size();
     return exemplar::feature_size(vertices_.first(count), *measured_);
 }

@@ -47,10 +47,10 @@ class DrawableSurface {
     SharpEdges edges_;
     std::optional<CurvatureEstimator> estimator_;
     const VertexCurvature* measured_ = nullptr;
-    // What is drawn.
+    // The last shape as surface() returns it.
     std::span<const Vec3> vertices_, normals_;
     const VertexCurvature* curvature_ = nullptr;
-    // Of the surface after cutting.
+    // Data of the last shape after cutting, if the surface has sharp edges.
     TriangleMesh cut_;
     std::vector<Vec3> cut_normals_;
     VertexCurvature cut_curvature_;

@@ -15,9 +15,9 @@ enum class Nearness { outside, margin, inside };
 
 /// Floods a surface from one vertex after another, over vertices that are near.
 ///
-/// Where some parts of a mesh are much finer than others, or a vertex has very many neighbors, a ball of the usual size
-/// holds a large part of all vertices. So that the work stays proportional to the mesh, a flood ends with the ring in
-/// which it has counted enough vertices, and does not pass over vertices with more neighbors than that.
+/// A ball of the usual size may hold a large part of all vertices: where a part of the mesh is much finer than the
+/// rest, and where a vertex has very many neighbors. So that the work stays proportional to the mesh, a flood ends with
+/// the ring in which it has counted enough vertices, and does not pass over vertices with more neighbors than that.
 class NearFlood {
   public:
     /// `enough`: number of vertices after which a flood ends. Neighbors must outlive this.

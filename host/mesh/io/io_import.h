@@ -9,8 +9,11 @@
 
 namespace exemplar::mesh_io {
 
-/// What exemplar-import is asked for: the meshes at rest (as PLY), or the scene and what moves it (as binary glTF).
-enum class ImportContent { still, animation };
+/// The output of exemplar-import.
+enum class ImportContent {
+    still,      ///< the meshes at rest, as PLY
+    animation,  ///< the scene with its skins, morph targets and animations, as binary glTF
+};
 
 /// Returns whether exemplar-import reads files with this extension (lower case, with dot).
 bool is_imported(std::string_view extension);

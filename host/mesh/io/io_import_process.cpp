@@ -36,7 +36,8 @@ std::string import_program() {
     return k_import_program;
 }
 
-/// What this process grants the other one. That bounds itself more tightly, unless the file has damaged it.
+/// The time and the output at which this process ends exemplar-import. They only matter if a file has taken control of
+/// it, since it limits itself to less.
 struct ImportBounds {
     ImportClock::time_point deadline;
     std::uint64_t bytes;

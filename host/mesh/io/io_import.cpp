@@ -37,8 +37,8 @@ std::vector<std::string> take_import_warnings(std::string_view& output) {
     std::vector<std::string> warnings;
     while (output.starts_with(k_begin)) {
         const std::size_t end = std::min(output.find('\n'), output.size());
-        if (warnings.size() < k_most)
-            warnings.push_back(printable(output.substr(k_begin.size(), end - k_begin.size()), 300));
+        const std::string_view text = output.substr(k_begin.size(), end - k_begin.size());
+        if (!text.empty() && warnings.size() < k_most) warnings.push_back(printable(text, 300));
         output.remove_prefix(std::min(end + 1, output.size()));
     }
     return warnings;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -24,6 +26,16 @@ bool is_imported(std::string_view extension);
 /// `path` if the file cannot be read, if the process crashed or met a bound, and if there is no such program (Exemplar
 /// was built without the library).
 std::string run_import(const std::filesystem::path& path, ImportContent wanted);
+
+/// When run_import() ends the program.
+struct ImportBounds {
+    std::chrono::milliseconds time;  ///< from its start
+    std::uint64_t bytes;             ///< of output
+};
+
+/// As above, with another `program` (a path, or a name in PATH) and other bounds.
+std::string run_import(const std::filesystem::path& path, ImportContent wanted, const std::string& program,
+                       const ImportBounds& bounds);
 
 /// Takes the lines of warnings from the front of what exemplar-import wrote.
 std::vector<std::string> take_import_warnings(std::string_view& output);

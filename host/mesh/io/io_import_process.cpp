@@ -36,15 +36,12 @@ std::string import_program() {
     return k_import_program;
 }
 
-/// The time and the output at which this process ends exemplar-import. They only matter if a file has taken control of
-/// it, since it limits itself to less.
-struct ImportBounds {
-    ImportClock::time_point deadline;
-    std::uint64_t bytes;
-    explicit ImportBounds(std::uint64_t file_bytes)
-        : deadline(ImportClock::now() + std::chrono::seconds(5 * (60 + file_bytes / k_megabyte))),
-          bytes(256 * k_megabyte + 200 * file_bytes) {}
-};
+/// The bounds of exemplar-import. They only matter if a file has taken control of it, since it limits itself to less.
+ImportBounds usual_bounds(const fs::path& path) {
+    std::error_code unknown_size;
+    const std::uint64_t size = fs::file_size(path, unknown_size), bytes = unknown_size ? 0 : size;
+    return {std::chrono::seconds(5 * (60 + bytes / k_megabyte)), 256 * k_megabyte + 200 * bytes};
+}
 
 struct ImportRun {
     int not_started = 0;  ///< errno
@@ -54,15 +51,15 @@ struct ImportRun {
 };
 
 /// Reads until the other end is closed or a bound is met.
-void read_until_closed(int end, const ImportBounds& bounds, ImportRun& run) {
+void read_until_closed(int end, ImportClock::time_point deadline, std::uint64_t most_bytes, ImportRun& run) {
     std::array<char, 65536> bytes{};
     for (;;) {
-        const auto left = std::chrono::ceil<std::chrono::milliseconds>(bounds.deadline - ImportClock::now()).count();
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - ImportClock::now()).count();
         pollfd readable{.fd = end, .events = POLLIN, .revents = 0};
         const int found = left > 0 ? poll(&readable, 1, static_cast<int>(std::min<std::int64_t>(left, 1 << 30))) : 0;
         if (found < 0 && errno == EINTR) continue;
         run.is_late = found == 0;
-        run.is_too_large = run.output.size() > bounds.bytes;
+        run.is_too_large = run.output.size() > most_bytes;
         if (found <= 0 || run.is_too_large) return;
         const ssize_t got = read(end, bytes.data(), bytes.size());
         if (got > 0) run.output.append(bytes.data(), static_cast<std::size_t>(got));
@@ -71,47 +68,46 @@ void read_until_closed(int end, const ImportBounds& bounds, ImportRun& run) {
 }
 
 /// Waits until the process ends, and ends it at the deadline.
-void await_end(pid_t child, const ImportBounds& bounds, ImportRun& run) {
+void await_end(pid_t child, ImportClock::time_point deadline, ImportRun& run) {
     for (;;) {
         if (run.is_late || run.is_too_large) kill(child, SIGKILL);
         const pid_t ended = waitpid(child, &run.status, WNOHANG);
         if (ended == child || (ended < 0 && errno != EINTR)) return;
-        run.is_late = run.is_late || ImportClock::now() > bounds.deadline;
+        run.is_late = run.is_late || ImportClock::now() > deadline;
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
 }
 
 /// Starts the program with its output in `end`; returns errno.
-int start_import(const fs::path& path, ImportContent wanted, int end, pid_t& child) {
+int start_import(std::string program, const fs::path& path, ImportContent wanted, int end, pid_t& child) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     posix_spawn_file_actions_adddup2(&actions, end, STDOUT_FILENO);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    std::string name = import_program(), option = "--animation", file = fs::absolute(path).string();
-    std::array<char*, 4> arguments{name.data(), option.data(), file.data(), nullptr};
-    if (wanted == ImportContent::still) arguments = {name.data(), file.data(), nullptr, nullptr};
-    const int error = posix_spawnp(&child, name.c_str(), &actions, nullptr, arguments.data(), environ);
+    std::string option = "--animation", file = fs::absolute(path).string();
+    std::array<char*, 4> arguments{program.data(), option.data(), file.data(), nullptr};
+    if (wanted == ImportContent::still) arguments = {program.data(), file.data(), nullptr, nullptr};
+    const int error = posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     return error;
 }
 
-ImportRun run_program(const fs::path& path, ImportContent wanted) {
+ImportRun run_program(const std::string& program, const fs::path& path, ImportContent wanted,
+                      const ImportBounds& bounds) {
     ImportRun run;
-    std::error_code unknown_size;
-    const std::uint64_t file_bytes = fs::file_size(path, unknown_size);
-    const ImportBounds bounds(unknown_size ? 0 : file_bytes);
+    const ImportClock::time_point deadline = ImportClock::now() + bounds.time;
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) {
         run.not_started = errno;
         return run;
     }
     pid_t child = 0;
-    run.not_started = start_import(path, wanted, ends[1], child);
+    run.not_started = start_import(program, path, wanted, ends[1], child);
     close(ends[1]);
-    if (!run.not_started) read_until_closed(ends[0], bounds, run);
+    if (!run.not_started) read_until_closed(ends[0], deadline, bounds.bytes, run);
     close(ends[0]);
-    if (!run.not_started) await_end(child, bounds, run);
+    if (!run.not_started) await_end(child, deadline, run);
     return run;
 }
 
@@ -137,7 +133,12 @@ void check_run(const ImportRun& run, const fs::path& path) {
 }  // namespace
 
 std::string run_import(const fs::path& path, ImportContent wanted) {
-    ImportRun run = run_program(path, wanted);
+    return run_import(path, wanted, import_program(), usual_bounds(path));
+}
+
+std::string run_import(const fs::path& path, ImportContent wanted, const std::string& program,
+                       const ImportBounds& bounds) {
+    ImportRun run = run_program(program, path, wanted, bounds);
     check_run(run, path);
     return std::move(run.output);
 }

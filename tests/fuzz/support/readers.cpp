@@ -29,6 +29,7 @@
 #include "host/mesh/io/io_formats.h"
 #include "host/mesh/io/io_import.h"
 #include "host/mesh/io/io_text.h"
+#include "tests/fuzz/support/compressed.h"
 #include "tests/fuzz/support/promises.h"
 #include "tests/support/mesh_files.h"
 
@@ -178,6 +179,14 @@ bool reads_gltf(std::string_view content) {
     require(labeled_triangles(file) == labeled_triangles(read(read_file(path), "again.glb")),
             "written triangles and labels are read again");
     return true;
+}
+
+bool reads_draco(std::string_view content) {
+    return reads_gltf(glb_of_draco(content));
+}
+
+bool reads_meshopt(std::string_view content) {
+    return reads_gltf(glb_of_meshopt(content));
 }
 
 Animation read_animated_gltf(std::string_view content, const std::string& name) {
@@ -467,11 +476,13 @@ bool reads_import(std::string_view content) {
     return true;
 }
 
-constexpr std::array<Reader, 19> k_readers{{{"off", reads_off},
+constexpr std::array<Reader, 21> k_readers{{{"off", reads_off},
                                             {"obj", reads_obj},
                                             {"ply", reads_ply},
                                             {"stl", reads_stl},
                                             {"gltf", reads_gltf},
+                                            {"draco", reads_draco},
+                                            {"meshopt", reads_meshopt},
                                             {"animation", reads_animation},
                                             {"labels", reads_labels},
                                             {"seg", reads_seg},

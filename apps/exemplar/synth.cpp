@@ -1,8 +1,9 @@
-// exemplar synth: generated labeled shapes and animations.
+// exemplar synth: generated labeled shapes, animations, and shapes that cost much.
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/commands.h"
@@ -14,6 +15,7 @@
 #include "host/core/text.h"
 #include "host/mesh/io/io.h"
 #include "host/synth/animations/animations.h"
+#include "host/synth/arrangements/arrangements.h"
 #include "host/synth/shapes/shapes.h"
 
 namespace exemplar {
@@ -32,14 +34,22 @@ bool is_one_of(std::span<const std::string_view> names, std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-std::vector<std::string> all_kinds() {
-    const auto shapes = synth_kinds(), animations = synth_animation_kinds();
-    std::vector<std::string> names(shapes.begin(), shapes.end());
-    names.insert(names.end(), animations.begin(), animations.end());
+std::vector<std::string_view> arrangement_names() {
+    std::vector<std::string_view> names;
+    for (const Arrangement& arrangement : arrangements()) names.push_back(arrangement.name);
     return names;
 }
 
-/// Throws UsageError for a kind that is neither of shapes nor of animations.
+std::vector<std::string> all_kinds() {
+    std::vector<std::string> names;
+    const auto add = [&](const auto& kinds) { names.insert(names.end(), kinds.begin(), kinds.end()); };
+    add(synth_kinds());
+    add(synth_animation_kinds());
+    add(arrangement_names());
+    return names;
+}
+
+/// Throws UsageError for an unknown kind.
 void require_kind(const std::string& kind) {
     const std::vector<std::string> names = all_kinds();
     if (std::ranges::find(names, kind) != names.end()) return;
@@ -47,17 +57,19 @@ void require_kind(const std::string& kind) {
         fmt::format("unknown kind '{}'{}; the kinds are {}", kind, suggestion(kind, names), fmt::join(names, ", ")));
 }
 
-/// Throws UsageError for options of shapes given for animations, or the reverse.
+/// Throws UsageError for an option that says nothing about this kind.
 void require_fitting_options(const Command& command, const std::string& kind) {
-    const bool is_animation = is_one_of(synth_animation_kinds(), kind);
-    const auto refuse = [&](const char* option) {
-        if (command.count(option) > 0)
-            throw UsageError(fmt::format("{} is not for {}: '{}' is {}", option, is_animation ? "animations" : "shapes",
-                                         kind, is_animation ? "an animation" : "a shape"));
+    const auto refuse = [&](std::span<const char* const> given, std::string_view kinds, std::string_view what) {
+        for (const char* option : given)
+            if (command.count(option) > 0)
+                throw UsageError(fmt::format("{} is not for {}: '{}' is {}", option, kinds, kind, what));
     };
-    if (is_animation) refuse("--faces");
-    if (is_animation) return;
-    for (const char* option : {"--vertices", "--frames", "--shape-seed"}) refuse(option);
+    constexpr std::array k_of_shapes{"--faces"};
+    constexpr std::array k_of_animations{"--vertices", "--frames", "--shape-seed"};
+    constexpr std::array k_of_random_shapes{"--count", "--seed"};
+    if (is_one_of(synth_animation_kinds(), kind)) return refuse(k_of_shapes, "animations", "an animation");
+    refuse(k_of_animations, "shapes", "a shape");
+    if (is_one_of(arrangement_names(), kind)) refuse(k_of_random_shapes, "shapes that are always the same", "one");
 }
 
 nlohmann::json write_shape(const SynthOptions& options, std::uint64_t seed) {
@@ -66,6 +78,14 @@ nlohmann::json write_shape(const SynthOptions& options, std::uint64_t seed) {
     write_labels_txt(options.out / (name + "_labels.txt"), shape.labels);
     write_off(options.out / (name + ".off"), shape.mesh);
     return {{"name", name}, {"faces", shape.mesh.face_count()}, {"vertices", shape.mesh.vertex_count()}};
+}
+
+/// Writes a shape that costs much; the seed plays no part.
+nlohmann::json write_arrangement(const SynthOptions& options, std::uint64_t /*seed*/) {
+    const TriangleMesh mesh = arrangement_named(options.kind).make(options.faces);
+    const std::string name = fmt::format("{}_{}", options.kind, options.faces);
+    write_off(options.out / (name + ".off"), mesh);
+    return {{"name", name}, {"faces", mesh.face_count()}, {"vertices", mesh.vertex_count()}};
 }
 
 nlohmann::json write_animation(const SynthOptions& options, std::uint64_t seed) {
@@ -87,11 +107,14 @@ void run_synth(const SynthOptions& options) {
     const auto limits = apply_common_options(options.common);
     require_output_folder(options.out);
     const bool is_animation = is_one_of(synth_animation_kinds(), options.kind);
+    const auto write = is_animation                                   ? write_animation
+                       : is_one_of(arrangement_names(), options.kind) ? write_arrangement
+                                                                      : write_shape;
     Progress progress("generating " + options.kind, options.count);
     nlohmann::json made = nlohmann::json::array();
     for (std::size_t i = 0; i < options.count; ++i) {
         check_interrupt();
-        made.push_back((is_animation ? write_animation : write_shape)(options, options.seed + i));
+        made.push_back(write(options, options.seed + i));
         progress.advance();
     }
     progress.finish();
@@ -119,14 +142,16 @@ void add_animation_options(Command& command, AnimationOptions& options) {
 
 void add_synth_command(Command& app) {
     auto options = std::make_shared<SynthOptions>();
-    Command* command = app.add_subcommand(
-        "synth",
-        "Generates labeled shapes (NAME.off and NAME_labels.txt) and animations (NAME.glb, or a folder of PLY)");
-    command->footer(
-        fmt::format("Kinds of shapes: {}\nKinds of animations: {}\n\nExamples:\n"
-                    "  exemplar synth human --count 8 --seed 1 --out shapes\n"
-                    "  exemplar synth figure --vertices 20000 --seed 1 --out animations",
-                    fmt::join(synth_kinds(), " "), fmt::join(synth_animation_kinds(), " ")));
+    Command* command = app.add_subcommand("synth",
+                                          "Generates labeled shapes (NAME.off and NAME_labels.txt), animations "
+                                          "(NAME.glb, or a folder of PLY), and shapes "
+                                          "whose features cost much (NAME.off)");
+    command->footer(fmt::format(
+        "Kinds of shapes: {}\nKinds of animations: {}\nKinds of shapes that cost much, without labels: {}\n\n"
+        "Examples:\n"
+        "  exemplar synth human --count 8 --seed 1 --out shapes\n"
+        "  exemplar synth figure --vertices 20000 --seed 1 --out animations",
+        fmt::join(synth_kinds(), " "), fmt::join(synth_animation_kinds(), " "), fmt::join(arrangement_names(), " ")));
     command->add_option("KIND", options->kind, "what to generate")
         ->required()
         ->check(completion_words(all_kinds()))

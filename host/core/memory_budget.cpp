@@ -86,6 +86,13 @@ std::size_t usable_memory() {
     return std::min(bytes, memory_limit(groups, "/sys/fs/cgroup"));
 }
 
+std::size_t resident_memory() {
+    std::ifstream file("/proc/self/statm");
+    std::size_t total = 0, resident = 0;
+    file >> total >> resident;
+    return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
 std::size_t memory_limit(const std::string& groups, const fs::path& root) {
     std::size_t least =
         std::min(min_along_path(root, {}, "memory.max"), min_along_path(root / "memory", {}, "memory.limit_in_bytes"));

@@ -56,6 +56,9 @@ class MemoryBudget {
 /// if that is lower.
 std::size_t usable_memory();
 
+/// Returns the bytes of memory that this process has now (on Linux; 0 elsewhere).
+std::size_t resident_memory();
+
 /// Returns the lowest memory limit in bytes of a process's control groups and their ancestors; the largest size_t if
 /// none sets a limit. `groups` is the text of /proc/PID/cgroup, `root` the folder where control groups are mounted.
 /// Reads memory.max (version 2) and memory.limit_in_bytes (version 1); groups that are not visible from here set no

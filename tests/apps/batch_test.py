@@ -259,6 +259,19 @@ class BatchLabelingTest(BatchTest):
         self.batch("shapes", "disk/out")
         self.assert_all_labeled("disk/out", self.SHAPES)
 
+    def test_memory_is_kept_whatever_the_shapes_are(self):
+        for kind in ("floor", "cone", "slats", "spikes", "graded", "pieces", "strip"):
+            self.call("synth", kind, "--faces", "5000", "--out", "costly")
+        process = self.start("label", "batch", "costly", "--model", "cup.safetensors", "--out", "bounded",
+                             "--memory", "0.25", "--quiet")
+        _, status, used = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        with process.stdout, process.stderr:
+            self.assertEqual(process.returncode, 0, process.stderr.read())
+        self.assertEqual(len(self.records("bounded")), 7)
+        # Estimates may err by a tenth or two. Two shapes at once, or what one leaves behind, take 0.4 GB.
+        self.assertLess(used.ru_maxrss * 1024, 0.31e9)
+
     def test_a_model_for_each_category(self):
         (self.folder / "models").mkdir()
         shutil.copy(self.folder / "cup.safetensors", self.folder / "models" / "Cup.safetensors")

@@ -11,6 +11,7 @@
 
 #include "host/core/device_memory_error.h"
 #include "host/core/errors.h"
+#include "host/core/freed_memory.h"
 #include "host/core/stopwatch.h"
 #include "host/data/catalog/catalog_run.h"
 #include "host/data/catalog/shape_scan.h"
@@ -23,13 +24,18 @@ namespace {
 using Item = std::unique_ptr<BatchShape>;
 
 /// Memory estimates, in bytes. Per face of the working mesh, while its features are computed:
-constexpr std::size_t k_bytes_per_face = 24'000;
+constexpr std::size_t k_bytes_per_face = 28'000;
 /// Per face and sample beyond the usual number: a distance and its bin.
 constexpr std::size_t k_usual_samples = 1000, k_bytes_per_sample = 5;
 /// Per face of the original mesh, while it is simplified.
 constexpr std::size_t k_bytes_per_original_face = 160;
 /// Per shape, at least.
 constexpr std::size_t k_bytes_per_shape = 4 << 20;
+
+/// What is left for shapes beside the models and all else that the process has already.
+std::size_t memory_for_shapes(std::size_t memory) {
+    return memory - std::min(memory, resident_memory());
+}
 
 std::size_t bytes_of(const MeshFeatures& features) {
     return (features.unary.values.capacity() + features.pairwise.values.capacity()) * sizeof(float) +
@@ -43,7 +49,7 @@ class Batch {
           backend_(backend),
           options_(options),
           max_memory_(options.memory),
-          budget_(max_memory_),
+          budget_(memory_for_shapes(max_memory_)),
           threads_(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)),
           arena_(static_cast<int>(threads_)) {}
 
@@ -159,6 +165,8 @@ class Batch {
         choose_model(item);
         item.memory.resize(k_bytes_per_shape + bytes_of(item.prepared.features) + memory_of_scores(item) +
                            100 * item.file.mesh.face_count());
+        // Else what was freed is held beside the next shape's.
+        if (memory_for(item.file.mesh.face_count(), 0) > max_memory_ / 16) give_back_freed_memory();
         item.record.seconds["features"] = watch.wall();
     }
     /// Chooses the model by the category that the user gave, otherwise by the recognized one.

@@ -142,7 +142,7 @@ class Completion(PagesTest):
         self.assertEqual(self.bash("exemplar", "la"), ["label"])
         self.assertEqual(self.bash("exemplar", "label", "e"), ["evaluate"])
         self.assertEqual(self.bash("exemplar", "label", "train", "--st"), ["--stages"])
-        self.assertEqual(self.bash("exemplar", "synth", "f"), ["face", "figure", "flag", "fourleg"])
+        self.assertEqual(self.bash("exemplar", "synth", "f"), ["face", "figure", "flag", "floor", "fourleg"])
         self.assertEqual(self.bash("exemplar", "nonsense", ""), self.bash("exemplar", ""))
 
     def test_bash_offers_the_words_of_options(self):

@@ -4,6 +4,7 @@
 #include <limits>
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include "host/core/files.h"
 #include "host/core/memory_budget.h"
@@ -70,6 +71,14 @@ TEST_F(MemoryLimit, WhatIsNoNumberSetsNone) {
     put("damaged/memory.max", "many");
     put("empty/memory.max", "");
     EXPECT_EQ(memory_limit("0::/damaged\n0::/empty\nnonsense\n:\n", root_), k_invalid_index);
+}
+
+TEST(ResidentMemory, GrowsByWhatIsWrittenTo) {
+    const std::size_t before = resident_memory(), bytes = std::size_t{64} << 20;
+    ASSERT_GT(before, 0U);
+    const std::vector<char> block(bytes, 'x');
+    EXPECT_GT(resident_memory(), before + bytes / 2);
+    EXPECT_LT(resident_memory(), before + 4 * bytes) << "the block has " << block.size();
 }
 
 }  // namespace

@@ -40,12 +40,11 @@ std::string glb_of_draco(std::string_view content) {
 
 std::string glb_of_meshopt(std::string_view content) {
     constexpr std::array<std::string_view, 4> k_filters{"NONE", "EXPONENTIAL", "OCTAHEDRAL", "QUATERNION"};
-    const unsigned vertices = take_byte(content), triangles = take_byte(content);
-    const std::size_t split = std::min<std::size_t>(take_byte(content), content.size());
+    const unsigned vertices = take_byte(content), triangles = take_byte(content), length = take_byte(content);
     const unsigned how = take_byte(content), filter = how & 3U, index_size = how & 8U ? 4 : 2;
-    // The last two filters make four shorts of a position.
-    const bool shorts = filter >= 2;
-    const unsigned stride = shorts ? 8 : 12, packed_positions = static_cast<unsigned>(std::min(split, content.size()));
+    const bool shorts = filter >= 2;  // the last two filters make four shorts of a position
+    const unsigned stride = shorts ? 8 : 12;
+    const std::size_t packed_positions = std::min<std::size_t>(length, content.size());
     const std::size_t packed_indices = content.size() - packed_positions;
     const std::string json = fmt::format(
         "{{'asset':{{'version':'2.0'}},'extensionsRequired':['EXT_meshopt_compression','KHR_mesh_quantization'],"

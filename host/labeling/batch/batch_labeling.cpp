@@ -32,7 +32,7 @@ constexpr std::size_t k_bytes_per_original_face = 160;
 /// Per shape, at least.
 constexpr std::size_t k_bytes_per_shape = 4 << 20;
 
-/// What is left for shapes beside the models and all else that the process has already.
+/// Returns how much of `memory` the shapes may take. The process has taken the rest already, for models and libraries.
 std::size_t memory_for_shapes(std::size_t memory) {
     return memory - std::min(memory, resident_memory());
 }
@@ -165,7 +165,7 @@ class Batch {
         choose_model(item);
         item.memory.resize(k_bytes_per_shape + bytes_of(item.prepared.features) + memory_of_scores(item) +
                            100 * item.file.mesh.face_count());
-        // Else what was freed is held beside the next shape's.
+        // The C library would keep what was freed, beside what the next shape takes.
         if (memory_for(item.file.mesh.face_count(), 0) > max_memory_ / 16) give_back_freed_memory();
         item.record.seconds["features"] = watch.wall();
     }

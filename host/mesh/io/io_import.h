@@ -33,7 +33,8 @@ struct ImportBounds {
     std::uint64_t bytes;             ///< of output
 };
 
-/// As above, with another `program` (a path, or a name in PATH) and other bounds.
+/// Has `program` (a path, or a name in PATH) read the file in place of exemplar-import, within `bounds`. Returns and
+/// throws what the other run_import() does.
 std::string run_import(const std::filesystem::path& path, ImportContent wanted, const std::string& program,
                        const ImportBounds& bounds);
 

@@ -50,8 +50,9 @@ struct ImportRun {
     std::string output;
 };
 
-/// Reads until the other end is closed or a bound is met.
-void read_until_closed(int end, ImportClock::time_point deadline, std::uint64_t most_bytes, ImportRun& run) {
+/// Reads the pipe `end` into the run's output, until the program closes it, the deadline passes, or the output has more
+/// than `max_bytes`.
+void read_until_closed(int end, ImportClock::time_point deadline, std::uint64_t max_bytes, ImportRun& run) {
     std::array<char, 65536> bytes{};
     for (;;) {
         const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - ImportClock::now()).count();
@@ -59,7 +60,7 @@ void read_until_closed(int end, ImportClock::time_point deadline, std::uint64_t 
         const int found = left > 0 ? poll(&readable, 1, static_cast<int>(std::min<std::int64_t>(left, 1 << 30))) : 0;
         if (found < 0 && errno == EINTR) continue;
         run.is_late = found == 0;
-        run.is_too_large = run.output.size() > most_bytes;
+        run.is_too_large = run.output.size() > max_bytes;
         if (found <= 0 || run.is_too_large) return;
         const ssize_t got = read(end, bytes.data(), bytes.size());
         if (got > 0) run.output.append(bytes.data(), static_cast<std::size_t>(got));

@@ -1,4 +1,5 @@
-// What run_import() does with a program that a file has taken control of: scripts stand in for exemplar-import.
+// A hostile file might take control of exemplar-import. These tests run shell scripts in its place, which do not end,
+// write too much, or crash.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +25,7 @@ constexpr const char* k_sleep = "exec sleep 600";
 
 class ImportProcess : public testing::Test {
   protected:
-    /// What a shell script writes when it is taken for exemplar-import.
+    /// Runs a shell script in place of exemplar-import and returns what run_import() does.
     std::string output_of(const std::string& script, const ImportBounds& bounds,
                           ImportContent wanted = ImportContent::still) const {
         const std::filesystem::path program = folder_ / "program";

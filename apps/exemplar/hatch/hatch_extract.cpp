@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/hatch/hatch_reading.h"
 #include "apps/exemplar/hatch/hatch_scene.h"
@@ -21,17 +25,35 @@ struct ExtractArguments {
     CommonOptions common;
 };
 
+/// The drawing in light gray; the center line of each stroke over it in a color of its own, drawn outlines in black.
+Image traced_picture(const FloatImage& darkness, const StrokeMeasurements& m) {
+    constexpr std::array<std::array<std::uint8_t, 3>, 6> k_colors{
+        {{204, 0, 0}, {0, 102, 204}, {0, 140, 40}, {190, 100, 0}, {140, 0, 170}, {0, 140, 150}}};
+    Image image(m.width, m.height, 3);
+    for (std::size_t i = 0; i < m.size(); ++i) {
+        const float light = 1 - 0.4f * std::clamp(darkness.data[i], 0.0f, 1.0f);
+        std::array<std::uint8_t, 3> color{};
+        color.fill(static_cast<std::uint8_t>(std::lround(255 * light)));
+        if (m.outline[i]) color = {};
+        if (m.skeleton[i]) color = k_colors[static_cast<std::size_t>(m.stroke_id[i]) % k_colors.size()];
+        std::ranges::copy(color, image.data.begin() + static_cast<std::ptrdiff_t>(3 * i));
+    }
+    return image;
+}
+
 Image mask_picture(std::span<const std::uint8_t> mask, int width, int height) {
     Image image(width, height, 1);
     for (std::size_t i = 0; i < mask.size(); ++i) image.data[i] = mask[i] ? 0 : 255;
     return image;
 }
 
-nlohmann::json write_measurement_pictures(const fs::path& folder, const StrokeMeasurements& m) {
+nlohmann::json write_measurement_pictures(const fs::path& folder, const AlignedDrawing& drawing) {
+    const StrokeMeasurements& m = drawing.strokes;
     fs::create_directories(folder);
     const auto write = [&](const char* name, const Image& image) {
         write_png(folder / fmt::format("{}.png", name), image);
     };
+    write("overlay", traced_picture(drawing.darkness, m));
     write("skeleton", mask_picture(m.skeleton, m.width, m.height));
     write("intersections", mask_picture(m.intersection, m.width, m.height));
     write("boundaries", mask_picture(m.boundary, m.width, m.height));
@@ -54,8 +76,9 @@ void run_extract(const ExtractArguments& arguments) {
     require_input(arguments.drawing);
     require_output_folder(arguments.out);
     HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
-    const StrokeMeasurements measured = read_drawing(arguments.drawing, scene.pixels(), arguments.common.quiet);
-    const nlohmann::json ranges = write_measurement_pictures(arguments.out, measured);
+    const AlignedDrawing drawing = read_drawing(arguments.drawing, scene.pixels(), arguments.common.quiet);
+    const StrokeMeasurements& measured = drawing.strokes;
+    const nlohmann::json ranges = write_measurement_pictures(arguments.out, drawing);
     if (!arguments.common.quiet) {
         fmt::print("{}: strokes {:.1f} pixels thick, {:.1f} apart in the median; {}\n", arguments.out.string(),
                    measured.median_thickness, measured.median_spacing,
@@ -77,7 +100,7 @@ void add_hatch_extract_command(Command& hatch) {
     auto arguments = std::make_shared<ExtractArguments>();
     Command* command = hatch.add_subcommand("extract", "Measures the strokes of a drawing, for inspection");
     command->footer(
-        "Writes a picture of each property: skeleton, orientation, thickness, intensity, spacing, length, levels,\n"
+        "Writes what was read over the drawing (overlay), and a picture of each property: skeleton, orientation, thickness, intensity, spacing, length, levels,\n"
         "intersections, boundaries.\n\nExample:\n"
         "  exemplar hatch extract bunny.off traced.png --out properties");
     command->add_option("MESH", arguments->scene.mesh, "mesh that the drawing shows")->required()->type_name("");

@@ -3,28 +3,58 @@
 #include <fmt/format.h>
 
 #include <numbers>
-#include <utility>
+#include <string>
 
 #include "host/core/errors.h"
-#include "host/hatching/drawing/aligned_drawing.h"
 #include "host/imaging/png.h"
 
 namespace exemplar {
 
-StrokeMeasurements read_drawing(const std::filesystem::path& path, const PixelFeatures& pixels, bool quiet) {
+namespace {
+
+/// Returns what `read` returns; errors name the file.
+template <typename Read>
+AlignedDrawing of_drawing(const std::filesystem::path& path, Read&& read) {
     try {
-        AlignedDrawing drawing = align_and_measure(read_png(path), pixels);
-        const DrawingAlignment& alignment = drawing.alignment;
-        if (!quiet && !alignment.same_frame)
-            fmt::print("{}: scaled by {:.3f}, turned by {:.1f} degrees; borders fit to {:.1f} pixels\n", path.string(),
-                       alignment.to_view.scale(), alignment.to_view.rotation() * 180 / std::numbers::pi,
-                       alignment.residual);
-        return std::move(drawing.strokes);
+        return read();
     } catch (const DataError& error) {
         const std::string what = error.what();
         const bool named = what.find(path.string()) != std::string::npos;
         throw DataError(named ? what : fmt::format("{}: {}", path.string(), what));
     }
+}
+
+}  // namespace
+
+AlignedDrawing read_drawing(const std::filesystem::path& path, const PixelFeatures& pixels, bool quiet) {
+    AlignedDrawing drawing = of_drawing(path, [&] { return align_and_measure(read_png(path), pixels); });
+    const DrawingAlignment& alignment = drawing.alignment;
+    if (!quiet && !alignment.same_frame)
+        fmt::print("{}: scaled by {:.3f}, turned by {:.1f} degrees; borders fit to {:.1f} pixels\n", path.string(),
+                   alignment.to_view.scale(), alignment.to_view.rotation() * 180 / std::numbers::pi,
+                   alignment.residual);
+    return drawing;
+}
+
+AlignedDrawing read_drawing_in_place(const std::filesystem::path& path, const PixelFeatures& pixels) {
+    return of_drawing(path, [&] { return measure_in_place(read_png(path), pixels); });
+}
+
+PixelMask read_mask(const std::filesystem::path& path, const PixelFeatures& pixels) {
+    const Image picture = read_png(path);
+    const HatchingView& view = pixels.view();
+    if (picture.width != view.width || picture.height != view.height)
+        throw DataError(fmt::format("{}: {} x {} pixels; a mask has the view's size, {} x {}", path.string(),
+                                    picture.width, picture.height, view.width, view.height));
+    PixelMask mask(view.width, view.height, 1);
+    bool any = false;
+    for (const std::uint32_t pixel : pixels.pixels().pixel) {
+        const std::size_t at = pixel * static_cast<std::size_t>(picture.channels);
+        mask.data[pixel] = picture.data[at] > 127;
+        any = any || mask.data[pixel];
+    }
+    if (!any) throw DataError(path.string() + ": the mask is black all over the object; make white what counts");
+    return mask;
 }
 
 }  // namespace exemplar

@@ -2,13 +2,21 @@
 
 #include <filesystem>
 
+#include "host/hatching/drawing/aligned_drawing.h"
 #include "host/hatching/features/pixel_features.h"
-#include "host/hatching/measurement/stroke_measurements.h"
 
 namespace exemplar {
 
 /// Reads a drawing of a view, aligns it (prints the alignment unless `quiet`), and measures its strokes. Throws
 /// DataError naming the file if it cannot be read, is blank, or does not fit the view.
-StrokeMeasurements read_drawing(const std::filesystem::path& path, const PixelFeatures& pixels, bool quiet);
+AlignedDrawing read_drawing(const std::filesystem::path& path, const PixelFeatures& pixels, bool quiet);
+
+/// Reads a drawing that shows exactly the view, at any resolution, and measures its strokes. Throws DataError naming
+/// the file if it cannot be read or is blank, or if its aspect ratio is not the view's.
+AlignedDrawing read_drawing_in_place(const std::filesystem::path& path, const PixelFeatures& pixels);
+
+/// Reads a mask: returns the object's pixels that are lighter than medium gray in a picture of the view's size. Throws
+/// DataError naming the file if it has another size or no such pixel.
+PixelMask read_mask(const std::filesystem::path& path, const PixelFeatures& pixels);
 
 }  // namespace exemplar

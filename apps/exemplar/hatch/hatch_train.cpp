@@ -89,12 +89,12 @@ void run_hatch_train(const TrainArguments& arguments) {
     LearningProgress progress;
     HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
     progress.begins("reading the drawing");
-    const StrokeMeasurements measured = read_drawing(arguments.drawing, scene.pixels(), arguments.common.quiet);
+    const AlignedDrawing drawing = read_drawing(arguments.drawing, scene.pixels(), arguments.common.quiet);
     const double reading = watch.wall();
     progress.begins("orientation rules");
     StyleReport report;
     HatchingStyle style =
-        learn_hatching_style(scene.pixels(), drawing_properties(measured), scene.tools().scorer, arguments.learning,
+        learn_hatching_style(scene.pixels(), drawing_properties(drawing.strokes), scene.tools().scorer, arguments.learning,
                              report, [&](const char* step) { progress.begins(step); });
     progress.finish();
     style.name = arguments.drawing.filename().string();

@@ -1,23 +1,52 @@
 #include "host/hatching/drawing/aligned_drawing.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "host/core/errors.h"
 #include "host/hatching/drawing/drawing_input.h"
 
 namespace exemplar {
 
-AlignedDrawing align_and_measure(const Image& drawing, const PixelFeatures& pixels) {
-    const HatchingView& view = pixels.view();
-    Image mask(view.width, view.height, 1);
+namespace {
+
+Image object_mask(const PixelFeatures& pixels) {
+    Image mask(pixels.view().width, pixels.view().height, 1);
     for (const std::uint32_t pixel : pixels.pixels().pixel) mask.data[pixel] = 1;
+    return mask;
+}
+
+AlignedDrawing measured(const FloatImage& darkness, const DrawingAlignment& alignment, const PixelFeatures& pixels) {
+    const HatchingView& view = pixels.view();
+    const bool is_view = alignment.same_frame && darkness.width == view.width && darkness.height == view.height;
+    FloatImage in_view = is_view ? darkness : warp_drawing(darkness, alignment.to_view, view.width, view.height);
+    const ViewOutlines outlines = view_outlines(pixels.gbuffer());
+    StrokeMeasurements strokes = measure_strokes(in_view, object_mask(pixels), {}, &outlines);
+    return {alignment, std::move(in_view), std::move(strokes)};
+}
+
+}  // namespace
+
+AlignedDrawing align_and_measure(const Image& drawing, const PixelFeatures& pixels) {
     const FloatImage darkness = drawing_darkness(drawing);
-    const DrawingAlignment alignment = align_drawing(darkness, mask);
-    if (alignment.same_frame && darkness.width == view.width && darkness.height == view.height)
-        return {alignment, measure_strokes(darkness, mask)};
-    return {alignment, measure_strokes(warp_drawing(darkness, alignment.to_view, view.width, view.height), mask)};
+    return measured(darkness, align_drawing(darkness, object_mask(pixels)), pixels);
+}
+
+AlignedDrawing measure_in_place(const Image& drawing, const PixelFeatures& pixels) {
+    const HatchingView& view = pixels.view();
+    const double scale = static_cast<double>(view.width) / std::max(drawing.width, 1);
+    if (std::abs(drawing.height * scale - view.height) > std::max(1.0, 0.01 * view.height))
+        throw DataError(fmt::format("{} x {} pixels are not of the view, which has {} x {}", drawing.width,
+                                    drawing.height, view.width, view.height));
+    DrawingAlignment alignment;
+    alignment.to_view = Similarity(scale, 0);
+    alignment.same_frame = true;
+    return measured(drawing_darkness(drawing), alignment, pixels);
 }
 
 Image drawing_template(PixelFeatures& pixels) {

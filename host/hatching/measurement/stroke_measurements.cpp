@@ -24,6 +24,7 @@ constexpr float k_min_crossing_angle = std::numbers::pi_v<float> / 12;
 constexpr float k_paper_distance = 3;  ///< min distance of paper from ink, pixels
 constexpr std::size_t k_min_paper_pixels = 100;
 constexpr float k_spacings_per_thickness = 20, k_min_max_spacing = 24;
+constexpr float k_min_outline_reach = 3.5f;  ///< pixels
 constexpr float k_owned_edge = 1.5f;  ///< max distance of a stroke's pixels beyond half of its width, pixels
 
 void check_drawing_and_mask(const FloatImage& darkness, const Image& mask) {
@@ -96,10 +97,27 @@ void mark_ends(std::span<const TracedStroke> strokes, const StrokeMap& map, cons
     }
 }
 
+/// Returns how far from the view's outlines drawn ones may lie, in pixels.
+float outline_reach(std::span<const TracedStroke> strokes) {
+    std::vector<float> widths;
+    for (const TracedStroke& stroke : strokes) widths.push_back(stroke.width);
+    return std::max(k_min_outline_reach, 1.5f * upper_median(widths));
+}
+
+void mark_outlines(std::span<const TracedStroke> outlines, StrokeMeasurements& m) {
+    for (const TracedStroke& outline : outlines)
+        for (const TracedPoint& point : outline.points) {
+            const int x = std::clamp(static_cast<int>(point.center.x()), 0, m.width - 1);
+            const int y = std::clamp(static_cast<int>(point.center.y()), 0, m.height - 1);
+            m.outline[static_cast<std::size_t>(y) * m.width + x] = 1;
+        }
+}
+
 StrokeMeasurements empty_measurements(int width, int height) {
     StrokeMeasurements m;
     m.width = width, m.height = height;
-    for (auto* image : {&m.stroke, &m.skeleton, &m.intersection, &m.level, &m.boundary}) image->resize(m.size());
+    for (auto* image : {&m.stroke, &m.skeleton, &m.outline, &m.intersection, &m.level, &m.boundary})
+        image->resize(m.size());
     for (auto* image : {&m.intensity, &m.thickness, &m.orientation, &m.spacing, &m.length}) image->resize(m.size());
     m.stroke_id.assign(m.size(), -1);
     return m;
@@ -129,12 +147,14 @@ std::vector<StrokeCrossing> measure_points(const FloatImage& darkness, const Pix
 
 }  // namespace
 
-StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask, const MeasuringOptions& options) {
+StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask, const MeasuringOptions& options,
+                                   const ViewOutlines* outlines) {
     check_drawing_and_mask(darkness, mask);
     StrokeMeasurements m = empty_measurements(darkness.width, darkness.height);
     if (m.size() == 0) return m;
     TracedDrawing drawing = trace_drawing(darkness, mask, options.min_darkness);
     std::vector<TracedStroke>& strokes = drawing.strokes;
+    if (outlines) mark_outlines(take_outlines(strokes, *outlines, outline_reach(strokes)), m);
     if (strokes.empty()) return m;
     const std::vector<StrokeCrossing> crossings = measure_points(darkness, drawing.ink, options, strokes, m);
     m.intersections = confirmed_intersections(crossings, darkness, drawing.skeleton, strokes);
@@ -145,7 +165,8 @@ StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask
     const StrokeMap map(strokes, m.width, m.height);
     spread(drawing.ink, mask, crossing_pixels(crossings, m.width, m.height), strokes, map, m);
     mark_ends(strokes, map, mask, m);
-    for (std::size_t i = 0; i < m.size(); ++i) m.skeleton[i] = drawing.skeleton.data[i] && m.stroke[i];
+    for (std::size_t i = 0; i < m.size(); ++i)
+        m.skeleton[i] = drawing.skeleton.data[i] && m.stroke[i] && !m.outline[i];
     return m;
 }
 

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "host/hatching/tracing/view_outlines.h"
 #include "host/imaging/image.h"
 #include "host/mesh/mesh.h"
 
@@ -24,6 +25,7 @@ struct StrokeMeasurements {
     int width = 0, height = 0;
     std::vector<std::uint8_t> stroke;        ///< 1: a stroke's pixel inside of the object
     std::vector<std::uint8_t> skeleton;      ///< 1: on the center line of a stroke
+    std::vector<std::uint8_t> outline;       ///< 1: on the center line of a drawn outline, which is no stroke
     std::vector<std::int32_t> stroke_id;     ///< per stroke pixel: of the stroke it belongs to, from 0; -1 elsewhere
     std::vector<float> intensity;            ///< per stroke pixel, in (0, 1]
     std::vector<float> thickness;            ///< per stroke pixel, pixels, at least 1
@@ -44,8 +46,10 @@ struct StrokeMeasurements {
 /// object). `darkness`: see drawing_darkness, one channel. A drawing without strokes gives zeros. Unlike the thesis,
 /// it traces whole strokes through crossings first (see trace_strokes) and then measures them one by one: pixels at
 /// crossings belong to no direction, so following pixels of similar orientation fails there. Other differences are
-/// noted where a property is measured. The result does not depend on the number of threads. Throws UsageError if an
+/// noted where a property is measured. `outlines`, if given, of the view: outlines that were drawn along them are no
+/// strokes (see take_outlines). The result does not depend on the number of threads. Throws UsageError if an
 /// image has not one channel, or the sizes differ.
-StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask, const MeasuringOptions& options = {});
+StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask, const MeasuringOptions& options = {},
+                                   const ViewOutlines* outlines = nullptr);
 
 }  // namespace exemplar

@@ -30,12 +30,13 @@ struct LearningStep {
     std::string_view name;
     std::size_t share;
 };
-constexpr std::array<LearningStep, 11> k_learning_steps{{{"surface", 14},
-                                                         {"reading the drawing", 36},
+constexpr std::array<LearningStep, 12> k_learning_steps{{{"surface", 13},
+                                                         {"reading the drawing", 30},
                                                          {"orientation rules", 25},
                                                          {"segments", 14},
                                                          {"boundaries", 2},
                                                          {"label cuts", 1},
+                                                         {"corrections", 7},
                                                          {"hatching levels", 2},
                                                          {"thickness", 1},
                                                          {"intensity", 1},
@@ -72,6 +73,7 @@ nlohmann::json describe_style(const StyleReport& report, const HatchingStyle& st
     for (const auto& [step, time] : report.seconds) seconds[step] = time;
     return {{"segments", style.rules.size()},
             {"orientation_error", report.orientation_error},
+            {"direction_errors", report.direction_errors},
             {"segment_errors", report.segment_errors},
             {"boundary_error", report.boundary_error},
             {"level_error", report.level_error},

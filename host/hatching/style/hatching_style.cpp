@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr const char* k_kind = "exemplar hatching style";
-constexpr int k_format_version = 1;
+constexpr int k_format_version = 2;
 constexpr std::size_t k_max_segments = 64;
 constexpr int k_max_stages = 16, k_max_drawing = 1 << 15;
 
@@ -57,6 +57,40 @@ void add_property(TensorFile& file, const std::string& name, const PropertyModel
     file.add(name + ".feature", {features.size()}, features);
     file.add(name + ".a_b_exponent_low_high_least", {features.size(), 6}, values);
     file.add(name + ".factor", {1}, std::vector<float>{model.factor});
+}
+
+void add_correction(TensorFile& file, const std::string& name, const DirectionCorrection& correction) {
+    std::vector<std::uint32_t> features_parts;
+    std::vector<float> values;
+    for (const DirectionStump& stump : correction.stumps) {
+        features_parts.insert(features_parts.end(), {stump.feature, stump.part});
+        values.insert(values.end(), {stump.threshold, stump.below, stump.above});
+    }
+    file.add(name + ".rule_weight", {correction.rule_weight.size()}, correction.rule_weight);
+    file.add(name + ".feature_part", {correction.stumps.size(), 2}, features_parts);
+    file.add(name + ".threshold_below_above", {correction.stumps.size(), 3}, values);
+}
+
+DirectionCorrection get_correction(const TensorFile& file, const std::string& name, std::size_t segments) {
+    DirectionCorrection correction;
+    correction.rule_weight = file.get<float>(name + ".rule_weight", {TensorFile::k_any});
+    require_finite(file, name + ".rule_weight", correction.rule_weight);
+    if (!correction.empty() && correction.rule_weight.size() != segments)
+        inconsistent(file, fmt::format("{} is of {} segments of {}", name, correction.rule_weight.size(), segments));
+    const auto numbers = file.get<std::uint32_t>(name + ".feature_part", {TensorFile::k_any, 2});
+    const auto values = file.get<float>(name + ".threshold_below_above", {numbers.size() / 2, 3});
+    require_finite(file, name + ".threshold_below_above", values);
+    if (correction.empty() && !numbers.empty()) inconsistent(file, name + " has stumps, but no weights of rules");
+    for (std::size_t k = 0; k < numbers.size() / 2; ++k) {
+        const DirectionStump stump{numbers[2 * k], values[3 * k], numbers[2 * k + 1], values[3 * k + 1],
+                                   values[3 * k + 2]};
+        if (stump.feature >= k_pixel_features)
+            inconsistent(file, fmt::format("{} uses feature {} of {}", name, stump.feature, k_pixel_features));
+        if (stump.part >= k_direction_parts)
+            inconsistent(file, fmt::format("{} uses direction {} of {}", name, stump.part, k_direction_parts));
+        correction.stumps.push_back(stump);
+    }
+    return correction;
 }
 
 PropertyModel get_property(const TensorFile& file, const std::string& name, std::size_t feature_count) {
@@ -138,6 +172,8 @@ void save_hatching_style(const std::filesystem::path& path, const HatchingStyle&
         for (std::size_t j = 0; j < k_hatch_layers; ++j)
             add_function(file, fmt::format("rule.{}.{}", c, j), style.rules[c].function[j]);
     }
+    for (std::size_t j = 0; j < k_hatch_layers; ++j)
+        add_correction(file, fmt::format("direction.{}", j), style.corrections[j]);
     for (std::size_t s = 0; s < style.segments.size(); ++s)
         add_classifier(file, fmt::format("segments.{}", s), style.segments[s]);
     add_classifier(file, "boundary", style.boundary);
@@ -170,6 +206,8 @@ HatchingStyle load_hatching_style(const std::filesystem::path& path) {
         for (std::size_t j = 0; j < k_hatch_layers; ++j)
             style.rules[c].function[j] = get_function(file, fmt::format("rule.{}.{}", c, j));
     }
+    for (std::size_t j = 0; j < k_hatch_layers; ++j)
+        style.corrections[j] = get_correction(file, fmt::format("direction.{}", j), labels);
     const std::size_t features = k_powers * style.feature_count();
     for (std::size_t s = 0; s < stages; ++s)
         style.segments.push_back(get_classifier(file, fmt::format("segments.{}", s), labels,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/hatching/measurement/drawing_properties.h"
+#include "host/hatching/style/direction_correction.h"
 #include "host/hatching/style/orientation_mixture.h"
 #include "host/hatching/style/pixel_crf.h"
 #include "host/hatching/style/property_model.h"
@@ -20,6 +21,8 @@ struct HatchingStyle {
     std::string name;                        ///< of the drawing
     int width = 0, height = 0;               ///< of the drawing, in pixels; lengths are in these pixels
     std::vector<OrientationRule> rules;      ///< one per segment
+    /// Corrections of the rules' directions, for hatches and for those that cross them.
+    std::array<DirectionCorrection, k_hatch_layers> corrections;
     std::vector<double> share;               ///< per segment, its share of the drawing's strokes
     std::vector<CalibratedStumps> segments;  ///< cascade; all but the first also see contextual features
     CalibratedStumps boundary;               ///< class 1: on a boundary of hatching regions; class 0: not
@@ -27,6 +30,8 @@ struct HatchingStyle {
     PixelCrfParameters segment_crf, level_crf;
     std::array<PropertyModel, k_stroke_properties> properties;
 
+    /// Whether hatches of a segment can be crossed.
+    bool crosses(std::size_t segment) const { return rules[segment].crosses() || !corrections[1].empty(); }
     std::size_t feature_count() const;  ///< number of base features, including contextual ones
 };
 

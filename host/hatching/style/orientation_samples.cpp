@@ -74,7 +74,8 @@ SampleNeighbors sample_neighbors(const OrientationSamples& samples, float factor
 }
 
 std::vector<std::uint8_t> held_out_rectangles(std::span<const std::uint16_t> x, std::span<const std::uint16_t> y,
-                                              std::span<const std::uint32_t> group, double share, std::uint64_t seed) {
+                                              std::span<const std::uint32_t> group, double share, std::uint64_t seed,
+                                              std::array<double, 2> sides) {
     std::vector<std::uint8_t> held(x.size());
     const std::uint32_t groups = group.empty() ? 0 : *std::ranges::max_element(group) + 1;
     for (std::uint32_t g = 0; g < groups; ++g) {
@@ -84,17 +85,20 @@ std::vector<std::uint8_t> held_out_rectangles(std::span<const std::uint16_t> x, 
         }
         if (members.size() < 20) continue;
         Random random = Random(seed).fork(g);
-        // Rectangles around members, a twentieth to a fifth of the group's extent wide and high.
+        // Rectangles around members.
         const auto extent = [&](std::span<const std::uint16_t> at) {
             const auto [low, high] = std::ranges::minmax(members, {}, [&](std::uint32_t i) { return at[i]; });
             return static_cast<double>(at[high] - at[low] + 1);
         };
-        const double wide = extent(x), high = extent(y);
+        const auto range = [&](double size) {
+            return sides[1] > 0 ? sides : std::array<double, 2>{size / 20, size / 5};
+        };
+        const std::array<double, 2> wide = range(extent(x)), high = range(extent(y));
         std::size_t marked = 0;
         while (static_cast<double>(marked) < share * static_cast<double>(members.size())) {
             const std::uint32_t center = members[random.index(members.size())];
-            const double half_x = 0.5 * wide * random.uniform(0.05, 0.2),
-                         half_y = 0.5 * high * random.uniform(0.05, 0.2);
+            const double half_x = 0.5 * random.uniform(wide[0], wide[1]),
+                         half_y = 0.5 * random.uniform(high[0], high[1]);
             for (const std::uint32_t i : members) {
                 if (held[i] || std::abs(x[i] - x[center]) > half_x || std::abs(y[i] - y[center]) > half_y) continue;
                 held[i] = 1;

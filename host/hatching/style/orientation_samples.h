@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -32,8 +33,10 @@ SampleNeighbors sample_neighbors(const OrientationSamples& samples, float factor
 
 /// Returns 1 for each held-out item: rectangles of random position and size are marked until they cover `share` of
 /// each group (thesis Sec. 4.4.1). Groups of fewer than 20 items have no held-out items, nor groups that the
-/// rectangles cover entirely.
+/// rectangles cover entirely. `sides`: the least and the largest side of a rectangle in pixels; zero: a twentieth and
+/// a fifth of the group's extent.
 std::vector<std::uint8_t> held_out_rectangles(std::span<const std::uint16_t> x, std::span<const std::uint16_t> y,
-                                              std::span<const std::uint32_t> group, double share, std::uint64_t seed);
+                                              std::span<const std::uint32_t> group, double share, std::uint64_t seed,
+                                              std::array<double, 2> sides = {0, 0});
 
 }  // namespace exemplar

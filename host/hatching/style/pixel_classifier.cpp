@@ -15,8 +15,8 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_rounds_between = 5;  // rounds between evaluations of the held-out rows
-constexpr std::size_t k_patience = 60;       // rounds without gain
+constexpr std::size_t k_rounds_between = 10; // rounds between evaluations of the held-out rows
+constexpr std::size_t k_patience = 200;      // rounds without gain
 // Pixels of a drawing are similar: full steps fit them in a few rounds and generalize worse.
 constexpr double k_shrinkage = 0.3;
 

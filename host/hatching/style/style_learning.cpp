@@ -62,6 +62,8 @@ class StyleLearning {
         done("levels");
         learn_cuts();
         done("label cuts");
+        learn_corrections();
+        done("corrections");
         for (std::size_t p = 0; p < k_stroke_properties; ++p) learn_property_of(static_cast<StrokeProperty>(p));
         done("properties");
         return std::move(style_);
@@ -163,7 +165,7 @@ class StyleLearning {
         for (std::size_t stage = 0; stage < options_.max_stages; ++stage) {
             const FeatureMatrix features = features_of(rows, stage > 0);
             const LearnedClassifier learned =
-                learn_classifier({features, labels, {}, held, style_.rules.size(), false, 500, options_.seed + stage},
+                learn_classifier({features, labels, {}, held, style_.rules.size(), false, 1500, options_.seed + stage},
                                  [&] { progress_("segments"); });
             report_.segment_errors.push_back(learned.error);
             // A stage that is no better ends the cascade, and is not kept.
@@ -225,11 +227,85 @@ class StyleLearning {
         std::vector<float> boundary(both.size() / 2);
         for (std::size_t i = 0; i < boundary.size(); ++i) boundary[i] = both[2 * i + 1];
         PixelCrf crf(pixels_.pixels(), drawing_.width, boundary);
-        if (style_.rules.size() > 1)
+        segment_cut_.assign(pixels_.size(), 0);
+        if (style_.rules.size() > 1) {
             style_.segment_crf = learn_crf(crf, probabilities_, style_.rules.size(),
                                            [&](std::span<const std::int32_t> labels) { return segment_error(labels); });
+            segment_cut_ = crf.solve(probabilities_, style_.rules.size(), style_.segment_crf);
+        }
         style_.level_crf = learn_crf(crf, view_probabilities(style_.levels), 3,
                                      [&](std::span<const std::int32_t> labels) { return level_error(labels); });
+    }
+
+    /// Learns where strokes depart from the rules of the segments that the cut gives their pixels.
+    void learn_corrections() {
+        const OrientationFields fields = pixels_.orientations(rule_rows_);
+        std::vector<DoubledAngle> target;
+        std::vector<std::int32_t> segment;
+        for (const std::uint32_t row : rule_rows_) {
+            target.push_back(doubled_angle(drawing_.orientation[pixel(row)]));
+            segment.push_back(segment_cut_[row]);
+        }
+        std::array<std::vector<DoubledAngle>, k_hatch_layers> rules;
+        for (std::size_t j = 0; j < k_hatch_layers; ++j) {
+            for (std::size_t i = 0; i < segment.size(); ++i)
+                rules[j].push_back(style_.rules[static_cast<std::size_t>(segment[i])].function[j].evaluate(fields, i));
+        }
+        const std::vector<std::uint8_t> crossing = crossing_strokes(target, rules);
+        for (std::size_t j = 0; j < k_hatch_layers; ++j) learn_correction_of(j, crossing, target, rules[j], segment);
+    }
+
+    /// Returns 1 for pixels of strokes that cross others: cross-hatching that runs along the second rule rather than
+    /// the first or, where there is no second, more than 45 degrees off the first.
+    std::vector<std::uint8_t> crossing_strokes(
+        std::span<const DoubledAngle> target,
+        const std::array<std::vector<DoubledAngle>, k_hatch_layers>& rules) const {
+        std::vector<std::uint8_t> crossing(target.size());
+        for (std::size_t i = 0; i < target.size(); ++i) {
+            if (drawing_.level[pixel(rule_rows_[i])] != k_cross_hatching) continue;
+            const float first = squared_distance(target[i], rules[0][i]);
+            const float second = rules[1][i] == DoubledAngle{} ? 4 - first : squared_distance(target[i], rules[1][i]);
+            crossing[i] = second < first ? 1 : 0;
+        }
+        return crossing;
+    }
+
+    void learn_correction_of(std::size_t layer, std::span<const std::uint8_t> crossing,
+                             std::span<const DoubledAngle> target, std::span<const DoubledAngle> rules,
+                             std::span<const std::int32_t> segment) {
+        std::vector<std::uint32_t> rows;
+        std::vector<DoubledAngle> targets, directions;
+        std::vector<std::int32_t> segments;
+        for (std::size_t i = 0; i < target.size(); ++i) {
+            if (crossing[i] != layer) continue;
+            rows.push_back(rule_rows_[i]);
+            targets.push_back(target[i]);
+            directions.push_back(rules[i]);
+            segments.push_back(segment[i]);
+        }
+        if (rows.size() < k_min_samples) return;
+        const QuantizedFeatures quantized = quantize(features_of(rows, false), {}, {});
+        const OrientationFields fields = pixels_.orientations(rows);
+        const LearnedCorrection learned =
+            learn_correction({quantized, fields, targets, directions, segments, style_.rules.size(),
+                              held_out_patches(rows), options_.seed + 13},
+                             [&] { progress_("corrections"); });
+        style_.corrections[layer] = learned.correction;
+        report_.direction_errors[layer] = {learned.rule_error, learned.error};
+    }
+
+    /// Holds out rectangles of three to ten spacings: a hand keeps its direction over less than that.
+    std::vector<std::uint8_t> held_out_patches(std::span<const std::uint32_t> rows) const {
+        std::vector<std::uint16_t> x, y;
+        std::vector<float> spacing;
+        for (const std::uint32_t row : rows) {
+            x.push_back(static_cast<std::uint16_t>(pixel(row) % static_cast<std::uint32_t>(drawing_.width)));
+            y.push_back(static_cast<std::uint16_t>(pixel(row) / static_cast<std::uint32_t>(drawing_.width)));
+            spacing.push_back(drawing_.property[static_cast<std::size_t>(StrokeProperty::spacing)][pixel(row)]);
+        }
+        const auto usual = static_cast<double>(upper_median(spacing));
+        const std::vector<std::uint32_t> one_group(rows.size());
+        return held_out_rectangles(x, y, one_group, k_held_out, options_.seed + 14, {3 * usual, 10 * usual});
     }
 
     /// Selects parameters by Eq. 4.16, as a mean over boundary pixels: the sum in the thesis grows with every
@@ -276,7 +352,7 @@ class StyleLearning {
         for (const std::uint32_t row : rows) labels.push_back(drawing_.level[pixel(row)]);
         const FeatureMatrix features = features_of(rows, true);
         const LearnedClassifier learned = learn_classifier(
-            {features, labels, {}, held_out(rows, labels, options_.seed + 9), 3, false, 500, options_.seed + 10},
+            {features, labels, {}, held_out(rows, labels, options_.seed + 9), 3, false, 1500, options_.seed + 10},
             [&] { progress_("hatching levels"); });
         style_.levels = learned.classifier;
         report_.level_error = learned.error;
@@ -338,6 +414,7 @@ class StyleLearning {
     std::vector<std::uint32_t> rule_rows_;  // rows of the stroke pixels that rules are learned from
     std::vector<std::int32_t> segment_;     // segment of each of these rows
     std::vector<float> probabilities_;      // of the segments, at all pixels
+    std::vector<std::int32_t> segment_cut_;  // of all pixels, as a prediction would have them
     Stopwatch watch_;
 };
 

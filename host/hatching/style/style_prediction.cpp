@@ -28,6 +28,9 @@ std::vector<std::uint32_t> needed_features(const HatchingStyle& style) {
     for (const CalibratedStumps& stage : style.segments) add_all(stage);
     add_all(style.boundary);
     add_all(style.levels);
+    for (const DirectionCorrection& correction : style.corrections) {
+        for (const DirectionStump& stump : correction.stumps) add(stump.feature);
+    }
     for (const PropertyModel& model : style.properties) {
         for (const auto& term : model.terms) add(static_cast<std::uint32_t>(term.feature / k_powers));
     }
@@ -106,8 +109,8 @@ class Prediction {
             const std::uint32_t pixel = pixels_.pixels().pixel[i];
             const auto c = static_cast<std::size_t>(segment[i]);
             out_.segment[pixel] = static_cast<std::uint8_t>(c);
-            // A rule without a second direction limits the level to single hatching.
-            const std::int32_t most = style_.rules[c].crosses() ? k_cross_hatching : k_single_hatching;
+            // Without a second direction, the level is at most single hatching.
+            const std::int32_t most = style_.crosses(c) ? k_cross_hatching : k_single_hatching;
             out_.fields.level[pixel] = static_cast<std::uint8_t>(std::min(level[i], most));
         }
     }
@@ -117,7 +120,10 @@ class Prediction {
         for (std::size_t layer = 0; layer < k_hatch_layers; ++layer) {
             std::vector<OrientationFunction> functions;
             for (const OrientationRule& rule : style_.rules) functions.push_back(rule.function[layer]);
-            const std::vector<DoubledAngle> directions = evaluator_.orientations(functions, segment, fields);
+            std::vector<DoubledAngle> directions = evaluator_.orientations(functions, segment, fields);
+            const DirectionCorrection& correction = style_.corrections[layer];
+            if (!correction.empty())
+                directions = corrected_directions(correction, directions, segment, fields, which_, features_);
             for (std::size_t i = 0; i < directions.size(); ++i) {
                 const std::uint32_t pixel = pixels_.pixels().pixel[i];
                 out_.fields.orientation[layer][pixel] = angle_of(directions[i]);

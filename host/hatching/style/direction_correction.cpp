@@ -205,6 +205,11 @@ std::vector<DoubledAngle> corrected_directions(const DirectionCorrection& correc
     return directions;
 }
 
+void cross_at_right_angles(std::span<const DoubledAngle> hatches, std::span<DoubledAngle> crossing) {
+    for (std::size_t i = 0; i < crossing.size(); ++i)
+        if (crossing[i] == DoubledAngle{}) crossing[i] = -1.0f * hatches[i];
+}
+
 LearnedCorrection learn_correction(const CorrectionTraining& training, const std::function<void()>& progress) {
     std::vector<std::uint32_t> all(training.target.size()), learned, judges;
     std::iota(all.begin(), all.end(), 0U);

@@ -49,6 +49,9 @@ std::vector<DoubledAngle> corrected_directions(const DirectionCorrection& correc
                                                std::span<const std::int32_t> segment, const OrientationFields& fields,
                                                std::span<const std::uint32_t> which, const FeatureMatrix& features);
 
+/// Sets the directions of crossing hatches that no rule gives: at right angles to those of the hatches that they cross.
+void cross_at_right_angles(std::span<const DoubledAngle> hatches, std::span<DoubledAngle> crossing);
+
 /// Input of learn_correction(): strokes' pixels.
 struct CorrectionTraining {
     const QuantizedFeatures& features;       ///< all base features

@@ -30,8 +30,6 @@ struct HatchingStyle {
     PixelCrfParameters segment_crf, level_crf;
     std::array<PropertyModel, k_stroke_properties> properties;
 
-    /// Whether hatches of a segment can be crossed.
-    bool crosses(std::size_t segment) const { return rules[segment].crosses() || !corrections[1].empty(); }
     std::size_t feature_count() const;  ///< number of base features, including contextual ones
 };
 

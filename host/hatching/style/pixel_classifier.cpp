@@ -142,6 +142,7 @@ LearnedClassifier learn_classifier(const ClassifierTraining& training, const std
     HeldOutScores scores(features.matrix, judges, training.classes);
     best.loss = std::numeric_limits<double>::infinity();
     std::size_t best_rounds = 0;
+    double least_error = 1;
     for (std::size_t round = 1; round <= training.max_rounds && round <= best_rounds + k_patience; ++round) {
         check_interrupt();
         booster.add_stump();
@@ -149,7 +150,10 @@ LearnedClassifier learn_classifier(const ClassifierTraining& training, const std
         if (round % k_rounds_between != 0) continue;
         scores.add(booster.classifier());
         const Calibration held = calibrate(scores.scores(), labels, judge_weights, training.classes, k_links);
-        if (!(held.loss < best.loss)) continue;
+        least_error = std::min(least_error, held.error);
+        const bool is_better = training.tolerance > 0 ? held.error <= least_error + training.tolerance
+                                                      : held.loss < best.loss;
+        if (!is_better) continue;
         best_rounds = round;
         best = {{{}, held.link, held.scale}, held.error, held.loss};
     }

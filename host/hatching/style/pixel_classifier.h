@@ -20,6 +20,9 @@ struct ClassifierTraining {
     bool gentle = false;  ///< GentleBoost for two classes instead of JointBoost
     std::size_t max_rounds = 500;
     std::uint64_t seed = 1;
+    /// If positive, boosting goes on for as long as the share of held-out rows it gets wrong stays within this of the
+    /// lowest, so that what was drawn is reproduced as well as can be without harm elsewhere.
+    double tolerance = 0;
 };
 
 struct LearnedClassifier {
@@ -29,7 +32,7 @@ struct LearnedClassifier {
 };
 
 /// Boosts until the held-out rows fit best (thesis Sec. 4.4.2), then learns again from all rows with that number of
-/// rounds. The log loss decides, as it also measures confidence, which the graph cut relies on. Returns no stumps
+/// rounds. Unless there is a tolerance, the log loss decides, as it also measures confidence. Returns no stumps
 /// for a single class.
 LearnedClassifier learn_classifier(
     const ClassifierTraining& training, const std::function<void()>& progress = [] {});

@@ -19,6 +19,7 @@ namespace exemplar {
 namespace {
 
 constexpr std::size_t k_min_samples = 200;
+constexpr std::size_t k_min_crossing = 50;  // pixels of strokes that a correction is learned from
 constexpr double k_held_out = 0.25;
 
 /// A random subset of rows, in their order.
@@ -252,7 +253,13 @@ class StyleLearning {
                 rules[j].push_back(style_.rules[static_cast<std::size_t>(segment[i])].function[j].evaluate(fields, i));
         }
         const std::vector<std::uint8_t> crossing = crossing_strokes(target, rules);
-        for (std::size_t j = 0; j < k_hatch_layers; ++j) learn_correction_of(j, crossing, target, rules[j], segment);
+        learn_correction_of(0, crossing, target, rules[0], segment);
+        std::vector<DoubledAngle> first = rules[0];
+        if (!style_.corrections[0].empty())
+            first = corrected_directions(style_.corrections[0], rules[0], segment, fields, numbers(0, k_pixel_features),
+                                         features_of(rule_rows_, false));
+        cross_at_right_angles(first, rules[1]);
+        learn_correction_of(1, crossing, target, rules[1], segment);
     }
 
     /// Returns 1 for pixels of strokes that cross others: cross-hatching that runs along the second rule rather than
@@ -283,7 +290,7 @@ class StyleLearning {
             directions.push_back(rules[i]);
             segments.push_back(segment[i]);
         }
-        if (rows.size() < k_min_samples) return;
+        if (rows.size() < k_min_crossing) return;
         const QuantizedFeatures quantized = quantize(features_of(rows, false), {}, {});
         const OrientationFields fields = pixels_.orientations(rows);
         const LearnedCorrection learned =
@@ -301,7 +308,8 @@ class StyleLearning {
         for (const std::uint32_t row : rows) {
             x.push_back(static_cast<std::uint16_t>(pixel(row) % static_cast<std::uint32_t>(drawing_.width)));
             y.push_back(static_cast<std::uint16_t>(pixel(row) / static_cast<std::uint32_t>(drawing_.width)));
-            spacing.push_back(drawing_.property[static_cast<std::size_t>(StrokeProperty::spacing)][pixel(row)]);
+            const float here = drawing_.property[static_cast<std::size_t>(StrokeProperty::spacing)][pixel(row)];
+            if (here > 0) spacing.push_back(here);
         }
         const auto usual = static_cast<double>(upper_median(spacing));
         const std::vector<std::uint32_t> one_group(rows.size());
@@ -352,7 +360,7 @@ class StyleLearning {
         for (const std::uint32_t row : rows) labels.push_back(drawing_.level[pixel(row)]);
         const FeatureMatrix features = features_of(rows, true);
         const LearnedClassifier learned = learn_classifier(
-            {features, labels, {}, held_out(rows, labels, options_.seed + 9), 3, false, 1500, options_.seed + 10},
+            {features, labels, {}, held_out_patches(rows), 3, false, 1500, options_.seed + 10, 0.01},
             [&] { progress_("hatching levels"); });
         style_.levels = learned.classifier;
         report_.level_error = learned.error;

@@ -109,21 +109,22 @@ class Prediction {
             const std::uint32_t pixel = pixels_.pixels().pixel[i];
             const auto c = static_cast<std::size_t>(segment[i]);
             out_.segment[pixel] = static_cast<std::uint8_t>(c);
-            // Without a second direction, the level is at most single hatching.
-            const std::int32_t most = style_.crosses(c) ? k_cross_hatching : k_single_hatching;
-            out_.fields.level[pixel] = static_cast<std::uint8_t>(std::min(level[i], most));
+            out_.fields.level[pixel] = static_cast<std::uint8_t>(level[i]);
         }
     }
 
     void fill_orientations(std::span<const std::int32_t> segment) {
         const OrientationFields fields = pixels_.orientations({});
+        std::vector<DoubledAngle> hatches;
         for (std::size_t layer = 0; layer < k_hatch_layers; ++layer) {
             std::vector<OrientationFunction> functions;
             for (const OrientationRule& rule : style_.rules) functions.push_back(rule.function[layer]);
             std::vector<DoubledAngle> directions = evaluator_.orientations(functions, segment, fields);
+            if (layer > 0) cross_at_right_angles(hatches, directions);
             const DirectionCorrection& correction = style_.corrections[layer];
             if (!correction.empty())
                 directions = corrected_directions(correction, directions, segment, fields, which_, features_);
+            if (layer == 0) hatches = directions;
             for (std::size_t i = 0; i < directions.size(); ++i) {
                 const std::uint32_t pixel = pixels_.pixels().pixel[i];
                 out_.fields.orientation[layer][pixel] = angle_of(directions[i]);

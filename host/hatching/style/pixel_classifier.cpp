@@ -65,7 +65,7 @@ std::vector<T> chosen(std::span<const T> values, std::span<const std::uint32_t> 
 }
 
 Booster booster_of(const ClassifierTraining& training, const TrainingSet& set) {
-    const BoostOptions options{.shrinkage = k_shrinkage, .seed = training.seed};
+    const BoostOptions options{.shrinkage = k_shrinkage, .feature_fraction = training.tolerance > 0 ? 0.2 : 1.0, .seed = training.seed};
     return training.gentle ? Booster::gentle(set, options) : Booster(set, training.classes, options);
 }
 

@@ -360,7 +360,7 @@ class StyleLearning {
         for (const std::uint32_t row : rows) labels.push_back(drawing_.level[pixel(row)]);
         const FeatureMatrix features = features_of(rows, true);
         const LearnedClassifier learned = learn_classifier(
-            {features, labels, {}, held_out_patches(rows), 3, false, 1500, options_.seed + 10, 0.01},
+            {features, labels, {}, held_out_patches(rows), 3, false, 4000, options_.seed + 10, 0.01},
             [&] { progress_("hatching levels"); });
         style_.levels = learned.classifier;
         report_.level_error = learned.error;

@@ -44,6 +44,7 @@ DrawingProperties drawing_properties(const StrokeMeasurements& measurements) {
         out.center[i] = measurements.skeleton[i] && measurements.spacing[i] > 0 ? 1 : 0;
     out.crossing = measurements.intersection;
     out.crossed = on_crossed_strokes(measurements);
+    out.bounded = measurements.bounded;
     out.orientation = measurements.orientation;
     out.property = {measurements.thickness, measurements.intensity, measurements.spacing, measurements.length};
     out.level = measurements.level;

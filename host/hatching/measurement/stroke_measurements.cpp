@@ -113,10 +113,36 @@ void mark_outlines(std::span<const TracedStroke> outlines, StrokeMeasurements& m
         }
 }
 
+/// Whether hatching of a stroke's level ends within `reach` pixels beyond its front or back.
+bool ends_at_border(const TracedStroke& stroke, bool back, float reach, const StrokeMap& map,
+                    const StrokeMeasurements& m) {
+    const TracedPoint& end = back ? stroke.points.back() : stroke.points.front();
+    const auto level_at = [&](const TracedPoint& point) {
+        const auto [x, y] = map.pixel_of(point);
+        return m.level[static_cast<std::size_t>(y) * m.width + x];
+    };
+    TracedPoint beyond = end;
+    beyond.center += reach * end_direction(stroke, back);
+    const auto size = Vec2(static_cast<float>(m.width), static_cast<float>(m.height));
+    const bool is_inside = (beyond.center.array() >= 0).all() && (beyond.center.array() < size.array()).all();
+    return !is_inside || level_at(beyond) < level_at(end);
+}
+
+/// Marks strokes with both ends at the border of their hatching: they may have been meant to be longer.
+void mark_bounded(std::span<const TracedStroke> strokes, const StrokeMap& map, StrokeMeasurements& m) {
+    const float reach = 1.5f * m.median_spacing;
+    std::vector<bool> bounded;
+    for (const TracedStroke& stroke : strokes)
+        bounded.push_back(!stroke.closed && ends_at_border(stroke, false, reach, map, m) &&
+                          ends_at_border(stroke, true, reach, map, m));
+    for (std::size_t i = 0; i < m.size(); ++i)
+        m.bounded[i] = m.stroke_id[i] >= 0 && bounded[static_cast<std::size_t>(m.stroke_id[i])] ? 1 : 0;
+}
+
 StrokeMeasurements empty_measurements(int width, int height) {
     StrokeMeasurements m;
     m.width = width, m.height = height;
-    for (auto* image : {&m.stroke, &m.skeleton, &m.outline, &m.intersection, &m.level, &m.boundary})
+    for (auto* image : {&m.stroke, &m.skeleton, &m.outline, &m.bounded, &m.intersection, &m.level, &m.boundary})
         image->resize(m.size());
     for (auto* image : {&m.intensity, &m.thickness, &m.orientation, &m.spacing, &m.length}) image->resize(m.size());
     m.stroke_id.assign(m.size(), -1);
@@ -165,6 +191,7 @@ StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask
     const StrokeMap map(strokes, m.width, m.height);
     spread(drawing.ink, mask, crossing_pixels(crossings, m.width, m.height), strokes, map, m);
     mark_ends(strokes, map, mask, m);
+    mark_bounded(strokes, map, m);
     for (std::size_t i = 0; i < m.size(); ++i)
         m.skeleton[i] = drawing.skeleton.data[i] && m.stroke[i] && !m.outline[i];
     return m;

@@ -32,6 +32,7 @@ struct StrokeMeasurements {
     std::vector<float> orientation;          ///< per stroke pixel, radians in [0, pi)
     std::vector<float> spacing;              ///< per stroke pixel, pixels; 0: no neighbor in reach, so no hatching
     std::vector<float> length;               ///< per stroke pixel, pixels
+    std::vector<std::uint8_t> bounded;       ///< 1: on a stroke that ends at both sides where its hatching ends
     std::vector<std::uint8_t> intersection;  ///< 1: stroke pixels where strokes overlap; ignore their orientations
     std::vector<Vec2> intersections;         ///< where strokes cross, in pixel coordinates
     std::vector<std::uint8_t> level;         ///< per pixel of the object: 0, 1 or 2

@@ -386,7 +386,7 @@ class StyleLearning {
                            [&] { progress_(name_of(property)); });
         style_.properties[p] = learned.model;
         if (property == StrokeProperty::length)
-            style_.properties[p].factor *= longest_share(learned.model, features, target);
+            style_.properties[p].factor *= longest_share(learned.model, features, target, rows);
         report_.property[p] = std::sqrt(learned.error);
     }
 
@@ -399,17 +399,26 @@ class StyleLearning {
         return uncrossed.size() < std::max(k_min_samples, rows.size() / 20) ? rows : uncrossed;
     }
 
-    /// Returns the 85th percentile of measured length over predicted length. Many strokes are cut short for lack of
-    /// room, so the longer ones tell the intended length.
-    static float longest_share(const PropertyModel& model, const FeatureMatrix& features,
-                               std::span<const float> target) {
+    /// Returns the 85th percentile of intended length over predicted length: many strokes are cut short for lack of
+    /// room, so the longer ones tell what was intended. Strokes that fill the width of their hatching tell only that
+    /// they were meant to be no shorter, so the percentile is that of Kaplan and Meier's estimate (1958).
+    float longest_share(const PropertyModel& model, const FeatureMatrix& features, std::span<const float> target,
+                        std::span<const std::uint32_t> rows) const {
         constexpr double k_quantile = 0.85;
-        std::vector<float> ratio(target.size());
-        for (std::size_t i = 0; i < ratio.size(); ++i)
-            ratio[i] = target[i] / model.evaluate([&](std::uint32_t k) {
+        std::vector<std::pair<float, bool>> ratios;  // and whether the stroke ended by itself
+        for (std::size_t i = 0; i < target.size(); ++i) {
+            const float predicted = model.evaluate([&](std::uint32_t k) {
                 return power_of(features.column(k / k_powers)[i], k % k_powers);
             });
-        return quantile(ratio, k_quantile);
+            ratios.emplace_back(target[i] / predicted, drawing_.bounded[pixel(rows[i])] == 0);
+        }
+        std::ranges::sort(ratios);
+        double longer = 1;
+        for (std::size_t i = 0; i < ratios.size(); ++i) {
+            if (ratios[i].second) longer *= 1 - 1 / static_cast<double>(ratios.size() - i);
+            if (longer <= 1 - k_quantile) return ratios[i].first;
+        }
+        return ratios.back().first;
     }
 
     PixelFeatures& pixels_;

@@ -36,6 +36,26 @@ class Hatch(ProgramTest):
         written = {path.stem for path in (self.folder / "measured").glob("*.png")}
         self.assertLessEqual(PROPERTIES | {"skeleton", "intersections", "boundaries"}, written)
 
+    def test_drawings_are_compared_with_an_artists(self):
+        self.call("hatch", "draw", "style.safetensors", MESH, *VIEW, "--out", "drawn.png")
+        compare = ["hatch", "compare", MESH, "drawing.png"]
+        said = self.call(*compare, "drawing.png", "drawn.png", *VIEW, "--out", "compared", "--json", "compare.json").stdout
+        for word in ("direction", "region", "tone", "levels", "spacing"):
+            self.assertIn(word, said)
+        same, drawn = json.loads((self.folder / "compare.json").read_text())
+        self.assertEqual((same["direction_off"], same["region_overlap"]), (0, 1))
+        self.assertGreater(same["level_right"], 0.999)
+        self.assertLess(drawn["direction_median"], 12)
+        self.assertGreater(drawn["region_overlap"], 0.6)
+        self.assertGreater(drawn["tone"][0], 0.7)
+        width, height, _ = read_png(self.folder / "compared" / "drawn_compared.png")
+        self.assertEqual((width, height), (500, 460))
+        # A picture of another shape is no mask, and no drawing of the view.
+        self.refused(*compare, "drawn.png", "--size", "460x500", "--mask", "compared/drawn_compared.png", code=1,
+                     says="drawn_compared.png: 500 x 460 pixels; a mask has the view's size, 460 x 500")
+        self.refused("hatch", "compare", MESH, "drawing.png", "measured_elsewhere.png", *VIEW, code=1,
+                     says="measured_elsewhere.png")
+
     def test_the_style_is_told_in_words(self):
         result = self.call("hatch", "train", MESH, "drawing.png", *VIEW, "--out", "again.safetensors")
         self.assertIn("learning: 100 in", result.stderr)  # hundredths, whichever steps there were

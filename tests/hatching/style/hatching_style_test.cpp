@@ -58,6 +58,7 @@ HatchingStyle small_style() {
     style.rules[0].function[1].terms = {{12, 1.0f}};
     style.rules[1].function[0].terms = {{69, 0.1f}};
     style.share = {0.7, 0.3};
+    style.corrections[0] = {{0.75f, 0.5f}, {{17, 0.5f, 3, -0.25f, 0.125f}, {300, -1.0f, 9, 0.0625f, 0.5f}}};
     style.segments = {classifier(2, 17), classifier(2, k_context + 5)};
     style.boundary = classifier(2, k_context - 1);
     style.levels = classifier(3, 5);
@@ -106,6 +107,7 @@ TEST(HatchingStyleFile, RoundTripKeepsEverythingAndTheBytes) {
     EXPECT_EQ(loaded.height, style.height);
     EXPECT_EQ(loaded.rules, style.rules);
     EXPECT_EQ(loaded.share, style.share);
+    EXPECT_EQ(loaded.corrections, style.corrections);
     EXPECT_EQ(loaded.segment_crf, style.segment_crf);
     EXPECT_EQ(loaded.level_crf, style.level_crf);
     EXPECT_EQ(loaded.properties, style.properties);
@@ -176,8 +178,8 @@ TEST(HatchingStyleFile, OtherVersionsAndKindsAreRefusedWithTheMend) {
     const std::string last = std::to_string(k_hatching_feature_version - 1);
     EXPECT_EQ(with("kind", "exemplar labeling model"),
               "FILE: is no hatching style; make one with 'exemplar hatch train'");
-    EXPECT_EQ(with("format_version", "2"), "FILE: format_version is 2, this program knows 1; use a newer Exemplar");
-    EXPECT_EQ(with("format_version", "0"), "FILE: format_version is 0, this program knows 1; train it again");
+    EXPECT_EQ(with("format_version", "3"), "FILE: format_version is 3, this program knows 2; use a newer Exemplar");
+    EXPECT_EQ(with("format_version", "1"), "FILE: format_version is 1, this program knows 2; train it again");
     EXPECT_EQ(with("feature_version", next),
               "FILE: feature_version is " + next + ", this program knows " + known + "; use a newer Exemplar");
     EXPECT_EQ(with("feature_version", last), "FILE: feature_version is " + last + ", this program knows " + known +
@@ -187,13 +189,32 @@ TEST(HatchingStyleFile, OtherVersionsAndKindsAreRefusedWithTheMend) {
               "FILE: is no hatching style; make one with 'exemplar hatch train'");
 }
 
+TEST(HatchingStyleFile, CorrectionsThatDoNotFitAreRefused) {
+    using Numbers = std::vector<std::uint32_t>;
+    const auto with_numbers = [](const Numbers& numbers) {
+        return error_after([&](TensorFile& file) { replace(file, "direction.0.feature_part", {2, 2}, numbers); });
+    };
+    EXPECT_EQ(with_numbers({17, 3, 301, 9}),
+              "FILE: damaged file: direction.0 uses feature 301 of 301; train it again");
+    EXPECT_EQ(with_numbers({17, 10, 300, 9}),
+              "FILE: damaged file: direction.0 uses direction 10 of 10; train it again");
+    EXPECT_EQ(error_after([](TensorFile& file) {
+                  replace(file, "direction.0.rule_weight", {3}, std::vector<float>{1, 1, 1});
+              }),
+              "FILE: damaged file: direction.0 is of 3 segments of 2; train it again");
+    EXPECT_EQ(error_after([](TensorFile& file) {
+                  replace(file, "direction.0.rule_weight", {0}, std::vector<float>{});
+              }),
+              "FILE: damaged file: direction.0 has stumps, but no weights of rules; train it again");
+}
+
 // What opens files of any kind asks before it loads one.
 TEST(HatchingStyleFile, SaysWhetherItIsAStyle) {
     const fs::path path = temporary("kind.safetensors");
     save_hatching_style(path, small_style());
     EXPECT_TRUE(is_hatching_style(path));
     TensorFile file = read_safetensors(path);
-    file.metadata["format_version"] = "2";  // that of a newer program is one, too, which loading it then tells
+    file.metadata["format_version"] = "3";  // that of a newer program is one, too, which loading it then tells
     write_safetensors(path, file);
     EXPECT_TRUE(is_hatching_style(path));
     file.metadata["kind"] = "exemplar curvature";

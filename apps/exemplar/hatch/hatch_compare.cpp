@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
 
 #include "apps/exemplar/arguments.h"
+#include "apps/exemplar/hatch/hatch_halves.h"
 #include "apps/exemplar/hatch/hatch_reading.h"
 #include "apps/exemplar/hatch/hatch_scene.h"
+#include "host/core/errors.h"
+#include "host/core/progress.h"
 #include "host/hatching/comparison/drawing_comparison.h"
 #include "host/imaging/png.h"
 
@@ -19,6 +24,8 @@ struct CompareArguments {
     HatchSceneArguments scene;
     fs::path artist, mask, out;
     std::vector<fs::path> drawings;
+    bool halves = false;
+    std::uint64_t seed = 1;
     CommonOptions common;
 };
 
@@ -30,8 +37,8 @@ std::string percent(double share) {
     return fmt::format("{:.0f} %", 100 * share);
 }
 
-void print_comparison(const fs::path& path, const DrawingComparison& c) {
-    fmt::print("{}\n", path.string());
+void print_comparison(const std::string& title, const DrawingComparison& c) {
+    fmt::print("{}\n", title);
     fmt::print("  direction  {:.1f} degrees off in the median, {:.1f} in the mean; {:.1f} % more than 30 ({} pixels)\n",
                c.direction_median, c.direction_mean, 100 * c.direction_off, c.inked_by_both);
     fmt::print("  region     {:.2f} of what either hatches; {} of the object, the artist {}\n", c.region_overlap,
@@ -49,8 +56,8 @@ void print_comparison(const fs::path& path, const DrawingComparison& c) {
                    c.ratio[static_cast<std::size_t>(p)], c.factor[static_cast<std::size_t>(p)]);
 }
 
-nlohmann::json as_json(const fs::path& path, const DrawingComparison& c) {
-    return {{"drawing", path.string()},
+nlohmann::json as_json(const std::string& title, const DrawingComparison& c) {
+    return {{"drawing", title},
             {"inked_by_both", c.inked_by_both},
             {"direction_median", c.direction_median},
             {"direction_mean", c.direction_mean},
@@ -65,8 +72,32 @@ nlohmann::json as_json(const fs::path& path, const DrawingComparison& c) {
             {"property_factor", c.factor}};
 }
 
+/// Compares what is learned from halves of the drawing with the other halves.
+nlohmann::json report_halves(const CompareArguments& arguments, HatchScene& scene, const ComparedDrawing& artist,
+                             const PixelMask& mask) {
+    Progress progress("learning from halves", 4);
+    std::size_t done = 0;
+    const std::vector<HalfComparison> halves =
+        compare_halves(scene, artist, mask, arguments.seed,
+                       [&](const char* half) { progress.advance(done++ > 0 ? 1 : 0, half); });
+    progress.advance(1);
+    progress.finish();
+    nlohmann::json report = nlohmann::json::array();
+    double off = 0;
+    for (const HalfComparison& half : halves) {
+        const std::string title = fmt::format("learned from the {} half, compared in the other", half.learned_from);
+        if (!arguments.common.quiet) print_comparison(title, half.comparison);
+        report.push_back(as_json(half.learned_from, half.comparison));
+        off += half.comparison.direction_off / static_cast<double>(halves.size());
+    }
+    if (!arguments.common.quiet) fmt::print("half to half: {:.1f} % of directions more than 30 degrees off\n", 100 * off);
+    return report;
+}
+
 void run_compare(const CompareArguments& arguments) {
     const auto limits = apply_common_options(arguments.common);
+    if (arguments.drawings.empty() && !arguments.halves)
+        throw UsageError("there is nothing to compare with the artist's drawing; name drawings, or give --halves");
     require_hatch_scene(arguments.scene);
     require_input(arguments.artist);
     if (!arguments.mask.empty()) require_input(arguments.mask);
@@ -81,12 +112,13 @@ void run_compare(const CompareArguments& arguments) {
     for (const fs::path& path : arguments.drawings) {
         const ComparedDrawing drawing = compared(read_drawing_in_place(path, pixels));
         const DrawingComparison comparison = compare_drawings(artist, drawing, mask);
-        report.push_back(as_json(path, comparison));
-        if (!arguments.common.quiet) print_comparison(path, comparison);
+        report.push_back(as_json(path.string(), comparison));
+        if (!arguments.common.quiet) print_comparison(path.string(), comparison);
         if (arguments.out.empty()) continue;
         fs::create_directories(arguments.out);
         write_png(arguments.out / (path.stem().string() + "_compared.png"), comparison_picture(artist, drawing, mask));
     }
+    if (arguments.halves) report.push_back({{"halves", report_halves(arguments, scene, artist, mask)}});
     write_report(arguments.common, report);
 }
 
@@ -104,8 +136,12 @@ void add_hatch_compare_command(Command& hatch) {
         ->required()
         ->type_name("");
     command->add_option("DRAWING", arguments->drawings, "drawings that show exactly the view (PNG)")
-        ->required()
         ->type_name("...");
+    command->add_flag("--halves", arguments->halves,
+                      "learn from each half of the artist's drawing, and compare what is predicted with the other");
+    command->add_option("--seed", arguments->seed, "of learning with --halves")
+        ->capture_default_str()
+        ->check(whole_number(0));
     command->add_option("--mask", arguments->mask,
                         "picture of the view, white where to compare (PNG); default: the object but for a band of 3.5 "
                         "pixels along its outlines")

@@ -39,6 +39,7 @@ DrawingProperties drawing_properties(const StrokeMeasurements& measurements) {
     DrawingProperties out;
     out.width = measurements.width;
     out.height = measurements.height;
+    out.known.assign(measurements.size(), 1);
     out.center.resize(measurements.size());
     for (std::size_t i = 0; i < out.center.size(); ++i)
         out.center[i] = measurements.skeleton[i] && measurements.spacing[i] > 0 ? 1 : 0;
@@ -50,6 +51,11 @@ DrawingProperties drawing_properties(const StrokeMeasurements& measurements) {
     out.level = measurements.level;
     out.boundary = measurements.boundary;
     return out;
+}
+
+void restrict_to(const PixelMask& mask, DrawingProperties& drawing) {
+    for (std::size_t i = 0; i < drawing.known.size(); ++i)
+        if (!mask.data[i]) drawing.known[i] = drawing.center[i] = 0;
 }
 
 }  // namespace exemplar

@@ -21,6 +21,7 @@ const std::vector<float>& property_of(const HatchingFields& fields, StrokeProper
 /// The properties of a drawing at each pixel of the view that it shows; all are images of the view's size.
 struct DrawingProperties {
     int width = 0, height = 0;
+    std::vector<std::uint8_t> known;     ///< 1: the drawing says what is there, hatching or none
     std::vector<std::uint8_t> center;    ///< 1: on the center line of a hatching stroke, where properties are known
     std::vector<std::uint8_t> crossing;  ///< 1: where strokes cross, so that the direction is unknown
     std::vector<std::uint8_t> crossed;   ///< 1: on a stroke that crosses another, so its length is uncertain
@@ -34,5 +35,8 @@ struct DrawingProperties {
 /// Returns measurements in the form that styles are learned from. Strokes without a neighbor along them are no
 /// hatching and left out.
 DrawingProperties drawing_properties(const StrokeMeasurements& measurements);
+
+/// Restricts what is learned from a drawing to the pixels of a mask of its size.
+void restrict_to(const PixelMask& mask, DrawingProperties& drawing);
 
 }  // namespace exemplar

@@ -198,8 +198,8 @@ class StyleLearning {
     }
 
     void learn_boundary() {
-        std::vector<std::uint32_t> on = rows_where([&](std::uint32_t p) { return drawing_.boundary[p] != 0; });
-        std::vector<std::uint32_t> off = rows_where([&](std::uint32_t p) { return drawing_.boundary[p] == 0; });
+        std::vector<std::uint32_t> on = rows_where([&](std::uint32_t p) { return drawing_.known[p] && drawing_.boundary[p]; });
+        std::vector<std::uint32_t> off = rows_where([&](std::uint32_t p) { return drawing_.known[p] && !drawing_.boundary[p]; });
         style_.boundary.stumps.class_count = 2;
         if (on.size() < k_min_samples || off.size() < k_min_samples) return;
         on = sample_rows(std::move(on), options_.samples / 2, options_.seed + 4);
@@ -346,15 +346,19 @@ class StyleLearning {
     }
 
     double level_error(std::span<const std::int32_t> labels) const {
-        double wrong = 0;
-        for (std::uint32_t row = 0; row < labels.size(); ++row)
+        double wrong = 0, all = 0;
+        for (std::uint32_t row = 0; row < labels.size(); ++row) {
+            if (!drawing_.known[pixel(row)]) continue;
             wrong += labels[row] != drawing_.level[pixel(row)] ? 1 : 0;
-        return wrong / static_cast<double>(labels.size());
+            all += 1;
+        }
+        return all > 0 ? wrong / all : 0;
     }
 
     void learn_levels() {
         const std::vector<std::uint32_t> rows =
-            sample_rows(numbers(0, pixels_.size()), options_.samples, options_.seed + 8);
+            sample_rows(rows_where([&](std::uint32_t p) { return drawing_.known[p] != 0; }), options_.samples,
+                        options_.seed + 8);
         std::vector<std::int32_t> labels;
         labels.reserve(rows.size());
         for (const std::uint32_t row : rows) labels.push_back(drawing_.level[pixel(row)]);

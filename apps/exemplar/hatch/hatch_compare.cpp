@@ -43,9 +43,10 @@ void print_comparison(const std::string& title, const DrawingComparison& c) {
                c.direction_median, c.direction_mean, 100 * c.direction_off, c.inked_by_both);
     fmt::print("  region     {:.2f} of what either hatches; {} of the object, the artist {}\n", c.region_overlap,
                percent(c.hatched[1]), percent(c.hatched[0]));
-    fmt::print("  tone       correlation {:.2f}, {:.2f}, {:.2f} over 1, 2, 4 spacings; mean darkness {:.3f}, the artist's "
-               "{:.3f}\n",
-               c.tone[0], c.tone[1], c.tone[2], c.ink[1], c.ink[0]);
+    fmt::print(
+        "  tone       correlation {:.2f}, {:.2f}, {:.2f} over 1, 2, 4 spacings; mean darkness {:.3f}, the artist's "
+        "{:.3f}\n",
+        c.tone[0], c.tone[1], c.tone[2], c.ink[1], c.ink[0]);
     fmt::print("  levels     {:.1f} % right;", 100 * c.level_right);
     constexpr std::array<const char*, 3> k_levels{"none", "single", "crossed"};
     for (std::size_t a = 0; a < k_levels.size(); ++a)
@@ -77,9 +78,8 @@ nlohmann::json report_halves(const CompareArguments& arguments, HatchScene& scen
                              const PixelMask& mask) {
     Progress progress("learning from halves", 4);
     std::size_t done = 0;
-    const std::vector<HalfComparison> halves =
-        compare_halves(scene, artist, mask, arguments.seed,
-                       [&](const char* half) { progress.advance(done++ > 0 ? 1 : 0, half); });
+    const std::vector<HalfComparison> halves = compare_halves(
+        scene, artist, mask, arguments.seed, [&](const char* half) { progress.advance(done++ > 0 ? 1 : 0, half); });
     progress.advance(1);
     progress.finish();
     nlohmann::json report = nlohmann::json::array();
@@ -90,7 +90,8 @@ nlohmann::json report_halves(const CompareArguments& arguments, HatchScene& scen
         report.push_back(as_json(half.learned_from, half.comparison));
         off += half.comparison.direction_off / static_cast<double>(halves.size());
     }
-    if (!arguments.common.quiet) fmt::print("half to half: {:.1f} % of directions more than 30 degrees off\n", 100 * off);
+    if (!arguments.common.quiet)
+        fmt::print("half to half: {:.1f} % of directions more than 30 degrees off\n", 100 * off);
     return report;
 }
 
@@ -128,27 +129,29 @@ void add_hatch_compare_command(Command& hatch) {
     auto arguments = std::make_shared<CompareArguments>();
     Command* command = hatch.add_subcommand("compare", "Compares drawings of a view with an artist's");
     command->footer(
-        "Compares the direction of strokes, hatched region, tone, levels and stroke properties, away from the object's\n"
+        "Compares the direction of strokes, hatched region, tone, levels and stroke properties, away from the "
+        "object's\n"
         "outlines. Of drawings by any hand or program: pictures are all it takes.\n\nExample:\n"
         "  exemplar hatch compare bunny.off traced.png drawn.png --view three-quarter --out compared");
     command->add_option("MESH", arguments->scene.mesh, "mesh that the drawings show")->required()->type_name("");
     command->add_option("ARTIST", arguments->artist, "the drawing to compare with (PNG); aligned with the view")
         ->required()
         ->type_name("");
-    command->add_option("DRAWING", arguments->drawings, "drawings that show exactly the view (PNG)")
-        ->type_name("...");
+    command->add_option("DRAWING", arguments->drawings, "drawings that show exactly the view (PNG)")->type_name("...");
     command->add_flag("--halves", arguments->halves,
                       "learn from each half of the artist's drawing, and compare what is predicted with the other");
     command->add_option("--seed", arguments->seed, "of learning with --halves")
         ->capture_default_str()
         ->check(whole_number(0));
-    command->add_option("--mask", arguments->mask,
-                        "picture of the view, white where to compare (PNG); default: the object but for a band of 3.5 "
-                        "pixels along its outlines")
+    command
+        ->add_option("--mask", arguments->mask,
+                     "picture of the view, white where to compare (PNG); default: the object but for a band of 3.5 "
+                     "pixels along its outlines")
         ->type_name("FILE");
-    command->add_option("--out", arguments->out,
-                        "folder for a picture of each: strokes green where they run like the artist's, red where "
-                        "they are off by more than 30 degrees")
+    command
+        ->add_option("--out", arguments->out,
+                     "folder for a picture of each: strokes green where they run like the artist's, red where "
+                     "they are off by more than 30 degrees")
         ->type_name("FOLDER");
     add_hatch_scene_options(*command, arguments->scene);
     add_device_option(*command, arguments->common);

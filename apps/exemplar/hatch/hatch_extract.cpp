@@ -100,7 +100,8 @@ void add_hatch_extract_command(Command& hatch) {
     auto arguments = std::make_shared<ExtractArguments>();
     Command* command = hatch.add_subcommand("extract", "Measures the strokes of a drawing, for inspection");
     command->footer(
-        "Writes what was read over the drawing (overlay), and a picture of each property: skeleton, orientation, thickness, intensity, spacing, length, levels,\n"
+        "Writes what was read over the drawing (overlay), and a picture of each property: skeleton, orientation, "
+        "thickness, intensity, spacing, length, levels,\n"
         "intersections, boundaries.\n\nExample:\n"
         "  exemplar hatch extract bunny.off traced.png --out properties");
     command->add_option("MESH", arguments->scene.mesh, "mesh that the drawing shows")->required()->type_name("");

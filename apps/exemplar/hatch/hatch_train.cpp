@@ -96,8 +96,8 @@ void run_hatch_train(const TrainArguments& arguments) {
     progress.begins("orientation rules");
     StyleReport report;
     HatchingStyle style =
-        learn_hatching_style(scene.pixels(), drawing_properties(drawing.strokes), scene.tools().scorer, arguments.learning,
-                             report, [&](const char* step) { progress.begins(step); });
+        learn_hatching_style(scene.pixels(), drawing_properties(drawing.strokes), scene.tools().scorer,
+                             arguments.learning, report, [&](const char* step) { progress.begins(step); });
     progress.finish();
     style.name = arguments.drawing.filename().string();
     save_hatching_style(arguments.out, style);

@@ -13,9 +13,9 @@
 namespace exemplar {
 namespace {
 
-constexpr float k_outline_band = 3.5f;        // pixels
-constexpr float k_ink = 65.0f / 255;          // darkness of ink
-constexpr float k_pencil_ink = 30.0f / 255;   // of a drawing without dark strokes
+constexpr float k_outline_band = 3.5f;       // pixels
+constexpr float k_ink = 65.0f / 255;         // darkness of ink
+constexpr float k_pencil_ink = 30.0f / 255;  // of a drawing without dark strokes
 constexpr float k_pencil_darkest = 135.0f / 255;
 constexpr float k_gradient_sigma = 1.22f, k_tensor_sigma = 1.8f, k_min_coherence = 0.6f;
 constexpr float k_closing_radius = 6;
@@ -97,8 +97,7 @@ struct DirectionPair {
     PixelMask both;
 
     double degrees(std::size_t i) const {
-        return static_cast<double>(orientation_difference(artist.angle[i], drawing.angle[i])) * 180 /
-               std::numbers::pi;
+        return static_cast<double>(orientation_difference(artist.angle[i], drawing.angle[i])) * 180 / std::numbers::pi;
     }
 };
 
@@ -259,8 +258,8 @@ Image comparison_picture(const ComparedDrawing& artist, const ComparedDrawing& d
                     : off > k_doubtful ? std::array<float, 3>{0.9f, 0.6f, 0}
                                        : std::array<float, 3>{0, 0.55f, 0.1f};
         } else {
-            const float dark = std::clamp(std::max(0.35f * artist.darkness.data[i], 0.7f * drawing.darkness.data[i]),
-                                          0.0f, 1.0f);
+            const float dark =
+                std::clamp(std::max(0.35f * artist.darkness.data[i], 0.7f * drawing.darkness.data[i]), 0.0f, 1.0f);
             color.fill(1 - dark);
         }
         for (std::size_t c = 0; c < 3; ++c)

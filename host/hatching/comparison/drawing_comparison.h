@@ -27,8 +27,8 @@ struct DrawingComparison {
     double direction_median = 0, direction_mean = 0;  ///< angle between the strokes of both, degrees
     double direction_off = 0;                         ///< share above 30 degrees
     // The hatched regions: ink closed by a disc of 6 pixels.
-    double region_overlap = 0;            ///< intersection over union
-    std::array<double, 2> hatched{};      ///< share of the object: the artist's, the drawing's
+    double region_overlap = 0;        ///< intersection over union
+    std::array<double, 2> hatched{};  ///< share of the object: the artist's, the drawing's
     /// Correlation of both blurred by Gaussians of 1, 2 and 4 of the artist's median spacings.
     std::array<double, 3> tone{};
     std::array<double, 2> ink{};  ///< mean darkness, in [0, 1]: the artist's, the drawing's

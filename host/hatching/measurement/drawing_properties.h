@@ -25,8 +25,8 @@ struct DrawingProperties {
     std::vector<std::uint8_t> center;    ///< 1: on the center line of a hatching stroke, where properties are known
     std::vector<std::uint8_t> crossing;  ///< 1: where strokes cross, so that the direction is unknown
     std::vector<std::uint8_t> crossed;   ///< 1: on a stroke that crosses another, so its length is uncertain
-    std::vector<std::uint8_t> bounded;   ///< 1: on a stroke as long as its hatching is wide: its length is a lower bound
-    std::vector<float> orientation;      ///< radians in [0, pi)
+    std::vector<std::uint8_t> bounded;  ///< 1: on a stroke as long as its hatching is wide: its length is a lower bound
+    std::vector<float> orientation;     ///< radians in [0, pi)
     std::array<std::vector<float>, k_stroke_properties> property;  ///< positive where known
     std::vector<std::uint8_t> level;                               ///< of every pixel of the object
     std::vector<std::uint8_t> boundary;                            ///< 1: on a boundary of hatching regions

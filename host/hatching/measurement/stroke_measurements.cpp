@@ -25,7 +25,7 @@ constexpr float k_paper_distance = 3;  ///< min distance of paper from ink, pixe
 constexpr std::size_t k_min_paper_pixels = 100;
 constexpr float k_spacings_per_thickness = 20, k_min_max_spacing = 24;
 constexpr float k_min_outline_reach = 3.5f;  ///< pixels
-constexpr float k_owned_edge = 1.5f;  ///< max distance of a stroke's pixels beyond half of its width, pixels
+constexpr float k_owned_edge = 1.5f;         ///< max distance of a stroke's pixels beyond half of its width, pixels
 
 void check_drawing_and_mask(const FloatImage& darkness, const Image& mask) {
     if (darkness.channels != 1 || mask.channels != 1)
@@ -192,8 +192,7 @@ StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask
     spread(drawing.ink, mask, crossing_pixels(crossings, m.width, m.height), strokes, map, m);
     mark_ends(strokes, map, mask, m);
     mark_bounded(strokes, map, m);
-    for (std::size_t i = 0; i < m.size(); ++i)
-        m.skeleton[i] = drawing.skeleton.data[i] && m.stroke[i] && !m.outline[i];
+    for (std::size_t i = 0; i < m.size(); ++i) m.skeleton[i] = drawing.skeleton.data[i] && m.stroke[i] && !m.outline[i];
     return m;
 }
 

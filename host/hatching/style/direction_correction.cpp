@@ -19,7 +19,8 @@ constexpr std::array<std::size_t, k_direction_frames> k_field_of_frame{0, 2, 12,
 constexpr std::size_t k_max_rounds = 400, k_rounds_between = 20, k_patience = 120;
 constexpr double k_feature_share = 0.1;
 constexpr float k_shrinkage = 0.2f;
-constexpr float k_prior_count = 5;  // items that a leaf is assumed to have seen with a value of zero
+constexpr double k_correction_worth = 0.9;  // less gain is the jitter of a hand
+constexpr float k_prior_count = 5;          // items that a leaf is assumed to have seen with a value of zero
 
 using Parts = std::array<float, k_direction_parts>;
 
@@ -54,8 +55,7 @@ class CorrectionBoosting {
         : training_(training), rows_(std::move(rows)), random_(training.seed), direction_(training.target.size()) {
         weigh_rules();
         for (std::size_t i = 0; i < direction_.size(); ++i)
-            direction_[i] =
-                correction_.rule_weight[static_cast<std::size_t>(training.segment[i])] * training.rules[i];
+            direction_[i] = correction_.rule_weight[static_cast<std::size_t>(training.segment[i])] * training.rules[i];
         frames_.reserve(direction_.size());
         for (std::size_t i = 0; i < direction_.size(); ++i) frames_.push_back(parts_of(training.fields, i));
         slopes_.resize(rows_.size());
@@ -66,7 +66,8 @@ class CorrectionBoosting {
         measure_slopes();
         const std::vector<std::uint32_t> features = some_features();
         std::vector<StumpChoice> choices(features.size());
-        parallel_for(features.size(), [&](std::size_t k) { choices[k] = best_stump(features[k]); }, 4);
+        parallel_for(
+            features.size(), [&](std::size_t k) { choices[k] = best_stump(features[k]); }, 4);
         const StumpChoice& best = *std::ranges::max_element(choices, {}, &StumpChoice::gain);
         if (!(best.gain > 0)) return false;
         const DirectionStump stump{best.feature, training_.features.thresholds[best.feature][best.bin], best.part,
@@ -129,6 +130,7 @@ class CorrectionBoosting {
 
     StumpChoice best_stump(std::uint32_t feature) const {
         const std::size_t bins = training_.features.thresholds[feature].size() + 1;
+        if (bins == 1) return {};
         const std::span<const std::uint8_t> column = training_.features.column(feature);
         std::vector<BinSums> sums(bins);
         for (std::size_t k = 0; k < rows_.size(); ++k) {
@@ -228,6 +230,7 @@ LearnedCorrection learn_correction(const CorrectionTraining& training, const std
         best.error = error;
         best_rounds = round;
     }
+    if (best.error > k_correction_worth * best.rule_error) best_rounds = 0;
     CorrectionBoosting final(training, all);
     for (std::size_t round = 0; round < best_rounds && final.add_stump(); ++round) {
         check_interrupt();

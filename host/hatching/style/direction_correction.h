@@ -54,10 +54,10 @@ void cross_at_right_angles(std::span<const DoubledAngle> hatches, std::span<Doub
 
 /// Input of learn_correction(): strokes' pixels.
 struct CorrectionTraining {
-    const QuantizedFeatures& features;       ///< all base features
+    const QuantizedFeatures& features;  ///< all base features; those without thresholds are not used
     const OrientationFields& fields;
-    std::span<const DoubledAngle> target;    ///< direction of the stroke
-    std::span<const DoubledAngle> rules;     ///< direction of the rule; zero where there is none
+    std::span<const DoubledAngle> target;  ///< direction of the stroke
+    std::span<const DoubledAngle> rules;   ///< direction of the rule; zero where there is none
     std::span<const std::int32_t> segment;
     std::size_t segments;
     std::span<const std::uint8_t> held_out;  ///< 1: tells when to stop
@@ -71,8 +71,8 @@ struct LearnedCorrection {
 
 /// Learns a correction by gradient boosting with vectors as values (Friedman 2001): each round adds the stump that
 /// reduces the squared error of f most, over a random tenth of the features, at a fifth of its full size. Held-out
-/// items tell the number of rounds, then all items are learned from. No stumps if none helps. Deterministic, whatever
-/// the number of threads.
+/// items tell the number of rounds, then all items are learned from. No stumps if they gain less than a tenth.
+/// Deterministic, whatever the number of threads.
 LearnedCorrection learn_correction(
     const CorrectionTraining& training, const std::function<void()>& progress = [] {});
 

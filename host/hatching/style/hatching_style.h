@@ -18,9 +18,9 @@ namespace exemplar {
 /// A hatching style learned from one drawing. Feature numbers are those of the expanded set (powers.h); numbers from
 /// 4 * k_pixel_features on are contextual features of as many labels as there are rules (see contextual_features()).
 struct HatchingStyle {
-    std::string name;                        ///< of the drawing
-    int width = 0, height = 0;               ///< of the drawing, in pixels; lengths are in these pixels
-    std::vector<OrientationRule> rules;      ///< one per segment
+    std::string name;                    ///< of the drawing
+    int width = 0, height = 0;           ///< of the drawing, in pixels; lengths are in these pixels
+    std::vector<OrientationRule> rules;  ///< one per segment
     /// Corrections of the rules' directions, for hatches and for those that cross them.
     std::array<DirectionCorrection, k_hatch_layers> corrections;
     std::vector<double> share;               ///< per segment, its share of the drawing's strokes

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -15,8 +16,11 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_rounds_between = 10; // rounds between evaluations of the held-out rows
-constexpr std::size_t k_patience = 200;      // rounds without gain
+/// How many rounds without gain end boosting, and how many pass between evaluations of the held-out rows.
+struct Patience {
+    std::size_t rounds, between;
+};
+constexpr Patience k_patience{60, 5}, k_patience_for_details{800, 10};
 // Pixels of a drawing are similar: full steps fit them in a few rounds and generalize worse.
 constexpr double k_shrinkage = 0.3;
 
@@ -65,7 +69,8 @@ std::vector<T> chosen(std::span<const T> values, std::span<const std::uint32_t> 
 }
 
 Booster booster_of(const ClassifierTraining& training, const TrainingSet& set) {
-    const BoostOptions options{.shrinkage = k_shrinkage, .feature_fraction = training.tolerance > 0 ? 0.2 : 1.0, .seed = training.seed};
+    const BoostOptions options{
+        .shrinkage = k_shrinkage, .feature_fraction = training.detailed ? 0.2 : 1.0, .seed = training.seed};
     return training.gentle ? Booster::gentle(set, options) : Booster(set, training.classes, options);
 }
 
@@ -120,6 +125,55 @@ std::vector<float> mean_probabilities_around_faces(const HatchingSurface& surfac
     return at_face;
 }
 
+/// What held-out rows say of a number of rounds.
+struct JudgedRounds {
+    std::size_t rounds = 0;
+    Calibration held;
+};
+
+const JudgedRounds& fewest_within_a_standard_error(const std::vector<JudgedRounds>& judged, std::size_t held_out) {
+    const double least =
+        std::ranges::min_element(judged, {}, [](const JudgedRounds& r) { return r.held.error; })->held.error;
+    const double standard_error =
+        std::sqrt(least * (1 - least) / static_cast<double>(std::max<std::size_t>(1, held_out)));
+    return *std::ranges::find_if(judged, [&](const JudgedRounds& r) { return r.held.error <= least + standard_error; });
+}
+
+/// Boosts on the other rows, and judges by the held-out ones until more rounds are of no use.
+std::vector<JudgedRounds> judge_rounds(const ClassifierTraining& training, const FeatureMatrix& features,
+                                       const TrainingSet& set, std::span<const std::uint32_t> judges,
+                                       const std::function<void()>& progress) {
+    const std::vector<std::int32_t> labels = chosen(training.labels, judges);
+    const std::vector<float> weights = chosen(set.weights, judges);
+    constexpr std::array<Link, 1> k_links{Link::softmax};
+    const Patience patience = training.detailed ? k_patience_for_details : k_patience;
+    Booster booster = booster_of(training, set);
+    HeldOutScores scores(features, judges, training.classes);
+    std::vector<JudgedRounds> judged;
+    double least = std::numeric_limits<double>::infinity();
+    std::size_t best_rounds = 0;
+    for (std::size_t round = 1; round <= training.max_rounds && round <= best_rounds + patience.rounds; ++round) {
+        check_interrupt();
+        booster.add_stump();
+        progress();
+        if (round % patience.between != 0) continue;
+        scores.add(booster.classifier());
+        judged.push_back({round, calibrate(scores.scores(), labels, weights, training.classes, k_links)});
+        const double measure = training.detailed ? judged.back().held.error : judged.back().held.loss;
+        if (!(measure < least)) continue;
+        least = measure;
+        best_rounds = round;
+    }
+    return judged;
+}
+
+JudgedRounds best_of(const ClassifierTraining& training, const std::vector<JudgedRounds>& judged,
+                     std::size_t held_out) {
+    if (judged.empty()) return {};
+    return training.detailed ? fewest_within_a_standard_error(judged, held_out)
+                             : *std::ranges::min_element(judged, {}, [](const auto& r) { return r.held.loss; });
+}
+
 }  // namespace
 
 LearnedClassifier learn_classifier(const ClassifierTraining& training, const std::function<void()>& progress) {
@@ -134,30 +188,10 @@ LearnedClassifier learn_classifier(const ClassifierTraining& training, const std
     weights.resize(training.features.rows, 1.0f);
     const QuantizedFeatures quantized = quantize(features.matrix, weights, {});
     const TrainingSet set{quantized, training.labels, weights, rows};
-    Booster booster = booster_of(training, set);
-
-    const std::vector<std::int32_t> labels = chosen(training.labels, judges);
-    const std::vector<float> judge_weights = chosen(std::span<const float>(weights), judges);
-    constexpr std::array<Link, 1> k_links{Link::softmax};
-    HeldOutScores scores(features.matrix, judges, training.classes);
-    best.loss = std::numeric_limits<double>::infinity();
-    std::size_t best_rounds = 0;
-    double least_error = 1;
-    for (std::size_t round = 1; round <= training.max_rounds && round <= best_rounds + k_patience; ++round) {
-        check_interrupt();
-        booster.add_stump();
-        progress();
-        if (round % k_rounds_between != 0) continue;
-        scores.add(booster.classifier());
-        const Calibration held = calibrate(scores.scores(), labels, judge_weights, training.classes, k_links);
-        least_error = std::min(least_error, held.error);
-        const bool is_better = training.tolerance > 0 ? held.error <= least_error + training.tolerance
-                                                      : held.loss < best.loss;
-        if (!is_better) continue;
-        best_rounds = round;
-        best = {{{}, held.link, held.scale}, held.error, held.loss};
-    }
-    best.classifier.stumps = with_all_rows(training, quantized, weights, best_rounds, progress);
+    const std::vector<JudgedRounds> judged = judge_rounds(training, features.matrix, set, judges, progress);
+    const JudgedRounds chosen_rounds = best_of(training, judged, judges.size());
+    best = {{{}, chosen_rounds.held.link, chosen_rounds.held.scale}, chosen_rounds.held.error, chosen_rounds.held.loss};
+    best.classifier.stumps = with_all_rows(training, quantized, weights, chosen_rounds.rounds, progress);
     for (Stump& stump : best.classifier.stumps.stumps) stump.feature = features.expanded[stump.feature];
     return best;
 }

@@ -20,9 +20,10 @@ struct ClassifierTraining {
     bool gentle = false;  ///< GentleBoost for two classes instead of JointBoost
     std::size_t max_rounds = 500;
     std::uint64_t seed = 1;
-    /// If positive, boosting goes on for as long as the share of held-out rows it gets wrong stays within this of the
-    /// lowest, so that what was drawn is reproduced as well as can be without harm elsewhere.
-    double tolerance = 0;
+    /// For labels with details that many small steps can learn: each round searches a random fifth of the features, and
+    /// the number of rounds is the fewest whose share of wrong held-out rows is within a standard error of the lowest
+    /// (Breiman et al. 1984). More rounds than that reproduce the drawing only.
+    bool detailed = false;
 };
 
 struct LearnedClassifier {
@@ -32,7 +33,8 @@ struct LearnedClassifier {
 };
 
 /// Boosts until the held-out rows fit best (thesis Sec. 4.4.2), then learns again from all rows with that number of
-/// rounds. Unless there is a tolerance, the log loss decides, as it also measures confidence. Returns no stumps
+/// rounds. The log loss decides, as it also measures confidence,
+/// unless labels are detailed. Returns no stumps
 /// for a single class.
 LearnedClassifier learn_classifier(
     const ClassifierTraining& training, const std::function<void()>& progress = [] {});

@@ -166,7 +166,7 @@ class StyleLearning {
         for (std::size_t stage = 0; stage < options_.max_stages; ++stage) {
             const FeatureMatrix features = features_of(rows, stage > 0);
             const LearnedClassifier learned =
-                learn_classifier({features, labels, {}, held, style_.rules.size(), false, 1500, options_.seed + stage},
+                learn_classifier({features, labels, {}, held, style_.rules.size(), false, 500, options_.seed + stage},
                                  [&] { progress_("segments"); });
             report_.segment_errors.push_back(learned.error);
             // A stage that is no better ends the cascade, and is not kept.
@@ -198,8 +198,10 @@ class StyleLearning {
     }
 
     void learn_boundary() {
-        std::vector<std::uint32_t> on = rows_where([&](std::uint32_t p) { return drawing_.known[p] && drawing_.boundary[p]; });
-        std::vector<std::uint32_t> off = rows_where([&](std::uint32_t p) { return drawing_.known[p] && !drawing_.boundary[p]; });
+        std::vector<std::uint32_t> on =
+            rows_where([&](std::uint32_t p) { return drawing_.known[p] && drawing_.boundary[p]; });
+        std::vector<std::uint32_t> off =
+            rows_where([&](std::uint32_t p) { return drawing_.known[p] && !drawing_.boundary[p]; });
         style_.boundary.stumps.class_count = 2;
         if (on.size() < k_min_samples || off.size() < k_min_samples) return;
         on = sample_rows(std::move(on), options_.samples / 2, options_.seed + 4);
@@ -291,7 +293,10 @@ class StyleLearning {
             segments.push_back(segment[i]);
         }
         if (rows.size() < k_min_crossing) return;
-        const QuantizedFeatures quantized = quantize(features_of(rows, false), {}, {});
+        QuantizedFeatures quantized = quantize(features_of(rows, false), {}, {});
+        // Depth tells where in this picture a pixel is, which means nothing in another view.
+        const auto depth = std::ranges::find(pixel_feature_names(), std::string("image.depth"));
+        quantized.thresholds[static_cast<std::size_t>(depth - pixel_feature_names().begin())].clear();
         const OrientationFields fields = pixels_.orientations(rows);
         const LearnedCorrection learned =
             learn_correction({quantized, fields, targets, directions, segments, style_.rules.size(),
@@ -356,16 +361,15 @@ class StyleLearning {
     }
 
     void learn_levels() {
-        const std::vector<std::uint32_t> rows =
-            sample_rows(rows_where([&](std::uint32_t p) { return drawing_.known[p] != 0; }), options_.samples,
-                        options_.seed + 8);
+        const std::vector<std::uint32_t> rows = sample_rows(
+            rows_where([&](std::uint32_t p) { return drawing_.known[p] != 0; }), options_.samples, options_.seed + 8);
         std::vector<std::int32_t> labels;
         labels.reserve(rows.size());
         for (const std::uint32_t row : rows) labels.push_back(drawing_.level[pixel(row)]);
         const FeatureMatrix features = features_of(rows, true);
-        const LearnedClassifier learned = learn_classifier(
-            {features, labels, {}, held_out_patches(rows), 3, false, 4000, options_.seed + 10, 0.01},
-            [&] { progress_("hatching levels"); });
+        const LearnedClassifier learned =
+            learn_classifier({features, labels, {}, held_out_patches(rows), 3, false, 4000, options_.seed + 10, true},
+                             [&] { progress_("hatching levels"); });
         style_.levels = learned.classifier;
         report_.level_error = learned.error;
     }
@@ -411,9 +415,8 @@ class StyleLearning {
         constexpr double k_quantile = 0.85;
         std::vector<std::pair<float, bool>> ratios;  // and whether the stroke ended by itself
         for (std::size_t i = 0; i < target.size(); ++i) {
-            const float predicted = model.evaluate([&](std::uint32_t k) {
-                return power_of(features.column(k / k_powers)[i], k % k_powers);
-            });
+            const float predicted = model.evaluate(
+                [&](std::uint32_t k) { return power_of(features.column(k / k_powers)[i], k % k_powers); });
             ratios.emplace_back(target[i] / predicted, drawing_.bounded[pixel(rows[i])] == 0);
         }
         std::ranges::sort(ratios);
@@ -432,9 +435,9 @@ class StyleLearning {
     StyleReport& report_;
     const std::function<void(const char*)>& progress_;
     HatchingStyle style_;
-    std::vector<std::uint32_t> rule_rows_;  // rows of the stroke pixels that rules are learned from
-    std::vector<std::int32_t> segment_;     // segment of each of these rows
-    std::vector<float> probabilities_;      // of the segments, at all pixels
+    std::vector<std::uint32_t> rule_rows_;   // rows of the stroke pixels that rules are learned from
+    std::vector<std::int32_t> segment_;      // segment of each of these rows
+    std::vector<float> probabilities_;       // of the segments, at all pixels
     std::vector<std::int32_t> segment_cut_;  // of all pixels, as a prediction would have them
     Stopwatch watch_;
 };

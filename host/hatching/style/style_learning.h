@@ -22,7 +22,7 @@ struct StyleLearningOptions {
 
 /// Errors of a style on its drawing: of classifiers and properties on held-out pixels.
 struct StyleReport {
-    double orientation_error = 0;                        ///< mean |u - f|^2 of the strokes
+    double orientation_error = 0;  ///< mean |u - f|^2 of the strokes
     /// Mean |u - f|^2 of held-out strokes by the rules alone and with the correction, per layer; zero: no correction.
     std::array<std::array<double, 2>, k_hatch_layers> direction_errors{};
     std::vector<double> segment_errors;                  ///< share of wrong held-out pixels, per stage of the cascade

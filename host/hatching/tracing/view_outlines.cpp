@@ -55,9 +55,9 @@ std::vector<bool> follows_outline(const TracedStroke& stroke, const ViewOutlines
             static_cast<std::size_t>(y) * static_cast<std::size_t>(outlines.width) + static_cast<std::size_t>(x);
         const float distance = outlines.distance(pixel);
         follows.push_back(distance <= reach &&
-                          orientation_difference(point.orientation,
-                                                 outlines.direction[static_cast<std::size_t>(
-                                                     outlines.nearest[pixel])]) <= k_max_turn);
+                          orientation_difference(
+                              point.orientation,
+                              outlines.direction[static_cast<std::size_t>(outlines.nearest[pixel])]) <= k_max_turn);
     }
     return follows;
 }
@@ -113,8 +113,7 @@ ViewOutlines view_outlines(const GBuffer& gbuffer) {
     return outlines;
 }
 
-std::vector<TracedStroke> take_outlines(std::vector<TracedStroke>& strokes, const ViewOutlines& outlines,
-                                        float reach) {
+std::vector<TracedStroke> take_outlines(std::vector<TracedStroke>& strokes, const ViewOutlines& outlines, float reach) {
     constexpr std::size_t k_min_points = 3;
     const auto least = std::max(k_min_points, static_cast<std::size_t>(std::lround(reach)));
     std::vector<TracedStroke> drawn, rest;

@@ -12,9 +12,9 @@ namespace exemplar {
 /// occlusion_barriers). They run through pixels of the nearer side.
 struct ViewOutlines {
     int width = 0, height = 0;
-    std::size_t count = 0;               ///< number of pixels that outlines run through
-    std::vector<std::int32_t> nearest;   ///< per pixel: index of the nearest of them; k_no_site: there are none
-    std::vector<float> direction;        ///< per pixel of an outline: along it, radians in [0, pi)
+    std::size_t count = 0;              ///< number of pixels that outlines run through
+    std::vector<std::int32_t> nearest;  ///< per pixel: index of the nearest of them; k_no_site: there are none
+    std::vector<float> direction;       ///< per pixel of an outline: along it, radians in [0, pi)
 
     /// Returns the distance in pixels from the center of a pixel to the nearest outline pixel's; infinity if there
     /// are none.

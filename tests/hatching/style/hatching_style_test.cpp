@@ -194,18 +194,16 @@ TEST(HatchingStyleFile, CorrectionsThatDoNotFitAreRefused) {
     const auto with_numbers = [](const Numbers& numbers) {
         return error_after([&](TensorFile& file) { replace(file, "direction.0.feature_part", {2, 2}, numbers); });
     };
-    EXPECT_EQ(with_numbers({17, 3, 301, 9}),
-              "FILE: damaged file: direction.0 uses feature 301 of 301; train it again");
+    EXPECT_EQ(with_numbers({17, 3, 301, 9}), "FILE: damaged file: direction.0 uses feature 301 of 301; train it again");
     EXPECT_EQ(with_numbers({17, 10, 300, 9}),
               "FILE: damaged file: direction.0 uses direction 10 of 10; train it again");
     EXPECT_EQ(error_after([](TensorFile& file) {
                   replace(file, "direction.0.rule_weight", {3}, std::vector<float>{1, 1, 1});
               }),
               "FILE: damaged file: direction.0 is of 3 segments of 2; train it again");
-    EXPECT_EQ(error_after([](TensorFile& file) {
-                  replace(file, "direction.0.rule_weight", {0}, std::vector<float>{});
-              }),
-              "FILE: damaged file: direction.0 has stumps, but no weights of rules; train it again");
+    EXPECT_EQ(
+        error_after([](TensorFile& file) { replace(file, "direction.0.rule_weight", {0}, std::vector<float>{}); }),
+        "FILE: damaged file: direction.0 has stumps, but no weights of rules; train it again");
 }
 
 // What opens files of any kind asks before it loads one.

@@ -70,9 +70,9 @@ TEST(ViewOutlines, RunAlongTheBorderOfADisc) {
         const auto pixel = static_cast<std::size_t>(place.y()) * k_disc_size + static_cast<std::size_t>(place.x());
         EXPECT_NEAR(outlines.distance(pixel), 14.5, 1.2) << angle;
         const float along = outlines.direction[static_cast<std::size_t>(outlines.nearest[pixel])];
-        EXPECT_LT(orientation_difference(along, std::fmod(angle + std::numbers::pi_v<float> / 2,
-                                                          std::numbers::pi_v<float>)),
-                  0.15f)
+        EXPECT_LT(
+            orientation_difference(along, std::fmod(angle + std::numbers::pi_v<float> / 2, std::numbers::pi_v<float>)),
+            0.15f)
             << angle;
     }
 }

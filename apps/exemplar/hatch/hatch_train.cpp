@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 struct TrainArguments {
     HatchSceneArguments scene;
-    fs::path drawing, out;
+    fs::path drawing, mask, out;
     StyleLearningOptions learning;
     CommonOptions common;
 };
@@ -85,19 +85,21 @@ void run_hatch_train(const TrainArguments& arguments) {
     const auto limits = apply_common_options(arguments.common);
     require_hatch_scene(arguments.scene);
     require_input(arguments.drawing);
+    if (!arguments.mask.empty()) require_input(arguments.mask);
     require_output_file(arguments.out);
-    require_not_replaced(arguments.out, {arguments.scene.mesh, arguments.drawing});
+    require_not_replaced(arguments.out, {arguments.scene.mesh, arguments.drawing, arguments.mask});
     Stopwatch watch;
     LearningProgress progress;
     HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
     progress.begins("reading the drawing");
     const AlignedDrawing drawing = read_drawing(arguments.drawing, scene.pixels(), arguments.common.quiet);
+    DrawingProperties properties = drawing_properties(drawing.strokes);
+    if (!arguments.mask.empty()) restrict_to(read_mask(arguments.mask, scene.pixels()), properties);
     const double reading = watch.wall();
     progress.begins("orientation rules");
     StyleReport report;
-    HatchingStyle style =
-        learn_hatching_style(scene.pixels(), drawing_properties(drawing.strokes), scene.tools().scorer,
-                             arguments.learning, report, [&](const char* step) { progress.begins(step); });
+    HatchingStyle style = learn_hatching_style(scene.pixels(), properties, scene.tools().scorer, arguments.learning,
+                                               report, [&](const char* step) { progress.begins(step); });
     progress.finish();
     style.name = arguments.drawing.filename().string();
     save_hatching_style(arguments.out, style);
@@ -114,6 +116,11 @@ void add_hatch_train_command(Command& hatch) {
         "Example:\n  exemplar hatch train bunny.off traced.png --view three-quarter --out mine.safetensors");
     command->add_option("MESH", arguments->scene.mesh, "mesh that the drawing shows")->required()->type_name("");
     command->add_option("DRAWING", arguments->drawing, "the drawing (PNG)")->required()->type_name("");
+    command
+        ->add_option("--mask", arguments->mask,
+                     "picture of the view, white where to learn from the drawing (PNG): black hides a signature, a "
+                     "shadow, a slip of the pen")
+        ->type_name("FILE");
     command->add_option("--out", arguments->out, "style file to write")->required()->type_name("FILE");
     command->add_option("--seed", arguments->learning.seed, "of all random choices")
         ->capture_default_str()

@@ -93,6 +93,32 @@ DirectionCorrection get_correction(const TensorFile& file, const std::string& na
     return correction;
 }
 
+void add_familiarity(TensorFile& file, const Familiarity& familiarity) {
+    const std::size_t features = familiarity.offset.size();
+    file.add("familiarity.offset", {features}, familiarity.offset);
+    file.add("familiarity.scale", {features}, familiarity.scale);
+    file.add("familiarity.samples", {features > 0 ? familiarity.samples.size() / features : 0, features},
+             familiarity.samples);
+    file.add("familiarity.reach", {1}, std::vector<float>{familiarity.reach});
+}
+
+Familiarity get_familiarity(const TensorFile& file) {
+    Familiarity out;
+    out.offset = file.get<float>("familiarity.offset", {TensorFile::k_any});
+    const std::size_t features = out.offset.size();
+    if (features != 0 && features != familiar_features().size())
+        inconsistent(file,
+                     fmt::format("familiarity is judged by {} features of {}", features, familiar_features().size()));
+    out.scale = file.get<float>("familiarity.scale", {features});
+    out.samples = file.get<float>("familiarity.samples", {TensorFile::k_any, features});
+    out.reach = file.get<float>("familiarity.reach", {1})[0];
+    require_finite(file, "familiarity.offset", out.offset);
+    require_finite(file, "familiarity.scale", out.scale);
+    require_finite(file, "familiarity.samples", out.samples);
+    if (!(out.reach > 0) || !std::isfinite(out.reach)) inconsistent(file, "familiarity.reach is not positive");
+    return out;
+}
+
 PropertyModel get_property(const TensorFile& file, const std::string& name, std::size_t feature_count) {
     const auto features = file.get<std::uint32_t>(name + ".feature", {TensorFile::k_any});
     const auto values = file.get<float>(name + ".a_b_exponent_low_high_least", {features.size(), 6});
@@ -178,6 +204,8 @@ void save_hatching_style(const std::filesystem::path& path, const HatchingStyle&
         add_classifier(file, fmt::format("segments.{}", s), style.segments[s]);
     add_classifier(file, "boundary", style.boundary);
     add_classifier(file, "levels", style.levels);
+    add_classifier(file, "rough_levels", style.rough_levels);
+    add_familiarity(file, style.familiarity);
     for (std::size_t p = 0; p < k_stroke_properties; ++p)
         add_property(file, name_of(static_cast<StrokeProperty>(p)), style.properties[p]);
     write_safetensors(path, file);
@@ -214,6 +242,8 @@ HatchingStyle load_hatching_style(const std::filesystem::path& path) {
                                                 s == 0 ? k_powers * k_pixel_features : features));
     style.boundary = get_classifier(file, "boundary", 2, k_powers * k_pixel_features);
     style.levels = get_classifier(file, "levels", 3, features);
+    style.rough_levels = get_classifier(file, "rough_levels", 3, features);
+    style.familiarity = get_familiarity(file);
     for (std::size_t p = 0; p < k_stroke_properties; ++p)
         style.properties[p] = get_property(file, name_of(static_cast<StrokeProperty>(p)), style.feature_count());
     return style;

@@ -8,6 +8,7 @@
 
 #include "host/hatching/measurement/drawing_properties.h"
 #include "host/hatching/style/direction_correction.h"
+#include "host/hatching/style/familiarity.h"
 #include "host/hatching/style/orientation_mixture.h"
 #include "host/hatching/style/pixel_crf.h"
 #include "host/hatching/style/property_model.h"
@@ -26,7 +27,9 @@ struct HatchingStyle {
     std::vector<double> share;               ///< per segment, its share of the drawing's strokes
     std::vector<CalibratedStumps> segments;  ///< cascade; all but the first also see contextual features
     CalibratedStumps boundary;               ///< class 1: on a boundary of hatching regions; class 0: not
-    CalibratedStumps levels;                 ///< three classes: the hatching levels
+    CalibratedStumps levels;                 ///< three classes: the hatching levels, in detail
+    CalibratedStumps rough_levels;           ///< the same where little is familiar; without stumps: `levels` everywhere
+    Familiarity familiarity;                 ///< of pixels: the weight of `levels`, the rest is that of `rough_levels`
     PixelCrfParameters segment_crf, level_crf;
     std::array<PropertyModel, k_stroke_properties> properties;
 

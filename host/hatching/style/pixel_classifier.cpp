@@ -131,12 +131,9 @@ struct JudgedRounds {
     Calibration held;
 };
 
-const JudgedRounds& fewest_within_a_standard_error(const std::vector<JudgedRounds>& judged, std::size_t held_out) {
-    const double least =
-        std::ranges::min_element(judged, {}, [](const JudgedRounds& r) { return r.held.error; })->held.error;
-    const double standard_error =
-        std::sqrt(least * (1 - least) / static_cast<double>(std::max<std::size_t>(1, held_out)));
-    return *std::ranges::find_if(judged, [&](const JudgedRounds& r) { return r.held.error <= least + standard_error; });
+/// Returns how far above the lowest error of held-out rows another may be by chance: a standard error.
+double chance_of(double least, std::size_t held_out) {
+    return std::sqrt(least * (1 - least) / static_cast<double>(std::max<std::size_t>(1, held_out)));
 }
 
 /// Boosts on the other rows, and judges by the held-out ones until more rounds are of no use.
@@ -151,8 +148,8 @@ std::vector<JudgedRounds> judge_rounds(const ClassifierTraining& training, const
     HeldOutScores scores(features, judges, training.classes);
     std::vector<JudgedRounds> judged;
     double least = std::numeric_limits<double>::infinity();
-    std::size_t best_rounds = 0;
-    for (std::size_t round = 1; round <= training.max_rounds && round <= best_rounds + patience.rounds; ++round) {
+    std::size_t good_rounds = 0;
+    for (std::size_t round = 1; round <= training.max_rounds && round <= good_rounds + patience.rounds; ++round) {
         check_interrupt();
         booster.add_stump();
         progress();
@@ -160,18 +157,23 @@ std::vector<JudgedRounds> judge_rounds(const ClassifierTraining& training, const
         scores.add(booster.classifier());
         judged.push_back({round, calibrate(scores.scores(), labels, weights, training.classes, k_links)});
         const double measure = training.detailed ? judged.back().held.error : judged.back().held.loss;
-        if (!(measure < least)) continue;
-        least = measure;
-        best_rounds = round;
+        const bool is_good = training.detailed ? measure <= least + chance_of(least, judges.size()) : measure < least;
+        if (is_good || judged.size() == 1) good_rounds = round;
+        least = std::min(least, measure);
     }
     return judged;
 }
 
+/// The rounds of the lowest loss or, in detail, the last ones whose error exceeds the lowest by chance at most.
 JudgedRounds best_of(const ClassifierTraining& training, const std::vector<JudgedRounds>& judged,
                      std::size_t held_out) {
     if (judged.empty()) return {};
-    return training.detailed ? fewest_within_a_standard_error(judged, held_out)
-                             : *std::ranges::min_element(judged, {}, [](const auto& r) { return r.held.loss; });
+    const auto error = [](const JudgedRounds& r) { return r.held.error; };
+    const auto loss = [](const JudgedRounds& r) { return r.held.loss; };
+    if (!training.detailed) return *std::ranges::min_element(judged, {}, loss);
+    const double least = error(*std::ranges::min_element(judged, {}, error));
+    const double most = least + chance_of(least, held_out);
+    return *std::find_if(judged.rbegin(), judged.rend(), [&](const JudgedRounds& r) { return error(r) <= most; });
 }
 
 }  // namespace

@@ -21,8 +21,7 @@ struct ClassifierTraining {
     std::size_t max_rounds = 500;
     std::uint64_t seed = 1;
     /// For labels with details that many small steps can learn: each round searches a random fifth of the features, and
-    /// the number of rounds is the fewest whose share of wrong held-out rows is within a standard error of the lowest
-    /// (Breiman et al. 1984). More rounds than that reproduce the drawing only.
+    /// boosting goes on for as long as the share of wrong held-out rows stays within a standard error of the lowest.
     bool detailed = false;
 };
 

@@ -14,6 +14,7 @@
 #include "host/hatching/features/expanded_features.h"
 #include "host/hatching/features/powers.h"
 #include "host/hatching/style/pixel_classifier.h"
+#include "host/hatching/style/style_prediction.h"
 
 namespace exemplar {
 namespace {
@@ -224,6 +225,11 @@ class StyleLearning {
         report_.boundary_error = learned.error;
     }
 
+    std::vector<float> all_level_probabilities() {
+        const std::vector<std::uint32_t> all;
+        return level_probabilities(style_, numbers(0, style_.feature_count()), features_of(all, true), scorer_);
+    }
+
     /// Learns the CRF parameters of segments and of levels.
     void learn_cuts() {
         const std::vector<float> both = view_probabilities(style_.boundary);
@@ -236,7 +242,7 @@ class StyleLearning {
                                            [&](std::span<const std::int32_t> labels) { return segment_error(labels); });
             segment_cut_ = crf.solve(probabilities_, style_.rules.size(), style_.segment_crf);
         }
-        style_.level_crf = learn_crf(crf, view_probabilities(style_.levels), 3,
+        style_.level_crf = learn_crf(crf, all_level_probabilities(), 3,
                                      [&](std::span<const std::int32_t> labels) { return level_error(labels); });
     }
 
@@ -367,11 +373,18 @@ class StyleLearning {
         labels.reserve(rows.size());
         for (const std::uint32_t row : rows) labels.push_back(drawing_.level[pixel(row)]);
         const FeatureMatrix features = features_of(rows, true);
-        const LearnedClassifier learned =
-            learn_classifier({features, labels, {}, held_out_patches(rows), 3, false, 4000, options_.seed + 10, true},
-                             [&] { progress_("hatching levels"); });
-        style_.levels = learned.classifier;
-        report_.level_error = learned.error;
+        const auto progress = [&] { progress_("hatching levels"); };
+        const std::vector<std::uint8_t> patches = held_out_patches(rows);
+        const LearnedClassifier detailed =
+            learn_classifier({features, labels, {}, patches, 3, false, 4000, options_.seed + 10, true}, progress);
+        // What holds in large rectangles that were held out holds far from the drawing, too.
+        const LearnedClassifier rough = learn_classifier(
+            {features, labels, {}, held_out(rows, labels, options_.seed + 9), 3, false, 500, options_.seed + 10},
+            progress);
+        style_.levels = detailed.classifier;
+        style_.rough_levels = rough.classifier;
+        style_.familiarity = learn_familiarity(features, patches, options_.seed + 15);
+        report_.level_error = detailed.error;
     }
 
     void learn_property_of(StrokeProperty property) {

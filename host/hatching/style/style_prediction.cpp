@@ -28,6 +28,9 @@ std::vector<std::uint32_t> needed_features(const HatchingStyle& style) {
     for (const CalibratedStumps& stage : style.segments) add_all(stage);
     add_all(style.boundary);
     add_all(style.levels);
+    add_all(style.rough_levels);
+    if (!style.familiarity.samples.empty())
+        needed.insert(needed.end(), familiar_features().begin(), familiar_features().end());
     for (const DirectionCorrection& correction : style.corrections) {
         for (const DirectionStump& stump : correction.stumps) add(stump.feature);
     }
@@ -49,7 +52,7 @@ class Prediction {
         features_ = pixels_.scalars(which_, {});
         done("features");
         const std::vector<float> segments = segment_probabilities();
-        const std::vector<float> levels = classify(style_.levels, which_, features_, scorer_);
+        const std::vector<float> levels = level_probabilities(style_, which_, features_, scorer_);
         const std::vector<float> boundary = boundary_probabilities();
         done("classifiers");
         PixelCrf crf(pixels_.pixels(), pixels_.view().width, boundary);
@@ -156,6 +159,18 @@ class Prediction {
 };
 
 }  // namespace
+
+std::vector<float> level_probabilities(const HatchingStyle& style, std::span<const std::uint32_t> which,
+                                       const FeatureMatrix& features, StumpScorer& scorer) {
+    std::vector<float> levels = classify(style.levels, which, features, scorer);
+    if (style.rough_levels.stumps.stumps.empty()) return levels;
+    const std::vector<float> rough = classify(style.rough_levels, which, features, scorer);
+    const std::vector<float> familiarity = style.familiarity.of(which, features);
+    const std::size_t classes = style.levels.stumps.class_count;
+    for (std::size_t k = 0; k < levels.size(); ++k)
+        levels[k] = std::lerp(rough[k], levels[k], familiarity[k / classes]);
+    return levels;
+}
 
 void check_orientations(std::span<const OrientationFunction> functions, std::span<const std::int32_t> segment,
                         const OrientationFields& fields) {

@@ -43,6 +43,11 @@ void check_orientations(std::span<const OrientationFunction> functions, std::spa
 std::vector<std::span<const float>> property_columns(const PropertyModel& model, std::span<const std::uint32_t> which,
                                                      const FeatureMatrix& base);
 
+/// Returns the probabilities of the hatching levels: in detail where pixels are familiar, roughly elsewhere. `features`
+/// as for classify().
+std::vector<float> level_probabilities(const HatchingStyle& style, std::span<const std::uint32_t> which,
+                                       const FeatureMatrix& features, StumpScorer& scorer);
+
 constexpr std::uint8_t k_no_segment = 255;
 
 /// The predicted targets of a view, and the segments that they follow from.

@@ -14,8 +14,8 @@
 namespace exemplar {
 namespace {
 
-constexpr int k_direction_reach = 5;  ///< pixels to either side over which an outline's direction is fitted
-constexpr float k_max_turn = std::numbers::pi_v<float> / 6;
+constexpr int k_outline_window = 5;  ///< pixels to either side over which an outline's direction is fitted
+constexpr float k_max_outline_turn = std::numbers::pi_v<float> / 6;
 constexpr double k_min_drawn = 0.5;  ///< min share of the view's outlines that a drawing with outlines follows
 
 /// Marks the nearer pixel of each occlusion boundary.
@@ -33,8 +33,8 @@ std::vector<std::uint8_t> outline_pixels(const GBuffer& gbuffer) {
 /// Returns the direction of the line through the marked pixels around a pixel: the first axis of their covariance.
 float direction_at(const std::vector<std::uint8_t>& on, int width, int height, int x, int y) {
     double count = 0, sx = 0, sy = 0, xx = 0, xy = 0, yy = 0;
-    for (int v = std::max(0, y - k_direction_reach); v <= std::min(height - 1, y + k_direction_reach); ++v)
-        for (int u = std::max(0, x - k_direction_reach); u <= std::min(width - 1, x + k_direction_reach); ++u) {
+    for (int v = std::max(0, y - k_outline_window); v <= std::min(height - 1, y + k_outline_window); ++v)
+        for (int u = std::max(0, x - k_outline_window); u <= std::min(width - 1, x + k_outline_window); ++u) {
             if (!on[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)])
                 continue;
             const double dx = u - x, dy = v - y;
@@ -57,7 +57,7 @@ std::vector<bool> follows_outline(const TracedStroke& stroke, const ViewOutlines
         follows.push_back(distance <= reach &&
                           orientation_difference(
                               point.orientation,
-                              outlines.direction[static_cast<std::size_t>(outlines.nearest[pixel])]) <= k_max_turn);
+                              outlines.direction[static_cast<std::size_t>(outlines.nearest[pixel])]) <= k_max_outline_turn);
     }
     return follows;
 }

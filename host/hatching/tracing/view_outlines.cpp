@@ -54,10 +54,11 @@ std::vector<bool> follows_outline(const TracedStroke& stroke, const ViewOutlines
         const auto pixel =
             static_cast<std::size_t>(y) * static_cast<std::size_t>(outlines.width) + static_cast<std::size_t>(x);
         const float distance = outlines.distance(pixel);
-        follows.push_back(distance <= reach &&
-                          orientation_difference(
-                              point.orientation,
-                              outlines.direction[static_cast<std::size_t>(outlines.nearest[pixel])]) <= k_max_outline_turn);
+        follows.push_back(
+            distance <= reach &&
+            orientation_difference(point.orientation,
+                                   outlines.direction[static_cast<std::size_t>(outlines.nearest[pixel])]) <=
+                k_max_outline_turn);
     }
     return follows;
 }

@@ -62,6 +62,10 @@ HatchingStyle small_style() {
     style.segments = {classifier(2, 17), classifier(2, k_context + 5)};
     style.boundary = classifier(2, k_context - 1);
     style.levels = classifier(3, 5);
+    style.rough_levels = classifier(3, 9);
+    const std::size_t familiar = familiar_features().size();
+    style.familiarity = {std::vector<float>(familiar, 0.5f), std::vector<float>(familiar, 2.0f),
+                         std::vector<float>(2 * familiar, 0.25f), 0.75f};
     style.segment_crf = {0.5f, -1.75f};
     style.level_crf = {1.25f, -0.75f};
     for (std::size_t p = 0; p < k_stroke_properties; ++p) {
@@ -108,6 +112,7 @@ TEST(HatchingStyleFile, RoundTripKeepsEverythingAndTheBytes) {
     EXPECT_EQ(loaded.rules, style.rules);
     EXPECT_EQ(loaded.share, style.share);
     EXPECT_EQ(loaded.corrections, style.corrections);
+    EXPECT_EQ(loaded.familiarity, style.familiarity);
     EXPECT_EQ(loaded.segment_crf, style.segment_crf);
     EXPECT_EQ(loaded.level_crf, style.level_crf);
     EXPECT_EQ(loaded.properties, style.properties);
@@ -141,7 +146,8 @@ std::vector<float> predictions(const HatchingStyle& style) {
 
     std::vector<float> all;
     CpuStumpScorer scorer;
-    for (const CalibratedStumps& stumps : {style.segments[0], style.segments[1], style.boundary, style.levels}) {
+    for (const CalibratedStumps& stumps :
+         {style.segments[0], style.segments[1], style.boundary, style.levels, style.rough_levels}) {
         const std::vector<float> some = classify(stumps, which, base, scorer);
         all.insert(all.end(), some.begin(), some.end());
     }
@@ -204,6 +210,16 @@ TEST(HatchingStyleFile, CorrectionsThatDoNotFitAreRefused) {
     EXPECT_EQ(
         error_after([](TensorFile& file) { replace(file, "direction.0.rule_weight", {0}, std::vector<float>{}); }),
         "FILE: damaged file: direction.0 has stumps, but no weights of rules; train it again");
+}
+
+TEST(HatchingStyleFile, FamiliarityThatDoesNotFitIsRefused) {
+    const auto with = [](const std::string& name, std::vector<std::size_t> shape, const std::vector<float>& values) {
+        return error_after([&](TensorFile& file) { replace(file, name, shape, values); });
+    };
+    EXPECT_EQ(with("familiarity.reach", {1}, {0}),
+              "FILE: damaged file: familiarity.reach is not positive; train it again");
+    EXPECT_EQ(with("familiarity.offset", {3}, {1, 2, 3}),
+              "FILE: damaged file: familiarity is judged by 3 features of 12; train it again");
 }
 
 // What opens files of any kind asks before it loads one.

@@ -147,7 +147,7 @@ std::vector<JudgedRounds> judge_rounds(const ClassifierTraining& training, const
     Booster booster = booster_of(training, set);
     HeldOutScores scores(features, judges, training.classes);
     std::vector<JudgedRounds> judged;
-    double least = std::numeric_limits<double>::infinity();
+    double least = training.detailed ? 1 : std::numeric_limits<double>::infinity();
     std::size_t good_rounds = 0;
     for (std::size_t round = 1; round <= training.max_rounds && round <= good_rounds + patience.rounds; ++round) {
         check_interrupt();
@@ -158,7 +158,7 @@ std::vector<JudgedRounds> judge_rounds(const ClassifierTraining& training, const
         judged.push_back({round, calibrate(scores.scores(), labels, weights, training.classes, k_links)});
         const double measure = training.detailed ? judged.back().held.error : judged.back().held.loss;
         const bool is_good = training.detailed ? measure <= least + chance_of(least, judges.size()) : measure < least;
-        if (is_good || judged.size() == 1) good_rounds = round;
+        if (is_good) good_rounds = round;
         least = std::min(least, measure);
     }
     return judged;

@@ -13,6 +13,8 @@
 #include "host/core/stopwatch.h"
 #include "host/hatching/features/expanded_features.h"
 #include "host/hatching/features/powers.h"
+#include "host/hatching/style/direction_learning.h"
+#include "host/hatching/style/held_out_patches.h"
 #include "host/hatching/style/pixel_classifier.h"
 #include "host/hatching/style/style_prediction.h"
 
@@ -20,7 +22,6 @@ namespace exemplar {
 namespace {
 
 constexpr std::size_t k_min_samples = 200;
-constexpr std::size_t k_min_crossing = 50;  // pixels of strokes that a correction is learned from
 constexpr double k_held_out = 0.25;
 
 /// A random subset of rows, in their order.
@@ -64,7 +65,7 @@ class StyleLearning {
         done("levels");
         learn_cuts();
         done("label cuts");
-        learn_corrections();
+        learn_directions();
         done("corrections");
         for (std::size_t p = 0; p < k_stroke_properties; ++p) learn_property_of(static_cast<StrokeProperty>(p));
         done("properties");
@@ -179,23 +180,41 @@ class StyleLearning {
         }
     }
 
-    /// Probabilities of all pixels, for contextual features and cuts.
-    std::vector<float> view_probabilities(const CalibratedStumps& classifier) {
-        const std::vector<std::uint32_t> used = used_features(classifier.stumps);
-        std::vector<std::uint32_t> which;
-        for (const std::uint32_t base : used) {
-            if (base < k_pixel_features) which.push_back(base);
-        }
-        const bool contextual = which.size() < used.size();
-        FeatureMatrix features = pixels_.scalars(which, {});
+    /// Features of all pixels.
+    struct ViewFeatures {
+        std::vector<std::uint32_t> which;  // the base feature of each column
+        FeatureMatrix features;
+    };
+    /// Returns the features of all pixels that are used; all contextual ones if any is.
+    ViewFeatures view_features(std::vector<std::uint32_t> used) {
+        std::ranges::sort(used);
+        used.erase(std::unique(used.begin(), used.end()), used.end());
+        const auto first_context = std::ranges::lower_bound(used, static_cast<std::uint32_t>(k_pixel_features));
+        const bool contextual = first_context != used.end();
+        ViewFeatures out{{used.begin(), first_context}, {}};
+        out.features = pixels_.scalars(out.which, {});
         if (contextual) {
-            features.append(contextual_features(pixels_.surface(), pixels_.gbuffer(), pixels_.pixels(), probabilities_,
-                                                style_.rules.size(), {}));
+            out.features.append(contextual_features(pixels_.surface(), pixels_.gbuffer(), pixels_.pixels(),
+                                                    probabilities_, style_.rules.size(), {}));
             for (const std::uint32_t k :
                  numbers(k_pixel_features, k_pixel_features + contextual_feature_count(style_.rules.size())))
-                which.push_back(k);
+                out.which.push_back(k);
         }
-        return classify(classifier, which, features, scorer_);
+        return out;
+    }
+
+    /// Probabilities of all pixels, for contextual features and cuts.
+    std::vector<float> view_probabilities(const CalibratedStumps& classifier) {
+        const ViewFeatures view = view_features(used_features(classifier.stumps));
+        return classify(classifier, view.which, view.features, scorer_);
+    }
+
+    std::vector<float> view_level_probabilities() {
+        std::vector<std::uint32_t> used = familiar_features();
+        for (const CalibratedStumps* classifier : {&style_.levels, &style_.rough_levels})
+            for (const std::uint32_t feature : used_features(classifier->stumps)) used.push_back(feature);
+        const ViewFeatures view = view_features(used);
+        return level_probabilities(style_, view.which, view.features, scorer_);
     }
 
     void learn_boundary() {
@@ -225,11 +244,6 @@ class StyleLearning {
         report_.boundary_error = learned.error;
     }
 
-    std::vector<float> all_level_probabilities() {
-        const std::vector<std::uint32_t> all;
-        return level_probabilities(style_, numbers(0, style_.feature_count()), features_of(all, true), scorer_);
-    }
-
     /// Learns the CRF parameters of segments and of levels.
     void learn_cuts() {
         const std::vector<float> both = view_probabilities(style_.boundary);
@@ -242,89 +256,21 @@ class StyleLearning {
                                            [&](std::span<const std::int32_t> labels) { return segment_error(labels); });
             segment_cut_ = crf.solve(probabilities_, style_.rules.size(), style_.segment_crf);
         }
-        style_.level_crf = learn_crf(crf, all_level_probabilities(), 3,
+        style_.level_crf = learn_crf(crf, view_level_probabilities(), 3,
                                      [&](std::span<const std::int32_t> labels) { return level_error(labels); });
     }
 
     /// Learns where strokes depart from the rules of the segments that the cut gives their pixels.
-    void learn_corrections() {
-        const OrientationFields fields = pixels_.orientations(rule_rows_);
-        std::vector<DoubledAngle> target;
+    void learn_directions() {
         std::vector<std::int32_t> segment;
-        for (const std::uint32_t row : rule_rows_) {
-            target.push_back(doubled_angle(drawing_.orientation[pixel(row)]));
-            segment.push_back(segment_cut_[row]);
-        }
-        std::array<std::vector<DoubledAngle>, k_hatch_layers> rules;
+        for (const std::uint32_t row : rule_rows_) segment.push_back(segment_cut_[row]);
+        const auto learned =
+            learn_corrections({pixels_, drawing_, rule_rows_, segment, style_.rules, options_.seed + 13},
+                              [&] { progress_("corrections"); });
         for (std::size_t j = 0; j < k_hatch_layers; ++j) {
-            for (std::size_t i = 0; i < segment.size(); ++i)
-                rules[j].push_back(style_.rules[static_cast<std::size_t>(segment[i])].function[j].evaluate(fields, i));
+            style_.corrections[j] = learned[j].correction;
+            report_.direction_errors[j] = {learned[j].rule_error, learned[j].error};
         }
-        const std::vector<std::uint8_t> crossing = crossing_strokes(target, rules);
-        learn_correction_of(0, crossing, target, rules[0], segment);
-        std::vector<DoubledAngle> first = rules[0];
-        if (!style_.corrections[0].empty())
-            first = corrected_directions(style_.corrections[0], rules[0], segment, fields, numbers(0, k_pixel_features),
-                                         features_of(rule_rows_, false));
-        cross_at_right_angles(first, rules[1]);
-        learn_correction_of(1, crossing, target, rules[1], segment);
-    }
-
-    /// Returns 1 for pixels of strokes that cross others: cross-hatching that runs along the second rule rather than
-    /// the first or, where there is no second, more than 45 degrees off the first.
-    std::vector<std::uint8_t> crossing_strokes(
-        std::span<const DoubledAngle> target,
-        const std::array<std::vector<DoubledAngle>, k_hatch_layers>& rules) const {
-        std::vector<std::uint8_t> crossing(target.size());
-        for (std::size_t i = 0; i < target.size(); ++i) {
-            if (drawing_.level[pixel(rule_rows_[i])] != k_cross_hatching) continue;
-            const float first = squared_distance(target[i], rules[0][i]);
-            const float second = rules[1][i] == DoubledAngle{} ? 4 - first : squared_distance(target[i], rules[1][i]);
-            crossing[i] = second < first ? 1 : 0;
-        }
-        return crossing;
-    }
-
-    void learn_correction_of(std::size_t layer, std::span<const std::uint8_t> crossing,
-                             std::span<const DoubledAngle> target, std::span<const DoubledAngle> rules,
-                             std::span<const std::int32_t> segment) {
-        std::vector<std::uint32_t> rows;
-        std::vector<DoubledAngle> targets, directions;
-        std::vector<std::int32_t> segments;
-        for (std::size_t i = 0; i < target.size(); ++i) {
-            if (crossing[i] != layer) continue;
-            rows.push_back(rule_rows_[i]);
-            targets.push_back(target[i]);
-            directions.push_back(rules[i]);
-            segments.push_back(segment[i]);
-        }
-        if (rows.size() < k_min_crossing) return;
-        QuantizedFeatures quantized = quantize(features_of(rows, false), {}, {});
-        // Depth tells where in this picture a pixel is, which means nothing in another view.
-        const auto depth = std::ranges::find(pixel_feature_names(), std::string("image.depth"));
-        quantized.thresholds[static_cast<std::size_t>(depth - pixel_feature_names().begin())].clear();
-        const OrientationFields fields = pixels_.orientations(rows);
-        const LearnedCorrection learned =
-            learn_correction({quantized, fields, targets, directions, segments, style_.rules.size(),
-                              held_out_patches(rows), options_.seed + 13},
-                             [&] { progress_("corrections"); });
-        style_.corrections[layer] = learned.correction;
-        report_.direction_errors[layer] = {learned.rule_error, learned.error};
-    }
-
-    /// Holds out rectangles of three to ten spacings: a hand keeps its direction over less than that.
-    std::vector<std::uint8_t> held_out_patches(std::span<const std::uint32_t> rows) const {
-        std::vector<std::uint16_t> x, y;
-        std::vector<float> spacing;
-        for (const std::uint32_t row : rows) {
-            x.push_back(static_cast<std::uint16_t>(pixel(row) % static_cast<std::uint32_t>(drawing_.width)));
-            y.push_back(static_cast<std::uint16_t>(pixel(row) / static_cast<std::uint32_t>(drawing_.width)));
-            const float here = drawing_.property[static_cast<std::size_t>(StrokeProperty::spacing)][pixel(row)];
-            if (here > 0) spacing.push_back(here);
-        }
-        const auto usual = static_cast<double>(upper_median(spacing));
-        const std::vector<std::uint32_t> one_group(rows.size());
-        return held_out_rectangles(x, y, one_group, k_held_out, options_.seed + 14, {3 * usual, 10 * usual});
     }
 
     /// Selects parameters by Eq. 4.16, as a mean over boundary pixels: the sum in the thesis grows with every
@@ -374,7 +320,7 @@ class StyleLearning {
         for (const std::uint32_t row : rows) labels.push_back(drawing_.level[pixel(row)]);
         const FeatureMatrix features = features_of(rows, true);
         const auto progress = [&] { progress_("hatching levels"); };
-        const std::vector<std::uint8_t> patches = held_out_patches(rows);
+        const std::vector<std::uint8_t> patches = held_out_patches(pixels_, drawing_, rows, options_.seed + 14);
         const LearnedClassifier detailed =
             learn_classifier({features, labels, {}, patches, 3, false, 4000, options_.seed + 10, true}, progress);
         // What holds in large rectangles that were held out holds far from the drawing, too.

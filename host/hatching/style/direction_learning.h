@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "host/hatching/features/pixel_features.h"
+#include "host/hatching/fields/hatching_fields.h"
+#include "host/hatching/measurement/drawing_properties.h"
+#include "host/hatching/style/direction_correction.h"
+#include "host/hatching/style/orientation_mixture.h"
+
+namespace exemplar {
+
+/// Input of learn_corrections(): strokes, and the rules that their segments have.
+struct CorrectedStrokes {
+    PixelFeatures& pixels;
+    const DrawingProperties& drawing;
+    std::span<const std::uint32_t> rows;     ///< rows of covered pixels on center lines
+    std::span<const std::int32_t> segment;   ///< of each row, as a prediction would have it
+    std::span<const OrientationRule> rules;  ///< per segment
+    std::uint64_t seed;
+};
+
+/// Learns where the strokes of each layer depart from the rules. Strokes of cross-hatching belong to the second layer
+/// if they run along the second rule rather than the first or, where there is no second rule, more than 45 degrees off
+/// the first. A layer with too few strokes has no correction.
+std::array<LearnedCorrection, k_hatch_layers> learn_corrections(
+    const CorrectedStrokes& strokes, const std::function<void()>& progress = [] {});
+
+}  // namespace exemplar

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "host/hatching/measurement/drawing_properties.h"
-#include "host/hatching/style/direction_correction.h"
+#include "host/hatching/rules/direction_correction.h"
+#include "host/hatching/rules/orientation_mixture.h"
 #include "host/hatching/style/familiarity.h"
-#include "host/hatching/style/orientation_mixture.h"
 #include "host/hatching/style/pixel_crf.h"
 #include "host/hatching/style/property_model.h"
 #include "host/learn/boosting/boosted_stumps.h"

@@ -13,8 +13,8 @@
 #include "host/core/stopwatch.h"
 #include "host/hatching/features/expanded_features.h"
 #include "host/hatching/features/powers.h"
-#include "host/hatching/style/direction_learning.h"
-#include "host/hatching/style/held_out_patches.h"
+#include "host/hatching/rules/direction_learning.h"
+#include "host/hatching/rules/held_out_patches.h"
 #include "host/hatching/style/pixel_classifier.h"
 #include "host/hatching/style/style_prediction.h"
 

@@ -12,7 +12,7 @@
 
 #include "host/core/errors.h"
 #include "host/data/safetensors.h"
-#include "host/hatching/style/orientation_mixture.h"
+#include "host/hatching/rules/orientation_mixture.h"
 
 namespace exemplar {
 namespace {

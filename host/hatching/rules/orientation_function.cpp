@@ -1,4 +1,4 @@
-#include "host/hatching/style/orientation_function.h"
+#include "host/hatching/rules/orientation_function.h"
 
 #include <Eigen/Core>
 #include <algorithm>

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "host/hatching/fields/hatching_fields.h"
-#include "host/hatching/style/orientation_function.h"
-#include "host/hatching/style/orientation_samples.h"
+#include "host/hatching/rules/orientation_function.h"
+#include "host/hatching/rules/orientation_samples.h"
 
 namespace exemplar {
 

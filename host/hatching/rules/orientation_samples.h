@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "host/hatching/style/orientation_function.h"
+#include "host/hatching/rules/orientation_function.h"
 
 namespace exemplar {
 

@@ -1,4 +1,4 @@
-#include "host/hatching/style/orientation_clusters.h"
+#include "host/hatching/rules/orientation_clusters.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "host/hatching/style/orientation_mixture.h"
+#include "host/hatching/rules/orientation_mixture.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
 #include "host/core/statistics.h"
-#include "host/hatching/style/orientation_clusters.h"
+#include "host/hatching/rules/orientation_clusters.h"
 
 namespace exemplar {
 namespace {

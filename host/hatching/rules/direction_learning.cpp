@@ -1,10 +1,10 @@
-#include "host/hatching/style/direction_learning.h"
+#include "host/hatching/rules/direction_learning.h"
 
 #include <algorithm>
 #include <numeric>
 #include <string>
 
-#include "host/hatching/style/held_out_patches.h"
+#include "host/hatching/rules/held_out_patches.h"
 
 namespace exemplar {
 namespace {

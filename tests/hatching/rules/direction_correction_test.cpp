@@ -1,4 +1,4 @@
-#include "host/hatching/style/direction_correction.h"
+#include "host/hatching/rules/direction_correction.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "host/hatching/style/orientation_mixture.h"
+#include "host/hatching/rules/orientation_mixture.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "host/hatching/style/orientation_function.h"
+#include "host/hatching/rules/orientation_function.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "host/core/random.h"
-#include "host/hatching/style/orientation_samples.h"
+#include "host/hatching/rules/orientation_samples.h"
 
 namespace exemplar {
 namespace {

@@ -1,4 +1,4 @@
-#include "host/hatching/style/orientation_samples.h"
+#include "host/hatching/rules/orientation_samples.h"
 
 #include <algorithm>
 #include <cmath>

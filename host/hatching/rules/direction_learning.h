@@ -9,8 +9,8 @@
 #include "host/hatching/features/pixel_features.h"
 #include "host/hatching/fields/hatching_fields.h"
 #include "host/hatching/measurement/drawing_properties.h"
-#include "host/hatching/style/direction_correction.h"
-#include "host/hatching/style/orientation_mixture.h"
+#include "host/hatching/rules/direction_correction.h"
+#include "host/hatching/rules/orientation_mixture.h"
 
 namespace exemplar {
 

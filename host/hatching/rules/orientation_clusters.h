@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/hatching/style/orientation_samples.h"
+#include "host/hatching/rules/orientation_samples.h"
 
 namespace exemplar {
 

@@ -1,7 +1,7 @@
-#include "host/hatching/style/held_out_patches.h"
+#include "host/hatching/rules/held_out_patches.h"
 
 #include "host/core/statistics.h"
-#include "host/hatching/style/orientation_samples.h"
+#include "host/hatching/rules/orientation_samples.h"
 
 namespace exemplar {
 

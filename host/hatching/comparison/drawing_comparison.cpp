@@ -13,11 +13,11 @@
 namespace exemplar {
 namespace {
 
-constexpr float k_outline_band = 3.5f;       // pixels
-constexpr float k_ink = 65.0f / 255;         // darkness of ink
-constexpr float k_pencil_ink = 30.0f / 255;  // of a drawing without dark strokes
+constexpr float k_outline_band = 3.5f;         // pixels
+constexpr float k_ink_darkness = 65.0f / 255;  // darkness of ink
+constexpr float k_pencil_ink = 30.0f / 255;    // of a drawing without dark strokes
 constexpr float k_pencil_darkest = 135.0f / 255;
-constexpr float k_gradient_sigma = 1.22f, k_tensor_sigma = 1.8f, k_min_coherence = 0.6f;
+constexpr float k_gradient_sigma = 1.22f, k_tensor_sigma = 1.8f, k_clear_coherence = 0.6f;
 constexpr float k_closing_radius = 6;
 constexpr float k_near = 3;
 constexpr double k_off = 30, k_doubtful = 15;  // degrees
@@ -62,7 +62,7 @@ float ink_threshold(const FloatImage& artist, const PixelMask& mask) {
     std::vector<float> values;
     for (std::size_t i = 0; i < mask.data.size(); ++i)
         if (mask.data[i]) values.push_back(artist.data[i]);
-    return quantile(values, 0.98) < k_pencil_darkest ? k_pencil_ink : k_ink;
+    return quantile(values, 0.98) < k_pencil_darkest ? k_pencil_ink : k_ink_darkness;
 }
 
 PixelMask darker_than(const FloatImage& darkness, float threshold) {
@@ -79,14 +79,14 @@ PixelMask inked_by_both(const PixelMask& artist_ink, const StrokeDirections& art
         for (int v = std::max(0, y - 1); v <= std::min(both.height - 1, y + 1); ++v)
             for (int u = std::max(0, x - 1); u <= std::min(both.width - 1, x + 1); ++u) {
                 const std::size_t i = static_cast<std::size_t>(v) * both.width + u;
-                if (drawing_ink.data[i] && drawing.coherence[i] > k_min_coherence) return true;
+                if (drawing_ink.data[i] && drawing.coherence[i] > k_clear_coherence) return true;
             }
         return false;
     };
     for (int y = 0; y < both.height; ++y)
         for (int x = 0; x < both.width; ++x) {
             const std::size_t i = static_cast<std::size_t>(y) * both.width + x;
-            both.data[i] = artist_ink.data[i] && artist.coherence[i] > k_min_coherence && drawn_near(x, y);
+            both.data[i] = artist_ink.data[i] && artist.coherence[i] > k_clear_coherence && drawn_near(x, y);
         }
     return both;
 }

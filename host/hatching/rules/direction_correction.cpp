@@ -16,9 +16,9 @@ namespace {
 // "k_max,3", "LxN", "e_b,3", "grad V.N,4" among the orientation fields; the first frame is none of them.
 constexpr std::array<std::size_t, k_direction_frames> k_field_of_frame{0, 2, 12, 11, 22};
 
-constexpr std::size_t k_max_rounds = 400, k_rounds_between = 20, k_patience = 120;
+constexpr std::size_t k_correction_rounds = 400, k_rounds_between_judgments = 20, k_correction_patience = 120;
 constexpr double k_feature_share = 0.1;
-constexpr float k_shrinkage = 0.2f;
+constexpr float k_correction_shrinkage = 0.2f;
 constexpr double k_correction_worth = 0.9;  // less gain is the jitter of a hand
 constexpr float k_prior_count = 5;          // items that a leaf is assumed to have seen with a value of zero
 
@@ -71,7 +71,7 @@ class CorrectionBoosting {
         const StumpChoice& best = *std::ranges::max_element(choices, {}, &StumpChoice::gain);
         if (!(best.gain > 0)) return false;
         const DirectionStump stump{best.feature, training_.features.thresholds[best.feature][best.bin], best.part,
-                                   k_shrinkage * best.below, k_shrinkage * best.above};
+                                   k_correction_shrinkage * best.below, k_correction_shrinkage * best.above};
         correction_.stumps.push_back(stump);
         const std::span<const std::uint8_t> bins = training_.features.column(best.feature);
         for (std::size_t i = 0; i < direction_.size(); ++i) {
@@ -220,10 +220,10 @@ LearnedCorrection learn_correction(const CorrectionTraining& training, const std
     LearnedCorrection best;
     best.rule_error = best.error = trial.error(judges);
     std::size_t best_rounds = 0;
-    for (std::size_t round = 1; round <= k_max_rounds && round <= best_rounds + k_patience; ++round) {
+    for (std::size_t round = 1; round <= k_correction_rounds && round <= best_rounds + k_correction_patience; ++round) {
         check_interrupt();
         if (!trial.add_stump()) break;
-        if (round % k_rounds_between != 0) continue;
+        if (round % k_rounds_between_judgments != 0) continue;
         progress();
         const double error = trial.error(judges);
         if (!(error < best.error)) continue;

@@ -23,6 +23,7 @@ constexpr std::array<const char*, 12> k_names{
 
 std::vector<std::uint32_t> numbers_of_names() {
     std::vector<std::uint32_t> numbers;
+    numbers.reserve(k_names.size());
     const std::vector<std::string>& all = pixel_feature_names();
     for (const char* name : k_names)
         numbers.push_back(static_cast<std::uint32_t>(std::ranges::find(all, std::string(name)) - all.begin()));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <numeric>
 #include <vector>
@@ -30,8 +31,7 @@ struct Strokes {
     std::vector<std::uint8_t> held_out;
     std::vector<std::uint32_t> which;
 
-    template <typename Turn>
-    explicit Strokes(Turn&& turn) {
+    explicit Strokes(const std::function<double(const FeatureMatrix&, std::size_t)>& turn) {
         Random random(3);
         for (DoubledAngle& v : fields.values) v = doubled_angle(static_cast<float>(random.uniform(0, 3.14159)));
         features.rows = k_items;

@@ -21,7 +21,7 @@ FeatureMatrix pixels_around(float middle, std::size_t count, std::uint64_t seed)
     return features;
 }
 
-std::vector<std::uint32_t> all_features() {
+std::vector<std::uint32_t> numbers_of_all_features() {
     std::vector<std::uint32_t> which(k_pixel_features);
     std::iota(which.begin(), which.end(), 0U);
     return which;
@@ -42,13 +42,13 @@ TEST(Familiarity, IsThatOfPixelsLikeTheDrawings) {
     const Familiarity familiarity = learned();
     EXPECT_GT(familiarity.reach, 0);
     EXPECT_EQ(familiarity, learned());
-    const float same = mean_of(familiarity.of(all_features(), pixels_around(0, 1500, 1)));
-    const float alike = mean_of(familiarity.of(all_features(), pixels_around(0, 400, 2)));
+    const float same = mean_of(familiarity.of(numbers_of_all_features(), pixels_around(0, 1500, 1)));
+    const float alike = mean_of(familiarity.of(numbers_of_all_features(), pixels_around(0, 400, 2)));
     EXPECT_GT(same, alike);
     EXPECT_GT(alike, 0.6f);
     float before = alike;
     for (const float away : {0.7f, 1.4f, 3.0f}) {
-        const float other = mean_of(familiarity.of(all_features(), pixels_around(away, 400, 3)));
+        const float other = mean_of(familiarity.of(numbers_of_all_features(), pixels_around(away, 400, 3)));
         EXPECT_LT(other, before) << away;
         before = other;
     }
@@ -57,7 +57,7 @@ TEST(Familiarity, IsThatOfPixelsLikeTheDrawings) {
 
 TEST(Familiarity, WithoutSamplesEverythingIsFamiliar) {
     const FeatureMatrix pixels = pixels_around(50, 10, 1);
-    EXPECT_EQ(Familiarity{}.of(all_features(), pixels), std::vector<float>(10, 1.0f));
+    EXPECT_EQ(Familiarity{}.of(numbers_of_all_features(), pixels), std::vector<float>(10, 1.0f));
 }
 
 TEST(Familiarity, AFeatureThatWasNotMeasuredIsNamed) {

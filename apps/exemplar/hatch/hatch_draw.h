@@ -13,6 +13,9 @@
 
 namespace exemplar {
 
+/// Pixels over which strokes end in a point, unless an option says otherwise.
+constexpr float k_usual_taper = 6;
+
 /// Arguments of 'exemplar hatch draw'.
 struct HatchDrawJob {
     std::filesystem::path style, out, properties;
@@ -20,7 +23,7 @@ struct HatchDrawJob {
     HatchSceneArguments scene;
     CommonOptions common;
     std::vector<std::string> curves{"contours"};
-    float taper = 6, scale = 1;
+    float taper = k_usual_taper, scale = 1;
     bool outlines = false;
     HatchingOptions hatching;
     // For animations:

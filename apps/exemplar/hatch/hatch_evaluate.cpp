@@ -157,12 +157,10 @@ class StyleEvaluation {
         const RuledDrawing drawn = draw_by_rule(name_, scene.pixels(), scene.tools().placer, arguments_.seed);
         const HatchingFields& truth = drawn.truth;
         Stopwatch watch;
-        Image mask(truth.width, truth.height, 1);
-        for (const std::uint32_t pixel : scene.pixels().pixels().pixel) mask.data[pixel] = 1;
         // Rounded to eight bits, as in a file.
         FloatImage darkness(truth.width, truth.height, 1);
         for (std::size_t i = 0; i < drawn.ink.size(); ++i) darkness.data[i] = std::round(255 * drawn.ink[i]) / 255;
-        const DrawingProperties drawing = drawing_properties(measure_strokes(darkness, mask));
+        const DrawingProperties drawing = drawing_properties(measure_strokes(darkness, object_mask(scene.pixels())));
         result_["measured"] = measured_errors(drawing, truth);
         result_["measured"]["level_accuracy"] =
             compare_hatching(measured_fields(drawing), truth, scene.pixels().pixels().pixel).level_accuracy;

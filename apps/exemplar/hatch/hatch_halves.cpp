@@ -2,8 +2,9 @@
 
 #include <array>
 
+#include "apps/exemplar/hatch/hatch_draw.h"
 #include "host/core/statistics.h"
-#include "host/hatching/drawing/drawing_input.h"
+#include "host/hatching/drawing/aligned_drawing.h"
 #include "host/hatching/fields/ink.h"
 #include "host/hatching/hatching_drawing.h"
 #include "host/hatching/style/style_learning.h"
@@ -12,9 +13,7 @@
 namespace exemplar {
 namespace {
 
-constexpr float k_taper = 6;  // pixels, as 'exemplar hatch draw' has it
-
-/// Where a drawing is cut: the medians of its strokes' places.
+/// Returns the medians of x and y over the pixels on center lines of strokes.
 std::array<int, 2> middle_of(const DrawingProperties& drawing) {
     std::vector<int> x, y;
     for (int row = 0; row < drawing.height; ++row)
@@ -37,13 +36,11 @@ PixelMask half_of(const DrawingProperties& drawing, std::array<int, 2> middle, b
 
 ComparedDrawing hatched(const HatchingStyle& style, HatchScene& scene, const ComparedDrawing& artist) {
     ViewHatching hatching = hatch_view(style, scene.pixels(), scene.tools());
-    taper_strokes(hatching.strokes, k_taper);
+    taper_strokes(hatching.strokes, k_usual_taper);
     const FloatImage& size = artist.darkness;
     FloatImage darkness(size.width, size.height, 1);
     darkness.data = render_ink(hatching.strokes, size.width, size.height);
-    Image object(size.width, size.height, 1);
-    for (const std::uint32_t pixel : scene.pixels().pixels().pixel) object.data[pixel] = 1;
-    StrokeMeasurements strokes = measure_strokes(darkness, object);
+    StrokeMeasurements strokes = measure_strokes(darkness, object_mask(scene.pixels()));
     return {std::move(darkness), std::move(strokes)};
 }
 

@@ -91,7 +91,7 @@ PixelMask inked_by_both(const PixelMask& artist_ink, const StrokeDirections& art
     return both;
 }
 
-/// What the comparison of directions is computed from.
+/// The directions of both drawings, and the pixels where they are compared.
 struct DirectionPair {
     StrokeDirections artist, drawing;
     PixelMask both;

@@ -13,13 +13,13 @@
 
 namespace exemplar {
 
-namespace {
-
 Image object_mask(const PixelFeatures& pixels) {
     Image mask(pixels.view().width, pixels.view().height, 1);
     for (const std::uint32_t pixel : pixels.pixels().pixel) mask.data[pixel] = 1;
     return mask;
 }
+
+namespace {
 
 AlignedDrawing measured(const FloatImage& darkness, const DrawingAlignment& alignment, const PixelFeatures& pixels) {
     const HatchingView& view = pixels.view();

@@ -7,6 +7,9 @@
 
 namespace exemplar {
 
+/// Returns the pixels that show the object: 1 there, 0 elsewhere, one channel.
+Image object_mask(const PixelFeatures& pixels);
+
 /// A drawing aligned with a view.
 struct AlignedDrawing {
     DrawingAlignment alignment;

@@ -231,12 +231,12 @@ LearnedCorrection learn_correction(const CorrectionTraining& training, const std
         best_rounds = round;
     }
     if (best.error > k_correction_worth * best.rule_error) best_rounds = 0;
-    CorrectionBoosting final(training, all);
-    for (std::size_t round = 0; round < best_rounds && final.add_stump(); ++round) {
+    CorrectionBoosting whole(training, all);
+    for (std::size_t round = 0; round < best_rounds && whole.add_stump(); ++round) {
         check_interrupt();
         progress();
     }
-    best.correction = final.correction();
+    best.correction = whole.correction();
     return best;
 }
 

@@ -125,7 +125,7 @@ std::vector<float> mean_probabilities_around_faces(const HatchingSurface& surfac
     return at_face;
 }
 
-/// What held-out rows say of a number of rounds.
+/// A number of boosting rounds, and the loss and error of held-out rows after them.
 struct JudgedRounds {
     std::size_t rounds = 0;
     Calibration held;

@@ -323,7 +323,7 @@ class StyleLearning {
         const std::vector<std::uint8_t> patches = held_out_patches(pixels_, drawing_, rows, options_.seed + 14);
         const LearnedClassifier detailed =
             learn_classifier({features, labels, {}, patches, 3, false, 4000, options_.seed + 10, true}, progress);
-        // What holds in large rectangles that were held out holds far from the drawing, too.
+        // Far from the drawing, a classifier decides that was stopped when large held-out rectangles fitted best.
         const LearnedClassifier rough = learn_classifier(
             {features, labels, {}, held_out(rows, labels, options_.seed + 9), 3, false, 500, options_.seed + 10},
             progress);

@@ -128,10 +128,22 @@ void PolygonList::add(std::span<const std::uint32_t> corners) {
     corner_count_.push_back(static_cast<std::uint32_t>(corners.size()));
 }
 
+std::vector<std::uint32_t> PolygonList::corners_of_triangles() const {
+    std::vector<std::uint32_t> kept;
+    kept.reserve(corners_.size());
+    std::size_t begin = 0;
+    for (const std::uint32_t count : corner_count_) {
+        const auto polygon = std::span(corners_).subspan(begin, count);
+        if (count >= 3) kept.insert(kept.end(), polygon.begin(), polygon.end());
+        begin += count;
+    }
+    return kept;
+}
+
 TriangleMesh PolygonList::triangulate(std::vector<std::string>& warnings) && {
     TriangleMesh mesh;
     if (!positions.empty()) {
-        mesh.origin = origin_for_floats(positions, corners_);
+        mesh.origin = origin_for_floats(positions, corners_of_triangles());
         vertices.reserve(positions.size());
         for (const Vec3d& position : positions) vertices.push_back((position - mesh.origin).cast<float>());
         positions = {};

@@ -30,6 +30,8 @@ class PolygonList {
     void triangulate_into(MeshFile& file) &&;
 
   private:
+    std::vector<std::uint32_t> corners_of_triangles() const;
+
     std::vector<std::uint32_t> corners_, corner_count_;
 };
 

@@ -93,6 +93,12 @@ TEST(Origin, DegreesBesideAHeightGiveAWarning) {
     EXPECT_THAT(read_as("a.off", off_at(ball, {0, 0, 0}, {1e-5, 1e-5, 1})).warnings, IsEmpty());
 }
 
+TEST(Origin, FacesThatAreLeftOutDoNotCount) {
+    const std::string vertices = "OFF\n6 2 0\n42949672952 3 0\n42949672954 0 8\n5 4 0\n0 0 0\n1 0 0\n0 1 0\n";
+    EXPECT_NE(read_as("a.off", vertices + "3 0 1 2\n3 3 4 5\n").mesh.origin, Vec3d::Zero());
+    EXPECT_EQ(read_as("a.off", vertices + "2 0 1\n3 3 4 5\n").mesh.origin, Vec3d::Zero());
+}
+
 TEST(Origin, OrdinaryFilesAreReadBitForBitAsFloats) {
     std::mt19937 random(7);
     const auto coordinate = [&](double middle) {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 #include <png.h>
+#include <zlib.h>
 
+#include <array>
 #include <ostream>
 #include <string>
 
@@ -46,16 +48,65 @@ std::string encode(const std::filesystem::path& path, const Image& image) {
     return bytes;
 }
 
-}  // namespace
+// The simplified interface of libpng knows no text. A file is a signature of 8 bytes and chunks: the length of their
+// data, a type of four letters, the data, and a checksum of type and data; the first one is always IHDR.
+constexpr std::size_t k_signature = 8, k_frame = 12;  // bytes: length, type and checksum around the data
+constexpr std::size_t k_header_end = k_signature + k_frame + 13;
 
-void write_png(const std::filesystem::path& path, const Image& image) {
+std::string big_endian(std::size_t value) {
+    std::string bytes;
+    for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(value >> shift & 255);
+    return bytes;
+}
+
+std::size_t big_endian_at(std::string_view bytes, std::size_t at) {
+    std::size_t value = 0;
+    for (std::size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<std::uint8_t>(bytes[at + i]);
+    return value;
+}
+
+std::size_t checksum(std::string_view bytes) {
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): zlib reads bytes
+    return crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size()));
+}
+
+std::string text_chunk(const PngText& text) {
+    const std::string data = "tEXt" + text.keyword + '\0' + text.text;
+    return big_endian(data.size() - 4) + data + big_endian(checksum(data));
+}
+
+std::string checked_and_encoded(const std::filesystem::path& path, const Image& image) {
     if (image.channels != 1 && image.channels != 3 && image.channels != 4)
         throw UsageError(fmt::format("{}: a PNG takes 1, 3 or 4 channels, not {}", path.string(), image.channels));
     if (image.width <= 0 || image.height <= 0)
         throw UsageError(fmt::format("{}: the image is empty ({} x {})", path.string(), image.width, image.height));
-    const std::string bytes = encode(path, image);
-    write_file_atomically(
-        path, [&](std::ostream& out) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); });
+    return encode(path, image);
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& path, const Image& image) {
+    const std::string bytes = checked_and_encoded(path, image);
+    write_file_atomically(path, [&](std::ostream& out) { out << bytes; });
+}
+
+void write_png(const std::filesystem::path& path, const Image& image, const PngText& text) {
+    std::string bytes = checked_and_encoded(path, image);
+    bytes.insert(k_header_end, text_chunk(text));
+    write_file_atomically(path, [&](std::ostream& out) { out << bytes; });
+}
+
+std::optional<std::string> png_text(std::string_view content, std::string_view keyword) {
+    for (std::size_t at = k_signature; at + k_frame <= content.size();) {
+        const std::size_t length = big_endian_at(content, at);
+        if (length > content.size() - at - k_frame) return std::nullopt;
+        const std::string_view checked = content.substr(at + 4, length + 4), data = checked.substr(4);
+        if (checked.starts_with("tEXt") && data.starts_with(keyword) && data.size() > keyword.size() &&
+            data[keyword.size()] == '\0' && big_endian_at(content, at + 8 + length) == checksum(checked))
+            return std::string(data.substr(keyword.size() + 1));
+        at += k_frame + length;
+    }
+    return std::nullopt;
 }
 
 Image read_png(const std::filesystem::path& path) {

@@ -95,7 +95,7 @@ nlohmann::json report_halves(const CompareArguments& arguments, HatchScene& scen
     return report;
 }
 
-void run_compare(const CompareArguments& arguments) {
+void run_compare(CompareArguments& arguments) {
     const auto limits = apply_common_options(arguments.common);
     if (arguments.drawings.empty() && !arguments.halves)
         throw UsageError("there is nothing to compare with the artist's drawing; name drawings, or give --halves");
@@ -153,7 +153,7 @@ void add_hatch_compare_command(Command& hatch) {
                      "folder for a picture of each: strokes green where they run like the artist's, red where "
                      "they are off by more than 30 degrees")
         ->type_name("FOLDER");
-    add_hatch_scene_options(*command, arguments->scene);
+    add_template_option(*command, arguments->scene, add_hatch_scene_options(*command, arguments->scene));
     add_device_option(*command, arguments->common);
     add_common_options(*command, arguments->common);
     command->callback([arguments] { run_compare(*arguments); });

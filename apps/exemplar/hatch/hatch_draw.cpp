@@ -188,7 +188,7 @@ void add_hatch_draw_command(Command& hatch) {
     command->add_option("--seed", arguments->hatching.strokes.seed, "of the placement of strokes")
         ->capture_default_str()
         ->check(whole_number(0));
-    add_hatch_scene_options(*command, arguments->scene);
+    add_template_option(*command, arguments->scene, add_hatch_scene_options(*command, arguments->scene));
     add_frames_options(*command, *arguments);
     add_device_option(*command, arguments->common);
     add_common_options(*command, arguments->common);

@@ -261,7 +261,10 @@ void run_hatch_evaluate(EvaluateArguments arguments) {
                                          fmt::join(hatching_rule_names(), ", ")));
     }
     require_distinct_names(arguments.meshes);
-    for (const fs::path& mesh : arguments.meshes) require_hatch_scene(scene_of(arguments, mesh, k_views[0]));
+    for (const fs::path& mesh : arguments.meshes) {
+        HatchSceneArguments scene = scene_of(arguments, mesh, k_views[0]);
+        require_hatch_scene(scene);
+    }
     if (!arguments.peers.empty()) require_output_folder(arguments.peers);
     Progress progress("evaluating", arguments.styles.size() * (k_views.size() + arguments.meshes.size()));
     nlohmann::json results = nlohmann::json::array();

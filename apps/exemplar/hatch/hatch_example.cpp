@@ -26,7 +26,7 @@ struct ExampleArguments {
     std::uint64_t seed = 1;
 };
 
-void run_example(const ExampleArguments& arguments) {
+void run_example(ExampleArguments& arguments) {
     const auto limits = apply_common_options(arguments.common);
     if (std::ranges::find(hatching_rule_names(), arguments.style) == hatching_rule_names().end())
         throw UsageError(fmt::format("STYLE '{}' is not built in; there are {}", arguments.style,
@@ -60,7 +60,7 @@ void add_hatch_example_command(Command& hatch) {
     command->add_option("--seed", arguments->seed, "of the hand's jitter")
         ->capture_default_str()
         ->check(whole_number(0));
-    add_hatch_scene_options(*command, arguments->scene);
+    add_template_option(*command, arguments->scene, add_hatch_scene_options(*command, arguments->scene));
     add_device_option(*command, arguments->common);
     add_common_options(*command, arguments->common);
     command->callback([arguments] { run_example(*arguments); });

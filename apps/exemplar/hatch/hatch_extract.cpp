@@ -70,7 +70,7 @@ nlohmann::json write_measurement_pictures(const fs::path& folder, const AlignedD
     return ranges;
 }
 
-void run_extract(const ExtractArguments& arguments) {
+void run_extract(ExtractArguments& arguments) {
     const auto limits = apply_common_options(arguments.common);
     require_hatch_scene(arguments.scene);
     require_input(arguments.drawing);
@@ -103,11 +103,11 @@ void add_hatch_extract_command(Command& hatch) {
         "Writes what was read over the drawing (overlay), and a picture of each property: skeleton, orientation, "
         "thickness, intensity, spacing, length, levels,\n"
         "intersections, boundaries.\n\nExample:\n"
-        "  exemplar hatch extract bunny.off traced.png --out properties");
+        "  exemplar hatch extract bunny.off traced.png --template bunny.png --out properties");
     command->add_option("MESH", arguments->scene.mesh, "mesh that the drawing shows")->required()->type_name("");
     command->add_option("DRAWING", arguments->drawing, "the drawing (PNG)")->required()->type_name("");
     command->add_option("--out", arguments->out, "folder for the pictures")->required()->type_name("FOLDER");
-    add_hatch_scene_options(*command, arguments->scene);
+    add_template_option(*command, arguments->scene, add_hatch_scene_options(*command, arguments->scene));
     add_device_option(*command, arguments->common);
     add_common_options(*command, arguments->common);
     command->callback([arguments] { run_extract(*arguments); });

@@ -15,21 +15,38 @@
 
 namespace exemplar {
 
-void add_hatch_scene_options(Command& command, HatchSceneArguments& arguments) {
+std::vector<Option*> add_hatch_scene_options(Command& command, HatchSceneArguments& arguments) {
     arguments.camera.size = "1000x1000";
-    add_camera_options(command, arguments.camera);
-    command
-        .add_option("--light", arguments.light,
-                    "direction to the light as the eye has it: to the right, up, towards the eye")
-        ->type_name("X,Y,Z")
-        ->capture_default_str();
+    std::vector<Option*> options = add_camera_options(command, arguments.camera);
+    options.push_back(command
+                          .add_option("--light", arguments.light,
+                                      "direction to the light as the eye has it: to the right, up, towards the eye")
+                          ->type_name("X,Y,Z")
+                          ->capture_default_str());
     command.add_option("--cache", arguments.cache, "folder that remembers measured surfaces; '' remembers none")
         ->type_name("FOLDER")
         ->capture_default_str();
+    return options;
 }
 
-void require_hatch_scene(const HatchSceneArguments& arguments) {
+void add_template_option(Command& command, HatchSceneArguments& arguments, const std::vector<Option*>& told) {
+    Option* option = command
+                         .add_option("--template", arguments.view_file,
+                                     "the picture that 'hatch template' wrote, or the view that 'hatch register' "
+                                     "found: tells camera, light and size")
+                         ->type_name("FILE");
+    for (Option* each : told) each->excludes(option);
+}
+
+void require_hatch_scene(HatchSceneArguments& arguments) {
     require_input(arguments.mesh);
+    if (!arguments.view_file.empty()) {
+        require_input(arguments.view_file);
+        ViewFile file = read_view_file(arguments.view_file);
+        arguments.camera = file.view.camera;
+        arguments.light = file.view.light;
+        arguments.drawn = std::move(file.mesh);
+    }
     require_camera(arguments.camera);
     if (!(point_of(arguments.light, "--light").norm() > 0))
         throw UsageError("--light is zero; give a direction as -0.5,0.5,0.7");
@@ -57,6 +74,8 @@ HatchScene::HatchScene(const HatchSceneArguments& arguments, const std::string& 
     mesh_warnings(file, arguments.mesh, quiet);
     impl_->surface =
         cached_surface(without_loose_vertices(file.mesh), usable_cache(arguments.cache, quiet, "measured surfaces"));
+    if (arguments.drawn)
+        require_mesh_of_view(arguments.view_file, *arguments.drawn, drawn_mesh(arguments.mesh, impl_->surface.mesh));
     impl_->view = hatching_view(arguments, impl_->surface.mesh);
     impl_->pixels = std::make_unique<PixelFeatures>(impl_->surface, impl_->view, impl_->device.tools().images);
 }

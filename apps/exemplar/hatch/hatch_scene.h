@@ -2,9 +2,12 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/exemplar/commands.h"
+#include "apps/exemplar/hatch/view_file.h"
 #include "apps/exemplar/lines/lines_camera.h"
 #include "apps/help/command.h"
 #include "host/hatching/features/hatching_surface.h"
@@ -16,14 +19,19 @@ namespace exemplar {
 
 /// Arguments of the scene of 'exemplar hatch': a mesh, the camera and the light.
 struct HatchSceneArguments {
+    std::filesystem::path view_file;  ///< tells camera and light, if it is not empty
+    std::optional<DrawnMesh> drawn;   ///< the mesh that it tells of
     std::filesystem::path mesh;
     CameraArguments camera;
     std::string light = "-0.45,0.55,0.7";                    ///< direction to it: x right, y up, z towards the eye
     std::filesystem::path cache = default_surface_folder();  ///< cache of measured surfaces; empty: none
 };
-void add_hatch_scene_options(Command& command, HatchSceneArguments& arguments);
-/// Checks what can be checked before any work; throws UsageError or DataError.
-void require_hatch_scene(const HatchSceneArguments& arguments);
+/// Adds and returns the options of camera and light.
+std::vector<Option*> add_hatch_scene_options(Command& command, HatchSceneArguments& arguments);
+/// Adds --template, which stands for `told`, the options of camera and light.
+void add_template_option(Command& command, HatchSceneArguments& arguments, const std::vector<Option*>& told);
+/// Reads the view file, if there is one, and checks what can be checked before any work; throws UsageError or DataError.
+void require_hatch_scene(HatchSceneArguments& arguments);
 /// Returns the view of a mesh.
 HatchingView hatching_view(const HatchSceneArguments& arguments, const TriangleMesh& mesh);
 

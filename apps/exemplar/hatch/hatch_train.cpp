@@ -81,7 +81,7 @@ nlohmann::json describe_style(const StyleReport& report, const HatchingStyle& st
             {"seconds", seconds}};
 }
 
-void run_hatch_train(const TrainArguments& arguments) {
+void run_hatch_train(TrainArguments& arguments) {
     const auto limits = apply_common_options(arguments.common);
     require_hatch_scene(arguments.scene);
     require_input(arguments.drawing);
@@ -113,7 +113,7 @@ void add_hatch_train_command(Command& hatch) {
     auto arguments = std::make_shared<TrainArguments>();
     Command* command = hatch.add_subcommand("train", "Learns a style from one drawing of a view");
     command->footer(
-        "Example:\n  exemplar hatch train bunny.off traced.png --view three-quarter --out mine.safetensors");
+        "Example:\n  exemplar hatch train bunny.off traced.png --template bunny.png --out mine.safetensors");
     command->add_option("MESH", arguments->scene.mesh, "mesh that the drawing shows")->required()->type_name("");
     command->add_option("DRAWING", arguments->drawing, "the drawing (PNG)")->required()->type_name("");
     command
@@ -125,7 +125,7 @@ void add_hatch_train_command(Command& hatch) {
     command->add_option("--seed", arguments->learning.seed, "of all random choices")
         ->capture_default_str()
         ->check(whole_number(0));
-    add_hatch_scene_options(*command, arguments->scene);
+    add_template_option(*command, arguments->scene, add_hatch_scene_options(*command, arguments->scene));
     add_device_option(*command, arguments->common);
     add_common_options(*command, arguments->common);
     command->callback([arguments] { run_hatch_train(*arguments); });

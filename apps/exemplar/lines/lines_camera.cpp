@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <span>
 
 #include "apps/help/command.h"
 #include "host/core/errors.h"
@@ -35,6 +36,25 @@ std::array<int, 2> size_of(const std::string& text) {
     return size;
 }
 
+/// Parses numbers separated by commas; returns false if the text is anything else.
+bool parse_numbers(const std::string& text, std::span<float> numbers) {
+    const char *at = text.data(), *end = text.data() + text.size();
+    for (float& number : numbers) {
+        const auto [stop, error] = std::from_chars(at, end, number);
+        const bool last = &number == &numbers.back();
+        if (error != std::errc() || !std::isfinite(number) || (last ? stop != end : stop == end || *stop != ','))
+            return false;
+        at = stop + 1;
+    }
+    return true;
+}
+
+Vec2 shift_of(const std::string& text) {
+    std::array<float, 2> shift{};
+    if (!parse_numbers(text, shift)) throw UsageError(fmt::format("--shift '{}' is no shift; write two numbers as 0.1,-0.2", text));
+    return {shift[0], shift[1]};
+}
+
 /// Returns the vertices of evenly spaced frames together, which a camera has to show.
 TriangleMesh extent_of(const LinesSource& source) {
     constexpr std::size_t k_max_frames = 60;
@@ -56,6 +76,7 @@ ViewPoint view_point(const CameraArguments& arguments) {
     if (!arguments.target.empty()) point.target = point_of(arguments.target, "--target");
     point.up = point_of(arguments.up, "--up");
     point.field_of_view = arguments.field_of_view;
+    point.shift = shift_of(arguments.shift);
     const auto [width, height] = size_of(arguments.size);
     point.width = width;
     point.height = height;
@@ -65,42 +86,46 @@ ViewPoint view_point(const CameraArguments& arguments) {
 }  // namespace
 
 Vec3 point_of(const std::string& text, const char* option) {
-    Vec3 point;
-    const char *at = text.data(), *end = text.data() + text.size();
-    for (int i = 0; i < 3; ++i) {
-        const auto [stop, error] = std::from_chars(at, end, point[i]);
-        const bool last = i == 2;
-        if (error != std::errc() || !std::isfinite(point[i]) || (last ? stop != end : stop == end || *stop != ','))
-            throw UsageError(fmt::format("{} '{}' is no point; write three numbers as 1.5,0,-2", option, text));
-        at = stop + 1;
-    }
-    return point;
+    std::array<float, 3> point{};
+    if (!parse_numbers(text, point))
+        throw UsageError(fmt::format("{} '{}' is no point; write three numbers as 1.5,0,-2", option, text));
+    return {point[0], point[1], point[2]};
 }
 
-void add_camera_options(Command& command, CameraArguments& arguments) {
-    command
-        .add_option("--view", arguments.view,
-                    fmt::format("where it is seen from, as large as it fits: {}", fmt::join(view_names(), ", ")))
-        ->type_name("NAME")
-        ->check(completion_words(view_names()))
-        ->capture_default_str();
-    command.add_option("--eye", arguments.eye, "a point to see it from instead, in the units of the mesh")
-        ->type_name("X,Y,Z");
-    command.add_option("--target", arguments.target, "the point that --eye looks at; default: the middle")
-        ->type_name("X,Y,Z");
-    command.add_option("--up", arguments.up, "what is up in the picture; 0,0,1 for meshes that stand along z")
-        ->type_name("X,Y,Z")
-        ->capture_default_str();
-    command.add_option("--fov", arguments.field_of_view, "vertical angle of view in degrees; 0: parallel projection")
-        ->capture_default_str()
-        ->check(in_range(0.0, 170.0));
-    command.add_option("--size", arguments.size, "pixels of the drawing")->type_name("WxH")->capture_default_str();
+std::vector<Option*> add_camera_options(Command& command, CameraArguments& arguments) {
+    return {
+        command
+            .add_option("--view", arguments.view,
+                        fmt::format("where it is seen from, as large as it fits: {}", fmt::join(view_names(), ", ")))
+            ->type_name("NAME")
+            ->check(completion_words(view_names()))
+            ->capture_default_str(),
+        command.add_option("--eye", arguments.eye, "a point to see it from instead, in the units of the mesh")
+            ->type_name("X,Y,Z"),
+        command.add_option("--target", arguments.target, "the point that --eye looks at; default: the middle")
+            ->type_name("X,Y,Z"),
+        command.add_option("--up", arguments.up, "what is up in the picture; 0,0,1 for meshes that stand along z")
+            ->type_name("X,Y,Z")
+            ->capture_default_str(),
+        command
+            .add_option("--fov", arguments.field_of_view, "vertical angle of view in degrees; 0: parallel projection")
+            ->capture_default_str()
+            ->check(in_range(0.0, 170.0)),
+        command
+            .add_option("--shift", arguments.shift,
+                        "moves what the camera shows to the right and up, in heights of the picture")
+            ->type_name("X,Y")
+            ->capture_default_str(),
+        command.add_option("--size", arguments.size, "pixels of the drawing")
+            ->type_name("WxH")
+            ->capture_default_str()};
 }
 
 void require_camera(const CameraArguments& arguments) {
     size_of(arguments.size);
     require_view(arguments.view);
     if (!(point_of(arguments.up, "--up").norm() > 0)) throw UsageError("--up is zero; give a direction as 0,1,0");
+    shift_of(arguments.shift);
     if (!arguments.eye.empty()) point_of(arguments.eye, "--eye");
     if (arguments.target.empty()) return;
     if (arguments.eye.empty()) throw UsageError("--target is where --eye looks; give --eye, too");

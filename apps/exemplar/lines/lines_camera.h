@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "apps/exemplar/lines/lines_source.h"
 #include "apps/help/command.h"
@@ -11,11 +12,12 @@ namespace exemplar {
 /// Command-line arguments of the camera.
 struct CameraArguments {
     std::string view = "three-quarter";
-    std::string eye, target, up = "0,1,0", size = "1000x800";
+    std::string eye, target, up = "0,1,0", shift = "0,0", size = "1000x800";
     double field_of_view = 23;  ///< degrees, vertical; 0: parallel
 };
 
-void add_camera_options(Command& command, CameraArguments& arguments);
+/// Adds and returns the options.
+std::vector<Option*> add_camera_options(Command& command, CameraArguments& arguments);
 /// Parses three numbers separated by commas; throws UsageError naming the option.
 Vec3 point_of(const std::string& text, const char* option);
 /// Checks all arguments before any work; throws UsageError naming the option.

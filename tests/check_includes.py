@@ -38,7 +38,7 @@ GPU = {
 ROOMS = {
     'host/curvature': ['state', 'model', 'learning'],
     'host/data': ['', 'catalog'],
-    'host/hatching': ['fields', 'features', 'tracing', 'measurement', 'comparison', 'drawing', 'rules', 'style', 'placement', 'refinement', 'animation', ''],
+    'host/hatching': ['fields', 'features', 'tracing', 'measurement', 'comparison', 'drawing', 'registration', 'rules', 'style', 'placement', 'refinement', 'animation', ''],
     'host/labeling': ['features', 'inference', 'training', 'evaluation', 'category', 'batch'],
     'host/learn': ['', 'regression', 'components', 'boosting'],
     'host/lines': ['extraction', 'strokes', ''],

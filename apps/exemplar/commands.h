@@ -28,6 +28,7 @@ void add_lines_command(Command& app);
 void add_hatch_command(Command& app);
 void add_hatch_template_command(Command& hatch);
 void add_hatch_example_command(Command& hatch);
+void add_hatch_register_command(Command& hatch);
 void add_hatch_extract_command(Command& hatch);
 void add_hatch_train_command(Command& hatch);
 void add_hatch_draw_command(Command& hatch);

@@ -1,11 +1,12 @@
 """Hatching: a view to trace, a drawing by a known rule, what is measured of it, the style learned from it, and drawings in it."""
 
 import json
+import math
 import unittest
 import xml.etree.ElementTree as ElementTree
 
 from png import read_png
-from program import ProgramTest, CUBE, CUBE_QUADS, write_off
+from program import ProgramTest, CUBE, CUBE_QUADS, CUBE_TRIANGLES, write_off
 
 SVG = "{http://www.w3.org/2000/svg}"
 LABEL = "{http://www.inkscape.org/namespaces/inkscape}label"
@@ -27,6 +28,43 @@ class Hatch(ProgramTest):
         report = json.loads((self.folder / "template.json").read_text())
         self.assertEqual((report["width"], report["height"]), (500, 460))
         self.assertGreater(report["pixels"], 5000)
+
+    def test_a_template_tells_the_view(self):
+        self.call("hatch", "template", MESH, *VIEW, "--light", "0.3,0.2,1", "--out", "told.png")
+        extract = ["hatch", "extract", MESH, "drawing.png"]
+        for name, view in (("told", ["--template", "told.png"]), ("said", [*VIEW, "--light", "0.3,0.2,1"])):
+            self.call(*extract, *view, "--out", name)
+        for picture in (self.folder / "told").iterdir():
+            self.assertEqual(picture.read_bytes(), (self.folder / "said" / picture.name).read_bytes())
+        self.refused(*extract, "--template", "told.png", "--fov", "30", "--out", "no", code=2, says="--fov excludes --template")
+        self.refused(*extract, "--template", "drawing.png", "--out", "no", code=1, says="drawing.png: the picture tells no view")
+        self.refused(*extract, "--template", MESH, "--out", "no", code=1, says="tells no view; give a picture of")
+        write_off(self.folder / "cube.off", CUBE, CUBE_TRIANGLES)
+        self.refused("hatch", "extract", "cube.off", "drawing.png", "--template", "told.png", "--out", "no", code=1,
+                     says="told.png: shows another mesh than cube.off (12 faces): fourleg_001.off with")
+
+    def test_the_view_of_a_drawing_is_found(self):
+        camera = ["--eye=3,1.2,2.5", "--target=0,0.5,0", "--fov", "32", "--size", "420x360"]
+        self.call("lines", MESH, *camera, "--types", "contours", "--out", "outlines.png")
+        register = ["hatch", "register", MESH, "outlines.png"]
+        said = self.call(*register, "--light", "0.1,0.2,1", "--out", "found.json", "--json", "register.json").stdout
+        self.assertIn("found.json: the outlines fit to", said)
+        report = json.loads((self.folder / "register.json").read_text())
+        eye, target = ([float(x) for x in report[key].split(",")] for key in ("eye", "target"))
+        way = [a - b for a, b in zip(eye, target)]
+        cosine = (3 * way[0] + 0.7 * way[1] + 2.5 * way[2]) / math.hypot(*way) / math.hypot(3, 0.7, 2.5)
+        self.assertGreater(cosine, math.cos(math.radians(4)), report)
+        self.assertLess(report["residual"], 1)
+        self.assertEqual(read_png(self.folder / "found_overlay.png")[:2], (420, 360))
+        self.assertEqual(json.loads((self.folder / "found.json").read_text())["light"], [0.1, 0.2, 1])
+        self.call("hatch", "template", MESH, *camera, "--light", "0.5,0.5,1", "--out", "shaded.png")
+        said = self.call(*register, "--place", *camera[:-2], "--shaded", "shaded.png", "--out", "placed.json").stdout
+        light = json.loads((self.folder / "placed.json").read_text())["light"]
+        self.assertGreater((light[0] + light[1] + 2 * light[2]) / math.sqrt(6), 0.97, said)
+        self.call("hatch", "extract", MESH, "outlines.png", "--template", "placed.json", "--out", "placed")
+        write_off(self.folder / "cube.off", CUBE, CUBE_TRIANGLES)
+        self.refused("hatch", "register", "cube.off", "outlines.png", "--out", "no.json", code=1, says="no view of cube.off fits")
+        self.assertFalse((self.folder / "no.json").exists())
 
     def test_what_is_measured_of_a_drawing(self):
         self.call("hatch", "extract", MESH, "drawing.png", *VIEW, "--out", "measured", "--json", "extract.json")
@@ -155,7 +193,7 @@ class Hatch(ProgramTest):
             (self.folder / f"{name}.off").write_text("\n".join(text) + "\n")
             self.call("hatch", "template", f"{name}.off", *VIEW, "--out", f"{name}.png")
             pictures.append(read_png(self.folder / f"{name}.png"))
-        self.assertEqual((self.folder / "loose.png").read_bytes(), (self.folder / "whole.png").read_bytes())
+        self.assertEqual(read_png(self.folder / "loose.png"), read_png(self.folder / "whole.png"))
         off = [abs(a - b) for a, b in zip(pictures[0][2], pictures[2][2])]
         self.assertLess(sum(off) / len(off), 0.1)
         self.call("hatch", "draw", "style.safetensors", "loose.off", *VIEW, "--turn", "9", "--frames", "1", "--out", "turned.png")

@@ -50,6 +50,20 @@ TEST_F(PngFile, KeepsEveryPixelOfEveryFormat) {
     }
 }
 
+TEST_F(PngFile, HoldsTextThatOtherProgramsPassOver) {
+    const Image image = random_image(33, 21, 3, 9);
+    write_png(folder_ / "a.png", image, {"View", "{\"eye\":[1,2,3]}"});
+    EXPECT_EQ(read_png(folder_ / "a.png"), image);
+    const std::string bytes = read_file(folder_ / "a.png");
+    EXPECT_EQ(png_text(bytes, "View"), "{\"eye\":[1,2,3]}");
+    EXPECT_FALSE(png_text(bytes, "Vie"));
+    EXPECT_FALSE(png_text(bytes, "View of"));
+    for (std::size_t size = 0; size < 60; ++size) EXPECT_FALSE(png_text(bytes.substr(0, size), "View"));
+    std::string damaged = bytes;
+    damaged[damaged.find("eye")] = 'E';
+    EXPECT_FALSE(png_text(damaged, "View")) << "its checksum is wrong";
+}
+
 TEST_F(PngFile, SameImageGivesSameBytesAndNoLeftovers) {
     const Image image = random_image(33, 21, 3, 9);
     write_png(folder_ / "a.png", image);

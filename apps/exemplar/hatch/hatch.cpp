@@ -16,6 +16,7 @@ void add_hatch_command(Command& app) {
         "  exemplar hatch example contour bunny.off --out traced.png");
     add_hatch_template_command(*hatch);
     add_hatch_example_command(*hatch);
+    add_hatch_register_command(*hatch);
     add_hatch_extract_command(*hatch);
     add_hatch_train_command(*hatch);
     add_hatch_draw_command(*hatch);

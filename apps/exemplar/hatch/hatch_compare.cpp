@@ -108,7 +108,8 @@ void run_compare(CompareArguments& arguments) {
     const PixelFeatures& pixels = scene.pixels();
     PixelMask mask = compared_pixels(pixels.gbuffer(), view_outlines(pixels.gbuffer()));
     if (!arguments.mask.empty()) mask = read_mask(arguments.mask, pixels);
-    const ComparedDrawing artist = compared(read_drawing(arguments.artist, pixels, arguments.common.quiet));
+    const ComparedDrawing artist =
+        compared(read_drawing(arguments.artist, arguments.scene, pixels, arguments.common.quiet));
     nlohmann::json report = nlohmann::json::array();
     for (const fs::path& path : arguments.drawings) {
         const ComparedDrawing drawing = compared(read_drawing_in_place(path, pixels));

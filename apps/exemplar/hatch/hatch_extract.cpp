@@ -76,7 +76,8 @@ void run_extract(ExtractArguments& arguments) {
     require_input(arguments.drawing);
     require_output_folder(arguments.out);
     HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
-    const AlignedDrawing drawing = read_drawing(arguments.drawing, scene.pixels(), arguments.common.quiet);
+    const AlignedDrawing drawing =
+        read_drawing(arguments.drawing, arguments.scene, scene.pixels(), arguments.common.quiet);
     const StrokeMeasurements& measured = drawing.strokes;
     const nlohmann::json ranges = write_measurement_pictures(arguments.out, drawing);
     if (!arguments.common.quiet) {

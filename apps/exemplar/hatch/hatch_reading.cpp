@@ -26,7 +26,9 @@ AlignedDrawing of_drawing(const std::filesystem::path& path, Read&& read) {
 
 }  // namespace
 
-AlignedDrawing read_drawing(const std::filesystem::path& path, const PixelFeatures& pixels, bool quiet) {
+AlignedDrawing read_drawing(const std::filesystem::path& path, const HatchSceneArguments& scene,
+                            const PixelFeatures& pixels, bool quiet) {
+    if (scene.registered) return read_drawing_in_place(path, pixels);
     AlignedDrawing drawing = of_drawing(path, [&] { return align_and_measure(read_png(path), pixels); });
     const DrawingAlignment& alignment = drawing.alignment;
     if (!quiet && !alignment.same_frame)

@@ -2,14 +2,17 @@
 
 #include <filesystem>
 
+#include "apps/exemplar/hatch/hatch_scene.h"
 #include "host/hatching/drawing/aligned_drawing.h"
 #include "host/hatching/features/pixel_features.h"
 
 namespace exemplar {
 
-/// Reads a drawing of a view, aligns it (prints the alignment unless `quiet`), and measures its strokes. Throws
-/// DataError naming the file if it cannot be read, is blank, or does not fit the view.
-AlignedDrawing read_drawing(const std::filesystem::path& path, const PixelFeatures& pixels, bool quiet);
+/// Reads a drawing of the view of `scene`, aligns it unless the view was found in it (prints the alignment unless
+/// `quiet`), and measures its strokes. Throws DataError naming the file if it cannot be read, is blank, or does not fit
+/// the view.
+AlignedDrawing read_drawing(const std::filesystem::path& path, const HatchSceneArguments& scene,
+                            const PixelFeatures& pixels, bool quiet);
 
 /// Reads a drawing that shows exactly the view, at any resolution, and measures its strokes. Throws DataError naming
 /// the file if it cannot be read or is blank, or if its aspect ratio is not the view's.

@@ -21,6 +21,7 @@ namespace exemplar {
 struct HatchSceneArguments {
     std::filesystem::path view_file;  ///< tells camera and light, if it is not empty
     std::optional<DrawnMesh> drawn;   ///< the mesh that it tells of
+    bool registered = false;          ///< whether drawings show exactly this view
     std::filesystem::path mesh;
     CameraArguments camera;
     std::string light = "-0.45,0.55,0.7";                    ///< direction to it: x right, y up, z towards the eye
@@ -30,7 +31,8 @@ struct HatchSceneArguments {
 std::vector<Option*> add_hatch_scene_options(Command& command, HatchSceneArguments& arguments);
 /// Adds --template, which stands for `told`, the options of camera and light.
 void add_template_option(Command& command, HatchSceneArguments& arguments, const std::vector<Option*>& told);
-/// Reads the view file, if there is one, and checks what can be checked before any work; throws UsageError or DataError.
+/// Reads the view file, if there is one, and checks what can be checked before any work; throws UsageError or
+/// DataError.
 void require_hatch_scene(HatchSceneArguments& arguments);
 /// Returns the view of a mesh.
 HatchingView hatching_view(const HatchSceneArguments& arguments, const TriangleMesh& mesh);

@@ -24,12 +24,13 @@ void run_template(TemplateArguments& arguments) {
     require_output_picture(arguments.out);
     require_not_replaced(arguments.out, {arguments.scene.mesh});
     HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
-    const ViewFile shown{{arguments.scene.camera, arguments.scene.light},
-                         drawn_mesh(arguments.scene.mesh, scene.surface().mesh)};
+    const ViewFile shown{
+        {arguments.scene.camera, arguments.scene.light}, drawn_mesh(arguments.scene.mesh, scene.surface().mesh), {}};
     write_png(arguments.out, drawing_template(scene.pixels()), {k_view_keyword, view_file_text(shown)});
     if (!arguments.common.quiet)
-        fmt::print("{0}: trace it with strokes only; then 'exemplar hatch train {1} DRAWING --template {0} --out STYLE'\n",
-                   arguments.out.string(), arguments.scene.mesh.string());
+        fmt::print(
+            "{0}: trace it with strokes only; then 'exemplar hatch train {1} DRAWING --template {0} --out STYLE'\n",
+            arguments.out.string(), arguments.scene.mesh.string());
     write_report(arguments.common, {{"mesh", arguments.scene.mesh.string()},
                                     {"width", scene.pixels().view().width},
                                     {"height", scene.pixels().view().height},

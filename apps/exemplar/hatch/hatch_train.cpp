@@ -92,7 +92,8 @@ void run_hatch_train(TrainArguments& arguments) {
     LearningProgress progress;
     HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
     progress.begins("reading the drawing");
-    const AlignedDrawing drawing = read_drawing(arguments.drawing, scene.pixels(), arguments.common.quiet);
+    const AlignedDrawing drawing =
+        read_drawing(arguments.drawing, arguments.scene, scene.pixels(), arguments.common.quiet);
     DrawingProperties properties = drawing_properties(drawing.strokes);
     if (!arguments.mask.empty()) restrict_to(read_mask(arguments.mask, scene.pixels()), properties);
     const double reading = watch.wall();

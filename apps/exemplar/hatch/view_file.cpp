@@ -53,7 +53,8 @@ ViewFile view_file_from(const nlohmann::json& json) {
     const nlohmann::json& mesh = json.at("mesh");
     return {view_from(json),
             {mesh.at("file").get<std::string>(), mesh.at("geometry").get<std::string>(),
-             mesh.at("faces").get<std::size_t>()}};
+             mesh.at("faces").get<std::size_t>()},
+            json.value("drawing", std::string())};
 }
 
 }  // namespace
@@ -70,6 +71,7 @@ std::string view_file_text(const ViewFile& file) {
     nlohmann::ordered_json json;
     json["exemplar_view"] = k_view_format;
     json["mesh"] = {{"file", file.mesh.file}, {"faces", file.mesh.faces}, {"geometry", file.mesh.geometry}};
+    if (!file.drawing.empty()) json["drawing"] = file.drawing;
     if (camera.eye.empty()) {
         json["view"] = camera.view;
     } else {

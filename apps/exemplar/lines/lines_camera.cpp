@@ -51,7 +51,8 @@ bool parse_numbers(const std::string& text, std::span<float> numbers) {
 
 Vec2 shift_of(const std::string& text) {
     std::array<float, 2> shift{};
-    if (!parse_numbers(text, shift)) throw UsageError(fmt::format("--shift '{}' is no shift; write two numbers as 0.1,-0.2", text));
+    if (!parse_numbers(text, shift))
+        throw UsageError(fmt::format("--shift '{}' is no shift; write two numbers as 0.1,-0.2", text));
     return {shift[0], shift[1]};
 }
 
@@ -116,9 +117,7 @@ std::vector<Option*> add_camera_options(Command& command, CameraArguments& argum
                         "moves what the camera shows to the right and up, in heights of the picture")
             ->type_name("X,Y")
             ->capture_default_str(),
-        command.add_option("--size", arguments.size, "pixels of the drawing")
-            ->type_name("WxH")
-            ->capture_default_str()};
+        command.add_option("--size", arguments.size, "pixels of the drawing")->type_name("WxH")->capture_default_str()};
 }
 
 void require_camera(const CameraArguments& arguments) {

@@ -25,25 +25,6 @@ constexpr double k_min_ink_pixels = 4;          ///< pixels
 
 using Terms = Eigen::Matrix<double, 6, 1>;
 
-FloatImage gray_over_white(const Image& drawing) {
-    FloatImage gray(drawing.width, drawing.height, 1);
-    const std::size_t channels = static_cast<std::size_t>(drawing.channels);
-    parallel_for(
-        gray.data.size(),
-        [&](std::size_t i) {
-            const std::uint8_t* p = drawing.data.data() + i * channels;
-            const auto luma = [&] { return (0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2]) / 255; };
-            if (channels == 1)
-                gray.data[i] = static_cast<float>(p[0]) / 255;
-            else if (channels == 3)
-                gray.data[i] = luma();
-            else
-                gray.data[i] = 1 + (luma() - 1) * static_cast<float>(p[3]) / 255;
-        },
-        4096);
-    return gray;
-}
-
 Terms terms_at(std::size_t i, const FloatImage& gray) {
     const std::size_t width = static_cast<std::size_t>(gray.width);
     const std::size_t row = i / width, column = i % width;
@@ -134,6 +115,25 @@ void check_ink(const FloatImage& darkness, float noise) {
 }
 
 }  // namespace
+
+FloatImage gray_over_white(const Image& picture) {
+    FloatImage gray(picture.width, picture.height, 1);
+    const std::size_t channels = static_cast<std::size_t>(picture.channels);
+    parallel_for(
+        gray.data.size(),
+        [&](std::size_t i) {
+            const std::uint8_t* p = picture.data.data() + i * channels;
+            const auto luma = [&] { return (0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2]) / 255; };
+            if (channels == 1)
+                gray.data[i] = static_cast<float>(p[0]) / 255;
+            else if (channels == 3)
+                gray.data[i] = luma();
+            else
+                gray.data[i] = 1 + (luma() - 1) * static_cast<float>(p[3]) / 255;
+        },
+        4096);
+    return gray;
+}
 
 FloatImage drawing_darkness(const Image& drawing) {
     if (drawing.channels != 1 && drawing.channels != 3 && drawing.channels != 4)

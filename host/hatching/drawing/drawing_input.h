@@ -4,6 +4,9 @@
 
 namespace exemplar {
 
+/// Returns the gray of each pixel over white, from 0 (black) to 1, of a picture that is gray, RGB or RGBA.
+FloatImage gray_over_white(const Image& picture);
+
 /// Returns the darkness of each pixel of a drawing, from 0 (paper) to 1 (black): one channel of the same size. The
 /// drawing is gray, RGB or RGBA (over white): dark strokes on light paper, drawn in software or scanned. Darkness is
 /// 1 - gray / paper, in encoded (sRGB) gray, as the eye and drawing programs see it. The paper's gray is a quadratic

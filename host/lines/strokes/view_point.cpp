@@ -105,8 +105,7 @@ std::optional<Vec3> view_direction(std::string_view name) {
 
 Camera camera_at(const ViewPoint& point, const TriangleMesh& extent) {
     const float aspect = static_cast<float>(point.width) / static_cast<float>(point.height);
-    Camera camera =
-        point.eye ? placed_camera(point, extent.vertices, aspect) : fitted_camera(point, extent, aspect);
+    Camera camera = point.eye ? placed_camera(point, extent.vertices, aspect) : fitted_camera(point, extent, aspect);
     Eigen::Matrix4f moved = Eigen::Matrix4f::Identity();
     moved(0, 3) = 2 * point.shift.x() / aspect;
     moved(1, 3) = -2 * point.shift.y();

@@ -18,7 +18,7 @@ struct ViewPoint {
     std::string view = "three-quarter";  ///< one of view_names(), fitted to the picture; ignored with an eye
     std::optional<Vec3> eye, target;     ///< mesh units; the default target is the center of the bounding box
     Vec3 up = Vec3::UnitY();
-    double field_of_view = 23;       ///< degrees, vertical; 0: parallel
+    double field_of_view = 23;  ///< degrees, vertical; 0: parallel
     Vec2 shift = Vec2::Zero();  ///< where the axis meets the picture: from its middle to the right and up, in heights
     int width = 1000, height = 800;  ///< pixels
 };

@@ -19,6 +19,7 @@
 #include "host/hatching/style/hatching_style.h"
 #include "host/hatching/style/style_learning.h"
 #include "host/hatching/view_hatching.h"
+#include "host/imaging/picture_file.h"
 #include "host/imaging/png.h"
 #include "host/mesh/editing/drawable_mesh.h"
 #include "host/mesh/editing/loose_vertices.h"
@@ -135,7 +136,7 @@ StylePointer train_hatching(Scene& scene, const py::object& drawing, std::uint64
     const fs::path path = is_file ? drawing.cast<fs::path>() : fs::path();
     const Image given = is_file ? Image() : image_of(drawing, "drawing");
     return std::make_shared<HatchingStyle>(scene.use([&](PixelFeatures& pixels) {
-        const AlignedDrawing aligned = align_and_measure(is_file ? read_png(path) : given, pixels);
+        const AlignedDrawing aligned = align_and_measure(is_file ? read_picture(path) : given, pixels);
         StyleReport report;
         HatchingStyle style = learn_hatching_style(pixels, drawing_properties(aligned.strokes), scene.tools().scorer,
                                                    {.seed = seed}, report);

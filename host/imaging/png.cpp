@@ -4,7 +4,7 @@
 #include <png.h>
 #include <zlib.h>
 
-#include <array>
+#include <cmath>
 #include <ostream>
 #include <string>
 
@@ -70,9 +70,16 @@ std::size_t checksum(std::string_view bytes) {
     return crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size()));
 }
 
-std::string text_chunk(const PngText& text) {
-    const std::string data = "tEXt" + text.keyword + '\0' + text.text;
-    return big_endian(data.size() - 4) + data + big_endian(checksum(data));
+/// Returns a chunk of a type and its data.
+std::string png_chunk(const std::string& type_and_data) {
+    return big_endian(type_and_data.size() - 4) + type_and_data + big_endian(checksum(type_and_data));
+}
+
+std::string chunks_of(const PngText& text) {
+    std::string chunks = png_chunk("tEXt" + text.keyword + '\0' + text.text);
+    if (text.pixels_per_mm <= 0) return chunks;
+    const std::string per_meter = big_endian(static_cast<std::size_t>(std::lround(1000 * text.pixels_per_mm)));
+    return chunks + png_chunk("pHYs" + per_meter + per_meter + '\1');
 }
 
 std::string checked_and_encoded(const std::filesystem::path& path, const Image& image) {
@@ -92,7 +99,7 @@ void write_png(const std::filesystem::path& path, const Image& image) {
 
 void write_png(const std::filesystem::path& path, const Image& image, const PngText& text) {
     std::string bytes = checked_and_encoded(path, image);
-    bytes.insert(k_header_end, text_chunk(text));
+    bytes.insert(k_header_end, chunks_of(text));
     write_file_atomically(path, [&](std::ostream& out) { out << bytes; });
 }
 

@@ -13,12 +13,13 @@ namespace exemplar {
 /// same bytes. Throws UsageError for another number of channels or an empty image, DataError if it cannot be written.
 void write_png(const std::filesystem::path& path, const Image& image);
 
-/// Text in a PNG (a tEXt chunk), which programs that know nothing of it leave out.
+/// What a PNG says beside its pixels; programs that know nothing of it pass over the text.
 struct PngText {
-    std::string keyword;  ///< 1 to 79 characters of ASCII
-    std::string text;     ///< ASCII
+    std::string keyword;       ///< 1 to 79 characters of ASCII
+    std::string text;          ///< ASCII
+    double pixels_per_mm = 0;  ///< at which it is printed; 0: not said
 };
-/// Writes an image like write_png, with a text in it.
+/// Writes an image like write_png, with a text in it (a tEXt chunk).
 void write_png(const std::filesystem::path& path, const Image& image, const PngText& text);
 /// Returns the text with a keyword from the content of a PNG; none if it has no such text or its bytes are damaged.
 std::optional<std::string> png_text(std::string_view content, std::string_view keyword);

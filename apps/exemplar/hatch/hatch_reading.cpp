@@ -6,7 +6,8 @@
 #include <string>
 
 #include "host/core/errors.h"
-#include "host/imaging/png.h"
+#include "host/hatching/drawing/drawing_sheet.h"
+#include "host/imaging/picture_file.h"
 
 namespace exemplar {
 
@@ -29,7 +30,12 @@ AlignedDrawing of_drawing(const std::filesystem::path& path, Read&& read) {
 AlignedDrawing read_drawing(const std::filesystem::path& path, const HatchSceneArguments& scene,
                             const PixelFeatures& pixels, bool quiet) {
     if (scene.registered) return read_drawing_in_place(path, pixels);
-    AlignedDrawing drawing = of_drawing(path, [&] { return align_and_measure(read_png(path), pixels); });
+    if (!scene.sheet.empty())
+        return of_drawing(path, [&] {
+            const DrawingSheet sheet = drawing_sheet(scene.sheet, pixels.view().width, pixels.view().height);
+            return measure_in_place(read_sheet(read_picture(path), sheet), pixels);
+        });
+    AlignedDrawing drawing = of_drawing(path, [&] { return align_and_measure(read_picture(path), pixels); });
     const DrawingAlignment& alignment = drawing.alignment;
     if (!quiet && !alignment.same_frame)
         fmt::print("{}: scaled by {:.3f}, turned by {:.1f} degrees; borders fit to {:.1f} pixels\n", path.string(),
@@ -39,11 +45,11 @@ AlignedDrawing read_drawing(const std::filesystem::path& path, const HatchSceneA
 }
 
 AlignedDrawing read_drawing_in_place(const std::filesystem::path& path, const PixelFeatures& pixels) {
-    return of_drawing(path, [&] { return measure_in_place(read_png(path), pixels); });
+    return of_drawing(path, [&] { return measure_in_place(read_picture(path), pixels); });
 }
 
 PixelMask read_mask(const std::filesystem::path& path, const PixelFeatures& pixels) {
-    const Image picture = read_png(path);
+    const Image picture = read_picture(path);
     const HatchingView& view = pixels.view();
     if (picture.width != view.width || picture.height != view.height)
         throw DataError(fmt::format("{}: {} x {} pixels; a mask has the view's size, {} x {}", path.string(),

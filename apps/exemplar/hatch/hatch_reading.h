@@ -8,9 +8,9 @@
 
 namespace exemplar {
 
-/// Reads a drawing of the view of `scene`, aligns it unless the view was found in it (prints the alignment unless
-/// `quiet`), and measures its strokes. Throws DataError naming the file if it cannot be read, is blank, or does not fit
-/// the view.
+/// Reads a drawing of the view of `scene` and measures its strokes. Aligns it (prints the alignment unless `quiet`),
+/// unless the view was found in it or the marks of its sheet tell where it lies. Throws DataError naming the file if it
+/// cannot be read, is blank, or does not fit the view.
 AlignedDrawing read_drawing(const std::filesystem::path& path, const HatchSceneArguments& scene,
                             const PixelFeatures& pixels, bool quiet);
 

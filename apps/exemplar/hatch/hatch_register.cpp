@@ -17,6 +17,7 @@
 #include "host/hatching/registration/view_registration.h"
 #include "host/hatching/tracing/view_outlines.h"
 #include "host/imaging/gbuffer.h"
+#include "host/imaging/picture_file.h"
 #include "host/imaging/png.h"
 #include "host/mesh/editing/drawable_mesh.h"
 #include "host/mesh/editing/loose_vertices.h"
@@ -85,7 +86,7 @@ FloatImage resized(const FloatImage& image, int width, int height) {
 
 /// The drawing at the size of its view.
 FloatImage drawing_at_view_size(const fs::path& path) {
-    const FloatImage darkness = drawing_darkness(read_png(path));
+    const FloatImage darkness = drawing_darkness(read_picture(path));
     const double scale = std::min(1.0, static_cast<double>(k_most_pixels) / std::max(darkness.width, darkness.height));
     return resized(darkness, std::max(1, static_cast<int>(std::lround(scale * darkness.width))),
                    std::max(1, static_cast<int>(std::lround(scale * darkness.height))));
@@ -108,7 +109,7 @@ std::string found_light(const RegisterArguments& arguments, const TriangleMesh& 
     FloatImage brightness = darkness;
     for (float& value : brightness.data) value = 1 - value;
     const bool shaded = !arguments.shaded.empty();
-    if (shaded) brightness = resized(gray_over_white(read_png(arguments.shaded)), frame.width, frame.height);
+    if (shaded) brightness = resized(gray_over_white(read_picture(arguments.shaded)), frame.width, frame.height);
     const float smoothing = shaded ? 0.7f : 0.012f * static_cast<float>(frame.width);
     const LightFit fit = fit_light(brightness, mesh, pose, frame, smoothing);
     const bool told = fit.correlation >= k_min_likeness;
@@ -171,7 +172,7 @@ void run_register(RegisterArguments& arguments) {
     const CameraArguments camera = camera_options(fits[0].pose, frame);
     if (!arguments.common.quiet) print_fit(arguments, camera, fits);
     const std::string light = found_light(arguments, mesh, darkness, fits[0].pose, frame);
-    const ViewFile view{{camera, light}, drawn_mesh(arguments.mesh, mesh), arguments.drawing.filename().string()};
+    const ViewFile view{{camera, light}, drawn_mesh(arguments.mesh, mesh), {}, arguments.drawing.filename().string()};
     write_file_atomically(arguments.out, [&](std::ostream& out) { out << view_file_text(view) << '\n'; });
     write_report(arguments.common, {{"eye", camera.eye},
                                     {"target", camera.target},

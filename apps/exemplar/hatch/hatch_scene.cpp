@@ -46,6 +46,7 @@ void require_hatch_scene(HatchSceneArguments& arguments) {
         arguments.camera = file.view.camera;
         arguments.light = file.view.light;
         arguments.drawn = std::move(file.mesh);
+        arguments.sheet = file.sheet;
         arguments.registered = !file.drawing.empty();
     }
     require_camera(arguments.camera);

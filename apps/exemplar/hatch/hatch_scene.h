@@ -21,6 +21,7 @@ namespace exemplar {
 struct HatchSceneArguments {
     std::filesystem::path view_file;  ///< tells camera and light, if it is not empty
     std::optional<DrawnMesh> drawn;   ///< the mesh that it tells of
+    std::string sheet;                ///< paper that the view was printed on; empty: none
     bool registered = false;          ///< whether drawings show exactly this view
     std::filesystem::path mesh;
     CameraArguments camera;

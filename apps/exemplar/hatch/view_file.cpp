@@ -54,6 +54,7 @@ ViewFile view_file_from(const nlohmann::json& json) {
     return {view_from(json),
             {mesh.at("file").get<std::string>(), mesh.at("geometry").get<std::string>(),
              mesh.at("faces").get<std::size_t>()},
+            json.value("sheet", std::string()),
             json.value("drawing", std::string())};
 }
 
@@ -71,6 +72,7 @@ std::string view_file_text(const ViewFile& file) {
     nlohmann::ordered_json json;
     json["exemplar_view"] = k_view_format;
     json["mesh"] = {{"file", file.mesh.file}, {"faces", file.mesh.faces}, {"geometry", file.mesh.geometry}};
+    if (!file.sheet.empty()) json["sheet"] = file.sheet;
     if (!file.drawing.empty()) json["drawing"] = file.drawing;
     if (camera.eye.empty()) {
         json["view"] = camera.view;

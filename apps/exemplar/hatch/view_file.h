@@ -26,6 +26,7 @@ DrawnMesh drawn_mesh(const std::filesystem::path& path, const TriangleMesh& mesh
 struct ViewFile {
     DrawnView view;
     DrawnMesh mesh;
+    std::string sheet;    ///< of a sheet to print: the name of its paper (see drawing_sheet); else empty
     std::string drawing;  ///< of a registered view: name of the drawing that shows exactly this view; else empty
 };
 /// The keyword of the JSON in a PNG.

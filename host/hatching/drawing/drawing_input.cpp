@@ -5,7 +5,9 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "host/core/errors.h"
@@ -13,6 +15,25 @@
 #include "host/core/statistics.h"
 
 namespace exemplar {
+FloatImage gray_over_white(const Image& picture) {
+    FloatImage gray(picture.width, picture.height, 1);
+    const std::size_t channels = static_cast<std::size_t>(picture.channels);
+    parallel_for(
+        gray.data.size(),
+        [&](std::size_t i) {
+            const std::uint8_t* p = picture.data.data() + i * channels;
+            const auto luma = [&] { return (0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2]) / 255; };
+            if (channels == 1)
+                gray.data[i] = static_cast<float>(p[0]) / 255;
+            else if (channels == 3)
+                gray.data[i] = luma();
+            else
+                gray.data[i] = 1 + (luma() - 1) * static_cast<float>(p[3]) / 255;
+        },
+        4096);
+    return gray;
+}
+
 namespace {
 
 constexpr std::size_t k_paper_samples = 60000;  ///< pixels that the paper is fitted to
@@ -98,6 +119,51 @@ Paper estimate_paper(const FloatImage& gray) {
     return paper;
 }
 
+/// Returns the paper's red, green and blue, from 0 to 1: what most of the light pixels have.
+std::array<float, 3> paper_color(const Image& drawing) {
+    const auto channels = static_cast<std::size_t>(drawing.channels);
+    const std::size_t pixels = drawing.data.size() / channels, stride = pixels / k_paper_samples | 1u;
+    std::array<float, 3> color{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        std::vector<float> values;
+        for (std::size_t i = 0; i < pixels; i += stride)
+            values.push_back(static_cast<float>(drawing.data[i * channels + c]) / 255);
+        color[c] = std::max(k_darkest_paper, quantile(values, 0.8));
+    }
+    return color;
+}
+
+/// Returns whether the darkest pixels of a drawing have a color.
+bool has_colored_ink(const Image& drawing, const FloatImage& gray) {
+    constexpr float k_dark = 0.5f;
+    constexpr int k_colored = 48;  // of 255, between the lightest and the darkest channel
+    const auto channels = static_cast<std::size_t>(drawing.channels);
+    std::size_t dark = 0, colored = 0;
+    for (std::size_t i = 0; i < gray.data.size(); ++i) {
+        if (gray.data[i] > k_dark) continue;
+        const auto [least, most] = std::ranges::minmax(std::span(drawing.data).subspan(i * channels, 3));
+        ++dark;
+        colored += most - least > k_colored;
+    }
+    return 2 * colored > dark;
+}
+
+/// Returns the gray of each pixel. Where the ink has no color, that is the channel that is lightest beside the paper's,
+/// so that colored construction lines and a view that was printed in pale blue vanish, in the light of a lamp, too.
+FloatImage ink_gray(const Image& drawing) {
+    FloatImage gray = gray_over_white(drawing);
+    if (drawing.channels != 3 || has_colored_ink(drawing, gray)) return gray;
+    const std::array<float, 3> paper = paper_color(drawing);
+    const float white = std::ranges::max(paper);
+    for (std::size_t i = 0; i < gray.data.size(); ++i) {
+        float lightest = 0;
+        for (std::size_t c = 0; c < 3; ++c)
+            lightest = std::max(lightest, static_cast<float>(drawing.data[3 * i + c]) / 255 / paper[c]);
+        gray.data[i] = white * lightest;
+    }
+    return gray;
+}
+
 void check_ink(const FloatImage& darkness, float noise) {
     const float least = std::max(k_min_ink_darkness, 6 * noise);
     const auto inked = static_cast<double>(
@@ -116,30 +182,11 @@ void check_ink(const FloatImage& darkness, float noise) {
 
 }  // namespace
 
-FloatImage gray_over_white(const Image& picture) {
-    FloatImage gray(picture.width, picture.height, 1);
-    const std::size_t channels = static_cast<std::size_t>(picture.channels);
-    parallel_for(
-        gray.data.size(),
-        [&](std::size_t i) {
-            const std::uint8_t* p = picture.data.data() + i * channels;
-            const auto luma = [&] { return (0.2126f * p[0] + 0.7152f * p[1] + 0.0722f * p[2]) / 255; };
-            if (channels == 1)
-                gray.data[i] = static_cast<float>(p[0]) / 255;
-            else if (channels == 3)
-                gray.data[i] = luma();
-            else
-                gray.data[i] = 1 + (luma() - 1) * static_cast<float>(p[3]) / 255;
-        },
-        4096);
-    return gray;
-}
-
 FloatImage drawing_darkness(const Image& drawing) {
     if (drawing.channels != 1 && drawing.channels != 3 && drawing.channels != 4)
         throw UsageError(fmt::format("a drawing of {} channels; give gray, RGB or RGBA", drawing.channels));
     if (drawing.width <= 0 || drawing.height <= 0) throw UsageError("the drawing has no pixels");
-    FloatImage darkness = gray_over_white(drawing);
+    FloatImage darkness = ink_gray(drawing);
     const Paper paper = estimate_paper(darkness);
     if (paper.level[0] < k_darkest_paper)
         throw DataError(

@@ -1,6 +1,7 @@
 #include "tests/fuzz/support/readers.h"
 
 #include <fmt/format.h>
+#include <turbojpeg.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <tuple>
 
@@ -23,6 +25,8 @@
 #include "host/data/corpus.h"
 #include "host/data/safetensors.h"
 #include "host/hatching/style/hatching_style.h"
+#include "host/imaging/picture_file.h"
+#include "host/imaging/png.h"
 #include "host/labeling/category/category_model.h"
 #include "host/labeling/inference/model.h"
 #include "host/lines/strokes/style.h"
@@ -314,6 +318,18 @@ bool made_for_today(const fs::path& path, std::string_view content, const std::m
     }
 }
 
+/// Returns how many pixels the header of a JPEG tells; 0 if it is none.
+std::size_t jpeg_pixels(std::string_view content) {
+    const std::unique_ptr<void, int (*)(tjhandle)> handle(tjInitDecompress(), tjDestroy);
+    int width = 0, height = 0, subsampling = 0, colors = 0;
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): TurboJPEG reads bytes
+    const auto* bytes = reinterpret_cast<const unsigned char*>(content.data());
+    if (tjDecompressHeader3(handle.get(), bytes, static_cast<unsigned long>(content.size()), &width, &height,
+                            &subsampling, &colors) != 0)
+        return 0;
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+}
+
 bool reads_model(std::string_view content) {
     const fs::path path = scratch_file("x.model", content), again = scratch() / "again.model";
     LabelingModel model;
@@ -496,7 +512,24 @@ bool reads_import(std::string_view content) {
     return true;
 }
 
-constexpr std::array<Reader, 21> k_readers{{{"off", reads_off},
+/// A picture may have 2^28 pixels of three channels, which a JPEG of one color tells in few bytes; so the bytes that
+/// its header tells are allowed, twice, as a turned picture is a copy.
+bool reads_picture(std::string_view content) {
+    png_text(content, "Exemplar view");
+    Image picture;
+    constexpr std::size_t k_usual_pixels = std::size_t{1} << 20;
+    if (jpeg_pixels(content) > k_usual_pixels) return false;  // takes long, and nothing else
+    const MemoryBound bound{8 * 3 * k_usual_pixels, 64};
+    if (!accepts<DataError>("x.jpg", content.size(), bound, [&] { picture = decode_jpeg(content, "x.jpg"); }))
+        return false;
+    require(picture.width > 0 && picture.height > 0 && (picture.channels == 1 || picture.channels == 3), "a picture");
+    require(picture.data.size() == static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height) *
+                                       static_cast<std::size_t>(picture.channels),
+            "a value for each channel of each pixel");
+    return true;
+}
+
+constexpr std::array<Reader, 22> k_readers{{{"off", reads_off},
                                             {"obj", reads_obj},
                                             {"ply", reads_ply},
                                             {"stl", reads_stl},
@@ -515,6 +548,7 @@ constexpr std::array<Reader, 21> k_readers{{{"off", reads_off},
                                             {"shard", reads_shard},
                                             {"record", reads_record},
                                             {"style", reads_style},
+                                            {"picture", reads_picture},
                                             {"import_output", reads_import_output},
                                             {"import", reads_import, true}}};
 

@@ -9,6 +9,7 @@
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/common_options.h"
 #include "apps/exemplar/hatch/view_file.h"
+#include "apps/exemplar/lines/lines_source.h"
 #include "host/core/files.h"
 #include "host/core/progress.h"
 #include "host/hatching/drawing/drawing_input.h"
@@ -36,7 +37,12 @@ struct RegisterArguments {
     CameraArguments camera;
     std::string light;
     bool place = false;
+    FrameArguments frames;
     CommonOptions common;
+
+    bool has_frames() const {
+        return fs::is_directory(mesh) || !frames.range.empty() || !frames.clips.empty() || frames.most > 0;
+    }
 };
 
 std::string numbers_text(const Vec3d& point) {
@@ -146,33 +152,68 @@ void print_fit(const RegisterArguments& arguments, const CameraArguments& camera
         fmt::print("  Another view fits nearly as well; if the overlay is wrong inside, begin at yours with --place\n");
 }
 
-void run_register(RegisterArguments& arguments) {
-    const auto limits = apply_common_options(arguments.common);
-    for (const fs::path& path : {arguments.mesh, arguments.drawing, arguments.shaded})
-        if (!path.empty()) require_input(path);
-    require_camera(arguments.camera);
-    if (!arguments.light.empty()) point_of(arguments.light, "--light");
-    require_output_file(arguments.out);
-    if (arguments.overlay.empty())
-        arguments.overlay = arguments.out.parent_path() / (arguments.out.stem().string() + "_overlay.png");
-    require_output_picture(arguments.overlay);
-    require_not_replaced(arguments.out, {arguments.mesh, arguments.drawing, arguments.shaded});
-    require_not_replaced(arguments.overlay, {arguments.mesh, arguments.drawing, arguments.shaded});
-    const TriangleMesh mesh = mesh_to_register(arguments.mesh, arguments.common.quiet);
-    const FloatImage darkness = drawing_at_view_size(arguments.drawing);
-    const PoseFrame frame = pose_frame(mesh, darkness.width, darkness.height);
+/// A mesh whose view was found.
+struct FoundView {
+    TriangleMesh mesh;
+    fs::path path;  ///< of its file
+    std::vector<OutlineFit> fits;
+};
+
+PoseFrame frame_of_drawing(const TriangleMesh& mesh, const FloatImage& darkness) {
+    return pose_frame(mesh, darkness.width, darkness.height);
+}
+
+/// Draws the overlay of a fit, and refuses it if it is none.
+void check_fit(const RegisterArguments& arguments, const TriangleMesh& mesh, const OutlineFit& fit,
+               const FloatImage& darkness) {
+    write_png(arguments.overlay, overlay_picture(darkness, mesh, fit.pose, frame_of_drawing(mesh, darkness)));
+    refuse_misfit(arguments, fit);
+}
+
+FoundView registered_mesh(const RegisterArguments& arguments, const FloatImage& darkness) {
+    FoundView found{mesh_to_register(arguments.mesh, arguments.common.quiet), arguments.mesh, {}};
     Progress progress("searching the view", k_registration_steps);
     RegistrationOptions options;
     options.step = [&] { progress.advance(); };
-    if (arguments.place) options.start = given_pose(arguments.camera, mesh, frame);
-    const std::vector<OutlineFit> fits = register_view(mesh, darkness, options);
+    if (arguments.place)
+        options.start = given_pose(arguments.camera, found.mesh, frame_of_drawing(found.mesh, darkness));
+    found.fits = register_view(found.mesh, darkness, options);
     progress.finish();
-    write_png(arguments.overlay, overlay_picture(darkness, mesh, fits[0].pose, frame));
-    refuse_misfit(arguments, fits[0]);
-    const CameraArguments camera = camera_options(fits[0].pose, frame);
-    if (!arguments.common.quiet) print_fit(arguments, camera, fits);
-    const std::string light = found_light(arguments, mesh, darkness, fits[0].pose, frame);
-    const ViewFile view{{camera, light}, drawn_mesh(arguments.mesh, mesh), {}, arguments.drawing.filename().string()};
+    check_fit(arguments, found.mesh, found.fits[0], darkness);
+    return found;
+}
+
+/// Finds the frame of an animation that is drawn, and writes its mesh beside the view.
+FoundView registered_frame(const RegisterArguments& arguments, const FloatImage& darkness) {
+    LinesSourceArguments input;
+    input.input = arguments.mesh;
+    input.frames = arguments.frames;
+    input.quiet = arguments.common.quiet;
+    const LinesSource source(input);
+    const auto mesh_of = [&](std::size_t frame) { return without_loose_vertices(source.mesh(frame)); };
+    Progress progress("searching frames and views", k_frame_registration_steps);
+    RegisteredFrame registered = register_frame(source.frame_count(), mesh_of, darkness, [&] { progress.advance(); });
+    progress.finish();
+    const TriangleMesh mesh = mesh_of(registered.frame);
+    check_fit(arguments, mesh, registered.fit, darkness);
+    const fs::path path = arguments.out.parent_path() / (arguments.out.stem().string() + "_frame.ply");
+    write_ply(path, mesh);
+    if (!arguments.common.quiet)
+        fmt::print("{}: frame {} of {}, the mesh to learn from\n", path.string(), registered.frame,
+                   source.frame_count());
+    FoundView found{mesh_to_register(path, true), path, {registered.fit}};
+    // What is read again may lack faces without area, and then has another middle.
+    found.fits[0].pose = pose_of(placed_eye(registered.fit.pose, frame_of_drawing(mesh, darkness)),
+                                 frame_of_drawing(found.mesh, darkness));
+    return found;
+}
+
+void report_view(const RegisterArguments& arguments, const FoundView& found, const FloatImage& darkness) {
+    const PoseFrame frame = frame_of_drawing(found.mesh, darkness);
+    const CameraArguments camera = camera_options(found.fits[0].pose, frame);
+    if (!arguments.common.quiet) print_fit(arguments, camera, found.fits);
+    const std::string light = found_light(arguments, found.mesh, darkness, found.fits[0].pose, frame);
+    const ViewFile view{{camera, light}, drawn_mesh(found.path, found.mesh), {}, arguments.drawing.filename().string()};
     write_file_atomically(arguments.out, [&](std::ostream& out) { out << view_file_text(view) << '\n'; });
     write_report(arguments.common, {{"eye", camera.eye},
                                     {"target", camera.target},
@@ -180,9 +221,29 @@ void run_register(RegisterArguments& arguments) {
                                     {"fov", camera.field_of_view},
                                     {"size", camera.size},
                                     {"light", light},
-                                    {"residual", fits[0].residual},
-                                    {"explained", fits[0].explained},
-                                    {"cost", fits[0].cost}});
+                                    {"residual", found.fits[0].residual},
+                                    {"explained", found.fits[0].explained},
+                                    {"cost", found.fits[0].cost}});
+}
+
+void run_register(RegisterArguments& arguments) {
+    const auto limits = apply_common_options(arguments.common);
+    for (const fs::path& path : {arguments.mesh, arguments.drawing, arguments.shaded})
+        if (!path.empty()) require_input(path);
+    require_camera(arguments.camera);
+    if (arguments.place && arguments.has_frames())
+        throw UsageError("--place begins at a view of one mesh; give that of the frame that is drawn");
+    if (!arguments.light.empty()) point_of(arguments.light, "--light");
+    require_output_file(arguments.out);
+    if (arguments.overlay.empty())
+        arguments.overlay = arguments.out.parent_path() / (arguments.out.stem().string() + "_overlay.png");
+    require_output_picture(arguments.overlay);
+    require_not_replaced(arguments.out, {arguments.mesh, arguments.drawing, arguments.shaded});
+    require_not_replaced(arguments.overlay, {arguments.mesh, arguments.drawing, arguments.shaded});
+    const FloatImage darkness = drawing_at_view_size(arguments.drawing);
+    const bool frames = arguments.has_frames();
+    report_view(arguments, frames ? registered_frame(arguments, darkness) : registered_mesh(arguments, darkness),
+                darkness);
 }
 
 }  // namespace
@@ -193,7 +254,10 @@ void add_hatch_register_command(Command& hatch) {
     command->footer(
         "For drawings that were not made over a template. All sides, distances and places are searched. Writes the "
         "view,\n"
-        "which other commands take as --template, and the mesh's outlines over the drawing, to check.\n\nExample:\n"
+        "which other commands take as --template, and the mesh's outlines over the drawing, to check. Of an animation "
+        "(a\n"
+        "folder, or a file with --frames), the frame that is drawn is searched, too, and its mesh is "
+        "written.\n\nExample:\n"
         "  exemplar hatch register bunny.off drawing.png --out view.json\n"
         "  exemplar hatch train bunny.off drawing.png --template view.json --out mine.safetensors");
     command->add_option("MESH", arguments->mesh, "mesh that the drawing shows")->required()->type_name("");
@@ -211,6 +275,7 @@ void add_hatch_register_command(Command& hatch) {
                      "direction to the light as the eye has it, where it is known: to the right, up, towards the eye")
         ->type_name("X,Y,Z")
         ->excludes(shaded);
+    add_frame_options(*command, arguments->frames, "", "search");
     command->add_flag("--place", arguments->place,
                       "begins at the view that the options of the camera give, instead of searching");
     add_camera_options(*command, arguments->camera);

@@ -21,4 +21,18 @@ constexpr std::size_t k_registration_steps = 110;
 std::vector<OutlineFit> register_view(const TriangleMesh& mesh, const FloatImage& darkness,
                                       const RegistrationOptions& options = {});
 
+/// Returns the mesh of a frame of an animation.
+using FrameMesh = std::function<TriangleMesh(std::size_t frame)>;
+/// The frame of an animation that a drawing shows, and its view.
+struct RegisteredFrame {
+    std::size_t frame = 0;
+    OutlineFit fit;
+};
+constexpr std::size_t k_frame_registration_steps = 19;
+/// Finds the frame of an animation of `count` frames that a drawing shows, and its view: searches sixteen frames, and
+/// then those around the three best. `step` is called k_frame_registration_steps times. Throws DataError if nothing is
+/// drawn, UsageError if there are no frames.
+RegisteredFrame register_frame(std::size_t count, const FrameMesh& mesh_of, const FloatImage& darkness,
+                               const std::function<void()>& step);
+
 }  // namespace exemplar

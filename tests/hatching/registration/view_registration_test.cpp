@@ -138,6 +138,22 @@ TEST_F(KnownView, TheLightIsFoundByAShadedPicture) {
     EXPECT_GT(fit.correlation, 0.98);
 }
 
+TEST_F(KnownView, TheFrameOfAnAnimationIsFound) {
+    const auto mesh_of = [&](std::size_t frame) {  // the arm sinks
+        const float y = 0.4f - 0.5f * static_cast<float>(frame);
+        TriangleMesh body =
+            shapes::joined(shapes::icosphere(2, 1), shapes::translated(shapes::icosphere(2, 0.6f), {0.3f, 1.3f, 0}));
+        return shapes::joined(std::move(body), shapes::translated(shapes::box(2, 0.3f, 0.3f, 2), {1.5f, y, 0.5f}));
+    };
+    const TriangleMesh drawn = mesh_of(1);
+    const PoseFrame frame = pose_frame(drawn, k_paper_width, k_paper_height);
+    const ViewPose pose = known_pose(frame);
+    const RegisteredFrame found = register_frame(2, mesh_of, outline_drawing(drawn, pose, frame), [] {});
+    EXPECT_EQ(found.frame, 1U);
+    EXPECT_LT(largest_move(drawn, frame, found.fit.pose, pose), 5);
+    EXPECT_THROW(register_frame(0, mesh_of, FloatImage(60, 50, 1), [] {}), UsageError);
+}
+
 TEST_F(KnownView, AnEmptyDrawingHasNoView) {
     EXPECT_THROW(register_view(mesh_, FloatImage(60, 50, 1)), DataError);
 }

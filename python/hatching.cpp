@@ -146,8 +146,8 @@ StylePointer train_hatching(Scene& scene, const py::object& drawing, std::uint64
 }
 
 HatchedPointer draw_hatching(Scene& scene, const HatchingStyle& style, const std::vector<std::string>& curves,
-                             double taper, bool tone, std::uint64_t seed) {
-    require_range("taper", taper, 0, 1000);
+                             std::optional<double> taper, bool tone, std::uint64_t seed) {
+    if (taper) require_range("taper", *taper, 0, 1000);
     const std::vector<LineType> types = line_types_of(curves);
     HatchingOptions options;
     options.strokes.seed = seed;
@@ -156,7 +156,7 @@ HatchedPointer draw_hatching(Scene& scene, const HatchingStyle& style, const std
         const ViewHatching hatching = hatch_view(style, pixels, scene.tools(), options);
         Hatched result{
             {scene.view().width, scene.view().height, hatching.strokes, {}}, load_style("ink"), scene.title()};
-        taper_strokes(result.drawing.strokes, static_cast<float>(taper));
+        taper_strokes(result.drawing.strokes, static_cast<float>(taper.value_or(style.taper)));
         result.drawing.curves = feature_curves(scene.surface(), scene.view(), types, result.look);
         return result;
     }));
@@ -297,11 +297,12 @@ void add_scene(py::module_& module) {
              "if the\n"
              "drawing is blank or does not fit the view.")
         .def("draw", &draw_hatching, py::arg("style"), py::kw_only(),
-             py::arg("curves") = std::vector<std::string>{"contours"}, py::arg("taper") = 6.0, py::arg("tone") = true,
-             py::arg("seed") = 1,
+             py::arg("curves") = std::vector<std::string>{"contours"}, py::arg("taper") = py::none(),
+             py::arg("tone") = true, py::arg("seed") = 1,
              "Hatches the view in a style. `curves`: types of lines drawn with it, see line_types(). `taper`: pixels "
              "over\n"
-             "which strokes end in a point (0 to 1000). `tone`: whether the thickness is matched to the tone. `seed` "
+             "which strokes end in a point (0 to 1000); None: as in the style's drawing. `tone`: whether the thickness "
+             "is matched to the tone. `seed` "
              "of the\n"
              "placement of strokes.")
         .def("__repr__", [](const Scene& self) {

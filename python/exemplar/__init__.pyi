@@ -335,7 +335,7 @@ class HatchingScene:
         style: HatchingStyle,
         *,
         curves: Sequence[str] = ...,
-        taper: float = ...,
+        taper: float | None = ...,
         tone: bool = ...,
         seed: int = ...,
     ) -> HatchedDrawing: ...

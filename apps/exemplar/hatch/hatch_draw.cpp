@@ -59,7 +59,7 @@ void draw_still(const HatchDrawJob& job) {
     const SpacingMeasure spacing = measure_spacing(hatching.strokes, fields);
     const ToneMeasure tone = measure_tone(hatching.strokes, fields);
     HatchedDrawing drawing{fields.width, fields.height, hatching.strokes, {}};
-    taper_strokes(drawing.strokes, job.taper);
+    taper_strokes(drawing.strokes, job.taper_of(style));
     const DrawingStyle look = load_style("ink");
     drawing.curves = feature_curves(scene.surface(), scene.pixels().view(), job.curve_types(), look);
     write_hatched_drawing(job, drawing, look);
@@ -175,8 +175,10 @@ void add_hatch_draw_command(Command& hatch) {
         ->capture_default_str();
     command->add_option("--properties", arguments->properties, "writes a picture of each property into this folder")
         ->type_name("FOLDER");
-    command->add_option("--taper", arguments->taper, "pixels over which strokes end in a point; 0: blunt")
-        ->capture_default_str()
+    command
+        ->add_option("--taper", arguments->taper,
+                     "pixels over which strokes end in a point; 0: blunt; default: as in the style's drawing")
+        ->type_name("FLOAT")
         ->check(in_range(0.0, 1000.0));
     command->add_option("--scale", arguments->scale, "enlarges PNG pictures")
         ->capture_default_str()

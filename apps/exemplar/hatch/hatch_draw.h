@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,9 +14,6 @@
 
 namespace exemplar {
 
-/// Pixels over which strokes end in a point, unless an option says otherwise.
-constexpr float k_usual_taper = 6;
-
 /// Arguments of 'exemplar hatch draw'.
 struct HatchDrawJob {
     std::filesystem::path style, out, properties;
@@ -23,7 +21,8 @@ struct HatchDrawJob {
     HatchSceneArguments scene;
     CommonOptions common;
     std::vector<std::string> curves{"contours"};
-    float taper = k_usual_taper, scale = 1;
+    std::optional<double> taper;  ///< pixels; none: the style's
+    float scale = 1;
     bool outlines = false;
     HatchingOptions hatching;
     // For animations:
@@ -31,6 +30,8 @@ struct HatchDrawJob {
     double turn = 0;  ///< degrees from one frame to the next
     bool fresh = false, remeasure = false;
 
+    /// Returns the pixels over which strokes end in a point.
+    float taper_of(const HatchingStyle& drawn) const { return taper ? static_cast<float>(*taper) : drawn.taper; }
     /// Returns the line types of `curves`; throws UsageError for an unknown one.
     std::vector<LineType> curve_types() const;
     bool is_single_picture() const { return output == LinesOutput::svg || output == LinesOutput::picture; }

@@ -91,6 +91,7 @@ void run_extract(ExtractArguments& arguments) {
     write_report(arguments.common, {{"drawing", arguments.drawing.string()},
                                     {"median_thickness", measured.median_thickness},
                                     {"median_spacing", measured.median_spacing},
+                                    {"taper", measured.taper},
                                     {"crossings", measured.intersections.size()},
                                     {"ranges", ranges}});
 }

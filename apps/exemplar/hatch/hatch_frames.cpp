@@ -129,7 +129,7 @@ class FrameHatcher {
         if (frame > 0) flicker_.push_back(measure_flicker(hatching.strokes, carried));
         stroke_counts_.push_back(hatching.strokes.size());
         before_ = strokes_on_surface(hatching.strokes, surface_->mesh, view, pixels.gbuffer());
-        taper_strokes(hatching.strokes, job_.taper);
+        taper_strokes(hatching.strokes, job_.taper_of(style_));
         return {view.width, view.height, std::move(hatching.strokes),
                 feature_curves(*surface_, view, job_.curve_types(), look_, frames_.unit_depth())};
     }

@@ -36,7 +36,7 @@ PixelMask half_of(const DrawingProperties& drawing, std::array<int, 2> middle, b
 
 ComparedDrawing hatched(const HatchingStyle& style, HatchScene& scene, const ComparedDrawing& artist) {
     ViewHatching hatching = hatch_view(style, scene.pixels(), scene.tools());
-    taper_strokes(hatching.strokes, k_usual_taper);
+    taper_strokes(hatching.strokes, style.taper);
     const FloatImage& size = artist.darkness;
     FloatImage darkness(size.width, size.height, 1);
     darkness.data = render_ink(hatching.strokes, size.width, size.height);

@@ -28,14 +28,13 @@ DrawingStyle on_white(DrawingStyle look) {
 
 HatchedDrawing draw_on(HatchingDevice& device, const HatchedStill& still,
                        const std::function<void(const char*)>& step) {
-    constexpr float k_taper = 6;  // pixels, as in 'exemplar hatch draw'
     step("measuring the surface");
     const HatchingSurface surface = cached_surface(still.mesh, default_surface_folder());
     step("hatching");
     PixelFeatures pixels(surface, still.view, device.tools().images);
     ViewHatching hatching = hatch_view(*still.hatching, pixels, device.tools());
     step("drawing lines");
-    taper_strokes(hatching.strokes, k_taper);
+    taper_strokes(hatching.strokes, still.hatching->taper);
     return {still.view.width, still.view.height, std::move(hatching.strokes),
             feature_curves(surface, still.view, still.curves, still.look, still.unit_depth)};
 }

@@ -39,6 +39,7 @@ DrawingProperties drawing_properties(const StrokeMeasurements& measurements) {
     DrawingProperties out;
     out.width = measurements.width;
     out.height = measurements.height;
+    out.taper = measurements.taper;
     out.known.assign(measurements.size(), 1);
     out.center.resize(measurements.size());
     for (std::size_t i = 0; i < out.center.size(); ++i)

@@ -21,6 +21,7 @@ const std::vector<float>& property_of(const HatchingFields& fields, StrokeProper
 /// The properties of a drawing at each pixel of the view that it shows; all are images of the view's size.
 struct DrawingProperties {
     int width = 0, height = 0;
+    float taper = 0;                     ///< pixels over which strokes end in a point
     std::vector<std::uint8_t> known;     ///< 1: the drawing says what is there, hatching or none
     std::vector<std::uint8_t> center;    ///< 1: on the center line of a hatching stroke, where properties are known
     std::vector<std::uint8_t> crossing;  ///< 1: where strokes cross, so that the direction is unknown

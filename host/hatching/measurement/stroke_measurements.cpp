@@ -11,6 +11,7 @@
 #include "host/core/statistics.h"
 #include "host/hatching/measurement/hatching_levels.h"
 #include "host/hatching/measurement/stroke_map.h"
+#include "host/hatching/measurement/stroke_ends.h"
 #include "host/hatching/measurement/stroke_properties.h"
 #include "host/hatching/tracing/drawing_filters.h"
 #include "host/hatching/tracing/ink_mask.h"
@@ -167,6 +168,7 @@ std::vector<StrokeCrossing> measure_points(const FloatImage& darkness, const Pix
                               ? options.max_spacing
                               : std::max(k_min_max_spacing, k_spacings_per_thickness * m.median_thickness);
     measure_spacings(crossings, options.similar, largest, strokes);
+    m.taper = measure_taper(darkness, paper, m.softness, strokes);
     m.median_spacing = median_over_points(strokes, [](const TracedPoint& p) { return p.spacing; });
     return crossings;
 }

@@ -21,6 +21,7 @@ constexpr const char* k_kind = "exemplar hatching style";
 constexpr int k_format_version = 2;
 constexpr std::size_t k_max_segments = 64;
 constexpr int k_max_stages = 16, k_max_drawing = 1 << 15;
+constexpr float k_max_taper = 1000;  ///< pixels
 
 void add_function(TensorFile& file, const std::string& name, const OrientationFunction& function) {
     std::vector<std::uint32_t> features;
@@ -161,6 +162,9 @@ void read_description(const TensorFile& file, HatchingStyle& style, std::size_t&
     style.name = json.at("name");
     style.width = read_count(file, json, "width", k_max_drawing);
     style.height = read_count(file, json, "height", k_max_drawing);
+    style.taper = json.value("taper", k_usual_taper);
+    if (!(style.taper >= 0 && style.taper <= k_max_taper))
+        inconsistent(file, fmt::format("'taper' is {}, not from 0 to {}", style.taper, k_max_taper));
     style.share = json.at("share").get<std::vector<double>>();
     style.segment_crf = read_cut(file, json.at("segment_cut"));
     style.level_crf = read_cut(file, json.at("level_cut"));
@@ -188,6 +192,7 @@ void save_hatching_style(const std::filesystem::path& path, const HatchingStyle&
     const Json description{{"name", style.name},
                            {"width", style.width},
                            {"height", style.height},
+                           {"taper", style.taper},
                            {"share", style.share},
                            {"segment_cut", described(style.segment_crf)},
                            {"level_cut", described(style.level_crf)},

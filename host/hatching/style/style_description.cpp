@@ -77,6 +77,9 @@ std::string describe_hatching_style(const HatchingStyle& style) {
     text += fmt::format("Hatching levels are told by {}.\n", describe(style, style.levels));
     for (std::size_t p = 0; p < k_stroke_properties; ++p)
         text += fmt::format("{} = {}\n", name_of(static_cast<StrokeProperty>(p)), describe(style, style.properties[p]));
+    constexpr float k_blunt = 1.5f;  // pixels; less cannot be told from none
+    text += style.taper < k_blunt ? "Strokes end bluntly.\n"
+                                  : fmt::format("Strokes end in points over {:.1f} pixels.\n", style.taper);
     return text;
 }
 

@@ -54,6 +54,7 @@ class StyleLearning {
 
     HatchingStyle run() {
         style_.width = drawing_.width;
+        style_.taper = drawing_.taper;
         style_.height = drawing_.height;
         learn_rules();
         done("orientations");

@@ -53,6 +53,7 @@ HatchingStyle small_style() {
     style.name = "horse \"1\".png";
     style.width = 640;
     style.height = 480;
+    style.taper = 2.5f;
     style.rules.resize(2);
     style.rules[0].function[0].terms = {{3, 0.75f}, {40, -0.25f}};
     style.rules[0].function[1].terms = {{12, 1.0f}};
@@ -323,6 +324,8 @@ TEST(HatchingStyleFile, OddDescriptionsAreRefused) {
         EXPECT_THAT(with("\"height\":480", fmt::format("\"height\":{}", bad)), HasSubstr("'height' is")) << bad;
     EXPECT_EQ(with("\"height\":480", "\"height\":\"tall\""), unreadable);
     EXPECT_EQ(with("\"height\":480,", ""), unreadable);
+    for (const char* bad : {"-1", "1001", "1e300"})
+        EXPECT_THAT(with("\"taper\":2.5", fmt::format("\"taper\":{}", bad)), HasSubstr("'taper' is")) << bad;
     EXPECT_EQ(with("{", "["), unreadable);
     EXPECT_EQ(with("[0.7,0.3]", "[]"), damaged("it has 0 segments"));
     EXPECT_EQ(with("\"stages\":2", "\"stages\":0"), damaged("'stages' is 0, which is not a whole number from 1 to 16"));

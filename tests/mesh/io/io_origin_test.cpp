@@ -94,9 +94,9 @@ TEST(Origin, DegreesBesideAHeightGiveAWarning) {
 }
 
 TEST(Origin, FacesThatAreLeftOutDoNotCount) {
-    const std::string vertices = "OFF\n6 2 0\n42949672952 3 0\n42949672954 0 8\n5 4 0\n0 0 0\n1 0 0\n0 1 0\n";
-    EXPECT_NE(read_as("a.off", vertices + "3 0 1 2\n3 3 4 5\n").mesh.origin, Vec3d::Zero());
-    EXPECT_EQ(read_as("a.off", vertices + "2 0 1\n3 3 4 5\n").mesh.origin, Vec3d::Zero());
+    const std::string vertices = "OFF\n3 1 0\n42949672952 3 0\n42949672954 0 8\n42949672957 4 1\n";
+    EXPECT_NE(read_as("a.off", vertices + "3 0 1 2\n").mesh.origin, Vec3d::Zero());
+    EXPECT_EQ(read_as("a.off", vertices + "2 0 1\n").mesh.origin, Vec3d::Zero());
 }
 
 TEST(Origin, OrdinaryFilesAreReadBitForBitAsFloats) {

@@ -9,8 +9,8 @@ void add_hatch_command(Command& app) {
     hatch->require_subcommand();
     hatch->footer(
         "From a view to trace to drawings of other meshes:\n"
-        "  exemplar hatch template bunny.off --out bunny.png          # trace it: strokes only, no outlines\n"
-        "  exemplar hatch train bunny.off traced.png --out mine.safetensors\n"
+        "  exemplar hatch template bunny.off --out bunny.png          # draw on it\n"
+        "  exemplar hatch train bunny.off traced.png --template bunny.png --out mine.safetensors\n"
         "  exemplar hatch draw mine.safetensors cow.obj --out cow.svg\n\n"
         "Without a drawing of your own, begin with one that is built in:\n"
         "  exemplar hatch example contour bunny.off --out traced.png");

@@ -233,6 +233,8 @@ void run_register(RegisterArguments& arguments) {
     require_camera(arguments.camera);
     if (arguments.place && arguments.has_frames())
         throw UsageError("--place begins at a view of one mesh; give that of the frame that is drawn");
+    if (arguments.place && arguments.camera.field_of_view <= 0)
+        throw UsageError("--place begins at a view in perspective; give --fov a small angle");
     if (!arguments.light.empty()) point_of(arguments.light, "--light");
     require_output_file(arguments.out);
     if (arguments.overlay.empty())
@@ -261,14 +263,16 @@ void add_hatch_register_command(Command& hatch) {
         "  exemplar hatch register bunny.off drawing.png --out view.json\n"
         "  exemplar hatch train bunny.off drawing.png --template view.json --out mine.safetensors");
     command->add_option("MESH", arguments->mesh, "mesh that the drawing shows")->required()->type_name("");
-    command->add_option("DRAWING", arguments->drawing, "the drawing, with outlines (PNG)")->required()->type_name("");
+    command->add_option("DRAWING", arguments->drawing, "the drawing, with outlines (PNG or JPEG)")
+        ->required()
+        ->type_name("");
     command->add_option("--out", arguments->out, "the view to write (JSON)")->required()->type_name("FILE");
     command->add_option("--overlay", arguments->overlay, "the picture to check it by; default: NAME_overlay.png")
         ->type_name("FILE");
     Option* shaded = command
                          ->add_option("--shaded", arguments->shaded,
                                       "a shaded picture of the same view, in place of the drawing's tone, to find "
-                                      "the light by (PNG)")
+                                      "the light by (PNG or JPEG)")
                          ->type_name("FILE");
     command
         ->add_option("--light", arguments->light,

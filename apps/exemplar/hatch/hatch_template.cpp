@@ -55,10 +55,14 @@ void add_hatch_template_command(Command& hatch) {
     auto arguments = std::make_shared<TemplateArguments>();
     Command* command = hatch.add_subcommand("template", "Renders a view of a mesh to draw on");
     command->footer(
-        "Draw the strokes of hatching on a layer above it, or on paper over a print, and leave outlines out; then "
-        "hand\n"
-        "in the strokes alone, as PNG: dark on light, at any resolution.\n\nExample:\n"
-        "  exemplar hatch template bunny.off --view three-quarter --size 1000x1000 --out bunny.png");
+        "On a screen, draw the strokes of hatching on a layer above it, and hand in the strokes alone, dark on light, "
+        "at\n"
+        "any resolution. On paper, print a --sheet, draw on it with a black pen, and scan or photograph it. The "
+        "picture\n"
+        "tells camera, light and mesh to the other commands (--template).\n\n"
+        "Example:\n"
+        "  exemplar hatch template bunny.off --view three-quarter --out bunny.png\n"
+        "  exemplar hatch template bunny.off --view three-quarter --sheet a4 --out sheet.png");
     command->add_option("MESH", arguments->scene.mesh, k_mesh_argument)->required()->type_name("");
     command->add_option("--out", arguments->out, "the picture to write (PNG)")->required()->type_name("FILE");
     command

@@ -116,7 +116,7 @@ void add_hatch_train_command(Command& hatch) {
     command->footer(
         "Example:\n  exemplar hatch train bunny.off traced.png --template bunny.png --out mine.safetensors");
     command->add_option("MESH", arguments->scene.mesh, "mesh that the drawing shows")->required()->type_name("");
-    command->add_option("DRAWING", arguments->drawing, "the drawing (PNG)")->required()->type_name("");
+    command->add_option("DRAWING", arguments->drawing, "the drawing (PNG or JPEG)")->required()->type_name("");
     command
         ->add_option("--mask", arguments->mask,
                      "picture of the view, white where to learn from the drawing (PNG): black hides a signature, a "

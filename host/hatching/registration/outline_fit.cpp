@@ -78,7 +78,7 @@ SeenOutline seen_outline(const TriangleMesh& mesh, const ViewPose& pose, const P
     return {std::move(points), LineMap(frame.width, frame.height, std::move(outer)), std::move(outer_index)};
 }
 
-/// A match and its distance.
+/// The matches of a round, and sums over all points, matched or not.
 struct OutlineMatches {
     std::vector<LineMatch> matches;
     double cost = 0, squares = 0;

@@ -13,7 +13,7 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_directions = 1200;            ///< about six degrees apart
+constexpr std::size_t k_view_directions = 1200;       ///< about six degrees apart
 constexpr std::array<double, 2> k_distances{1.8, 4};  ///< of the eye, in radii: perspective changes what is seen
 constexpr std::size_t k_fitted_views = 96;            ///< that are fitted
 constexpr int k_picture = 64;                         ///< pixels of the pictures that are compared
@@ -74,7 +74,7 @@ float difference(const PolarShape& shape, const PolarShape& other, std::size_t t
 
 /// Directions spread evenly over the sphere (Fibonacci's lattice).
 Vec3d direction_on_sphere(std::size_t i) {
-    const double z = 1 - (2 * static_cast<double>(i) + 1) / k_directions;
+    const double z = 1 - (2 * static_cast<double>(i) + 1) / k_view_directions;
     const double angle = static_cast<double>(i) * k_pi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
     return {r * std::cos(angle), r * std::sin(angle), z};
 }
@@ -164,7 +164,7 @@ std::vector<RegionFit> best_fits(const TriangleMesh& mesh, const PoseFrame& fram
 std::vector<RegionFit> search_views(const TriangleMesh& mesh, const PoseFrame& frame, const PictureRegion& region,
                                     float size, std::size_t count, const std::function<void()>& step) {
     const PolarShape sought = polar_shape(region);
-    std::vector<std::vector<Candidate>> found(k_directions * k_distances.size());
+    std::vector<std::vector<Candidate>> found(k_view_directions * k_distances.size());
     for (std::size_t part = 0; part < k_parts; ++part) {
         const std::size_t begin = part * found.size() / k_parts, end = (part + 1) * found.size() / k_parts;
         parallel_for(end - begin, [&](std::size_t k) {

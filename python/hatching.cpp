@@ -155,7 +155,7 @@ HatchedPointer draw_hatching(Scene& scene, const HatchingStyle& style, const std
     return std::make_shared<Hatched>(scene.use([&](PixelFeatures& pixels) {
         const ViewHatching hatching = hatch_view(style, pixels, scene.tools(), options);
         Hatched result{
-            {scene.view().width, scene.view().height, hatching.strokes, {}}, load_style("ink"), scene.title()};
+            {scene.view().width, scene.view().height, hatching.strokes, {}}, curve_look(style), scene.title()};
         taper_strokes(result.drawing.strokes, static_cast<float>(taper.value_or(style.taper)));
         result.drawing.curves = feature_curves(scene.surface(), scene.view(), types, result.look);
         return result;

@@ -58,6 +58,17 @@ void taper_strokes(std::span<HatchStroke> strokes, float taper) {
     }
 }
 
+DrawingStyle curve_look(const HatchingStyle& style) {
+    DrawingStyle look = load_style("ink");
+    if (style.outline_width <= 0) return look;
+    for (LineStyle& line : look.lines) {
+        StrokeThickness& pen = line.thickness;
+        pen.width = pen.least = pen.most = style.outline_width;
+        pen.taper = std::min(pen.taper, style.taper);
+    }
+    return look;
+}
+
 std::vector<Stroke> layer_strokes(std::span<const HatchStroke> strokes, std::size_t layer) {
     std::vector<Stroke> out;
     for (const HatchStroke& stroke : strokes) {

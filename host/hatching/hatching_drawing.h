@@ -8,6 +8,7 @@
 
 #include "host/hatching/fields/hatch_stroke.h"
 #include "host/hatching/fields/hatching_fields.h"
+#include "host/hatching/style/hatching_style.h"
 #include "host/imaging/image.h"
 #include "host/lines/drawing.h"
 #include "host/lines/drawing_svg.h"
@@ -25,6 +26,10 @@ struct HatchedDrawing {
 /// Tapers the widths of strokes to points at both ends: along a quarter of an ellipse over `taper` pixels (see
 /// stroke_taper), but over no more than a quarter of the stroke.
 void taper_strokes(std::span<HatchStroke> strokes, float taper);
+
+/// Returns how feature curves are drawn beside hatching: in black ink; if the drawing that a style was learned from has
+/// outlines, all with a pen of their width.
+DrawingStyle curve_look(const HatchingStyle& style);
 
 /// Returns the strokes of a layer as strokes of line drawings; their darkness becomes opacity.
 std::vector<Stroke> layer_strokes(std::span<const HatchStroke> strokes, std::size_t layer);

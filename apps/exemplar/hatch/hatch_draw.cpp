@@ -60,7 +60,7 @@ void draw_still(const HatchDrawJob& job) {
     const ToneMeasure tone = measure_tone(hatching.strokes, fields);
     HatchedDrawing drawing{fields.width, fields.height, hatching.strokes, {}};
     taper_strokes(drawing.strokes, job.taper_of(style));
-    const DrawingStyle look = load_style("ink");
+    const DrawingStyle look = curve_look(style);
     drawing.curves = feature_curves(scene.surface(), scene.pixels().view(), job.curve_types(), look);
     write_hatched_drawing(job, drawing, look);
     if (!job.properties.empty()) write_properties(job.properties, hatching.prediction);

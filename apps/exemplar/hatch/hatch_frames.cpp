@@ -156,7 +156,7 @@ class FrameHatcher {
     const HatchedFrames& frames_;
     HatchingStyle style_;
     HatchingDevice device_;
-    DrawingStyle look_ = load_style("ink");
+    DrawingStyle look_ = curve_look(style_);
     std::optional<HatchingSurface> surface_;
     std::vector<SurfaceStroke> before_;
     std::vector<HatchingFlicker> flicker_;

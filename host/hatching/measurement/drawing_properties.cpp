@@ -40,6 +40,7 @@ DrawingProperties drawing_properties(const StrokeMeasurements& measurements) {
     out.width = measurements.width;
     out.height = measurements.height;
     out.taper = measurements.taper;
+    out.outline_width = measurements.outline_width;
     out.known.assign(measurements.size(), 1);
     out.center.resize(measurements.size());
     for (std::size_t i = 0; i < out.center.size(); ++i)

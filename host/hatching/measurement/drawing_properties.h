@@ -22,6 +22,7 @@ const std::vector<float>& property_of(const HatchingFields& fields, StrokeProper
 struct DrawingProperties {
     int width = 0, height = 0;
     float taper = 0;                     ///< pixels over which strokes end in a point
+    float outline_width = 0;             ///< pixels; 0: no outlines are drawn
     std::vector<std::uint8_t> known;     ///< 1: the drawing says what is there, hatching or none
     std::vector<std::uint8_t> center;    ///< 1: on the center line of a hatching stroke, where properties are known
     std::vector<std::uint8_t> crossing;  ///< 1: where strokes cross, so that the direction is unknown

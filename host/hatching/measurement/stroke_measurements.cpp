@@ -10,7 +10,7 @@
 #include "host/core/parallel.h"
 #include "host/core/statistics.h"
 #include "host/hatching/measurement/hatching_levels.h"
-#include "host/hatching/measurement/stroke_ends.h"
+#include "host/hatching/measurement/pen.h"
 #include "host/hatching/measurement/stroke_map.h"
 #include "host/hatching/measurement/stroke_properties.h"
 #include "host/hatching/tracing/drawing_filters.h"
@@ -182,7 +182,11 @@ StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask
     if (m.size() == 0) return m;
     TracedDrawing drawing = trace_drawing(darkness, mask, options.min_darkness);
     std::vector<TracedStroke>& strokes = drawing.strokes;
-    if (outlines) mark_outlines(take_outlines(strokes, *outlines, outline_reach(strokes)), m);
+    if (outlines) {
+        const std::vector<TracedStroke> drawn = take_outlines(strokes, *outlines, outline_reach(strokes));
+        mark_outlines(drawn, m);
+        m.outline_width = measure_line_width(darkness, paper_darkness(darkness, drawing.ink), drawn);
+    }
     if (strokes.empty()) return m;
     const std::vector<StrokeCrossing> crossings = measure_points(darkness, drawing.ink, options, strokes, m);
     m.intersections = confirmed_intersections(crossings, darkness, drawing.skeleton, strokes);

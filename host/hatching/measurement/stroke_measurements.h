@@ -39,7 +39,8 @@ struct StrokeMeasurements {
     std::vector<std::uint8_t> boundary;      ///< 1: on the boundary of a region of one level, or at a stroke's end
     float median_thickness = 0, median_spacing = 0;  ///< over points of center lines; 0: there are none
     float taper = 0;                                 ///< pixels over which strokes end in a point (measure_taper)
-    float softness = 0;                              ///< standard deviation of the blur of the drawing's edges, pixels
+    float outline_width = 0;  ///< of drawn outlines, pixels (measure_line_width); 0: none are drawn
+    float softness = 0;       ///< standard deviation of the blur of the drawing's edges, pixels
 
     std::size_t size() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
 };

@@ -21,7 +21,7 @@ constexpr const char* k_kind = "exemplar hatching style";
 constexpr int k_format_version = 2;
 constexpr std::size_t k_max_segments = 64;
 constexpr int k_max_stages = 16, k_max_drawing = 1 << 15;
-constexpr float k_max_taper = 1000;  ///< pixels
+constexpr float k_max_pen = 1000;  ///< pixels
 
 void add_function(TensorFile& file, const std::string& name, const OrientationFunction& function) {
     std::vector<std::uint32_t> features;
@@ -157,14 +157,21 @@ int read_count(const TensorFile& file, const Json& json, const char* key, int mo
     return static_cast<int>(count);
 }
 
+/// Reads a length in pixels; `otherwise` where it is missing.
+float read_pixels(const TensorFile& file, const Json& json, const char* key, float otherwise) {
+    const float pixels = json.value(key, otherwise);
+    if (!(pixels >= 0 && pixels <= k_max_pen))
+        inconsistent(file, fmt::format("'{}' is {}, not from 0 to {}", key, pixels, k_max_pen));
+    return pixels;
+}
+
 void read_description(const TensorFile& file, HatchingStyle& style, std::size_t& stages) {
     const Json json = parse_json(file.meta("style"));
     style.name = json.at("name");
     style.width = read_count(file, json, "width", k_max_drawing);
     style.height = read_count(file, json, "height", k_max_drawing);
-    style.taper = json.value("taper", k_usual_taper);
-    if (!(style.taper >= 0 && style.taper <= k_max_taper))
-        inconsistent(file, fmt::format("'taper' is {}, not from 0 to {}", style.taper, k_max_taper));
+    style.taper = read_pixels(file, json, "taper", k_usual_taper);
+    style.outline_width = read_pixels(file, json, "outline_width", 0);
     style.share = json.at("share").get<std::vector<double>>();
     style.segment_crf = read_cut(file, json.at("segment_cut"));
     style.level_crf = read_cut(file, json.at("level_cut"));
@@ -193,6 +200,7 @@ void save_hatching_style(const std::filesystem::path& path, const HatchingStyle&
                            {"width", style.width},
                            {"height", style.height},
                            {"taper", style.taper},
+                           {"outline_width", style.outline_width},
                            {"share", style.share},
                            {"segment_cut", described(style.segment_crf)},
                            {"level_cut", described(style.level_crf)},

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "host/hatching/measurement/drawing_properties.h"
-#include "host/hatching/measurement/stroke_ends.h"
+#include "host/hatching/measurement/pen.h"
 #include "host/hatching/rules/direction_correction.h"
 #include "host/hatching/rules/orientation_mixture.h"
 #include "host/hatching/style/familiarity.h"
@@ -23,6 +23,7 @@ struct HatchingStyle {
     std::string name;                    ///< of the drawing
     int width = 0, height = 0;           ///< of the drawing, in pixels; lengths are in these pixels
     float taper = k_usual_taper;         ///< pixels over which strokes end in a point
+    float outline_width = 0;             ///< of the outlines in the drawing, pixels; 0: it has none
     std::vector<OrientationRule> rules;  ///< one per segment
     /// Corrections of the rules' directions, for hatches and for those that cross them.
     std::array<DirectionCorrection, k_hatch_layers> corrections;

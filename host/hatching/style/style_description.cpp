@@ -80,6 +80,7 @@ std::string describe_hatching_style(const HatchingStyle& style) {
     constexpr float k_blunt = 1.5f;  // pixels; less cannot be told from none
     text += style.taper < k_blunt ? "Strokes end bluntly.\n"
                                   : fmt::format("Strokes end in points over {:.1f} pixels.\n", style.taper);
+    if (style.outline_width > 0) text += fmt::format("Outlines are {:.1f} pixels wide.\n", style.outline_width);
     return text;
 }
 

@@ -55,6 +55,7 @@ class StyleLearning {
     HatchingStyle run() {
         style_.width = drawing_.width;
         style_.taper = drawing_.taper;
+        style_.outline_width = drawing_.outline_width;
         style_.height = drawing_.height;
         learn_rules();
         done("orientations");

@@ -54,6 +54,7 @@ HatchingStyle small_style() {
     style.width = 640;
     style.height = 480;
     style.taper = 2.5f;
+    style.outline_width = 1.5f;
     style.rules.resize(2);
     style.rules[0].function[0].terms = {{3, 0.75f}, {40, -0.25f}};
     style.rules[0].function[1].terms = {{12, 1.0f}};

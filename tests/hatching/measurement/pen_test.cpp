@@ -1,4 +1,4 @@
-#include "host/hatching/measurement/stroke_ends.h"
+#include "host/hatching/measurement/pen.h"
 
 #include <gtest/gtest.h>
 
@@ -31,13 +31,31 @@ float measured_taper(float taper, int count) {
     return measure_strokes(darkness, Image(k_ends_width, k_ends_height, 1, 255)).taper;
 }
 
-TEST(StrokeEnds, TheTaperIsMeasured) {
+TEST(Pen, TheTaperIsMeasured) {
     EXPECT_LT(measured_taper(0, 36), 1.2f);
     EXPECT_NEAR(measured_taper(4, 36), 4, 1.5f);
     EXPECT_NEAR(measured_taper(8, 36), 8, 2);
 }
 
-TEST(StrokeEnds, FewEndsTellNothing) {
+TEST(Pen, OutlinesAreAsWideInBlackAsTheirInk) {
+    HatchStroke stroke;
+    TracedStroke line;
+    for (int k = 0; k <= 150; ++k) {
+        stroke.points.emplace_back(20.3f + static_cast<float>(k), 40.2f + 0.3f * static_cast<float>(k));
+        stroke.widths.push_back(3);
+        line.points.push_back({});
+        line.points.back().center = stroke.points.back();
+    }
+    stroke.darkness = 0.5f;
+    line.width = 3;
+    orient_along(line);
+    FloatImage darkness(k_ends_width, k_ends_height, 1);
+    darkness.data = render_ink(std::span(&stroke, 1), k_ends_width, k_ends_height);
+    EXPECT_NEAR(measure_line_width(darkness, 0, std::span(&line, 1)), 1.5f, 0.1f);
+    EXPECT_EQ(measure_line_width(darkness, 0, {}), 0);
+}
+
+TEST(Pen, FewEndsTellNothing) {
     EXPECT_EQ(measured_taper(0, 8), k_usual_taper);
 }
 

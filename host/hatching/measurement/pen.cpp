@@ -1,4 +1,4 @@
-#include "host/hatching/measurement/stroke_ends.h"
+#include "host/hatching/measurement/pen.h"
 
 #include <algorithm>
 #include <cmath>
@@ -94,6 +94,16 @@ float measure_taper(const FloatImage& darkness, float paper, float softness, std
     if (missing.size() < k_min_ends) return k_usual_taper;
     const float blunt = k_blurred * std::sqrt(softness * softness + 1.0f / 12);
     return std::max(0.0f, (upper_median(missing) - blunt) / k_missing);
+}
+
+float measure_line_width(const FloatImage& darkness, float paper, std::span<const TracedStroke> lines) {
+    std::vector<float> widths;
+    for (const TracedStroke& line : lines)
+        for (const TracedPoint& point : line.points) {
+            const Vec2 along(std::cos(point.orientation), std::sin(point.orientation));
+            widths.push_back(ink_across(darkness, paper, point.center, along, line.width));
+        }
+    return upper_median(widths);
 }
 
 }  // namespace exemplar

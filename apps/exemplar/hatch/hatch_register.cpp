@@ -120,7 +120,7 @@ std::string found_light(const RegisterArguments& arguments, const TriangleMesh& 
     const LightFit fit = fit_light(brightness, mesh, pose, frame, smoothing);
     const bool told = fit.correlation >= k_min_likeness;
     const Vec3 light = told ? fit.direction : Vec3::UnitZ();
-    const std::string text = fmt::format("{:.3f},{:.3f},{:.3f}", light.x(), light.y(), light.z());
+    std::string text = fmt::format("{:.3f},{:.3f},{:.3f}", light.x(), light.y(), light.z());
     if (arguments.common.quiet) return text;
     if (told)
         fmt::print("light: {} by the {} (correlation {:.2f}){}\n", text, shaded ? "shaded picture" : "drawing's tone",

@@ -72,6 +72,7 @@ Vector2d on_sheet(const DrawingSheet& sheet, const Vector2d& view) {
 const std::vector<std::string>& paper_names() {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> all;
+        all.reserve(k_papers.size());
         for (const PaperSize& paper : k_papers) all.emplace_back(paper.name);
         return all;
     }();

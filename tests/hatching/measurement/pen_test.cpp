@@ -18,7 +18,8 @@ float measured_taper(float taper, int count) {
     std::vector<HatchStroke> strokes;
     for (int i = 0; i < count; ++i) {
         HatchStroke& stroke = strokes.emplace_back();
-        const float x = i % 2 == 0 ? 30.2f : 140.6f, y = 12.3f + 9.1f * static_cast<float>(i / 2);
+        const int row = i / 2;
+        const float x = i % 2 == 0 ? 30.2f : 140.6f, y = 12.3f + 9.1f * static_cast<float>(row);
         for (int k = 0; k <= 120; ++k) {
             stroke.points.emplace_back(x + 0.6f * static_cast<float>(k), y + 0.04f * static_cast<float>(k));
             stroke.widths.push_back(3);

@@ -71,7 +71,7 @@ Image upright(Image picture, std::uint32_t orientation) {
     return turned;
 }
 
-/// What kind of file it is instead, and what to do with it; empty if that is unknown.
+/// Names a kind of picture that is not read, by how its content begins; empty if it is none of these.
 std::string other_kind(std::string_view content) {
     constexpr std::array<std::pair<std::string_view, const char*>, 8> k_kinds{{{"II*", "a TIFF"},
                                                                                {"MM", "a TIFF"},

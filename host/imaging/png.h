@@ -13,7 +13,7 @@ namespace exemplar {
 /// same bytes. Throws UsageError for another number of channels or an empty image, DataError if it cannot be written.
 void write_png(const std::filesystem::path& path, const Image& image);
 
-/// What a PNG says beside its pixels; programs that know nothing of it pass over the text.
+/// A text in a PNG, and its printed size. Other programs ignore the text.
 struct PngText {
     std::string keyword;       ///< 1 to 79 characters of ASCII
     std::string text;          ///< ASCII

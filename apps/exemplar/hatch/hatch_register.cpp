@@ -202,7 +202,7 @@ FoundView registered_frame(const RegisterArguments& arguments, const FloatImage&
         fmt::print("{}: frame {} of {}, the mesh to learn from\n", path.string(), registered.frame,
                    source.frame_count());
     FoundView found{mesh_to_register(path, true), path, {registered.fit}};
-    // What is read again may lack faces without area, and then has another middle.
+    // Reading the file may drop faces without area, which can move the middle of the mesh, to which poses refer.
     found.fits[0].pose = pose_of(placed_eye(registered.fit.pose, frame_of_drawing(mesh, darkness)),
                                  frame_of_drawing(found.mesh, darkness));
     return found;

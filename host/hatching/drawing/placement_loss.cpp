@@ -50,9 +50,7 @@ std::vector<Vec2> ends_of(const FloatImage& darkness, const TracedDrawing& drawi
 /// Returns the unit direction out of a region; zero where the distance to its border does not change.
 Vec2 way_out_of(const FloatImage& distance, const Vec2& place) {
     constexpr float k_step = 3;  // pixels: wider than the notches between strokes
-    const Vec2 x(k_step, 0), y(0, k_step);
-    const Vec2 gradient(distance_at(distance, place + x) - distance_at(distance, place - x),
-                        distance_at(distance, place + y) - distance_at(distance, place - y));
+    const Vec2 gradient = distance_change(distance, place, k_step);
     const float length = gradient.norm();
     return length > 0 ? Vec2(gradient / length) : Vec2(0, 0);
 }

@@ -131,7 +131,7 @@ std::optional<std::array<Vector2d, 4>> find_marks(const Image& picture) {
         else if (is_empty(ring, pieces))
             plain.push_back(ring.center / scale);
     }
-    // Of all that could be the marks, the largest quadrangle: they lie in the corners of the sheet.
+    // Several sets of rings may fit. The marks lie in the corners of the sheet, so the largest quadrangle is taken.
     std::optional<std::array<Vector2d, 4>> best;
     for (const Vector2d& corner : plain)
         for (std::size_t i = 0; i < dotted.size(); ++i)

@@ -18,8 +18,9 @@ constexpr float k_beyond = 5;                       ///< pixels beyond it
 constexpr float k_end_step = 0.5f;
 constexpr float k_beside = 1.5f;  ///< pixels beside a stroke that its ink may be blurred over
 constexpr std::size_t k_min_ends = 20;
-/// What is missing of a stroke beyond the place where half of its width is left, per pixel of a taper along a quarter
-/// of an ellipse (stroke_taper): the integral of 1 - sqrt(x (2 - x)) from 1 - sqrt(3/4) on.
+/// The area that a taper of one pixel takes from a stroke of unit width, counted from where half the width is left. A
+/// taper is a quarter of an ellipse (stroke_taper), so this is the integral of 1 - sqrt(x (2 - x)) from 1 - sqrt(3/4)
+/// to 1.
 constexpr float k_missing = 0.126f;
 constexpr float k_blurred = 0.4f;  ///< what is missing of a blunt end, per standard deviation of its blur
 

@@ -21,11 +21,9 @@ constexpr double k_outlined = 0.5;  ///< min share of a region's border that is 
 /// The direction of a region's border at a place; none where the distance does not change.
 std::optional<float> border_direction(const FloatImage& distance, const Vec2& place) {
     constexpr float k_step = 2;
-    const Vec2 x(k_step, 0), y(0, k_step);
-    const float dx = distance_at(distance, place + x) - distance_at(distance, place - x);
-    const float dy = distance_at(distance, place + y) - distance_at(distance, place - y);
-    if (dx * dx + dy * dy < 1) return std::nullopt;
-    const float angle = std::atan2(dx, -dy);
+    const Vec2 out = distance_change(distance, place, k_step);
+    if (out.squaredNorm() < 1) return std::nullopt;
+    const float angle = std::atan2(out.x(), -out.y());
     return angle < 0 ? angle + std::numbers::pi_v<float> : angle;
 }
 

@@ -16,14 +16,12 @@ constexpr double k_region_scale = 0.04;  ///< of the size: gaps that count half
 
 /// The gradient of a distance image: a unit vector, or zero where there is none.
 Vec2d uphill(const FloatImage& distance, const Vec2& place) {
-    const Vec2 x(1, 0), y(0, 1);
-    const Vec2d gradient(static_cast<double>(distance_at(distance, place + x) - distance_at(distance, place - x)),
-                         static_cast<double>(distance_at(distance, place + y) - distance_at(distance, place - y)));
+    const Vec2d gradient = distance_change(distance, place, 1).cast<double>();
     const double length = gradient.norm();
     return length > 0 ? Vec2d(gradient / length) : Vec2d(0, 0);
 }
 
-/// What draws the object's border to the region's, and back.
+/// Matches the object's border with the nearest places on the region's, and the region's with the object's.
 std::vector<LineMatch> region_matches(const SeenRegion& seen, const PictureRegion& region) {
     std::vector<LineMatch> matches;
     const FloatImage& there = region.distance;

@@ -13,7 +13,7 @@ using Vec2d = Eigen::Vector2d;
 /// move in the picture, in radii of the object.
 using PoseChange = Eigen::Matrix<double, 7, 1>;
 
-/// What a pose refers to: the sphere around an object, and a picture whose middle lies on the camera's axis.
+/// The frame of reference of a pose: the sphere around an object, and a picture, whose middle is on the camera's axis.
 struct PoseFrame {
     Vec3d center = Vec3d::Zero();
     double radius = 1;          ///< mesh units

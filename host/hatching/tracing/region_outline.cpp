@@ -127,4 +127,10 @@ float distance_at(const FloatImage& distance, const Vec2& place) {
     return x == at.x() && y == at.y() ? inside : inside + (at - Vec2(x, y)).norm();
 }
 
+Vec2 distance_change(const FloatImage& distance, const Vec2& place, float step) {
+    const Vec2 x(step, 0), y(0, step);
+    return {distance_at(distance, place + x) - distance_at(distance, place - x),
+            distance_at(distance, place + y) - distance_at(distance, place - y)};
+}
+
 }  // namespace exemplar

@@ -27,4 +27,8 @@ std::vector<Vec2> border_points(const PixelMask& region, std::size_t most);
 /// Interpolates a distance image linearly. Beyond its border, returns the outermost value plus the distance to it.
 float distance_at(const FloatImage& distance, const Vec2& place);
 
+/// Returns how much the distance changes along x and along y, from `step` pixels before a place to `step` behind it: a
+/// vector that points out of the region.
+Vec2 distance_change(const FloatImage& distance, const Vec2& place, float step);
+
 }  // namespace exemplar

@@ -78,8 +78,8 @@ bool same(float a, float b) {
     return a == b || (std::isnan(a) && std::isnan(b));
 }
 
-/// What reading may move a corner of a triangle by: 1/65536 of the extent, twice, as the origin is found again from
-/// what was written (mesh_io::origin_for_floats).
+/// Returns how far a corner of a triangle may move when a mesh is written and read: 1/65536 of the extent each time, as
+/// the origin is chosen anew (mesh_io::origin_for_floats).
 double allowed_move(const TriangleMesh& mesh) {
     if (mesh.origin.isZero(0)) return 0;
     Eigen::AlignedBox3d box;

@@ -21,7 +21,7 @@ class HatchingDevice {
           gbuffers_(device_),
           filters_(device_),
           projection_(projection_for(device_)),
-          scorer_(device_),
+          scorer_(stump_scorer_for(device_)),
           evaluator_(device_),
           placer_(device_) {}
 
@@ -33,11 +33,11 @@ class HatchingDevice {
     GpuGBufferRenderer gbuffers_;
     GpuImageFilters filters_;
     std::unique_ptr<PixelProjection> projection_;
-    GpuStumpScorer scorer_;
+    std::unique_ptr<StumpScorer> scorer_;
     GpuHatchingEvaluator evaluator_;
     GpuStrokePlacer placer_;
     ImageTools images_{gbuffers_, filters_, *projection_};
-    HatchingTools tools_{images_, scorer_, evaluator_, placer_};
+    HatchingTools tools_{images_, *scorer_, evaluator_, placer_};
 };
 
 }  // namespace exemplar

@@ -16,13 +16,11 @@ namespace exemplar {
 class LabelingDevice {
   public:
     explicit LabelingDevice(const DeviceOptions& options = {}) : device_(options), labels_on_(device_.info().name) {
-        // If the device is this machine's CPU, the host is faster: D6 in docs/portability.md.
-        if (device_.info().type == DeviceType::cpu) {
+        scorer_ = stump_scorer_for(device_);
+        if (device_.info().type == DeviceType::cpu) {  // the host is faster, for the scorer, too
             labels_on_ = "the host";
-            scorer_ = std::make_unique<CpuStumpScorer>();
             context_ = std::make_unique<FastContextHistograms>();
         } else {
-            scorer_ = std::make_unique<GpuStumpScorer>(device_);
             context_ = std::make_unique<GpuContextHistograms>(device_);
         }
     }

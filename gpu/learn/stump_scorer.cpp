@@ -280,4 +280,9 @@ void GpuStumpScorer::score_tile(const Classifier& classifier, std::span<const Sc
     stream_.fetch(probabilities_, parts);
 }
 
+std::unique_ptr<StumpScorer> stump_scorer_for(Device& device) {
+    if (device.info().type == DeviceType::cpu) return std::make_unique<CpuStumpScorer>();
+    return std::make_unique<GpuStumpScorer>(device);
+}
+
 }  // namespace exemplar

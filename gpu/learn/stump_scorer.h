@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -64,5 +65,8 @@ class GpuStumpScorer final : public StumpScorer {
     // Kept between calls.
     Buffer stumps_, groups_, constant_, features_, probabilities_;
 };
+
+/// Returns the fastest scorer of a device. If it is this machine's CPU, that is the host's (D6 in docs/portability.md).
+std::unique_ptr<StumpScorer> stump_scorer_for(Device& device);
 
 }  // namespace exemplar

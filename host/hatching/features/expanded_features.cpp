@@ -1,6 +1,7 @@
 #include "host/hatching/features/expanded_features.h"
 
 #include <algorithm>
+#include <map>
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
@@ -41,23 +42,37 @@ std::vector<std::uint32_t> used_features(const BoostedStumps& classifier) {
     return used;
 }
 
-CompactStumps compact_stumps(const BoostedStumps& classifier, std::span<const std::uint32_t> which,
-                             const FeatureMatrix& base) {
+CompactStumps compact_stumps(const BoostedStumps& classifier, std::span<const std::uint32_t> which) {
     CompactStumps out{classifier, {}};
-    out.features.rows = base.rows;
-    std::vector<std::uint32_t> expanded;
+    std::map<std::uint32_t, std::uint32_t> place;  // of an expanded feature among the columns
     for (Stump& stump : out.classifier.stumps) {
-        const auto known = std::ranges::find(expanded, stump.feature);
-        const auto place = static_cast<std::uint32_t>(known - expanded.begin());
-        if (known == expanded.end()) {
+        const auto [known, is_new] = place.try_emplace(stump.feature, static_cast<std::uint32_t>(out.columns.size()));
+        if (is_new) {
             const auto column = std::ranges::find(which, stump.feature / k_powers);
             if (column == which.end()) throw UsageError("a stump names a feature that was not measured");
-            add_power(base, static_cast<std::size_t>(column - which.begin()), stump.feature % k_powers, out.features);
-            expanded.push_back(stump.feature);
+            out.columns.push_back({static_cast<std::size_t>(column - which.begin()), stump.feature % k_powers});
         }
-        stump.feature = place;
+        stump.feature = known->second;
     }
     return out;
+}
+
+void expand_columns(std::span<const ExpandedColumn> columns, const FeatureMatrix& base, std::size_t first,
+                    std::size_t count, FeatureMatrix& out) {
+    out.rows = count;
+    out.names.resize(columns.size());
+    out.values.resize(columns.size() * count);
+    parallel_for(
+        columns.size(),
+        [&](std::size_t k) {
+            const std::span<const float> from = base.column(columns[k].base).subspan(first, count);
+            const std::span<float> to = out.column(k);
+            if (columns[k].power == 0)
+                std::ranges::copy(from, to.begin());
+            else
+                std::ranges::transform(from, to.begin(), [&](float x) { return power_of(x, columns[k].power); });
+        },
+        8);
 }
 
 }  // namespace exemplar

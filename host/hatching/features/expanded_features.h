@@ -23,14 +23,22 @@ StumpFeatures stump_features(const FeatureMatrix& base);
 /// Returns the base features that stumps over expanded features use, in increasing order.
 std::vector<std::uint32_t> used_features(const BoostedStumps& classifier);
 
-/// A classifier, and only the columns that its stumps use; the stumps are renumbered to these columns.
-/// compact_stumps() computes the columns from `base`, which holds the base features `which`. It throws UsageError if
-/// one is missing.
+/// A column of expanded features: a power (powers.h) of a column of base features.
+struct ExpandedColumn {
+    std::size_t base;
+    std::size_t power;
+};
+
+/// A classifier whose stumps are numbered by the columns that they use.
 struct CompactStumps {
     BoostedStumps classifier;
-    FeatureMatrix features;
+    std::vector<ExpandedColumn> columns;
 };
-CompactStumps compact_stumps(const BoostedStumps& classifier, std::span<const std::uint32_t> which,
-                             const FeatureMatrix& base);
+/// `which`: the base feature of each column of the matrix that the columns refer to. Throws UsageError if one is
+/// missing.
+CompactStumps compact_stumps(const BoostedStumps& classifier, std::span<const std::uint32_t> which);
+/// Computes these columns of rows [first, first + count) into `out`, without names.
+void expand_columns(std::span<const ExpandedColumn> columns, const FeatureMatrix& base, std::size_t first,
+                    std::size_t count, FeatureMatrix& out);
 
 }  // namespace exemplar

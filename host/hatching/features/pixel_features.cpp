@@ -328,11 +328,13 @@ OrientationFields PixelFeatures::orientations(std::span<const std::uint32_t> row
     return out;
 }
 
-FeatureMatrix PixelFeatures::scalars(std::span<const std::uint32_t> which, std::span<const std::uint32_t> rows) {
+FeatureMatrix PixelFeatures::scalars(std::span<const std::uint32_t> which, std::span<const std::uint32_t> rows,
+                                     std::size_t spare) {
     const FacePoints at = points(rows);
     FeatureMatrix out;
     out.rows = at.size();
     for (const std::uint32_t k : which) out.names.push_back(pixel_feature_names().at(k));
+    out.values.reserve(out.rows * (which.size() + spare));
     out.values.resize(out.rows * which.size());
     for (std::size_t first = 0; first < which.size();) {
         const std::span<const std::uint32_t> some = same_source(which.subspan(first));

@@ -42,8 +42,9 @@ class PixelFeatures {
     std::size_t size() const { return pixels_.pixel.size(); }
 
     /// Returns the scalar features `which` of the pixels pixels().pixel[rows[i]]; of all pixels if there are no
-    /// rows.
-    FeatureMatrix scalars(std::span<const std::uint32_t> which, std::span<const std::uint32_t> rows);
+    /// rows. There is memory for `spare` more columns, so that they can be appended without a copy.
+    FeatureMatrix scalars(std::span<const std::uint32_t> which, std::span<const std::uint32_t> rows,
+                          std::size_t spare = 0);
     /// Returns all orientation features of those pixels. Where an image has no gradient, the direction is completed
     /// from its surroundings.
     OrientationFields orientations(std::span<const std::uint32_t> rows);

@@ -169,6 +169,23 @@ class CorrectionBoosting {
     DirectionCorrection correction_;
 };
 
+// Items whose weights are summed together, stump by stump: in the processor's vectors.
+constexpr std::size_t k_corrected_together = 256;
+using BlockWeights = std::array<std::array<float, k_corrected_together>, k_direction_parts>;
+
+/// Returns the weight of each part for items [first, first + count). `columns`: the feature of each stump.
+BlockWeights block_weights(std::span<const DirectionStump> stumps, std::span<const std::span<const float>> columns,
+                           std::size_t first, std::size_t count) {
+    BlockWeights weights{};
+    for (std::size_t k = 0; k < stumps.size(); ++k) {
+        const DirectionStump& stump = stumps[k];
+        const float* x = columns[k].data() + first;
+        float* weight = weights[stump.part].data();
+        for (std::size_t i = 0; i < count; ++i) weight[i] += x[i] > stump.threshold ? stump.above : stump.below;
+    }
+    return weights;
+}
+
 }  // namespace
 
 DoubledAngle direction_part(const OrientationFields& fields, std::size_t part, std::size_t item) {
@@ -188,22 +205,21 @@ std::vector<DoubledAngle> corrected_directions(const DirectionCorrection& correc
         columns.push_back(features.column(static_cast<std::size_t>(column - which.begin())));
     }
     std::vector<DoubledAngle> directions(rules.size());
-    parallel_for(
-        rules.size(),
-        [&](std::size_t i) {
-            Parts weight{};
-            for (std::size_t k = 0; k < columns.size(); ++k) {
-                const DirectionStump& stump = correction.stumps[k];
-                weight[stump.part] += columns[k][i] > stump.threshold ? stump.above : stump.below;
+    parallel_ranges(rules.size(), k_corrected_together, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t first = begin; first < end; first += k_corrected_together) {
+            const std::size_t count = std::min(k_corrected_together, end - first);
+            const BlockWeights weights = block_weights(correction.stumps, columns, first, count);
+            for (std::size_t i = first; i < first + count; ++i) {
+                DoubledAngle f = correction.rule_weight[static_cast<std::size_t>(segment[i])] * rules[i];
+                for (std::size_t p = 0; p < k_direction_parts; ++p) {
+                    const DoubledAngle v = direction_part(fields, p, i);
+                    const float weight = weights[p][i - first];
+                    f = {f[0] + weight * v[0], f[1] + weight * v[1]};
+                }
+                directions[i] = normalized(f);
             }
-            DoubledAngle f = correction.rule_weight[static_cast<std::size_t>(segment[i])] * rules[i];
-            for (std::size_t p = 0; p < k_direction_parts; ++p) {
-                const DoubledAngle v = direction_part(fields, p, i);
-                f = {f[0] + weight[p] * v[0], f[1] + weight[p] * v[1]};
-            }
-            directions[i] = normalized(f);
-        },
-        1024);
+        }
+    });
     return directions;
 }
 

@@ -1,5 +1,6 @@
 #include "host/hatching/style/familiarity.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,18 +31,22 @@ std::vector<std::uint32_t> numbers_of_names() {
     return numbers;
 }
 
-/// Returns the squared distance from z to the nearest of `samples`.
-float nearest_distance(std::span<const float> samples, const std::array<float, k_names.size()>& z) {
-    float least = std::numeric_limits<float>::max();
+// Rows whose distances are computed together, in the processor's vectors.
+constexpr int k_block = 16;
+using BlockValues = Eigen::Array<float, k_block, 1>;
+
+/// Returns the squared distances from z (feature by feature) to the nearest of `samples`.
+BlockValues nearest_distances(std::span<const float> samples, const std::array<BlockValues, k_names.size()>& z) {
+    BlockValues least = BlockValues::Constant(std::numeric_limits<float>::max());
     for (std::size_t s = 0; s < samples.size(); s += z.size()) {
-        float sum = 0;
-        for (std::size_t k = 0; k < z.size(); ++k) sum += (samples[s + k] - z[k]) * (samples[s + k] - z[k]);
-        least = std::min(least, sum);
+        BlockValues sum = BlockValues::Zero();
+        for (std::size_t k = 0; k < z.size(); ++k) sum += (samples[s + k] - z[k]).square();
+        least = least.min(sum);
     }
     return least;
 }
 
-/// The values of a row, standardized.
+/// The values of rows, standardized.
 class Standardized {
   public:
     Standardized(const Familiarity& familiarity, std::span<const std::uint32_t> which, const FeatureMatrix& features)
@@ -52,11 +57,17 @@ class Standardized {
             columns_.push_back(features.column(static_cast<std::size_t>(column - which.begin())));
         }
     }
-    std::array<float, k_names.size()> operator()(std::size_t row) const {
-        std::array<float, k_names.size()> z;
-        for (std::size_t k = 0; k < z.size(); ++k)
-            z[k] = (columns_[k][row] - familiarity_.offset[k]) * familiarity_.scale[k];
-        return z;
+    float operator()(std::size_t row, std::size_t k) const {
+        return (columns_[k][row] - familiarity_.offset[k]) * familiarity_.scale[k];
+    }
+    /// Returns the squared distances of up to k_block rows to the nearest of `samples`.
+    BlockValues distances(std::span<const float> samples, std::span<const std::uint32_t> rows) const {
+        std::array<BlockValues, k_names.size()> z;
+        for (std::size_t k = 0; k < z.size(); ++k) {
+            z[k].setZero();
+            for (std::size_t i = 0; i < rows.size(); ++i) z[k][static_cast<Eigen::Index>(i)] = (*this)(rows[i], k);
+        }
+        return nearest_distances(samples, z);
     }
 
   private:
@@ -87,8 +98,16 @@ std::vector<float> Familiarity::of(std::span<const std::uint32_t> which, const F
     if (samples.empty()) return out;
     const Standardized z(*this, which, features);
     const float range = 4 * reach * reach;
-    parallel_for(
-        features.rows, [&](std::size_t i) { out[i] = std::exp(-nearest_distance(samples, z(i)) / range); }, 256);
+    std::vector<std::uint32_t> rows(features.rows);
+    std::iota(rows.begin(), rows.end(), 0U);
+    parallel_ranges(features.rows, 16 * k_block, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t first = begin; first < end; first += k_block) {
+            const std::size_t count = std::min<std::size_t>(k_block, end - first);
+            const BlockValues distances = z.distances(samples, std::span(rows).subspan(first, count));
+            for (std::size_t i = 0; i < count; ++i)
+                out[first + i] = std::exp(-distances[static_cast<Eigen::Index>(i)] / range);
+        }
+    });
     return out;
 }
 
@@ -103,15 +122,15 @@ Familiarity learn_familiarity(const FeatureMatrix& features, std::span<const std
     const Standardized z(out, which, features);
     const auto add = [&](std::uint32_t row, std::vector<float>& samples) {
         if (samples.size() >= k_samples * k_names.size()) return;
-        const auto values = z(row);
-        samples.insert(samples.end(), values.begin(), values.end());
+        for (std::size_t k = 0; k < k_names.size(); ++k) samples.push_back(z(row, k));
     };
     std::vector<float> outside;
     for (const std::uint32_t row : order)
         if (!held_out[row]) add(row, outside);
     std::vector<float> distances;
     for (const std::uint32_t row : order)
-        if (held_out[row] && distances.size() < k_samples) distances.push_back(nearest_distance(outside, z(row)));
+        if (held_out[row] && distances.size() < k_samples)
+            distances.push_back(z.distances(outside, std::span(&row, 1))[0]);
     out.reach = std::max(1e-3f, std::sqrt(upper_median(distances)));
     for (const std::uint32_t row : order) add(row, out.samples);
     return out;

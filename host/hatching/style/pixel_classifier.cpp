@@ -23,6 +23,9 @@ struct Patience {
 constexpr Patience k_patience{60, 5}, k_patience_for_details{800, 10};
 // Pixels of a drawing are similar: full steps fit them in a few rounds and generalize worse.
 constexpr double k_shrinkage = 0.3;
+// Rows that are classified together. Memory for hundreds of columns of all pixels would take longer to get than the
+// classification.
+constexpr std::size_t k_rows_at_once = 16384;
 
 /// Sums of the stumps for the held-out rows, updated as stumps are added.
 class HeldOutScores {
@@ -206,8 +209,14 @@ std::vector<float> classify(const CalibratedStumps& classifier, std::span<const 
         std::ranges::fill(probabilities, 1.0f);
         return probabilities;
     }
-    const CompactStumps compact = compact_stumps(classifier.stumps, which, base);
-    scorer.probabilities(compact.classifier, compact.features, classifier.link, classifier.scale, probabilities);
+    const CompactStumps compact = compact_stumps(classifier.stumps, which);
+    FeatureMatrix some;
+    for (std::size_t first = 0; first < base.rows; first += k_rows_at_once) {
+        const std::size_t count = std::min(k_rows_at_once, base.rows - first);
+        expand_columns(compact.columns, base, first, count, some);
+        scorer.probabilities(compact.classifier, some, classifier.link, classifier.scale,
+                             std::span(probabilities).subspan(first * classes, count * classes));
+    }
     return probabilities;
 }
 

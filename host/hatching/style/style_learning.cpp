@@ -149,7 +149,8 @@ class StyleLearning {
 
     /// Returns base features of rows and, with `context`, the contextual features of the last stage.
     FeatureMatrix features_of(std::span<const std::uint32_t> rows, bool context) {
-        FeatureMatrix features = pixels_.scalars(numbers(0, k_pixel_features), rows);
+        FeatureMatrix features = pixels_.scalars(numbers(0, k_pixel_features), rows,
+                                                 context ? contextual_feature_count(style_.rules.size()) : 0);
         if (context)
             features.append(contextual_features(pixels_.surface(), pixels_.gbuffer(), pixels_.pixels(), probabilities_,
                                                 style_.rules.size(), rows));
@@ -194,7 +195,7 @@ class StyleLearning {
         const auto first_context = std::ranges::lower_bound(used, static_cast<std::uint32_t>(k_pixel_features));
         const bool contextual = first_context != used.end();
         ViewFeatures out{{used.begin(), first_context}, {}};
-        out.features = pixels_.scalars(out.which, {});
+        out.features = pixels_.scalars(out.which, {}, contextual ? contextual_feature_count(style_.rules.size()) : 0);
         if (contextual) {
             out.features.append(contextual_features(pixels_.surface(), pixels_.gbuffer(), pixels_.pixels(),
                                                     probabilities_, style_.rules.size(), {}));

@@ -49,7 +49,7 @@ class Prediction {
 
     HatchingPrediction run() {
         which_ = needed_features(style_);
-        features_ = pixels_.scalars(which_, {});
+        features_ = pixels_.scalars(which_, {}, contextual_feature_count(style_.rules.size()));
         done("features");
         const std::vector<float> segments = segment_probabilities();
         const std::vector<float> levels = level_probabilities(style_, which_, features_, scorer_);

@@ -94,6 +94,27 @@ class Hatch(ProgramTest):
         self.refused("hatch", "compare", MESH, "drawing.png", "measured_elsewhere.png", *VIEW, code=1,
                      says="measured_elsewhere.png")
 
+    def test_a_second_drawing_teaches_more(self):
+        """Under another light and from another side: a drawing by the same rule tells what the first one could not."""
+        light = ["hatch", "example", "light", MESH]
+        self.call(*light, *VIEW, "--out", "first.png")
+        self.call("hatch", "template", MESH, "--view", "left", "--size", "420x420", "--light", "0.5,0.3,1", "--out", "left.png")
+        self.call(*light, "--template", "left.png", "--out", "second.png")
+        train = ["hatch", "train", MESH, "first.png", *VIEW]
+        self.call(*train, "--out", "one.safetensors")
+        said = self.call(*train, "--also", MESH, "left.png", "second.png", "--out", "two.safetensors").stdout
+        self.assertIn("Hatching style of first.png, second.png,", said)
+        for style in ("one", "two"):
+            self.call("hatch", "draw", f"{style}.safetensors", MESH, "--template", "left.png", "--curves", "none", "--out", f"{style}.png")
+        self.call("hatch", "compare", MESH, "second.png", "one.png", "two.png", "--template", "left.png", "--json", "taught.json")
+        one, two = json.loads((self.folder / "taught.json").read_text())
+        self.assertGreater(two["level_right"], one["level_right"] + 0.2)
+        self.assertGreater(two["tone"][0], one["tone"][0])
+        self.refused(*train, "--also", MESH, "left.png", "--out", "no.safetensors", code=2, says="--also takes three files a drawing")
+        self.refused(*train, "--also", MESH, "second.png", "second.png", "--out", "no.safetensors", code=1,
+                     says="second.png: the picture tells no view")
+        self.refused(*train, "--mask", "first.png", "second.png", "--out", "no.safetensors", code=2, says="2 masks are given, but 1 drawing")
+
     def test_the_style_is_told_in_words(self):
         result = self.call("hatch", "train", MESH, "drawing.png", *VIEW, "--out", "again.safetensors")
         self.assertIn("learning: 100 in", result.stderr)  # hundredths, whichever steps there were

@@ -1,14 +1,17 @@
-// exemplar hatch train: a style from one drawing.
+// exemplar hatch train: a style from drawings by one hand.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string_view>
+#include <vector>
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/hatch/hatch_reading.h"
 #include "apps/exemplar/hatch/hatch_scene.h"
+#include "host/core/errors.h"
 #include "host/core/progress.h"
 #include "host/core/stopwatch.h"
 #include "host/hatching/style/style_learning.h"
@@ -18,9 +21,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct TrainArguments {
+/// A drawing, and the scene that it shows.
+struct DrawingArguments {
     HatchSceneArguments scene;
-    fs::path drawing, mask, out;
+    fs::path drawing, mask;
+};
+
+struct TrainArguments {
+    DrawingArguments first;
+    std::vector<std::string> also;   // of each further drawing: mesh, view file and drawing
+    std::vector<std::string> masks;  // of the drawings, in their order
+    fs::path out;
     StyleLearningOptions learning;
     CommonOptions common;
 };
@@ -81,28 +92,72 @@ nlohmann::json describe_style(const StyleReport& report, const HatchingStyle& st
             {"seconds", seconds}};
 }
 
+/// Returns all drawings with their masks; checks what can be checked before any work.
+std::vector<DrawingArguments> require_drawings(const TrainArguments& arguments) {
+    std::vector<DrawingArguments> drawings{arguments.first};
+    if (arguments.also.size() % 3 != 0)
+        throw UsageError("--also takes three files a drawing: the mesh, the view that was drawn, and the drawing");
+    for (std::size_t i = 0; i < arguments.also.size(); i += 3) {
+        DrawingArguments& more = drawings.emplace_back();
+        more.scene.mesh = arguments.also[i];
+        more.scene.view_file = arguments.also[i + 1];
+        more.scene.cache = arguments.first.scene.cache;
+        more.drawing = arguments.also[i + 2];
+    }
+    if (arguments.masks.size() > drawings.size())
+        throw UsageError(fmt::format("{} masks are given, but {} drawing{}", arguments.masks.size(), drawings.size(),
+                                     drawings.size() == 1 ? "" : "s"));
+    for (std::size_t i = 0; i < arguments.masks.size(); ++i) drawings[i].mask = arguments.masks[i];
+    for (DrawingArguments& each : drawings) {
+        require_hatch_scene(each.scene);
+        require_input(each.drawing);
+        if (!each.mask.empty()) require_input(each.mask);
+        require_not_replaced(arguments.out, {each.scene.mesh, each.drawing, each.mask});
+    }
+    return drawings;
+}
+
+/// A drawing that was read.
+struct ReadDrawing {
+    std::unique_ptr<HatchScene> scene;
+    DrawingProperties properties;
+};
+
+ReadDrawing read_drawing_of(const DrawingArguments& arguments, const CommonOptions& common,
+                            LearningProgress& progress) {
+    progress.begins("surface");
+    ReadDrawing out{std::make_unique<HatchScene>(arguments.scene, common.device, common.quiet), {}};
+    progress.begins("reading the drawing");
+    PixelFeatures& pixels = out.scene->pixels();
+    out.properties = drawing_properties(read_drawing(arguments.drawing, arguments.scene, pixels, common.quiet).strokes);
+    if (!arguments.mask.empty()) restrict_to(read_mask(arguments.mask, pixels), out.properties);
+    return out;
+}
+
+std::string names_of(std::span<const DrawingArguments> drawings) {
+    std::string names;
+    for (const DrawingArguments& each : drawings)
+        names += (names.empty() ? "" : ", ") + each.drawing.filename().string();
+    return names;
+}
+
 void run_hatch_train(TrainArguments& arguments) {
     const auto limits = apply_common_options(arguments.common);
-    require_hatch_scene(arguments.scene);
-    require_input(arguments.drawing);
-    if (!arguments.mask.empty()) require_input(arguments.mask);
     require_output_file(arguments.out);
-    require_not_replaced(arguments.out, {arguments.scene.mesh, arguments.drawing, arguments.mask});
+    const std::vector<DrawingArguments> drawings = require_drawings(arguments);
     Stopwatch watch;
     LearningProgress progress;
-    HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
-    progress.begins("reading the drawing");
-    const AlignedDrawing drawing =
-        read_drawing(arguments.drawing, arguments.scene, scene.pixels(), arguments.common.quiet);
-    DrawingProperties properties = drawing_properties(drawing.strokes);
-    if (!arguments.mask.empty()) restrict_to(read_mask(arguments.mask, scene.pixels()), properties);
+    std::vector<ReadDrawing> read;
+    for (const DrawingArguments& each : drawings) read.push_back(read_drawing_of(each, arguments.common, progress));
+    std::vector<HatchingExample> examples;
+    for (const ReadDrawing& each : read) examples.push_back({each.scene->pixels(), each.properties});
     const double reading = watch.wall();
     progress.begins("orientation rules");
     StyleReport report;
-    HatchingStyle style = learn_hatching_style(scene.pixels(), properties, scene.tools().scorer, arguments.learning,
-                                               report, [&](const char* step) { progress.begins(step); });
+    HatchingStyle style = learn_hatching_style(examples, read.front().scene->tools().scorer, arguments.learning, report,
+                                               [&](const char* step) { progress.begins(step); });
     progress.finish();
-    style.name = arguments.drawing.filename().string();
+    style.name = names_of(drawings);
     save_hatching_style(arguments.out, style);
     if (!arguments.common.quiet) fmt::print("{}{}\n", describe_hatching_style(style), arguments.out.string());
     write_report(arguments.common, describe_style(report, style, reading));
@@ -112,21 +167,31 @@ void run_hatch_train(TrainArguments& arguments) {
 
 void add_hatch_train_command(Command& hatch) {
     auto arguments = std::make_shared<TrainArguments>();
-    Command* command = hatch.add_subcommand("train", "Learns a style from one drawing of a view");
+    Command* command =
+        hatch.add_subcommand("train", "Learns a style from a drawing of a view, or several by the same hand");
     command->footer(
-        "Example:\n  exemplar hatch train bunny.off traced.png --template bunny.png --out mine.safetensors");
-    command->add_option("MESH", arguments->scene.mesh, "mesh that the drawing shows")->required()->type_name("");
-    command->add_option("DRAWING", arguments->drawing, "the drawing (PNG or JPEG)")->required()->type_name("");
+        "Examples:\n  exemplar hatch train bunny.off traced.png --template bunny.png --out mine.safetensors\n  "
+        "exemplar "
+        "hatch train bunny.off traced.png --template bunny.png --also cow.off cow.png cow_drawn.png --out "
+        "mine.safetensors");
+    DrawingArguments& first = arguments->first;
+    command->add_option("MESH", first.scene.mesh, "mesh that the drawing shows")->required()->type_name("");
+    command->add_option("DRAWING", first.drawing, "the drawing (PNG or JPEG)")->required()->type_name("");
     command
-        ->add_option("--mask", arguments->mask,
+        ->add_option("--also", arguments->also,
+                     "another drawing by the same hand: its mesh, the view that it was made for (as --template), and "
+                     "the drawing")
+        ->type_name("MESH VIEW DRAWING");
+    command
+        ->add_option("--mask", arguments->masks,
                      "picture of the view, white where to learn from the drawing (PNG): black hides a signature, a "
-                     "shadow, a slip of the pen")
+                     "shadow, a slip of the pen; with --also, one for each drawing in order")
         ->type_name("FILE");
     command->add_option("--out", arguments->out, "style file to write")->required()->type_name("FILE");
     command->add_option("--seed", arguments->learning.seed, "of all random choices")
         ->capture_default_str()
         ->check(whole_number(0));
-    add_template_option(*command, arguments->scene, add_hatch_scene_options(*command, arguments->scene));
+    add_template_option(*command, first.scene, add_hatch_scene_options(*command, first.scene));
     add_device_option(*command, arguments->common);
     add_common_options(*command, arguments->common);
     command->callback([arguments] { run_hatch_train(*arguments); });

@@ -20,8 +20,8 @@ struct StrokeDirectionsOfLayers {
 StrokeDirectionsOfLayers directions_of(const CorrectedStrokes& strokes, const OrientationFields& fields) {
     StrokeDirectionsOfLayers out;
     for (std::size_t i = 0; i < strokes.rows.size(); ++i) {
-        const std::uint32_t pixel = strokes.pixels.pixels().pixel[strokes.rows[i]];
-        out.stroke.push_back(doubled_angle(strokes.drawing.orientation[pixel]));
+        const std::uint32_t row = strokes.rows[i];
+        out.stroke.push_back(doubled_angle(strokes.views.drawing_of(row).orientation[strokes.views.pixel_of(row)]));
         for (std::size_t j = 0; j < k_hatch_layers; ++j)
             out.rule[j].push_back(
                 strokes.rules[static_cast<std::size_t>(strokes.segment[i])].function[j].evaluate(fields, i));
@@ -33,7 +33,8 @@ StrokeDirectionsOfLayers directions_of(const CorrectedStrokes& strokes, const Or
 std::vector<std::size_t> layers_of(const CorrectedStrokes& strokes, const StrokeDirectionsOfLayers& directions) {
     std::vector<std::size_t> layers(strokes.rows.size());
     for (std::size_t i = 0; i < layers.size(); ++i) {
-        if (strokes.drawing.level[strokes.pixels.pixels().pixel[strokes.rows[i]]] != k_cross_hatching) continue;
+        const std::uint32_t row = strokes.rows[i];
+        if (strokes.views.drawing_of(row).level[strokes.views.pixel_of(row)] != k_cross_hatching) continue;
         const DoubledAngle &stroke = directions.stroke[i], &second_rule = directions.rule[1][i];
         const float first = squared_distance(stroke, directions.rule[0][i]);
         const float second = second_rule == DoubledAngle{} ? 4 - first : squared_distance(stroke, second_rule);
@@ -49,8 +50,8 @@ std::vector<std::uint32_t> all_pixel_features() {
 }
 
 /// Returns the features that corrections are learned from.
-QuantizedFeatures quantized_features(PixelFeatures& pixels, std::span<const std::uint32_t> rows) {
-    QuantizedFeatures quantized = quantize(pixels.scalars(all_pixel_features(), rows), {}, {});
+QuantizedFeatures quantized_features(const HatchingExamples& views, std::span<const std::uint32_t> rows) {
+    QuantizedFeatures quantized = quantize(views.scalars(all_pixel_features(), rows), {}, {});
     // Depth tells where in this picture a pixel is, which means nothing in another view.
     const auto depth = std::ranges::find(pixel_feature_names(), std::string("image.depth"));
     quantized.thresholds[static_cast<std::size_t>(depth - pixel_feature_names().begin())].clear();
@@ -71,10 +72,10 @@ LearnedCorrection correction_of(std::size_t layer, const CorrectedStrokes& strok
         segments.push_back(strokes.segment[i]);
     }
     if (rows.size() < k_min_layer_pixels) return {};
-    const QuantizedFeatures features = quantized_features(strokes.pixels, rows);
-    const OrientationFields fields = strokes.pixels.orientations(rows);
+    const QuantizedFeatures features = quantized_features(strokes.views, rows);
+    const OrientationFields fields = strokes.views.orientations(rows);
     return learn_correction({features, fields, targets, rules, segments, strokes.rules.size(),
-                             held_out_patches(strokes.pixels, strokes.drawing, rows, strokes.seed + 1), strokes.seed},
+                             held_out_patches(strokes.views, rows, strokes.seed + 1), strokes.seed},
                             progress);
 }
 
@@ -82,7 +83,7 @@ LearnedCorrection correction_of(std::size_t layer, const CorrectedStrokes& strok
 
 std::array<LearnedCorrection, k_hatch_layers> learn_corrections(const CorrectedStrokes& strokes,
                                                                 const std::function<void()>& progress) {
-    const OrientationFields fields = strokes.pixels.orientations(strokes.rows);
+    const OrientationFields fields = strokes.views.orientations(strokes.rows);
     StrokeDirectionsOfLayers directions = directions_of(strokes, fields);
     const std::vector<std::size_t> layers = layers_of(strokes, directions);
     std::array<LearnedCorrection, k_hatch_layers> out;
@@ -91,7 +92,7 @@ std::array<LearnedCorrection, k_hatch_layers> learn_corrections(const CorrectedS
     if (!out[0].correction.empty()) {
         const std::vector<std::uint32_t> which = all_pixel_features();
         first = corrected_directions(out[0].correction, first, strokes.segment, fields, which,
-                                     strokes.pixels.scalars(which, strokes.rows));
+                                     strokes.views.scalars(which, strokes.rows));
     }
     cross_at_right_angles(first, directions.rule[1]);
     out[1] = correction_of(1, strokes, directions, layers, progress);

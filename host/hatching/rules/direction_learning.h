@@ -6,19 +6,17 @@
 #include <span>
 #include <vector>
 
-#include "host/hatching/features/pixel_features.h"
 #include "host/hatching/fields/hatching_fields.h"
-#include "host/hatching/measurement/drawing_properties.h"
 #include "host/hatching/rules/direction_correction.h"
+#include "host/hatching/rules/hatching_examples.h"
 #include "host/hatching/rules/orientation_mixture.h"
 
 namespace exemplar {
 
 /// Input of learn_corrections(): strokes, and the rules that their segments have.
 struct CorrectedStrokes {
-    PixelFeatures& pixels;
-    const DrawingProperties& drawing;
-    std::span<const std::uint32_t> rows;     ///< rows of covered pixels on center lines
+    const HatchingExamples& views;
+    std::span<const std::uint32_t> rows;     ///< on center lines
     std::span<const std::int32_t> segment;   ///< of each row, as a prediction would have it
     std::span<const OrientationRule> rules;  ///< per segment
     std::uint64_t seed;

@@ -42,21 +42,15 @@ std::vector<std::uint32_t> numbers(std::size_t first, std::size_t end) {
 
 class StyleLearning {
   public:
-    StyleLearning(PixelFeatures& pixels, const DrawingProperties& drawing, StumpScorer& scorer,
-                  const StyleLearningOptions& options, StyleReport& report,
-                  const std::function<void(const char*)>& progress)
-        : pixels_(pixels),
-          drawing_(drawing),
-          scorer_(scorer),
-          options_(options),
-          report_(report),
-          progress_(progress) {}
+    StyleLearning(std::span<const HatchingExample> views, StumpScorer& scorer, const StyleLearningOptions& options,
+                  StyleReport& report, const std::function<void(const char*)>& progress)
+        : views_(views), scorer_(scorer), options_(options), report_(report), progress_(progress) {}
 
     HatchingStyle run() {
-        style_.width = drawing_.width;
-        style_.taper = drawing_.taper;
-        style_.outline_width = drawing_.outline_width;
-        style_.height = drawing_.height;
+        const DrawingProperties& first = views_.views().front().drawing;
+        style_.width = first.width;
+        style_.height = first.height;
+        learn_pen();
         learn_rules();
         done("orientations");
         learn_segments();
@@ -81,16 +75,35 @@ class StyleLearning {
         check_interrupt();
     }
 
-    std::uint32_t pixel(std::uint32_t row) const { return pixels_.pixels().pixel[row]; }
+    /// The value of a row in an image of its drawing.
+    template <typename Value>
+    Value at(std::uint32_t row, const std::vector<Value> DrawingProperties::*image) const {
+        return (views_.drawing_of(row).*image)[views_.pixel_of(row)];
+    }
+    float property_at(std::uint32_t row, std::size_t property) const {
+        return views_.drawing_of(row).property[property][views_.pixel_of(row)];
+    }
 
-    /// Rows of covered pixels that pass a test of their pixel.
+    /// Rows that pass a test of their drawing and pixel.
     template <typename Test>
     std::vector<std::uint32_t> rows_where(Test&& test) const {
         std::vector<std::uint32_t> rows;
-        for (std::uint32_t row = 0; row < pixels_.size(); ++row) {
-            if (test(pixel(row))) rows.push_back(row);
+        for (std::uint32_t row = 0; row < views_.size(); ++row) {
+            if (test(views_.drawing_of(row), views_.pixel_of(row))) rows.push_back(row);
         }
         return rows;
+    }
+
+    /// Strokes end, and outlines are as wide, as in the drawings on average.
+    void learn_pen() {
+        float outlined = 0;
+        style_.taper = 0;
+        for (const auto& [pixels, drawing] : views_.views()) {
+            style_.taper += drawing.taper / static_cast<float>(views_.views().size());
+            style_.outline_width += drawing.outline_width;
+            outlined += drawing.outline_width > 0 ? 1 : 0;
+        }
+        style_.outline_width /= std::max(outlined, 1.0f);
     }
 
     std::vector<std::uint8_t> held_out(std::span<const std::uint32_t> rows, std::span<const std::int32_t> labels,
@@ -98,32 +111,40 @@ class StyleLearning {
         std::vector<std::uint16_t> x, y;
         std::vector<std::uint32_t> group;
         for (std::size_t i = 0; i < rows.size(); ++i) {
-            x.push_back(static_cast<std::uint16_t>(pixel(rows[i]) % static_cast<std::uint32_t>(drawing_.width)));
-            y.push_back(static_cast<std::uint16_t>(pixel(rows[i]) / static_cast<std::uint32_t>(drawing_.width)));
-            group.push_back(labels.empty() ? 0 : static_cast<std::uint32_t>(labels[i]));
+            const auto [at_x, at_y] = views_.place_of(rows[i]);
+            x.push_back(at_x);
+            y.push_back(at_y);
+            const std::size_t label = labels.empty() ? 0 : static_cast<std::size_t>(labels[i]);
+            group.push_back(static_cast<std::uint32_t>(label * views_.views().size() + views_.view_of(rows[i])));
         }
         return held_out_rectangles(x, y, group, k_held_out, seed);
     }
 
-    /// Returns the quarter of each row: left or right, upper or lower half, split at the medians of the rows.
+    /// Returns the quarter of each row in its view: left or right, upper or lower half, split at the medians of the
+    /// view's rows.
     std::vector<std::uint8_t> quarters(std::span<const std::uint32_t> rows) const {
-        const auto width = static_cast<std::uint32_t>(drawing_.width);
-        std::vector<std::uint32_t> x, y;
-        for (const std::uint32_t row : rows) {
-            x.push_back(pixel(row) % width);
-            y.push_back(pixel(row) / width);
-        }
-        const auto middle = [](std::vector<std::uint32_t> values) { return upper_median(values); };
-        const std::uint32_t middle_x = middle(x), middle_y = middle(y);
+        const auto middle = [](std::vector<std::uint16_t> values) { return upper_median(values); };
         std::vector<std::uint8_t> quarter(rows.size());
-        for (std::size_t i = 0; i < rows.size(); ++i)
-            quarter[i] = static_cast<std::uint8_t>((x[i] < middle_x ? 0 : 1) + (y[i] < middle_y ? 0 : 2));
+        for (std::size_t view = 0; view < views_.views().size(); ++view) {
+            const std::vector<std::uint32_t> positions = views_.rows_of_view(rows, view).position;
+            if (positions.empty()) continue;
+            std::vector<std::uint16_t> x, y;
+            for (const std::uint32_t i : positions) {
+                x.push_back(views_.place_of(rows[i])[0]);
+                y.push_back(views_.place_of(rows[i])[1]);
+            }
+            const std::uint16_t middle_x = middle(x), middle_y = middle(y);
+            for (std::size_t k = 0; k < positions.size(); ++k)
+                quarter[positions[k]] =
+                    static_cast<std::uint8_t>((x[k] < middle_x ? 0 : 1) + (y[k] < middle_y ? 0 : 2));
+        }
         return quarter;
     }
 
     void learn_rules() {
-        const std::vector<std::uint32_t> all = rows_where(
-            [&](std::uint32_t p) { return drawing_.center[p] && !drawing_.crossing[p] && drawing_.level[p] > 0; });
+        const std::vector<std::uint32_t> all = rows_where([](const DrawingProperties& drawing, std::uint32_t p) {
+            return drawing.center[p] && !drawing.crossing[p] && drawing.level[p] > 0;
+        });
         if (all.size() < k_min_samples)
             throw DataError(
                 fmt::format("the drawing has strokes on only {} pixels of the object; is it of this view, and aligned?",
@@ -131,14 +152,14 @@ class StyleLearning {
         rule_rows_ = sample_rows(all, options_.orientation_samples, options_.seed);
         OrientationSamples samples;
         for (const std::uint32_t row : rule_rows_) {
-            const std::uint32_t p = pixel(row);
-            samples.x.push_back(static_cast<std::uint16_t>(p % static_cast<std::uint32_t>(drawing_.width)));
-            samples.y.push_back(static_cast<std::uint16_t>(p / static_cast<std::uint32_t>(drawing_.width)));
-            samples.direction.push_back(doubled_angle(drawing_.orientation[p]));
-            samples.level.push_back(drawing_.level[p]);
-            samples.spacing.push_back(drawing_.property[static_cast<std::size_t>(StrokeProperty::spacing)][p]);
+            const auto [x, y] = views_.place_of(row);
+            samples.x.push_back(x);
+            samples.y.push_back(y);
+            samples.direction.push_back(doubled_angle(at(row, &DrawingProperties::orientation)));
+            samples.level.push_back(at(row, &DrawingProperties::level));
+            samples.spacing.push_back(property_at(row, static_cast<std::size_t>(StrokeProperty::spacing)));
         }
-        samples.fields = pixels_.orientations(rule_rows_);
+        samples.fields = views_.orientations(rule_rows_);
         OrientationMixture mixture =
             learn_mixture(samples, {.seed = options_.seed}, [&] { progress_("orientation rules"); });
         style_.rules = std::move(mixture.rules);
@@ -149,12 +170,35 @@ class StyleLearning {
 
     /// Returns base features of rows and, with `context`, the contextual features of the last stage.
     FeatureMatrix features_of(std::span<const std::uint32_t> rows, bool context) {
-        FeatureMatrix features = pixels_.scalars(numbers(0, k_pixel_features), rows,
-                                                 context ? contextual_feature_count(style_.rules.size()) : 0);
-        if (context)
-            features.append(contextual_features(pixels_.surface(), pixels_.gbuffer(), pixels_.pixels(), probabilities_,
-                                                style_.rules.size(), rows));
+        FeatureMatrix features = views_.scalars(numbers(0, k_pixel_features), rows,
+                                                context ? contextual_feature_count(style_.rules.size()) : 0);
+        if (context) features.append(context_of(rows));
         return features;
+    }
+
+    /// Returns the contextual features of rows.
+    FeatureMatrix context_of(std::span<const std::uint32_t> rows) const {
+        FeatureMatrix out;
+        out.rows = rows.size();
+        for (std::string& name : contextual_feature_names(style_.rules.size())) out.add(std::move(name));
+        for (std::size_t view = 0; view < views_.views().size(); ++view) {
+            const HatchingExamples::RowsOfView some = views_.rows_of_view(rows, view);
+            if (some.row.empty()) continue;
+            const FeatureMatrix of_view = context_of_view(view, some.row);
+            for (std::size_t k = 0; k < out.cols(); ++k) {
+                for (std::size_t i = 0; i < some.position.size(); ++i)
+                    out.column(k)[some.position[i]] = of_view.column(k)[i];
+            }
+        }
+        return out;
+    }
+
+    /// Returns the contextual features of rows of a view, of all if there are none.
+    FeatureMatrix context_of_view(std::size_t view, std::span<const std::uint32_t> rows) const {
+        PixelFeatures& pixels = views_.views()[view].pixels;
+        const std::size_t labels = style_.rules.size();
+        return contextual_features(pixels.surface(), pixels.gbuffer(), pixels.pixels(),
+                                   of_view(view, std::span<const float>(probabilities_), labels), labels, rows);
     }
 
     void learn_segments() {
@@ -183,22 +227,22 @@ class StyleLearning {
         }
     }
 
-    /// Features of all pixels.
+    /// Features of all pixels of a view.
     struct ViewFeatures {
         std::vector<std::uint32_t> which;  // the base feature of each column
         FeatureMatrix features;
     };
-    /// Returns the features of all pixels that are used; all contextual ones if any is.
-    ViewFeatures view_features(std::vector<std::uint32_t> used) {
+    /// Returns the features of all pixels of a view that are used; all contextual ones if any is.
+    ViewFeatures view_features(std::size_t view, std::vector<std::uint32_t> used) const {
         std::ranges::sort(used);
         used.erase(std::unique(used.begin(), used.end()), used.end());
         const auto first_context = std::ranges::lower_bound(used, static_cast<std::uint32_t>(k_pixel_features));
         const bool contextual = first_context != used.end();
         ViewFeatures out{{used.begin(), first_context}, {}};
-        out.features = pixels_.scalars(out.which, {}, contextual ? contextual_feature_count(style_.rules.size()) : 0);
+        PixelFeatures& pixels = views_.views()[view].pixels;
+        out.features = pixels.scalars(out.which, {}, contextual ? contextual_feature_count(style_.rules.size()) : 0);
         if (contextual) {
-            out.features.append(contextual_features(pixels_.surface(), pixels_.gbuffer(), pixels_.pixels(),
-                                                    probabilities_, style_.rules.size(), {}));
+            out.features.append(context_of_view(view, {}));
             for (const std::uint32_t k :
                  numbers(k_pixel_features, k_pixel_features + contextual_feature_count(style_.rules.size())))
                 out.which.push_back(k);
@@ -208,23 +252,38 @@ class StyleLearning {
 
     /// Probabilities of all pixels, for contextual features and cuts.
     std::vector<float> view_probabilities(const CalibratedStumps& classifier) {
-        const ViewFeatures view = view_features(used_features(classifier.stumps));
-        return classify(classifier, view.which, view.features, scorer_);
+        return of_all_views([&](std::size_t v) {
+            const ViewFeatures view = view_features(v, used_features(classifier.stumps));
+            return classify(classifier, view.which, view.features, scorer_);
+        });
+    }
+
+    /// Returns the values of all views, one after the other.
+    template <typename ValuesOfView>
+    std::vector<float> of_all_views(ValuesOfView&& values_of_view) const {
+        std::vector<float> all;
+        for (std::size_t view = 0; view < views_.views().size(); ++view) {
+            const std::vector<float> values = values_of_view(view);
+            all.insert(all.end(), values.begin(), values.end());
+        }
+        return all;
     }
 
     std::vector<float> view_level_probabilities() {
         std::vector<std::uint32_t> used = familiar_features();
         for (const CalibratedStumps* classifier : {&style_.levels, &style_.rough_levels})
             for (const std::uint32_t feature : used_features(classifier->stumps)) used.push_back(feature);
-        const ViewFeatures view = view_features(used);
-        return level_probabilities(style_, view.which, view.features, scorer_);
+        return of_all_views([&](std::size_t v) {
+            const ViewFeatures view = view_features(v, used);
+            return level_probabilities(style_, view.which, view.features, scorer_);
+        });
     }
 
     void learn_boundary() {
-        std::vector<std::uint32_t> on =
-            rows_where([&](std::uint32_t p) { return drawing_.known[p] && drawing_.boundary[p]; });
-        std::vector<std::uint32_t> off =
-            rows_where([&](std::uint32_t p) { return drawing_.known[p] && !drawing_.boundary[p]; });
+        std::vector<std::uint32_t> on = rows_where(
+            [](const DrawingProperties& drawing, std::uint32_t p) { return drawing.known[p] && drawing.boundary[p]; });
+        std::vector<std::uint32_t> off = rows_where(
+            [](const DrawingProperties& drawing, std::uint32_t p) { return drawing.known[p] && !drawing.boundary[p]; });
         style_.boundary.stumps.class_count = 2;
         if (on.size() < k_min_samples || off.size() < k_min_samples) return;
         on = sample_rows(std::move(on), options_.samples / 2, options_.seed + 4);
@@ -237,7 +296,7 @@ class StyleLearning {
         std::vector<float> weights(on.size(), static_cast<float>(off.size()) / static_cast<float>(on.size()));
         weights.resize(rows.size(), 1.0f);
         const std::size_t first = k_pixel_features - k_line_features;
-        const FeatureMatrix features = pixels_.scalars(numbers(first, k_pixel_features), rows);
+        const FeatureMatrix features = views_.scalars(numbers(first, k_pixel_features), rows);
         LearnedClassifier learned = learn_classifier(
             {features, labels, weights, held_out(rows, labels, options_.seed + 6), 2, true, 300, options_.seed + 7},
             [&] { progress_("boundaries"); });
@@ -249,27 +308,64 @@ class StyleLearning {
 
     /// Learns the CRF parameters of segments and of levels.
     void learn_cuts() {
-        const std::vector<float> both = view_probabilities(style_.boundary);
-        std::vector<float> boundary(both.size() / 2);
-        for (std::size_t i = 0; i < boundary.size(); ++i) boundary[i] = both[2 * i + 1];
-        PixelCrf crf(pixels_.pixels(), drawing_.width, boundary);
-        segment_cut_.assign(pixels_.size(), 0);
+        std::vector<PixelCrf> cuts = boundary_cuts();
+        segment_cut_.assign(views_.size(), 0);
         if (style_.rules.size() > 1) {
-            style_.segment_crf = learn_crf(crf, probabilities_, style_.rules.size(),
+            style_.segment_crf = learn_crf(cuts, probabilities_, style_.rules.size(),
                                            [&](std::span<const std::int32_t> labels) { return segment_error(labels); });
-            segment_cut_ = crf.solve(probabilities_, style_.rules.size(), style_.segment_crf);
+            segment_cut_ = solve_all(cuts, probabilities_, style_.rules.size(), style_.segment_crf);
         }
-        style_.level_crf = learn_crf(crf, view_level_probabilities(), 3,
+        style_.level_crf = learn_crf(cuts, view_level_probabilities(), 3,
                                      [&](std::span<const std::int32_t> labels) { return level_error(labels); });
+    }
+
+    /// Returns the graph of each view, with the probabilities of boundaries.
+    std::vector<PixelCrf> boundary_cuts() {
+        const std::vector<float> both = view_probabilities(style_.boundary);
+        std::vector<PixelCrf> cuts;
+        cuts.reserve(views_.views().size());
+        for (std::size_t view = 0; view < views_.views().size(); ++view) {
+            const auto& [pixels, drawing] = views_.views()[view];
+            std::vector<float> boundary(pixels.size());
+            for (std::size_t i = 0; i < boundary.size(); ++i) boundary[i] = both[2 * (views_.first_row(view) + i) + 1];
+            cuts.emplace_back(pixels.pixels(), drawing.width, boundary);
+        }
+        return cuts;
+    }
+
+    /// Labels the pixels of all views.
+    std::vector<std::int32_t> solve_all(std::vector<PixelCrf>& cuts, std::span<const float> probabilities,
+                                        std::size_t classes, const PixelCrfParameters& parameters) const {
+        std::vector<std::int32_t> labels;
+        for (std::size_t view = 0; view < cuts.size(); ++view) {
+            const std::vector<std::int32_t> some =
+                cuts[view].solve(of_view(view, probabilities, classes), classes, parameters);
+            labels.insert(labels.end(), some.begin(), some.end());
+        }
+        return labels;
+    }
+
+    /// Returns the values of a view's rows, of which each has so many.
+    template <typename Value>
+    std::span<const Value> of_view(std::size_t view, std::span<const Value> values, std::size_t per_row) const {
+        return values.subspan(views_.first_row(view) * per_row, views_.views()[view].pixels.size() * per_row);
+    }
+
+    /// Returns how well boundaries between labels agree with those of the drawings: the mean over views by their size.
+    double boundary_agreement(std::span<const PixelCrf> cuts, std::span<const std::int32_t> labels) const {
+        double sum = 0;
+        for (std::size_t view = 0; view < cuts.size(); ++view)
+            sum += cuts[view].boundary_agreement(of_view(view, labels, 1)) *
+                   static_cast<double>(views_.views()[view].pixels.size());
+        return sum / static_cast<double>(views_.size());
     }
 
     /// Learns where strokes depart from the rules of the segments that the cut gives their pixels.
     void learn_directions() {
         std::vector<std::int32_t> segment;
         for (const std::uint32_t row : rule_rows_) segment.push_back(segment_cut_[row]);
-        const auto learned =
-            learn_corrections({pixels_, drawing_, rule_rows_, segment, style_.rules, options_.seed + 13},
-                              [&] { progress_("corrections"); });
+        const auto learned = learn_corrections({views_, rule_rows_, segment, style_.rules, options_.seed + 13},
+                                               [&] { progress_("corrections"); });
         for (std::size_t j = 0; j < k_hatch_layers; ++j) {
             style_.corrections[j] = learned[j].correction;
             report_.direction_errors[j] = {learned[j].rule_error, learned[j].error};
@@ -279,7 +375,7 @@ class StyleLearning {
     /// Selects parameters by Eq. 4.16, as a mean over boundary pixels: the sum in the thesis grows with every
     /// boundary, so that noise would win. `error` returns the share of labels that differ from the drawing.
     template <typename Error>
-    PixelCrfParameters learn_crf(PixelCrf& crf, std::span<const float> probabilities, std::size_t classes,
+    PixelCrfParameters learn_crf(std::vector<PixelCrf>& cuts, std::span<const float> probabilities, std::size_t classes,
                                  const Error& error) {
         struct CrfTrial {
             PixelCrfParameters parameters;
@@ -288,8 +384,8 @@ class StyleLearning {
         std::vector<CrfTrial> trials;
         for (const float strength : {0.3f, 1.0f, 3.0f}) {
             for (const float offset : {-0.7f, -1.5f, -3.0f}) {
-                const auto labels = crf.solve(probabilities, classes, {strength, offset});
-                trials.push_back({{strength, offset}, crf.boundary_agreement(labels), error(labels)});
+                const auto labels = solve_all(cuts, probabilities, classes, {strength, offset});
+                trials.push_back({{strength, offset}, boundary_agreement(cuts, labels), error(labels)});
                 progress_("label cuts");
             }
         }
@@ -308,8 +404,8 @@ class StyleLearning {
     double level_error(std::span<const std::int32_t> labels) const {
         double wrong = 0, all = 0;
         for (std::uint32_t row = 0; row < labels.size(); ++row) {
-            if (!drawing_.known[pixel(row)]) continue;
-            wrong += labels[row] != drawing_.level[pixel(row)] ? 1 : 0;
+            if (!at(row, &DrawingProperties::known)) continue;
+            wrong += labels[row] != at(row, &DrawingProperties::level) ? 1 : 0;
             all += 1;
         }
         return all > 0 ? wrong / all : 0;
@@ -317,13 +413,14 @@ class StyleLearning {
 
     void learn_levels() {
         const std::vector<std::uint32_t> rows = sample_rows(
-            rows_where([&](std::uint32_t p) { return drawing_.known[p] != 0; }), options_.samples, options_.seed + 8);
+            rows_where([](const DrawingProperties& drawing, std::uint32_t p) { return drawing.known[p] != 0; }),
+            options_.samples, options_.seed + 8);
         std::vector<std::int32_t> labels;
         labels.reserve(rows.size());
-        for (const std::uint32_t row : rows) labels.push_back(drawing_.level[pixel(row)]);
+        for (const std::uint32_t row : rows) labels.push_back(at(row, &DrawingProperties::level));
         const FeatureMatrix features = features_of(rows, true);
         const auto progress = [&] { progress_("hatching levels"); };
-        const std::vector<std::uint8_t> patches = held_out_patches(pixels_, drawing_, rows, options_.seed + 14);
+        const std::vector<std::uint8_t> patches = held_out_patches(views_, rows, options_.seed + 14);
         const LearnedClassifier detailed =
             learn_classifier({features, labels, {}, patches, 3, false, 4000, options_.seed + 10, true}, progress);
         // Far from the drawing, a classifier decides that was stopped when large held-out rectangles fitted best.
@@ -338,9 +435,9 @@ class StyleLearning {
 
     void learn_property_of(StrokeProperty property) {
         const auto p = static_cast<std::size_t>(property);
-        const std::vector<float>& values = drawing_.property[p];
-        std::vector<std::uint32_t> rows = rows_where(
-            [&](std::uint32_t at) { return drawing_.center[at] && drawing_.level[at] > 0 && values[at] > 0; });
+        std::vector<std::uint32_t> rows = rows_where([&](const DrawingProperties& drawing, std::uint32_t pixel) {
+            return drawing.center[pixel] && drawing.level[pixel] > 0 && drawing.property[p][pixel] > 0;
+        });
         if (property == StrokeProperty::length) rows = rather_uncrossed(std::move(rows));
         if (rows.size() < k_min_samples)
             throw DataError(fmt::format("the {} of strokes is known at only {} pixels; the drawing has too few",
@@ -348,7 +445,7 @@ class StyleLearning {
         rows = sample_rows(std::move(rows), options_.samples, options_.seed + 11);
         std::vector<float> target;
         target.reserve(rows.size());
-        for (const std::uint32_t row : rows) target.push_back(values[pixel(row)]);
+        for (const std::uint32_t row : rows) target.push_back(property_at(row, p));
         const FeatureMatrix features = features_of(rows, true);
         const QuantizedFeatures quantized = quantize(features, {}, {});
         const LearnedProperty learned =
@@ -365,7 +462,7 @@ class StyleLearning {
     std::vector<std::uint32_t> rather_uncrossed(std::vector<std::uint32_t> rows) const {
         std::vector<std::uint32_t> uncrossed;
         for (const std::uint32_t row : rows)
-            if (!drawing_.crossed[pixel(row)]) uncrossed.push_back(row);
+            if (!at(row, &DrawingProperties::crossed)) uncrossed.push_back(row);
         return uncrossed.size() < std::max(k_min_samples, rows.size() / 20) ? rows : uncrossed;
     }
 
@@ -379,7 +476,7 @@ class StyleLearning {
         for (std::size_t i = 0; i < target.size(); ++i) {
             const float predicted = model.evaluate(
                 [&](std::uint32_t k) { return power_of(features.column(k / k_powers)[i], k % k_powers); });
-            ratios.emplace_back(target[i] / predicted, drawing_.bounded[pixel(rows[i])] == 0);
+            ratios.emplace_back(target[i] / predicted, at(rows[i], &DrawingProperties::bounded) == 0);
         }
         std::ranges::sort(ratios);
         double longer = 1;
@@ -390,8 +487,7 @@ class StyleLearning {
         return ratios.back().first;
     }
 
-    PixelFeatures& pixels_;
-    const DrawingProperties& drawing_;
+    HatchingExamples views_;
     StumpScorer& scorer_;
     const StyleLearningOptions& options_;
     StyleReport& report_;
@@ -406,13 +502,10 @@ class StyleLearning {
 
 }  // namespace
 
-HatchingStyle learn_hatching_style(PixelFeatures& pixels, const DrawingProperties& drawing, StumpScorer& scorer,
+HatchingStyle learn_hatching_style(std::span<const HatchingExample> views, StumpScorer& scorer,
                                    const StyleLearningOptions& options, StyleReport& report,
                                    const std::function<void(const char*)>& progress) {
-    if (drawing.width != pixels.view().width || drawing.height != pixels.view().height)
-        throw UsageError(fmt::format("the drawing has {} x {} pixels, the view {} x {}", drawing.width, drawing.height,
-                                     pixels.view().width, pixels.view().height));
-    return StyleLearning(pixels, drawing, scorer, options, report, progress).run();
+    return StyleLearning(views, scorer, options, report, progress).run();
 }
 
 }  // namespace exemplar

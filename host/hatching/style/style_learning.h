@@ -3,11 +3,11 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "host/hatching/features/pixel_features.h"
-#include "host/hatching/measurement/drawing_properties.h"
+#include "host/hatching/rules/hatching_examples.h"
 #include "host/hatching/style/hatching_style.h"
 #include "host/learn/boosting/boosted_stumps.h"
 
@@ -31,11 +31,18 @@ struct StyleReport {
     std::vector<std::pair<std::string, double>> seconds;
 };
 
-/// Learns a style (thesis Sec. 4.4). Calls `progress` often, with the name of the current step. Deterministic.
-/// Throws DataError if the drawing has too few strokes on the object, UsageError if its images differ in size from
-/// the view, and Interrupted at Ctrl-C.
+/// Learns a style (thesis Sec. 4.4) from one or more drawings by the same hand. Thickness, spacing and length are in
+/// the pixels of each view. Calls `progress` often, with the name of the current step. Deterministic. Throws DataError
+/// if the drawings have too few strokes on the objects, UsageError as HatchingExamples does, and Interrupted at Ctrl-C.
 HatchingStyle learn_hatching_style(
-    PixelFeatures& pixels, const DrawingProperties& drawing, StumpScorer& scorer, const StyleLearningOptions& options,
+    std::span<const HatchingExample> views, StumpScorer& scorer, const StyleLearningOptions& options,
     StyleReport& report, const std::function<void(const char*)>& progress = [](const char*) {});
+/// Learns from one drawing.
+inline HatchingStyle learn_hatching_style(
+    PixelFeatures& pixels, const DrawingProperties& drawing, StumpScorer& scorer, const StyleLearningOptions& options,
+    StyleReport& report, const std::function<void(const char*)>& progress = [](const char*) {}) {
+    const HatchingExample view{pixels, drawing};
+    return learn_hatching_style(std::span(&view, 1), scorer, options, report, progress);
+}
 
 }  // namespace exemplar

@@ -145,13 +145,14 @@ StylePointer train_hatching(Scene& scene, const py::object& drawing, std::uint64
     }));
 }
 
-HatchedPointer draw_hatching(Scene& scene, const HatchingStyle& style, const std::vector<std::string>& curves,
+HatchedPointer draw_hatching(Scene& scene, HatchingStyle style, const std::vector<std::string>& curves,
                              std::optional<double> taper, bool tone, std::uint64_t seed) {
     if (taper) require_range("taper", *taper, 0, 1000);
     const std::vector<LineType> types = line_types_of(curves);
     HatchingOptions options;
     options.strokes.seed = seed;
     options.matches_tone = tone;
+    style.resize(scene.view().width, scene.view().height);
     return std::make_shared<Hatched>(scene.use([&](PixelFeatures& pixels) {
         const ViewHatching hatching = hatch_view(style, pixels, scene.tools(), options);
         Hatched result{

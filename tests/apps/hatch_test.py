@@ -94,6 +94,20 @@ class Hatch(ProgramTest):
         self.refused("hatch", "compare", MESH, "drawing.png", "measured_elsewhere.png", *VIEW, code=1,
                      says="measured_elsewhere.png")
 
+    def test_the_size_of_a_picture_is_its_sharpness(self):
+        draw = ["hatch", "draw", "style.safetensors", MESH, "--curves", "none"]
+        self.call(*draw, *VIEW, "--out", "as_drawn.png")
+        self.call(*draw, *VIEW, "--seed", "2", "--out", "again.png")
+        self.call(*draw, "--size", "1000x920", "--out", "twice.png")
+        self.call("hatch", "compare", MESH, "as_drawn.png", "again.png", "twice.png", *VIEW, "--json", "sizes.json")
+        again, twice = json.loads((self.folder / "sizes.json").read_text())
+        # No more than other strokes do.
+        self.assertLess(twice["direction_off"], again["direction_off"] + 0.02)
+        self.assertGreater(twice["level_right"], again["level_right"] - 0.03)
+        self.assertGreater(twice["tone"][0], again["tone"][0] - 0.01)
+        for ratio in twice["property_ratio"][:3]:  # thickness, intensity and spacing in pixels of the smaller picture
+            self.assertAlmostEqual(ratio, 1, delta=0.1)
+
     def test_a_second_drawing_teaches_more(self):
         """Under another light and from another side: a drawing by the same rule tells what the first one could not."""
         light = ["hatch", "example", "light", MESH]

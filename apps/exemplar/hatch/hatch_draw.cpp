@@ -46,12 +46,13 @@ nlohmann::json seconds_of(const HatchScene& scene, const ViewHatching& hatching)
 }
 
 void draw_still(const HatchDrawJob& job) {
-    const HatchingStyle style = load_hatching_style(job.style);
+    HatchingStyle style = load_hatching_style(job.style);
     Progress progress("drawing", 4);
     Stopwatch watch;
     HatchScene scene(job.scene, job.common.device, job.common.quiet);
     const double surface_seconds = watch.wall();
     progress.advance(1, "surface");
+    style.resize(scene.pixels().view().width, scene.pixels().view().height);
     const ViewHatching hatching = hatch_view(style, scene.pixels(), scene.tools(), job.hatching);
     const HatchingFields& fields = hatching.prediction.fields;
     progress.advance(2, "strokes");

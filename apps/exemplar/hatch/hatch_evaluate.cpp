@@ -199,9 +199,10 @@ class StyleEvaluation {
     void test(const fs::path& mesh, const char* view, bool training_view) {
         HatchScene scene(scene_of(arguments_, mesh, view), arguments_.common.device, true);
         PixelFeatures& pixels = scene.pixels();
-        const HatchingFields truth = hatching_by_rule(name_, pixels);
         const HatchingPrediction predicted =
             predict_hatching(style_, pixels, scene.tools().scorer, scene.tools().evaluator);
+        // By now features are measured at the scale of the training view, as the rule was.
+        const HatchingFields truth = hatching_by_rule(name_, pixels);
         nlohmann::json row = row_of(compare_hatching(predicted.fields, truth, pixels.pixels().pixel));
         row["mesh"] = mesh.stem().string();
         row["view"] = view;

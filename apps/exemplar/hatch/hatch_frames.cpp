@@ -115,7 +115,11 @@ class HatchedFrames {
 class FrameHatcher {
   public:
     FrameHatcher(const HatchDrawJob& job, const HatchedFrames& frames)
-        : job_(job), frames_(frames), style_(load_hatching_style(job.style)), device_({.name = job.common.device}) {}
+        : job_(job), frames_(frames), style_(load_hatching_style(job.style)), device_({.name = job.common.device}) {
+        const HatchingView view = frames.view(0);
+        style_.resize(view.width, view.height);
+        look_ = curve_look(style_);
+    }
 
     HatchedDrawing draw(std::size_t frame) {
         follow(frame);
@@ -156,7 +160,7 @@ class FrameHatcher {
     const HatchedFrames& frames_;
     HatchingStyle style_;
     HatchingDevice device_;
-    DrawingStyle look_ = curve_look(style_);
+    DrawingStyle look_;
     std::optional<HatchingSurface> surface_;
     std::vector<SurfaceStroke> before_;
     std::vector<HatchingFlicker> flicker_;

@@ -32,9 +32,11 @@ HatchedDrawing draw_on(HatchingDevice& device, const HatchedStill& still,
     const HatchingSurface surface = cached_surface(still.mesh, default_surface_folder());
     step("hatching");
     PixelFeatures pixels(surface, still.view, device.tools().images);
-    ViewHatching hatching = hatch_view(*still.hatching, pixels, device.tools());
+    HatchingStyle style = *still.hatching;
+    style.resize(still.view.width, still.view.height);
+    ViewHatching hatching = hatch_view(style, pixels, device.tools());
     step("drawing lines");
-    taper_strokes(hatching.strokes, still.hatching->taper);
+    taper_strokes(hatching.strokes, style.taper);
     return {still.view.width, still.view.height, std::move(hatching.strokes),
             feature_curves(surface, still.view, still.curves, still.look, still.unit_depth)};
 }

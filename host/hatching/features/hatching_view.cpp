@@ -55,6 +55,16 @@ Vec3 default_light(const Camera& camera) {
     return light_from(camera, {-0.45f, 0.55f, 0.7f});
 }
 
+float size_in_view(const HatchingSurface& surface, const HatchingView& view) {
+    const BoundingBox box = bounding_box(surface.mesh);
+    const Vec3 middle = (0.5 * (box.low + box.high)).cast<float>();
+    const Eigen::Matrix4f& projection = view.camera.projection;
+    const float depth = (view.camera.view_projection() * middle.homogeneous()).w();
+    // The middle may lie behind an eye that is inside of the object.
+    const float least = projection(3, 3) == 1 ? 1 : 0.1f * static_cast<float>(box.diagonal());
+    return surface.unit * 0.5f * static_cast<float>(view.height) * std::abs(projection(1, 1)) / std::max(depth, least);
+}
+
 Vec2 projected_direction(const HatchingView& view, const Eigen::Matrix4f& view_projection, const Vec3& point,
                          const Vec3& direction) {
     const Eigen::Vector4f at = view_projection * point.homogeneous();

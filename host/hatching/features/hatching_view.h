@@ -25,6 +25,9 @@ Vec3 light_from(const Camera& camera, const Vec3& direction);
 /// Returns the usual light: from above, left, behind the eye.
 Vec3 default_light(const Camera& camera);
 
+/// Returns the size of an object in a view: its median geodesic distance, in pixels at the depth of its middle.
+float size_in_view(const HatchingSurface& surface, const HatchingView& view);
+
 /// Projects a direction at a point of the surface into the image; only the direction of the result is meaningful.
 Vec2 projected_direction(const HatchingView& view, const Eigen::Matrix4f& view_projection, const Vec3& point,
                          const Vec3& direction);

@@ -16,6 +16,7 @@
 #include "host/hatching/features/line_directions.h"
 #include "host/hatching/features/line_images.h"
 #include "host/hatching/features/pixel_projection.h"
+#include "host/imaging/gaussian.h"
 
 namespace exemplar {
 namespace {
@@ -209,6 +210,16 @@ PixelFeatures::PixelFeatures(const HatchingSurface& surface, const HatchingView&
 
 PixelFeatures::~PixelFeatures() = default;
 
+void PixelFeatures::set_scale(float scale) {
+    scale = std::clamp(scale, 1.0f / 16, 8.0f);
+    if (scale == scale_) return;
+    scale_ = scale;
+    for (auto& derivatives : parts_->derivatives) derivatives.reset();
+    for (auto& images : parts_->line_images) {
+        for (auto& image : images) image.reset();
+    }
+}
+
 FacePoints PixelFeatures::points(std::span<const std::uint32_t> rows) const {
     const Gatherer gatherer(*this, rows);
     FacePoints points{std::vector<std::uint32_t>(gatherer.count()),
@@ -243,7 +254,9 @@ const ImageStack& PixelFeatures::shading() {
 
 const ImageDerivatives& PixelFeatures::derivatives(std::size_t sigma) {
     auto& kept = parts_->derivatives[sigma];
-    if (!kept) kept = tools_.filters.derivatives(shading(), gbuffer_.face, k_sigmas[sigma], false);
+    if (!kept)
+        kept = tools_.filters.derivatives(shading(), gbuffer_.face, std::max(k_min_sigma, scale_ * k_sigmas[sigma]),
+                                          false);
     return *kept;
 }
 
@@ -262,7 +275,7 @@ const ImageStack& PixelFeatures::line_drawings(std::size_t kind) {
 std::span<const float> PixelFeatures::line_image(std::size_t line, std::size_t sigma) {
     const std::size_t kind = line / k_line_thresholds;
     auto& kept = parts_->line_images[kind][sigma];
-    if (!kept) kept = tools_.filters.blurred(line_drawings(kind), k_line_sigmas[sigma]);
+    if (!kept) kept = tools_.filters.blurred(line_drawings(kind), std::max(k_min_sigma, scale_ * k_line_sigmas[sigma]));
     return kept->image(line % k_line_thresholds);
 }
 
@@ -271,7 +284,8 @@ void PixelFeatures::picture_column(std::size_t feature, std::span<const std::uin
     if (feature >= k_first_line) {
         const std::size_t line = (feature - k_first_line) / k_line_sigmas.size();
         const std::span<const float> image = line_image(line, (feature - k_first_line) % k_line_sigmas.size());
-        return gatherer.from_pixels([&](std::uint32_t pixel) { return image[pixel]; }, out);
+        // Length of lines per area.
+        return gatherer.from_pixels([&](std::uint32_t pixel) { return scale_ * image[pixel]; }, out);
     }
     static const std::vector<ImageFeature> k_features = image_features();
     const auto [quantity, image, sigma] = k_features[feature - k_first_image];
@@ -288,7 +302,8 @@ void PixelFeatures::picture_column(std::size_t feature, std::span<const std::uin
     const std::array<const ImageStack*, 4> quantities{&all.value, &all.gradient_magnitude, &all.maximum_curvature,
                                                       &all.minimum_curvature};
     const std::span<const float> values = quantities[quantity]->image(image);
-    gatherer.from_pixels([&](std::uint32_t pixel) { return values[pixel]; }, out);
+    const std::array<float, 4> unit{1, scale_, scale_ * scale_, scale_ * scale_};
+    gatherer.from_pixels([&](std::uint32_t pixel) { return unit[quantity] * values[pixel]; }, out);
 }
 
 std::vector<DoubledAngle> PixelFeatures::gradient_directions(std::span<const float> x, std::span<const float> y) const {

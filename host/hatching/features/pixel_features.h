@@ -41,6 +41,11 @@ class PixelFeatures {
     const CoveredPixels& pixels() const { return pixels_; }
     std::size_t size() const { return pixels_.pixel.size(); }
 
+    /// Sets how many pixels of this view correspond to one of the view that a style was learned from; 1 at first. Image
+    /// filters are as many times as wide, and derivatives are per pixel of that view. So features do not depend on the
+    /// size of the picture. Limited to [1/16, 8].
+    void set_scale(float scale);
+
     /// Returns the scalar features `which` of the pixels pixels().pixel[rows[i]]; of all pixels if there are no
     /// rows. There is memory for `spare` more columns, so that they can be appended without a copy.
     FeatureMatrix scalars(std::span<const std::uint32_t> which, std::span<const std::uint32_t> rows,
@@ -63,6 +68,7 @@ class PixelFeatures {
     ImageTools& tools_;
     GBuffer gbuffer_;
     CoveredPixels pixels_;
+    float scale_ = 1;
     std::unique_ptr<Parts> parts_;
 };
 

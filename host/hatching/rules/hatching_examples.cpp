@@ -17,12 +17,14 @@ constexpr std::uint32_t k_gap = 256;  // pixels between views that are side by s
 HatchingExamples::HatchingExamples(std::span<const HatchingExample> views)
     : views_(views.begin(), views.end()), first_row_{0} {
     if (views_.empty()) throw UsageError("there is no drawing to learn from");
+    const float size = size_in_view(views_.front().pixels.surface(), views_.front().pixels.view());
     std::uint32_t x = 0;
     for (const auto& [pixels, drawing] : views_) {
         const HatchingView& view = pixels.view();
         if (drawing.width != view.width || drawing.height != view.height)
             throw UsageError(fmt::format("the drawing has {} x {} pixels, the view {} x {}", drawing.width,
                                          drawing.height, view.width, view.height));
+        pixels.set_scale(size_in_view(pixels.surface(), view) / size);
         first_x_.push_back(x);
         first_row_.push_back(first_row_.back() + static_cast<std::uint32_t>(pixels.size()));
         x += static_cast<std::uint32_t>(drawing.width);

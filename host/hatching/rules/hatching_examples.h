@@ -19,8 +19,8 @@ struct HatchingExample {
 /// The covered pixels of several drawn views as the rows of one table: those of the first view, then those of the next.
 class HatchingExamples {
   public:
-    /// Keeps references. Throws UsageError if there is no view, if a drawing differs in size from its view, or if the
-    /// views side by side are wider than 65,535 pixels.
+    /// Keeps references, and sets the scale of all views in relation to the first. Throws UsageError if there is no
+    /// view, if a drawing differs in size from its view, or if the views side by side are wider than 65,535 pixels.
     explicit HatchingExamples(std::span<const HatchingExample> views);
 
     std::span<const HatchingExample> views() const { return views_; }

@@ -21,7 +21,7 @@ constexpr const char* k_kind = "exemplar hatching style";
 constexpr int k_format_version = 2;
 constexpr std::size_t k_max_segments = 64;
 constexpr int k_max_stages = 16, k_max_drawing = 1 << 15;
-constexpr float k_max_pen = 1000;  ///< pixels
+constexpr float k_max_pen = 1000, k_max_object = 1e6f;  ///< pixels
 
 void add_function(TensorFile& file, const std::string& name, const OrientationFunction& function) {
     std::vector<std::uint32_t> features;
@@ -158,10 +158,10 @@ int read_count(const TensorFile& file, const Json& json, const char* key, int mo
 }
 
 /// Reads a length in pixels; `otherwise` where it is missing.
-float read_pixels(const TensorFile& file, const Json& json, const char* key, float otherwise) {
+float read_pixels(const TensorFile& file, const Json& json, const char* key, float otherwise, float most) {
     const float pixels = json.value(key, otherwise);
-    if (!(pixels >= 0 && pixels <= k_max_pen))
-        inconsistent(file, fmt::format("'{}' is {}, not from 0 to {}", key, pixels, k_max_pen));
+    if (!(pixels >= 0 && pixels <= most))
+        inconsistent(file, fmt::format("'{}' is {}, not from 0 to {}", key, pixels, most));
     return pixels;
 }
 
@@ -170,8 +170,9 @@ void read_description(const TensorFile& file, HatchingStyle& style, std::size_t&
     style.name = json.at("name");
     style.width = read_count(file, json, "width", k_max_drawing);
     style.height = read_count(file, json, "height", k_max_drawing);
-    style.taper = read_pixels(file, json, "taper", k_usual_taper);
-    style.outline_width = read_pixels(file, json, "outline_width", 0);
+    style.object_size = read_pixels(file, json, "object_size", 0, k_max_object);
+    style.taper = read_pixels(file, json, "taper", k_usual_taper, k_max_pen);
+    style.outline_width = read_pixels(file, json, "outline_width", 0, k_max_pen);
     style.share = json.at("share").get<std::vector<double>>();
     style.segment_crf = read_cut(file, json.at("segment_cut"));
     style.level_crf = read_cut(file, json.at("level_cut"));
@@ -191,6 +192,17 @@ std::size_t HatchingStyle::feature_count() const {
     return k_pixel_features + contextual_feature_count(rules.size());
 }
 
+void HatchingStyle::resize(int new_width, int new_height) {
+    const float factor =
+        static_cast<float>(std::min(new_width, new_height)) / static_cast<float>(std::min(width, height));
+    width = new_width;
+    height = new_height;
+    taper *= factor;
+    outline_width *= factor;
+    for (const StrokeProperty length : {StrokeProperty::thickness, StrokeProperty::spacing, StrokeProperty::length})
+        properties[static_cast<std::size_t>(length)].factor *= factor;
+}
+
 void save_hatching_style(const std::filesystem::path& path, const HatchingStyle& style) {
     TensorFile file;
     file.metadata["kind"] = k_kind;
@@ -199,6 +211,7 @@ void save_hatching_style(const std::filesystem::path& path, const HatchingStyle&
     const Json description{{"name", style.name},
                            {"width", style.width},
                            {"height", style.height},
+                           {"object_size", style.object_size},
                            {"taper", style.taper},
                            {"outline_width", style.outline_width},
                            {"share", style.share},

@@ -22,6 +22,7 @@ namespace exemplar {
 struct HatchingStyle {
     std::string name;                    ///< of the drawing
     int width = 0, height = 0;           ///< of the drawing, in pixels; lengths are in these pixels
+    float object_size = 0;               ///< of the object in the drawing, see size_in_view(); 0: not known
     float taper = k_usual_taper;         ///< pixels over which strokes end in a point
     float outline_width = 0;             ///< of the outlines in the drawing, pixels; 0: it has none
     std::vector<OrientationRule> rules;  ///< one per segment
@@ -37,6 +38,9 @@ struct HatchingStyle {
     std::array<PropertyModel, k_stroke_properties> properties;
 
     std::size_t feature_count() const;  ///< number of base features, including contextual ones
+    /// Restates all lengths in pixels of a picture of another size: a pen is as wide as before in relation to the
+    /// shorter side.
+    void resize(int new_width, int new_height);
 };
 
 /// Version of the feature numbering; changes whenever a number changes its meaning.

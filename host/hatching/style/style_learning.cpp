@@ -50,6 +50,8 @@ class StyleLearning {
         const DrawingProperties& first = views_.views().front().drawing;
         style_.width = first.width;
         style_.height = first.height;
+        PixelFeatures& first_pixels = views_.views().front().pixels;
+        style_.object_size = size_in_view(first_pixels.surface(), first_pixels.view());
         learn_pen();
         learn_rules();
         done("orientations");
@@ -94,13 +96,20 @@ class StyleLearning {
         return rows;
     }
 
+    /// Returns how many pixels of a drawing correspond to one of the first drawing, as the width of a pen does.
+    float pen_unit(const DrawingProperties& drawing) const {
+        const int side = std::min(drawing.width, drawing.height), first_side = std::min(style_.width, style_.height);
+        return static_cast<float>(side) / static_cast<float>(first_side);
+    }
+
     /// Strokes end, and outlines are as wide, as in the drawings on average.
     void learn_pen() {
         float outlined = 0;
         style_.taper = 0;
         for (const auto& [pixels, drawing] : views_.views()) {
-            style_.taper += drawing.taper / static_cast<float>(views_.views().size());
-            style_.outline_width += drawing.outline_width;
+            const float unit = pen_unit(drawing);
+            style_.taper += drawing.taper / unit / static_cast<float>(views_.views().size());
+            style_.outline_width += drawing.outline_width / unit;
             outlined += drawing.outline_width > 0 ? 1 : 0;
         }
         style_.outline_width /= std::max(outlined, 1.0f);
@@ -445,7 +454,10 @@ class StyleLearning {
         rows = sample_rows(std::move(rows), options_.samples, options_.seed + 11);
         std::vector<float> target;
         target.reserve(rows.size());
-        for (const std::uint32_t row : rows) target.push_back(property_at(row, p));
+        for (const std::uint32_t row : rows) {
+            const float unit = property == StrokeProperty::intensity ? 1 : pen_unit(views_.drawing_of(row));
+            target.push_back(property_at(row, p) / unit);
+        }
         const FeatureMatrix features = features_of(rows, true);
         const QuantizedFeatures quantized = quantize(features, {}, {});
         const LearnedProperty learned =

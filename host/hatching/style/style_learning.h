@@ -31,9 +31,10 @@ struct StyleReport {
     std::vector<std::pair<std::string, double>> seconds;
 };
 
-/// Learns a style (thesis Sec. 4.4) from one or more drawings by the same hand. Thickness, spacing and length are in
-/// the pixels of each view. Calls `progress` often, with the name of the current step. Deterministic. Throws DataError
-/// if the drawings have too few strokes on the objects, UsageError as HatchingExamples does, and Interrupted at Ctrl-C.
+/// Learns a style (thesis Sec. 4.4) from one or more drawings by the same hand. Lengths are in pixels of
+/// the first drawing; see HatchingStyle::resize() for drawings of other sizes. Calls `progress` often, with the name of
+/// the current step. Deterministic. Throws DataError if the drawings have too few strokes on the objects, UsageError as
+/// HatchingExamples does, and Interrupted at Ctrl-C.
 HatchingStyle learn_hatching_style(
     std::span<const HatchingExample> views, StumpScorer& scorer, const StyleLearningOptions& options,
     StyleReport& report, const std::function<void(const char*)>& progress = [](const char*) {});

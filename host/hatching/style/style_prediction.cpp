@@ -48,6 +48,8 @@ class Prediction {
         : style_(style), pixels_(pixels), scorer_(scorer), evaluator_(evaluator) {}
 
     HatchingPrediction run() {
+        if (style_.object_size > 0)
+            pixels_.set_scale(size_in_view(pixels_.surface(), pixels_.view()) / style_.object_size);
         which_ = needed_features(style_);
         features_ = pixels_.scalars(which_, {}, contextual_feature_count(style_.rules.size()));
         done("features");

@@ -57,7 +57,8 @@ struct HatchingPrediction {
     std::vector<std::pair<const char*, double>> seconds;
 };
 
-/// Predicts the targets of a view in a style (thesis Sec. 4.3.1-4.3.3).
+/// Predicts the targets of a view in a style (thesis Sec. 4.3.1-4.3.3). The style is to be of the view's size, see
+/// HatchingStyle::resize(). Sets the scale of `pixels` to that of the style.
 HatchingPrediction predict_hatching(const HatchingStyle& style, PixelFeatures& pixels, StumpScorer& scorer,
                                     HatchingEvaluator& evaluator);
 

@@ -14,6 +14,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
+#include "host/core/statistics.h"
 #include "tests/support/shapes.h"
 
 namespace exemplar {
@@ -82,6 +83,56 @@ TEST(PixelFeatures, HaveNamesOfTheirOwn) {
     const auto& fields = orientation_feature_names();
     EXPECT_EQ(fields.size(), k_orientation_features);
     EXPECT_EQ(std::set<std::string>(fields.begin(), fields.end()).size(), k_orientation_features);
+}
+
+/// A picture of twice the size shows the same, so its features are the same where its pixels lie.
+TEST(PixelFeatures, DoNotDependOnTheSizeOfThePicture) {
+    HostTools host;
+    const HatchingView small = parallel_view(ring().mesh, Vec3(1, 2, 3));
+    HatchingView large = small;
+    large.width *= 2;
+    large.height *= 2;
+    EXPECT_NEAR(size_in_view(ring(), large), 2 * size_in_view(ring(), small), 1e-3f);
+    PixelFeatures of_small(ring(), small, host.tools), of_large(ring(), large, host.tools);
+    of_large.set_scale(2);
+    std::vector<std::uint32_t> which;
+    for (const char* name : {"image.I@5", "image.|grad V.N|@3", "image.curvature_max L.N@5", "lines.contours>0.001@10"})
+        which.push_back(number_of(name));
+    const FeatureMatrix found = of_large.scalars(which, {}), expected = of_small.scalars(which, {});
+    for (std::size_t k = 0; k < which.size(); ++k) {
+        std::vector<float> differences, sizes;
+        for (std::size_t i = 0; i < of_small.size(); ++i) {
+            const std::uint32_t pixel = of_small.pixels().pixel[i];
+            const std::uint32_t x = pixel % k_view_width, y = pixel / k_view_width;
+            const std::int32_t row = of_large.pixels().row[2 * y * 2 * k_view_width + 2 * x];
+            if (row < 0) continue;
+            differences.push_back(std::abs(found.column(k)[static_cast<std::size_t>(row)] - expected.column(k)[i]));
+            sizes.push_back(std::abs(expected.column(k)[i]));
+        }
+        ASSERT_GT(differences.size(), 1000U);
+        EXPECT_LT(upper_median(differences), 0.05f * upper_median(sizes)) << found.names[k];
+    }
+    // Unscaled, they are those of a picture with twice the details.
+    of_large.set_scale(1);
+    const FeatureMatrix other = of_large.scalars(which, {});
+    EXPECT_NE(other.values, found.values);
+}
+
+/// The same object, seen by eyes at other distances and without perspective.
+TEST(HatchingView, TellsTheSizeOfAnObject) {
+    const auto seen = [&](float distance, float fov) {
+        HatchingView view;
+        view.width = 300;
+        view.height = 200;
+        view.camera.view = look_at(Vec3(0, 0, distance), Vec3(0, 0, -1));
+        view.camera.projection = fov > 0 ? perspective(fov, 1.5f, 0.1f, 100) : orthographic(4, 1.5f, 0.1f, 100);
+        return size_in_view(ball(), view) / ball().unit;
+    };
+    EXPECT_NEAR(seen(10, 1), 100 / (10 * std::tan(0.5f)), 0.01f);
+    EXPECT_NEAR(seen(20, 1), 100 / (20 * std::tan(0.5f)), 0.01f);
+    EXPECT_NEAR(seen(10, 0), 25, 0.01f);
+    EXPECT_NEAR(seen(20, 0), 25, 0.01f);
+    EXPECT_GT(seen(0, 1), 0);  // from its middle
 }
 
 /// What is known of a pixel that shows a ball of radius 2 around the origin.

@@ -55,6 +55,7 @@ HatchingStyle small_style() {
     style.height = 480;
     style.taper = 2.5f;
     style.outline_width = 1.5f;
+    style.object_size = 410.25f;
     style.rules.resize(2);
     style.rules[0].function[0].terms = {{3, 0.75f}, {40, -0.25f}};
     style.rules[0].function[1].terms = {{12, 1.0f}};
@@ -327,6 +328,7 @@ TEST(HatchingStyleFile, OddDescriptionsAreRefused) {
     EXPECT_EQ(with("\"height\":480,", ""), unreadable);
     for (const char* bad : {"-1", "1001", "1e300"})
         EXPECT_THAT(with("\"taper\":2.5", fmt::format("\"taper\":{}", bad)), HasSubstr("'taper' is")) << bad;
+    EXPECT_THAT(with("\"object_size\":410.25", "\"object_size\":-1"), HasSubstr("'object_size' is"));
     EXPECT_EQ(with("{", "["), unreadable);
     EXPECT_EQ(with("[0.7,0.3]", "[]"), damaged("it has 0 segments"));
     EXPECT_EQ(with("\"stages\":2", "\"stages\":0"), damaged("'stages' is 0, which is not a whole number from 1 to 16"));
@@ -347,6 +349,24 @@ TEST(HatchingStyleText, NamesRulesAndFeatures) {
     const HatchingStyle style = small_style();
     EXPECT_EQ(feature_name(style, 7), "1/" + pixel_feature_names()[1] + "^2");
     EXPECT_EQ(feature_name(style, k_powers * k_pixel_features + 1), contextual_feature_names(2)[0] + "^2");
+}
+
+// A picture of another size is drawn by a pen that grows with its shorter side.
+TEST(HatchingStyle, IsRestatedForPicturesOfOtherSizes) {
+    const HatchingStyle before = small_style();
+    HatchingStyle style = before;
+    style.resize(2000, 960);
+    EXPECT_EQ(style.width, 2000);
+    EXPECT_EQ(style.height, 960);
+    EXPECT_FLOAT_EQ(style.taper, 2 * before.taper);
+    EXPECT_FLOAT_EQ(style.outline_width, 2 * before.outline_width);
+    EXPECT_EQ(style.object_size, before.object_size);  // of the drawing
+    for (std::size_t p = 0; p < k_stroke_properties; ++p) {
+        const float factor = p == static_cast<std::size_t>(StrokeProperty::intensity) ? 1 : 2;
+        EXPECT_FLOAT_EQ(style.properties[p].factor, factor * before.properties[p].factor);
+    }
+    style.resize(640, 480);
+    EXPECT_FLOAT_EQ(style.properties[0].factor, before.properties[0].factor);
 }
 
 }  // namespace

@@ -24,7 +24,8 @@ constexpr float k_likely_turn = 0.1f;   ///< radians by which a point's orientat
 constexpr float k_likely_bend = 0.02f;  ///< 1 / pixels: half the curvature of an arc of radius 25
 constexpr float k_longest_bridge = 8;   ///< max gap, in widths, over which a center line is straight
 constexpr std::size_t k_softness_points = 400;
-constexpr float k_better = 0.98f;  ///< max misfit, relative to that of sharp edges, to accept softness
+constexpr float k_better = 0.98f;   ///< max misfit, relative to that of sharp edges, to accept softness
+constexpr double k_as_good = 1.05;  ///< max misfit, relative to the best softness, that may be chance
 constexpr std::array<float, 10> k_softnesses{0, 0.25f, 0.4f, 0.55f, 0.7f, 0.85f, 1, 1.25f, 1.5f, 2};
 
 /// The profile of a straight edge: the share of a pixel, at a distance from the edge, that the inked side covers,
@@ -238,20 +239,41 @@ std::vector<PointId> spread_points(std::span<const TracedStroke> strokes) {
     return some;
 }
 
-/// Returns the median misfit of profiles under a softness.
-double misfit_of(const std::vector<std::vector<Sample>>& profiles, std::span<const float> widths, float softness) {
+/// Medians over profiles that were fitted with a softness.
+struct SoftnessFit {
+    float softness = 0;
+    double misfit = 0;
+    float darkness = 0;
+};
+
+SoftnessFit fit_softness(const std::vector<std::vector<Sample>>& profiles, std::span<const float> widths,
+                         float softness) {
     const SoftEdge edge(softness);
-    std::vector<float> misfits(profiles.size(), 0);
+    std::vector<float> misfits(profiles.size(), 0), darkness(profiles.size(), 0);
     parallel_for(
-        profiles.size(), [&](std::size_t i) { misfits[i] = fit_profile(profiles[i], edge, widths[i]).misfit; }, 8);
-    return upper_median(misfits);
+        profiles.size(),
+        [&](std::size_t i) {
+            const Profile profile = fit_profile(profiles[i], edge, widths[i]);
+            misfits[i] = profile.misfit;
+            darkness[i] = profile.darkness();
+        },
+        8);
+    return {softness, upper_median(misfits), upper_median(darkness)};
 }
 
-/// Returns the x of the lowest point of the parabola through three points.
-float lowest(const std::array<float, 3>& x, const std::array<double, 3>& y) {
-    const double a = (y[1] - y[0]) / (x[1] - x[0]), b = (y[2] - y[1]) / (x[2] - x[1]);
-    const double curvature = (b - a) / (x[2] - x[0]);
-    return curvature > 0 ? static_cast<float>(0.5 * (x[0] + x[1] - a / curvature)) : x[1];
+/// Returns the largest softness from fit number `best` on, which fits best, that fits about as well. Strokes that are
+/// hardly wider than the blur fit as well as narrow dark ones, blurred, as they do as wide gray ones; ink is dark.
+float darkest_softness(std::span<const SoftnessFit> fits, std::size_t best, float darkest) {
+    const double limit = k_as_good * fits[best].misfit;
+    for (std::size_t i = best; i + 1 < fits.size(); ++i) {
+        const SoftnessFit &from = fits[i], &to = fits[i + 1];
+        double share = 1;
+        if (to.misfit > limit) share = (limit - from.misfit) / (to.misfit - from.misfit);
+        if (to.darkness > darkest)
+            share = std::min<double>(share, (darkest - from.darkness) / (to.darkness - from.darkness));
+        if (share < 1) return std::lerp(from.softness, to.softness, std::max(0.0f, static_cast<float>(share)));
+    }
+    return fits.back().softness;
 }
 
 }  // namespace
@@ -269,13 +291,11 @@ float estimate_softness(const FloatImage& darkness, float paper, const StrokeMap
         widths.push_back(stroke.width);
     }
     if (profiles.empty()) return 0;
-    std::array<double, k_softnesses.size()> misfit{};
-    for (std::size_t i = 0; i < misfit.size(); ++i) misfit[i] = misfit_of(profiles, widths, k_softnesses[i]);
-    const auto best = static_cast<std::size_t>(std::min_element(misfit.begin(), misfit.end()) - misfit.begin());
-    if (best == 0 || !(misfit[best] <= k_better * misfit[0])) return 0;
-    if (best + 1 == misfit.size()) return k_softnesses[best];
-    return lowest({k_softnesses[best - 1], k_softnesses[best], k_softnesses[best + 1]},
-                  {misfit[best - 1], misfit[best], misfit[best + 1]});
+    std::vector<SoftnessFit> fits;
+    for (const float softness : k_softnesses) fits.push_back(fit_softness(profiles, widths, softness));
+    const auto best = static_cast<std::size_t>(std::ranges::min_element(fits, {}, &SoftnessFit::misfit) - fits.begin());
+    if (best == 0 || !(fits[best].misfit <= k_better * fits[0].misfit)) return 0;
+    return darkest_softness(fits, best, 1 - paper);
 }
 
 void measure_profiles(const FloatImage& darkness, float paper, float softness, const StrokeMap& map,

@@ -47,7 +47,7 @@ class Scene {
           title_(fs::path(mesh.name).stem().string()),
           surface_(cached_surface(without_loose_vertices(drawable_mesh(*mesh.mesh, mesh.name).mesh), cache)) {
         const Camera camera = camera_at(point, surface_.mesh);
-        view_ = {camera, light_from(camera, light), point.width, point.height};
+        view_ = {camera, light_from(camera, light), point.width, point.height, point.up.normalized()};
         pixels_.emplace(surface_, view_, device_.tools().images);
     }
 

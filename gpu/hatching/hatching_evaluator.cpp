@@ -43,17 +43,17 @@ struct Rules {
 };
 
 Rules rules_of(std::span<const OrientationFunction> functions) {
-    constexpr auto k_fields = static_cast<Word>(k_orientation_fields);
+    const auto field_of = [](const auto& term) { return static_cast<Word>(field_of_feature(term.feature)); };
     Rules rules;
     for (const OrientationFunction& function : functions) {
-        for (const auto& term : function.terms) rules.fields.numbers.push_back(term.feature % k_fields);
+        for (const auto& term : function.terms) rules.fields.numbers.push_back(field_of(term));
     }
     rules.fields.sort();
     for (const OrientationFunction& function : functions) {
         // A field turned by 90 degrees is the negated field.
         for (const auto& term : function.terms)
-            rules.terms.push_back({rules.fields.place(term.feature % k_fields),
-                                   term.feature < k_fields ? term.weight : -term.weight, 0, 0});
+            rules.terms.push_back(
+                {rules.fields.place(field_of(term)), is_rotated(term.feature) ? -term.weight : term.weight, 0, 0});
         rules.begin.push_back(static_cast<Word>(rules.terms.size()));
     }
     return rules;

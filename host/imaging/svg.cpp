@@ -123,6 +123,13 @@ void SvgDocument::add(std::string_view element, std::span<const SvgAttribute> at
     open(element, attributes, true);
 }
 
+void SvgDocument::add_text(std::string_view text, std::span<const SvgAttribute> attributes) {
+    open("text", attributes, false);
+    --depth_;
+    body_.pop_back();  // the end of the line would be shown as a space
+    body_ += svg_escaped(text) + "</text>\n";
+}
+
 std::string SvgDocument::text() const {
     if (depth_ != 0)
         throw UsageError(fmt::format("{} of the SVG document not closed", counted(depth_, "group is", "groups are")));

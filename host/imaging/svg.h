@@ -51,6 +51,8 @@ class SvgDocument {
     void close();
     /// Adds an element without content.
     void add(std::string_view element, std::span<const SvgAttribute> attributes);
+    /// Adds a line of text.
+    void add_text(std::string_view text, std::span<const SvgAttribute> attributes);
     /// Returns the whole document; throws UsageError if a group is still open.
     std::string text() const;
 

@@ -129,6 +129,18 @@ class Hatch(ProgramTest):
                      says="second.png: the picture tells no view")
         self.refused(*train, "--mask", "first.png", "second.png", "--out", "no.safetensors", code=2, says="2 masks are given, but 1 drawing")
 
+    def test_the_features_of_styles(self):
+        said = self.call("hatch", "features", "style.safetensors", "--out", "features.svg", "--json", "features.json").stdout
+        self.assertIn("orientation\n  100 %  k_max, k_min\n", said)
+        report = json.loads((self.folder / "features.json").read_text())
+        for use, shares in report.items():
+            self.assertAlmostEqual(sum(shares.values()), 1, msg=use)
+        chart = ElementTree.parse(self.folder / "features.svg")
+        bars = sum(len(shares) for shares in report.values())
+        self.assertEqual(len(chart.findall(f"{SVG}rect")), bars)
+        self.assertEqual(len(chart.findall(f"{SVG}text")), bars + len(report))
+        self.refused("hatch", "features", "drawing.png", code=1, says="drawing.png")
+
     def test_the_style_is_told_in_words(self):
         result = self.call("hatch", "train", MESH, "drawing.png", *VIEW, "--out", "again.safetensors")
         self.assertIn("learning: 100 in", result.stderr)  # hundredths, whichever steps there were

@@ -104,9 +104,9 @@ TEST(HatchingEvaluatorParity, TurnedFieldsAreTheOthersNegated) {
     GpuHatchingEvaluator gpu(shared_device());
     Random random(3);
     const OrientationFields fields = random_fields(50, random);
-    constexpr auto k_fields = static_cast<std::uint32_t>(k_orientation_fields);
-    const std::vector<OrientationFunction> functions{{{{7, 0.5f}, {k_fields + 9, 0.25f}}},
-                                                     {{{k_fields + 7, -0.5f}, {9, -0.25f}}}};
+    const std::vector<OrientationFunction> functions{
+        {{{7, 0.5f}, {feature_of_field(36, true), 0.25f}}},
+        {{{feature_of_field(7, true), -0.5f}, {feature_of_field(36), -0.25f}}}};
     const std::vector<std::int32_t> zeros(50, 0), ones(50, 1);
     EXPECT_EQ(gpu.orientations(functions, zeros, fields), gpu.orientations(functions, ones, fields));
 }

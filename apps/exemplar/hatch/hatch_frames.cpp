@@ -64,6 +64,7 @@ class HatchedFrames {
         view.light = light_from(view.camera, point_of(job_.scene.light, "--light"));
         view.width = sized_.width;
         view.height = sized_.height;
+        view.up = up_;
         return view;
     }
     float unit_depth() const { return unit_depth_; }

@@ -56,7 +56,8 @@ void require_hatch_scene(HatchSceneArguments& arguments) {
 
 HatchingView hatching_view(const HatchSceneArguments& arguments, const TriangleMesh& mesh) {
     const SizedCamera sized = camera_of(arguments.camera, mesh);
-    return {sized.camera, light_from(sized.camera, point_of(arguments.light, "--light")), sized.width, sized.height};
+    return {sized.camera, light_from(sized.camera, point_of(arguments.light, "--light")), sized.width, sized.height,
+            point_of(arguments.camera.up, "--up").normalized()};
 }
 
 struct HatchScene::Impl {

@@ -17,6 +17,7 @@ struct HatchingView {
     Camera camera;
     Vec3 light = Vec3::UnitZ();  ///< unit direction to the distant light, mesh coordinates
     int width = 0, height = 0;   ///< pixels
+    Vec3 up = Vec3::UnitY();     ///< of the object, mesh coordinates; any length but zero
 };
 
 /// Returns the unit direction to a light in mesh coordinates. `direction` is in eye coordinates: x right, y up, z

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -9,9 +10,26 @@
 
 namespace exemplar {
 
-/// Orientation features (thesis App. B.3): this many fields, followed by the same fields rotated by 90 degrees.
-constexpr std::size_t k_orientation_fields = 35;
+/// Orientation features: the 35 fields of thesis App. B.3, the same rotated by 90 degrees, four further fields, and
+/// these rotated.
+constexpr std::size_t k_thesis_fields = 35, k_orientation_fields = k_thesis_fields + 4;
 constexpr std::size_t k_orientation_features = 2 * k_orientation_fields;
+/// Returns the field of a feature.
+constexpr std::size_t field_of_feature(std::size_t feature) {
+    if (feature < 2 * k_thesis_fields) return feature % k_thesis_fields;
+    return feature - (feature < k_thesis_fields + k_orientation_fields ? k_thesis_fields : k_orientation_fields);
+}
+/// Returns whether a feature is its field rotated by 90 degrees.
+constexpr bool is_rotated(std::size_t feature) {
+    return feature < 2 * k_thesis_fields ? feature >= k_thesis_fields
+                                         : feature >= k_thesis_fields + k_orientation_fields;
+}
+/// Returns the number of a field, or of the field rotated by 90 degrees, among the features.
+constexpr std::uint32_t feature_of_field(std::size_t field, bool rotated = false) {
+    const std::size_t own = field < k_thesis_fields ? field : field + k_thesis_fields;
+    const std::size_t step = field < k_thesis_fields ? k_thesis_fields : k_orientation_fields - k_thesis_fields;
+    return static_cast<std::uint32_t>(rotated ? own + step : own);
+}
 
 /// An unsigned direction as a vector of doubled angle, (cos 2 theta, sin 2 theta) (thesis Eq. 4.6): unit, or zero
 /// where there is no direction. Rotating the direction by 90 degrees negates the vector.
@@ -43,8 +61,8 @@ struct OrientationFields {
     std::span<const DoubledAngle> field(std::size_t k) const { return {values.data() + k * rows, rows}; }
     /// Returns feature k, below k_orientation_features, of item i.
     DoubledAngle feature(std::size_t k, std::size_t i) const {
-        if (k < k_orientation_fields) return values[k * rows + i];
-        return -1.0f * values[(k - k_orientation_fields) * rows + i];
+        const DoubledAngle& v = values[field_of_feature(k) * rows + i];
+        return is_rotated(k) ? -1.0f * v : v;
     }
 };
 

@@ -75,8 +75,9 @@ std::vector<std::string> all_names() {
     return names;
 }
 
-/// The fields per vertex, before the gradients of images.
-constexpr std::size_t k_vertex_fields = 19;
+/// The fields per vertex: those of the thesis, before the gradients of images, and two more, after them.
+constexpr std::size_t k_vertex_fields = 19, k_more_vertex_fields = 2;
+constexpr std::size_t k_slices = k_thesis_fields, k_geodesic = k_slices + 1, k_picture = k_geodesic + 1;
 
 std::vector<std::string> all_orientation_names() {
     std::vector<std::string> names;
@@ -87,7 +88,13 @@ std::vector<std::string> all_orientation_names() {
     for (const char* image : {"V.N", "L.N", "a", "I"}) {
         for (int scale = 1; scale <= 4; ++scale) names.push_back(fmt::format("grad {},{}", image, scale));
     }
-    for (std::size_t k = 0; k < k_orientation_fields; ++k) names.push_back("perp " + names[k]);
+    const auto add_rotated = [&](std::size_t first) {
+        const std::size_t end = names.size();
+        for (std::size_t k = first; k < end; ++k) names.push_back("perp " + names[k]);
+    };
+    add_rotated(0);
+    for (const char* field : {"UxN", "grad geodesic", "x", "diagonal"}) names.emplace_back(field);
+    add_rotated(2 * k_thesis_fields);
     return names;
 }
 
@@ -111,7 +118,8 @@ struct PixelFeatures::Parts {
     // One image per threshold: filters process all of them side by side, for little more than the cost of one.
     std::array<std::optional<ImageStack>, k_line_kinds> drawn;
     std::array<std::array<std::optional<ImageStack>, k_line_sigmas.size()>, k_line_kinds> line_images;
-    std::optional<std::array<std::vector<Vec3>, k_vertex_fields>> fields;  // per vertex
+    // Per vertex.
+    std::optional<std::array<std::vector<Vec3>, k_vertex_fields + k_more_vertex_fields>> fields;
 };
 
 namespace {
@@ -156,10 +164,35 @@ class Gatherer {
     std::size_t count_;
 };
 
-/// Computes the fields of App. B.3 that are defined on the surface, in their order.
-std::array<std::vector<Vec3>, k_vertex_fields> vertex_fields(const HatchingSurface& surface, const HatchingView& view,
-                                                             const LineImages& lines) {
-    std::array<std::vector<Vec3>, k_vertex_fields> fields;
+/// Returns the gradient of a value per vertex: the mean over the faces around each vertex, by their area.
+std::vector<Vec3> vertex_gradients(const TriangleMesh& mesh, std::span<const float> values) {
+    std::vector<Vec3> gradients(mesh.vertex_count(), Vec3::Zero());
+    for (const auto& [a, b, c] : mesh.faces) {
+        const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
+        const Vec3 normal = (q - p).cross(r - p);
+        const float area = normal.norm();  // doubled
+        if (!(area > 0)) continue;
+        // The gradient times the doubled area.
+        const Vec3 gradient = (normal / area).cross(values[a] * (r - q) + values[b] * (p - r) + values[c] * (q - p));
+        for (const std::uint32_t vertex : {a, b, c}) gradients[vertex] += gradient;
+    }
+    for (Vec3& gradient : gradients) gradient.normalize();
+    return gradients;
+}
+
+/// Returns the direction in which the mean geodesic distance to all points grows: along limbs, towards their ends.
+std::vector<Vec3> geodesic_gradients(const HatchingSurface& surface) {
+    const auto& names = surface.descriptors.names;
+    const auto column = std::ranges::find(names, std::string("geodesic.mean")) - names.begin();
+    return vertex_gradients(surface.mesh, surface.descriptors.column(static_cast<std::size_t>(column)));
+}
+
+/// Computes the fields that are defined on the surface: those of App. B.3 in their order, horizontal slices, and the
+/// gradient of geodesic distance.
+std::array<std::vector<Vec3>, k_vertex_fields + k_more_vertex_fields> vertex_fields(const HatchingSurface& surface,
+                                                                                    const HatchingView& view,
+                                                                                    const LineImages& lines) {
+    std::array<std::vector<Vec3>, k_vertex_fields + k_more_vertex_fields> fields;
     for (std::size_t s = 0; s < 3; ++s) {
         fields[s] = surface.directions.k_max[s];
         fields[3 + s] = surface.directions.k_min[s];
@@ -177,9 +210,10 @@ std::array<std::vector<Vec3>, k_vertex_fields> vertex_fields(const HatchingSurfa
         }
         return smoother.complete(directions, confidence);
     };
-    parallel_for(3, [&](std::size_t k) {
+    parallel_for(4, [&](std::size_t k) {
         if (k == 0) fields[12] = across([&](std::size_t) { return view.light; });
         if (k == 1) fields[13] = across([&](std::size_t v) { return view.camera.to_eye(surface.mesh.vertices[v]); });
+        if (k == 3) fields[k_vertex_fields] = across([&](std::size_t) { return view.up; });
         if (k == 2) {
             std::vector<LineSegment> segments = lines.segments(LineType::contours, 0);
             const std::vector<LineSegment> suggestive =
@@ -192,6 +226,7 @@ std::array<std::vector<Vec3>, k_vertex_fields> vertex_fields(const HatchingSurfa
     fields[15] = vector_irradiance(surface.occlusion, view.light);
     fields[17] = surface.directions.ridges;
     fields[18] = surface.directions.valleys;
+    fields[k_vertex_fields + 1] = geodesic_gradients(surface);
     return fields;
 }
 
@@ -328,11 +363,19 @@ OrientationFields PixelFeatures::orientations(std::span<const std::uint32_t> row
     if (!parts_->fields) parts_->fields = vertex_fields(surface_, view_, *parts_->lines);
     const Gatherer gatherer(*this, rows);
     OrientationFields out(gatherer.count());
+    const FacePoints at = points(rows);
     const std::vector<std::span<const Vec3>> fields(parts_->fields->begin(), parts_->fields->end());
-    tools_.projection.directions(surface_.mesh, view_, points(rows), fields,
-                                 std::span(out.values).first(k_vertex_fields * out.rows));
+    const auto project = [&](std::span<const std::span<const Vec3>> some, std::size_t first) {
+        tools_.projection.directions(surface_.mesh, view_, at, some,
+                                     std::span(out.values).subspan(first * out.rows, some.size() * out.rows));
+    };
+    project(std::span(fields).first(k_vertex_fields), 0);
+    project(std::span(fields).subspan(k_vertex_fields), k_slices);
+    // Directions that are the same all over the picture: along the axes, and between them.
+    std::ranges::fill(out.field(k_picture), DoubledAngle{1, 0});
+    std::ranges::fill(out.field(k_picture + 1), DoubledAngle{0, 1});
     constexpr std::array<std::size_t, k_shading_images> k_order{k_view_normal, k_light_normal, k_ambient, k_intensity};
-    for (std::size_t k = k_vertex_fields; k < k_orientation_fields; ++k) {
+    for (std::size_t k = k_vertex_fields; k < k_thesis_fields; ++k) {
         const std::size_t place = k - k_vertex_fields;
         const ImageDerivatives& all = derivatives(place % k_sigmas.size());
         const std::size_t image = k_order[place / k_sigmas.size()];

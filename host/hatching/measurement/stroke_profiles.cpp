@@ -25,6 +25,7 @@ constexpr float k_likely_bend = 0.02f;  ///< 1 / pixels: half the curvature of a
 constexpr float k_longest_bridge = 8;   ///< max gap, in widths, over which a center line is straight
 constexpr std::size_t k_softness_points = 400;
 constexpr float k_better = 0.98f;   ///< max misfit, relative to that of sharp edges, to accept softness
+constexpr float k_black = 0.7f;     ///< darkness from which ink is black
 constexpr double k_as_good = 1.05;  ///< max misfit, relative to the best softness, that may be chance
 constexpr std::array<float, 10> k_softnesses{0, 0.25f, 0.4f, 0.55f, 0.7f, 0.85f, 1, 1.25f, 1.5f, 2};
 
@@ -261,8 +262,30 @@ SoftnessFit fit_softness(const std::vector<std::vector<Sample>>& profiles, std::
     return {softness, upper_median(misfits), upper_median(darkness)};
 }
 
+/// Returns the softness at the lowest point of the parabola through the misfits of three fits.
+float lowest(const std::array<SoftnessFit, 3>& fits) {
+    const auto slope = [&](std::size_t i) {
+        return (fits[i + 1].misfit - fits[i].misfit) / static_cast<double>(fits[i + 1].softness - fits[i].softness);
+    };
+    const double curvature = (slope(1) - slope(0)) / static_cast<double>(fits[2].softness - fits[0].softness);
+    if (!(curvature > 0)) return fits[1].softness;
+    return static_cast<float>(0.5 * (static_cast<double>(fits[0].softness + fits[1].softness) - slope(0) / curvature));
+}
+
+/// Returns whether the ink is black: whether the darkest places on strokes are, which are wide, or where strokes cross.
+bool is_black_ink(const FloatImage& darkness, const StrokeMap& map, std::span<const TracedStroke> strokes) {
+    std::vector<float> values;
+    for (const TracedStroke& stroke : strokes) {
+        for (const TracedPoint& point : stroke.points) {
+            const auto [x, y] = map.pixel_of(point);
+            values.push_back(darkness.pixel(x, y)[0]);
+        }
+    }
+    return quantile(values, 0.999) > k_black;
+}
+
 /// Returns the largest softness from fit number `best` on, which fits best, that fits about as well. Strokes that are
-/// hardly wider than the blur fit as well as narrow dark ones, blurred, as they do as wide gray ones; ink is dark.
+/// hardly wider than the blur fit as narrow black ones, blurred, about as well as they do as wide gray ones.
 float darkest_softness(std::span<const SoftnessFit> fits, std::size_t best, float darkest) {
     const double limit = k_as_good * fits[best].misfit;
     for (std::size_t i = best; i + 1 < fits.size(); ++i) {
@@ -295,7 +318,9 @@ float estimate_softness(const FloatImage& darkness, float paper, const StrokeMap
     for (const float softness : k_softnesses) fits.push_back(fit_softness(profiles, widths, softness));
     const auto best = static_cast<std::size_t>(std::ranges::min_element(fits, {}, &SoftnessFit::misfit) - fits.begin());
     if (best == 0 || !(fits[best].misfit <= k_better * fits[0].misfit)) return 0;
-    return darkest_softness(fits, best, 1 - paper);
+    if (is_black_ink(darkness, map, strokes)) return darkest_softness(fits, best, 1 - paper);
+    if (best + 1 == fits.size()) return fits[best].softness;
+    return lowest({fits[best - 1], fits[best], fits[best + 1]});
 }
 
 void measure_profiles(const FloatImage& darkness, float paper, float softness, const StrokeMap& map,

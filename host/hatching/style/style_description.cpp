@@ -20,9 +20,8 @@ std::string describe(const OrientationFunction& function) {
     std::string text;
     for (const auto& term : function.terms) {
         // A negative weight is that of the field turned by 90 degrees.
-        const bool turned = term.weight < 0;
-        const std::size_t feature =
-            turned ? (term.feature + k_orientation_fields) % k_orientation_features : term.feature;
+        const bool rotated = is_rotated(term.feature) != (term.weight < 0);
+        const std::size_t feature = feature_of_field(field_of_feature(term.feature), rotated);
         text += fmt::format("{}{:.2f} {}", text.empty() ? "" : " + ", std::abs(term.weight),
                             orientation_feature_names()[feature]);
     }

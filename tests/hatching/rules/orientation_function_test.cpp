@@ -70,7 +70,7 @@ TEST(DoubledAngle, IsOfDirectionsWithoutSign) {
 
 TEST(OrientationFunction, FeaturesBeyondTheFieldsAreTurned) {
     const OrientationFields fields = random_fields(20, 9);
-    const OrientationFunction along{{{4, 1.0f}}}, across{{{4 + k_orientation_fields, 1.0f}}}, none{};
+    const OrientationFunction along{{{4, 1.0f}}}, across{{{feature_of_field(4, true), 1.0f}}}, none{};
     for (std::size_t i = 0; i < 20; ++i) {
         EXPECT_EQ(across.evaluate(fields, i), -1.0f * along.evaluate(fields, i));
         EXPECT_EQ(none.evaluate(fields, i), DoubledAngle{});
@@ -90,7 +90,7 @@ TEST(LearnedOrientation, FindsTheOneFieldThatIsFollowed) {
 }
 
 TEST(LearnedOrientation, FindsAFieldTurnedBy90Degrees) {
-    const OrientationFunction truth{{{12 + k_orientation_fields, 1.0f}}};
+    const OrientationFunction truth{{{feature_of_field(12, true), 1.0f}}};
     const Problem problem(truth, 0.05);
     const LearnedOrientation learned = problem.learn();
     EXPECT_EQ(learned.function.terms.size(), 1U);
@@ -113,7 +113,7 @@ TEST(LearnedOrientation, FindsABlendAndItsWeights) {
 }
 
 TEST(LearnedOrientation, FindsABlendOfAFieldAndOneThatIsTurned) {
-    const OrientationFunction truth{{{3, 0.7f}, {20 + k_orientation_fields, 0.3f}}};
+    const OrientationFunction truth{{{3, 0.7f}, {feature_of_field(20, true), 0.3f}}};
     const Problem problem(truth, 0.03);
     EXPECT_LT(mean_function_error(problem.learn().function, truth, problem.fields), 1);
 }

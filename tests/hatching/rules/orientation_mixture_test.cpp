@@ -51,7 +51,7 @@ Drawing two_regions(double noise, std::uint64_t seed) {
     Drawing drawing;
     drawing.rules.resize(2);
     drawing.rules[0].function[0].terms = {{2, 1.0f}};
-    drawing.rules[1].function[0].terms = {{2 + k_orientation_fields, 1.0f}};
+    drawing.rules[1].function[0].terms = {{feature_of_field(2, true), 1.0f}};
     drawing.rules[1].function[1].terms = {{9, 0.7f}, {20, 0.3f}};
     Random random(seed + 1);
     drawing.samples.fields = OrientationFields(k_samples);

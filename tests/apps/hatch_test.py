@@ -223,9 +223,16 @@ class Hatch(ProgramTest):
         for row in result["rows"]:
             self.assertLess(row["orientation_degrees"], 15)
             self.assertGreater(row["level_accuracy"], 0.7)
-        rows = sorted(file.name[len("flow_"):] for file in (self.folder / "rows").iterdir())
-        self.assertEqual(len(rows), 2 + 4 * 3)  # of the drawing, and of each view with what was learned
-        self.assertEqual(rows[-2:], ["train_x.npy", "train_y.npy"])
+            self.assertGreater(row["majority_level"], 1 / 3)
+            self.assertNotIn("segment_accuracy", row)  # a style of one segment
+        size = {file.name[len("flow_"):-len(".npy")]: file.stat().st_size - 128 for file in (self.folder / "rows").iterdir()}
+        self.assertEqual(len(size), 2 * 3 + 4 * 5)  # of the drawing, and of each view with what was learned
+        for rows in ("train", "strokes", "seen_fourleg_001_three-quarter", "test_fourleg_001_side"):
+            self.assertEqual((size[rows + "_x"] / 301, size[rows + "_y"] / 5), (size[rows + "_pixel"] / 2,) * 2)
+        self.assertEqual(size["test_fourleg_001_side_boosted"], size["test_fourleg_001_side_pixel"] / 2)
+        self.call("hatch", "evaluate", MESH, "--styles", "parts", "--size", "300x300", "--json", "parts.json")
+        for row in json.loads((self.folder / "parts.json").read_text())[0]["rows"]:
+            self.assertGreater(row["segment_accuracy"], max(0.9, row["majority_segment"]))
 
     def test_messy_meshes_are_seen_as_their_surface(self):
         """A vertex of no face, far away, and triangles that share no vertices."""

@@ -5,7 +5,7 @@
 
   parabolas   samples of two parabolas at once, as in the figure. Exemplar has no mixture of such: one fit by its least squares
               beside the thesis' expectation maximization (EM, Eqs. 2.26-2.32)
-  directions  strokes that follow one of two rules, each a combination of a few of 39 fields of directions: in a half of the
+  directions  strokes that follow one of two rules, each a combination of a few of 38 fields of directions: in a half of the
               picture each (apart), or both everywhere (crossed). Here Exemplar's mixture, which hatching learns, is beside EM,
               EM with a gate by place (mixture of experts) and clusters, all of which are told that there are two rules
 It prints medians over data sets of the error against the truth without noise; of directions also which share of the samples is
@@ -22,7 +22,7 @@ from sklearn.mixture import GaussianMixture
 
 import programs
 
-FIELDS, DENSITY, SPACING = 39, 0.156, 5
+FIELDS, DENSITY, SPACING = 38, 0.156, 5
 PARABOLAS = (1.0, -0.5)
 
 

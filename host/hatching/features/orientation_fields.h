@@ -10,9 +10,9 @@
 
 namespace exemplar {
 
-/// Orientation features: the 35 fields of thesis App. B.3, the same rotated by 90 degrees, four further fields, and
+/// Orientation features: the 35 fields of thesis App. B.3, the same rotated by 90 degrees, three further fields, and
 /// these rotated.
-constexpr std::size_t k_thesis_fields = 35, k_orientation_fields = k_thesis_fields + 4;
+constexpr std::size_t k_thesis_fields = 35, k_orientation_fields = k_thesis_fields + 3;
 constexpr std::size_t k_orientation_features = 2 * k_orientation_fields;
 /// Returns the field of a feature.
 constexpr std::size_t field_of_feature(std::size_t feature) {

@@ -75,9 +75,9 @@ std::vector<std::string> all_names() {
     return names;
 }
 
-/// The fields per vertex: those of the thesis, before the gradients of images, and two more, after them.
-constexpr std::size_t k_vertex_fields = 19, k_more_vertex_fields = 2;
-constexpr std::size_t k_slices = k_thesis_fields, k_geodesic = k_slices + 1, k_picture = k_geodesic + 1;
+/// The fields per vertex: those of the thesis, before the gradients of images, and one more, after them.
+constexpr std::size_t k_vertex_fields = 19;
+constexpr std::size_t k_slices = k_thesis_fields, k_picture = k_slices + 1;
 
 std::vector<std::string> all_orientation_names() {
     std::vector<std::string> names;
@@ -93,7 +93,7 @@ std::vector<std::string> all_orientation_names() {
         for (std::size_t k = first; k < end; ++k) names.push_back("perp " + names[k]);
     };
     add_rotated(0);
-    for (const char* field : {"UxN", "grad geodesic", "x", "diagonal"}) names.emplace_back(field);
+    for (const char* field : {"UxN", "x", "diagonal"}) names.emplace_back(field);
     add_rotated(2 * k_thesis_fields);
     return names;
 }
@@ -119,7 +119,7 @@ struct PixelFeatures::Parts {
     std::array<std::optional<ImageStack>, k_line_kinds> drawn;
     std::array<std::array<std::optional<ImageStack>, k_line_sigmas.size()>, k_line_kinds> line_images;
     // Per vertex.
-    std::optional<std::array<std::vector<Vec3>, k_vertex_fields + k_more_vertex_fields>> fields;
+    std::optional<std::array<std::vector<Vec3>, k_vertex_fields + 1>> fields;
 };
 
 namespace {
@@ -164,35 +164,10 @@ class Gatherer {
     std::size_t count_;
 };
 
-/// Returns the gradient of a value per vertex: the mean over the faces around each vertex, by their area.
-std::vector<Vec3> vertex_gradients(const TriangleMesh& mesh, std::span<const float> values) {
-    std::vector<Vec3> gradients(mesh.vertex_count(), Vec3::Zero());
-    for (const auto& [a, b, c] : mesh.faces) {
-        const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
-        const Vec3 normal = (q - p).cross(r - p);
-        const float area = normal.norm();  // doubled
-        if (!(area > 0)) continue;
-        // The gradient times the doubled area.
-        const Vec3 gradient = (normal / area).cross(values[a] * (r - q) + values[b] * (p - r) + values[c] * (q - p));
-        for (const std::uint32_t vertex : {a, b, c}) gradients[vertex] += gradient;
-    }
-    for (Vec3& gradient : gradients) gradient.normalize();
-    return gradients;
-}
-
-/// Returns the direction in which the mean geodesic distance to all points grows: along limbs, towards their ends.
-std::vector<Vec3> geodesic_gradients(const HatchingSurface& surface) {
-    const auto& names = surface.descriptors.names;
-    const auto column = std::ranges::find(names, std::string("geodesic.mean")) - names.begin();
-    return vertex_gradients(surface.mesh, surface.descriptors.column(static_cast<std::size_t>(column)));
-}
-
-/// Computes the fields that are defined on the surface: those of App. B.3 in their order, horizontal slices, and the
-/// gradient of geodesic distance.
-std::array<std::vector<Vec3>, k_vertex_fields + k_more_vertex_fields> vertex_fields(const HatchingSurface& surface,
-                                                                                    const HatchingView& view,
-                                                                                    const LineImages& lines) {
-    std::array<std::vector<Vec3>, k_vertex_fields + k_more_vertex_fields> fields;
+/// Computes the fields that are defined on the surface: those of App. B.3 in their order, and horizontal slices.
+std::array<std::vector<Vec3>, k_vertex_fields + 1> vertex_fields(const HatchingSurface& surface,
+                                                                 const HatchingView& view, const LineImages& lines) {
+    std::array<std::vector<Vec3>, k_vertex_fields + 1> fields;
     for (std::size_t s = 0; s < 3; ++s) {
         fields[s] = surface.directions.k_max[s];
         fields[3 + s] = surface.directions.k_min[s];
@@ -226,7 +201,6 @@ std::array<std::vector<Vec3>, k_vertex_fields + k_more_vertex_fields> vertex_fie
     fields[15] = vector_irradiance(surface.occlusion, view.light);
     fields[17] = surface.directions.ridges;
     fields[18] = surface.directions.valleys;
-    fields[k_vertex_fields + 1] = geodesic_gradients(surface);
     return fields;
 }
 

@@ -19,7 +19,7 @@ struct NamedType {
 };
 
 // The first prefix that fits a name tells its type.
-constexpr std::array<NamedType, 17> k_orientation_types{{{"k_m", "k_max, k_min"},
+constexpr std::array<NamedType, 16> k_orientation_types{{{"k_m", "k_max, k_min"},
                                                          {"e_", "e_a, e_b"},
                                                          {"LxN", "L x N"},
                                                          {"VxN", "V x N"},
@@ -32,7 +32,6 @@ constexpr std::array<NamedType, 17> k_orientation_types{{{"k_m", "k_max, k_min"}
                                                          {"grad L.N", "grad L.N"},
                                                          {"grad a", "grad a"},
                                                          {"grad I", "grad I"},
-                                                         {"grad geodesic", "geodesic distance"},
                                                          {"UxN", "U x N"},
                                                          {"x", "of the picture"},
                                                          {"diagonal", "of the picture"}}};

@@ -118,6 +118,33 @@ TEST(PixelFeatures, DoNotDependOnTheSizeOfThePicture) {
     EXPECT_NE(other.values, found.values);
 }
 
+/// Slices of a ball that is seen from the front are level if y is up, and upright if x is.
+TEST(PixelFeatures, FieldsThatArtistsUseEverywhere) {
+    HostTools host;
+    HatchingView view = parallel_view(ball().mesh, Vec3::UnitZ());
+    const auto means = [&](const std::string& name) {
+        PixelFeatures features(ball(), view, host.tools);
+        const OrientationFields fields = features.orientations({});
+        DoubledAngle sum{};
+        for (std::size_t i = 0; i < fields.rows; ++i) {
+            const DoubledAngle v = fields.feature(field_of_view(name), i);
+            sum = {sum[0] + v[0] / static_cast<float>(fields.rows), sum[1] + v[1] / static_cast<float>(fields.rows)};
+        }
+        return sum;
+    };
+    const auto expect_direction = [&](const std::string& name, const DoubledAngle& direction) {
+        EXPECT_LT(squared_distance(means(name), direction), 0.001f) << name;
+    };
+    expect_direction("UxN", {1, 0});
+    expect_direction("perp UxN", {-1, 0});
+    view.up = Vec3::UnitX();
+    expect_direction("UxN", {-1, 0});
+    expect_direction("x", {1, 0});
+    expect_direction("perp x", {-1, 0});
+    expect_direction("diagonal", {0, 1});
+    expect_direction("perp diagonal", {0, -1});
+}
+
 /// The same object, seen by eyes at other distances and without perspective.
 TEST(HatchingView, TellsTheSizeOfAnObject) {
     const auto seen = [&](float distance, float fov) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/core/random.h"
+#include "host/hatching/features/pixel_features.h"
 #include "host/hatching/rules/orientation_samples.h"
 
 namespace exemplar {
@@ -252,6 +253,22 @@ TEST(SampleNeighbors, AreThoseWithinTheSpacing) {
             ASSERT_EQ(actual, expected) << i;
         }
     }
+}
+
+// Features keep their numbers in style files: fields that were added follow the rotated ones of the thesis.
+TEST(OrientationFeatures, AreFieldsAndFieldsRotated) {
+    EXPECT_EQ(feature_of_field(34), 34U);
+    EXPECT_EQ(feature_of_field(0, true), 35U);
+    EXPECT_EQ(feature_of_field(35), 70U);
+    EXPECT_EQ(feature_of_field(35, true), 73U);
+    for (std::uint32_t feature = 0; feature < k_orientation_features; ++feature) {
+        EXPECT_EQ(feature_of_field(field_of_feature(feature), is_rotated(feature)), feature);
+        const std::string& name = orientation_feature_names()[feature];
+        EXPECT_EQ(name.starts_with("perp "), is_rotated(feature)) << name;
+    }
+    for (std::size_t field = 0; field < k_orientation_fields; ++field)
+        EXPECT_EQ("perp " + orientation_feature_names()[feature_of_field(field)],
+                  orientation_feature_names()[feature_of_field(field, true)]);
 }
 
 }  // namespace

@@ -273,9 +273,9 @@ TEST(HatchingStyleFile, WhatContradictsItselfIsRefused) {
     const auto damaged = [](const std::string& what) { return "FILE: damaged file: " + what + "; train it again"; };
     const auto nan = std::numeric_limits<float>::quiet_NaN();
     EXPECT_EQ(error_after([](TensorFile& f) {
-                  replace<std::uint32_t>(f, "rule.0.0.feature", {2}, {3, 78});
+                  replace<std::uint32_t>(f, "rule.0.0.feature", {2}, {3, 76});
               }),
-              damaged("rule.0.0 uses orientation feature 78 of 78"));
+              damaged("rule.0.0 uses orientation feature 76 of 76"));
     EXPECT_EQ(error_after([&](TensorFile& f) { replace<float>(f, "rule.1.0.weight", {1}, {nan}); }),
               damaged("rule.1.0.weight holds a value that is not finite"));
     EXPECT_EQ(error_after([](TensorFile& f) { replace<float>(f, "spacing.factor", {1}, {0}); }),

@@ -77,7 +77,7 @@ std::vector<std::string> all_names() {
 
 /// The fields per vertex: those of the thesis, before the gradients of images, and one more, after them.
 constexpr std::size_t k_vertex_fields = 19;
-constexpr std::size_t k_slices = k_thesis_fields, k_picture = k_slices + 1;
+constexpr std::size_t k_slice_field = k_thesis_fields, k_first_constant = k_slice_field + 1;
 
 std::vector<std::string> all_orientation_names() {
     std::vector<std::string> names;
@@ -311,8 +311,8 @@ void PixelFeatures::picture_column(std::size_t feature, std::span<const std::uin
     const std::array<const ImageStack*, 4> quantities{&all.value, &all.gradient_magnitude, &all.maximum_curvature,
                                                       &all.minimum_curvature};
     const std::span<const float> values = quantities[quantity]->image(image);
-    const std::array<float, 4> unit{1, scale_, scale_ * scale_, scale_ * scale_};
-    gatherer.from_pixels([&](std::uint32_t pixel) { return unit[quantity] * values[pixel]; }, out);
+    const float unit = std::array<float, 4>{1, scale_, scale_ * scale_, scale_ * scale_}[quantity];
+    gatherer.from_pixels([&](std::uint32_t pixel) { return unit * values[pixel]; }, out);
 }
 
 std::vector<DoubledAngle> PixelFeatures::gradient_directions(std::span<const float> x, std::span<const float> y) const {
@@ -344,10 +344,10 @@ OrientationFields PixelFeatures::orientations(std::span<const std::uint32_t> row
                                      std::span(out.values).subspan(first * out.rows, some.size() * out.rows));
     };
     project(std::span(fields).first(k_vertex_fields), 0);
-    project(std::span(fields).subspan(k_vertex_fields), k_slices);
+    project(std::span(fields).subspan(k_vertex_fields), k_slice_field);
     // Directions that are the same all over the picture: along the axes, and between them.
-    std::ranges::fill(out.field(k_picture), DoubledAngle{1, 0});
-    std::ranges::fill(out.field(k_picture + 1), DoubledAngle{0, 1});
+    std::ranges::fill(out.field(k_first_constant), DoubledAngle{1, 0});
+    std::ranges::fill(out.field(k_first_constant + 1), DoubledAngle{0, 1});
     constexpr std::array<std::size_t, k_shading_images> k_order{k_view_normal, k_light_normal, k_ambient, k_intensity};
     for (std::size_t k = k_vertex_fields; k < k_thesis_fields; ++k) {
         const std::size_t place = k - k_vertex_fields;

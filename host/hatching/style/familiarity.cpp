@@ -32,8 +32,8 @@ std::vector<std::uint32_t> numbers_of_names() {
 }
 
 // Rows whose distances are computed together, in the processor's vectors.
-constexpr int k_block = 16;
-using BlockValues = Eigen::Array<float, k_block, 1>;
+constexpr int k_rows_together = 16;
+using BlockValues = Eigen::Array<float, k_rows_together, 1>;
 
 /// Returns the squared distances from z (feature by feature) to the nearest of `samples`.
 BlockValues nearest_distances(std::span<const float> samples, const std::array<BlockValues, k_names.size()>& z) {
@@ -60,7 +60,7 @@ class Standardized {
     float operator()(std::size_t row, std::size_t k) const {
         return (columns_[k][row] - familiarity_.offset[k]) * familiarity_.scale[k];
     }
-    /// Returns the squared distances of up to k_block rows to the nearest of `samples`.
+    /// Returns the squared distances of up to k_rows_together rows to the nearest of `samples`.
     BlockValues distances(std::span<const float> samples, std::span<const std::uint32_t> rows) const {
         std::array<BlockValues, k_names.size()> z;
         for (std::size_t k = 0; k < z.size(); ++k) {
@@ -100,9 +100,9 @@ std::vector<float> Familiarity::of(std::span<const std::uint32_t> which, const F
     const float range = 4 * reach * reach;
     std::vector<std::uint32_t> rows(features.rows);
     std::iota(rows.begin(), rows.end(), 0U);
-    parallel_ranges(features.rows, 16 * k_block, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t first = begin; first < end; first += k_block) {
-            const std::size_t count = std::min<std::size_t>(k_block, end - first);
+    parallel_ranges(features.rows, 16 * k_rows_together, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t first = begin; first < end; first += k_rows_together) {
+            const std::size_t count = std::min<std::size_t>(k_rows_together, end - first);
             const BlockValues distances = z.distances(samples, std::span(rows).subspan(first, count));
             for (std::size_t i = 0; i < count; ++i)
                 out[first + i] = std::exp(-distances[static_cast<Eigen::Index>(i)] / range);

@@ -86,13 +86,20 @@ double rule_error(const OrientationFunction& function, PixelFeatures& pixels, co
     return static_cast<double>(upper_median(errors));
 }
 
-/// The level and the properties of rows.
-FeatureMatrix targets_of(const HatchingFields& fields, PixelFeatures& pixels, std::span<const std::uint32_t> rows) {
+FeatureMatrix levels_of(const HatchingFields& fields, const PixelFeatures& pixels,
+                        std::span<const std::uint32_t> rows) {
     FeatureMatrix targets;
     targets.rows = rows.size();
-    const auto pixel = [&](std::size_t i) { return pixels.pixels().pixel[rows[i]]; };
     const std::span<float> levels = targets.add("level");
-    for (std::size_t i = 0; i < rows.size(); ++i) levels[i] = fields.level[pixel(i)];
+    for (std::size_t i = 0; i < rows.size(); ++i) levels[i] = fields.level[pixels.pixels().pixel[rows[i]]];
+    return targets;
+}
+
+/// The level and the properties of rows.
+FeatureMatrix targets_of(const HatchingFields& fields, const PixelFeatures& pixels,
+                         std::span<const std::uint32_t> rows) {
+    FeatureMatrix targets = levels_of(fields, pixels, rows);
+    const auto pixel = [&](std::size_t i) { return pixels.pixels().pixel[rows[i]]; };
     for (std::size_t k = 0; k < k_stroke_properties; ++k) {
         const auto property = static_cast<StrokeProperty>(k);
         const std::span<float> column = targets.add(name_of(property));
@@ -101,21 +108,59 @@ FeatureMatrix targets_of(const HatchingFields& fields, PixelFeatures& pixels, st
     return targets;
 }
 
-/// Writes some rows of features with their measured or true targets and, if given, the learned ones, as arrays for
-/// other programs.
-void export_rows(const fs::path& folder, const std::string& name, PixelFeatures& pixels, const HatchingFields& targets,
-                 const HatchingFields* learned, std::size_t most, std::uint64_t seed) {
-    fs::create_directories(folder);
-    std::vector<std::uint32_t> rows(pixels.size());
-    std::iota(rows.begin(), rows.end(), 0U);
+std::vector<std::uint32_t> some_of(std::vector<std::uint32_t> rows, std::size_t most, std::uint64_t seed) {
     Random(seed).shuffle(rows);
     rows.resize(std::min(rows.size(), most));
-    std::vector<std::uint32_t> all(k_pixel_features);
-    std::iota(all.begin(), all.end(), 0U);
-    write_npy(folder / (name + "_x.npy"), pixels.scalars(all, rows));
-    write_npy(folder / (name + "_y.npy"), targets_of(targets, pixels, rows));
-    if (learned) write_npy(folder / (name + "_learned.npy"), targets_of(*learned, pixels, rows));
+    return rows;
 }
+
+std::vector<std::uint32_t> all_rows(const PixelFeatures& pixels) {
+    std::vector<std::uint32_t> rows(pixels.size());
+    std::iota(rows.begin(), rows.end(), 0U);
+    return rows;
+}
+
+/// Returns the rows that properties are learned from: pixels of center lines.
+std::vector<std::uint32_t> stroke_rows(const PixelFeatures& pixels, const DrawingProperties& drawing) {
+    std::vector<std::uint32_t> rows;
+    for (std::uint32_t row = 0; row < pixels.size(); ++row) {
+        const std::uint32_t p = pixels.pixels().pixel[row];
+        if (drawing.center[p] && drawing.level[p] > 0) rows.push_back(row);
+    }
+    return rows;
+}
+
+/// Returns where rows are in the picture.
+FeatureMatrix places_of(const PixelFeatures& pixels, std::span<const std::uint32_t> rows) {
+    FeatureMatrix places;
+    places.rows = rows.size();
+    const auto width = static_cast<std::uint32_t>(pixels.view().width);
+    const std::span<float> x = places.add("x");
+    for (std::size_t i = 0; i < rows.size(); ++i) x[i] = static_cast<float>(pixels.pixels().pixel[rows[i]] % width);
+    const std::span<float> y = places.add("y");
+    for (std::size_t i = 0; i < rows.size(); ++i) y[i] = static_cast<float>(pixels.pixels().pixel[rows[i]] / width);
+    return places;
+}
+
+/// A set of rows for other programs: files of `folder` that begin with `name`.
+struct RowExport {
+    fs::path folder;
+    std::string name;
+    std::vector<std::uint32_t> rows;
+
+    void write(const char* part, const FeatureMatrix& matrix) const {
+        write_npy(folder / fmt::format("{}_{}.npy", name, part), matrix);
+    }
+    /// Writes features, measured or true targets, and coordinates.
+    void write_examples(PixelFeatures& pixels, const HatchingFields& targets) const {
+        fs::create_directories(folder);
+        std::vector<std::uint32_t> all(k_pixel_features);
+        std::iota(all.begin(), all.end(), 0U);
+        write("x", pixels.scalars(all, rows));
+        write("y", targets_of(targets, pixels, rows));
+        write("pixel", places_of(pixels, rows));
+    }
+};
 
 /// Returns the measured values of a drawing as hatching fields.
 HatchingFields measured_fields(const DrawingProperties& drawing) {
@@ -124,6 +169,54 @@ HatchingFields measured_fields(const DrawingProperties& drawing) {
     for (std::size_t k = 0; k < k_stroke_properties; ++k)
         property_of(fields, static_cast<StrokeProperty>(k)) = drawing.property[k];
     return fields;
+}
+
+/// Returns the measured values that properties are learned from. Learning leaves out lengths of strokes that cross
+/// others, so they are 0.
+HatchingFields stroke_fields(const DrawingProperties& drawing) {
+    HatchingFields fields = measured_fields(drawing);
+    for (std::size_t p = 0; p < fields.size(); ++p)
+        if (drawing.crossed[p]) fields.length[p] = 0;
+    return fields;
+}
+
+/// Returns the true segment of each pixel, 0 or 1; nothing for styles of one segment.
+std::vector<std::uint8_t> true_segments(const std::string& style, const HatchingFields& truth) {
+    if (style != "parts") return {};
+    std::vector<std::uint8_t> segments(truth.size());
+    // Thick parts have strokes of length 50 at a spacing of 9, thin ones 25 at 7. Their ratio depends on no scale.
+    for (std::size_t p = 0; p < segments.size(); ++p) segments[p] = truth.length[p] > 4.5f * truth.spacing[p] ? 1 : 0;
+    return segments;
+}
+
+/// Tells which true segment a learned one stands for: the one that it covers most of in the training view.
+class SegmentMatching {
+  public:
+    SegmentMatching() = default;
+    SegmentMatching(std::span<const std::uint8_t> predicted, std::span<const std::uint8_t> truth,
+                    std::span<const std::uint32_t> pixels) {
+        std::vector<std::array<std::size_t, 2>> shared(k_no_segment);
+        for (const std::uint32_t p : pixels) ++shared[predicted[p]][truth[p]];
+        // A segment that the training view lacks stands for none.
+        for (const auto& [first, second] : shared)
+            meaning_.push_back(first + second == 0 ? k_no_segment : second > first ? 1 : 0);
+    }
+    double accuracy(std::span<const std::uint8_t> predicted, std::span<const std::uint8_t> truth,
+                    std::span<const std::uint32_t> pixels) const {
+        const auto right =
+            std::ranges::count_if(pixels, [&](std::uint32_t p) { return meaning_[predicted[p]] == truth[p]; });
+        return static_cast<double>(right) / static_cast<double>(pixels.size());
+    }
+
+  private:
+    std::vector<std::uint8_t> meaning_;
+};
+
+/// Returns the share of the larger true segment: the accuracy of a constant guess.
+double majority_segment(std::span<const std::uint8_t> truth, std::span<const std::uint32_t> pixels) {
+    const auto second = std::ranges::count_if(pixels, [&](std::uint32_t p) { return truth[p] == 1; });
+    const double share = static_cast<double>(second) / static_cast<double>(pixels.size());
+    return std::max(share, 1 - share);
 }
 
 nlohmann::json row_of(const HatchingErrors& e) {
@@ -169,10 +262,43 @@ class StyleEvaluation {
         result_["training_seconds"] = watch.wall();
         global_ = one_rule(scene.pixels(), drawing, false, arguments_.seed);
         curvature_ = one_rule(scene.pixels(), drawing, true, arguments_.seed);
-        if (!arguments_.peers.empty())
-            export_rows(arguments_.peers, name_ + "_train", scene.pixels(), measured_fields(drawing), nullptr, 16000,
-                        1);
+        if (!arguments_.peers.empty()) export_training(scene.pixels(), drawing);
         progress_.advance(1, name_ + " learned");
+    }
+
+    /// Writes what a style is learned from: levels at as many pixels, and properties at all that it chooses from.
+    void export_training(PixelFeatures& pixels, const DrawingProperties& drawing) const {
+        RowExport{arguments_.peers, name_ + "_train", some_of(all_rows(pixels), StyleLearningOptions().samples, 1)}
+            .write_examples(pixels, measured_fields(drawing));
+        const std::vector<std::uint32_t> strokes = stroke_rows(pixels, drawing);
+        RowExport{arguments_.peers, name_ + "_strokes", some_of(strokes, strokes.size(), 1)}.write_examples(
+            pixels, stroke_fields(drawing));
+    }
+
+    /// Writes rows of a picture with the truth, what was learned, and the levels without the cut. The training view
+    /// is told apart, since what was learned has seen its pixels.
+    void export_test(HatchScene& scene, const HatchingFields& truth, const HatchingFields& learned,
+                     const std::string& picture, bool training_view) const {
+        PixelFeatures& pixels = scene.pixels();
+        const RowExport test{arguments_.peers, fmt::format("{}_{}_{}", name_, training_view ? "seen" : "test", picture),
+                             some_of(all_rows(pixels), 10000, 2)};
+        test.write_examples(pixels, truth);
+        test.write("learned", targets_of(learned, pixels, test.rows));
+        HatchingStyle uncut = style_;
+        uncut.level_crf.strength = 0;  // The cut then takes the most probable level of each pixel.
+        const HatchingPrediction boosted =
+            predict_hatching(uncut, pixels, scene.tools().scorer, scene.tools().evaluator);
+        test.write("boosted", levels_of(boosted.fields, pixels, test.rows));
+    }
+
+    /// Compares segments with the true ones. The training view comes first, and teaches which is which.
+    void add_segments(nlohmann::json& row, std::span<const std::uint8_t> predicted, const HatchingFields& truth,
+                      std::span<const std::uint32_t> pixels, bool training_view) {
+        const std::vector<std::uint8_t> segments = true_segments(name_, truth);
+        if (segments.empty()) return;
+        if (training_view) matching_ = SegmentMatching(predicted, segments, pixels);
+        row["segment_accuracy"] = matching_.accuracy(predicted, segments, pixels);
+        row["majority_segment"] = majority_segment(segments, pixels);
     }
 
     /// Compares the values measured on the drawing's center lines with the rule.
@@ -204,6 +330,7 @@ class StyleEvaluation {
         // By now features are measured at the scale of the training view, as the rule was.
         const HatchingFields truth = hatching_by_rule(name_, pixels);
         nlohmann::json row = row_of(compare_hatching(predicted.fields, truth, pixels.pixels().pixel));
+        add_segments(row, predicted.segment, truth, pixels.pixels().pixel, training_view);
         row["mesh"] = mesh.stem().string();
         row["view"] = view;
         row["kind"] = training_view ? "training view" : mesh == arguments_.meshes[0] ? "other view" : "other mesh";
@@ -215,8 +342,8 @@ class StyleEvaluation {
         row["drawn_spacing"] = measure_spacing(strokes, predicted.fields).median_error;
         row["drawn_tone"] = measure_tone(strokes, predicted.fields).median_error;
         if (!arguments_.peers.empty())
-            export_rows(arguments_.peers, fmt::format("{}_test_{}_{}", name_, mesh.stem().string(), view), pixels,
-                        truth, &predicted.fields, 10000, 2);
+            export_test(scene, truth, predicted.fields, fmt::format("{}_{}", mesh.stem().string(), view),
+                        training_view);
         result_["rows"].push_back(row);
         progress_.advance(1, fmt::format("{} on {}, {}", name_, mesh.stem().string(), view));
     }
@@ -226,6 +353,7 @@ class StyleEvaluation {
     Progress& progress_;
     HatchingStyle style_;
     OrientationFunction global_, curvature_;
+    SegmentMatching matching_;
     nlohmann::json result_;
 };
 
@@ -233,23 +361,32 @@ std::string percent_cell(const nlohmann::json& row, const char* key) {
     return fmt::format("{:.1f}%", 100 * row[key].get<double>());
 }
 
+/// Returns a share, and in brackets that of a constant guess; a dash if there is nothing to guess.
+std::string beside_majority(const nlohmann::json& row, const char* key, const char* majority) {
+    if (!row.contains(key)) return "-";
+    return fmt::format("{} ({})", percent_cell(row, key), percent_cell(row, majority));
+}
+
 void print_result(const nlohmann::json& result) {
     fmt::print("{}: learned in {:.0f} s\n{}", result["style"].get<std::string>(),
                result["training_seconds"].get<double>(), result["in_words"].get<std::string>());
-    fmt::print("{:>34} {:>7} {:>7} {:>9} {:>6} {:>9} {:>9} {:>8} {:>6} {:>13} {:>6}\n", "", "degrees", "global",
-               "curvature", "level", "thickness", "intensity", "spacing", "length", "drawn spacing", "tone");
+    fmt::print("{:>34} {:>7} {:>7} {:>9} {:>16} {:>18} {:>9} {:>9} {:>8} {:>6} {:>13} {:>6}\n", "", "degrees", "global",
+               "curvature", "level (majority)", "segment (majority)", "thickness", "intensity", "spacing", "length",
+               "drawn spacing", "tone");
     const nlohmann::json& read = result["measured"];
-    fmt::print("{:>34} {:7.1f} {:>17} {:>6} {:>9} {:>9} {:>8} {:>6}\n", "as read from the drawing",
-               read["orientation_degrees"].get<double>(), "", percent_cell(read, "level_accuracy"),
+    fmt::print("{:>34} {:7.1f} {:>17} {:>16} {:>18} {:>9} {:>9} {:>8} {:>6}\n", "as read from the drawing",
+               read["orientation_degrees"].get<double>(), "", percent_cell(read, "level_accuracy"), "",
                percent_cell(read, "thickness"), percent_cell(read, "intensity"), percent_cell(read, "spacing"),
                percent_cell(read, "length"));
     for (const nlohmann::json& row : result["rows"]) {
-        fmt::print("{:>34} {:7.1f} {:7.1f} {:9.1f} {:>6} {:>9} {:>9} {:>8} {:>6} {:>13} {:>6}\n",
+        fmt::print("{:>34} {:7.1f} {:7.1f} {:9.1f} {:>16} {:>18} {:>9} {:>9} {:>8} {:>6} {:>13} {:>6}\n",
                    row["mesh"].get<std::string>() + ", " + row["view"].get<std::string>(),
                    row["orientation_degrees"].get<double>(), row["global_rule_degrees"].get<double>(),
-                   row["curvature_only_degrees"].get<double>(), percent_cell(row, "level_accuracy"),
-                   percent_cell(row, "thickness"), percent_cell(row, "intensity"), percent_cell(row, "spacing"),
-                   percent_cell(row, "length"), percent_cell(row, "drawn_spacing"), percent_cell(row, "drawn_tone"));
+                   row["curvature_only_degrees"].get<double>(),
+                   beside_majority(row, "level_accuracy", "majority_level"),
+                   beside_majority(row, "segment_accuracy", "majority_segment"), percent_cell(row, "thickness"),
+                   percent_cell(row, "intensity"), percent_cell(row, "spacing"), percent_cell(row, "length"),
+                   percent_cell(row, "drawn_spacing"), percent_cell(row, "drawn_tone"));
     }
 }
 
@@ -302,7 +439,7 @@ void add_hatch_evaluate_command(Command& hatch) {
         ->check(whole_number(0));
     command
         ->add_option("--export", arguments->peers,
-                     "writes features, truths and what was learned as .npy into this folder")
+                     "writes features, pixels, truths and what was learned as .npy into this folder")
         ->type_name("FOLDER");
     add_device_option(*command, arguments->common);
     add_common_options(*command, arguments->common);

@@ -138,7 +138,10 @@ FeatureMatrix places_of(const PixelFeatures& pixels, std::span<const std::uint32
     const std::span<float> x = places.add("x");
     for (std::size_t i = 0; i < rows.size(); ++i) x[i] = static_cast<float>(pixels.pixels().pixel[rows[i]] % width);
     const std::span<float> y = places.add("y");
-    for (std::size_t i = 0; i < rows.size(); ++i) y[i] = static_cast<float>(pixels.pixels().pixel[rows[i]] / width);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const std::uint32_t line = pixels.pixels().pixel[rows[i]] / width;
+        y[i] = static_cast<float>(line);
+    }
     return places;
 }
 

@@ -30,6 +30,7 @@ struct TypeShare {
 /// The largest share first.
 std::vector<TypeShare> ordered(const std::map<std::string, double>& shares) {
     std::vector<TypeShare> order;
+    order.reserve(shares.size());
     for (const auto& [type, share] : shares) order.push_back({type, share});
     std::ranges::stable_sort(order, std::greater{}, &TypeShare::share);
     return order;

@@ -148,8 +148,10 @@ void run_hatch_train(TrainArguments& arguments) {
     Stopwatch watch;
     LearningProgress progress;
     std::vector<ReadDrawing> read;
+    read.reserve(drawings.size());
     for (const DrawingArguments& each : drawings) read.push_back(read_drawing_of(each, arguments.common, progress));
     std::vector<HatchingExample> examples;
+    examples.reserve(read.size());
     for (const ReadDrawing& each : read) examples.push_back({each.scene->pixels(), each.properties});
     const double reading = watch.wall();
     progress.begins("orientation rules");

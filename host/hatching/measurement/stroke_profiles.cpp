@@ -315,6 +315,7 @@ float estimate_softness(const FloatImage& darkness, float paper, const StrokeMap
     }
     if (profiles.empty()) return 0;
     std::vector<SoftnessFit> fits;
+    fits.reserve(k_softnesses.size());
     for (const float softness : k_softnesses) fits.push_back(fit_softness(profiles, widths, softness));
     const auto best = static_cast<std::size_t>(std::ranges::min_element(fits, {}, &SoftnessFit::misfit) - fits.begin());
     if (best == 0 || !(fits[best].misfit <= k_better * fits[0].misfit)) return 0;

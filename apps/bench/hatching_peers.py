@@ -60,9 +60,9 @@ def classifiers(split):
         "majority": DummyClassifier(),
         "nearest neighbor": chosen(KNeighborsClassifier(), n_neighbors=[1, 5, 25, 125]),
         "logistic regression": chosen(LogisticRegression(max_iter=300), C=[0.001, 0.01, 0.1, 1.0]),
-        "linear SVM": chosen(LinearSVC(dual=False, max_iter=300, tol=1e-3), C=[0.0001, 0.001, 0.01, 0.1]),
-        "decision tree": chosen(DecisionTreeClassifier(random_state=1), min_samples_leaf=[5, 20, 80, 320]),
-        "random forest": chosen(RandomForestClassifier(100, random_state=1), min_samples_leaf=[5, 20, 80]),
+        "linear SVM": chosen(LinearSVC(dual=False, max_iter=300, tol=1e-3), C=[0.0001, 0.001, 0.01, 0.1, 1.0]),
+        "decision tree": chosen(DecisionTreeClassifier(random_state=1), min_samples_leaf=[20, 80, 320, 1280]),
+        "random forest": chosen(RandomForestClassifier(100, random_state=1), min_samples_leaf=[5, 20, 80, 320]),
     }
 
 

@@ -77,12 +77,9 @@ Booster booster_of(const ClassifierTraining& training, const TrainingSet& set) {
     return training.gentle ? Booster::gentle(set, options) : Booster(set, training.classes, options);
 }
 
-/// Boosts `rounds` rounds on all rows, as the held-out ones are part of the drawing, too.
-BoostedStumps with_all_rows(const ClassifierTraining& training, const QuantizedFeatures& quantized,
-                            std::span<const float> weights, std::size_t rounds, const std::function<void()>& progress) {
-    std::vector<std::uint32_t> rows(training.features.rows);
-    std::iota(rows.begin(), rows.end(), 0U);
-    const TrainingSet set{quantized, training.labels, weights, rows};
+/// Returns the classifier of so many rounds.
+BoostedStumps boosted(const ClassifierTraining& training, const TrainingSet& set, std::size_t rounds,
+                      const std::function<void()>& progress) {
     Booster booster = booster_of(training, set);
     for (std::size_t round = 0; round < rounds; ++round) {
         check_interrupt();
@@ -90,6 +87,11 @@ BoostedStumps with_all_rows(const ClassifierTraining& training, const QuantizedF
         progress();
     }
     return booster.classifier();
+}
+
+/// Numbers the features of stumps as the expanded set does (powers.h).
+void number_expanded(BoostedStumps& classifier, std::span<const std::uint32_t> expanded) {
+    for (Stump& stump : classifier.stumps) stump.feature = expanded[stump.feature];
 }
 
 /// Returns, per face, geodesic range and label, the mean probability of the pixels in that range; normalized per face.
@@ -139,10 +141,15 @@ double chance_of(double least, std::size_t held_out) {
     return std::sqrt(least * (1 - least) / static_cast<double>(std::max<std::size_t>(1, held_out)));
 }
 
+/// All rounds on the rows that are not held out.
+struct JudgedBoosting {
+    std::vector<JudgedRounds> judged;
+    BoostedStumps classifier;
+};
+
 /// Boosts on the other rows, and judges by the held-out ones until more rounds are of no use.
-std::vector<JudgedRounds> judge_rounds(const ClassifierTraining& training, const FeatureMatrix& features,
-                                       const TrainingSet& set, std::span<const std::uint32_t> judges,
-                                       const std::function<void()>& progress) {
+JudgedBoosting judge_rounds(const ClassifierTraining& training, const FeatureMatrix& features, const TrainingSet& set,
+                            std::span<const std::uint32_t> judges, const std::function<void()>& progress) {
     const std::vector<std::int32_t> labels = chosen(training.labels, judges);
     const std::vector<float> weights = chosen(set.weights, judges);
     constexpr std::array<Link, 1> k_links{Link::softmax};
@@ -164,7 +171,7 @@ std::vector<JudgedRounds> judge_rounds(const ClassifierTraining& training, const
         if (is_good) good_rounds = round;
         least = std::min(least, measure);
     }
-    return judged;
+    return {std::move(judged), booster.classifier()};
 }
 
 /// The rounds of the lowest loss or, in detail, the last ones whose error exceeds the lowest by chance at most.
@@ -192,13 +199,45 @@ LearnedClassifier learn_classifier(const ClassifierTraining& training, const std
     std::vector<float> weights(training.weights.begin(), training.weights.end());
     weights.resize(training.features.rows, 1.0f);
     const QuantizedFeatures quantized = quantize(features.matrix, weights, {});
-    const TrainingSet set{quantized, training.labels, weights, rows};
-    const std::vector<JudgedRounds> judged = judge_rounds(training, features.matrix, set, judges, progress);
-    const JudgedRounds chosen_rounds = best_of(training, judged, judges.size());
-    best = {{{}, chosen_rounds.held.link, chosen_rounds.held.scale}, chosen_rounds.held.error, chosen_rounds.held.loss};
-    best.classifier.stumps = with_all_rows(training, quantized, weights, chosen_rounds.rounds, progress);
-    for (Stump& stump : best.classifier.stumps.stumps) stump.feature = features.expanded[stump.feature];
+    const auto set_of = [&](std::span<const std::uint32_t> some) {
+        return TrainingSet{quantized, training.labels, weights, some};
+    };
+    const JudgedBoosting boosting = judge_rounds(training, features.matrix, set_of(rows), judges, progress);
+    const JudgedRounds chosen_rounds = best_of(training, boosting.judged, judges.size());
+    const auto calibrated = [&](BoostedStumps stumps) {
+        number_expanded(stumps, features.expanded);
+        return CalibratedStumps{std::move(stumps), chosen_rounds.held.link, chosen_rounds.held.scale};
+    };
+    // The held-out rows are part of the drawing, too.
+    std::vector<std::uint32_t> all(training.features.rows);
+    std::iota(all.begin(), all.end(), 0U);
+    best.classifier = calibrated(boosted(training, set_of(all), chosen_rounds.rounds, progress));
+    best.judged = calibrated(truncate(boosting.classifier, chosen_rounds.rounds));
+    best.error = chosen_rounds.held.error;
+    best.loss = chosen_rounds.held.loss;
     return best;
+}
+
+std::vector<CalibratedStumps> learn_without_folds(const ClassifierTraining& training, const CalibratedStumps& like,
+                                                  std::span<const std::uint8_t> fold, std::size_t folds,
+                                                  const std::function<void()>& progress) {
+    const StumpFeatures features = stump_features(training.features);
+    std::vector<float> weights(training.weights.begin(), training.weights.end());
+    weights.resize(training.features.rows, 1.0f);
+    const QuantizedFeatures quantized = quantize(features.matrix, weights, {});
+    std::vector<CalibratedStumps> learned;
+    learned.reserve(folds);
+    for (std::size_t f = 0; f < folds; ++f) {
+        std::vector<std::uint32_t> rows;
+        for (std::uint32_t i = 0; i < fold.size(); ++i) {
+            if (fold[i] != f) rows.push_back(i);
+        }
+        const TrainingSet set{quantized, training.labels, weights, rows};
+        BoostedStumps stumps = rows.empty() ? like.stumps : boosted(training, set, like.stumps.stumps.size(), progress);
+        if (!rows.empty()) number_expanded(stumps, features.expanded);
+        learned.push_back({std::move(stumps), like.link, like.scale});
+    }
+    return learned;
 }
 
 std::vector<float> classify(const CalibratedStumps& classifier, std::span<const std::uint32_t> which,

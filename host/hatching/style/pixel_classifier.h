@@ -27,6 +27,7 @@ struct ClassifierTraining {
 
 struct LearnedClassifier {
     CalibratedStumps classifier;  ///< over expanded features, see powers.h
+    CalibratedStumps judged;      ///< the same, not learned from the held-out rows
     double error = 0;             ///< share (by weight) of held-out rows that it gets wrong
     double loss = 0;              ///< log loss of the held-out rows
 };
@@ -37,6 +38,12 @@ struct LearnedClassifier {
 /// for a single class.
 LearnedClassifier learn_classifier(
     const ClassifierTraining& training, const std::function<void()>& progress = [] {});
+
+/// Returns, for each fold, the classifier that has learned from the rows of all other folds as `like` has from all: in
+/// as many rounds, with the same link. `fold`: per row, below `folds`.
+std::vector<CalibratedStumps> learn_without_folds(
+    const ClassifierTraining& training, const CalibratedStumps& like, std::span<const std::uint8_t> fold,
+    std::size_t folds, const std::function<void()>& progress = [] {});
 
 /// Returns the class probabilities of rows (rows x classes). `base` holds their base features, numbered `which`.
 std::vector<float> classify(const CalibratedStumps& classifier, std::span<const std::uint32_t> which,

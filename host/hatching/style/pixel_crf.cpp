@@ -28,10 +28,9 @@ std::vector<std::array<std::uint32_t, 2>> neighbor_pairs(const CoveredPixels& pi
 }  // namespace
 
 PixelCrf::PixelCrf(const CoveredPixels& pixels, int width, std::span<const float> boundary)
-    : edges_(neighbor_pairs(pixels, width)),
-      boundary_(boundary.begin(), boundary.end()),
-      expansion_(pixels.pixel.size(), edges_) {
-    for (const auto& [i, j] : edges_) evidence_.push_back(std::log(std::max(boundary_[i] + boundary_[j], 1e-6f)));
+    : edges_(neighbor_pairs(pixels, width)), expansion_(pixels.pixel.size(), edges_) {
+    evidence_.reserve(edges_.size());
+    for (const auto& [i, j] : edges_) evidence_.push_back(std::log(std::max(boundary[i] + boundary[j], 1e-6f)));
 }
 
 std::vector<std::int32_t> PixelCrf::solve(std::span<const float> probabilities, std::size_t classes,
@@ -48,20 +47,6 @@ std::vector<std::int32_t> PixelCrf::solve(std::span<const float> probabilities, 
     for (std::size_t c = 0; c < classes; ++c) potts[c * classes + c] = 0;
     constexpr std::size_t k_sweeps = 4;
     return expansion_.solve({unary, weight, potts}, classes, k_sweeps).labels;
-}
-
-double PixelCrf::boundary_agreement(std::span<const std::int32_t> labels) const {
-    std::vector<std::uint8_t> at_boundary(labels.size());
-    for (const auto& [i, j] : edges_) {
-        if (labels[i] != labels[j]) at_boundary[i] = at_boundary[j] = 1;
-    }
-    double sum = 0, count = 0;
-    for (std::size_t i = 0; i < labels.size(); ++i) {
-        if (!at_boundary[i]) continue;
-        sum += static_cast<double>(boundary_[i]);
-        count += 1;
-    }
-    return count > 0 ? sum / count : 0;
 }
 
 }  // namespace exemplar

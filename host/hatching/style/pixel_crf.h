@@ -29,12 +29,10 @@ class PixelCrf {
     /// Returns the label of each covered pixel. `probabilities`: covered pixels x classes.
     std::vector<std::int32_t> solve(std::span<const float> probabilities, std::size_t classes,
                                     const PixelCrfParameters& parameters);
-    /// Returns Eq. 4.16 as a mean: P(e) over the pixels with a neighbor of another label; 0 if there are none.
-    double boundary_agreement(std::span<const std::int32_t> labels) const;
 
   private:
     std::vector<std::array<std::uint32_t, 2>> edges_;
-    std::vector<float> boundary_, evidence_;  // per pixel: P(e); per edge: log(P(e_i) + P(e_j))
+    std::vector<float> evidence_;  // per edge: log(P(e_i) + P(e_j))
     AlphaExpansion expansion_;
 };
 

@@ -15,8 +15,10 @@
 #include "host/hatching/features/powers.h"
 #include "host/hatching/rules/direction_learning.h"
 #include "host/hatching/rules/held_out_patches.h"
+#include "host/hatching/style/cut_learning.h"
+#include "host/hatching/style/example_folds.h"
 #include "host/hatching/style/pixel_classifier.h"
-#include "host/hatching/style/style_prediction.h"
+#include "host/hatching/style/segment_learning.h"
 
 namespace exemplar {
 namespace {
@@ -34,17 +36,23 @@ std::vector<std::uint32_t> sample_rows(std::vector<std::uint32_t> rows, std::siz
     return rows;
 }
 
-std::vector<std::uint32_t> numbers(std::size_t first, std::size_t end) {
-    std::vector<std::uint32_t> all(end - first);
-    std::iota(all.begin(), all.end(), static_cast<std::uint32_t>(first));
-    return all;
-}
+/// Levels of held-out rows, and the probabilities of all rows by a classifier that has not learned from those.
+struct HeldOutLevels {
+    std::vector<std::uint32_t> rows;
+    std::vector<std::int32_t> labels;
+    std::vector<float> probabilities;
+};
 
 class StyleLearning {
   public:
     StyleLearning(std::span<const HatchingExample> views, StumpScorer& scorer, const StyleLearningOptions& options,
                   StyleReport& report, const std::function<void(const char*)>& progress)
-        : views_(views), scorer_(scorer), options_(options), report_(report), progress_(progress) {}
+        : views_(views),
+          features_(views_, scorer),
+          folds_(views_, features_, options.seed + 16),
+          options_(options),
+          report_(report),
+          progress_(progress) {}
 
     HatchingStyle run() {
         const DrawingProperties& first = views_.views().front().drawing;
@@ -55,7 +63,7 @@ class StyleLearning {
         learn_pen();
         learn_rules();
         done("orientations");
-        learn_segments();
+        learn_segments_of_strokes();
         done("segments");
         learn_boundary();
         done("boundaries");
@@ -177,115 +185,26 @@ class StyleLearning {
         segment_.assign(mixture.segment.begin(), mixture.segment.end());
     }
 
-    /// Returns base features of rows and, with `context`, the contextual features of the last stage.
-    FeatureMatrix features_of(std::span<const std::uint32_t> rows, bool context) {
-        FeatureMatrix features = views_.scalars(numbers(0, k_pixel_features), rows,
-                                                context ? contextual_feature_count(style_.rules.size()) : 0);
-        if (context) features.append(context_of(rows));
-        return features;
-    }
+    /// What levels and properties learn the context of their pixels from.
+    SegmentContext unseen_context() const { return {style_.rules.size(), segments_.unseen}; }
+    /// What a prediction sees.
+    SegmentContext context() const { return {style_.rules.size(), segments_.probabilities}; }
 
-    /// Returns the contextual features of rows.
-    FeatureMatrix context_of(std::span<const std::uint32_t> rows) const {
-        FeatureMatrix out;
-        out.rows = rows.size();
-        for (std::string& name : contextual_feature_names(style_.rules.size())) out.add(std::move(name));
-        for (std::size_t view = 0; view < views_.views().size(); ++view) {
-            const HatchingExamples::RowsOfView some = views_.rows_of_view(rows, view);
-            if (some.row.empty()) continue;
-            const FeatureMatrix of_view = context_of_view(view, some.row);
-            for (std::size_t k = 0; k < out.cols(); ++k) {
-                for (std::size_t i = 0; i < some.position.size(); ++i)
-                    out.column(k)[some.position[i]] = of_view.column(k)[i];
-            }
-        }
-        return out;
-    }
-
-    /// Returns the contextual features of rows of a view, of all if there are none.
-    FeatureMatrix context_of_view(std::size_t view, std::span<const std::uint32_t> rows) const {
-        PixelFeatures& pixels = views_.views()[view].pixels;
-        const std::size_t labels = style_.rules.size();
-        return contextual_features(pixels.surface(), pixels.gbuffer(), pixels.pixels(),
-                                   of_view(view, std::span<const float>(probabilities_), labels), labels, rows);
-    }
-
-    void learn_segments() {
-        std::vector<std::uint32_t> chosen =
-            sample_rows(numbers(0, rule_rows_.size()), options_.samples, options_.seed + 2);
+    void learn_segments_of_strokes() {
+        const std::vector<std::uint32_t> chosen =
+            sample_rows(numbers_from(0, rule_rows_.size()), options_.samples, options_.seed + 2);
         std::vector<std::uint32_t> rows;
         std::vector<std::int32_t> labels;
         for (const std::uint32_t i : chosen) {
             rows.push_back(rule_rows_[i]);
             labels.push_back(segment_[i]);
         }
-        const std::vector<std::uint8_t> held = held_out(rows, labels, options_.seed + 3);
-        double last_error = 2;
-        for (std::size_t stage = 0; stage < options_.max_stages; ++stage) {
-            const FeatureMatrix features = features_of(rows, stage > 0);
-            const LearnedClassifier learned =
-                learn_classifier({features, labels, {}, held, style_.rules.size(), false, 500, options_.seed + stage},
-                                 [&] { progress_("segments"); });
-            report_.segment_errors.push_back(learned.error);
-            // A stage that is no better ends the cascade, and is not kept.
-            if (learned.error >= last_error) break;
-            last_error = learned.error;
-            style_.segments.push_back(learned.classifier);
-            probabilities_ = view_probabilities(learned.classifier);
-            if (style_.rules.size() < 2) break;
-        }
-    }
-
-    /// Features of all pixels of a view.
-    struct ViewFeatures {
-        std::vector<std::uint32_t> which;  // the base feature of each column
-        FeatureMatrix features;
-    };
-    /// Returns the features of all pixels of a view that are used; all contextual ones if any is.
-    ViewFeatures view_features(std::size_t view, std::vector<std::uint32_t> used) const {
-        std::ranges::sort(used);
-        used.erase(std::unique(used.begin(), used.end()), used.end());
-        const auto first_context = std::ranges::lower_bound(used, static_cast<std::uint32_t>(k_pixel_features));
-        const bool contextual = first_context != used.end();
-        ViewFeatures out{{used.begin(), first_context}, {}};
-        PixelFeatures& pixels = views_.views()[view].pixels;
-        out.features = pixels.scalars(out.which, {}, contextual ? contextual_feature_count(style_.rules.size()) : 0);
-        if (contextual) {
-            out.features.append(context_of_view(view, {}));
-            for (const std::uint32_t k :
-                 numbers(k_pixel_features, k_pixel_features + contextual_feature_count(style_.rules.size())))
-                out.which.push_back(k);
-        }
-        return out;
-    }
-
-    /// Probabilities of all pixels, for contextual features and cuts.
-    std::vector<float> view_probabilities(const CalibratedStumps& classifier) {
-        return of_all_views([&](std::size_t v) {
-            const ViewFeatures view = view_features(v, used_features(classifier.stumps));
-            return classify(classifier, view.which, view.features, scorer_);
-        });
-    }
-
-    /// Returns the values of all views, one after the other.
-    template <typename ValuesOfView>
-    std::vector<float> of_all_views(ValuesOfView&& values_of_view) const {
-        std::vector<float> all;
-        for (std::size_t view = 0; view < views_.views().size(); ++view) {
-            const std::vector<float> values = values_of_view(view);
-            all.insert(all.end(), values.begin(), values.end());
-        }
-        return all;
-    }
-
-    std::vector<float> view_level_probabilities() {
-        std::vector<std::uint32_t> used = familiar_features();
-        for (const CalibratedStumps* classifier : {&style_.levels, &style_.rough_levels})
-            for (const std::uint32_t feature : used_features(classifier->stumps)) used.push_back(feature);
-        return of_all_views([&](std::size_t v) {
-            const ViewFeatures view = view_features(v, used);
-            return level_probabilities(style_, view.which, view.features, scorer_);
-        });
+        segments_ = learn_segments(features_, folds_,
+                                   {rows, labels, held_out(rows, labels, options_.seed + 3), style_.rules.size(),
+                                    options_.max_stages, options_.seed},
+                                   [&] { progress_("segments"); });
+        style_.segments = segments_.cascade;
+        report_.segment_errors = segments_.errors;
     }
 
     void learn_boundary() {
@@ -294,6 +213,7 @@ class StyleLearning {
         std::vector<std::uint32_t> off = rows_where(
             [](const DrawingProperties& drawing, std::uint32_t p) { return drawing.known[p] && !drawing.boundary[p]; });
         style_.boundary.stumps.class_count = 2;
+        boundary_.assign(views_.size(), 0.5f);
         if (on.size() < k_min_samples || off.size() < k_min_samples) return;
         on = sample_rows(std::move(on), options_.samples / 2, options_.seed + 4);
         off = sample_rows(std::move(off), options_.samples / 2, options_.seed + 5);
@@ -305,10 +225,14 @@ class StyleLearning {
         std::vector<float> weights(on.size(), static_cast<float>(off.size()) / static_cast<float>(on.size()));
         weights.resize(rows.size(), 1.0f);
         const std::size_t first = k_pixel_features - k_line_features;
-        const FeatureMatrix features = views_.scalars(numbers(first, k_pixel_features), rows);
-        LearnedClassifier learned = learn_classifier(
-            {features, labels, weights, held_out(rows, labels, options_.seed + 6), 2, true, 300, options_.seed + 7},
-            [&] { progress_("boundaries"); });
+        const FeatureMatrix features = views_.scalars(numbers_from(first, k_pixel_features), rows);
+        const std::vector<std::uint8_t> held = held_out(rows, labels, options_.seed + 6);
+        const ClassifierTraining training{features, labels, weights, held, 2, true, 300, options_.seed + 7};
+        const auto progress = [&] { progress_("boundaries"); };
+        LearnedClassifier learned = learn_classifier(training, progress);
+        const std::vector<float> both =
+            folds_.unseen_probabilities(training, rows, learned.classifier, {}, progress, first);
+        for (std::size_t row = 0; row < boundary_.size(); ++row) boundary_[row] = both[2 * row + 1];
         for (Stump& stump : learned.classifier.stumps.stumps)
             stump.feature += static_cast<std::uint32_t>(k_powers * first);
         style_.boundary = learned.classifier;
@@ -317,56 +241,16 @@ class StyleLearning {
 
     /// Learns the CRF parameters of segments and of levels.
     void learn_cuts() {
-        std::vector<PixelCrf> cuts = boundary_cuts();
+        ExampleCuts cuts(views_, features_, boundary_);
+        const auto progress = [&] { progress_("label cuts"); };
         segment_cut_.assign(views_.size(), 0);
         if (style_.rules.size() > 1) {
-            style_.segment_crf = learn_crf(cuts, probabilities_, style_.rules.size(),
-                                           [&](std::span<const std::int32_t> labels) { return segment_error(labels); });
-            segment_cut_ = solve_all(cuts, probabilities_, style_.rules.size(), style_.segment_crf);
+            const std::size_t segments = style_.rules.size();
+            style_.segment_crf = cuts.learn({segments_.unseen, segments, rule_rows_, segment_}, progress);
+            segment_cut_ = cuts.solve(segments_.probabilities, segments, style_.segment_crf);
         }
-        style_.level_crf = learn_crf(cuts, view_level_probabilities(), 3,
-                                     [&](std::span<const std::int32_t> labels) { return level_error(labels); });
-    }
-
-    /// Returns the graph of each view, with the probabilities of boundaries.
-    std::vector<PixelCrf> boundary_cuts() {
-        const std::vector<float> both = view_probabilities(style_.boundary);
-        std::vector<PixelCrf> cuts;
-        cuts.reserve(views_.views().size());
-        for (std::size_t view = 0; view < views_.views().size(); ++view) {
-            const auto& [pixels, drawing] = views_.views()[view];
-            std::vector<float> boundary(pixels.size());
-            for (std::size_t i = 0; i < boundary.size(); ++i) boundary[i] = both[2 * (views_.first_row(view) + i) + 1];
-            cuts.emplace_back(pixels.pixels(), drawing.width, boundary);
-        }
-        return cuts;
-    }
-
-    /// Labels the pixels of all views.
-    std::vector<std::int32_t> solve_all(std::vector<PixelCrf>& cuts, std::span<const float> probabilities,
-                                        std::size_t classes, const PixelCrfParameters& parameters) const {
-        std::vector<std::int32_t> labels;
-        for (std::size_t view = 0; view < cuts.size(); ++view) {
-            const std::vector<std::int32_t> some =
-                cuts[view].solve(of_view(view, probabilities, classes), classes, parameters);
-            labels.insert(labels.end(), some.begin(), some.end());
-        }
-        return labels;
-    }
-
-    /// Returns the values of a view's rows, of which each has so many.
-    template <typename Value>
-    std::span<const Value> of_view(std::size_t view, std::span<const Value> values, std::size_t per_row) const {
-        return values.subspan(views_.first_row(view) * per_row, views_.views()[view].pixels.size() * per_row);
-    }
-
-    /// Returns how well boundaries between labels agree with those of the drawings: the mean over views by their size.
-    double boundary_agreement(std::span<const PixelCrf> cuts, std::span<const std::int32_t> labels) const {
-        double sum = 0;
-        for (std::size_t view = 0; view < cuts.size(); ++view)
-            sum += cuts[view].boundary_agreement(of_view(view, labels, 1)) *
-                   static_cast<double>(views_.views()[view].pixels.size());
-        return sum / static_cast<double>(views_.size());
+        style_.level_crf =
+            cuts.learn({judged_levels_.probabilities, 3, judged_levels_.rows, judged_levels_.labels}, progress);
     }
 
     /// Learns where strokes depart from the rules of the segments that the cut gives their pixels.
@@ -381,45 +265,6 @@ class StyleLearning {
         }
     }
 
-    /// Selects parameters by Eq. 4.16, as a mean over boundary pixels: the sum in the thesis grows with every
-    /// boundary, so that noise would win. `error` returns the share of labels that differ from the drawing.
-    template <typename Error>
-    PixelCrfParameters learn_crf(std::vector<PixelCrf>& cuts, std::span<const float> probabilities, std::size_t classes,
-                                 const Error& error) {
-        struct CrfTrial {
-            PixelCrfParameters parameters;
-            double agreement, error;
-        };
-        std::vector<CrfTrial> trials;
-        for (const float strength : {0.3f, 1.0f, 3.0f}) {
-            for (const float offset : {-0.7f, -1.5f, -3.0f}) {
-                const auto labels = solve_all(cuts, probabilities, classes, {strength, offset});
-                trials.push_back({{strength, offset}, boundary_agreement(cuts, labels), error(labels)});
-                progress_("label cuts");
-            }
-        }
-        // Among the parameters whose label error is within 1% of the lowest, the best agreement of boundaries wins.
-        const double least = std::ranges::min(trials, {}, &CrfTrial::error).error;
-        std::erase_if(trials, [&](const CrfTrial& trial) { return trial.error > least + 0.01; });
-        return std::ranges::max(trials, {}, &CrfTrial::agreement).parameters;
-    }
-
-    double segment_error(std::span<const std::int32_t> labels) const {
-        double wrong = 0;
-        for (std::size_t i = 0; i < rule_rows_.size(); ++i) wrong += labels[rule_rows_[i]] != segment_[i] ? 1 : 0;
-        return wrong / static_cast<double>(rule_rows_.size());
-    }
-
-    double level_error(std::span<const std::int32_t> labels) const {
-        double wrong = 0, all = 0;
-        for (std::uint32_t row = 0; row < labels.size(); ++row) {
-            if (!at(row, &DrawingProperties::known)) continue;
-            wrong += labels[row] != at(row, &DrawingProperties::level) ? 1 : 0;
-            all += 1;
-        }
-        return all > 0 ? wrong / all : 0;
-    }
-
     void learn_levels() {
         const std::vector<std::uint32_t> rows = sample_rows(
             rows_where([](const DrawingProperties& drawing, std::uint32_t p) { return drawing.known[p] != 0; }),
@@ -427,18 +272,26 @@ class StyleLearning {
         std::vector<std::int32_t> labels;
         labels.reserve(rows.size());
         for (const std::uint32_t row : rows) labels.push_back(at(row, &DrawingProperties::level));
-        const FeatureMatrix features = features_of(rows, true);
         const auto progress = [&] { progress_("hatching levels"); };
+        // The detailed classifier decides where all is as in the drawing, with the context that is seen there.
+        const FeatureMatrix features = features_.of_rows(rows, context());
         const std::vector<std::uint8_t> patches = held_out_patches(views_, rows, options_.seed + 14);
         const LearnedClassifier detailed =
             learn_classifier({features, labels, {}, patches, 3, false, 4000, options_.seed + 10, true}, progress);
         // Far from the drawing, a classifier decides that was stopped when large held-out rectangles fitted best.
+        const FeatureMatrix unseen = features_.of_rows(rows, unseen_context());
         const LearnedClassifier rough = learn_classifier(
-            {features, labels, {}, held_out(rows, labels, options_.seed + 9), 3, false, 500, options_.seed + 10},
+            {unseen, labels, {}, held_out(rows, labels, options_.seed + 9), 3, false, 500, options_.seed + 10},
             progress);
         style_.levels = detailed.classifier;
         style_.rough_levels = rough.classifier;
         style_.familiarity = learn_familiarity(features, patches, options_.seed + 15);
+        judged_levels_.probabilities = features_.probabilities(detailed.judged, context());
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            if (!patches[i]) continue;
+            judged_levels_.rows.push_back(rows[i]);
+            judged_levels_.labels.push_back(labels[i]);
+        }
         report_.level_error = detailed.error;
     }
 
@@ -458,7 +311,7 @@ class StyleLearning {
             const float unit = property == StrokeProperty::intensity ? 1 : pen_unit(views_.drawing_of(row));
             target.push_back(property_at(row, p) / unit);
         }
-        const FeatureMatrix features = features_of(rows, true);
+        const FeatureMatrix features = features_.of_rows(rows, unseen_context());
         const QuantizedFeatures quantized = quantize(features, {}, {});
         const LearnedProperty learned =
             learn_property({features, quantized, target, held_out(rows, {}, options_.seed + 12), quarters(rows)},
@@ -500,14 +353,17 @@ class StyleLearning {
     }
 
     HatchingExamples views_;
-    StumpScorer& scorer_;
+    ExampleFeatures features_;
+    ExampleFolds folds_;
     const StyleLearningOptions& options_;
     StyleReport& report_;
     const std::function<void(const char*)>& progress_;
     HatchingStyle style_;
-    std::vector<std::uint32_t> rule_rows_;   // rows of the stroke pixels that rules are learned from
-    std::vector<std::int32_t> segment_;      // segment of each of these rows
-    std::vector<float> probabilities_;       // of the segments, at all pixels
+    std::vector<std::uint32_t> rule_rows_;  // rows of the stroke pixels that rules are learned from
+    std::vector<std::int32_t> segment_;     // segment of each of these rows
+    LearnedSegments segments_;
+    std::vector<float> boundary_;  // P(e | x) of all pixels, as of pixels that were not learned from
+    HeldOutLevels judged_levels_;
     std::vector<std::int32_t> segment_cut_;  // of all pixels, as a prediction would have them
     Stopwatch watch_;
 };

@@ -174,6 +174,11 @@ void add_hatch_draw_command(Command& hatch) {
         ->delimiter(',')
         ->allow_extra_args(false)
         ->capture_default_str();
+    command
+        ->add_option("--labels", arguments->scene.labels,
+                     "labels of the mesh's faces (_labels.txt, .seg or labeled PLY), for a style that was learned with "
+                     "labels")
+        ->type_name("FILE");
     command->add_option("--properties", arguments->properties, "writes a picture of each property into this folder")
         ->type_name("FOLDER");
     command

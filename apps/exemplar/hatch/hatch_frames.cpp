@@ -20,6 +20,7 @@
 #include "host/hatching/animation/hatching_flicker.h"
 #include "host/imaging/png.h"
 #include "host/mesh/editing/loose_vertices.h"
+#include "host/mesh/io/io.h"
 
 namespace exemplar {
 namespace {
@@ -68,6 +69,7 @@ class HatchedFrames {
         return view;
     }
     float unit_depth() const { return unit_depth_; }
+    std::size_t source_face_count() const { return surface_.source_face_count; }
 
   private:
     /// For a mesh the frames are those of its turning, not of an animation.
@@ -120,12 +122,14 @@ class FrameHatcher {
         const HatchingView view = frames.view(0);
         style_.resize(view.width, view.height);
         look_ = curve_look(style_);
+        if (!job.scene.labels.empty()) labels_ = read_face_labels(job.scene.labels, frames.source_face_count());
     }
 
     HatchedDrawing draw(std::size_t frame) {
         follow(frame);
         const HatchingView view = frames_.view(frame);
         PixelFeatures pixels(*surface_, view, device_.tools().images);
+        if (labels_) pixels.set_labels(*labels_);
         const std::vector<AdvectedStroke> carried = advected_strokes(before_, surface_->mesh, view, pixels.gbuffer());
         std::vector<HatchStroke> kept;
         if (!job_.fresh)
@@ -162,6 +166,7 @@ class FrameHatcher {
     HatchingStyle style_;
     HatchingDevice device_;
     DrawingStyle look_;
+    std::optional<FaceLabels> labels_;
     std::optional<HatchingSurface> surface_;
     std::vector<SurfaceStroke> before_;
     std::vector<HatchingFlicker> flicker_;

@@ -49,6 +49,7 @@ void require_hatch_scene(HatchSceneArguments& arguments) {
         arguments.sheet = file.sheet;
         arguments.registered = !file.drawing.empty();
     }
+    if (!arguments.labels.empty()) require_input(arguments.labels);
     require_camera(arguments.camera);
     if (!(point_of(arguments.light, "--light").norm() > 0))
         throw UsageError("--light is zero; give a direction as -0.5,0.5,0.7");
@@ -81,6 +82,8 @@ HatchScene::HatchScene(const HatchSceneArguments& arguments, const std::string& 
         require_mesh_of_view(arguments.view_file, *arguments.drawn, drawn_mesh(arguments.mesh, impl_->surface.mesh));
     impl_->view = hatching_view(arguments, impl_->surface.mesh);
     impl_->pixels = std::make_unique<PixelFeatures>(impl_->surface, impl_->view, impl_->device.tools().images);
+    if (!arguments.labels.empty())
+        impl_->pixels->set_labels(read_face_labels(arguments.labels, file.mesh.source_face_count));
 }
 
 HatchScene::~HatchScene() = default;

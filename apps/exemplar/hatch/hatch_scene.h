@@ -24,6 +24,7 @@ struct HatchSceneArguments {
     std::string sheet;                ///< paper that the view was printed on; empty: none
     bool registered = false;          ///< whether drawings show exactly this view
     std::filesystem::path mesh;
+    std::filesystem::path labels;  ///< of the mesh's parts; empty: none
     CameraArguments camera;
     std::string light = "-0.45,0.55,0.7";                    ///< direction to it: x right, y up, z towards the eye
     std::filesystem::path cache = default_surface_folder();  ///< cache of measured surfaces; empty: none

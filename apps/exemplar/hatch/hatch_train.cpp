@@ -14,6 +14,7 @@
 #include "host/core/errors.h"
 #include "host/core/progress.h"
 #include "host/core/stopwatch.h"
+#include "host/core/text.h"
 #include "host/hatching/style/style_learning.h"
 
 namespace exemplar {
@@ -29,8 +30,9 @@ struct DrawingArguments {
 
 struct TrainArguments {
     DrawingArguments first;
-    std::vector<std::string> also;   // of each further drawing: mesh, view file and drawing
-    std::vector<std::string> masks;  // of the drawings, in their order
+    std::vector<std::string> also;    // of each further drawing: mesh, view file and drawing
+    std::vector<std::string> masks;   // of the drawings, in their order
+    std::vector<std::string> labels;  // of the meshes, in their order
     fs::path out;
     StyleLearningOptions learning;
     CommonOptions common;
@@ -108,6 +110,12 @@ std::vector<DrawingArguments> require_drawings(const TrainArguments& arguments) 
         throw UsageError(fmt::format("{} masks are given, but {} drawing{}", arguments.masks.size(), drawings.size(),
                                      drawings.size() == 1 ? "" : "s"));
     for (std::size_t i = 0; i < arguments.masks.size(); ++i) drawings[i].mask = arguments.masks[i];
+    if (!arguments.labels.empty() && arguments.labels.size() != drawings.size())
+        throw UsageError(
+            fmt::format("--labels names {}, but there {} drawn: give labels for each, in their order",
+                        counted(arguments.labels.size(), "file"),
+                        drawings.size() == 1 ? "is 1 mesh" : fmt::format("are {} meshes", drawings.size())));
+    for (std::size_t i = 0; i < arguments.labels.size(); ++i) drawings[i].scene.labels = arguments.labels[i];
     for (DrawingArguments& each : drawings) {
         require_hatch_scene(each.scene);
         require_input(each.drawing);
@@ -188,6 +196,11 @@ void add_hatch_train_command(Command& hatch) {
         ->add_option("--mask", arguments->masks,
                      "picture of the view, white where to learn from the drawing (PNG): black hides a signature, a "
                      "shadow, a slip of the pen; with --also, one for each drawing in order")
+        ->type_name("FILE");
+    command
+        ->add_option("--labels", arguments->labels,
+                     "labels of the mesh's faces (_labels.txt, .seg or labeled PLY): hatching may differ from part to "
+                     "part, and drawing then needs labels, too; with --also, one for each drawing in order")
         ->type_name("FILE");
     command->add_option("--out", arguments->out, "style file to write")->required()->type_name("FILE");
     command->add_option("--seed", arguments->learning.seed, "of all random choices")

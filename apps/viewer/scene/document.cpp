@@ -27,14 +27,6 @@ void color_by(Document& document, const FaceLabels& labels) {
     }
 }
 
-FaceLabels segments_as_labels(const std::vector<std::int32_t>& segments) {
-    FaceLabels labels;
-    labels.label = segments;
-    const std::int32_t most = segments.empty() ? -1 : *std::ranges::max_element(segments);
-    for (std::int32_t i = 0; i <= most; ++i) labels.names.push_back(fmt::format("segment {}", i));
-    return labels;
-}
-
 // Adds labels found beside the mesh. Errors in them become warnings, as the mesh can be shown without labels.
 void add_labels_beside(Document& document) {
     const fs::path segments = fs::path(document.path).replace_extension(".seg");
@@ -68,10 +60,7 @@ Document read_document(const fs::path& path) {
 
 void add_labels(Document& document, const fs::path& path) {
     const std::size_t polygons = document.animation.rest.source_face_count;
-    if (lower_case(path.extension().string()) == ".seg")
-        color_by(document, segments_as_labels(read_seg(path, polygons)));
-    else
-        color_by(document, read_labels_txt(path, polygons));
+    color_by(document, read_face_labels(path, polygons));
 }
 
 }  // namespace exemplar

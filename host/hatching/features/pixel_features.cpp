@@ -105,13 +105,17 @@ const std::vector<std::string>& pixel_feature_names() {
     return k_names;
 }
 
+std::string part_feature_name(const std::string& part) {
+    return "part." + part;
+}
+
 const std::vector<std::string>& orientation_feature_names() {
     static const std::vector<std::string> k_names = all_orientation_names();
     return k_names;
 }
 
 /// Results that are computed on first use.
-struct PixelFeatures::Parts {
+struct PixelFeatures::Computed {
     ImageStack shading;
     std::array<std::optional<ImageDerivatives>, k_sigmas.size()> derivatives;
     std::optional<LineImages> lines;
@@ -125,10 +129,11 @@ struct PixelFeatures::Parts {
 namespace {
 
 /// The computation that a feature comes from.
-enum class Source { curvature, descriptors, picture };
+enum class Source { curvature, descriptors, picture, parts };
 Source source_of(std::size_t feature) {
     if (feature < k_first_descriptor) return Source::curvature;
-    return feature < k_first_image ? Source::descriptors : Source::picture;
+    if (feature < k_first_image) return Source::descriptors;
+    return feature < k_pixel_features ? Source::picture : Source::parts;
 }
 
 /// Returns the longest run of leading features that share the source of the first.
@@ -212,7 +217,7 @@ PixelFeatures::PixelFeatures(const HatchingSurface& surface, const HatchingView&
       tools_(tools),
       gbuffer_(tools.gbuffers.render(surface.mesh, view.camera, view.width, view.height)),
       pixels_(covered_pixels(gbuffer_)),
-      parts_(std::make_unique<Parts>()) {
+      computed_(std::make_unique<Computed>()) {
     if (pixels_.pixel.empty())
         throw DataError("the view shows nothing of the mesh; turn the camera to it or move it away");
 }
@@ -223,9 +228,50 @@ void PixelFeatures::set_scale(float scale) {
     scale = std::clamp(scale, 1.0f / 16, 8.0f);
     if (scale == scale_) return;
     scale_ = scale;
-    for (auto& derivatives : parts_->derivatives) derivatives.reset();
-    for (auto& images : parts_->line_images) {
+    for (auto& derivatives : computed_->derivatives) derivatives.reset();
+    for (auto& images : computed_->line_images) {
         for (auto& image : images) image.reset();
+    }
+}
+
+void PixelFeatures::set_labels(const FaceLabels& labels) {
+    const TriangleMesh& mesh = surface_.mesh;
+    const bool of_file = labels.label.size() == mesh.source_face_count;
+    if (!of_file && labels.label.size() != mesh.face_count())
+        throw UsageError(
+            fmt::format("{} labels are not of a mesh with {} faces", labels.label.size(), mesh.source_face_count));
+    label_names_ = labels.names;
+    label_.resize(mesh.face_count());
+    for (std::size_t f = 0; f < label_.size(); ++f)
+        label_[f] = labels.label[of_file ? mesh.source_of(static_cast<std::uint32_t>(f)) : f];
+    part_.assign(label_names_.size(), -1);
+}
+
+void PixelFeatures::use_parts(std::span<const std::string> parts) {
+    parts_.assign(parts.begin(), parts.end());
+    if (parts_.empty()) return;
+    if (label_names_.empty())
+        throw UsageError(
+            fmt::format("the style was learned with labels of parts ({}), and needs those of this mesh: give "
+                        "them by --labels",
+                        fmt::join(parts_, ", ")));
+    bool any = false;
+    for (std::size_t c = 0; c < part_.size(); ++c) {
+        const auto found = std::ranges::find(parts_, label_names_[c]);
+        part_[c] = found == parts_.end() ? -1 : static_cast<std::int32_t>(found - parts_.begin());
+        any = any || part_[c] >= 0;
+    }
+    if (!any)
+        throw UsageError(
+            fmt::format("none of the labels of this mesh ({}) is a part that the style was learned with ({})",
+                        fmt::join(label_names_, ", "), fmt::join(parts_, ", ")));
+}
+
+void PixelFeatures::part_column(std::size_t part, const FacePoints& points, std::span<float> out) const {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const std::int32_t label = label_[points.face[i]];
+        const bool is_it = label >= 0 && part_[static_cast<std::size_t>(label)] == static_cast<std::int32_t>(part);
+        out[i] = is_it ? 1.0f : 0.0f;
     }
 }
 
@@ -241,7 +287,7 @@ FacePoints PixelFeatures::points(std::span<const std::uint32_t> rows) const {
 }
 
 const ImageStack& PixelFeatures::shading() {
-    ImageStack& shading = parts_->shading;
+    ImageStack& shading = computed_->shading;
     if (shading.count > 0) return shading;
     const std::vector<float> bright = shade(surface_.occlusion, view_.light);
     shading = ImageStack(view_.width, view_.height, k_shading_images);
@@ -262,7 +308,7 @@ const ImageStack& PixelFeatures::shading() {
 }
 
 const ImageDerivatives& PixelFeatures::derivatives(std::size_t sigma) {
-    auto& kept = parts_->derivatives[sigma];
+    auto& kept = computed_->derivatives[sigma];
     if (!kept)
         kept = tools_.filters.derivatives(shading(), gbuffer_.face, std::max(k_min_sigma, scale_ * k_sigmas[sigma]),
                                           false);
@@ -270,12 +316,12 @@ const ImageDerivatives& PixelFeatures::derivatives(std::size_t sigma) {
 }
 
 const ImageStack& PixelFeatures::line_drawings(std::size_t kind) {
-    auto& kept = parts_->drawn[kind];
+    auto& kept = computed_->drawn[kind];
     if (kept) return *kept;
-    if (!parts_->lines) parts_->lines.emplace(surface_, view_);
+    if (!computed_->lines) computed_->lines.emplace(surface_, view_);
     ImageStack drawn(view_.width, view_.height, k_line_thresholds);
     parallel_for(k_line_thresholds, [&](std::size_t step) {
-        std::ranges::copy(parts_->lines->draw(kind, step).data, drawn.image(step).begin());
+        std::ranges::copy(computed_->lines->draw(kind, step).data, drawn.image(step).begin());
     });
     kept = std::move(drawn);
     return *kept;
@@ -283,7 +329,7 @@ const ImageStack& PixelFeatures::line_drawings(std::size_t kind) {
 
 std::span<const float> PixelFeatures::line_image(std::size_t line, std::size_t sigma) {
     const std::size_t kind = line / k_line_thresholds;
-    auto& kept = parts_->line_images[kind][sigma];
+    auto& kept = computed_->line_images[kind][sigma];
     if (!kept) kept = tools_.filters.blurred(line_drawings(kind), std::max(k_min_sigma, scale_ * k_line_sigmas[sigma]));
     return kept->image(line % k_line_thresholds);
 }
@@ -333,12 +379,12 @@ std::vector<DoubledAngle> PixelFeatures::gradient_directions(std::span<const flo
 }
 
 OrientationFields PixelFeatures::orientations(std::span<const std::uint32_t> rows) {
-    if (!parts_->lines) parts_->lines.emplace(surface_, view_);
-    if (!parts_->fields) parts_->fields = vertex_fields(surface_, view_, *parts_->lines);
+    if (!computed_->lines) computed_->lines.emplace(surface_, view_);
+    if (!computed_->fields) computed_->fields = vertex_fields(surface_, view_, *computed_->lines);
     const Gatherer gatherer(*this, rows);
     OrientationFields out(gatherer.count());
     const FacePoints at = points(rows);
-    const std::vector<std::span<const Vec3>> fields(parts_->fields->begin(), parts_->fields->end());
+    const std::vector<std::span<const Vec3>> fields(computed_->fields->begin(), computed_->fields->end());
     const auto project = [&](std::span<const std::span<const Vec3>> some, std::size_t first) {
         tools_.projection.directions(surface_.mesh, view_, at, some,
                                      std::span(out.values).subspan(first * out.rows, some.size() * out.rows));
@@ -365,7 +411,9 @@ FeatureMatrix PixelFeatures::scalars(std::span<const std::uint32_t> which, std::
     const FacePoints at = points(rows);
     FeatureMatrix out;
     out.rows = at.size();
-    for (const std::uint32_t k : which) out.names.push_back(pixel_feature_names().at(k));
+    for (const std::uint32_t k : which)
+        out.names.push_back(k < k_pixel_features ? pixel_feature_names()[k]
+                                                 : part_feature_name(parts_.at(k - k_pixel_features)));
     out.values.reserve(out.rows * (which.size() + spare));
     out.values.resize(out.rows * which.size());
     for (std::size_t first = 0; first < which.size();) {
@@ -381,6 +429,10 @@ FeatureMatrix PixelFeatures::scalars(std::span<const std::uint32_t> which, std::
             case Source::picture:
                 for (std::size_t k = 0; k < some.size(); ++k)
                     picture_column(some[k], rows, columns.subspan(k * out.rows, out.rows));
+                break;
+            case Source::parts:
+                for (std::size_t k = 0; k < some.size(); ++k)
+                    part_column(some[k] - k_pixel_features, at, columns.subspan(k * out.rows, out.rows));
                 break;
         }
         first += some.size();

@@ -11,6 +11,7 @@
 #include "host/hatching/features/image_tools.h"
 #include "host/hatching/features/orientation_fields.h"
 #include "host/learn/feature_matrix.h"
+#include "host/mesh/labels.h"
 
 namespace exemplar {
 
@@ -23,6 +24,8 @@ constexpr std::size_t k_pixel_features =
 /// Returns the names of the scalar features, in order; e.g. "curvature.mean@0.01", "image.L.N@2",
 /// "lines.ridges>0.01@5".
 const std::vector<std::string>& pixel_feature_names();
+/// Returns the name of the feature that tells whether a pixel shows a part.
+std::string part_feature_name(const std::string& part);
 /// Returns the names of the k_orientation_features, as in the legend of thesis Fig. 4.3: for example "k_max,1" and
 /// "perp k_max,1".
 const std::vector<std::string>& orientation_feature_names();
@@ -46,6 +49,18 @@ class PixelFeatures {
     /// size of the picture. Limited to [1/16, 8].
     void set_scale(float scale);
 
+    /// Sets the labels of the surface's parts, one per face of the surface or of the file that it came from. Throws
+    /// UsageError if there are as many of neither.
+    void set_labels(const FaceLabels& labels);
+    /// Returns the names of the labels that are set; none at first.
+    const std::vector<std::string>& label_names() const { return label_names_; }
+    /// Adds a scalar feature for each of these parts, after the others: 1 where a pixel shows that part, else 0. No
+    /// parts: none. Throws UsageError, in terms of the command line, if there are parts, but no labels, or none that
+    /// has the name of a part.
+    void use_parts(std::span<const std::string> parts);
+    /// Returns the number of scalar features, those of parts included.
+    std::size_t scalar_count() const { return k_pixel_features + parts_.size(); }
+
     /// Returns the scalar features `which` of the pixels pixels().pixel[rows[i]]; of all pixels if there are no
     /// rows. There is memory for `spare` more columns, so that they can be appended without a copy.
     FeatureMatrix scalars(std::span<const std::uint32_t> which, std::span<const std::uint32_t> rows,
@@ -55,13 +70,14 @@ class PixelFeatures {
     OrientationFields orientations(std::span<const std::uint32_t> rows);
 
   private:
-    struct Parts;
+    struct Computed;
     FacePoints points(std::span<const std::uint32_t> rows) const;
     const ImageStack& shading();
     const ImageDerivatives& derivatives(std::size_t sigma);
     const ImageStack& line_drawings(std::size_t kind);
     std::span<const float> line_image(std::size_t line, std::size_t sigma);
     std::vector<DoubledAngle> gradient_directions(std::span<const float> x, std::span<const float> y) const;
+    void part_column(std::size_t part, const FacePoints& points, std::span<float> out) const;
     void picture_column(std::size_t feature, std::span<const std::uint32_t> rows, std::span<float> out);
     const HatchingSurface& surface_;
     const HatchingView& view_;
@@ -69,7 +85,10 @@ class PixelFeatures {
     GBuffer gbuffer_;
     CoveredPixels pixels_;
     float scale_ = 1;
-    std::unique_ptr<Parts> parts_;
+    std::vector<std::string> label_names_, parts_;
+    std::vector<std::int32_t> label_;  // per face, the number of its label; -1: none
+    std::vector<std::int32_t> part_;   // per label, the number of its part; -1: none
+    std::unique_ptr<Computed> computed_;
 };
 
 }  // namespace exemplar

@@ -43,15 +43,15 @@ std::vector<std::size_t> layers_of(const CorrectedStrokes& strokes, const Stroke
     return layers;
 }
 
-std::vector<std::uint32_t> all_pixel_features() {
-    std::vector<std::uint32_t> all(k_pixel_features);
+std::vector<std::uint32_t> all_scalars(const HatchingExamples& views) {
+    std::vector<std::uint32_t> all(views.scalar_count());
     std::iota(all.begin(), all.end(), 0U);
     return all;
 }
 
 /// Returns the features that corrections are learned from.
 QuantizedFeatures quantized_features(const HatchingExamples& views, std::span<const std::uint32_t> rows) {
-    QuantizedFeatures quantized = quantize(views.scalars(all_pixel_features(), rows), {}, {});
+    QuantizedFeatures quantized = quantize(views.scalars(all_scalars(views), rows), {}, {});
     // Depth tells where in this picture a pixel is, which means nothing in another view.
     const auto depth = std::ranges::find(pixel_feature_names(), std::string("image.depth"));
     quantized.thresholds[static_cast<std::size_t>(depth - pixel_feature_names().begin())].clear();
@@ -90,7 +90,7 @@ std::array<LearnedCorrection, k_hatch_layers> learn_corrections(const CorrectedS
     out[0] = correction_of(0, strokes, directions, layers, progress);
     std::vector<DoubledAngle> first = directions.rule[0];
     if (!out[0].correction.empty()) {
-        const std::vector<std::uint32_t> which = all_pixel_features();
+        const std::vector<std::uint32_t> which = all_scalars(strokes.views);
         first = corrected_directions(out[0].correction, first, strokes.segment, fields, which,
                                      strokes.views.scalars(which, strokes.rows));
     }

@@ -12,6 +12,16 @@ namespace {
 
 constexpr std::uint32_t k_gap = 256;  // pixels between views that are side by side
 
+std::vector<std::string> common_parts(std::span<const HatchingExample> views) {
+    std::vector<std::string> parts;
+    for (const HatchingExample& view : views) {
+        if (view.pixels.label_names().empty()) return {};
+        for (const std::string& name : view.pixels.label_names())
+            if (std::ranges::find(parts, name) == parts.end()) parts.push_back(name);
+    }
+    return parts;
+}
+
 }  // namespace
 
 HatchingExamples::HatchingExamples(std::span<const HatchingExample> views)
@@ -32,6 +42,8 @@ HatchingExamples::HatchingExamples(std::span<const HatchingExample> views)
             throw UsageError(fmt::format("the drawings are {} pixels wide together; 65,535 are possible", x));
         x += k_gap;
     }
+    parts_ = common_parts(views_);
+    for (const HatchingExample& view : views_) view.pixels.use_parts(parts_);
 }
 
 std::size_t HatchingExamples::view_of(std::uint32_t row) const {
@@ -67,7 +79,9 @@ FeatureMatrix HatchingExamples::scalars(std::span<const std::uint32_t> which, st
     out.rows = rows.size();
     out.values.reserve(out.rows * (which.size() + spare));
     out.values.resize(out.rows * which.size());
-    for (const std::uint32_t k : which) out.names.push_back(pixel_feature_names().at(k));
+    for (const std::uint32_t k : which)
+        out.names.push_back(k < k_pixel_features ? pixel_feature_names()[k]
+                                                 : part_feature_name(parts_.at(k - k_pixel_features)));
     for (std::size_t view = 0; view < views_.size(); ++view) {
         const RowsOfView some = rows_of_view(rows, view);
         if (some.row.empty()) continue;

@@ -19,11 +19,17 @@ struct HatchingExample {
 /// The covered pixels of several drawn views as the rows of one table: those of the first view, then those of the next.
 class HatchingExamples {
   public:
-    /// Keeps references, and sets the scale of all views in relation to the first. Throws UsageError if there is no
-    /// view, if a drawing differs in size from its view, or if the views side by side are wider than 65,535 pixels.
+    /// Keeps references, sets the scale of all views in relation to the first, and their parts to parts(). Throws
+    /// UsageError if there is no view, if a drawing differs in size from its view, or if the views side by side are
+    /// wider than 65,535 pixels.
     explicit HatchingExamples(std::span<const HatchingExample> views);
 
     std::span<const HatchingExample> views() const { return views_; }
+    /// Returns the names of the parts that the views' labels tell apart, in the order in which they are met; none
+    /// unless all views have labels.
+    const std::vector<std::string>& parts() const { return parts_; }
+    /// Returns the number of scalar features, those of parts included.
+    std::size_t scalar_count() const { return views_.front().pixels.scalar_count(); }
     std::size_t size() const { return first_row_.back(); }
     std::uint32_t first_row(std::size_t view) const { return first_row_[view]; }
     std::size_t view_of(std::uint32_t row) const;
@@ -48,6 +54,7 @@ class HatchingExamples {
 
   private:
     std::vector<HatchingExample> views_;
+    std::vector<std::string> parts_;
     std::vector<std::uint32_t> first_row_;  // of each view, and the number of all rows
     std::vector<std::uint32_t> first_x_;    // of each view in the picture of all
 };

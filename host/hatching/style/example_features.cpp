@@ -41,7 +41,7 @@ FeatureMatrix ExampleFeatures::context_of_rows(std::span<const std::uint32_t> ro
 
 FeatureMatrix ExampleFeatures::of_rows(std::span<const std::uint32_t> rows, const SegmentContext& context) const {
     const std::size_t contextual = contextual_feature_count(context.segments);
-    FeatureMatrix features = views_.scalars(numbers_from(0, k_pixel_features), rows, contextual);
+    FeatureMatrix features = views_.scalars(numbers_from(0, views_.scalar_count()), rows, contextual);
     if (contextual > 0) features.append(context_of_rows(rows, context));
     return features;
 }
@@ -55,11 +55,12 @@ std::vector<std::vector<float>> ExampleFeatures::probabilities(std::span<const C
     }
     std::ranges::sort(used);
     used.erase(std::unique(used.begin(), used.end()), used.end());
-    const auto first_context = std::ranges::lower_bound(used, static_cast<std::uint32_t>(k_pixel_features));
+    const std::size_t scalars = views_.scalar_count();
+    const auto first_context = std::ranges::lower_bound(used, static_cast<std::uint32_t>(scalars));
     const std::size_t contextual = first_context == used.end() ? 0 : contextual_feature_count(context.segments);
     std::vector<std::uint32_t> which(used.begin(), first_context);
     const std::size_t base = which.size();
-    for (const std::uint32_t k : numbers_from(k_pixel_features, k_pixel_features + contextual)) which.push_back(k);
+    for (const std::uint32_t k : numbers_from(scalars, scalars + contextual)) which.push_back(k);
 
     std::vector<std::vector<float>> all(classifiers.size());
     for (std::size_t view = 0; view < views_.views().size(); ++view) {

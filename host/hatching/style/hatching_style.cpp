@@ -72,7 +72,8 @@ void add_correction(TensorFile& file, const std::string& name, const DirectionCo
     file.add(name + ".threshold_below_above", {correction.stumps.size(), 3}, values);
 }
 
-DirectionCorrection get_correction(const TensorFile& file, const std::string& name, std::size_t segments) {
+DirectionCorrection get_correction(const TensorFile& file, const std::string& name, std::size_t segments,
+                                   std::size_t features) {
     DirectionCorrection correction;
     correction.rule_weight = file.get<float>(name + ".rule_weight", {TensorFile::k_any});
     require_finite(file, name + ".rule_weight", correction.rule_weight);
@@ -85,8 +86,8 @@ DirectionCorrection get_correction(const TensorFile& file, const std::string& na
     for (std::size_t k = 0; k < numbers.size() / 2; ++k) {
         const DirectionStump stump{numbers[2 * k], values[3 * k], numbers[2 * k + 1], values[3 * k + 1],
                                    values[3 * k + 2]};
-        if (stump.feature >= k_pixel_features)
-            inconsistent(file, fmt::format("{} uses feature {} of {}", name, stump.feature, k_pixel_features));
+        if (stump.feature >= features)
+            inconsistent(file, fmt::format("{} uses feature {} of {}", name, stump.feature, features));
         if (stump.part >= k_direction_parts)
             inconsistent(file, fmt::format("{} uses direction {} of {}", name, stump.part, k_direction_parts));
         correction.stumps.push_back(stump);
@@ -173,6 +174,9 @@ void read_description(const TensorFile& file, HatchingStyle& style, std::size_t&
     style.object_size = read_pixels(file, json, "object_size", 0, k_max_object);
     style.taper = read_pixels(file, json, "taper", k_usual_taper, k_max_pen);
     style.outline_width = read_pixels(file, json, "outline_width", 0, k_max_pen);
+    style.parts = json.value("parts", std::vector<std::string>());
+    if (style.parts.size() > k_max_classes)
+        inconsistent(file, fmt::format("it has {} parts; {} are possible", style.parts.size(), k_max_classes));
     style.share = json.at("share").get<std::vector<double>>();
     style.segment_crf = read_cut(file, json.at("segment_cut"));
     style.level_crf = read_cut(file, json.at("level_cut"));
@@ -188,8 +192,12 @@ bool is_style(const TensorFile& file) {
 
 }  // namespace
 
+std::size_t HatchingStyle::scalar_count() const {
+    return k_pixel_features + parts.size();
+}
+
 std::size_t HatchingStyle::feature_count() const {
-    return k_pixel_features + contextual_feature_count(rules.size());
+    return scalar_count() + contextual_feature_count(rules.size());
 }
 
 void HatchingStyle::resize(int new_width, int new_height) {
@@ -214,6 +222,7 @@ void save_hatching_style(const std::filesystem::path& path, const HatchingStyle&
                            {"object_size", style.object_size},
                            {"taper", style.taper},
                            {"outline_width", style.outline_width},
+                           {"parts", style.parts},
                            {"share", style.share},
                            {"segment_cut", described(style.segment_crf)},
                            {"level_cut", described(style.level_crf)},
@@ -261,11 +270,11 @@ HatchingStyle load_hatching_style(const std::filesystem::path& path) {
             style.rules[c].function[j] = get_function(file, fmt::format("rule.{}.{}", c, j));
     }
     for (std::size_t j = 0; j < k_hatch_layers; ++j)
-        style.corrections[j] = get_correction(file, fmt::format("direction.{}", j), labels);
+        style.corrections[j] = get_correction(file, fmt::format("direction.{}", j), labels, style.scalar_count());
     const std::size_t features = k_powers * style.feature_count();
     for (std::size_t s = 0; s < stages; ++s)
         style.segments.push_back(get_classifier(file, fmt::format("segments.{}", s), labels,
-                                                s == 0 ? k_powers * k_pixel_features : features));
+                                                s == 0 ? k_powers * style.scalar_count() : features));
     style.boundary = get_classifier(file, "boundary", 2, k_powers * k_pixel_features);
     style.levels = get_classifier(file, "levels", 3, features);
     style.rough_levels = get_classifier(file, "rough_levels", 3, features);

@@ -18,12 +18,13 @@
 namespace exemplar {
 
 /// A hatching style learned from one drawing. Feature numbers are those of the expanded set (powers.h); numbers from
-/// 4 * k_pixel_features on are contextual features of as many labels as there are rules (see contextual_features()).
+/// 4 * scalar_count() on are contextual features of as many labels as there are rules (see contextual_features()).
 struct HatchingStyle {
     std::string name;                    ///< of the drawing
     int width = 0, height = 0;           ///< of the drawing, in pixels; lengths are in these pixels
     float object_size = 0;               ///< of the object in the drawing, see size_in_view(); 0: not known
     float taper = k_usual_taper;         ///< pixels over which strokes end in a point
+    std::vector<std::string> parts;      ///< whose labels are features, see PixelFeatures::use_parts(); mostly none
     float outline_width = 0;             ///< of the outlines in the drawing, pixels; 0: it has none
     std::vector<OrientationRule> rules;  ///< one per segment
     /// Corrections of the rules' directions, for hatches and for those that cross them.
@@ -37,6 +38,7 @@ struct HatchingStyle {
     PixelCrfParameters segment_crf, level_crf;
     std::array<PropertyModel, k_stroke_properties> properties;
 
+    std::size_t scalar_count() const;   ///< number of scalar features, those of parts included
     std::size_t feature_count() const;  ///< number of base features, including contextual ones
     /// Restates all lengths in pixels of a picture of another size: a pen is as wide as before in relation to the
     /// shorter side.

@@ -35,7 +35,7 @@ constexpr std::array<NamedType, 16> k_orientation_types{{{"k_m", "k_max, k_min"}
                                                          {"UxN", "U x N"},
                                                          {"x", "of the picture"},
                                                          {"diagonal", "of the picture"}}};
-constexpr std::array<NamedType, 23> k_scalar_types{{{"curvature.radial", "radial curvature"},
+constexpr std::array<NamedType, 24> k_scalar_types{{{"curvature.radial", "radial curvature"},
                                                     {"curvature.d_radial", "derivative of radial curvature"},
                                                     {"curvature.torsion", "torsion"},
                                                     {"curvature.c", "derivatives of curvature"},
@@ -57,6 +57,7 @@ constexpr std::array<NamedType, 23> k_scalar_types{{{"curvature.radial", "radial
                                                     {"lines.ridges", "ridges, valleys"},
                                                     {"lines.valleys", "ridges, valleys"},
                                                     {"lines.apparent", "apparent ridges"},
+                                                    {"part.", "labels of parts"},
                                                     {"context.", "contextual labels"}}};
 
 std::string type_of(std::string name, std::span<const NamedType> types) {
@@ -70,18 +71,18 @@ std::string orientation_type(std::uint32_t feature) {
     return type_of(orientation_feature_names()[feature_of_field(field_of_feature(feature))], k_orientation_types);
 }
 
-std::string scalar_type(std::uint32_t expanded) {
-    const std::size_t base = expanded / k_powers;
-    return base < k_pixel_features ? type_of(pixel_feature_names()[base], k_scalar_types) : "contextual labels";
+std::string scalar_type(const HatchingStyle& style, std::uint32_t expanded) {
+    const auto first_power = static_cast<std::uint32_t>(expanded - expanded % k_powers);
+    return type_of(feature_name(style, first_power), k_scalar_types);
 }
 
 /// Returns the types of the first features that differ.
-std::vector<std::string> first_types(std::span<const std::uint32_t> selected) {
+std::vector<std::string> first_types(const HatchingStyle& style, std::span<const std::uint32_t> selected) {
     std::set<std::uint32_t> seen;
     std::vector<std::string> types;
     for (const std::uint32_t expanded : selected) {
         if (types.size() == k_first) break;
-        if (seen.insert(expanded).second) types.push_back(scalar_type(expanded));
+        if (seen.insert(expanded).second) types.push_back(scalar_type(style, expanded));
     }
     return types;
 }
@@ -137,7 +138,7 @@ std::map<std::string, double> selected_features(std::span<const HatchingStyle> s
         if (use == FeatureUse::orientation)
             add_rules(style, shares);
         else
-            for (const std::string& type : first_types(selected_for(style, use))) shares[type] += 1;
+            for (const std::string& type : first_types(style, selected_for(style, use))) shares[type] += 1;
         normalize(shares);
         for (const auto& [type, share] : shares) all[type] += share;
     }

@@ -56,10 +56,12 @@ std::string describe(const HatchingStyle& style, const PropertyModel& model) {
 
 std::string feature_name(const HatchingStyle& style, std::uint32_t expanded) {
     const std::size_t base = expanded / k_powers;
-    const std::string name = base < k_pixel_features
-                                 ? pixel_feature_names()[base]
-                                 : contextual_feature_names(style.rules.size()).at(base - k_pixel_features);
-    return name_of_power(name, expanded % k_powers);
+    const auto name = [&] {
+        if (base < k_pixel_features) return pixel_feature_names()[base];
+        if (base < style.scalar_count()) return part_feature_name(style.parts[base - k_pixel_features]);
+        return contextual_feature_names(style.rules.size()).at(base - style.scalar_count());
+    };
+    return name_of_power(name(), expanded % k_powers);
 }
 
 std::string describe_hatching_style(const HatchingStyle& style) {

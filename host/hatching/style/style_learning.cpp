@@ -59,6 +59,7 @@ class StyleLearning {
         style_.width = first.width;
         style_.height = first.height;
         PixelFeatures& first_pixels = views_.views().front().pixels;
+        style_.parts = views_.parts();
         style_.object_size = size_in_view(first_pixels.surface(), first_pixels.view());
         learn_pen();
         learn_rules();

@@ -20,7 +20,7 @@ namespace {
 std::vector<std::uint32_t> needed_features(const HatchingStyle& style) {
     std::vector<std::uint32_t> needed;
     const auto add = [&](std::uint32_t base) {
-        if (base < k_pixel_features) needed.push_back(base);
+        if (base < style.scalar_count()) needed.push_back(base);
     };
     const auto add_all = [&](const CalibratedStumps& classifier) {
         for (const std::uint32_t base : used_features(classifier.stumps)) add(base);
@@ -50,6 +50,7 @@ class Prediction {
     HatchingPrediction run() {
         if (style_.object_size > 0)
             pixels_.set_scale(size_in_view(pixels_.surface(), pixels_.view()) / style_.object_size);
+        pixels_.use_parts(style_.parts);
         which_ = needed_features(style_);
         features_ = pixels_.scalars(which_, {}, contextual_feature_count(style_.rules.size()));
         done("features");
@@ -96,7 +97,7 @@ class Prediction {
         features_.append(
             contextual_features(pixels_.surface(), pixels_.gbuffer(), pixels_.pixels(), probabilities, labels, {}));
         for (std::uint32_t k = 0; k < contextual_feature_count(labels); ++k)
-            which_.push_back(static_cast<std::uint32_t>(k_pixel_features) + k);
+            which_.push_back(static_cast<std::uint32_t>(style_.scalar_count()) + k);
     }
 
     std::vector<float> boundary_probabilities() {

@@ -305,6 +305,53 @@ TEST(PixelFeatures, AreTheSameOnAnyNumberOfThreads) {
     }
 }
 
+/// Two parts: the upper and the lower half.
+FaceLabels upper_and_lower(const TriangleMesh& mesh) {
+    FaceLabels labels{{"lower", "upper"}, {}};
+    for (const Face& face : mesh.faces) {
+        const float y = mesh.vertices[face[0]].y() + mesh.vertices[face[1]].y() + mesh.vertices[face[2]].y();
+        labels.label.push_back(y > 0 ? 1 : 0);
+    }
+    return labels;
+}
+
+TEST(PixelFeatures, TellThePartsThatAStyleKnows) {
+    HostTools host;
+    const HatchingView view = parallel_view(ball().mesh, Vec3::UnitZ());
+    PixelFeatures features(ball(), view, host.tools);
+    const FaceLabels labels = upper_and_lower(ball().mesh);
+    features.set_labels(labels);
+    EXPECT_EQ(features.scalar_count(), k_pixel_features);
+    // The style's order counts; a part that this mesh lacks is nowhere.
+    features.use_parts(std::vector<std::string>{"upper", "tail"});
+    ASSERT_EQ(features.scalar_count(), k_pixel_features + 2);
+    const std::vector<std::uint32_t> which{0, k_pixel_features, k_pixel_features + 1};
+    const FeatureMatrix matrix = features.scalars(which, {});
+    EXPECT_EQ(matrix.names[1], "part.upper");
+    std::array<std::size_t, 2> seen{};
+    for (std::size_t i = 0; i < matrix.rows; ++i) {
+        const std::int32_t label = labels.label[features.gbuffer().face[features.pixels().pixel[i]]];
+        ASSERT_EQ(matrix.column(1)[i], static_cast<float>(label)) << i;
+        ASSERT_EQ(matrix.column(2)[i], 0.0f) << i;
+        ++seen[static_cast<std::size_t>(label)];
+    }
+    EXPECT_GT(seen[0], 100U);
+    EXPECT_GT(seen[1], 100U);
+}
+
+TEST(PixelFeatures, RefuseStylesWhosePartsAreNotLabeled) {
+    HostTools host;
+    const HatchingView view = parallel_view(ball().mesh, Vec3::UnitZ());
+    PixelFeatures features(ball(), view, host.tools);
+    const std::vector<std::string> parts{"head", "tail"};
+    EXPECT_THROW(features.use_parts(parts), UsageError);
+    EXPECT_THROW(features.set_labels({{"head"}, std::vector<std::int32_t>(3)}), UsageError);
+    features.set_labels(upper_and_lower(ball().mesh));
+    EXPECT_THROW(features.use_parts(parts), UsageError);
+    features.use_parts({});
+    EXPECT_EQ(features.scalar_count(), k_pixel_features);
+}
+
 TEST(PixelFeatures, RefuseAViewThatShowsNothing) {
     HostTools host;
     HatchingView view = parallel_view(ball().mesh, Vec3::UnitZ());

@@ -1,5 +1,6 @@
 #include "host/hatching/rules/hatching_examples.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -98,6 +99,22 @@ TEST(HatchingExamples, RowsHaveTheFeaturesOfTheirView) {
         for (std::size_t k = 0; k < k_orientation_fields; ++k)
             EXPECT_EQ(fields.field(k)[i], expected_fields.field(k)[0]) << i << " " << k;
     }
+}
+
+TEST(HatchingExamples, PartsAreThoseOfAllViews) {
+    const TwoViews views;
+    const std::size_t faces = views.pixels(0).surface().mesh.face_count();
+    views.pixels(0).set_labels({{"head", "body"}, std::vector<std::int32_t>(faces, 1)});
+    EXPECT_THAT(HatchingExamples(views.examples()).parts(), testing::IsEmpty());  // the other has none
+    views.pixels(1).set_labels({{"tail", "head"}, std::vector<std::int32_t>(faces, 1)});
+    const HatchingExamples all(views.examples());
+    EXPECT_THAT(all.parts(), testing::ElementsAre("head", "body", "tail"));
+    ASSERT_EQ(all.scalar_count(), k_pixel_features + 3);
+    const std::vector<std::uint32_t> rows{7, all.first_row(1) + 7}, which{k_pixel_features, k_pixel_features + 1};
+    const FeatureMatrix features = all.scalars(which, rows);
+    EXPECT_THAT(features.names, testing::ElementsAre("part.head", "part.body"));
+    EXPECT_THAT(features.column(0), testing::ElementsAre(0.0f, 1.0f));
+    EXPECT_THAT(features.column(1), testing::ElementsAre(1.0f, 0.0f));
 }
 
 TEST(HatchingExamples, RefusesDrawingsOfAnotherSize) {

@@ -126,6 +126,22 @@ TEST(HatchingStyleFile, RoundTripKeepsEverythingAndTheBytes) {
     EXPECT_EQ(describe_hatching_style(loaded), describe_hatching_style(style));
 }
 
+TEST(HatchingStyleFile, PartsAreFeaturesBeforeContextualOnes) {
+    const fs::path path = temporary("parts.safetensors");
+    HatchingStyle style = small_style();
+    style.parts = {"head", "tail"};
+    style.levels = classifier(3, k_powers * (k_pixel_features + 1));
+    style.corrections[0].stumps[0].feature = k_pixel_features + 1;
+    save_hatching_style(path, style);
+    const HatchingStyle loaded = load_hatching_style(path);
+    EXPECT_EQ(loaded.parts, style.parts);
+    EXPECT_EQ(loaded.corrections, style.corrections);
+    EXPECT_EQ(loaded.scalar_count(), k_pixel_features + 2);
+    EXPECT_EQ(feature_name(loaded, k_powers * (k_pixel_features + 1)), "part.tail");
+    EXPECT_EQ(feature_name(loaded, k_powers * (k_pixel_features + 2)), contextual_feature_names(2)[0]);
+    EXPECT_THAT(describe_hatching_style(loaded), HasSubstr("part.tail"));
+}
+
 TEST(HatchingStyleFile, NamesThatAreNoTextDoNotPreventSaving) {
     const fs::path path = temporary("name.safetensors");
     HatchingStyle style = small_style();

@@ -90,7 +90,7 @@ std::string new_view_of(const HatchSceneArguments& arguments, const HatchScene& 
 class StyleFigures {
   public:
     explicit StyleFigures(const FiguresArguments& arguments)
-        : arguments_(arguments), progress_("figures", 5 + arguments.others.size()) {}
+        : arguments_(arguments), progress_("figures", 6 + arguments.others.size()) {}
 
     void make() {
         read();
@@ -106,12 +106,12 @@ class StyleFigures {
 
   private:
     void read() {
-        ShownView& own = views_.emplace_back("same_view", "the same view");
-        own.scene = std::make_unique<HatchScene>(arguments_.scene, arguments_.common.device, arguments_.common.quiet);
-        drawing_ = read_drawing(arguments_.drawing, arguments_.scene, own.scene->pixels(), arguments_.common.quiet);
+        add_view("same_view", "the same view", arguments_.scene);
+        HatchScene& scene = *views_.front().scene;
+        drawing_ = read_drawing(arguments_.drawing, arguments_.scene, scene.pixels(), arguments_.common.quiet);
         measured_ = drawing_properties(drawing_.strokes);
-        if (!arguments_.mask.empty()) restrict_to(read_mask(arguments_.mask, own.scene->pixels()), measured_);
-        progress_.advance(1, "drawing");
+        if (!arguments_.mask.empty()) restrict_to(read_mask(arguments_.mask, scene.pixels()), measured_);
+        progress_.advance(1, "the drawing");
     }
 
     void learn() {

@@ -33,6 +33,7 @@ void add_hatch_extract_command(Command& hatch);
 void add_hatch_train_command(Command& hatch);
 void add_hatch_draw_command(Command& hatch);
 void add_hatch_compare_command(Command& hatch);
+void add_hatch_figures_command(Command& hatch);
 void add_hatch_features_command(Command& hatch);
 void add_hatch_evaluate_command(Command& hatch);
 void add_catalog_command(Command& app);

@@ -13,6 +13,7 @@
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/json_text.h"
+#include "host/core/text.h"
 
 namespace exemplar {
 namespace {
@@ -149,23 +150,6 @@ PackedMesh pack_mesh(const ReportMesh& item) {
     for (const float confidence : item.confidence)
         packed.bytes.push_back(static_cast<char>(std::lround(255 * std::clamp(confidence, 0.0f, 1.0f))));
     return packed;
-}
-
-/// RFC 4648, with padding.
-std::string base64(std::string_view bytes) {
-    constexpr std::string_view k_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    const auto byte = [&](std::size_t i) -> std::uint32_t {
-        return i < bytes.size() ? static_cast<std::uint8_t>(bytes[i]) : 0;
-    };
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::uint32_t three = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
-        for (int shift = 18; shift >= 0; shift -= 6) text.push_back(k_digits[(three >> shift) & 63]);
-    }
-    const std::size_t padding = (3 - bytes.size() % 3) % 3;
-    text.replace(text.size() - padding, padding, padding, '=');
-    return text;
 }
 
 // ---- description

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 namespace exemplar {
@@ -114,6 +115,22 @@ std::string without_controls(std::string_view text) {
 std::string counted(std::size_t count, std::string_view one, std::string_view more) {
     if (count != 1 && more.empty()) return fmt::format("{} {}s", count, one);
     return fmt::format("{} {}", count, count == 1 ? one : more);
+}
+
+std::string base64(std::string_view bytes) {
+    constexpr std::string_view k_digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    const auto byte = [&](std::size_t i) -> std::uint32_t {
+        return i < bytes.size() ? static_cast<std::uint8_t>(bytes[i]) : 0;
+    };
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::uint32_t three = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
+        for (int shift = 18; shift >= 0; shift -= 6) text.push_back(k_digits[(three >> shift) & 63]);
+    }
+    const std::size_t padding = (3 - bytes.size() % 3) % 3;
+    text.replace(text.size() - padding, padding, padding, '=');
+    return text;
 }
 
 std::string format_seconds(double seconds) {

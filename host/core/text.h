@@ -24,6 +24,8 @@ bool is_utf8(std::string_view text);
 std::string without_controls(std::string_view text);
 /// Returns "1 face", "2 faces" and so on; `more` is the plural if it is not `one` with an s.
 std::string counted(std::size_t count, std::string_view one, std::string_view more = {});
+/// Returns bytes as base64 (RFC 4648), padded, without line breaks.
+std::string base64(std::string_view bytes);
 /// Formats seconds as "0.42 s", "12 s", "3 min 20 s" or "1 h 05 min".
 std::string format_seconds(double seconds);
 

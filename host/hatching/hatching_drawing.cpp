@@ -122,15 +122,18 @@ Image hatching_picture(const HatchedDrawing& drawing, const DrawingStyle& style,
     return image;
 }
 
-Image property_picture(std::span<const float> values, std::span<const std::uint8_t> known, int width, int height,
-                       std::array<float, 2>& range) {
+std::array<float, 2> property_range(std::span<const float> values, std::span<const std::uint8_t> known) {
     std::vector<float> sorted;
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (known[i]) sorted.push_back(values[i]);
     }
+    if (sorted.empty()) return {};
     std::ranges::sort(sorted);
-    range = {};
-    if (!sorted.empty()) range = {sorted[sorted.size() / 100], sorted[sorted.size() - 1 - sorted.size() / 100]};
+    return {sorted[sorted.size() / 100], sorted[sorted.size() - 1 - sorted.size() / 100]};
+}
+
+Image property_picture(std::span<const float> values, std::span<const std::uint8_t> known, int width, int height,
+                       const std::array<float, 2>& range) {
     constexpr std::array<float, 3> k_light{222, 235, 247}, k_dark{8, 48, 107};
     Image image(width, height, 3, 255);
     for (std::size_t i = 0; i < values.size(); ++i) {

@@ -42,11 +42,12 @@ SvgSummary write_hatching_svg(const std::filesystem::path& path, const HatchedDr
 /// Renders the drawing on white as an RGB image, `scale` (positive) times as large.
 Image hatching_picture(const HatchedDrawing& drawing, const DrawingStyle& style, float scale = 1);
 
-/// Renders a property for inspection where `known` is not zero: shades of one color, from light (small values) to
-/// dark (large values); white elsewhere. Sets `range` to the values of the lightest and the darkest shade, the 1st
-/// and 99th percentile.
+/// Returns the 1st and the 99th percentile of the values where `known` is not zero; two zeros if it is nowhere.
+std::array<float, 2> property_range(std::span<const float> values, std::span<const std::uint8_t> known);
+/// Renders a property for inspection where `known` is not zero: shades of one color, from light (values up to
+/// range[0]) to dark (from range[1] on); white elsewhere.
 Image property_picture(std::span<const float> values, std::span<const std::uint8_t> known, int width, int height,
-                       std::array<float, 2>& range);
+                       const std::array<float, 2>& range);
 /// Renders directions (radians) as hues where `known` is not zero: red along x, then green, then blue; white
 /// elsewhere.
 Image orientation_picture(std::span<const float> angles, std::span<const std::uint8_t> known, int width, int height);

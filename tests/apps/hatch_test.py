@@ -129,6 +129,26 @@ class Hatch(ProgramTest):
                      says="second.png: the picture tells no view")
         self.refused(*train, "--mask", "first.png", "second.png", "--out", "no.safetensors", code=2, says="2 masks are given, but 1 drawing")
 
+    def test_figures_of_how_a_style_is_learned(self):
+        self.call("synth", "octopus", "--faces", "1500", "--out", "shapes")
+        figures = ["hatch", "figures", MESH, "drawing.png", *VIEW]
+        said = self.call(*figures, "--on", "shapes/octopus_001.off", "--out", "figures").stdout
+        self.assertIn("hatches along", said)
+        written = {path.stem for path in (self.folder / "figures").glob("*.png")}
+        rows = ("drawing", "same_view", "new_view", "on_octopus_001")
+        self.assertEqual(written, {
+            "drawing", "picked_principal_curvature", "picked_local_PCA_axes", "picked_gradient_of_intensity", "one_rule",
+            "segments_found", "segments_boosting", "segments_same_view", "segments_on_octopus_001",
+            *(f"learned_{row}" for row in rows[1:]),
+            *(f"{row}_{what}" for row in rows for what in PROPERTIES - {"orientation"} | {"orientation_1", "orientation_2"})})
+        page = ElementTree.parse(self.folder / "figures" / "figures.svg")
+        self.assertEqual(len(page.findall(f"{SVG}image")), len(written))
+        texts = [text.text for text in page.findall(f"{SVG}text")]
+        self.assertTrue(any("of the strokes: hatches along" in text for text in texts), texts)
+        # The style is that of 'hatch train'.
+        self.assertEqual((self.folder / "figures" / "style.safetensors").read_bytes(), (self.folder / "style.safetensors").read_bytes())
+        self.refused(*figures, "--on", "none.obj", "--out", "no", code=1, says="none.obj")
+
     def test_the_features_of_styles(self):
         said = self.call("hatch", "features", "style.safetensors", "--out", "features.svg", "--json", "features.json").stdout
         self.assertIn("orientation\n  100 %  k_max, k_min\n", said)

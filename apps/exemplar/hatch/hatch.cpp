@@ -21,6 +21,7 @@ void add_hatch_command(Command& app) {
     add_hatch_train_command(*hatch);
     add_hatch_draw_command(*hatch);
     add_hatch_compare_command(*hatch);
+    add_hatch_figures_command(*hatch);
     add_hatch_features_command(*hatch);
     add_hatch_evaluate_command(*hatch);
 }

@@ -32,9 +32,9 @@ void write_properties(const fs::path& folder, const HatchingPrediction& predicti
     write("cross_orientation", orientation_picture(fields.orientation[1], crossed, fields.width, fields.height));
     for (std::size_t p = 0; p < k_stroke_properties; ++p) {
         const auto property = static_cast<StrokeProperty>(p);
-        std::array<float, 2> range{};
-        write(name_of(property),
-              property_picture(property_of(fields, property), fields.level, fields.width, fields.height, range));
+        const std::vector<float>& values = property_of(fields, property);
+        write(name_of(property), property_picture(values, fields.level, fields.width, fields.height,
+                                                  property_range(values, fields.level)));
     }
 }
 

@@ -38,6 +38,8 @@ struct EvaluateArguments {
     CommonOptions common;
 };
 
+/// Exported pixels of each picture to test on, at most.
+constexpr std::size_t k_test_rows = 20'000;
 /// The training view first.
 constexpr std::array<const char*, 4> k_views{"three-quarter", "front", "side", "three-quarter-back"};
 
@@ -111,6 +113,20 @@ FeatureMatrix targets_of(const HatchingFields& fields, const PixelFeatures& pixe
 std::vector<std::uint32_t> some_of(std::vector<std::uint32_t> rows, std::size_t most, std::uint64_t seed) {
     Random(seed).shuffle(rows);
     rows.resize(std::min(rows.size(), most));
+    return rows;
+}
+
+/// Returns the rows of the pixels on the finest square grid that has at most so many, so that they make a picture.
+std::vector<std::uint32_t> grid_rows(const PixelFeatures& pixels, std::size_t most) {
+    const auto width = static_cast<std::uint32_t>(pixels.view().width);
+    std::vector<std::uint32_t> rows;
+    for (std::uint32_t step = 1; step == 1 || rows.size() > most; ++step) {
+        rows.clear();
+        for (std::uint32_t row = 0; row < pixels.size(); ++row) {
+            const std::uint32_t p = pixels.pixels().pixel[row];
+            if (p % width % step == 0 && p / width % step == 0) rows.push_back(row);
+        }
+    }
     return rows;
 }
 
@@ -284,7 +300,7 @@ class StyleEvaluation {
                      const std::string& picture, bool training_view) const {
         PixelFeatures& pixels = scene.pixels();
         const RowExport test{arguments_.peers, fmt::format("{}_{}_{}", name_, training_view ? "seen" : "test", picture),
-                             some_of(all_rows(pixels), 10000, 2)};
+                             grid_rows(pixels, k_test_rows)};
         test.write_examples(pixels, truth);
         test.write("learned", targets_of(learned, pixels, test.rows));
         HatchingStyle uncut = style_;

@@ -63,7 +63,7 @@ nlohmann::json write_measurement_pictures(const fs::path& folder, const AlignedD
     nlohmann::json ranges;
     for (std::size_t p = 0; p < k_stroke_properties; ++p) {
         const char* name = name_of(static_cast<StrokeProperty>(p));
-        std::array<float, 2> range{};
+        const std::array<float, 2> range = property_range(properties.property[p], m.stroke);
         write(name, property_picture(properties.property[p], m.stroke, m.width, m.height, range));
         ranges[name] = range;
     }

@@ -56,6 +56,8 @@ HatchingStyle load_hatching_style(const std::filesystem::path& path);
 /// file.
 bool is_hatching_style(const std::filesystem::path& path);
 
+/// Describes a rule in words, e.g. "hatches along 1.00 k_max,2; crossed along 0.62 L + 0.38 perp grad a,1".
+std::string describe_rule(const OrientationRule& rule);
 /// Describes a style in words: the rule of each segment (like the legend of thesis Fig. 4.3) and the features that
 /// determine each property (like Figs. 4.15, 4.16).
 std::string describe_hatching_style(const HatchingStyle& style);

@@ -64,14 +64,18 @@ std::string feature_name(const HatchingStyle& style, std::uint32_t expanded) {
     return name_of_power(name(), expanded % k_powers);
 }
 
+std::string describe_rule(const OrientationRule& rule) {
+    std::string text = "hatches along " + describe(rule.function[0]);
+    if (rule.crosses()) text += "; crossed along " + describe(rule.function[1]);
+    return text;
+}
+
 std::string describe_hatching_style(const HatchingStyle& style) {
     std::string text =
         fmt::format("Hatching style of {}, a drawing of {} x {} pixels.\n", style.name, style.width, style.height);
     for (std::size_t c = 0; c < style.rules.size(); ++c) {
-        text += fmt::format("Segment {} ({:.0f}% of the strokes): hatches along {}", c + 1, 100 * style.share[c],
-                            describe(style.rules[c].function[0]));
-        if (style.rules[c].crosses()) text += fmt::format("; crossed along {}", describe(style.rules[c].function[1]));
-        text += ".\n";
+        text += fmt::format("Segment {} ({:.0f}% of the strokes): {}.\n", c + 1, 100 * style.share[c],
+                            describe_rule(style.rules[c]));
     }
     if (style.rules.size() > 1)
         text += fmt::format("Segments are told by {}.\n", describe(style, style.segments.back()));

@@ -178,12 +178,22 @@ class StyleLearning {
             samples.spacing.push_back(property_at(row, static_cast<std::size_t>(StrokeProperty::spacing)));
         }
         samples.fields = views_.orientations(rule_rows_);
-        OrientationMixture mixture =
-            learn_mixture(samples, {.seed = options_.seed}, [&] { progress_("orientation rules"); });
+        MixtureOptions mixing{.seed = options_.seed};
+        if (options_.one_rule) mixing.max_clusters = 1;
+        OrientationMixture mixture = learn_mixture(samples, mixing, [&] { progress_("orientation rules"); });
         style_.rules = std::move(mixture.rules);
         style_.share = std::move(mixture.share);
         report_.orientation_error = mixture.error;
         segment_.assign(mixture.segment.begin(), mixture.segment.end());
+        report_segments();
+    }
+
+    void report_segments() {
+        for (const auto& [pixels, drawing] : views_.views())
+            report_.segments.emplace_back(drawing.level.size(), k_no_segment);
+        for (std::size_t i = 0; i < rule_rows_.size(); ++i)
+            report_.segments[views_.view_of(rule_rows_[i])][views_.pixel_of(rule_rows_[i])] =
+                static_cast<std::uint8_t>(segment_[i]);
     }
 
     /// What levels and properties learn the context of their pixels from.
@@ -256,6 +266,7 @@ class StyleLearning {
 
     /// Learns where strokes depart from the rules of the segments that the cut gives their pixels.
     void learn_directions() {
+        if (options_.one_rule) return;
         std::vector<std::int32_t> segment;
         for (const std::uint32_t row : rule_rows_) segment.push_back(segment_cut_[row]);
         const auto learned = learn_corrections({views_, rule_rows_, segment, style_.rules, options_.seed + 13},

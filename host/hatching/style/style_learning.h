@@ -18,11 +18,17 @@ struct StyleLearningOptions {
     std::size_t samples = 16'000;              ///< pixels for each classifier and property, at most
     std::size_t max_stages = 3;                ///< of the cascade of segment classifiers
     std::uint64_t seed = 1;                    ///< of all random choices
+    /// Learns without segmentation, for comparison (thesis Fig. 4.1e): one rule of directions for the whole drawing,
+    /// without corrections, and no contextual features.
+    bool one_rule = false;
 };
 
 /// Errors of a style on its drawing: of classifiers and properties on held-out pixels.
 struct StyleReport {
     double orientation_error = 0;  ///< mean |u - f|^2 of the strokes
+    /// The segments that the mixture found (thesis Fig. 4.3a): an image per drawing, known at sampled pixels of center
+    /// lines, k_no_segment elsewhere.
+    std::vector<std::vector<std::uint8_t>> segments;
     /// Mean |u - f|^2 of held-out strokes by the rules alone and with the correction, per layer; zero: no correction.
     std::array<std::array<double, 2>, k_hatch_layers> direction_errors{};
     std::vector<double> segment_errors;                  ///< share of wrong held-out pixels, per stage of the cascade

@@ -23,7 +23,7 @@ TEST(PropertyPicture, GrowsDarkerWithTheValue) {
     std::iota(values.begin(), values.end(), 0.0f);
     std::vector<std::uint8_t> known(200, 1);
     known[50] = 0;
-    std::array<float, 2> range{};
+    const std::array<float, 2> range = property_range(values, known);
     const Image image = property_picture(values, known, 20, 10, range);
     EXPECT_EQ(image.width, 20);
     EXPECT_NEAR(range[0], 1, 1);
@@ -31,9 +31,11 @@ TEST(PropertyPicture, GrowsDarkerWithTheValue) {
     EXPECT_EQ(color_at(image, 50), k_white);
     for (const std::size_t i : {21U, 100U, 160U}) EXPECT_GT(color_at(image, i)[0], color_at(image, i + 30)[0]);
     // Of one value, and of none.
-    property_picture(std::vector<float>(4, 2.0f), std::vector<std::uint8_t>(4, 1), 2, 2, range);
-    EXPECT_EQ(range, (std::array{2.0f, 2.0f}));
-    const Image none = property_picture(std::vector<float>(4, 2.0f), std::vector<std::uint8_t>(4, 0), 2, 2, range);
+    const std::vector<float> same(4, 2.0f);
+    const std::vector<std::uint8_t> nowhere(4, 0);
+    EXPECT_EQ(property_range(same, std::vector<std::uint8_t>(4, 1)), (std::array{2.0f, 2.0f}));
+    EXPECT_EQ(property_range(same, nowhere), (std::array{0.0f, 0.0f}));
+    const Image none = property_picture(same, nowhere, 2, 2, {2, 2});
     for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(color_at(none, i), k_white);
 }
 

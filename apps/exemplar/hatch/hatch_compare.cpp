@@ -135,10 +135,13 @@ void add_hatch_compare_command(Command& hatch) {
         "outlines. Of drawings by any hand or program: pictures are all it takes.\n\nExample:\n"
         "  exemplar hatch compare bunny.off traced.png drawn.png --view three-quarter --out compared");
     command->add_option("MESH", arguments->scene.mesh, "mesh that the drawings show")->required()->type_name("");
-    command->add_option("ARTIST", arguments->artist, "the drawing to compare with (PNG); aligned with the view")
+    command
+        ->add_option("ARTIST", arguments->artist,
+                     "the drawing to compare with (PNG, JPEG or TIFF); aligned with the view")
         ->required()
         ->type_name("");
-    command->add_option("DRAWING", arguments->drawings, "drawings that show exactly the view (PNG)")->type_name("...");
+    command->add_option("DRAWING", arguments->drawings, "drawings that show exactly the view (PNG, JPEG or TIFF)")
+        ->type_name("...");
     command->add_flag("--halves", arguments->halves,
                       "learn from each half of the artist's drawing, and compare what is predicted with the other");
     command->add_option("--seed", arguments->seed, "of learning with --halves")
@@ -146,7 +149,8 @@ void add_hatch_compare_command(Command& hatch) {
         ->check(whole_number(0));
     command
         ->add_option("--mask", arguments->mask,
-                     "picture of the view, white where to compare (PNG); default: the object but for a band of 3.5 "
+                     "picture of the view, white where to compare (PNG, JPEG or TIFF); default: the object but for a "
+                     "band of 3.5 "
                      "pixels along its outlines")
         ->type_name("FILE");
     command

@@ -107,7 +107,7 @@ void add_hatch_extract_command(Command& hatch) {
         "intersections, boundaries.\n\nExample:\n"
         "  exemplar hatch extract bunny.off traced.png --template bunny.png --out properties");
     command->add_option("MESH", arguments->scene.mesh, "mesh that the drawing shows")->required()->type_name("");
-    command->add_option("DRAWING", arguments->drawing, "the drawing (PNG or JPEG)")->required()->type_name("");
+    command->add_option("DRAWING", arguments->drawing, "the drawing (PNG, JPEG or TIFF)")->required()->type_name("");
     command->add_option("--out", arguments->out, "folder for the pictures")->required()->type_name("FOLDER");
     add_template_option(*command, arguments->scene, add_hatch_scene_options(*command, arguments->scene));
     add_device_option(*command, arguments->common);

@@ -7,7 +7,7 @@
 
 #include "host/core/errors.h"
 #include "host/hatching/drawing/drawing_sheet.h"
-#include "host/imaging/picture_file.h"
+#include "host/imaging/pictures/picture_file.h"
 
 namespace exemplar {
 

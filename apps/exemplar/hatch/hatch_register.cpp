@@ -18,7 +18,7 @@
 #include "host/hatching/registration/view_registration.h"
 #include "host/hatching/tracing/view_outlines.h"
 #include "host/imaging/gbuffer.h"
-#include "host/imaging/picture_file.h"
+#include "host/imaging/pictures/picture_file.h"
 #include "host/imaging/png.h"
 #include "host/mesh/editing/drawable_mesh.h"
 #include "host/mesh/editing/loose_vertices.h"
@@ -263,7 +263,7 @@ void add_hatch_register_command(Command& hatch) {
         "  exemplar hatch register bunny.off drawing.png --out view.json\n"
         "  exemplar hatch train bunny.off drawing.png --template view.json --out mine.safetensors");
     command->add_option("MESH", arguments->mesh, "mesh that the drawing shows")->required()->type_name("");
-    command->add_option("DRAWING", arguments->drawing, "the drawing, with outlines (PNG or JPEG)")
+    command->add_option("DRAWING", arguments->drawing, "the drawing, with outlines (PNG, JPEG or TIFF)")
         ->required()
         ->type_name("");
     command->add_option("--out", arguments->out, "the view to write (JSON)")->required()->type_name("FILE");
@@ -272,7 +272,7 @@ void add_hatch_register_command(Command& hatch) {
     Option* shaded = command
                          ->add_option("--shaded", arguments->shaded,
                                       "a shaded picture of the same view, in place of the drawing's tone, to find "
-                                      "the light by (PNG or JPEG)")
+                                      "the light by (PNG, JPEG or TIFF)")
                          ->type_name("FILE");
     command
         ->add_option("--light", arguments->light,

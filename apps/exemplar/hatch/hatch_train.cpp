@@ -178,7 +178,7 @@ void add_hatch_train_command(Command& hatch) {
         "mine.safetensors");
     DrawingArguments& first = arguments->first;
     command->add_option("MESH", first.scene.mesh, "mesh that the drawing shows")->required()->type_name("");
-    command->add_option("DRAWING", first.drawing, "the drawing (PNG or JPEG)")->required()->type_name("");
+    command->add_option("DRAWING", first.drawing, "the drawing (PNG, JPEG or TIFF)")->required()->type_name("");
     command
         ->add_option("--also", arguments->also,
                      "another drawing by the same hand: its mesh, the view that it was made for (as --template), and "
@@ -186,7 +186,8 @@ void add_hatch_train_command(Command& hatch) {
         ->type_name("MESH VIEW DRAWING");
     command
         ->add_option("--mask", arguments->masks,
-                     "picture of the view, white where to learn from the drawing (PNG): black hides a signature, a "
+                     "picture of the view, white where to learn from the drawing (PNG, JPEG or TIFF): black hides a "
+                     "signature, a "
                      "shadow, a slip of the pen; with --also, one for each drawing in order")
         ->type_name("FILE");
     command->add_option("--out", arguments->out, "style file to write")->required()->type_name("FILE");

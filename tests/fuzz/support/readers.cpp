@@ -25,7 +25,8 @@
 #include "host/data/corpus.h"
 #include "host/data/safetensors.h"
 #include "host/hatching/style/hatching_style.h"
-#include "host/imaging/picture_file.h"
+#include "host/imaging/pictures/jpeg.h"
+#include "host/imaging/pictures/tiff.h"
 #include "host/imaging/png.h"
 #include "host/labeling/category/category_model.h"
 #include "host/labeling/inference/model.h"
@@ -529,7 +530,41 @@ bool reads_picture(std::string_view content) {
     return true;
 }
 
-constexpr std::array<Reader, 22> k_readers{{{"off", reads_off},
+/// Returns whether a page decodes to more than a million pixels, which takes long, and nothing else.
+bool is_large(const TiffPage& page) {
+    constexpr std::size_t k_usual_pixels = std::size_t{1} << 20;
+    return std::size_t{page.width} * page.height > k_usual_pixels ||
+           page.row_bytes() * std::min(page.block_height, page.height) > 8 * k_usual_pixels;
+}
+
+/// A page may have 2^28 pixels of four channels, which few bytes can tell where the paper is blank; so the bytes that
+/// its directory tells are allowed, twice, as a turned picture is a copy, and those of a tile.
+bool reads_tiff(std::string_view content) {
+    constexpr MemoryBound k_directory_bound{64 * 1024, 64};
+    const auto size = content.size();
+    std::size_t count = 0;
+    if (!accepts<DataError>("x.tif", size, k_directory_bound, [&] { count = tiff_page_count(content, "x.tif"); }))
+        return false;
+    bool any = false;
+    for (std::size_t i = 0; i < std::min<std::size_t>(count, 3); ++i) {
+        TiffPage page;
+        if (!accepts<DataError>("x.tif", size, k_directory_bound, [&] { page = read_tiff_page(content, i, "x.tif"); }))
+            continue;
+        if (is_large(page)) continue;
+        const MemoryBound bound{std::size_t{24} << 20, 64};
+        Image image;
+        if (!accepts<DataError>("x.tif", size, bound, [&] { image = decode_tiff(page, "x.tif"); })) continue;
+        const bool turned = page.orientation >= 5;
+        require(image.width == static_cast<int>(turned ? page.height : page.width) &&
+                    image.height == static_cast<int>(turned ? page.width : page.height),
+                "a picture of the page's size");
+        require(image.channels == 1 || image.channels == 3 || image.channels == 4, "gray, RGB or RGBA");
+        any = true;
+    }
+    return any;
+}
+
+constexpr std::array<Reader, 23> k_readers{{{"off", reads_off},
                                             {"obj", reads_obj},
                                             {"ply", reads_ply},
                                             {"stl", reads_stl},
@@ -549,6 +584,7 @@ constexpr std::array<Reader, 22> k_readers{{{"off", reads_off},
                                             {"record", reads_record},
                                             {"style", reads_style},
                                             {"picture", reads_picture},
+                                            {"tiff", reads_tiff},
                                             {"import_output", reads_import_output},
                                             {"import", reads_import, true}}};
 

@@ -24,6 +24,7 @@ struct CompareArguments {
     HatchSceneArguments scene;
     fs::path artist, mask, out;
     std::vector<fs::path> drawings;
+    std::vector<std::size_t> pages;  // of the artist's drawing, then of the others
     bool halves = false;
     std::uint64_t seed = 1;
     CommonOptions common;
@@ -108,11 +109,13 @@ void run_compare(CompareArguments& arguments) {
     const PixelFeatures& pixels = scene.pixels();
     PixelMask mask = compared_pixels(pixels.gbuffer(), view_outlines(pixels.gbuffer()));
     if (!arguments.mask.empty()) mask = read_mask(arguments.mask, pixels);
-    const ComparedDrawing artist =
-        compared(read_drawing(arguments.artist, arguments.scene, pixels, arguments.common.quiet));
+    const ComparedDrawing artist = compared(
+        read_drawing({arguments.artist, page_of(arguments.pages, 0)}, arguments.scene, pixels, arguments.common.quiet));
     nlohmann::json report = nlohmann::json::array();
-    for (const fs::path& path : arguments.drawings) {
-        const ComparedDrawing drawing = compared(read_drawing_in_place(path, pixels));
+    for (std::size_t i = 0; i < arguments.drawings.size(); ++i) {
+        const fs::path& path = arguments.drawings[i];
+        const ComparedDrawing drawing =
+            compared(read_drawing_in_place({path, page_of(arguments.pages, i + 1)}, pixels));
         const DrawingComparison comparison = compare_drawings(artist, drawing, mask);
         report.push_back(as_json(path.string(), comparison));
         if (!arguments.common.quiet) print_comparison(path.string(), comparison);
@@ -142,6 +145,7 @@ void add_hatch_compare_command(Command& hatch) {
         ->type_name("");
     command->add_option("DRAWING", arguments->drawings, "drawings that show exactly the view (PNG, JPEG or TIFF)")
         ->type_name("...");
+    add_page_option(*command, arguments->pages, "given several times");
     command->add_flag("--halves", arguments->halves,
                       "learn from each half of the artist's drawing, and compare what is predicted with the other");
     command->add_option("--seed", arguments->seed, "of learning with --halves")

@@ -27,15 +27,36 @@ AlignedDrawing of_drawing(const std::filesystem::path& path, Read&& read) {
 
 }  // namespace
 
-AlignedDrawing read_drawing(const std::filesystem::path& path, const HatchSceneArguments& scene,
-                            const PixelFeatures& pixels, bool quiet) {
-    if (scene.registered) return read_drawing_in_place(path, pixels);
+void add_page_option(Command& command, std::size_t& page) {
+    command.add_option("--page", page, "page of the drawing, if it is a TIFF with several; 1 is the first")
+        ->type_name("N")
+        ->check(whole_number(1));
+}
+
+void add_page_option(Command& command, std::vector<std::size_t>& pages, const std::string& drawings) {
+    command
+        .add_option("--page", pages,
+                    "page of the drawing, if it is a TIFF with several; 1 is the first; " + drawings +
+                        ", one for each drawing in order")
+        ->type_name("N")
+        ->allow_extra_args(false)
+        ->check(whole_number(1));
+}
+
+std::size_t page_of(const std::vector<std::size_t>& pages, std::size_t drawing) {
+    return drawing < pages.size() ? pages[drawing] : 0;
+}
+
+AlignedDrawing read_drawing(const DrawingFile& file, const HatchSceneArguments& scene, const PixelFeatures& pixels,
+                            bool quiet) {
+    const std::filesystem::path& path = file.path;
+    if (scene.registered) return read_drawing_in_place(file, pixels);
     if (!scene.sheet.empty())
         return of_drawing(path, [&] {
             const DrawingSheet sheet = drawing_sheet(scene.sheet, pixels.view().width, pixels.view().height);
-            return measure_in_place(read_sheet(read_picture(path), sheet), pixels);
+            return measure_in_place(read_sheet(read_picture(path, file.page), sheet), pixels);
         });
-    AlignedDrawing drawing = of_drawing(path, [&] { return align_and_measure(read_picture(path), pixels); });
+    AlignedDrawing drawing = of_drawing(path, [&] { return align_and_measure(read_picture(path, file.page), pixels); });
     const DrawingAlignment& alignment = drawing.alignment;
     if (!quiet && !alignment.same_frame)
         fmt::print("{}: scaled by {:.3f}, turned by {:.1f} degrees; borders fit to {:.1f} pixels\n", path.string(),
@@ -44,8 +65,8 @@ AlignedDrawing read_drawing(const std::filesystem::path& path, const HatchSceneA
     return drawing;
 }
 
-AlignedDrawing read_drawing_in_place(const std::filesystem::path& path, const PixelFeatures& pixels) {
-    return of_drawing(path, [&] { return measure_in_place(read_picture(path), pixels); });
+AlignedDrawing read_drawing_in_place(const DrawingFile& file, const PixelFeatures& pixels) {
+    return of_drawing(file.path, [&] { return measure_in_place(read_picture(file.path, file.page), pixels); });
 }
 
 PixelMask read_mask(const std::filesystem::path& path, const PixelFeatures& pixels) {

@@ -14,6 +14,7 @@
 #include "host/core/errors.h"
 #include "host/core/progress.h"
 #include "host/core/stopwatch.h"
+#include "host/core/text.h"
 #include "host/hatching/style/style_learning.h"
 
 namespace exemplar {
@@ -25,12 +26,14 @@ namespace fs = std::filesystem;
 struct DrawingArguments {
     HatchSceneArguments scene;
     fs::path drawing, mask;
+    std::size_t page = 0;
 };
 
 struct TrainArguments {
     DrawingArguments first;
     std::vector<std::string> also;   // of each further drawing: mesh, view file and drawing
     std::vector<std::string> masks;  // of the drawings, in their order
+    std::vector<std::size_t> pages;  // likewise
     fs::path out;
     StyleLearningOptions learning;
     CommonOptions common;
@@ -108,6 +111,10 @@ std::vector<DrawingArguments> require_drawings(const TrainArguments& arguments) 
         throw UsageError(fmt::format("{} masks are given, but {} drawing{}", arguments.masks.size(), drawings.size(),
                                      drawings.size() == 1 ? "" : "s"));
     for (std::size_t i = 0; i < arguments.masks.size(); ++i) drawings[i].mask = arguments.masks[i];
+    if (arguments.pages.size() > drawings.size())
+        throw UsageError(fmt::format("--page is given {} times, for {}", arguments.pages.size(),
+                                     counted(drawings.size(), "drawing")));
+    for (std::size_t i = 0; i < drawings.size(); ++i) drawings[i].page = page_of(arguments.pages, i);
     for (DrawingArguments& each : drawings) {
         require_hatch_scene(each.scene);
         require_input(each.drawing);
@@ -129,7 +136,8 @@ ReadDrawing read_drawing_of(const DrawingArguments& arguments, const CommonOptio
     ReadDrawing out{std::make_unique<HatchScene>(arguments.scene, common.device, common.quiet), {}};
     progress.begins("reading the drawing");
     PixelFeatures& pixels = out.scene->pixels();
-    out.properties = drawing_properties(read_drawing(arguments.drawing, arguments.scene, pixels, common.quiet).strokes);
+    out.properties = drawing_properties(
+        read_drawing({arguments.drawing, arguments.page}, arguments.scene, pixels, common.quiet).strokes);
     if (!arguments.mask.empty()) restrict_to(read_mask(arguments.mask, pixels), out.properties);
     return out;
 }
@@ -190,6 +198,7 @@ void add_hatch_train_command(Command& hatch) {
                      "signature, a "
                      "shadow, a slip of the pen; with --also, one for each drawing in order")
         ->type_name("FILE");
+    add_page_option(*command, arguments->pages, "with --also");
     command->add_option("--out", arguments->out, "style file to write")->required()->type_name("FILE");
     command->add_option("--seed", arguments->learning.seed, "of all random choices")
         ->capture_default_str()

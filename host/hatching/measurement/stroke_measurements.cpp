@@ -202,4 +202,24 @@ StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask
     return m;
 }
 
+void restrict_to(const Image& mask, StrokeMeasurements& m) {
+    std::vector<float> thickness, spacing;
+    for (std::size_t i = 0; i < m.size(); ++i) {
+        if (!mask.data[i]) {
+            for (auto* image : {&m.stroke, &m.skeleton, &m.outline, &m.bounded, &m.intersection, &m.level, &m.boundary})
+                (*image)[i] = 0;
+            m.stroke_id[i] = -1;
+        }
+        if (m.skeleton[i]) thickness.push_back(m.thickness[i]);
+        if (m.skeleton[i] && m.spacing[i] > 0) spacing.push_back(m.spacing[i]);
+    }
+    std::erase_if(m.intersections, [&](const Vec2& place) {
+        const int x = std::clamp(static_cast<int>(place.x()), 0, m.width - 1);
+        const int y = std::clamp(static_cast<int>(place.y()), 0, m.height - 1);
+        return mask.pixel(x, y)[0] == 0;
+    });
+    m.median_thickness = thickness.empty() ? 0 : upper_median(thickness);
+    m.median_spacing = spacing.empty() ? 0 : upper_median(spacing);
+}
+
 }  // namespace exemplar

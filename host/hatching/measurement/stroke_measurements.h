@@ -55,4 +55,8 @@ struct StrokeMeasurements {
 StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask, const MeasuringOptions& options = {},
                                    const ViewOutlines* outlines = nullptr);
 
+/// Leaves out what lies where a mask of the same size is zero: strokes, outlines, crossings, levels. The medians are
+/// those over the pixels of center lines that remain.
+void restrict_to(const Image& mask, StrokeMeasurements& measurements);
+
 }  // namespace exemplar

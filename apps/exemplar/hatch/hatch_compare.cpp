@@ -140,10 +140,10 @@ void add_hatch_compare_command(Command& hatch) {
     command->add_option("MESH", arguments->scene.mesh, "mesh that the drawings show")->required()->type_name("");
     command
         ->add_option("ARTIST", arguments->artist,
-                     "the drawing to compare with (PNG, JPEG or TIFF); aligned with the view")
+                     "the drawing to compare with (PNG, JPEG, TIFF or SVG); aligned with the view")
         ->required()
         ->type_name("");
-    command->add_option("DRAWING", arguments->drawings, "drawings that show exactly the view (PNG, JPEG or TIFF)")
+    command->add_option("DRAWING", arguments->drawings, "drawings that show exactly the view (PNG, JPEG, TIFF or SVG)")
         ->type_name("...");
     add_page_option(*command, arguments->pages, "given several times");
     command->add_flag("--halves", arguments->halves,

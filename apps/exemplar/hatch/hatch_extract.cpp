@@ -110,7 +110,9 @@ void add_hatch_extract_command(Command& hatch) {
         "intersections, boundaries.\n\nExample:\n"
         "  exemplar hatch extract bunny.off traced.png --template bunny.png --out properties");
     command->add_option("MESH", arguments->scene.mesh, "mesh that the drawing shows")->required()->type_name("");
-    command->add_option("DRAWING", arguments->drawing, "the drawing (PNG, JPEG or TIFF)")->required()->type_name("");
+    command->add_option("DRAWING", arguments->drawing, "the drawing (PNG, JPEG, TIFF or SVG)")
+        ->required()
+        ->type_name("");
     add_page_option(*command, arguments->page);
     command
         ->add_option("--mask", arguments->mask,

@@ -94,7 +94,7 @@ FloatImage resized(const FloatImage& image, int width, int height) {
 
 /// The drawing at the size of its view.
 FloatImage drawing_at_view_size(const fs::path& path, std::size_t page) {
-    const FloatImage darkness = drawing_darkness(read_picture(path, page));
+    const FloatImage darkness = read_darkness({path, page}, k_most_pixels);
     const double scale = std::min(1.0, static_cast<double>(k_most_pixels) / std::max(darkness.width, darkness.height));
     return resized(darkness, std::max(1, static_cast<int>(std::lround(scale * darkness.width))),
                    std::max(1, static_cast<int>(std::lround(scale * darkness.height))));
@@ -265,7 +265,7 @@ void add_hatch_register_command(Command& hatch) {
         "  exemplar hatch register bunny.off drawing.png --out view.json\n"
         "  exemplar hatch train bunny.off drawing.png --template view.json --out mine.safetensors");
     command->add_option("MESH", arguments->mesh, "mesh that the drawing shows")->required()->type_name("");
-    command->add_option("DRAWING", arguments->drawing, "the drawing, with outlines (PNG, JPEG or TIFF)")
+    command->add_option("DRAWING", arguments->drawing, "the drawing, with outlines (PNG, JPEG, TIFF or SVG)")
         ->required()
         ->type_name("");
     add_page_option(*command, arguments->page);

@@ -186,7 +186,7 @@ void add_hatch_train_command(Command& hatch) {
         "mine.safetensors");
     DrawingArguments& first = arguments->first;
     command->add_option("MESH", first.scene.mesh, "mesh that the drawing shows")->required()->type_name("");
-    command->add_option("DRAWING", first.drawing, "the drawing (PNG, JPEG or TIFF)")->required()->type_name("");
+    command->add_option("DRAWING", first.drawing, "the drawing (PNG, JPEG, TIFF or SVG)")->required()->type_name("");
     command
         ->add_option("--also", arguments->also,
                      "another drawing by the same hand: its mesh, the view that it was made for (as --template), and "

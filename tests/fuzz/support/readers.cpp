@@ -28,6 +28,7 @@
 #include "host/imaging/pictures/jpeg.h"
 #include "host/imaging/pictures/tiff.h"
 #include "host/imaging/png.h"
+#include "host/imaging/vectors/svg_reader.h"
 #include "host/labeling/category/category_model.h"
 #include "host/labeling/inference/model.h"
 #include "host/lines/strokes/style.h"
@@ -564,7 +565,23 @@ bool reads_tiff(std::string_view content) {
     return any;
 }
 
-constexpr std::array<Reader, 23> k_readers{{{"off", reads_off},
+/// Curves are flattened to up to 64 pieces, which few bytes can tell.
+bool reads_svg(std::string_view content) {
+    constexpr MemoryBound k_svg_bound{256 * 1024, 1024};
+    SvgPicture picture;
+    if (!accepts<DataError>("x.svg", content.size(), k_svg_bound, [&] { picture = read_svg(content, "x.svg"); }))
+        return false;
+    require(picture.width > 0 && picture.height > 0 && !picture.strokes.empty(), "a page with strokes");
+    for (const SvgStroke& stroke : picture.strokes) {
+        require(stroke.points.size() >= 2 && stroke.width > 0 && stroke.opacity > 0 && stroke.opacity <= 1, "a stroke");
+        for (const Eigen::Vector2d& point : stroke.points) require(point.allFinite(), "finite points");
+        require(stroke.group < static_cast<int>(picture.groups.size()), "a group that is there");
+    }
+    for (int i = 0; const SvgGroup& group : picture.groups) require(group.outer < i++, "groups around groups");
+    return true;
+}
+
+constexpr std::array<Reader, 24> k_readers{{{"off", reads_off},
                                             {"obj", reads_obj},
                                             {"ply", reads_ply},
                                             {"stl", reads_stl},
@@ -585,6 +602,7 @@ constexpr std::array<Reader, 23> k_readers{{{"off", reads_off},
                                             {"style", reads_style},
                                             {"picture", reads_picture},
                                             {"tiff", reads_tiff},
+                                            {"svg", reads_svg},
                                             {"import_output", reads_import_output},
                                             {"import", reads_import, true}}};
 

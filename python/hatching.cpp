@@ -19,7 +19,7 @@
 #include "host/hatching/style/hatching_style.h"
 #include "host/hatching/style/style_learning.h"
 #include "host/hatching/view_hatching.h"
-#include "host/imaging/picture_file.h"
+#include "host/imaging/pictures/picture_file.h"
 #include "host/imaging/png.h"
 #include "host/mesh/editing/drawable_mesh.h"
 #include "host/mesh/editing/loose_vertices.h"

@@ -39,6 +39,7 @@ ROOMS = {
     'host/curvature': ['state', 'model', 'learning'],
     'host/data': ['', 'catalog'],
     'host/hatching': ['fields', 'features', 'tracing', 'measurement', 'comparison', 'drawing', 'registration', 'rules', 'style', 'placement', 'refinement', 'animation', ''],
+    'host/imaging': ['', 'pictures', 'vectors'],
     'host/labeling': ['features', 'inference', 'training', 'evaluation', 'category', 'batch'],
     'host/learn': ['', 'regression', 'components', 'boosting'],
     'host/lines': ['extraction', 'strokes', ''],

@@ -74,6 +74,33 @@ class Hatch(ProgramTest):
         written = {path.stem for path in (self.folder / "measured").glob("*.png")}
         self.assertLessEqual(PROPERTIES | {"skeleton", "intersections", "boundaries"}, written)
 
+    def test_a_drawing_in_lines(self):
+        """What 'hatch draw' wrote as SVG is read without tracing, and says what its picture says."""
+        draw = ["hatch", "draw", "style.safetensors", MESH, *VIEW, "--curves", "contours", "--out"]
+        self.call(*draw, "lines.svg")
+        self.call(*draw, "lines.png", "--scale", "3")
+        for name in ("svg", "png"):
+            self.call("hatch", "extract", MESH, f"lines.{name}", *VIEW, "--out", f"lines_{name}", "--json", f"lines_{name}.json")
+        svg, png = (json.loads((self.folder / f"lines_{name}.json").read_text()) for name in ("svg", "png"))
+        self.assertLess(abs(svg["median_spacing"] / png["median_spacing"] - 1), 0.05)
+        self.assertLess(abs(svg["median_thickness"] / png["median_thickness"] - 1), 0.1)
+        self.call("hatch", "compare", MESH, "lines.svg", "lines.png", *VIEW, "--json", "lines.json")
+        same, = json.loads((self.folder / "lines.json").read_text())
+        self.assertLess(same["direction_median"], 1.5)
+        self.assertGreater(same["region_overlap"], 0.95)
+        self.call("hatch", "train", MESH, "lines.svg", *VIEW, "--out", "lines.safetensors")
+        # A page of another size is placed by its border; one with dashes is refused.
+        page = (self.folder / "lines.svg").read_text()
+        scaled = page.replace('viewBox="0 0 500 460"', 'viewBox="-500 -460 1500 1380"')
+        (self.folder / "small.svg").write_text(scaled)
+        self.call("hatch", "compare", MESH, "small.svg", "lines.png", *VIEW, "--json", "small.json")
+        placed, = json.loads((self.folder / "small.json").read_text())
+        self.assertLess(placed["direction_median"], 4)
+        self.assertGreater(placed["region_overlap"], 0.8)
+        (self.folder / "dashed.svg").write_text(page.replace('fill="none"', 'fill="none" stroke-dasharray="4 2"', 1))
+        self.refused("hatch", "extract", MESH, "dashed.svg", *VIEW, "--out", "no", code=1,
+                     says=["dashed.svg: line ", "strokes with dashes; make them solid"])
+
     def test_drawings_are_compared_with_an_artists(self):
         self.call("hatch", "draw", "style.safetensors", MESH, *VIEW, "--out", "drawn.png")
         compare = ["hatch", "compare", MESH, "drawing.png"]

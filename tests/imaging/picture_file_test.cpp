@@ -1,4 +1,4 @@
-#include "host/imaging/picture_file.h"
+#include "host/imaging/pictures/picture_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,6 +11,7 @@
 #include <string>
 
 #include "host/core/errors.h"
+#include "host/imaging/pictures/jpeg.h"
 #include "host/imaging/png.h"
 #include "tests/support/temporary_folder.h"
 
@@ -115,8 +116,7 @@ TEST(PictureFile, IsToldByItsContent) {
     write_png(folder / "b.jpg", quarters(3));
     EXPECT_EQ(read_picture(folder / "b.jpg"), quarters(3));
     for (const auto& [content, kind] :
-         {std::pair{std::string("II*\0rest", 8), "a TIFF is not read; save it as PNG or JPEG"},
-          std::pair{std::string("%PDF-1.4"), "a PDF"},
+         {std::pair{std::string("%PDF-1.4"), "a PDF is not read; save it as PNG, JPEG or TIFF"},
           std::pair{std::string("\0\0\0\x18"
                                 "ftypheic....",
                                 16),

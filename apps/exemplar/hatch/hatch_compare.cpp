@@ -24,6 +24,7 @@ struct CompareArguments {
     HatchSceneArguments scene;
     fs::path artist, mask, out;
     std::vector<fs::path> drawings;
+    std::vector<std::size_t> pages;  // of the artist's drawing, then of the others
     bool halves = false;
     std::uint64_t seed = 1;
     CommonOptions common;
@@ -108,11 +109,13 @@ void run_compare(CompareArguments& arguments) {
     const PixelFeatures& pixels = scene.pixels();
     PixelMask mask = compared_pixels(pixels.gbuffer(), view_outlines(pixels.gbuffer()));
     if (!arguments.mask.empty()) mask = read_mask(arguments.mask, pixels);
-    const ComparedDrawing artist =
-        compared(read_drawing(arguments.artist, arguments.scene, pixels, arguments.common.quiet));
+    const ComparedDrawing artist = compared(
+        read_drawing({arguments.artist, page_of(arguments.pages, 0)}, arguments.scene, pixels, arguments.common.quiet));
     nlohmann::json report = nlohmann::json::array();
-    for (const fs::path& path : arguments.drawings) {
-        const ComparedDrawing drawing = compared(read_drawing_in_place(path, pixels));
+    for (std::size_t i = 0; i < arguments.drawings.size(); ++i) {
+        const fs::path& path = arguments.drawings[i];
+        const ComparedDrawing drawing =
+            compared(read_drawing_in_place({path, page_of(arguments.pages, i + 1)}, pixels));
         const DrawingComparison comparison = compare_drawings(artist, drawing, mask);
         report.push_back(as_json(path.string(), comparison));
         if (!arguments.common.quiet) print_comparison(path.string(), comparison);
@@ -135,10 +138,14 @@ void add_hatch_compare_command(Command& hatch) {
         "outlines. Of drawings by any hand or program: pictures are all it takes.\n\nExample:\n"
         "  exemplar hatch compare bunny.off traced.png drawn.png --view three-quarter --out compared");
     command->add_option("MESH", arguments->scene.mesh, "mesh that the drawings show")->required()->type_name("");
-    command->add_option("ARTIST", arguments->artist, "the drawing to compare with (PNG); aligned with the view")
+    command
+        ->add_option("ARTIST", arguments->artist,
+                     "the drawing to compare with (PNG, JPEG, TIFF or SVG); aligned with the view")
         ->required()
         ->type_name("");
-    command->add_option("DRAWING", arguments->drawings, "drawings that show exactly the view (PNG)")->type_name("...");
+    command->add_option("DRAWING", arguments->drawings, "drawings that show exactly the view (PNG, JPEG, TIFF or SVG)")
+        ->type_name("...");
+    add_page_option(*command, arguments->pages, "given several times");
     command->add_flag("--halves", arguments->halves,
                       "learn from each half of the artist's drawing, and compare what is predicted with the other");
     command->add_option("--seed", arguments->seed, "of learning with --halves")
@@ -146,7 +153,8 @@ void add_hatch_compare_command(Command& hatch) {
         ->check(whole_number(0));
     command
         ->add_option("--mask", arguments->mask,
-                     "picture of the view, white where to compare (PNG); default: the object but for a band of 3.5 "
+                     "picture of the view, white where to compare (PNG, JPEG or TIFF); default: the object but for a "
+                     "band of 3.5 "
                      "pixels along its outlines")
         ->type_name("FILE");
     command

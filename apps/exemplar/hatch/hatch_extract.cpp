@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 
 struct ExtractArguments {
     HatchSceneArguments scene;
-    fs::path drawing, out;
+    fs::path drawing, mask, out;
+    std::size_t page = 0;
     CommonOptions common;
 };
 
@@ -74,10 +75,12 @@ void run_extract(ExtractArguments& arguments) {
     const auto limits = apply_common_options(arguments.common);
     require_hatch_scene(arguments.scene);
     require_input(arguments.drawing);
+    if (!arguments.mask.empty()) require_input(arguments.mask);
     require_output_folder(arguments.out);
     HatchScene scene(arguments.scene, arguments.common.device, arguments.common.quiet);
-    const AlignedDrawing drawing =
-        read_drawing(arguments.drawing, arguments.scene, scene.pixels(), arguments.common.quiet);
+    AlignedDrawing drawing =
+        read_drawing({arguments.drawing, arguments.page}, arguments.scene, scene.pixels(), arguments.common.quiet);
+    if (!arguments.mask.empty()) restrict_to(read_mask(arguments.mask, scene.pixels()), drawing.strokes);
     const StrokeMeasurements& measured = drawing.strokes;
     const nlohmann::json ranges = write_measurement_pictures(arguments.out, drawing);
     if (!arguments.common.quiet) {
@@ -107,7 +110,15 @@ void add_hatch_extract_command(Command& hatch) {
         "intersections, boundaries.\n\nExample:\n"
         "  exemplar hatch extract bunny.off traced.png --template bunny.png --out properties");
     command->add_option("MESH", arguments->scene.mesh, "mesh that the drawing shows")->required()->type_name("");
-    command->add_option("DRAWING", arguments->drawing, "the drawing (PNG or JPEG)")->required()->type_name("");
+    command->add_option("DRAWING", arguments->drawing, "the drawing (PNG, JPEG, TIFF or SVG)")
+        ->required()
+        ->type_name("");
+    add_page_option(*command, arguments->page);
+    command
+        ->add_option("--mask", arguments->mask,
+                     "picture of the view, white where to measure (PNG, JPEG or TIFF): black hides a signature, a "
+                     "shadow, a slip of the pen")
+        ->type_name("FILE");
     command->add_option("--out", arguments->out, "folder for the pictures")->required()->type_name("FOLDER");
     add_template_option(*command, arguments->scene, add_hatch_scene_options(*command, arguments->scene));
     add_device_option(*command, arguments->common);

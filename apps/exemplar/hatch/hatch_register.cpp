@@ -8,6 +8,7 @@
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/common_options.h"
+#include "apps/exemplar/hatch/hatch_reading.h"
 #include "apps/exemplar/hatch/view_file.h"
 #include "apps/exemplar/lines/lines_source.h"
 #include "host/core/files.h"
@@ -18,7 +19,7 @@
 #include "host/hatching/registration/view_registration.h"
 #include "host/hatching/tracing/view_outlines.h"
 #include "host/imaging/gbuffer.h"
-#include "host/imaging/picture_file.h"
+#include "host/imaging/pictures/picture_file.h"
 #include "host/imaging/png.h"
 #include "host/mesh/editing/drawable_mesh.h"
 #include "host/mesh/editing/loose_vertices.h"
@@ -34,6 +35,7 @@ constexpr double k_min_likeness = 0.3;   ///< correlation of the light with the 
 
 struct RegisterArguments {
     fs::path mesh, drawing, out, overlay, shaded;
+    std::size_t page = 0;
     CameraArguments camera;
     std::string light;
     bool place = false;
@@ -91,8 +93,8 @@ FloatImage resized(const FloatImage& image, int width, int height) {
 }
 
 /// The drawing at the size of its view.
-FloatImage drawing_at_view_size(const fs::path& path) {
-    const FloatImage darkness = drawing_darkness(read_picture(path));
+FloatImage drawing_at_view_size(const fs::path& path, std::size_t page) {
+    const FloatImage darkness = read_darkness({path, page}, k_most_pixels);
     const double scale = std::min(1.0, static_cast<double>(k_most_pixels) / std::max(darkness.width, darkness.height));
     return resized(darkness, std::max(1, static_cast<int>(std::lround(scale * darkness.width))),
                    std::max(1, static_cast<int>(std::lround(scale * darkness.height))));
@@ -242,7 +244,7 @@ void run_register(RegisterArguments& arguments) {
     require_output_picture(arguments.overlay);
     require_not_replaced(arguments.out, {arguments.mesh, arguments.drawing, arguments.shaded});
     require_not_replaced(arguments.overlay, {arguments.mesh, arguments.drawing, arguments.shaded});
-    const FloatImage darkness = drawing_at_view_size(arguments.drawing);
+    const FloatImage darkness = drawing_at_view_size(arguments.drawing, arguments.page);
     const bool frames = arguments.has_frames();
     report_view(arguments, frames ? registered_frame(arguments, darkness) : registered_mesh(arguments, darkness),
                 darkness);
@@ -263,16 +265,17 @@ void add_hatch_register_command(Command& hatch) {
         "  exemplar hatch register bunny.off drawing.png --out view.json\n"
         "  exemplar hatch train bunny.off drawing.png --template view.json --out mine.safetensors");
     command->add_option("MESH", arguments->mesh, "mesh that the drawing shows")->required()->type_name("");
-    command->add_option("DRAWING", arguments->drawing, "the drawing, with outlines (PNG or JPEG)")
+    command->add_option("DRAWING", arguments->drawing, "the drawing, with outlines (PNG, JPEG, TIFF or SVG)")
         ->required()
         ->type_name("");
+    add_page_option(*command, arguments->page);
     command->add_option("--out", arguments->out, "the view to write (JSON)")->required()->type_name("FILE");
     command->add_option("--overlay", arguments->overlay, "the picture to check it by; default: NAME_overlay.png")
         ->type_name("FILE");
     Option* shaded = command
                          ->add_option("--shaded", arguments->shaded,
                                       "a shaded picture of the same view, in place of the drawing's tone, to find "
-                                      "the light by (PNG or JPEG)")
+                                      "the light by (PNG, JPEG or TIFF)")
                          ->type_name("FILE");
     command
         ->add_option("--light", arguments->light,

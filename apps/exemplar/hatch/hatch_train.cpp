@@ -26,6 +26,7 @@ namespace fs = std::filesystem;
 struct DrawingArguments {
     HatchSceneArguments scene;
     fs::path drawing, mask;
+    std::size_t page = 0;
 };
 
 struct TrainArguments {
@@ -33,6 +34,7 @@ struct TrainArguments {
     std::vector<std::string> also;    // of each further drawing: mesh, view file and drawing
     std::vector<std::string> masks;   // of the drawings, in their order
     std::vector<std::string> labels;  // of the meshes, in their order
+    std::vector<std::size_t> pages;   // of the drawings, in their order
     fs::path out;
     StyleLearningOptions learning;
     CommonOptions common;
@@ -116,6 +118,10 @@ std::vector<DrawingArguments> require_drawings(const TrainArguments& arguments) 
                         counted(arguments.labels.size(), "file"),
                         drawings.size() == 1 ? "is 1 mesh" : fmt::format("are {} meshes", drawings.size())));
     for (std::size_t i = 0; i < arguments.labels.size(); ++i) drawings[i].scene.labels = arguments.labels[i];
+    if (arguments.pages.size() > drawings.size())
+        throw UsageError(fmt::format("--page is given {} times, for {}", arguments.pages.size(),
+                                     counted(drawings.size(), "drawing")));
+    for (std::size_t i = 0; i < drawings.size(); ++i) drawings[i].page = page_of(arguments.pages, i);
     for (DrawingArguments& each : drawings) {
         require_hatch_scene(each.scene);
         require_input(each.drawing);
@@ -137,7 +143,8 @@ ReadDrawing read_drawing_of(const DrawingArguments& arguments, const CommonOptio
     ReadDrawing out{std::make_unique<HatchScene>(arguments.scene, common.device, common.quiet), {}};
     progress.begins("reading the drawing");
     PixelFeatures& pixels = out.scene->pixels();
-    out.properties = drawing_properties(read_drawing(arguments.drawing, arguments.scene, pixels, common.quiet).strokes);
+    out.properties = drawing_properties(
+        read_drawing({arguments.drawing, arguments.page}, arguments.scene, pixels, common.quiet).strokes);
     if (!arguments.mask.empty()) restrict_to(read_mask(arguments.mask, pixels), out.properties);
     return out;
 }
@@ -186,7 +193,7 @@ void add_hatch_train_command(Command& hatch) {
         "mine.safetensors");
     DrawingArguments& first = arguments->first;
     command->add_option("MESH", first.scene.mesh, "mesh that the drawing shows")->required()->type_name("");
-    command->add_option("DRAWING", first.drawing, "the drawing (PNG or JPEG)")->required()->type_name("");
+    command->add_option("DRAWING", first.drawing, "the drawing (PNG, JPEG, TIFF or SVG)")->required()->type_name("");
     command
         ->add_option("--also", arguments->also,
                      "another drawing by the same hand: its mesh, the view that it was made for (as --template), and "
@@ -194,7 +201,8 @@ void add_hatch_train_command(Command& hatch) {
         ->type_name("MESH VIEW DRAWING");
     command
         ->add_option("--mask", arguments->masks,
-                     "picture of the view, white where to learn from the drawing (PNG): black hides a signature, a "
+                     "picture of the view, white where to learn from the drawing (PNG, JPEG or TIFF): black hides a "
+                     "signature, a "
                      "shadow, a slip of the pen; with --also, one for each drawing in order")
         ->type_name("FILE");
     command
@@ -202,6 +210,7 @@ void add_hatch_train_command(Command& hatch) {
                      "labels of the mesh's faces (_labels.txt, .seg or labeled PLY): hatching may differ from part to "
                      "part, and drawing then needs labels, too; with --also, one for each drawing in order")
         ->type_name("FILE");
+    add_page_option(*command, arguments->pages, "with --also");
     command->add_option("--out", arguments->out, "style file to write")->required()->type_name("FILE");
     command->add_option("--seed", arguments->learning.seed, "of all random choices")
         ->capture_default_str()

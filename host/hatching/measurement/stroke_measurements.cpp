@@ -150,19 +150,34 @@ StrokeMeasurements empty_measurements(int width, int height) {
     return m;
 }
 
-/// Measures all properties of the strokes' points, without smoothing. Returns the crossings.
+/// Sets the length of each stroke to that of its center line.
+void set_lengths(std::span<TracedStroke> strokes) {
+    for (TracedStroke& stroke : strokes) {
+        float length = 0;
+        for (std::size_t i = 1; i < stroke.points.size(); ++i)
+            length += (stroke.points[i].center - stroke.points[i - 1].center).norm();
+        for (TracedPoint& point : stroke.points) point.length = std::max(length, 1.0f);
+    }
+}
+
+/// Measures all properties of the strokes' points, without smoothing; if they are `known`, only those that depend on
+/// other strokes. Returns the crossings.
 std::vector<StrokeCrossing> measure_points(const FloatImage& darkness, const PixelMask& ink,
-                                           const MeasuringOptions& options, std::vector<TracedStroke>& strokes,
-                                           StrokeMeasurements& m) {
+                                           const MeasuringOptions& options, bool known,
+                                           std::vector<TracedStroke>& strokes, StrokeMeasurements& m) {
     std::vector<StrokeCrossing> crossings = find_crossings(strokes, m.width, m.height, k_min_crossing_angle);
     const PixelMask crossing = crossing_pixels(crossings, m.width, m.height);
     mark_crossings(crossing, strokes);
     const StrokeMap map(strokes, m.width, m.height);
     const float paper = paper_darkness(darkness, ink);
-    measure_orientations(darkness, map, crossing, strokes);
-    m.softness = estimate_softness(darkness, paper, map, crossing, strokes);
-    measure_profiles(darkness, paper, m.softness, map, crossing, strokes);
-    measure_lengths(darkness, strokes);
+    if (known) {
+        set_lengths(strokes);
+    } else {
+        measure_orientations(darkness, map, crossing, strokes);
+        m.softness = estimate_softness(darkness, paper, map, crossing, strokes);
+        measure_profiles(darkness, paper, m.softness, map, crossing, strokes);
+        measure_lengths(darkness, strokes);
+    }
     m.median_thickness = median_over_points(strokes, [](const TracedPoint& p) { return p.thickness; });
     const float largest = options.max_spacing > 0
                               ? options.max_spacing
@@ -173,22 +188,12 @@ std::vector<StrokeCrossing> measure_points(const FloatImage& darkness, const Pix
     return crossings;
 }
 
-}  // namespace
-
-StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask, const MeasuringOptions& options,
-                                   const ViewOutlines* outlines) {
-    check_drawing_and_mask(darkness, mask);
-    StrokeMeasurements m = empty_measurements(darkness.width, darkness.height);
-    if (m.size() == 0) return m;
-    TracedDrawing drawing = trace_drawing(darkness, mask, options.min_darkness);
+/// Measures strokes that were traced in a picture, or are `known`, into measurements whose outlines are marked.
+void measure_traced(TracedDrawing& drawing, const FloatImage& darkness, const Image& mask,
+                    const MeasuringOptions& options, bool known, StrokeMeasurements& m) {
     std::vector<TracedStroke>& strokes = drawing.strokes;
-    if (outlines) {
-        const std::vector<TracedStroke> drawn = take_outlines(strokes, *outlines, outline_reach(strokes));
-        mark_outlines(drawn, m);
-        m.outline_width = measure_line_width(darkness, paper_darkness(darkness, drawing.ink), drawn);
-    }
-    if (strokes.empty()) return m;
-    const std::vector<StrokeCrossing> crossings = measure_points(darkness, drawing.ink, options, strokes, m);
+    if (strokes.empty()) return;
+    const std::vector<StrokeCrossing> crossings = measure_points(darkness, drawing.ink, options, known, strokes, m);
     m.intersections = confirmed_intersections(crossings, darkness, drawing.skeleton, strokes);
     m.level = hatching_levels(strokes, m.intersections, mask, options.max_single_intersections, m.median_spacing);
     m.boundary = level_boundaries(m.level, mask);
@@ -199,7 +204,61 @@ StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask
     mark_ends(strokes, map, mask, m);
     mark_bounded(strokes, map, m);
     for (std::size_t i = 0; i < m.size(); ++i) m.skeleton[i] = drawing.skeleton.data[i] && m.stroke[i] && !m.outline[i];
+}
+
+}  // namespace
+
+StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask, const MeasuringOptions& options,
+                                   const ViewOutlines* outlines) {
+    check_drawing_and_mask(darkness, mask);
+    StrokeMeasurements m = empty_measurements(darkness.width, darkness.height);
+    if (m.size() == 0) return m;
+    TracedDrawing drawing = trace_drawing(darkness, mask, options.min_darkness);
+    if (outlines) {
+        const std::vector<TracedStroke> drawn =
+            take_outlines(drawing.strokes, *outlines, outline_reach(drawing.strokes));
+        mark_outlines(drawn, m);
+        m.outline_width = measure_line_width(darkness, paper_darkness(darkness, drawing.ink), drawn);
+    }
+    measure_traced(drawing, darkness, mask, options, false, m);
     return m;
+}
+
+StrokeMeasurements measure_paths(std::span<const StrokePath> paths, const FloatImage& darkness, const Image& mask,
+                                 const MeasuringOptions& options, const ViewOutlines* outlines) {
+    check_drawing_and_mask(darkness, mask);
+    StrokeMeasurements m = empty_measurements(darkness.width, darkness.height);
+    if (m.size() == 0) return m;
+    KnownDrawing drawing = known_drawing(paths, darkness, mask, options.min_darkness);
+    std::vector<TracedStroke>& strokes = drawing.traced.strokes;
+    if (drawing.outlines.empty() && outlines)
+        drawing.outlines = take_outlines(strokes, *outlines, outline_reach(strokes));
+    mark_outlines(drawing.outlines, m);
+    // Lines are drawn in black ink: a gray one is as wide as its ink would be.
+    m.outline_width = median_over_points(drawing.outlines,
+                                         [](const TracedPoint& point) { return point.thickness * point.intensity; });
+    measure_traced(drawing.traced, darkness, mask, options, true, m);
+    return m;
+}
+
+void restrict_to(const Image& mask, StrokeMeasurements& m) {
+    std::vector<float> thickness, spacing;
+    for (std::size_t i = 0; i < m.size(); ++i) {
+        if (!mask.data[i]) {
+            for (auto* image : {&m.stroke, &m.skeleton, &m.outline, &m.bounded, &m.intersection, &m.level, &m.boundary})
+                (*image)[i] = 0;
+            m.stroke_id[i] = -1;
+        }
+        if (m.skeleton[i]) thickness.push_back(m.thickness[i]);
+        if (m.skeleton[i] && m.spacing[i] > 0) spacing.push_back(m.spacing[i]);
+    }
+    std::erase_if(m.intersections, [&](const Vec2& place) {
+        const int x = std::clamp(static_cast<int>(place.x()), 0, m.width - 1);
+        const int y = std::clamp(static_cast<int>(place.y()), 0, m.height - 1);
+        return mask.pixel(x, y)[0] == 0;
+    });
+    m.median_thickness = thickness.empty() ? 0 : upper_median(thickness);
+    m.median_spacing = spacing.empty() ? 0 : upper_median(spacing);
 }
 
 }  // namespace exemplar

@@ -3,8 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <span>
 #include <vector>
 
+#include "host/hatching/tracing/stroke_paths.h"
 #include "host/hatching/tracing/view_outlines.h"
 #include "host/imaging/image.h"
 #include "host/mesh/mesh.h"
@@ -54,5 +56,15 @@ struct StrokeMeasurements {
 /// image has not one channel, or the sizes differ.
 StrokeMeasurements measure_strokes(const FloatImage& darkness, const Image& mask, const MeasuringOptions& options = {},
                                    const ViewOutlines* outlines = nullptr);
+
+/// Measures strokes whose center lines, widths and darkness are known, in place of tracing them in a picture. Strokes
+/// that are said to be outlines are no hatching; if there are none, those along `outlines` are left out as above.
+/// `darkness`: the strokes as render_ink draws them (drawn_strokes).
+StrokeMeasurements measure_paths(std::span<const StrokePath> paths, const FloatImage& darkness, const Image& mask,
+                                 const MeasuringOptions& options = {}, const ViewOutlines* outlines = nullptr);
+
+/// Leaves out what lies where a mask of the same size is zero: strokes, outlines, crossings, levels. The medians are
+/// those over the pixels of center lines that remain.
+void restrict_to(const Image& mask, StrokeMeasurements& measurements);
 
 }  // namespace exemplar

@@ -25,8 +25,10 @@
 #include "host/data/corpus.h"
 #include "host/data/safetensors.h"
 #include "host/hatching/style/hatching_style.h"
-#include "host/imaging/picture_file.h"
+#include "host/imaging/pictures/jpeg.h"
+#include "host/imaging/pictures/tiff.h"
 #include "host/imaging/png.h"
+#include "host/imaging/vectors/svg_reader.h"
 #include "host/labeling/category/category_model.h"
 #include "host/labeling/inference/model.h"
 #include "host/lines/strokes/style.h"
@@ -529,7 +531,57 @@ bool reads_picture(std::string_view content) {
     return true;
 }
 
-constexpr std::array<Reader, 22> k_readers{{{"off", reads_off},
+/// Returns whether a page decodes to more than a million pixels, which takes long, and nothing else.
+bool is_large(const TiffPage& page) {
+    constexpr std::size_t k_usual_pixels = std::size_t{1} << 20;
+    return std::size_t{page.width} * page.height > k_usual_pixels ||
+           page.row_bytes() * std::min(page.block_height, page.height) > 8 * k_usual_pixels;
+}
+
+/// A page may have 2^28 pixels of four channels, which few bytes can tell where the paper is blank; so the bytes that
+/// its directory tells are allowed, twice, as a turned picture is a copy, and those of a tile.
+bool reads_tiff(std::string_view content) {
+    constexpr MemoryBound k_directory_bound{64 * 1024, 64};
+    const auto size = content.size();
+    std::size_t count = 0;
+    if (!accepts<DataError>("x.tif", size, k_directory_bound, [&] { count = tiff_page_count(content, "x.tif"); }))
+        return false;
+    bool any = false;
+    for (std::size_t i = 0; i < std::min<std::size_t>(count, 3); ++i) {
+        TiffPage page;
+        if (!accepts<DataError>("x.tif", size, k_directory_bound, [&] { page = read_tiff_page(content, i, "x.tif"); }))
+            continue;
+        if (is_large(page)) continue;
+        const MemoryBound bound{std::size_t{24} << 20, 64};
+        Image image;
+        if (!accepts<DataError>("x.tif", size, bound, [&] { image = decode_tiff(page, "x.tif"); })) continue;
+        const bool turned = page.orientation >= 5;
+        require(image.width == static_cast<int>(turned ? page.height : page.width) &&
+                    image.height == static_cast<int>(turned ? page.width : page.height),
+                "a picture of the page's size");
+        require(image.channels == 1 || image.channels == 3 || image.channels == 4, "gray, RGB or RGBA");
+        any = true;
+    }
+    return any;
+}
+
+/// Curves are flattened to up to 64 pieces, which few bytes can tell.
+bool reads_svg(std::string_view content) {
+    constexpr MemoryBound k_svg_bound{256 * 1024, 1024};
+    SvgPicture picture;
+    if (!accepts<DataError>("x.svg", content.size(), k_svg_bound, [&] { picture = read_svg(content, "x.svg"); }))
+        return false;
+    require(picture.width > 0 && picture.height > 0 && !picture.strokes.empty(), "a page with strokes");
+    for (const SvgStroke& stroke : picture.strokes) {
+        require(stroke.points.size() >= 2 && stroke.width > 0 && stroke.opacity > 0 && stroke.opacity <= 1, "a stroke");
+        for (const Eigen::Vector2d& point : stroke.points) require(point.allFinite(), "finite points");
+        require(stroke.group < static_cast<int>(picture.groups.size()), "a group that is there");
+    }
+    for (int i = 0; const SvgGroup& group : picture.groups) require(group.outer < i++, "groups around groups");
+    return true;
+}
+
+constexpr std::array<Reader, 24> k_readers{{{"off", reads_off},
                                             {"obj", reads_obj},
                                             {"ply", reads_ply},
                                             {"stl", reads_stl},
@@ -549,6 +601,8 @@ constexpr std::array<Reader, 22> k_readers{{{"off", reads_off},
                                             {"record", reads_record},
                                             {"style", reads_style},
                                             {"picture", reads_picture},
+                                            {"tiff", reads_tiff},
+                                            {"svg", reads_svg},
                                             {"import_output", reads_import_output},
                                             {"import", reads_import, true}}};
 

@@ -1,16 +1,14 @@
-#include "host/imaging/picture_file.h"
+#include "host/imaging/pictures/jpeg.h"
 
 #include <fmt/format.h>
 #include <turbojpeg.h>
 
-#include <array>
+#include <cstdint>
 #include <memory>
-#include <string>
 #include <utility>
 
 #include "host/core/errors.h"
-#include "host/core/files.h"
-#include "host/imaging/png.h"
+#include "host/imaging/pictures/upright.h"
 
 namespace exemplar {
 namespace {
@@ -53,41 +51,11 @@ std::uint32_t exif_orientation(std::string_view jpeg) {
     return 1;
 }
 
-/// Turns or mirrors a picture as its EXIF orientation says.
-Image upright(Image picture, std::uint32_t orientation) {
-    if (orientation == 1) return picture;
-    const bool swapped = orientation >= 5;  // rows are columns
-    const int w = picture.width, h = picture.height;
-    Image turned(swapped ? h : w, swapped ? w : h, picture.channels);
-    const bool from_right = orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
-    const bool from_below = orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
-    for (int y = 0; y < turned.height; ++y)
-        for (int x = 0; x < turned.width; ++x) {
-            const int column = swapped ? y : x, row = swapped ? x : y;
-            const auto from =
-                std::as_const(picture).pixel(from_right ? w - 1 - column : column, from_below ? h - 1 - row : row);
-            std::copy(from.begin(), from.end(), turned.pixel(x, y).begin());
-        }
-    return turned;
-}
-
-/// Names a kind of picture that is not read, by how its content begins; empty if it is none of these.
-std::string other_kind(std::string_view content) {
-    constexpr std::array<std::pair<std::string_view, const char*>, 8> k_kinds{{{"II*", "a TIFF"},
-                                                                               {"MM", "a TIFF"},
-                                                                               {"%PDF", "a PDF"},
-                                                                               {"GIF8", "a GIF"},
-                                                                               {"BM", "a BMP"},
-                                                                               {"<svg", "an SVG"},
-                                                                               {"<?xml", "an SVG"},
-                                                                               {"RIFF", "a WebP"}}};
-    for (const auto& [start, kind] : k_kinds)
-        if (content.starts_with(start)) return kind;
-    if (content.size() > 12 && content.substr(4, 4) == "ftyp") return "a HEIC picture";
-    return {};
-}
-
 }  // namespace
+
+bool is_jpeg(std::string_view content) {
+    return content.starts_with(k_jpeg_start);
+}
 
 Image decode_jpeg(std::string_view content, const std::string& name) {
     const std::unique_ptr<void, int (*)(tjhandle)> handle(tjInitDecompress(), tjDestroy);
@@ -110,14 +78,6 @@ Image decode_jpeg(std::string_view content, const std::string& name) {
                       TJFLAG_ACCURATEDCT) != 0)
         fail(tjGetErrorStr2(handle.get()));
     return upright(std::move(picture), exif_orientation(content));
-}
-
-Image read_picture(const std::filesystem::path& path) {
-    const std::string content = read_file(path);
-    if (content.starts_with(k_jpeg_start)) return decode_jpeg(content, path.string());
-    if (const std::string kind = other_kind(content); !kind.empty())
-        throw DataError(fmt::format("{}: {} is not read; save it as PNG or JPEG", path.string(), kind));
-    return read_png(path);
 }
 
 }  // namespace exemplar

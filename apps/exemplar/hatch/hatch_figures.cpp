@@ -29,6 +29,7 @@ namespace fs = std::filesystem;
 struct FiguresArguments {
     HatchSceneArguments scene;
     fs::path drawing, mask, out;
+    std::size_t page = 0;
     std::vector<fs::path> others;
     std::uint64_t seed = 1;
     CommonOptions common;
@@ -108,7 +109,8 @@ class StyleFigures {
     void read() {
         add_view("same_view", "the same view", arguments_.scene);
         HatchScene& scene = *views_.front().scene;
-        drawing_ = read_drawing(arguments_.drawing, arguments_.scene, scene.pixels(), arguments_.common.quiet);
+        drawing_ = read_drawing({arguments_.drawing, arguments_.page}, arguments_.scene, scene.pixels(),
+                                arguments_.common.quiet);
         measured_ = drawing_properties(drawing_.strokes);
         if (!arguments_.mask.empty()) restrict_to(read_mask(arguments_.mask, scene.pixels()), measured_);
         progress_.advance(1, "the drawing");
@@ -339,8 +341,11 @@ void add_hatch_figures_command(Command& hatch) {
     command->add_option("--on", arguments->others, "other meshes to draw in the style")
         ->type_name("MESH")
         ->allow_extra_args(false);
-    command->add_option("--mask", arguments->mask, "picture of the view, white where to learn from the drawing (PNG)")
+    command
+        ->add_option("--mask", arguments->mask,
+                     "picture of the view, white where to learn from the drawing (PNG, JPEG or TIFF)")
         ->type_name("FILE");
+    add_page_option(*command, arguments->page);
     command->add_option("--out", arguments->out, "folder for the pictures")->required()->type_name("FOLDER");
     command->add_option("--seed", arguments->seed, "of all random choices")
         ->capture_default_str()

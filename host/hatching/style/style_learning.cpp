@@ -19,6 +19,7 @@
 #include "host/hatching/style/example_folds.h"
 #include "host/hatching/style/pixel_classifier.h"
 #include "host/hatching/style/segment_learning.h"
+#include "host/hatching/style/style_prediction.h"
 
 namespace exemplar {
 namespace {

@@ -83,7 +83,7 @@ class Hatch(ProgramTest):
             self.call("hatch", "extract", MESH, f"lines.{name}", *VIEW, "--out", f"lines_{name}", "--json", f"lines_{name}.json")
         svg, png = (json.loads((self.folder / f"lines_{name}.json").read_text()) for name in ("svg", "png"))
         self.assertLess(abs(svg["median_spacing"] / png["median_spacing"] - 1), 0.05)
-        self.assertLess(abs(svg["median_thickness"] / png["median_thickness"] - 1), 0.1)
+        self.assertLess(abs(svg["median_thickness"] / png["median_thickness"] - 1), 0.2)  # a picture of thin strokes tells less
         self.call("hatch", "compare", MESH, "lines.svg", "lines.png", *VIEW, "--json", "lines.json")
         same, = json.loads((self.folder / "lines.json").read_text())
         self.assertLess(same["direction_median"], 1.5)

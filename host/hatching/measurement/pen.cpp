@@ -81,6 +81,24 @@ std::optional<float> missing_ink(const std::vector<float>& ink) {
     return k_end_step * missing;
 }
 
+/// Returns the taper of one end of a stroke by its widths. A quarter of an ellipse has sqrt(3/4) of its width in its
+/// middle.
+float taper_at_end(const TracedStroke& stroke, bool back) {
+    const std::vector<TracedPoint> points = from_end(stroke, back);
+    const float look = std::min(k_look, k_look_share * points[0].length);
+    std::vector<float> along{0};
+    along.reserve(points.size());
+    for (std::size_t i = 1; i < points.size() && along.back() < look; ++i)
+        along.push_back(along.back() + (points[i].center - points[i - 1].center).norm());
+    const float full = std::sqrt(0.75f) * points[along.size() - 1].thickness;
+    if (points[0].thickness >= full) return 0;
+    for (std::size_t i = 1; i < along.size(); ++i) {
+        const float before = points[i - 1].thickness, here = points[i].thickness;
+        if (here >= full) return 2 * (along[i - 1] + (full - before) / (here - before) * (along[i] - along[i - 1]));
+    }
+    return 2 * along.back();
+}
+
 }  // namespace
 
 float measure_taper(const FloatImage& darkness, float paper, float softness, std::span<const TracedStroke> strokes) {
@@ -95,6 +113,15 @@ float measure_taper(const FloatImage& darkness, float paper, float softness, std
     if (missing.size() < k_min_ends) return k_usual_taper;
     const float blunt = k_blurred * std::sqrt(softness * softness + 1.0f / 12);
     return std::max(0.0f, (upper_median(missing) - blunt) / k_missing);
+}
+
+float known_taper(std::span<const TracedStroke> strokes) {
+    std::vector<float> tapers;
+    for (const TracedStroke& stroke : strokes) {
+        if (stroke.closed || stroke.points.empty() || stroke.points[0].length < k_shortest) continue;
+        for (const bool back : {false, true}) tapers.push_back(taper_at_end(stroke, back));
+    }
+    return upper_median(tapers);
 }
 
 float measure_line_width(const FloatImage& darkness, float paper, std::span<const TracedStroke> lines) {

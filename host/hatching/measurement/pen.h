@@ -17,6 +17,9 @@ constexpr float k_usual_taper = 6;
 /// `paper`: mean darkness of paper, `softness`: of edges (estimate_softness).
 float measure_taper(const FloatImage& darkness, float paper, float softness, std::span<const TracedStroke> strokes);
 
+/// Returns the same of strokes whose widths are known: the median over the ends of strokes of at least 20 pixels.
+float known_taper(std::span<const TracedStroke> strokes);
+
 /// Returns how wide lines would be in black, pixels: the median of the ink across them, as of outlines that were drawn.
 /// Zero without lines.
 float measure_line_width(const FloatImage& darkness, float paper, std::span<const TracedStroke> lines);

@@ -183,7 +183,7 @@ std::vector<StrokeCrossing> measure_points(const FloatImage& darkness, const Pix
                               ? options.max_spacing
                               : std::max(k_min_max_spacing, k_spacings_per_thickness * m.median_thickness);
     measure_spacings(crossings, options.similar, largest, strokes);
-    m.taper = measure_taper(darkness, paper, m.softness, strokes);
+    m.taper = known ? known_taper(strokes) : measure_taper(darkness, paper, m.softness, strokes);
     m.median_spacing = median_over_points(strokes, [](const TracedPoint& p) { return p.spacing; });
     return crossings;
 }

@@ -35,6 +35,7 @@ TEST(SvgDrawing, StrokesAreMeasuredExactly) {
     EXPECT_NEAR(m.median_thickness, 2, 1e-4);
     EXPECT_NEAR(m.median_spacing, spacing * std::cos(std::atan(slope)), 0.02);
     EXPECT_TRUE(m.intersections.empty());
+    EXPECT_EQ(m.taper, 0);
     std::size_t centers = 0;
     for (std::size_t i = 0; i < m.size(); ++i) {
         if (!m.skeleton[i]) continue;
@@ -53,6 +54,19 @@ TEST(SvgDrawing, CrossingsAreFound) {
     const StrokeMeasurements m = measured(drawing_of(lines));
     EXPECT_NEAR(static_cast<double>(m.intersections.size()), 130, 8);
     EXPECT_EQ(m.level[60 * 200 + 90], 2);
+}
+
+TEST(SvgDrawing, TheTaperIsThatOfTheWidths) {
+    std::string lines;
+    for (int y = 20; y < 120; y += 8)
+        for (int x = 0; x < 80; ++x) {  // pieces a pixel long; over six pixels the ends become thin
+            const double end = std::min({x + 0.5, 79.5 - x, 6.0}) / 6, width = 3 * std::sqrt(end * (2 - end));
+            lines += "<path d=\"M" + std::to_string(40 + x) + " " + std::to_string(y) + "h1\" stroke-width=\"" +
+                     std::to_string(width) + "\"/>";
+        }
+    const SvgDrawing drawing = drawing_of(lines);
+    EXPECT_EQ(drawing.paths.size(), 13u);
+    EXPECT_NEAR(measured(drawing).taper, 6, 1.5);
 }
 
 TEST(SvgDrawing, PiecesOfAPenOfChangingWidthAreOneStroke) {

@@ -166,6 +166,18 @@ TEST(Text, LowersOnlyTheLettersAToZ) {
     EXPECT_EQ(lower_case("@[`{\xc3\x84"), "@[`{\xc3\x84") << "neighbors of the letters, and bytes of others";
 }
 
+// The examples of RFC 4648, section 10.
+TEST(Text, Base64) {
+    EXPECT_EQ(base64(""), "");
+    EXPECT_EQ(base64("f"), "Zg==");
+    EXPECT_EQ(base64("fo"), "Zm8=");
+    EXPECT_EQ(base64("foo"), "Zm9v");
+    EXPECT_EQ(base64("foob"), "Zm9vYg==");
+    EXPECT_EQ(base64("fooba"), "Zm9vYmE=");
+    EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+    EXPECT_EQ(base64("\xff\xfe"), "//4=") << "bytes above 127";
+}
+
 TEST(Text, CountsInSingularAndPlural) {
     EXPECT_EQ(counted(0, "pose"), "0 poses");
     EXPECT_EQ(counted(1, "pose"), "1 pose");

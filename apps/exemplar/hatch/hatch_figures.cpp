@@ -14,6 +14,7 @@
 #include "apps/exemplar/hatch/hatch_reading.h"
 #include "apps/exemplar/hatch/hatch_scene.h"
 #include "host/core/progress.h"
+#include "host/hatching/fields/ink.h"
 #include "host/hatching/fields/occlusion_barriers.h"
 #include "host/hatching/refinement/stroke_relaxation.h"
 #include "host/hatching/refinement/tone_matching.h"
@@ -42,13 +43,6 @@ struct ShownView {
     std::unique_ptr<HatchScene> scene;
     HatchingPrediction prediction;
 };
-
-Image gray_picture(const FloatImage& darkness) {
-    Image image(darkness.width, darkness.height, 1);
-    for (std::size_t i = 0; i < image.data.size(); ++i)
-        image.data[i] = static_cast<std::uint8_t>(std::lround(255 * (1 - std::clamp(darkness.data[i], 0.0f, 1.0f))));
-    return image;
-}
 
 /// Labels hatched pixels like the nearest known one, along paths through the hatching. `labels`: k_no_segment where
 /// they are not known.
@@ -180,7 +174,8 @@ class StyleFigures {
         HatchScene& own = *views_.front().scene;
         Figure figure{"Drawings", {}, {}};
         std::vector<FigurePanel> panels;
-        panels.push_back({"drawing", "the drawing", gray_picture(drawing_.darkness)});
+        panels.push_back({"drawing", "the drawing",
+                          ink_picture(drawing_.darkness.data, drawing_.darkness.width, drawing_.darkness.height)});
         for (const HandPickedRule& rule : hand_picked_rules()) {
             const std::string name(rule.name);
             panels.push_back({"picked_" + file_name(name), "hand-picked: " + name + ", tone by N.V",
@@ -337,7 +332,9 @@ void add_hatch_figures_command(Command& hatch) {
         "- the segments with their rules: found in the drawing, by boosting alone, and by the random field.\n\n"
         "Example:\n  exemplar hatch figures bunny.off traced.png --template bunny.png --on cow.obj --out figures");
     command->add_option("MESH", arguments->scene.mesh, "mesh that the drawing shows")->required()->type_name("");
-    command->add_option("DRAWING", arguments->drawing, "the drawing (PNG or JPEG)")->required()->type_name("");
+    command->add_option("DRAWING", arguments->drawing, "the drawing (PNG, JPEG, TIFF or SVG)")
+        ->required()
+        ->type_name("");
     command->add_option("--on", arguments->others, "other meshes to draw in the style")
         ->type_name("MESH")
         ->allow_extra_args(false);

@@ -37,7 +37,7 @@ bool is_svg(std::string_view content);
 /// Reads the stroked lines of an SVG: paths, lines, polygons, rectangles, circles and ellipses, with transforms,
 /// widths, colors and opacity from attributes, styles and the classes of a style sheet. Fillings, pictures, text and
 /// what is hidden are left out. Throws DataError, naming the file and the line, if it is no XML, if its size is
-/// unknown, or if it has strokes with dashes or copies (<use>), and so on, which are not read.
+/// unknown, or if it has strokes with dashes or copies (`use`), and so on, which are not read.
 SvgPicture read_svg(std::string_view content, const std::string& name);
 
 }  // namespace exemplar

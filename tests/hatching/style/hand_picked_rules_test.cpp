@@ -43,8 +43,9 @@ TEST(HandPickedRules, GiveEachLevelAsManyPixelsAsTheDrawing) {
         std::array<std::size_t, 3> found{};
         std::array<double, 3> radius{};
         for (const std::uint32_t pixel : pixels.pixels().pixel) {
-            const double x = static_cast<double>(pixel % k_side) + 0.5 - k_side / 2.0,
-                         y = static_cast<double>(pixel / k_side) + 0.5 - k_side / 2.0;
+            const std::uint32_t column = pixel % k_side, row = pixel / k_side;
+            const double x = static_cast<double>(column) + 0.5 - k_side / 2.0,
+                         y = static_cast<double>(row) + 0.5 - k_side / 2.0;
             const std::size_t level = fields.level[pixel];
             ++found[level];
             radius[level] += std::hypot(x, y);

@@ -127,6 +127,12 @@ TEST(SvgReader, WhatIsNotReadIsNamed) {
     expect_refused(path, "no size of its page", "");
     expect_refused("<path", "not a readable SVG");
     expect_refused("<path stroke=\"#000\" transform=\"twist(3)\" d=\"M0 0L1 1\"/>", "a transform 'twist' of 1 number");
+    // Of what is long only the beginning is said, in whole characters.
+    expect_refused("<path stroke=\"#000\" transform=\"" + std::string(1000, 'y') + "(3)\" d=\"M0 0L1 1\"/>",
+                   "a transform '" + std::string(40, 'y') + "' of 1 number");
+    std::string umlauts = "a";
+    for (int i = 0; i < 30; ++i) umlauts += "\xc3\xa4";
+    expect_refused("<path stroke=\"" + umlauts + "\" d=\"M0 0L1 1\"/>", "color '" + umlauts.substr(0, 39) + "'");
     EXPECT_TRUE(is_svg("\xef\xbb\xbf<?xml version=\"1.0\"?><!-- a --><svg>"));
     EXPECT_FALSE(is_svg("<html>"));
 }

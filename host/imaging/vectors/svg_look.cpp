@@ -18,6 +18,15 @@
 namespace exemplar {
 namespace {
 
+/// Returns the first characters of a text in UTF-8, for a message.
+std::string beginning_of(std::string_view text) {
+    constexpr std::size_t k_most_bytes = 40;
+    std::size_t end = std::min(text.size(), k_most_bytes);
+    const auto goes_on = [&](std::size_t at) { return (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U; };
+    while (end < text.size() && end > 0 && goes_on(end)) --end;
+    return without_controls(text.substr(0, end));
+}
+
 std::string_view trimmed(std::string_view text) {
     constexpr std::string_view k_space = " \t\r\n\f";
     const std::size_t first = text.find_first_not_of(k_space);
@@ -86,7 +95,7 @@ Color svg_color_of(std::string_view text) {
     for (const auto& [name, color] : k_names)
         if (text == name) return color;
     std::optional<Color> color = text.starts_with('#') ? hex_color(text) : rgb_color(text);
-    if (!color) throw UsageError(fmt::format("strokes of color '{}'", without_controls(text.substr(0, 40))));
+    if (!color) throw UsageError(fmt::format("strokes of color '{}'", beginning_of(text)));
     return *color;
 }
 
@@ -94,7 +103,7 @@ double svg_share(std::string_view text) {
     const bool percent = text.ends_with('%');
     if (percent) text.remove_suffix(1);
     const std::vector<double> values = svg_numbers(text);
-    if (values.size() != 1) throw UsageError(fmt::format("an opacity of '{}'", without_controls(text.substr(0, 40))));
+    if (values.size() != 1) throw UsageError(fmt::format("an opacity of '{}'", beginning_of(text)));
     return std::clamp(values[0] / (percent ? 100 : 1), 0.0, 1.0);
 }
 
@@ -117,7 +126,7 @@ Eigen::Affine2d transform_step(std::string_view name, const std::vector<double>&
     } else if (name == "skewY" && v.size() == 1) {
         step.linear()(1, 0) = std::tan(v[0] * k_degree);
     } else {
-        throw UsageError(fmt::format("a transform '{}' of {}", without_controls(name), counted(v.size(), "number")));
+        throw UsageError(fmt::format("a transform '{}' of {}", beginning_of(name), counted(v.size(), "number")));
     }
     return step;
 }

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace exemplar {
 namespace {
 
-// From no cut at all to one that leaves large regions only, and from borders that cost nothing where P(e) is above a
-// half to borders that always cost. Each is about double the last.
-constexpr std::array k_strengths{0.0f, 0.1f, 0.3f, 1.0f, 3.0f, 10.0f};
+// From the weakest cut to the strongest: from one that drops single pixels to one that leaves large regions only, and
+// from borders that cost little where P(e) is high to borders that cost the same everywhere.
+constexpr std::array k_strengths{0.3f, 1.0f, 3.0f, 10.0f};
 constexpr std::array k_offsets{-0.35f, -0.7f, -1.5f, -3.0f};
 
 /// Parameters, and the share of wrong labels with them.
@@ -55,10 +56,12 @@ PixelCrfParameters ExampleCuts::learn(const CutTraining& training, const std::fu
                 solve(training.probabilities, training.classes, {strength, offset});
             trials.push_back({{strength, offset}, share_wrong(training, labels)});
             progress();
-            if (!(strength > 0)) break;
         }
     }
-    return std::ranges::min(trials, {}, &CutTrial::error).parameters;
+    const double least = std::ranges::min(trials, {}, &CutTrial::error).error;
+    const double chance =
+        std::sqrt(least * (1 - least) / static_cast<double>(std::max<std::size_t>(1, training.rows.size())));
+    return std::ranges::find_if(trials, [&](const CutTrial& t) { return t.error <= least + chance; })->parameters;
 }
 
 }  // namespace exemplar

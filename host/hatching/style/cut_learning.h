@@ -28,9 +28,11 @@ class ExampleCuts {
     std::vector<std::int32_t> solve(std::span<const float> probabilities, std::size_t classes,
                                     const PixelCrfParameters& parameters);
 
-    /// Returns the parameters with the smallest share of wrong labels among a grid of them. The thesis selects those
-    /// by which boundaries between labels agree best with P(e | x) (Eq. 4.16). Of a drawing by hand P(e | x) often
-    /// tells nothing: it is a half everywhere, and the agreement is noise.
+    /// Returns the parameters of the weakest cut of a grid whose share of wrong labels is within a standard error of
+    /// the smallest: what is cut into a held-out patch from around it makes strong cuts look better than they will be
+    /// in another view. The thesis selects those by which boundaries between labels agree best with P(e | x)
+    /// (Eq. 4.16). Of a drawing by hand P(e | x) often tells nothing: it is a half everywhere, and the agreement is
+    /// noise.
     PixelCrfParameters learn(const CutTraining& training, const std::function<void()>& progress);
 
   private:

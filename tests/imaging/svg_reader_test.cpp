@@ -127,7 +127,7 @@ TEST(SvgReader, WhatIsNotReadIsNamed) {
     expect_refused(path, "no size of its page", "");
     expect_refused("<path", "not a readable SVG");
     expect_refused("<path stroke=\"#000\" transform=\"twist(3)\" d=\"M0 0L1 1\"/>", "a transform 'twist' of 1 number");
-    // Of what is long only the beginning is said, in whole characters.
+    // Messages quote the first 40 bytes of a long text, and cut no character in two.
     expect_refused("<path stroke=\"#000\" transform=\"" + std::string(1000, 'y') + "(3)\" d=\"M0 0L1 1\"/>",
                    "a transform '" + std::string(40, 'y') + "' of 1 number");
     std::string umlauts = "a";

@@ -24,7 +24,7 @@ using testing::HasSubstr;
 
 constexpr int k_width = 24, k_height = 16;
 
-/// What the files of libtiff in the corpus show.
+/// The gray and the color of each pixel in the corpus files that were made with libtiff.
 std::uint8_t gray_at(int x, int y) {
     return static_cast<std::uint8_t>((8 * x + 4 * y) % 256);
 }

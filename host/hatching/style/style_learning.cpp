@@ -197,9 +197,10 @@ class StyleLearning {
                 static_cast<std::uint8_t>(segment_[i]);
     }
 
-    /// What levels and properties learn the context of their pixels from.
+    /// Segment probabilities by classifiers that have not seen a pixel's part of the picture: rough levels and
+    /// properties learn from these, since those of another view are as unsure.
     SegmentContext unseen_context() const { return {style_.rules.size(), segments_.unseen}; }
-    /// What a prediction sees.
+    /// Segment probabilities as the finished style predicts them for these views.
     SegmentContext context() const { return {style_.rules.size(), segments_.probabilities}; }
 
     void learn_segments_of_strokes() {

@@ -34,14 +34,15 @@ constexpr std::string_view k_black_runs =
     "0000001101101 0000001001010 0000001001011 0000001001100 0000001001101 0000001110010 0000001110011 0000001110100 "
     "0000001110101 0000001110110 0000001110111 0000001010010 0000001010011 0000001010100 0000001010101 0000001011010 "
     "0000001011011 0000001100100 0000001100101 ";
-// Of either color: 1792, 1856, ... 2560 pixels, after which more of the run follows.
+// Codes for 1792, 1856, ... 2560 pixels, the same for both colors. Another code of the same color adds the rest of the
+// run.
 constexpr std::string_view k_long_runs =
     "00000001000 00000001100 00000001101 000000010010 000000010011 000000010100 000000010101 000000010110 000000010111 "
     "000000011100 000000011101 000000011110 000000011111 ";
 
 enum class FaxMode : std::uint8_t { invalid, pass, horizontal, vertical };
 
-/// What a code says, and its length in bits; 0: no code begins so.
+/// A decoded run: how many pixels it has, and how many bits its code has; 0 bits: no code begins with the bits read.
 struct FaxRun {
     std::uint16_t pixels = 0;
     std::uint8_t bits = 0;

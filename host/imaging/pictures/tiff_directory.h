@@ -22,7 +22,7 @@ enum class TiffCompression : std::uint16_t {
 /// The value of the tag PhotometricInterpretation.
 enum class TiffColors : std::uint16_t { white_is_zero = 0, black_is_zero = 1, rgb = 2, palette = 3, ycbcr = 6 };
 
-/// What a channel beyond the colors is.
+/// The kind of a channel that follows the colors: transparency (premultiplied or straight), or something else.
 enum class TiffAlpha : std::uint16_t { other = 0, premultiplied = 1, straight = 2 };
 
 /// A page of a TIFF, as its directory tells; everything is checked against the file but for the compressed bytes.

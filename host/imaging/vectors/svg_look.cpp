@@ -18,7 +18,7 @@
 namespace exemplar {
 namespace {
 
-/// Returns the first characters of a text in UTF-8, for a message.
+/// Returns the first 40 bytes of a text in UTF-8, or a little less so that no character is cut: a message quotes them.
 std::string beginning_of(std::string_view text) {
     constexpr std::size_t k_most_bytes = 40;
     std::size_t end = std::min(text.size(), k_most_bytes);

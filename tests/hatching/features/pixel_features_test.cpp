@@ -15,19 +15,13 @@
 #include "host/core/errors.h"
 #include "host/core/parallel.h"
 #include "host/core/statistics.h"
+#include "tests/hatching/features/host_tools.h"
 #include "tests/support/shapes.h"
 
 namespace exemplar {
 namespace {
 
 constexpr int k_view_width = 240, k_view_height = 200;
-
-struct HostTools {
-    CpuGBufferRenderer gbuffers;
-    CpuImageFilters filters;
-    CpuPixelProjection projection;
-    ImageTools tools{gbuffers, filters, projection};
-};
 
 /// Seen without perspective, so that analytic truths are simple.
 HatchingView parallel_view(const TriangleMesh& mesh, const Vec3& direction) {

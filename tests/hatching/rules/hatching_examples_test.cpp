@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host/core/errors.h"
+#include "tests/hatching/features/host_tools.h"
 #include "tests/support/shapes.h"
 
 namespace exemplar {
@@ -30,17 +31,14 @@ class TwoViews {
                                            {.vertical_fov = 0}),
                                 Vec3(1, 2, 2) / 3, width, height};
         views_.push_back(std::make_unique<HatchingView>(view));
-        pixels_.push_back(std::make_unique<PixelFeatures>(surface_, *views_.back(), tools_));
+        pixels_.push_back(std::make_unique<PixelFeatures>(surface_, *views_.back(), host_.tools));
         drawings_.emplace_back();
         drawings_.back().width = width;
         drawings_.back().height = height;
     }
 
     HatchingSurface surface_ = measure_surface(shapes::icosphere(2, 1));
-    CpuGBufferRenderer gbuffers_;
-    CpuImageFilters filters_;
-    CpuPixelProjection projection_;
-    ImageTools tools_{gbuffers_, filters_, projection_};
+    HostTools host_;
     std::vector<std::unique_ptr<HatchingView>> views_;
     std::vector<std::unique_ptr<PixelFeatures>> pixels_;
     std::vector<DrawingProperties> drawings_;

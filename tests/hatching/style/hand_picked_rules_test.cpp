@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/hatching/features/host_tools.h"
 #include "tests/support/shapes.h"
 
 namespace exemplar {
@@ -19,11 +20,8 @@ TEST(HandPickedRules, GiveEachLevelAsManyPixelsAsTheDrawing) {
         shapes::icosphere(3, 1), [](const Vec3& p) { return Vec3(p.x(), 0.8f * p.y(), 0.6f * p.z()); }));
     const HatchingView view{fit_camera(egg.mesh, Vec3::UnitZ(), 1, {.vertical_fov = 0}), Vec3(1, 2, 2) / 3, k_side,
                             k_side};
-    CpuGBufferRenderer gbuffers;
-    CpuImageFilters filters;
-    CpuPixelProjection projection;
-    ImageTools tools{gbuffers, filters, projection};
-    PixelFeatures pixels(egg, view, tools);
+    HostTools host;
+    PixelFeatures pixels(egg, view, host.tools);
 
     DrawingProperties drawing;
     drawing.width = drawing.height = k_side;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "host/hatching/style/hatching_style.h"
+#include "tests/hatching/features/host_tools.h"
 #include "tests/support/shapes.h"
 
 namespace exemplar {
@@ -43,11 +44,8 @@ HatchingStyle everywhere_along(const std::string& field) {
 
 HatchingFields predicted(const HatchingStyle& style, const HatchingSurface& surface, const Vec3& from) {
     const HatchingView view{fit_camera(surface.mesh, from, 1, {.vertical_fov = 0}), Vec3(1, 2, 2) / 3, 60, 60};
-    CpuGBufferRenderer gbuffers;
-    CpuImageFilters filters;
-    CpuPixelProjection projection;
-    ImageTools tools{gbuffers, filters, projection};
-    PixelFeatures pixels(surface, view, tools);
+    HostTools host;
+    PixelFeatures pixels(surface, view, host.tools);
     CpuStumpScorer scorer;
     CpuHatchingEvaluator evaluator;
     return predict_hatching(style, pixels, scorer, evaluator).fields;

@@ -40,7 +40,7 @@ ROOMS = {
     'host/data': ['', 'catalog'],
     'host/hatching': ['fields', 'features', 'tracing', 'measurement', 'comparison', 'drawing', 'registration', 'rules', 'style', 'placement', 'refinement', 'animation', ''],
     'host/imaging': ['', 'pictures', 'vectors'],
-    'host/labeling': ['features', 'inference', 'training', 'evaluation', 'category', 'batch'],
+    'host/labeling': ['features', 'inference', 'training', 'evaluation', 'category', 'painting', 'batch'],
     'host/learn': ['', 'regression', 'components', 'boosting'],
     'host/lines': ['extraction', 'strokes', ''],
     'host/mesh': ['', 'queries', 'editing', 'curvature', 'io', 'gltf'],

@@ -42,13 +42,18 @@ CrfTerms make_crf_terms(const MeshFeatures& features, std::span<const float> pro
     return terms;
 }
 
-std::vector<std::int32_t> solve_crf(const MeshFeatures& features, const CrfTerms& terms,
-                                    const CrfParameters& parameters) {
+std::vector<double> border_costs(const MeshFeatures& features, const CrfTerms& terms, const CrfParameters& parameters) {
     std::vector<double> weight(features.edges.size());
     for (std::size_t e = 0; e < weight.size(); ++e) {
         const double g = parameters.kappa * terms.boundary[e] + parameters.lambda * terms.dihedral[e] + parameters.mu;
         weight[e] = features.edge_length[e] * g;
     }
+    return weight;
+}
+
+std::vector<std::int32_t> solve_crf(const MeshFeatures& features, const CrfTerms& terms,
+                                    const CrfParameters& parameters) {
+    const std::vector<double> weight = border_costs(features, terms, parameters);
     return alpha_expansion(terms.unary, terms.classes, features.edges, weight, parameters.compatibility).labels;
 }
 

@@ -21,6 +21,9 @@ struct CrfTerms {
 CrfTerms make_crf_terms(const MeshFeatures& features, std::span<const float> probabilities, std::size_t classes,
                         std::span<const float> boundary_probability);
 
+/// Returns the cost of a border along each edge of `features` between labels of compatibility 1 (Eqs. 3.3, 3.4).
+std::vector<double> border_costs(const MeshFeatures& features, const CrfTerms& terms, const CrfParameters& parameters);
+
 /// Returns the labels of the lowest energy that alpha-expansion finds, one per face.
 std::vector<std::int32_t> solve_crf(const MeshFeatures& features, const CrfTerms& terms,
                                     const CrfParameters& parameters);

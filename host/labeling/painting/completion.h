@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "host/labeling/features/features.h"
+#include "host/labeling/painting/completion_descriptors.h"
+#include "host/mesh/mesh.h"
+#include "host/mesh/queries/geodesics.h"
+
+namespace exemplar {
+
+/// A labeling of a whole mesh, completed from a few painted faces.
+struct CompletedLabels {
+    std::vector<std::int32_t> label;  ///< per face; -1 everywhere if nothing is painted and nothing suggested
+    std::vector<float> confidence;    ///< per face, in [0, 1]: probability of its label; 1 where it is painted
+};
+
+/// What a trained model says about a mesh, as a start for painting.
+struct LabelEvidence {
+    std::vector<float> probabilities;                 ///< faces x labels of the palette; empty: there is no model
+    std::vector<std::array<std::uint32_t, 2>> edges;  ///< interior edges: the two faces
+    std::vector<double> edge_cost;      ///< of a border along each edge (Eq. 3.3), where faces cost their area share
+    std::vector<double> compatibility;  ///< labels x labels, symmetric, zero diagonal (Eq. 3.3)
+};
+
+struct CompletionOptions {
+    float likeness = 8;
+    float nearness = 3;
+    float reach = 0.25F;  ///< of the nearness, in square roots of the surface's area
+    float concave_length = 4;
+    double lambda = 0.5, mu = 0.1;
+    float outlier = 0.02F;
+    float correction = 10;
+};
+
+/// Completes painted labels to the whole mesh: a face takes the label of painted faces that are alike (descriptors)
+/// and near (geodesic distance, longer across concave edges), then a minimum cut (alpha-expansion) moves borders to
+/// short, concave edges.
+class LabelCompletion {
+  public:
+    /// Without features, nearness alone counts.
+    explicit LabelCompletion(const TriangleMesh& mesh, const CompletionOptions& options = {});
+    /// Adds the features of the same mesh, when they are computed.
+    void set_features(const MeshFeatures& features);
+    /// Sets what a model says about the mesh; strokes then correct it around them.
+    void set_evidence(LabelEvidence evidence) { evidence_ = std::move(evidence); }
+
+    /// Completes `painted`: per face a label below `labels`, or -1. Labels that occur neither in it nor in the
+    /// suggestion are not used.
+    CompletedLabels complete(std::span<const std::int32_t> painted, std::size_t labels) const;
+
+    std::size_t face_count() const { return area_.size(); }
+    const DualGraph& graph() const { return graph_; }
+    std::span<const float> area() const { return area_; }
+
+  private:
+    std::vector<float> likeness(std::span<const std::int32_t> painted, std::size_t labels) const;
+    std::vector<float> distances(std::span<const std::int32_t> painted, std::int32_t label) const;
+    std::vector<float> probabilities(std::span<const std::int32_t> painted, std::size_t labels) const;
+    std::vector<std::int32_t> cut(std::span<const std::int32_t> painted, std::span<const float> probability,
+                                  std::size_t labels) const;
+
+    CompletionOptions options_;
+    std::vector<float> area_;  ///< per face, share of the surface
+    DualGraph graph_;          ///< lengths grow where the surface is concave, in square roots of the area
+    std::vector<std::array<std::uint32_t, 2>> edges_;
+    std::vector<double> edge_cost_;  ///< of a border along each edge, without a model
+    FaceDescriptors descriptors_;
+    LabelEvidence evidence_;
+};
+
+}  // namespace exemplar

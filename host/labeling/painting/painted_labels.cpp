@@ -1,0 +1,46 @@
+#include "host/labeling/painting/painted_labels.h"
+
+#include <ranges>
+
+namespace exemplar {
+
+void PaintedLabels::begin_step() {
+    steps_.resize(done_);
+    if (done_ > 0 && steps_.back().empty()) return;  // a click beside the mesh is no step
+    steps_.emplace_back();
+    done_ = steps_.size();
+}
+
+void PaintedLabels::set(std::uint32_t face, std::int32_t label) {
+    if (label_[face] == k_unpainted) ++painted_;
+    if (label == k_unpainted) --painted_;
+    label_[face] = label;
+}
+
+void PaintedLabels::paint(std::span<const std::uint32_t> faces, std::int32_t label) {
+    if (done_ == 0 || done_ < steps_.size()) begin_step();
+    std::vector<Change>& step = steps_.back();
+    for (const std::uint32_t face : faces) {
+        if (label_[face] == label) continue;
+        step.push_back({face, label_[face], label});
+        set(face, label);
+        ++version_;
+    }
+}
+
+bool PaintedLabels::undo() {
+    while (done_ > 0 && steps_[done_ - 1].empty()) --done_;
+    if (done_ == 0) return false;
+    for (const Change& change : steps_[--done_] | std::views::reverse) set(change.face, change.before);
+    ++version_;
+    return true;
+}
+
+bool PaintedLabels::redo() {
+    if (done_ == steps_.size()) return false;
+    for (const Change& change : steps_[done_++]) set(change.face, change.after);
+    ++version_;
+    return true;
+}
+
+}  // namespace exemplar

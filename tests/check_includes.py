@@ -49,7 +49,7 @@ ROOMS = {
     'gpu/runtime': ['device', 'kernels', 'record', 'measure'],
     'apps/bench': ['kernels', ''],
     'apps/exemplar': ['', 'label', 'category', 'catalog', 'batch', 'curvature', 'lines', 'hatch', 'bench', 'demo'],
-    'apps/viewer': ['controls', 'scene', 'window', ''],
+    'apps/viewer': ['controls', 'painting', 'scene', 'window', ''],
 }
 FOLDERS = ('apps', 'cmake', 'docs', 'gpu', 'host', 'python', 'shaders', 'tests')
 MOST_FILES = 30

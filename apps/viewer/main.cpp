@@ -73,7 +73,12 @@ void add_options(Command& app, ViewerOptions& options, std::string& size) {
                    "animation (glTF, "
                    "FBX, COLLADA), or folder of meshes")
         ->type_name("");
-    app.add_option("--model", options.model, "model of the animation's curvature, .safetensors")->type_name("FILE");
+    app.add_flag("--label", options.label, "paints labels on the mesh, or on the meshes of the folder");
+    app.add_option("--model", options.model,
+                   "model of the animation's curvature, .safetensors; with --label, a model of 'exemplar label train'")
+        ->type_name("FILE");
+    app.add_option("--script", options.script, "with --headless and --label: paints by the commands of a file")
+        ->type_name("FILE");
     app.add_option("--hatching", options.hatching, "style of 'exemplar hatch train' for hatched stills, .safetensors")
         ->type_name("FILE");
     app.add_option("--save-hatching", options.hatched_still,
@@ -119,6 +124,14 @@ void require_still_options(const ViewerOptions& options) {
     require_still_name(options.hatched_still);
 }
 
+void require_label_options(const ViewerOptions& options) {
+    if (options.label && options.file.empty()) throw UsageError("--label needs a FILE or a folder of meshes");
+    if (!options.script.empty() && (!options.headless || !options.label))
+        throw UsageError("--script needs --headless and --label");
+    if (options.headless && options.label && options.script.empty())
+        throw UsageError("--headless --label needs a --script");
+}
+
 int run(int argc, char** argv) {
     keep_freed_memory();
     Command app("exemplar-viewer", "Shows meshes and animations, with their curvature estimated and learned.");
@@ -128,7 +141,8 @@ int run(int argc, char** argv) {
         "  exemplar synth figure --seed 1 --out shapes\n"
         "  exemplar-viewer shapes/figure_001.glb\n"
         "  exemplar-viewer shapes/figure_001.glb --headless --frames 30 --out frames\n"
-        "  exemplar-viewer bunny.off --headless --hatching mine.safetensors --save-hatching bunny.svg");
+        "  exemplar-viewer bunny.off --headless --hatching mine.safetensors --save-hatching bunny.svg\n"
+        "  exemplar-viewer shapes --label");
     app.version(EXEMPLAR_VERSION);
     ViewerOptions options;
     std::string size = "1280x720";
@@ -138,6 +152,7 @@ int run(int argc, char** argv) {
     options.size = parse_size(size);
     if (!options.headless && !options.out.empty()) throw UsageError("--out needs --headless");
     if (!options.hatched_still.empty()) require_still_options(options);
+    require_label_options(options);
     Progress::set_quiet(options.quiet);
     options.headless ? run_headless(options) : run_window(options);
     return 0;

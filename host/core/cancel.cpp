@@ -1,8 +1,12 @@
 #include "host/core/cancel.h"
 
+#include <sys/resource.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_scheduler_observer.h>
 
+#include <unistd.h>
+
+#include <array>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -34,9 +38,11 @@ class ArenaThreads : public tbb::task_scheduler_observer {
 };
 
 struct CancelableArena {
+    explicit CancelableArena(LoopThreads loops)
+        : arena(loops == LoopThreads::this_thread ? 1 : tbb::task_arena::automatic), threads(arena, canceled) {}
     Canceled canceled = nullptr;
     tbb::task_arena arena;
-    ArenaThreads threads{arena, canceled};
+    ArenaThreads threads;
 };
 
 /// Arenas without work. They are never destroyed: TBB releases an observer only when the last thread that saw it
@@ -45,27 +51,25 @@ struct IdleArenas {
     std::mutex mutex;
     std::vector<std::unique_ptr<CancelableArena>> arenas;
 };
-IdleArenas& idle_arenas() {
-    static auto* const idle = new IdleArenas;
-    return *idle;
+IdleArenas& idle_arenas(LoopThreads loops) {
+    static auto* const idle = new std::array<IdleArenas, 2>;
+    return (*idle)[loops == LoopThreads::this_thread ? 1 : 0];
 }
 
 /// Borrows an idle arena for the lifetime of this object.
 class BorrowedArena {
   public:
-    explicit BorrowedArena(const std::atomic<bool>& canceled) {
-        IdleArenas& idle = idle_arenas();
-        const std::lock_guard lock(idle.mutex);
-        if (idle.arenas.empty()) idle.arenas.push_back(std::make_unique<CancelableArena>());
-        arena_ = std::move(idle.arenas.back());
-        idle.arenas.pop_back();
+    BorrowedArena(const std::atomic<bool>& canceled, LoopThreads loops) : idle_(idle_arenas(loops)) {
+        const std::lock_guard lock(idle_.mutex);
+        if (idle_.arenas.empty()) idle_.arenas.push_back(std::make_unique<CancelableArena>(loops));
+        arena_ = std::move(idle_.arenas.back());
+        idle_.arenas.pop_back();
         arena_->canceled = &canceled;
     }
     ~BorrowedArena() {
         arena_->canceled = nullptr;
-        IdleArenas& idle = idle_arenas();
-        const std::lock_guard lock(idle.mutex);
-        idle.arenas.push_back(std::move(arena_));
+        const std::lock_guard lock(idle_.mutex);
+        idle_.arenas.push_back(std::move(arena_));
     }
     BorrowedArena(const BorrowedArena&) = delete;
     BorrowedArena& operator=(const BorrowedArena&) = delete;
@@ -73,13 +77,19 @@ class BorrowedArena {
     void execute(const std::function<void()>& work) { arena_->arena.execute(work); }
 
   private:
+    IdleArenas& idle_;
     std::unique_ptr<CancelableArena> arena_;
 };
 
 }  // namespace
 
-void run_cancelable(const std::atomic<bool>& canceled, const std::function<void()>& work) {
-    BorrowedArena(canceled).execute(work);
+void run_cancelable(const std::atomic<bool>& canceled, const std::function<void()>& work, LoopThreads threads) {
+    BorrowedArena(canceled, threads).execute(work);
+}
+
+void lower_thread_priority() {
+    constexpr int k_niceness = 10;
+    setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), k_niceness);
 }
 
 bool work_canceled() {

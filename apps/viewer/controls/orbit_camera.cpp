@@ -125,6 +125,12 @@ void OrbitCamera::turn_upright() {
     rotation_ = Eigen::Quaternionf(axes).normalized();
 }
 
+void OrbitCamera::look_at_place(const Vec3& point, const Vec3& normal) {
+    const Vec3 backward = rotation_ * Vec3::UnitZ();
+    rotation_ = (Eigen::Quaternionf::FromTwoVectors(backward, normal) * rotation_).normalized();
+    target_ = point;
+}
+
 Camera OrbitCamera::camera(ViewSize size) const {
     const Vec3 eye = target_ + rotation_ * Vec3(0, 0, distance_);
     Camera camera;

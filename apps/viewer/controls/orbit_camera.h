@@ -41,6 +41,8 @@ class OrbitCamera {
     /// Look from a side, or keep the viewing direction and turn +y up.
     void look_from(ViewSide side);
     void turn_upright();
+    /// Looks at a point from the direction of `normal`, as near as before.
+    void look_at_place(const Vec3& point, const Vec3& normal);
     void set_parallel(bool parallel) { parallel_ = parallel; }
     bool parallel() const { return parallel_; }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -19,7 +20,8 @@ struct LegendEntry {
 struct Document {
     std::filesystem::path path;
     Animation animation;
-    std::vector<Color> face_colors;  ///< of labels, per face; empty without
+    std::vector<Color> face_colors;    ///< of labels, per face; empty without
+    std::uint64_t colors_version = 1;  ///< increment it when face_colors are changed
     std::vector<LegendEntry> legend;
 };
 

@@ -68,6 +68,20 @@ void FrameRenderer::finish(FrameTimes& times) {
     profiler_.reset();
 }
 
+const FacePicture& FrameRenderer::face_picture(const ViewerState& state, ViewSize size) {
+    if (!state.has_document()) throw UsageError("there is nothing to paint on; open a mesh first");
+    const Camera camera = state.camera.camera(size);
+    const bool same = face_picture_version_ == state.document_version() && face_picture_.width == size.width &&
+                      face_picture_.height == size.height &&
+                      face_picture_.camera.view_projection() == camera.view_projection();
+    if (same) return face_picture_;
+    if (!face_renderer_) face_renderer_.emplace(device_);
+    GBuffer faces = face_renderer_->render(state.document().animation.rest, camera, size.width, size.height);
+    face_picture_ = {size.width, size.height, std::move(faces.face), camera};
+    face_picture_version_ = state.document_version();
+    return face_picture_;
+}
+
 Image FrameRenderer::read() {
     for (Canvas* canvas : shown_) canvas->record_download(stream_);
     stream_.finish();

@@ -2,11 +2,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "apps/viewer/painting/brush.h"
 #include "apps/viewer/scene/surface_scene.h"
 #include "apps/viewer/scene/viewer_state.h"
 #include "gpu/imaging/canvas.h"
+#include "gpu/imaging/gbuffer_renderer.h"
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/record/profiler.h"
 #include "gpu/runtime/record/stream.h"
@@ -32,6 +35,10 @@ class FrameRenderer {
     /// Reads back the last frame, as RGB.
     Image read();
 
+    /// Returns the faces of the document that a view of that size shows. Drawn only when the view has changed. Throws
+    /// UsageError without a document.
+    const FacePicture& face_picture(const ViewerState& state, ViewSize size);
+
     Stream& stream() { return stream_; }
     Device& device() { return device_; }
 
@@ -44,6 +51,9 @@ class FrameRenderer {
     std::vector<Canvas*> shown_;  // side by side
     std::unique_ptr<SurfaceScene> scene_;
     std::uint64_t document_version_ = 0, model_version_ = 0;
+    std::optional<GpuGBufferRenderer> face_renderer_;  // made for the first stroke
+    FacePicture face_picture_;
+    std::uint64_t face_picture_version_ = 0;  // of the document
 };
 
 }  // namespace exemplar

@@ -37,8 +37,12 @@ void apply_options(ViewerState& state, const ViewerOptions& options, ViewSize vi
 }
 
 void open_files(ViewerState& state, const ViewerOptions& options, ViewSize view) {
-    if (!options.file.empty()) state.open(options.file, view);
-    if (!options.model.empty()) state.open_model(options.model);
+    if (options.label) {
+        state.start_labeling(options.file, options.model, view);
+    } else {
+        if (!options.file.empty()) state.open(options.file, view);
+        if (!options.model.empty()) state.open_model(options.model);
+    }
     if (!options.hatching.empty()) state.open_hatching(options.hatching);
     if (!options.clip.empty()) {
         if (!state.has_document()) throw UsageError("--clip needs an animation; name its FILE");

@@ -14,6 +14,8 @@ namespace exemplar {
 /// Command-line options of the viewer.
 struct ViewerOptions {
     std::filesystem::path file, model, hatching, out;
+    bool label = false;                   ///< labels of the file, or of the meshes of the folder, are painted
+    std::filesystem::path script;         ///< of painting, without a window; empty: none
     std::filesystem::path hatched_still;  ///< written without a window, instead of frames; empty: none
     std::string device, clip;
     ViewSize size{1280, 720};

@@ -60,6 +60,10 @@ void SurfaceScene::prepare_views(std::size_t count, const ViewSettings& settings
         style_version_ = settings.style_version;
         styled_views_ = 0;
     }
+    if (colors_version_ != document_.colors_version) {
+        colors_version_ = document_.colors_version;
+        colored_views_ = 0;
+    }
     for (; !document_.face_colors.empty() && colored_views_ < count; ++colored_views_)
         renderer_->view(colored_views_).set_face_colors(document_.face_colors);
     for (; styled_views_ < count; ++styled_views_) renderer_->view(styled_views_).set_textures(style_.textures);

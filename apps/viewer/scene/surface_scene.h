@@ -44,7 +44,7 @@ class SurfaceScene {
     std::shared_ptr<const CurvatureModel> model_;
     float feature_size_ = 0;  // 0: not yet found
     DeviceStyle style_;
-    std::uint64_t style_version_ = 0;
+    std::uint64_t style_version_ = 0, colors_version_ = 0;
     std::size_t colored_views_ = 0, styled_views_ = 0;  // numbers of views that have the face colors, the textures
 };
 

@@ -64,6 +64,12 @@ void ViewerState::open(const fs::path& path, ViewSize view) {
 
 void ViewerState::open_document(const fs::path& path, ViewSize view) {
     auto document = std::make_unique<Document>(read_document(path));
+    labeling.reset();
+    show_document(std::move(document), view);
+    if (playback.frame_count() > 1) playback.play();
+}
+
+void ViewerState::show_document(std::unique_ptr<Document> document, ViewSize view) {
     training.reset();
     document_ = std::move(document);
     ++document_version_;
@@ -72,7 +78,6 @@ void ViewerState::open_document(const fs::path& path, ViewSize view) {
     settings.paint = document_->face_colors.empty() ? SurfacePaint::plain : SurfacePaint::faces;
     set_clip(0);
     fit(view);
-    if (playback.frame_count() > 1) playback.play();
     for (const std::string& remark : document_->animation.warnings) messages.remark(remark);
 }
 
@@ -102,6 +107,7 @@ void ViewerState::open_labels(const fs::path& path) {
 
 void ViewerState::close() {
     training.reset();
+    labeling.reset();
     document_.reset();
     ++document_version_;
     set_model(nullptr, {});

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "apps/viewer/controls/pose_controls.h"
 #include "apps/viewer/controls/shortcuts.h"
 #include "apps/viewer/controls/training_job.h"
+#include "apps/viewer/painting/labeling_session.h"
 #include "apps/viewer/scene/document.h"
 #include "apps/viewer/scene/hatching_job.h"
 #include "apps/viewer/scene/messages.h"
@@ -50,6 +52,20 @@ class ViewerState {
     /// Shows a message on the written files, if drawing is done.
     void collect_hatching();
 
+    /// Starts to label the shapes of a folder, or one mesh, and opens the first. `model`: of 'exemplar label train';
+    /// empty: none. Throws an Error if that fails, and keeps what was open.
+    void start_labeling(const std::filesystem::path& source, const std::filesystem::path& model, ViewSize view);
+    /// Opens a shape of the folder that is being labeled. Throws an Error if that fails, and keeps the open one.
+    void open_shape(std::size_t shape, ViewSize view);
+    /// Collects what the background of labeling has found out, and shows it. Returns whether anything changed.
+    bool collect_labeling();
+    /// Turns the view to the next place whose labels are uncertain; remarks that there is none.
+    void show_uncertain_place();
+    /// Verifies the open shape and opens the next. Shows a message if that fails.
+    void verify_shape(ViewSize view);
+    /// Runs an edit of labels; an Error of it becomes a message.
+    void try_labeling(const std::function<void()>& edit);
+
     bool has_document() const { return document_ != nullptr; }
     const Document& document() const { return *document_; }
     /// Change whenever the document, or the model, changes.
@@ -76,14 +92,19 @@ class ViewerState {
     FrameTimes times;
     std::unique_ptr<TrainingJob> training;
     std::unique_ptr<HatchingJob> hatching_job;
+    std::unique_ptr<LabelingSession> labeling;  ///< null: labels are not painted
+    bool show_grid = false;                     ///< of the shapes that are being labeled
     bool show_panels = true, show_help = false, show_times = false;
 
   private:
     void open_document(const std::filesystem::path& path, ViewSize view);
     void open_labels(const std::filesystem::path& path);
+    void show_document(std::unique_ptr<Document> document, ViewSize view);
+    void show_labels();
     std::unique_ptr<Document> document_;  // scenes refer to it
     std::uint64_t document_version_ = 0, model_version_ = 0;
     std::size_t clip_ = 0;
+    std::uint64_t shown_labels_ = 0;  ///< version of the painter's labels that the document has
     std::shared_ptr<const CurvatureModel> model_;
     std::string model_name_;
     std::shared_ptr<const HatchingStyle> hatching_;

@@ -7,6 +7,7 @@
 
 #include "apps/viewer/scene/frame_renderer.h"
 #include "apps/viewer/scene/options.h"
+#include "apps/viewer/window/paint_script.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
@@ -90,7 +91,10 @@ void run_headless(const ViewerOptions& options) {
         Device device({.name = options.device});
         log = device.validation_log();
         FrameRenderer renderer(device);
-        draw_frames(state, renderer, options);
+        if (options.script.empty())
+            draw_frames(state, renderer, options);
+        else
+            run_paint_script(options.script, state, renderer, options);
     }
     require_no_validation_messages(*log);
 }

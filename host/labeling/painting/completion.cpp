@@ -57,10 +57,6 @@ LabelCompletion::LabelCompletion(const TriangleMesh& mesh, const CompletionOptio
     }
 }
 
-void LabelCompletion::set_features(const MeshFeatures& features) {
-    descriptors_ = face_descriptors(features);
-}
-
 std::vector<float> LabelCompletion::distances(std::span<const std::int32_t> painted, std::int32_t label) const {
     std::vector<float> distance(area_.size(), k_far);
     DistanceQueue queue;

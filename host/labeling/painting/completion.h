@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "host/labeling/features/features.h"
 #include "host/labeling/painting/completion_descriptors.h"
 #include "host/mesh/mesh.h"
 #include "host/mesh/queries/geodesics.h"
@@ -43,8 +42,8 @@ class LabelCompletion {
   public:
     /// Without features, nearness alone counts.
     explicit LabelCompletion(const TriangleMesh& mesh, const CompletionOptions& options = {});
-    /// Adds the features of the same mesh, when they are computed.
-    void set_features(const MeshFeatures& features);
+    /// Adds the descriptors of the same faces, when they are computed.
+    void set_descriptors(FaceDescriptors descriptors) { descriptors_ = std::move(descriptors); }
     /// Sets what a model says about the mesh; strokes then correct it around them.
     void set_evidence(LabelEvidence evidence) { evidence_ = std::move(evidence); }
 

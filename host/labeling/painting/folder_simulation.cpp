@@ -152,7 +152,7 @@ SimulationResult FolderSimulation::run(LabelingWay way) {
     for (std::size_t m = 0; m < truth_.meshes.size(); ++m) {
         const LabeledMesh& mesh = truth_.meshes[m];
         shapes_.push_back({SimulatedPerson(mesh.mesh, mesh.label, options_.person), LabelCompletion(mesh.mesh), {}});
-        shapes_.back().completion.set_features(features_[m]);
+        shapes_.back().completion.set_descriptors(face_descriptors(features_[m]));
         shapes_.back().shown.assign(mesh.label.size(), -1);
     }
     while (now_.verified < shapes_.size() && now_.right < options_.quality) {

@@ -1,8 +1,20 @@
 #include "host/labeling/painting/painted_labels.h"
 
+#include <algorithm>
 #include <ranges>
 
+#include "host/core/errors.h"
+
 namespace exemplar {
+
+void PaintedLabels::start_with(std::span<const std::int32_t> labels) {
+    if (labels.size() != label_.size()) throw UsageError("labels and faces differ in number");
+    label_.assign(labels.begin(), labels.end());
+    painted_ = static_cast<std::size_t>(std::ranges::count_if(label_, [](std::int32_t label) { return label >= 0; }));
+    steps_.clear();
+    done_ = 0;
+    ++version_;
+}
 
 void PaintedLabels::begin_step() {
     steps_.resize(done_);

@@ -31,6 +31,8 @@ class PaintedLabels {
     /// Changes with every change of labels.
     std::uint64_t version() const { return version_; }
 
+    /// Replaces all labels; there is nothing to undo then. Throws UsageError for another number of faces.
+    void start_with(std::span<const std::int32_t> labels);
     /// Begins a step of undo. What follows until the next call belongs to it.
     void begin_step();
     /// Gives these faces a label, or k_unpainted. Faces that have it already are left out. Without a step, begins one.

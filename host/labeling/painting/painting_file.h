@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "host/labeling/painting/painted_labels.h"
+
+namespace exemplar {
+
+/// What a person has painted so far on one mesh: its palette, and a label per face.
+struct Painting {
+    std::vector<PaletteEntry> palette;
+    std::vector<std::int32_t> label;  ///< per face: an index into the palette, or k_unpainted
+};
+
+/// Returns the file that keeps the strokes of a mesh until its labels are verified: NAME_painting.json beside it.
+std::filesystem::path painting_path(const std::filesystem::path& mesh);
+
+/// Writes a painting, so that readers never see half of it. Throws DataError if it cannot be written.
+void save_painting(const std::filesystem::path& path, const Painting& painting);
+
+/// Reads a painting of a mesh with so many faces. Throws DataError with the file and the place if it is damaged or of
+/// another mesh.
+Painting load_painting(const std::filesystem::path& path, std::size_t faces);
+
+/// Returns the name of a label without spaces at its ends. Throws UsageError if it is empty, longer than 100 bytes, or
+/// has characters that label files cannot hold (line breaks and other control characters).
+std::string checked_label_name(const std::string& name);
+
+/// Returns a color as "#rrggbb".
+std::string color_text(const Color& color);
+/// Reads "#rrggbb"; nullopt for anything else.
+std::optional<Color> color_from_text(const std::string& text);
+
+}  // namespace exemplar

@@ -1,8 +1,10 @@
 #include "gpu/window/ui_renderer.h"
 
+#include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -52,12 +54,21 @@ VkRect2D scissor_of(const ImVec4& clip, const ImDrawData& interface, VkExtent2D 
 
 UiRenderer::UiRenderer(Device& device, VkFormat color, ImFontAtlas& fonts)
     : device_(device),
-      pipeline_(
-          device, shaders::window_interface_vert, shaders::window_interface_frag,
-          {.push_constants = layout_of<shared::InterfaceParameters>(),
-           .elements = {layout_of<std::uint32_t>(), layout_of<shared::InterfaceVertex>(), layout_of<std::uint32_t>()}},
-          {.color = color, .blends = true}) {
+      pipeline_(device, shaders::window_interface_vert, shaders::window_interface_frag,
+                {.push_constants = layout_of<shared::InterfaceParameters>(),
+                 .elements = {layout_of<std::uint32_t>(), layout_of<shared::InterfaceVertex>(),
+                              layout_of<std::uint32_t>(), layout_of<std::uint32_t>()}},
+                {.color = color, .blends = true}) {
     upload_atlas(fonts);
+    set_pictures(std::array{std::uint32_t{0xffffffff}}, 1, 1);
+}
+
+void UiRenderer::set_pictures(std::span<const std::uint32_t> texels, std::uint32_t width, std::uint32_t height) {
+    if (texels.empty() || texels.size() != std::size_t{width} * height)
+        throw UsageError(fmt::format("{} texels are no picture of {} x {}", texels.size(), width, height));
+    pictures_ = Buffer::of<std::uint32_t>(device_, texels);
+    picture_width_ = width;
+    picture_height_ = height;
 }
 
 void UiRenderer::upload_atlas(ImFontAtlas& fonts) {
@@ -100,9 +111,12 @@ void UiRenderer::record(Stream& stream, const ImDrawData& interface, VkImageView
         for (const ImDrawCmd& command : list.CmdBuffer) {
             const VkRect2D scissor = scissor_of(command.ClipRect, interface, extent);
             if (command.UserCallback || scissor.extent.width == 0 || scissor.extent.height == 0) continue;
+            const bool picture = reinterpret_cast<std::uintptr_t>(command.GetTexID()) == k_picture_texture;
+            parameters.picture_width = picture ? picture_width_ : 0;
+            parameters.picture_height = picture ? picture_height_ : 0;
             pass.draw(pipeline_,
                       {.vertices = command.ElemCount, .first_vertex = first + command.IdxOffset, .scissor = scissor},
-                      {indices_, vertices_, atlas_}, parameters);
+                      {indices_, vertices_, atlas_, pictures_}, parameters);
         }
         first += static_cast<std::uint32_t>(list.IdxBuffer.Size);
     }

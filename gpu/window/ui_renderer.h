@@ -3,6 +3,7 @@
 #include <volk.h>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "gpu/runtime/kernels/draw_pipeline.h"
@@ -15,12 +16,19 @@ struct ImFontAtlas;
 
 namespace exemplar {
 
-/// Draws the interface that Dear ImGui has laid out over an image. The font atlas is the only supported texture.
+/// The texture of images in the interface: the pictures of set_pictures(). Everything else uses the font atlas.
+constexpr std::uintptr_t k_picture_texture = 1;
+
+/// Draws the interface that Dear ImGui has laid out over an image.
 class UiRenderer {
   public:
     /// Builds the atlas from the fonts added to it, and uploads it. `color` is the format of the images that are
     /// drawn over.
     UiRenderer(Device& device, VkFormat color, ImFontAtlas& fonts);
+
+    /// Sets the pictures of k_picture_texture: RGBA texels, red lowest, row by row. Throws UsageError if they are not
+    /// width x height.
+    void set_pictures(std::span<const std::uint32_t> texels, std::uint32_t width, std::uint32_t height);
 
     /// Draws over `target`, which must be in the layout of a color attachment.
     void record(Stream& stream, const ImDrawData& interface, VkImageView target, VkExtent2D extent);
@@ -31,7 +39,8 @@ class UiRenderer {
     Device& device_;
     DrawPipeline pipeline_;
     shared::InterfaceParameters parameters_{};
-    Buffer atlas_, indices_, vertices_;
+    Buffer atlas_, pictures_, indices_, vertices_;
+    std::uint32_t picture_width_ = 1, picture_height_ = 1;
     // Kept between frames to avoid allocations.
     std::vector<std::uint32_t> index_values_;
     std::vector<shared::InterfaceVertex> vertex_values_;

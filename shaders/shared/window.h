@@ -11,6 +11,8 @@ struct InterfaceParameters {
     vec2 white;  // coordinates of an opaque place in the atlas
     uint atlas_width;
     uint atlas_height;
+    uint picture_width;   // of the pictures, in texels; 0: the font atlas is drawn
+    uint picture_height;
 };
 
 struct InterfaceVertex {
@@ -22,7 +24,7 @@ struct InterfaceVertex {
 };
 
 #ifdef __cplusplus
-EXEMPLAR_LAYOUT(InterfaceParameters, scale, offset, white, atlas_width, atlas_height)
+EXEMPLAR_LAYOUT(InterfaceParameters, scale, offset, white, atlas_width, atlas_height, picture_width, picture_height)
 EXEMPLAR_LAYOUT(InterfaceVertex, x, y, u, v, color)
 #endif
 

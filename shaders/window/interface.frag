@@ -2,11 +2,12 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/window.h"
 
-// Draws text and shapes of the interface: the color, with the opacity of the atlas.
+// Draws text and shapes of the interface: the color, with the opacity of the atlas. Or a part of the pictures, opaque.
 layout(push_constant) uniform Push { InterfaceParameters parameters; };
 // Per texel (x, y) the opacities at (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1), a byte each: all that is needed
 // to interpolate between their centers.
 layout(set = 0, binding = 2) uniform usamplerBuffer atlas;
+layout(set = 0, binding = 3, std430) readonly buffer Pictures { uint pictures[]; };  // RGBA, red lowest, row by row
 
 layout(location = 0) in vec2 place;
 layout(location = 1) in vec4 color;
@@ -23,7 +24,17 @@ float opacity() {
     return mix(mix(around.x, around.y, part.x), mix(around.z, around.w, part.x), part.y);
 }
 
+vec3 picture() {
+    const uvec2 size = uvec2(parameters.picture_width, parameters.picture_height);
+    const uvec2 texel = min(uvec2(max(place, vec2(0.0)) * vec2(size)), size - 1);
+    return unpackUnorm4x8(pictures[texel.y * size.x + texel.x]).rgb;
+}
+
 void main() {
+    if (parameters.picture_width > 0) {
+        premultiplied = vec4(picture() * color.rgb, 1.0);
+        return;
+    }
     const float alpha = color.a * opacity();
     premultiplied = vec4(color.rgb * alpha, alpha);
 }

@@ -3,18 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <tuple>
 
 namespace exemplar {
 namespace {
 
 TEST(Shortcuts, NoKeyDoesTwoThings) {
-    std::set<std::pair<int, bool>> keys;
+    std::set<std::tuple<int, bool, KeyMode>> keys;
     for (const Shortcut& shortcut : shortcuts())
-        EXPECT_TRUE(keys.emplace(shortcut.key, shortcut.control).second) << shortcut.keys;
+        EXPECT_TRUE(keys.emplace(shortcut.key, shortcut.control, shortcut.mode).second) << shortcut.keys;
 }
 
 TEST(Shortcuts, EveryActionHasAKeyThatIsShown) {
-    for (int action = 0; action <= static_cast<int>(Action::quit); ++action)
+    for (int action = 0; action <= static_cast<int>(Action::open_suggested); ++action)
         EXPECT_FALSE(keys_of(static_cast<Action>(action)).empty()) << action;
 }
 
@@ -22,9 +23,17 @@ TEST(Shortcuts, WhatIsShownIsWhatTheKeyDoes) {
     for (const Shortcut& shortcut : shortcuts()) {
         EXPECT_FALSE(shortcut.keys.empty());
         EXPECT_FALSE(shortcut.what.empty());
-        EXPECT_EQ(action_of(shortcut.key, shortcut.control), shortcut.action);
+        const bool painting = shortcut.mode == KeyMode::painting;
+        EXPECT_EQ(action_of(shortcut.key, shortcut.control, painting), shortcut.action);
         EXPECT_EQ(shortcut.keys.starts_with("Ctrl+"), shortcut.control) << shortcut.keys;
     }
+}
+
+TEST(Shortcuts, KeysOfPaintingComeFirstWhilePainting) {
+    EXPECT_EQ(action_of('1', false, true), Action::label_1);
+    EXPECT_EQ(action_of('1', false, false), Action::front);
+    EXPECT_EQ(action_of('F', false, true), Action::fit);
+    EXPECT_EQ(action_of('Z', true, false), std::nullopt);
 }
 
 TEST(Shortcuts, OtherKeysDoNothing) {

@@ -48,6 +48,33 @@ constexpr std::array k_shortcuts = {
     Shortcut{Action::help, GLFW_KEY_F1, false, "F1, H", "Show or hide this help"},
     Shortcut{Action::help, GLFW_KEY_H, false, "H", "Show or hide this help"},
     Shortcut{Action::quit, GLFW_KEY_Q, true, "Ctrl+Q", "Quit"},
+    Shortcut{Action::label_1, GLFW_KEY_1, false, "1", "Paint label 1", KeyMode::painting},
+    Shortcut{Action::label_2, GLFW_KEY_2, false, "2", "Paint label 2", KeyMode::painting},
+    Shortcut{Action::label_3, GLFW_KEY_3, false, "3", "Paint label 3", KeyMode::painting},
+    Shortcut{Action::label_4, GLFW_KEY_4, false, "4", "Paint label 4", KeyMode::painting},
+    Shortcut{Action::label_5, GLFW_KEY_5, false, "5", "Paint label 5", KeyMode::painting},
+    Shortcut{Action::label_6, GLFW_KEY_6, false, "6", "Paint label 6", KeyMode::painting},
+    Shortcut{Action::label_7, GLFW_KEY_7, false, "7", "Paint label 7", KeyMode::painting},
+    Shortcut{Action::label_8, GLFW_KEY_8, false, "8", "Paint label 8", KeyMode::painting},
+    Shortcut{Action::label_9, GLFW_KEY_9, false, "9", "Paint label 9", KeyMode::painting},
+    Shortcut{Action::undo, GLFW_KEY_Z, true, "Ctrl+Z", "Undo", KeyMode::painting},
+    Shortcut{Action::redo, GLFW_KEY_Y, true, "Ctrl+Y", "Redo", KeyMode::painting},
+    Shortcut{Action::brush, GLFW_KEY_B, false, "B", "Brush", KeyMode::painting},
+    Shortcut{Action::eraser, GLFW_KEY_E, false, "E", "Eraser", KeyMode::painting},
+    Shortcut{Action::lasso, GLFW_KEY_L, false, "L", "Lasso", KeyMode::painting},
+    Shortcut{Action::fill, GLFW_KEY_K, false, "K", "Fill a piece", KeyMode::painting},
+    Shortcut{Action::paint_mirror_image, GLFW_KEY_M, false, "M", "Paint the mirror image", KeyMode::painting},
+    Shortcut{Action::narrower_brush, GLFW_KEY_LEFT_BRACKET, false, "[", "Narrower brush", KeyMode::painting},
+    Shortcut{Action::wider_brush, GLFW_KEY_RIGHT_BRACKET, false, "]", "Wider brush", KeyMode::painting},
+    Shortcut{Action::paint_through, GLFW_KEY_T, false, "T", "Paint hidden faces, too", KeyMode::painting},
+    Shortcut{Action::show_confidence, GLFW_KEY_C, false, "C", "Show confidence", KeyMode::painting},
+    Shortcut{Action::uncertain_place, GLFW_KEY_N, false, "N", "Turn to the next uncertain place", KeyMode::painting},
+    Shortcut{Action::verify, GLFW_KEY_ENTER, false, "Enter", "Save these labels, open the next", KeyMode::painting},
+    Shortcut{Action::next_shape, GLFW_KEY_PAGE_DOWN, false, "Page down", "Open the next shape", KeyMode::painting},
+    Shortcut{Action::shape_grid, GLFW_KEY_TAB, false, "Tab", "Grid of suggested shapes", KeyMode::painting},
+    Shortcut{Action::accept_shape, GLFW_KEY_A, false, "A", "Accept the first of the grid", KeyMode::painting},
+    Shortcut{Action::reject_shape, GLFW_KEY_R, false, "R", "Reject the first of the grid", KeyMode::painting},
+    Shortcut{Action::open_suggested, GLFW_KEY_O, false, "O", "Open the first of the grid", KeyMode::painting},
 };
 
 constexpr std::array k_mouse_hints = {
@@ -58,20 +85,32 @@ constexpr std::array k_mouse_hints = {
     MouseHint{"Drop a file", "Open it: mesh, animation, model, labels or style"},
 };
 
+constexpr std::array k_painting_hints = {
+    MouseHint{"Left drag", "Paint"},
+    MouseHint{"Right drag", "Orbit"},
+    MouseHint{"Middle drag, or Shift and left", "Pan"},
+    MouseHint{"Wheel", "Zoom to the cursor"},
+};
+
 }  // namespace
 
 std::span<const Shortcut> shortcuts() {
     return k_shortcuts;
 }
 
-std::span<const MouseHint> mouse_hints() {
+std::span<const MouseHint> mouse_hints(bool painting) {
+    if (painting) return k_painting_hints;
     return k_mouse_hints;
 }
 
-std::optional<Action> action_of(int key, bool control) {
-    for (const Shortcut& shortcut : k_shortcuts)
-        if (shortcut.key == key && shortcut.control == control) return shortcut.action;
-    return std::nullopt;
+std::optional<Action> action_of(int key, bool control, bool painting) {
+    std::optional<Action> found;
+    for (const Shortcut& shortcut : k_shortcuts) {
+        if (shortcut.key != key || shortcut.control != control) continue;
+        if (shortcut.mode == KeyMode::painting && painting) return shortcut.action;
+        if (shortcut.mode == KeyMode::always && !found) found = shortcut.action;
+    }
+    return found;
 }
 
 std::string_view keys_of(Action action) {

@@ -44,8 +44,39 @@ enum class Action {
     panels,
     frame_times,
     help,
-    quit
+    quit,
+    // While labels are painted.
+    label_1,
+    label_2,
+    label_3,
+    label_4,
+    label_5,
+    label_6,
+    label_7,
+    label_8,
+    label_9,
+    undo,
+    redo,
+    brush,
+    eraser,
+    lasso,
+    fill,
+    paint_mirror_image,
+    narrower_brush,
+    wider_brush,
+    paint_through,
+    show_confidence,
+    uncertain_place,
+    verify,
+    next_shape,
+    shape_grid,
+    accept_shape,
+    reject_shape,
+    open_suggested
 };
+
+/// When a key has its action. Keys of painting come first while labels are painted.
+enum class KeyMode { always, painting };
 
 struct Shortcut {
     Action action;
@@ -53,17 +84,18 @@ struct Shortcut {
     bool control;
     std::string_view keys;  ///< as they are shown
     std::string_view what;
+    KeyMode mode = KeyMode::always;
 };
 
 /// All shortcuts, in the order they are shown. An action may have several, of which the first is shown.
 std::span<const Shortcut> shortcuts();
-/// The action of a key, if it has one.
-std::optional<Action> action_of(int key, bool control);
+/// The action of a key, if it has one. `painting`: labels are painted.
+std::optional<Action> action_of(int key, bool control, bool painting = false);
 /// Help on moving the camera, for the same panel: buttons or wheel, and what they do.
 struct MouseHint {
     std::string_view mouse, what;
 };
-std::span<const MouseHint> mouse_hints();
+std::span<const MouseHint> mouse_hints(bool painting = false);
 /// The keys of an action as they are shown; empty if there is none.
 std::string_view keys_of(Action action);
 

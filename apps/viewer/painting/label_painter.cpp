@@ -192,7 +192,7 @@ std::size_t LabelPainter::unlabeled_count() const {
 
 std::vector<Color> LabelPainter::face_colors(std::span<const PaletteEntry> palette,
                                              const PaintSettings& settings) const {
-    constexpr Color k_paper{245, 244, 240};
+    constexpr Color k_paper{245, 244, 240}, k_clay{206, 204, 198};
     constexpr float k_completed = 0.35F;  // how pale what is not painted is
     std::vector<Color> colors;
     colors.reserve(shown_.face_count());
@@ -201,9 +201,9 @@ std::vector<Color> LabelPainter::face_colors(std::span<const PaletteEntry> palet
         const std::int32_t label = label_[face];
         Color color = label >= 0 && static_cast<std::size_t>(label) < palette.size()
                           ? palette[static_cast<std::size_t>(label)].color
-                          : k_unlabeled_color;
+                          : k_clay;
         if (label >= 0 && settings.confidence)
-            color = mixed(k_unlabeled_color, color, std::clamp(2 * confidence_[face] - 1, 0.0F, 1.0F));
+            color = mixed(k_clay, color, std::clamp(2 * confidence_[face] - 1, 0.0F, 1.0F));
         const bool painted = painted_.labels()[face] >= 0;
         colors.push_back(label >= 0 && !painted ? mixed(color, k_paper, k_completed) : color);
     }

@@ -168,7 +168,7 @@ void LabelingSession::collect(ShapeResult result) {
     SessionShape& shape = shapes_[result.shape];
     if (result.thumbnail) {
         shape.thumbnail = std::move(result.thumbnail);
-        shape.thumbnail_version = ++thumbnail_version_;
+        ++thumbnail_version_;
     }
     if (result.descriptor) shape.descriptor = std::move(result.descriptor);
     if (result.uncertainty) {

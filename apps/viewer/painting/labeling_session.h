@@ -20,7 +20,6 @@ enum class ShapeState { empty, suggested, verified, broken };
 /// A shape of the folder with what the background work found out.
 struct SessionShape {
     std::optional<Image> thumbnail;
-    std::uint64_t thumbnail_version = 0;  ///< changes with the thumbnail
     std::optional<ShapeDescriptor> descriptor;
     std::optional<float> uncertainty;
     std::vector<std::int32_t> suggestion;  ///< per face of the file; empty: none
@@ -51,6 +50,8 @@ class LabelingSession {
     const LabelingFolder& folder() const { return folder_; }
     const SessionShape& shape_info(std::size_t shape) const { return shapes_[shape]; }
     ShapeState state_of(std::size_t shape) const;
+    /// Changes when a thumbnail does.
+    std::uint64_t thumbnail_version() const { return thumbnail_version_; }
     /// Returns suggested shapes that are not verified, most certain first.
     std::vector<std::size_t> to_verify() const;
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "apps/viewer/scene/viewer_state.h"
 #include "host/core/errors.h"
 #include "host/labeling/features/feature_cache.h"
@@ -71,6 +73,54 @@ void ViewerState::try_labeling(const std::function<void()>& edit) {
     } catch (const Error& error) {
         messages.error(error.what());
     }
+}
+
+// Undo, redo and mirror image: the strokes are kept in a file after each.
+void ViewerState::edit_strokes(Action action) {
+    LabelPainter& painter = labeling->painter();
+    if (action == Action::undo) painter.undo();
+    if (action == Action::redo) painter.redo();
+    if (action == Action::paint_mirror_image && painter.mirror() == 0)
+        messages.remark("Nothing to mirror: this shape has no plane of symmetry, or both sides are painted");
+    labeling->keep_strokes();
+}
+
+// Accepts, rejects or opens the first shape of the grid, while it is shown.
+void ViewerState::check_first_suggestion(Action action, ViewSize view) {
+    const std::vector<std::size_t> shapes = labeling->to_verify();
+    if (!show_grid || shapes.empty()) return;
+    if (action == Action::accept_shape) labeling->accept(shapes.front());
+    if (action == Action::reject_shape) labeling->reject(shapes.front());
+    if (action == Action::open_suggested) open_shape(shapes.front(), view);
+}
+
+void ViewerState::perform_labeling(Action action, ViewSize view) {
+    constexpr float k_wider = 1.25F;
+    PaintSettings& paint = labeling->settings;
+    ++labeling->settings_version;
+    if (action >= Action::label_1 && action <= Action::label_9) {
+        const auto label = static_cast<std::size_t>(action) - static_cast<std::size_t>(Action::label_1);
+        if (label < labeling->palette().size()) paint.label = static_cast<std::int32_t>(label);
+        if (paint.tool == PaintTool::eraser) paint.tool = PaintTool::brush;
+    }
+    if (action == Action::undo || action == Action::redo || action == Action::paint_mirror_image) edit_strokes(action);
+    if (action == Action::brush) paint.tool = PaintTool::brush;
+    if (action == Action::eraser) paint.tool = PaintTool::eraser;
+    if (action == Action::lasso) paint.tool = PaintTool::lasso;
+    if (action == Action::fill) paint.tool = PaintTool::fill;
+    if (action == Action::wider_brush) paint.radius = std::min(paint.radius * k_wider, 200.0F);
+    if (action == Action::narrower_brush) paint.radius = std::max(paint.radius / k_wider, 1.0F);
+    if (action == Action::paint_through) paint.through = !paint.through;
+    if (action == Action::show_confidence) paint.confidence = !paint.confidence;
+    if (action == Action::uncertain_place) show_uncertain_place();
+    if (action == Action::verify) verify_shape(view);
+    if (action == Action::shape_grid) {
+        show_grid = !show_grid;
+        if (!show_grid) labeling->learn();  // from what was accepted
+    }
+    if (action >= Action::accept_shape) try_labeling([&] { check_first_suggestion(action, view); });
+    if (action == Action::next_shape)
+        if (const auto next = labeling->next_shape()) try_labeling([&] { open_shape(*next, view); });
 }
 
 void ViewerState::verify_shape(ViewSize view) {

@@ -143,7 +143,7 @@ SurfaceShape ViewerState::shape() const {
     return shape;
 }
 
-// One switch over all actions, so that the compiler tells of one that is missing.
+// One switch over all actions but those of painting.
 // NOLINTNEXTLINE(readability-function-size)
 bool ViewerState::perform(Action action, ViewSize view) {
     constexpr float k_turn = 0.15f, k_zoom = 1.15f, k_faster = 1.25f;
@@ -253,6 +253,9 @@ bool ViewerState::perform(Action action, ViewSize view) {
         case Action::save_model:
         case Action::quit:
             break;
+        default:  // those of painting
+            if (labeling) perform_labeling(action, view);
+            return true;
     }
     return false;
 }

@@ -101,6 +101,9 @@ class ViewerState {
     void open_labels(const std::filesystem::path& path);
     void show_document(std::unique_ptr<Document> document, ViewSize view);
     void show_labels();
+    void perform_labeling(Action action, ViewSize view);
+    void edit_strokes(Action action);
+    void check_first_suggestion(Action action, ViewSize view);
     std::unique_ptr<Document> document_;  // scenes refer to it
     std::uint64_t document_version_ = 0, model_version_ = 0;
     std::size_t clip_ = 0;

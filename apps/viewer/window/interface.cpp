@@ -113,10 +113,12 @@ InterfaceRequests Interface::lay_out(ViewerState& state, VkExtent2D pixels) {
     find_view(state, pixels);
     move_camera(state);
     InterfaceRequests requests;
+    follow_brush(state, requests);
     const ImGuiIO& io = ImGui::GetIO();
     const PanelSizes sizes = panel_sizes(state, io.DisplaySize.x, io.DisplaySize.y, scale_);
     if (sizes.side > 0) draw_side_panel(state, sizes, path_, requests);
     if (sizes.bottom > 0) draw_playback_bar(state, sizes, requests);
+    if (state.labeling && state.show_grid) draw_shape_grid(state, view_, requests);
     draw_messages(state, view_, scale_);
     draw_view_captions(state, view_);
     if (state.show_help) draw_help(state, view_, scale_);
@@ -138,13 +140,40 @@ void Interface::move_camera(ViewerState& state) const {
     };
     if (!ImGui::IsMousePosValid()) return;
     const Vec2 to = inside(io.MousePos), from = to - Vec2(io.MouseDelta.x, io.MouseDelta.y);
-    const bool pans = io.MouseDown[1] || io.MouseDown[2] || (io.MouseDown[0] && io.KeyShift);
+    const bool paints = state.labeling != nullptr;  // with the left button
+    const bool pans = (io.MouseDown[1] && !paints) || io.MouseDown[2] || (io.MouseDown[0] && io.KeyShift);
     if (pans)
         state.camera.pan(from, to, size);
-    else if (io.MouseDown[0] && from != to)
+    else if (io.MouseDown[paints ? 1 : 0] && from != to)
         state.camera.orbit(from, to, size);
     if (io.MouseWheel != 0) state.camera.zoom(std::pow(1.12f, io.MouseWheel), to, size);
-    if (io.MouseDoubleClicked[0]) state.fit(size);
+    if (io.MouseDoubleClicked[0] && !paints) state.fit(size);
+}
+
+// Turns the left button's movements into strokes, and draws the brush.
+void Interface::follow_brush(const ViewerState& state, InterfaceRequests& requests) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (!state.labeling || state.show_grid || !ImGui::IsMousePosValid()) {
+        painting_ = false;
+        return;
+    }
+    const Vec2 unit(io.MousePos.x, io.MousePos.y);
+    const Vec2 at((unit.x() - view_.left) * io.DisplayFramebufferScale.x,
+                  (unit.y() - view_.top) * io.DisplayFramebufferScale.y);
+    if (io.MouseClicked[0] && !io.WantCaptureMouse && !io.KeyShift) {
+        painting_ = true;
+        outline_.clear();
+        requests.paint.push_back({PaintEvent::Kind::press, at});
+    } else if (painting_ && io.MouseDown[0]) {
+        requests.paint.push_back({PaintEvent::Kind::drag, at});
+    }
+    if (painting_) outline_.push_back(unit);
+    if (painting_ && !io.MouseDown[0]) {
+        painting_ = false;
+        requests.paint.push_back({PaintEvent::Kind::drag, at});
+        requests.paint.push_back({PaintEvent::Kind::release, at});
+    }
+    if (!io.WantCaptureMouse) draw_brush(*state.labeling, unit, painting_ ? std::span(outline_) : std::span<Vec2>());
 }
 
 }  // namespace exemplar

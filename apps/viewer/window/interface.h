@@ -15,10 +15,18 @@ struct ImFontAtlas;
 
 namespace exemplar {
 
+/// A movement of the mouse that paints, in pixels of the view.
+struct PaintEvent {
+    enum class Kind { press, drag, release } kind;
+    Vec2 at;
+};
+
 /// Requests of panels to the program, beyond their changes of its state.
 struct InterfaceRequests {
     std::vector<Action> actions;
     std::vector<std::filesystem::path> open;
+    std::vector<PaintEvent> paint;
+    std::optional<std::size_t> shape;  ///< to open, of the folder that is being labeled
 };
 
 /// The area that shows the surface: in units of the window, and in pixels.
@@ -45,8 +53,11 @@ class Interface {
   private:
     void find_view(const ViewerState& state, VkExtent2D pixels);
     void move_camera(ViewerState& state) const;
+    void follow_brush(const ViewerState& state, InterfaceRequests& requests);
     float scale_;
-    std::string path_;  // text being typed
+    std::string path_;           // text being typed
+    bool painting_ = false;      // a stroke is being drawn
+    std::vector<Vec2> outline_;  // of a lasso, in units of the window
     ViewArea view_;
 };
 

@@ -80,9 +80,11 @@ void draw_side_panel(ViewerState& state, const PanelSizes& sizes, std::string& p
     draw_file(state, path, requests);
     if (state.has_document()) {
         ImGui::Spacing();
-        if (ImGui::CollapsingHeader("Look", ImGuiTreeNodeFlags_DefaultOpen)) draw_look(state);
-        if (ImGui::CollapsingHeader("Lines", ImGuiTreeNodeFlags_DefaultOpen)) draw_lines(state);
-        if (ImGui::CollapsingHeader("Curvature", ImGuiTreeNodeFlags_DefaultOpen)) draw_curvature(state, requests);
+        if (state.labeling) draw_labeling(state, requests);
+        const ImGuiTreeNodeFlags open = state.labeling ? 0 : ImGuiTreeNodeFlags_DefaultOpen;
+        if (ImGui::CollapsingHeader("Look", open)) draw_look(state);
+        if (ImGui::CollapsingHeader("Lines", open)) draw_lines(state);
+        if (ImGui::CollapsingHeader("Curvature", open)) draw_curvature(state, requests);
         if (ImGui::CollapsingHeader("Hatching", state.hatching() ? ImGuiTreeNodeFlags_DefaultOpen : 0))
             draw_hatching(state, requests);
         if (state.document().animation.has_rig() && ImGui::CollapsingHeader("Pose")) draw_pose(state);
@@ -168,7 +170,7 @@ void draw_help(ViewerState& state, const ViewArea& view, float scale) {
                  ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoMove);
     if (ImGui::BeginTable("mouse", 2)) {
-        for (const MouseHint& hint : mouse_hints()) {
+        for (const MouseHint& hint : mouse_hints(state.labeling != nullptr)) {
             ImGui::TableNextColumn();
             ImGui::TextUnformatted(hint.mouse.data(), hint.mouse.data() + hint.mouse.size());
             ImGui::TableNextColumn();
@@ -179,7 +181,9 @@ void draw_help(ViewerState& state, const ViewArea& view, float scale) {
     ImGui::Separator();
     if (ImGui::BeginTable("keys", 4)) {
         for (const Shortcut& shortcut : shortcuts()) {
-            if (keys_of(shortcut.action) != shortcut.keys) continue;
+            const bool shown = state.labeling ? action_of(shortcut.key, shortcut.control, true) == shortcut.action
+                                              : shortcut.mode == KeyMode::always;
+            if (!shown || keys_of(shortcut.action) != shortcut.keys) continue;
             ImGui::TableNextColumn();
             ImGui::TextUnformatted(shortcut.keys.data(), shortcut.keys.data() + shortcut.keys.size());
             ImGui::TableNextColumn();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "apps/viewer/window/interface.h"
@@ -24,7 +25,14 @@ void draw_messages(ViewerState& state, const ViewArea& view, float scale);
 void draw_view_captions(const ViewerState& state, const ViewArea& view);
 void draw_help(ViewerState& state, const ViewArea& view, float scale);
 
+/// Draws the thumbnails of suggested shapes, to accept or reject them.
+void draw_shape_grid(ViewerState& state, const ViewArea& view, InterfaceRequests& requests);
+/// Draws the outline of the brush at the mouse, or of the lasso so far; places are in units of the window.
+void draw_brush(const LabelingSession& session, const Vec2& mouse, std::span<const Vec2> outline);
+
 // Parts of the side panel.
+
+void draw_labeling(ViewerState& state, InterfaceRequests& requests);
 
 /// A swatch that opens a color picker; "##name" has no label. Returns whether the color was changed.
 bool edit_color(const char* label, Color& color);

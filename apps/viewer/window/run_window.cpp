@@ -7,10 +7,12 @@
 #include <functional>
 #include <vector>
 
+#include "apps/viewer/painting/paint_gesture.h"
 #include "apps/viewer/scene/frame_renderer.h"
 #include "apps/viewer/scene/options.h"
 #include "apps/viewer/window/interface.h"
 #include "apps/viewer/window/save_svg.h"
+#include "apps/viewer/window/thumbnails.h"
 #include "apps/viewer/window/window.h"
 #include "gpu/runtime/device/errors.h"
 #include "gpu/window/swapchain.h"
@@ -66,6 +68,10 @@ class Session {
     /// `fails`: for tests, whether drawing fails.
     bool draw(ViewerState& state, InterfaceRequests& requests, bool fails);
     Image picture() { return renderer_.read(); }
+    /// Returns the faces that the view shows.
+    const FacePicture& faces(const ViewerState& state) {
+        return renderer_.face_picture(state, interface_.view().size());
+    }
     Device& device() { return device_; }
 
   private:
@@ -78,6 +84,7 @@ class Session {
     Swapchain swapchain_;
     UiRenderer interface_renderer_;
     FrameRenderer renderer_;
+    ThumbnailStrip thumbnails_;
 };
 
 // Closes a document that the device cannot show, with a message; keeps it if the device was lost.
@@ -111,6 +118,7 @@ void Session::record_scene(const ViewerState& state, bool fails) {
 bool Session::draw(ViewerState& state, InterfaceRequests& requests, bool fails) {
     const std::optional<WindowImage> image = swapchain_.acquire(window_.pixels());
     if (!image) return false;
+    if (state.labeling) thumbnails_.follow(*state.labeling, interface_renderer_);
     requests = interface_.lay_out(state, image->extent);
     follow(state);
     record_scene(state, fails);
@@ -153,6 +161,7 @@ class Viewer {
     void save(const std::string& extension, const std::function<void(const std::filesystem::path&)>& write);
     void perform(Action action, Session& session);
     void start_hatching();
+    void paint(const InterfaceRequests& requests, Session& session);
     void open(const std::filesystem::path& path);
     void set_title();
     bool ended() const {
@@ -165,6 +174,7 @@ class Viewer {
     Interface interface_;
     ViewerState state_;
     std::size_t frames_ = 0;
+    PaintGesture gesture_;
     int restless_ = k_settling_frames;
     bool fitted_ = false, lost_ = false, failed_ = false;
 };
@@ -187,7 +197,8 @@ void Viewer::open(const std::filesystem::path& path) {
 void Viewer::wait_for_work() {
     constexpr double k_idle_seconds = 0.5, k_progress_seconds = 0.1;
     const bool busy = (state_.playback.playing() && state_.playback.frame_count() > 1) || options_.frames > 0;
-    const bool works = state_.training || state_.hatching_job;
+    const bool labels = state_.labeling && (state_.labeling->job() || state_.labeling->painter().busy());
+    const bool works = state_.training || state_.hatching_job || labels;
     const bool waits = !busy && restless_ <= 0;
     const bool event = waits ? window_.wait(works ? k_progress_seconds : k_idle_seconds) : window_.poll();
     if (event) restless_ = k_settling_frames;
@@ -231,7 +242,25 @@ void Viewer::perform(Action action, Session& session) {
         save(".safetensors", [&](const std::filesystem::path& path) { save_curvature_model(path, *state_.model()); });
     } else {
         state_.perform(action, interface_.view().size());
+        if (state_.labeling) set_title();
     }
+}
+
+// Paints along the mouse, and opens the shape that was chosen.
+void Viewer::paint(const InterfaceRequests& requests, Session& session) {
+    if (!state_.labeling) return;
+    for (const PaintEvent& event : requests.paint) {
+        restless_ = k_settling_frames;
+        state_.try_labeling([&] {
+            const FacePicture& faces = session.faces(state_);
+            if (event.kind == PaintEvent::Kind::press) gesture_.press(*state_.labeling, faces, event.at);
+            if (event.kind == PaintEvent::Kind::drag) gesture_.drag(*state_.labeling, faces, event.at);
+            if (event.kind == PaintEvent::Kind::release) gesture_.release(*state_.labeling, faces);
+        });
+    }
+    if (!requests.shape) return;
+    state_.try_labeling([&] { state_.open_shape(*requests.shape, interface_.view().size()); });
+    set_title();
 }
 
 void Viewer::run_session(Session& session) {
@@ -243,6 +272,8 @@ void Viewer::run_session(Session& session) {
         state_.messages.advance(seconds);
         state_.collect_training();
         state_.collect_hatching();
+        if (state_.collect_labeling()) restless_ = k_settling_frames;
+        window_.set_painting(state_.labeling != nullptr);
         for (const std::filesystem::path& path : window_.take_drops()) open(path);
         InterfaceRequests requests;
         if (!session.draw(state_, requests, options_.failing_frame == frames_ && !std::exchange(failed_, true))) {
@@ -258,6 +289,7 @@ void Viewer::run_session(Session& session) {
         if (options_.losing_frame == frames_ && !std::exchange(lost_, true))
             throw DeviceLostError("the device was lost, as the command line asked for");
         for (const std::filesystem::path& path : requests.open) open(path);
+        paint(requests, session);
         for (const Action action : requests.actions) perform(action, session);
         for (const Action action : window_.take_actions()) perform(action, session);
         // Fits only now that the size of the panels is known.

@@ -21,8 +21,10 @@ std::string last_error() {
 
 // Returns whether an action repeats while its key is held.
 bool repeats(Action action) {
-    return action == Action::next_frame || action == Action::previous_frame || action == Action::faster ||
-           action == Action::slower || (action >= Action::turn_left && action <= Action::zoom_out);
+    return action == Action::undo || action == Action::redo || action == Action::narrower_brush ||
+           action == Action::wider_brush || action == Action::next_frame || action == Action::previous_frame ||
+           action == Action::faster || action == Action::slower ||
+           (action >= Action::turn_left && action <= Action::zoom_out);
 }
 
 }  // namespace
@@ -73,7 +75,7 @@ void Window::listen() {
 void Window::on_key(int key, int event, int modifiers) {
     had_event_ = true;
     if (event == GLFW_RELEASE || ImGui::GetIO().WantTextInput || (modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER))) return;
-    const std::optional<Action> action = action_of(key, (modifiers & GLFW_MOD_CONTROL) != 0);
+    const std::optional<Action> action = action_of(key, (modifiers & GLFW_MOD_CONTROL) != 0, painting_);
     if (action && (event == GLFW_PRESS || repeats(*action))) actions_.push_back(*action);
 }
 

@@ -40,6 +40,8 @@ class Window {
     bool wait(double seconds);
     /// Return the actions of keys, and the dropped files, since the last call.
     std::vector<Action> take_actions();
+    /// Sets whether keys are those of painting.
+    void set_painting(bool painting) { painting_ = painting; }
     std::vector<std::filesystem::path> take_drops();
 
     GLFWwindow* handle() const { return window_; }
@@ -49,6 +51,7 @@ class Window {
     void listen();
     void on_key(int key, int event, int modifiers);
     GLFWwindow* window_ = nullptr;
+    bool painting_ = false;
     bool had_event_ = true;
     std::vector<Action> actions_;
     std::vector<std::filesystem::path> drops_;

@@ -31,7 +31,8 @@ std::optional<fs::file_time_type> time_of(const fs::path& path) {
 std::vector<PaletteEntry> read_palette(const fs::path& path) {
     std::vector<PaletteEntry> palette;
     try {
-        for (const nlohmann::json& entry : nlohmann::json::parse(read_file(path)).at("labels")) {
+        const nlohmann::json json = nlohmann::json::parse(read_file(path));
+        for (const nlohmann::json& entry : json.at("labels")) {
             const std::optional<Color> color = color_from_text(entry.value("color", std::string()));
             palette.push_back(
                 {checked_label_name(entry.at("name").get<std::string>()), color.value_or(label_color(palette.size()))});

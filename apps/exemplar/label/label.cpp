@@ -18,6 +18,7 @@ void add_label_command(Command& app) {
     add_batch_command(*command);
     add_evaluate_command(*command);
     add_stress_command(*command);
+    add_next_command(*command);
     add_simulate_command(*command);
 }
 

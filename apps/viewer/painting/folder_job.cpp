@@ -10,8 +10,8 @@
 #include "host/data/corpus.h"
 #include "host/imaging/raster.h"
 #include "host/labeling/features/fast_context.h"
-#include "host/labeling/features/feature_cache.h"
 #include "host/labeling/inference/mesh_labeling.h"
+#include "host/labeling/painting/folder_learning.h"
 #include "host/labeling/painting/suggestions.h"
 #include "host/mesh/io/io.h"
 
@@ -169,24 +169,10 @@ void FolderJob::describe_shapes() {
 }
 
 std::shared_ptr<const LabelingModel> FolderJob::train() {
-    std::vector<std::filesystem::path> paths;
-    for (const FolderShape& shape : work_.shapes)
-        if (shape.verified) paths.push_back(shape.path);
-    if (paths.size() > k_max_training_shapes)
-        paths.erase(paths.begin(), paths.end() - static_cast<std::ptrdiff_t>(k_max_training_shapes));
-    if (paths.empty()) return nullptr;
     set_status("reading verified shapes", 0, 1);
-    const LabeledCorpus corpus = working_corpus(without_unused_labels(load_corpus(paths)));
-    if (corpus.names.size() < 2) return nullptr;
-    std::vector<MeshFeatures> features;
-    features.reserve(corpus.meshes.size());
-    for (const LabeledMesh& mesh : corpus.meshes)
-        features.push_back(cached_features(mesh.mesh, suggestion_training().features, work_.cache));
     HostBackend backend;
-    TrainReport report;
-    auto model = std::make_shared<const LabelingModel>(
-        train_labeling(corpus, features, suggestion_training(), backend.operations(), report));
-    if (!work_.model_file.empty()) save_model(work_.model_file, *model);
+    std::shared_ptr<const LabelingModel> model = learn_from_verified(work_.shapes, work_.cache, backend.operations());
+    if (model && !work_.model_file.empty()) save_model(work_.model_file, *model);
     return model;
 }
 
@@ -199,21 +185,10 @@ void FolderJob::suggest(const LabelingModel& model) {
         if (work_.shapes[s].verified) continue;
         ShapeResult result{.shape = s};
         try {
-            const TriangleMesh mesh = read_mesh(work_.shapes[s].path).mesh;
-            WorkingFeatures working = working_features(model.feature_options, mesh, work_.cache);
-            MeshFeatures* const one = &working.features;
-            const Suggestion suggestion =
-                std::move(suggest_labels(model, std::span(&one, 1), names, backend.operations()).front());
-            result.uncertainty =
-                std::max(uncertainty_of(working.features.face_area, suggestion.labels.confidence), 1e-3F);
-            std::vector<std::int32_t> triangle_label;
-            std::vector<float> triangle_confidence;
-            for (const std::uint32_t face : working.face_of) {
-                triangle_label.push_back(suggestion.labels.label[face]);
-                triangle_confidence.push_back(suggestion.labels.confidence[face]);
-            }
-            result.label = to_source_faces(mesh, triangle_label);
-            result.thumbnail = draw_thumbnail(mesh, result.label, triangle_confidence, work_.palette);
+            SuggestedShape shape = suggest_shape(model, work_.shapes[s].path, names, work_.cache, backend.operations());
+            result.thumbnail = draw_thumbnail(shape.mesh, shape.label, shape.confidence, work_.palette);
+            result.uncertainty = shape.uncertainty;
+            result.label = std::move(shape.label);
         } catch (const Interrupted&) {
             throw;
         } catch (const Error& error) {

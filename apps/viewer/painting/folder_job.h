@@ -40,8 +40,6 @@ struct FolderWork {
 class FolderJob final : public BackgroundJob<std::shared_ptr<const LabelingModel>> {
   public:
     static constexpr int k_thumbnail_width = 144, k_thumbnail_height = 108;  ///< pixels
-    /// Training takes the shapes that were verified last, at most so many: more would take minutes.
-    static constexpr std::size_t k_max_training_shapes = 24;
 
     explicit FolderJob(FolderWork work);
     ~FolderJob();

@@ -26,7 +26,7 @@ struct EvaluateCommand {
     fs::path cache = default_feature_folder();
     std::string protocol;
     std::optional<std::size_t> splits;
-    bool fresh = false;
+    bool fresh = false, curve = false;
     TrainOptions train;
 };
 
@@ -208,7 +208,10 @@ void run_label_evaluate(const EvaluateCommand& options) {
     const fs::path out = scratch ? scratch->path() : options.out;
     DeviceBackend backend(options.common.device);
     EvaluationRun run(backend, options.train, usable_cache(options.cache, options.common.quiet), out,
-                      {.quiet = options.common.quiet, .fresh = options.fresh, .report = options.report});
+                      {.quiet = options.common.quiet,
+                       .fresh = options.fresh,
+                       .learning_curve = options.curve,
+                       .report = options.report});
     const nlohmann::json report = run.evaluate(tasks, protocol_name(options), "Mesh labeling on unseen shapes");
 
     print_evaluation(report);
@@ -272,6 +275,9 @@ void add_evaluate_command(Command& label) {
     command->add_option("--report", options->report, "folder for the page; without --out nothing else is kept")
         ->type_name("FOLDER");
     command->add_flag("--fresh", options->fresh, "start over instead of going on from what is in --out");
+    command->add_flag("--curve", options->curve,
+                      "also measure the rate against the number of training meshes, what three more would gain, and "
+                      "which mesh to label next");
     add_training_options(*command, options->train, options->cache);
     add_device_option(*command, options->common);
     add_common_options(*command, options->common);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "apps/exemplar/label/evaluation_summary.h"
+#include "apps/exemplar/label/learning_run.h"
 
 namespace exemplar {
 namespace {
@@ -117,6 +118,8 @@ ReportData report_group(const Json& category) {
     for (const Rate& rate : evaluation_rates().first(3))
         if (const double value = rate_of(category, rate.key); !std::isnan(value))
             group.summary.emplace_back(rate.title, fmt::format("{:.1f} %", 100 * value));
+    if (splits[0].contains("learning_curve"))
+        group.summary.emplace_back("Learning curve", learning_curve_text(splits[0]["learning_curve"]));
     return group;
 }
 

@@ -11,6 +11,7 @@
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/label/evaluation_page.h"
 #include "apps/exemplar/label/labeled_output.h"
+#include "apps/exemplar/label/learning_run.h"
 #include "apps/exemplar/label/thesis_rates.h"
 #include "apps/report/report_page.h"
 #include "host/core/errors.h"
@@ -288,6 +289,10 @@ Json EvaluationRun::run_task(const EvaluationTask& task, Progress& progress) {
         result["meshes"].push_back(test_mesh(task, mesh, folder, model, key));
         result["meshes"].back().erase("key");
         progress.advance(1, task.category + "/" + mesh.stem().string());
+    }
+    if (behavior_.learning_curve) {
+        result["learning_curve"] = learning_curve_of(task, backend_, cache_, train_.seed);
+        if (!behavior_.quiet) fmt::print("{}: {}\n", task.category, learning_curve_text(result["learning_curve"]));
     }
     if (task.other_category) result["shared_labels"] = shared_labels(model, result["meshes"]);
     return result;

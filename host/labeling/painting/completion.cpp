@@ -18,6 +18,17 @@ namespace {
 constexpr float k_far = std::numeric_limits<float>::infinity();
 constexpr float k_painted_cost = 1e4F;
 
+/// Scores labels by the ratio of their distances alone, as long as there are no features: the nearest wins.
+void score_by_distance(const std::vector<std::vector<float>>& distance, std::size_t face, std::span<float> score) {
+    constexpr float k_ratio_weight = 4, k_least = 0.02F;
+    float nearest = k_far;
+    for (const auto& of_label : distance)
+        if (!of_label.empty()) nearest = std::min(nearest, of_label[face]);
+    if (nearest == k_far) return;
+    for (std::size_t c = 0; c < score.size(); ++c)
+        if (!distance[c].empty()) score[c] = -k_ratio_weight * distance[c][face] / (nearest + k_least);
+}
+
 /// Turns scores into probabilities, in place. Each label that has a finite score gets a part of `floor`.
 void softmax_with_floor(std::span<float> score, float floor) {
     const float highest = *std::max_element(score.begin(), score.end());
@@ -139,6 +150,7 @@ std::vector<float> LabelCompletion::probabilities(std::span<const std::int32_t> 
                 else
                     score[c] = known[c] ? options_.nearness * near - options_.likeness * unlike : -k_far;
             }
+            if (alike.empty() && !model) score_by_distance(distance, f, score);
             softmax_with_floor(score, options_.outlier);
         }
     });

@@ -30,7 +30,7 @@ struct CompletionOptions {
     float nearness = 3;
     float reach = 0.25F;  ///< of the nearness, in square roots of the surface's area
     float concave_length = 4;
-    double lambda = 0.5, mu = 0.1;
+    double lambda = 0.15, mu = 0.05;
     float outlier = 0.02F;
     float correction = 10;
 };

@@ -52,13 +52,15 @@ std::vector<WaitingShape> describe_folder(const LabelingFolder& folder, const La
         try {
             WaitingShape waiting;
             waiting.path = shape.path;
-            waiting.descriptor =
-                cached_shape_descriptor(read_mesh(shape.path).mesh, suggestion_training().features, cache);
-            if (shape.verified)
-                waiting.uncertainty = 0;
-            else if (model) {
-                waiting.uncertainty = suggest_shape(*model, shape.path, palette, cache, backend).uncertainty;
+            if (model && !shape.verified) {
+                SuggestedShape suggested = suggest_shape(*model, shape.path, palette, cache, backend);
+                waiting.uncertainty = suggested.uncertainty;
+                waiting.descriptor = std::move(suggested.descriptor);
                 waiting.suggested = true;
+            } else {
+                waiting.descriptor =
+                    cached_shape_descriptor(read_mesh(shape.path).mesh, suggestion_training().features, cache);
+                if (shape.verified) waiting.uncertainty = 0;
             }
             shapes.push_back(std::move(waiting));
         } catch (const MeshError& error) {

@@ -77,7 +77,7 @@ class CompletionWorker {
     std::optional<CompletedLabels> suggestion_;
     std::string error_;
     std::unique_ptr<MeshCompletion> completion_;  ///< made by the thread
-    std::thread feature_thread_, thread_;  ///< in this order, as the second starts the first
+    std::thread feature_thread_, thread_;         ///< in this order, as the second starts the first
 };
 
 }  // namespace exemplar

@@ -125,9 +125,9 @@ std::shared_ptr<const LabelingModel> FolderJob::run() {
         canceled_flag(),
         [&] {
             if (work_.draws_thumbnails) draw_thumbnails();
-            describe_shapes();
             model = train();
             if (model) suggest(*model);
+            describe_shapes(model != nullptr);
         },
         LoopThreads::this_thread);
     return model;
@@ -151,11 +151,12 @@ void FolderJob::draw_thumbnails() {
     }
 }
 
-void FolderJob::describe_shapes() {
+// Suggestions have described the shapes that are not verified.
+void FolderJob::describe_shapes(bool only_verified) {
     for (std::size_t s = 0; s < work_.shapes.size(); ++s) {
         check_interrupt();
         set_status("measuring shapes", s, work_.shapes.size());
-        if (work_.described[s]) continue;
+        if (work_.described[s] || (only_verified && !work_.shapes[s].verified)) continue;
         try {
             const TriangleMesh mesh = read_mesh(work_.shapes[s].path).mesh;
             const WorkingFeatures features = working_features(suggestion_training().features, mesh, work_.cache);
@@ -188,6 +189,7 @@ void FolderJob::suggest(const LabelingModel& model) {
             SuggestedShape shape = suggest_shape(model, work_.shapes[s].path, names, work_.cache, backend.operations());
             result.thumbnail = draw_thumbnail(shape.mesh, shape.label, shape.confidence, work_.palette);
             result.uncertainty = shape.uncertainty;
+            result.descriptor = std::move(shape.descriptor);
             result.label = std::move(shape.label);
         } catch (const Interrupted&) {
             throw;

@@ -35,8 +35,9 @@ struct FolderWork {
 };
 
 /// Learns from the verified shapes of a folder and labels the others, in the background, on one core and at low
-/// priority, so that painting goes on. First draws all thumbnails, then computes features, then trains, then labels.
-/// The result is the model; null if there is nothing to learn from yet. The model is also written to a file.
+/// priority, so that painting goes on. First draws all thumbnails, then trains, then labels. Without a model it
+/// measures the shapes all the same, for their order. The result is the model; null if there is nothing to learn from
+/// yet. The model is also written to a file.
 class FolderJob final : public BackgroundJob<std::shared_ptr<const LabelingModel>> {
   public:
     static constexpr int k_thumbnail_width = 144, k_thumbnail_height = 108;  ///< pixels
@@ -55,7 +56,7 @@ class FolderJob final : public BackgroundJob<std::shared_ptr<const LabelingModel
   private:
     std::shared_ptr<const LabelingModel> run();
     void draw_thumbnails();
-    void describe_shapes();
+    void describe_shapes(bool only_verified);
     std::shared_ptr<const LabelingModel> train();
     void suggest(const LabelingModel& model);
     void post(ShapeResult result);

@@ -15,12 +15,24 @@ namespace {
 
 constexpr const char* k_model_name = "suggestions.safetensors";
 
+/// Returns the model that was learned from the folder before; null if there is none that can be used.
+std::shared_ptr<const LabelingModel> earlier_model(const LabelingFolder& folder) {
+    const std::filesystem::path path = folder.shapes().front().path.parent_path() / k_model_name;
+    if (folder.verified_count() == 0 || !std::filesystem::exists(path)) return nullptr;
+    try {
+        return std::make_shared<const LabelingModel>(load_model(path));
+    } catch (const Error&) {  // it is replaced by what is learned now
+        return nullptr;
+    }
+}
+
 }  // namespace
 
 LabelingSession::LabelingSession(const std::filesystem::path& source, std::filesystem::path cache,
                                  std::shared_ptr<const LabelingModel> model)
     : folder_(source), cache_(std::move(cache)), shapes_(folder_.shapes().size()), model_(std::move(model)) {
     remarks_ = folder_.warnings();
+    if (!model_) model_ = earlier_model(folder_);
     if (model_) {
         std::vector<PaletteEntry> palette = folder_.palette();
         for (std::size_t c = 0; c < model_->class_count(); ++c)

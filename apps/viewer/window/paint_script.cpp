@@ -121,6 +121,8 @@ void PaintScript::wait(const Words& words) {
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
     } while (waits());
     state_.collect_labeling();
+    if (const double seconds = session().painter().completion_seconds(); seconds > 0)
+        fmt::print("labels completed in {:.0f} ms\n", 1000 * seconds);
 }
 
 void PaintScript::open(const Words& words) {

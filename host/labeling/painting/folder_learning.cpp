@@ -36,6 +36,7 @@ SuggestedShape suggest_shape(const LabelingModel& model, const std::filesystem::
     SuggestedShape shape;
     shape.mesh = read_mesh(path).mesh;
     WorkingFeatures working = working_features(model.feature_options, shape.mesh, cache);
+    shape.descriptor = compute_shape_descriptor(working.features);
     MeshFeatures* const one = &working.features;
     const CompletedLabels labels =
         std::move(suggest_labels(model, std::span(&one, 1), palette, backend).front().labels);

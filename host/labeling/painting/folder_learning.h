@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "host/labeling/category/shape_descriptor.h"
 #include "host/labeling/inference/labeler.h"
 #include "host/labeling/inference/model.h"
 #include "host/labeling/painting/labeling_folder.h"
@@ -31,6 +32,7 @@ struct SuggestedShape {
     std::vector<std::int32_t> label;  ///< per face of the file: an index into the palette, or -1
     std::vector<float> confidence;    ///< per triangle of the mesh
     float uncertainty = 1;            ///< 1 minus the mean confidence over the surface, above 0
+    ShapeDescriptor descriptor;
 };
 SuggestedShape suggest_shape(const LabelingModel& model, const std::filesystem::path& path,
                              std::span<const std::string> palette, const std::filesystem::path& cache,

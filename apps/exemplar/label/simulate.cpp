@@ -8,9 +8,12 @@
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/label/training_run.h"
+#include "host/core/errors.h"
 #include "host/core/progress.h"
 #include "host/core/stopwatch.h"
+#include "host/core/text.h"
 #include "host/labeling/features/feature_cache.h"
+#include "host/labeling/inference/crf.h"
 #include "host/labeling/inference/mesh_labeling.h"
 #include "host/labeling/painting/folder_simulation.h"
 
@@ -29,12 +32,33 @@ struct SimulateOptions {
 const std::map<std::string, LabelingWay> k_labeling_ways{
     {"alone", LabelingWay::each_alone}, {"gain", LabelingWay::order_by_gain}, {"random", LabelingWay::random_order}};
 
+std::vector<std::string> checked_ways(const std::vector<std::string>& words) {
+    for (const std::string& word : words)
+        if (!k_labeling_ways.contains(word))
+            throw UsageError(
+                fmt::format("--order: there is no '{}'; choose among alone, random, gain", word.substr(0, 40)));
+    return words;
+}
+
 /// Returns the seconds to label all faces one by one, until `share` of the surface is labeled.
 double seconds_by_hand(const LabeledCorpus& corpus, double share, const PersonCosts& costs) {
     double seconds = 0;
     for (const LabeledMesh& mesh : corpus.meshes)
         seconds += costs.open + costs.face * share * static_cast<double>(mesh.mesh.face_count());
     return seconds;
+}
+
+/// Returns the number of connected pieces of one label, without slivers.
+std::size_t count_parts(const LabeledCorpus& corpus, const std::vector<MeshFeatures>& features) {
+    constexpr float k_sliver = 0.002F;  ///< share of the surface
+    std::size_t parts = 0;
+    for (std::size_t m = 0; m < features.size(); ++m) {
+        const LabelComponents pieces =
+            label_components(features[m].edges, features[m].face_area, corpus.meshes[m].label);
+        for (std::size_t p = 0; p < pieces.label.size(); ++p)
+            parts += pieces.label[p] >= 0 && pieces.area_share[p] >= k_sliver ? 1 : 0;
+    }
+    return parts;
 }
 
 nlohmann::json simulate_way(const LabeledCorpus& corpus, std::vector<MeshFeatures>& features,
@@ -66,7 +90,9 @@ void run_simulate(const SimulateOptions& options) {
     DeviceBackend backend(options.common.device);
     std::vector<MeshFeatures> features = features_of(corpus, suggestion_training().features, cache);
     nlohmann::json runs = nlohmann::json::array();
-    fmt::print("seconds until {} % of the surface of {} shapes are right:\n", options.percent, corpus.meshes.size());
+    const std::size_t parts = count_parts(corpus, features);
+    fmt::print("seconds until {} % of the surface of {} with {} are right:\n", options.percent,
+               counted(corpus.meshes.size(), "shape"), counted(parts, "part"));
     fmt::print("{:>8} {:>9} {:>8} {:>9}\n", "order", "seconds", "strokes", "verified");
     SimulationOptions simulation = options.simulation;
     simulation.quality = options.percent / 100;
@@ -78,6 +104,7 @@ void run_simulate(const SimulateOptions& options) {
     const double by_hand = seconds_by_hand(corpus, simulation.quality, simulation.costs);
     fmt::print("{:>8} {:>9.0f}\n", "by hand", by_hand);
     write_report(options.common, {{"meshes", corpus.meshes.size()},
+                                  {"parts", parts},
                                   {"quality", simulation.quality},
                                   {"seconds_by_hand", by_hand},
                                   {"runs", runs}});
@@ -103,7 +130,7 @@ void add_simulate_command(Command& label) {
         ->type_name("PERCENT");
     command
         ->add_list_option(
-            "--order", [options](const std::vector<std::string>& words) { options->ways = words; },
+            "--order", [options](const std::vector<std::string>& words) { options->ways = checked_ways(words); },
             "alone: each shape is painted, nothing is learned; random, gain: a model suggests labels")
         ->delimiter(',')
         ->allow_extra_args(false)

@@ -6,6 +6,7 @@
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/label/labeled_output.h"
+#include "apps/exemplar/label/part_output.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
@@ -19,7 +20,8 @@ namespace {
 
 struct ApplyOptions {
     CommonOptions common;
-    std::filesystem::path model, out;
+    PartOptions parts;
+    std::filesystem::path model, out, split;
     std::filesystem::path cache = default_feature_folder();
     std::vector<std::filesystem::path> meshes;
     bool gltf = false, png = false, keep_small = false;
@@ -40,6 +42,8 @@ nlohmann::json apply_to(const std::filesystem::path& path, const LabelingModel& 
     if (options.png) backend.render_png(stem.string() + ".png", file.mesh, triangle_colors(model, labeling));
 
     nlohmann::json json = describe_output(file.mesh, model, labeling);
+    if (!options.split.empty())
+        json["split"] = write_part_files(options.split / path.stem(), path, file, output.labels, options.parts);
     json["mesh"] = path.string();
     json["warnings"] = warnings;
     json["seconds"] = {{"read", read_seconds}, {"all", watch.wall()}};
@@ -50,6 +54,13 @@ nlohmann::json apply_to(const std::filesystem::path& path, const LabelingModel& 
 void run_apply(const ApplyOptions& options) {
     const auto limits = apply_common_options(options.common);
     require_output_folder(options.out);
+    if (!options.split.empty()) {
+        check_part_options(options.parts);
+        require_output_folder(options.split);
+        if (options.gltf &&
+            std::filesystem::weakly_canonical(options.split) == std::filesystem::weakly_canonical(options.out))
+            throw UsageError("--split and --gltf would both write NAME.glb; give --split another folder than --out");
+    }
     LabelingModel model = model_of_argument(options.model);
     if (options.keep_small) model.crf.merge_fraction = 0;
     std::vector<std::filesystem::path> meshes;
@@ -57,6 +68,7 @@ void run_apply(const ApplyOptions& options) {
         for (const auto& path : meshes_of_argument(source)) meshes.push_back(path);
     require_distinct_names(meshes);
     require_other_folder(options.out, meshes);
+    if (!options.split.empty()) require_other_folder(options.split, meshes);
     const std::filesystem::path cache = usable_cache(options.cache, options.common.quiet);
     DeviceBackend backend(options.common.device);
 
@@ -100,6 +112,14 @@ void add_apply_command(Command& label) {
     command->add_option("--out", options->out, "folder to write to")->required()->type_name("FOLDER");
     command->add_flag("--gltf", options->gltf, "also write NAME.glb with a material per part");
     command->add_flag("--png", options->png, "also write NAME.png, an image rendered through Vulkan");
+    command->add_option("--split", options->split, "also write the parts as meshes of their own, to this folder")
+        ->type_name("FOLDER");
+    command
+        ->add_option("--split-format", options->parts.format,
+                     "format of --split: obj, ply, stl (a file per part) or glb")
+        ->capture_default_str()
+        ->type_name("");
+    add_part_options(*command, options->parts);
     command->add_flag("--keep-small", options->keep_small,
                       "leave pieces that are much smaller than any in training as they are, instead of merging them");
     command->add_option("--cache", options->cache, "folder that remembers features; '' remembers none")

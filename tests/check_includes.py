@@ -44,7 +44,7 @@ ROOMS = {
     'host/labeling': ['features', 'inference', 'training', 'evaluation', 'category', 'batch'],
     'host/learn': ['', 'regression', 'components', 'boosting'],
     'host/lines': ['extraction', 'strokes', ''],
-    'host/mesh': ['', 'queries', 'editing', 'curvature', 'io', 'gltf'],
+    'host/mesh': ['', 'queries', 'editing', 'curvature', 'io', 'gltf', 'label_files'],
     'host/parts': ['splitting', 'transfer', 'rigging', 'prototype'],
     'host/synth': ['modeling', 'shapes', 'animations', 'damage', 'arrangements', 'hatching'],
     'gpu/curvature': ['surface', 'learned', ''],

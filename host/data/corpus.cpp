@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <climits>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -14,6 +15,7 @@
 #include "host/core/text.h"
 #include "host/mesh/editing/validate.h"
 #include "host/mesh/io/io_text.h"
+#include "host/mesh/label_files/label_files.h"
 
 namespace exemplar {
 namespace {
@@ -133,6 +135,7 @@ FaceLabels labels_of_mesh(const fs::path& path, const MeshFile& file, const fs::
         throw DataError(fmt::format("{}: no such file; it should hold the labels of {}{}", labels.string(),
                                     path.string(), suggest_file(labels)));
     if (file.labels) return *file.labels;
+    if (std::optional<FaceLabels> others = find_other_labels(path, file.mesh)) return std::move(*others);
     throw DataError(fmt::format("{}: no labels: give {} beside it, or a PLY with a per-face 'label' property",
                                 path.string(), labels.filename().string()));
 }

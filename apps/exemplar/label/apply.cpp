@@ -14,6 +14,7 @@
 #include "host/data/corpus.h"
 #include "host/labeling/features/feature_cache.h"
 #include "host/labeling/inference/mesh_labeling.h"
+#include "host/mesh/label_files/label_files.h"
 
 namespace exemplar {
 namespace {
@@ -24,6 +25,7 @@ struct ApplyOptions {
     std::filesystem::path model, out, split;
     std::filesystem::path cache = default_feature_folder();
     std::vector<std::filesystem::path> meshes;
+    std::vector<std::string> label_forms;
     bool gltf = false, png = false, keep_small = false;
 };
 
@@ -42,6 +44,7 @@ nlohmann::json apply_to(const std::filesystem::path& path, const LabelingModel& 
     if (options.png) backend.render_png(stem.string() + ".png", file.mesh, triangle_colors(model, labeling));
 
     nlohmann::json json = describe_output(file.mesh, model, labeling);
+    for (const std::string& form : options.label_forms) write_label_file(stem, form, file, output.labels);
     if (!options.split.empty())
         json["split"] = write_part_files(options.split / path.stem(), path, file, output.labels, options.parts);
     json["mesh"] = path.string();
@@ -54,6 +57,9 @@ nlohmann::json apply_to(const std::filesystem::path& path, const LabelingModel& 
 void run_apply(const ApplyOptions& options) {
     const auto limits = apply_common_options(options.common);
     require_output_folder(options.out);
+    for (const std::string& form : options.label_forms)
+        if (std::ranges::find(label_forms(), form) == label_forms().end())
+            throw UsageError(fmt::format("--labels takes {}, not '{}'", fmt::join(label_forms(), ", "), form));
     if (!options.split.empty()) {
         check_part_options(options.parts);
         require_output_folder(options.split);
@@ -112,6 +118,10 @@ void add_apply_command(Command& label) {
     command->add_option("--out", options->out, "folder to write to")->required()->type_name("FOLDER");
     command->add_flag("--gltf", options->gltf, "also write NAME.glb with a material per part");
     command->add_flag("--png", options->png, "also write NAME.png, an image rendered through Vulkan");
+    command
+        ->add_option("--labels", options->label_forms,
+                     "also write labels as json, npy, vtp (VTK), vertices, vertices-json (several may be named)")
+        ->type_name("");
     command->add_option("--split", options->split, "also write the parts as meshes of their own, to this folder")
         ->type_name("FOLDER");
     command

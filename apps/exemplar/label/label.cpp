@@ -12,7 +12,8 @@ void add_label_command(Command& app) {
         "  exemplar label batch shapes --model human.safetensors --out labeled\n"
         "  exemplar label evaluate --protocol sb6 shapes --out report\n"
         "  exemplar label stress human.safetensors mesh.obj\n"
-        "  exemplar label split human.off --out parts --caps");
+        "  exemplar label split human.off --out parts --caps\n"
+        "  exemplar label transfer low.off high.obj --out high_labels.txt");
     command->require_subcommand();
     add_train_command(*command);
     add_apply_command(*command);
@@ -20,6 +21,7 @@ void add_label_command(Command& app) {
     add_evaluate_command(*command);
     add_stress_command(*command);
     add_split_command(*command);
+    add_transfer_command(*command);
 }
 
 }  // namespace exemplar

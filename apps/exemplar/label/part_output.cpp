@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "host/core/errors.h"
+#include "host/core/files.h"
+#include "host/mesh/gltf/gltf_split.h"
 #include "host/parts/splitting/part_check.h"
 #include "host/parts/splitting/part_files.h"
 
@@ -63,12 +66,21 @@ void check_part_options(const PartOptions& options) {
         throw UsageError(fmt::format("--explode takes a share from 0 to 100, not {}", options.explode));
 }
 
-nlohmann::json write_part_files(const std::filesystem::path& stem, const std::filesystem::path& /*mesh_path*/,
+nlohmann::json write_part_files(const std::filesystem::path& stem, const std::filesystem::path& mesh_path,
                                 const MeshFile& file, const FaceLabels& labels, const PartOptions& options) {
     const TriangleMesh& mesh = file.mesh;
     const MeshParts names = options.instances ? parts_by_piece(mesh, labels) : parts_by_label(mesh, labels);
+    const bool keeps_gltf =
+        options.format == "glb" && is_gltf_file(mesh_path) && !options.caps && !(options.explode > 0);
     SplitMesh split = split_mesh(mesh, names.part_of_face, names.names.size(), {options.caps});
     nlohmann::json json = describe_split(mesh, names, labels, split);
+    if (keeps_gltf) {
+        json["files"] = {stem.string() + ".glb"};
+        const SplitGltf gltf = split_gltf(mesh_path, names.part_of_face, names.names);
+        json["warnings"] = gltf.warnings;
+        write_file_atomically(stem.string() + ".glb", [&](std::ostream& out) { out << gltf.bytes; });
+        return json;
+    }
     if (options.explode > 0) explode_parts(split.parts, options.explode);
     json["files"] = nlohmann::json::array();
     for (const std::filesystem::path& path : write_parts(stem, options.format, names, split.parts))

@@ -22,7 +22,8 @@ void add_part_options(Command& command, PartOptions& options);
 void check_part_options(const PartOptions& options);
 
 /// Writes the parts of the mesh, whose labels are per source face, as STEM_PART.EXTENSION or STEM.glb. Returns their
-/// description for reports (see docs/formats.md); "files" are the files.
+/// description for reports (see docs/formats.md); "files" are the files. Of a glTF mesh, a .glb file without caps keeps
+/// textures, skins, morph targets and animations (see split_gltf).
 nlohmann::json write_part_files(const std::filesystem::path& stem, const std::filesystem::path& mesh_path,
                                 const MeshFile& file, const FaceLabels& labels, const PartOptions& options);
 

@@ -9,6 +9,7 @@
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
 #include "host/data/corpus.h"
+#include "host/mesh/label_files/label_files.h"
 
 namespace exemplar {
 namespace {
@@ -22,12 +23,16 @@ struct SplitCommandOptions {
 
 nlohmann::json split_one(const std::filesystem::path& path, const SplitCommandOptions& options) {
     const MeshFile file = read_mesh(path);
-    const std::vector<std::string> warnings = mesh_warnings(file, path, options.common.quiet);
-    const FaceLabels labels = options.labels.empty() ? labels_of_mesh(path, file)
-                                                     : read_face_labels(options.labels, file.mesh.source_face_count);
+    std::vector<std::string> warnings = mesh_warnings(file, path, options.common.quiet);
+    const FaceLabels labels =
+        options.labels.empty() ? labels_of_mesh(path, file) : read_face_labels(options.labels, file.mesh);
     nlohmann::json json =
         of_file(path, [&] { return write_part_files(options.out / path.stem(), path, file, labels, options.parts); });
     json["mesh"] = path.string();
+    for (const std::string& warning : json.value("warnings", std::vector<std::string>())) {
+        warnings.push_back(warning);
+        if (!options.common.quiet) fmt::print(stderr, "warning: {}: {}\n", path.string(), warning);
+    }
     json["warnings"] = warnings;
     if (const auto open = json["open_cut_edges"].get<std::size_t>(); open > 0 && !options.common.quiet)
         fmt::print(stderr,
@@ -76,12 +81,14 @@ void add_split_command(Command& label) {
     Command* command = label.add_subcommand("split", "Writes the parts of labeled meshes as meshes of their own");
     command->footer(
         "The labels are those beside the mesh (NAME_labels.txt) or in it, unless --labels names others. Writes\n"
-        "NAME_PART.obj, .ply or .stl for each part, or NAME.glb with a named node per part.\n\nExample:\n"
+        "NAME_PART.obj, .ply or .stl for each part, or NAME.glb with a named node per part. A glTF mesh keeps\n"
+        "its textures, skins, morph targets and animations as .glb, if neither --caps nor --explode change its "
+        "shape.\n\nExample:\n"
         "  exemplar label split human.off --out parts --format stl --caps --instances");
     command->add_option("MESH", options->meshes, "labeled meshes, folders of meshes, or lists (.txt, a path a line)")
         ->required()
         ->type_name("");
-    command->add_option("--labels", options->labels, "labels of the mesh: _labels.txt, .seg, or a labeled mesh")
+    command->add_option("--labels", options->labels, "labels of the mesh, in any form that docs/formats.md lists")
         ->type_name("FILE");
     command->add_option("--out", options->out, "folder to write to")->required()->type_name("FOLDER");
     command->add_option("--format", options->parts.format, "obj, ply, stl or glb")

@@ -16,7 +16,8 @@ std::uint64_t undirected_key(std::uint64_t a, std::uint64_t b) {
 /// Makes caps one after the other and remembers the edges that exist.
 class CapMaker {
   public:
-    CapMaker(const TriangleMesh& mesh, std::span<const std::uint32_t> twin) : mesh_(mesh), twin_(twin) {
+    CapMaker(const TriangleMesh& mesh, std::span<const std::uint32_t> twin)
+        : mesh_(mesh), twin_(twin), normals_(face_normals(mesh)) {
         used_.reserve(3 * mesh.face_count());
         for (const Face& face : mesh.faces)
             for (std::size_t i = 0; i < 3; ++i) used_.insert(undirected_key(face[i], face[(i + 1) % 3]));
@@ -38,15 +39,27 @@ class CapMaker {
         std::vector<Vec3> points;
         points.reserve(vertices.size());
         for (const std::uint32_t v : vertices) points.push_back(mesh_.vertices[v]);
-        const auto found = triangulate_loop(points, [&](std::uint32_t i, std::uint32_t j) {
-            return !used_.contains(undirected_key(vertices[i], vertices[j]));
-        });
+        const auto found =
+            triangulate_loop(points, inward_directions(cap.boundary), [&](std::uint32_t i, std::uint32_t j) {
+                return !used_.contains(undirected_key(vertices[i], vertices[j]));
+            });
         if (!found) return false;
         const auto count = static_cast<std::uint32_t>(vertices.size());
         cap.boundary_side.assign(count, k_invalid_index);
         cap.faces.reserve(found->size());
         for (const auto& [a, b, c] : *found) add_reversed({a, b, c}, vertices, count, cap);
         return true;
+    }
+
+    /// The directions into the solid at the edges of a loop: against the normals of the faces on both sides.
+    std::vector<Vec3> inward_directions(const std::vector<std::uint32_t>& half_edges) const {
+        std::vector<Vec3> inward;
+        inward.reserve(half_edges.size());
+        for (const std::uint32_t h : half_edges) {
+            const Vec3 sum = normals_[face_of_half_edge(h)] + normals_[face_of_half_edge(twin_[h])];
+            inward.push_back(sum.norm() > 0 ? Vec3(-sum.normalized()) : Vec3(Vec3::Zero()));
+        }
+        return inward;
     }
 
     /// Adds a triangle of loop places in reverse order, since caps face out of their part.
@@ -89,6 +102,7 @@ class CapMaker {
 
     const TriangleMesh& mesh_;
     std::span<const std::uint32_t> twin_;
+    std::vector<Vec3> normals_;               ///< per face
     std::unordered_set<std::uint64_t> used_;  ///< edges of the mesh and of caps
     Caps caps_;
 };

@@ -23,8 +23,9 @@ double triangle_cost(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
 /// The dynamic programme over sub-polygons i, i + 1, ..., j of the polygon that `corners` select.
 class LoopProgramme {
   public:
-    LoopProgramme(std::span<const Vec3> points, std::vector<std::uint32_t> corners)
-        : corners_(std::move(corners)),
+    LoopProgramme(std::span<const Vec3> points, std::span<const Vec3> inward, std::vector<std::uint32_t> corners)
+        : inward_(inward),
+          corners_(std::move(corners)),
           count_(corners_.size()),
           cost_(count_ * count_, 0),
           middle_(count_ * count_, 0) {
@@ -52,9 +53,30 @@ class LoopProgramme {
         for (std::size_t k = i + 1; k < j; ++k) {
             const double inner = cost_[i * count_ + k] + cost_[k * count_ + j];
             if (inner >= best) continue;
-            const double cost = inner + triangle_cost(points_[i], points_[k], points_[j]);
+            const double cost = inner + triangle_cost(points_[i], points_[k], points_[j]) + fold_cost(i, k, j);
             if (cost < best) best = cost, middle_[i * count_ + j] = static_cast<std::uint32_t>(k);
         }
+    }
+    /// The cost of the triangle's directions at the sides of the loop on which it lies.
+    double fold_cost(std::size_t i, std::size_t k, std::size_t j) const {
+        if (inward_.empty()) return 0;
+        double cost = 0;
+        if (k == i + 1) cost += fold_at_side(i, k, j);
+        if (j == k + 1) cost += fold_at_side(k, j, i);
+        if (i == 0 && j == count_ - 1) cost += fold_at_side(j, i, k);
+        return cost;
+    }
+    /// A triangle on the side a b with the third corner c: its direction from the side should lead into the solid.
+    double fold_at_side(std::size_t a, std::size_t b, std::size_t c) const {
+        constexpr double k_fold_weight = 0.5;
+        if ((corners_[a] + 1) % inward_.size() != corners_[b]) return 0;  // an inner edge of a divided loop
+        const Vec3d side = points_[b] - points_[a], to_corner = points_[c] - points_[a];
+        const double length = side.squaredNorm();
+        if (!(length > 0)) return 0;
+        const Vec3d across = to_corner - side * (side.dot(to_corner) / length);
+        const double norm = across.norm();
+        const double along = norm > 0 ? across.dot(inward_[corners_[a]].cast<double>()) / norm : 0;
+        return k_fold_weight * length * (1 - along) * (1 - along);
     }
     void collect(std::vector<Face>& faces) const {
         std::vector<std::array<std::size_t, 2>> open{{0, count_ - 1}};
@@ -69,6 +91,7 @@ class LoopProgramme {
         }
     }
 
+    std::span<const Vec3> inward_;  ///< per side of the whole loop; empty for none
     std::vector<std::uint32_t> corners_;
     std::size_t count_;
     std::vector<Vec3d> points_;
@@ -85,13 +108,15 @@ std::vector<std::uint32_t> consecutive_corners(std::size_t begin, std::size_t en
 
 }  // namespace
 
-std::optional<std::vector<Face>> triangulate_loop(std::span<const Vec3> points, const MayJoin& may_join) {
+std::optional<std::vector<Face>> triangulate_loop(std::span<const Vec3> points, std::span<const Vec3> inward,
+                                                  const MayJoin& may_join) {
     const std::size_t count = points.size();
     std::vector<Face> faces;
     if (count < 3) return {};
     faces.reserve(count - 2);
     if (count <= k_longest_whole_loop) {
-        if (!LoopProgramme(points, consecutive_corners(0, count - 1, count)).append_to(faces, may_join)) return {};
+        if (!LoopProgramme(points, inward, consecutive_corners(0, count - 1, count)).append_to(faces, may_join))
+            return {};
         return faces;
     }
     std::vector<std::uint32_t> coarse;
@@ -103,9 +128,9 @@ std::optional<std::vector<Face>> triangulate_loop(std::span<const Vec3> points, 
         const std::vector<std::uint32_t> corners = consecutive_corners(begin, end, count);
         if (!may_join(corners.front(), corners.back())) return {};
         if (corners.size() > k_longest_whole_loop) return {};
-        if (!LoopProgramme(points, corners).append_to(faces, may_join)) return {};
+        if (!LoopProgramme(points, inward, corners).append_to(faces, may_join)) return {};
     }
-    if (!LoopProgramme(points, coarse).append_to(faces, may_join)) return {};
+    if (!LoopProgramme(points, inward, coarse).append_to(faces, may_join)) return {};
     return faces;
 }
 

@@ -121,14 +121,14 @@ void add_apply_command(Command& label) {
     command
         ->add_option("--labels", options->label_forms,
                      "also write labels as json, npy, vtp (VTK), vertices, vertices-json (several may be named)")
-        ->type_name("");
+        ->type_name("FORM");
     command->add_option("--split", options->split, "also write the parts as meshes of their own, to this folder")
         ->type_name("FOLDER");
     command
         ->add_option("--split-format", options->parts.format,
                      "format of --split: obj, ply, stl (a file per part) or glb")
         ->capture_default_str()
-        ->type_name("");
+        ->type_name("FORMAT");
     add_part_options(*command, options->parts);
     command->add_flag("--keep-small", options->keep_small,
                       "leave pieces that are much smaller than any in training as they are, instead of merging them");

@@ -93,7 +93,7 @@ void add_split_command(Command& label) {
     command->add_option("--out", options->out, "folder to write to")->required()->type_name("FOLDER");
     command->add_option("--format", options->parts.format, "obj, ply, stl or glb")
         ->capture_default_str()
-        ->type_name("");
+        ->type_name("FORMAT");
     add_part_options(*command, options->parts);
     add_common_options(*command, options->common);
     command->callback([options] { run_split(*options); });

@@ -89,7 +89,7 @@ void add_transfer_command(Command& label) {
         ->type_name("FILE");
     command->add_option("--smooth", options->transfer.smoothness, "weight of the length of borders between labels")
         ->capture_default_str()
-        ->type_name("");
+        ->type_name("WEIGHT");
     add_common_options(*command, options->common);
     command->callback([options] { run_transfer(*options); });
 }

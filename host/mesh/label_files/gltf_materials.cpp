@@ -1,8 +1,10 @@
-// The materials of a glTF file as labels of its triangles.
+// The numbers of vertices in a glTF file, or its materials, as labels of its triangles.
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
+#include <cmath>
 #include <map>
+#include <optional>
 
 #include "host/core/errors.h"
 #include "host/mesh/gltf/gltf_file.h"
@@ -20,6 +22,24 @@ std::string material_name(const tinygltf::Model& model, int material) {
     return mesh_io::is_label_name(name) ? name : fmt::format("material {}", material);
 }
 
+/// Returns per triangle the number that most of its corners have (the first corner's, if all differ), -1 for none;
+/// nothing if vertices have no numbers, or others than labels.
+std::optional<std::vector<std::int64_t>> numbers_of_triangles(const mesh_io::GltfSurface& surface) {
+    if (surface.vertex_values.empty()) return {};
+    for (const float value : surface.vertex_values)
+        if (!std::isnan(value) && (value < -1 || value > 1e6F || value != std::floor(value))) return {};
+    std::vector<std::int64_t> numbers;
+    numbers.reserve(surface.faces.size());
+    for (const Face& face : surface.faces) {
+        const auto at = [&](std::size_t i) {
+            const float value = surface.vertex_values[face[i]];
+            return std::isnan(value) ? std::int64_t{-1} : static_cast<std::int64_t>(value);
+        };
+        numbers.push_back(at(1) == at(2) ? at(1) : at(0));
+    }
+    return numbers;
+}
+
 }  // namespace
 
 FaceLabels read_gltf_materials(std::string_view content, const std::filesystem::path& folder, const TriangleMesh& mesh,
@@ -30,6 +50,7 @@ FaceLabels read_gltf_materials(std::string_view content, const std::filesystem::
     if (surface.materials.size() != mesh_io::source_faces(mesh))
         fail(name, fmt::format("has {} triangles, but the mesh has {} faces", surface.materials.size(),
                                mesh_io::source_faces(mesh)));
+    if (const auto numbers = numbers_of_triangles(surface)) return labels_of_numbers(*numbers, {}, mesh, name);
     FaceLabels labels;
     std::map<std::string, std::int32_t> index;  // materials of one name are one label
     labels.label.reserve(surface.materials.size());

@@ -22,7 +22,8 @@ namespace exemplar {
 ///   per vertex;
 /// - .npy: a one-dimensional array of integers, one per face, or else one per vertex;
 /// - .vtp: an array of the cells: Label, Labels, MaterialIds, GroupIds, or the only one;
-/// - .obj: groups, materials or objects (the first of these with two names); .gltf, .glb: names of materials;
+/// - .obj: groups, materials or objects (the first of these with two names); .gltf, .glb: the
+///   vertex attribute _LABEL, _GROUP or _PART, else names of materials;
 /// - other meshes: their labels.
 /// Labels of vertices become those of faces as labels_of_faces tells. Throws DataError, with the file and the place, if
 /// the file is malformed or of another number of faces.

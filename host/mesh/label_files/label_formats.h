@@ -36,7 +36,8 @@ FaceLabels read_npy_labels(std::string_view content, const TriangleMesh& mesh, c
 FaceLabels read_vtp_labels(std::string_view content, const TriangleMesh& mesh, const std::string& name);
 /// Reads the groups, materials or objects of an OBJ file. Faces before the first name have no label.
 FaceLabels read_obj_groups(std::string_view content, const TriangleMesh& mesh, const std::string& name);
-/// Reads the names of materials of a glTF file; unnamed ones are named by their numbers.
+/// Reads the numbers of vertices in a glTF file (see GltfSurface::vertex_values), else the names of its materials;
+/// unnamed ones are named by their numbers.
 FaceLabels read_gltf_materials(std::string_view content, const std::filesystem::path& folder, const TriangleMesh& mesh,
                                const std::string& name);
 

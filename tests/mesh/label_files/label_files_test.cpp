@@ -172,6 +172,30 @@ TEST(LabelFiles, MaterialsOfGltfAreLabels) {
     EXPECT_THAT(labels.label, ElementsAre(0, 0, 0, 0, 1, 1, 1, 1, -1, -1, -1, -1));
 }
 
+TEST(LabelFiles, AttributesOfGltfAreLabels) {
+    std::string json = mesh_files::tetrahedron_gltf("");
+    json.replace(json.find("\"POSITION\":0"), 12, R"("POSITION":0,"_LABEL":2)");
+    json.replace(json.find("],\"bufferViews\":["), 1,
+                 R"(,{"bufferView":2,"componentType":5126,"count":4,"type":"SCALAR"}])");
+    json.replace(json.find("\"byteLength\":24}"), 16,
+                 R"("byteLength":24},{"buffer":0,"byteOffset":72,"byteLength":16})");
+    json.replace(json.find("\"byteLength\":72"), 15, "\"byteLength\":88");
+    const auto glb = [&](std::initializer_list<float> values) {
+        std::string binary = mesh_files::tetrahedron_positions() + mesh_files::tetrahedron_indices();
+        for (const float value : values) binary += bytes_of(value);
+        return mesh_files::glb_of(json, binary);
+    };
+    const auto read = [&](const std::string& bytes) {
+        const TemporaryFolder folder;
+        write_bytes(folder / "a.glb", bytes);
+        return face_names(read_face_labels(folder / "a.glb", read_mesh(folder / "a.glb").mesh));
+    };
+    // The triangles are 0 2 1, 0 1 3, 0 3 2 and 1 2 3.
+    EXPECT_THAT(read(glb({4, 4, 7, 7})), ElementsAre("4", "4", "7", "7"));
+    EXPECT_THAT(read(glb({4, 5, 6, 5})), ElementsAre("4", "5", "4", "5"));
+    EXPECT_THAT(error_of<DataError>([&] { read(glb({4, 4.5F, 7, 7})); }), HasSubstr("no materials"));
+}
+
 /// A file as VTK writes it; `array` is the element of the labels, `rest` what follows the data set.
 std::string vtp(const std::string& array, const std::string& attributes = "", const std::string& rest = "") {
     return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\" " +

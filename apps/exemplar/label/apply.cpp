@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/commands.h"

@@ -149,7 +149,7 @@ fs::path write_label_file(const fs::path& stem, std::string_view form, const Mes
         ending = "_vertices.json", bytes = label_files::json_of_vertices(file.mesh, labels);
     else
         throw UsageError(fmt::format("labels are written as {}, not as '{}'", fmt::join(k_label_forms, ", "), form));
-    const fs::path path = stem.string() + ending;
+    fs::path path = stem.string() + ending;
     write_file_atomically(path, [&](std::ostream& out) { out << bytes; });
     return path;
 }

@@ -1,6 +1,7 @@
 // Text with one label per line.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <map>
 

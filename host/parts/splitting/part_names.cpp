@@ -124,8 +124,8 @@ void name_pairs(const std::string& label, const std::vector<std::array<Piece*, 2
                 std::set<std::string>& taken) {
     for (std::size_t p = 0; p < pairs.size(); ++p) {
         const std::string number = pairs.size() > 1 ? fmt::format("_{}", p + 1) : "";
-        pairs[p][0]->name = unused_name(label + "_left" + number, taken);
-        pairs[p][1]->name = unused_name(label + "_right" + number, taken);
+        pairs[p][0]->name = unused_name(fmt::format("{}_left{}", label, number), taken);
+        pairs[p][1]->name = unused_name(fmt::format("{}_right{}", label, number), taken);
     }
 }
 

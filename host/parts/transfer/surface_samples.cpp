@@ -9,13 +9,10 @@ namespace {
 
 /// Appends the centers of the k * k similar triangles into which a face is divided.
 void append_centers(const TriangleMesh& mesh, std::uint32_t f, std::size_t k, SurfaceSamples& samples) {
-    const auto& [a, b, c] = mesh.faces[f];
-    const auto point = [&](double u, double v) {
-        return ((1 - u - v) * mesh.vertices[a].cast<double>() + u * mesh.vertices[b].cast<double>() +
-                v * mesh.vertices[c].cast<double>())
-            .cast<float>()
-            .eval();
-    };
+    const Face& face = mesh.faces[f];
+    const Vec3d a = mesh.vertices[face[0]].cast<double>(), b = mesh.vertices[face[1]].cast<double>(),
+                c = mesh.vertices[face[2]].cast<double>();
+    const auto point = [&](double u, double v) { return ((1 - u - v) * a + u * b + v * c).cast<float>().eval(); };
     const auto step = 1.0 / static_cast<double>(k);
     for (std::size_t i = 0; i < k; ++i)
         for (std::size_t j = 0; i + j < k; ++j) {

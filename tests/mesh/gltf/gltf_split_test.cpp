@@ -17,6 +17,7 @@ using mesh_files::bytes_of;
 using mesh_files::error_of;
 using mesh_files::glb_of;
 using mesh_files::json_text;
+using mesh_files::read_as;
 using mesh_files::write_bytes;
 using PlainJson = nlohmann::json;
 using testing::ElementsAre;

@@ -21,6 +21,7 @@ HOST = {
     'lines': {'core', 'mesh', 'imaging'},
     'curvature': {'core', 'mesh', 'learn', 'data', 'animation', 'lines'},
     'shape': {'core', 'mesh', 'learn'},
+    'parts': {'core', 'mesh', 'graphcut', 'animation', 'shape', 'data'},
     'labeling': {'core', 'mesh', 'learn', 'graphcut', 'data', 'shape'},
     'hatching': {'core', 'mesh', 'learn', 'graphcut', 'data', 'imaging', 'lines', 'shape'},
 }
@@ -43,7 +44,8 @@ ROOMS = {
     'host/labeling': ['features', 'inference', 'training', 'evaluation', 'category', 'painting', 'batch'],
     'host/learn': ['', 'regression', 'components', 'boosting'],
     'host/lines': ['extraction', 'strokes', ''],
-    'host/mesh': ['', 'queries', 'editing', 'curvature', 'io', 'gltf'],
+    'host/mesh': ['', 'queries', 'editing', 'curvature', 'io', 'gltf', 'label_files'],
+    'host/parts': ['splitting', 'transfer', 'rigging', 'prototype'],
     'host/synth': ['modeling', 'shapes', 'animations', 'damage', 'arrangements', 'hatching'],
     'gpu/curvature': ['surface', 'learned', ''],
     'gpu/runtime': ['device', 'kernels', 'record', 'measure'],

@@ -18,6 +18,8 @@ void add_evaluate_command(Command& label);
 void add_stress_command(Command& label);
 void add_next_command(Command& label);
 void add_simulate_command(Command& label);
+void add_split_command(Command& label);
+void add_transfer_command(Command& label);
 void add_category_command(Command& app);
 void add_category_train_command(Command& category);
 void add_category_apply_command(Command& category);

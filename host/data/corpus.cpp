@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <climits>
 #include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -14,6 +15,7 @@
 #include "host/core/text.h"
 #include "host/mesh/editing/validate.h"
 #include "host/mesh/io/io_text.h"
+#include "host/mesh/label_files/label_files.h"
 
 namespace exemplar {
 namespace {
@@ -66,18 +68,6 @@ std::vector<fs::path> meshes_of_list(const fs::path& list, MissingMeshes missing
     return paths;
 }
 
-/// Returns the labels of a mesh file's source faces, from wherever they are stored.
-FaceLabels find_labels(const fs::path& path, const MeshFile& file, const fs::path& labels_folder) {
-    const fs::path labels = labels_path(path, labels_folder);
-    if (is_there(labels)) return read_labels_txt(labels, file.mesh.source_face_count);
-    if (!labels_folder.empty())
-        throw DataError(fmt::format("{}: no such file; it should hold the labels of {}{}", labels.string(),
-                                    path.string(), suggest_file(labels)));
-    if (file.labels) return *file.labels;
-    throw DataError(fmt::format("{}: no labels: give {} beside it, or a PLY with a per-face 'label' property",
-                                path.string(), labels.filename().string()));
-}
-
 /// Returns for each name of `labels` that has faces its index in `names`; throws for a name that is not among them.
 std::vector<std::int32_t> map_names(const FaceLabels& labels, const std::vector<std::string>& names,
                                     const fs::path& path) {
@@ -104,7 +94,7 @@ struct Loaded {
 
 Loaded load_one(const fs::path& path, const fs::path& labels_folder) {
     Loaded loaded{read_mesh(path), {}, {}};
-    loaded.labels = find_labels(path, loaded.file, labels_folder);
+    loaded.labels = labels_of_mesh(path, loaded.file, labels_folder);
     const MeshReport report = require_usable(loaded.file.mesh, path.string());
     for (const std::string& message : loaded.file.warnings) loaded.warnings.push_back(path.string() + ": " + message);
     for (const std::string& message : report.messages()) loaded.warnings.push_back(path.string() + ": " + message);
@@ -136,6 +126,18 @@ std::vector<fs::path> list_meshes(const fs::path& source, MissingMeshes missing)
 
 fs::path labels_path(const fs::path& mesh, const fs::path& labels_folder) {
     return (labels_folder.empty() ? mesh.parent_path() : labels_folder) / (mesh.stem().string() + "_labels.txt");
+}
+
+FaceLabels labels_of_mesh(const fs::path& path, const MeshFile& file, const fs::path& labels_folder) {
+    const fs::path labels = labels_path(path, labels_folder);
+    if (is_there(labels)) return read_labels_txt(labels, file.mesh.source_face_count);
+    if (!labels_folder.empty())
+        throw DataError(fmt::format("{}: no such file; it should hold the labels of {}{}", labels.string(),
+                                    path.string(), suggest_file(labels)));
+    if (file.labels) return *file.labels;
+    if (std::optional<FaceLabels> others = find_other_labels(path, file.mesh)) return std::move(*others);
+    throw DataError(fmt::format("{}: no labels: give {} beside it, or a PLY with a per-face 'label' property",
+                                path.string(), labels.filename().string()));
 }
 
 LabeledCorpus load_corpus(const std::vector<fs::path>& paths, const std::vector<std::string>& names,

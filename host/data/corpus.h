@@ -40,11 +40,16 @@ std::vector<std::filesystem::path> list_meshes(const std::filesystem::path& sour
 /// Returns the path of a mesh's labels: NAME_labels.txt beside it, or in `labels_folder` if one is given.
 std::filesystem::path labels_path(const std::filesystem::path& mesh, const std::filesystem::path& labels_folder = {});
 
+/// Returns the labels of the source faces of a mesh that was read from `path`, from wherever load_corpus finds them.
+/// Throws DataError if there are none.
+FaceLabels labels_of_mesh(const std::filesystem::path& path, const MeshFile& file,
+                          const std::filesystem::path& labels_folder = {});
+
 /// Reads meshes with their labels: from NAME_labels.txt beside NAME.off (any mesh format), else from the PLY's own
-/// label property. With a `labels_folder`, reads only NAME_labels.txt there, so that the same meshes can have labels
-/// of another style. Labels of equal names are one label, whichever meshes they come from. With `names`, any other
-/// label is an error. Throws DataError naming a mesh without labels and what would be accepted, or an unknown label
-/// and the nearest known one.
+/// label property, else from files of other programs (see find_other_labels). With a `labels_folder`, reads only
+/// NAME_labels.txt there, so that the same meshes can have labels of another style. Labels of equal names are one
+/// label, whichever meshes they come from. With `names`, any other label is an error. Throws DataError naming a mesh
+/// without labels and what would be accepted, or an unknown label and the nearest known one.
 LabeledCorpus load_corpus(const std::vector<std::filesystem::path>& paths, const std::vector<std::string>& names = {},
                           const std::filesystem::path& labels_folder = {});
 

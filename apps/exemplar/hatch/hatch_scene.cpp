@@ -12,6 +12,7 @@
 #include "host/mesh/editing/drawable_mesh.h"
 #include "host/mesh/editing/loose_vertices.h"
 #include "host/mesh/io/io.h"
+#include "host/mesh/label_files/label_files.h"
 
 namespace exemplar {
 
@@ -82,8 +83,7 @@ HatchScene::HatchScene(const HatchSceneArguments& arguments, const std::string& 
         require_mesh_of_view(arguments.view_file, *arguments.drawn, drawn_mesh(arguments.mesh, impl_->surface.mesh));
     impl_->view = hatching_view(arguments, impl_->surface.mesh);
     impl_->pixels = std::make_unique<PixelFeatures>(impl_->surface, impl_->view, impl_->device.tools().images);
-    if (!arguments.labels.empty())
-        impl_->pixels->set_labels(read_face_labels(arguments.labels, file.mesh.source_face_count));
+    if (!arguments.labels.empty()) impl_->pixels->set_labels(read_face_labels(arguments.labels, file.mesh));
 }
 
 HatchScene::~HatchScene() = default;

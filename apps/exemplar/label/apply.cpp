@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/label/labeled_output.h"
+#include "apps/exemplar/label/part_output.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"
@@ -13,15 +16,18 @@
 #include "host/data/corpus.h"
 #include "host/labeling/features/feature_cache.h"
 #include "host/labeling/inference/mesh_labeling.h"
+#include "host/mesh/label_files/label_files.h"
 
 namespace exemplar {
 namespace {
 
 struct ApplyOptions {
     CommonOptions common;
-    std::filesystem::path model, out;
+    PartOptions parts;
+    std::filesystem::path model, out, split;
     std::filesystem::path cache = default_feature_folder();
     std::vector<std::filesystem::path> meshes;
+    std::vector<std::string> label_forms;
     bool gltf = false, png = false, keep_small = false;
 };
 
@@ -40,6 +46,9 @@ nlohmann::json apply_to(const std::filesystem::path& path, const LabelingModel& 
     if (options.png) backend.render_png(stem.string() + ".png", file.mesh, triangle_colors(model, labeling));
 
     nlohmann::json json = describe_output(file.mesh, model, labeling);
+    for (const std::string& form : options.label_forms) write_label_file(stem, form, file, output.labels);
+    if (!options.split.empty())
+        json["split"] = write_part_files(options.split / path.stem(), path, file, output.labels, options.parts);
     json["mesh"] = path.string();
     json["warnings"] = warnings;
     json["seconds"] = {{"read", read_seconds}, {"all", watch.wall()}};
@@ -50,6 +59,16 @@ nlohmann::json apply_to(const std::filesystem::path& path, const LabelingModel& 
 void run_apply(const ApplyOptions& options) {
     const auto limits = apply_common_options(options.common);
     require_output_folder(options.out);
+    for (const std::string& form : options.label_forms)
+        if (std::ranges::find(label_forms(), form) == label_forms().end())
+            throw UsageError(fmt::format("--labels takes {}, not '{}'", fmt::join(label_forms(), ", "), form));
+    if (!options.split.empty()) {
+        check_part_options(options.parts);
+        require_output_folder(options.split);
+        if (options.gltf &&
+            std::filesystem::weakly_canonical(options.split) == std::filesystem::weakly_canonical(options.out))
+            throw UsageError("--split and --gltf would both write NAME.glb; give --split another folder than --out");
+    }
     LabelingModel model = model_of_argument(options.model);
     if (options.keep_small) model.crf.merge_fraction = 0;
     std::vector<std::filesystem::path> meshes;
@@ -57,6 +76,7 @@ void run_apply(const ApplyOptions& options) {
         for (const auto& path : meshes_of_argument(source)) meshes.push_back(path);
     require_distinct_names(meshes);
     require_other_folder(options.out, meshes);
+    if (!options.split.empty()) require_other_folder(options.split, meshes);
     const std::filesystem::path cache = usable_cache(options.cache, options.common.quiet);
     DeviceBackend backend(options.common.device);
 
@@ -100,6 +120,18 @@ void add_apply_command(Command& label) {
     command->add_option("--out", options->out, "folder to write to")->required()->type_name("FOLDER");
     command->add_flag("--gltf", options->gltf, "also write NAME.glb with a material per part");
     command->add_flag("--png", options->png, "also write NAME.png, an image rendered through Vulkan");
+    command
+        ->add_option("--labels", options->label_forms,
+                     "also write labels as json, npy, vtp (VTK), vertices, vertices-json (several may be named)")
+        ->type_name("FORM");
+    command->add_option("--split", options->split, "also write the parts as meshes of their own, to this folder")
+        ->type_name("FOLDER");
+    command
+        ->add_option("--split-format", options->parts.format,
+                     "format of --split: obj, ply, stl (a file per part) or glb")
+        ->capture_default_str()
+        ->type_name("FORMAT");
+    add_part_options(*command, options->parts);
     command->add_flag("--keep-small", options->keep_small,
                       "leave pieces that are much smaller than any in training as they are, instead of merging them");
     command->add_option("--cache", options->cache, "folder that remembers features; '' remembers none")

@@ -11,7 +11,9 @@ void add_label_command(Command& app) {
         "  exemplar label apply human.safetensors mesh.obj --out labeled\n"
         "  exemplar label batch shapes --model human.safetensors --out labeled\n"
         "  exemplar label evaluate --protocol sb6 shapes --out report\n"
-        "  exemplar label stress human.safetensors mesh.obj");
+        "  exemplar label stress human.safetensors mesh.obj\n"
+        "  exemplar label split human.off --out parts --caps\n"
+        "  exemplar label transfer low.off high.obj --out high_labels.txt");
     command->require_subcommand();
     add_train_command(*command);
     add_apply_command(*command);
@@ -20,6 +22,8 @@ void add_label_command(Command& app) {
     add_stress_command(*command);
     add_next_command(*command);
     add_simulate_command(*command);
+    add_split_command(*command);
+    add_transfer_command(*command);
 }
 
 }  // namespace exemplar

@@ -128,6 +128,18 @@ class BufferReader {
         return first_bytes(std::move(*content), bytes);
     }
 
+    /// Reads a whole file that is no buffer.
+    BufferBytes read_whole(std::string_view uri) {
+        what_ = fmt::format("the file {}", quote(uri));
+        const std::string place = has_scheme(uri) ? std::string() : file_of_uri(uri);
+        if (place.empty()) fail("is not in the folder of this one");
+        std::error_code error;
+        const std::uint64_t bytes = fs::file_size(inside(place), error);
+        if (error) fail("cannot be read: " + error.message());
+        if (bytes > k_max_gltf_bytes) fail("is larger than 2 GiB");
+        return read_file(std::string(uri), bytes);
+    }
+
   private:
     [[noreturn]] void fail(const std::string& message) const { mesh_io::fail(name_, what_ + " " + message); }
 
@@ -200,6 +212,10 @@ GltfBuffers read_gltf_buffers(const Json& document, std::string_view binary, con
     BufferReader reader(binary, name, folder);
     for (std::size_t i = 0; i < buffers->size(); ++i) read.push_back(reader.read(i, (*buffers)[i]));
     return read;
+}
+
+std::vector<unsigned char> read_gltf_resource(std::string_view uri, const std::string& name, const fs::path& folder) {
+    return BufferReader({}, name, folder).read_whole(uri);
 }
 
 std::uint64_t external_bytes_of(const Json& document) {

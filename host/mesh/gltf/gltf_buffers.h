@@ -22,6 +22,11 @@ extern const std::uint64_t k_max_gltf_bytes;
 GltfBuffers read_gltf_buffers(const nlohmann::json& document, std::string_view binary, const std::string& name,
                               const std::filesystem::path& folder);
 
+/// Reads a whole file that a glTF file in `folder` names, such as an image, under the same conditions. Throws MeshError
+/// that begins with `name`.
+std::vector<unsigned char> read_gltf_resource(std::string_view uri, const std::string& name,
+                                              const std::filesystem::path& folder);
+
 /// Returns the total size of the files that the JSON of a .gltf file declares as buffers, at most k_max_gltf_bytes.
 std::uint64_t external_bytes_of(const nlohmann::json& document);
 

@@ -13,6 +13,7 @@
 #include "host/core/json_text.h"
 #include "host/mesh/gltf/gltf_buffers.h"
 #include "host/mesh/gltf/gltf_compression.h"
+#include "host/mesh/gltf/gltf_document.h"
 #include "host/mesh/io/io_formats.h"
 #include "host/mesh/io/io_text.h"
 #include "host/mesh/io/io_write_text.h"
@@ -190,6 +191,25 @@ std::string first_line(const std::string& text) {
     return line.empty() ? "no reason is known" : printable(line, 200);
 }
 
+/// The JSON of a file, and its binary chunk.
+struct OpenedGltf {
+    Json document;
+    std::string_view binary;
+};
+
+OpenedGltf open_gltf(std::string_view content, const std::string& name) {
+    if (content.size() > k_max_gltf_bytes) fail(name, "the file is larger than 2 GiB; split it");
+    GltfChunks chunks;
+    if (content.starts_with("glTF"))
+        chunks = binary_chunks(content, name);
+    else
+        chunks.json = content;
+    OpenedGltf opened{parse_document(chunks.json, name), chunks.binary};
+    check_version(opened.document, name);
+    check_extensions(opened.document, name);
+    return opened;
+}
+
 /// Has tinygltf read the JSON, which names no files.
 tinygltf::Model parse_model(const Json& document, const std::string& name) {
     const std::string json = json_text(document);
@@ -211,22 +231,21 @@ tinygltf::Model parse_model(const Json& document, const std::string& name) {
 
 tinygltf::Model load_gltf(std::string_view content, const std::string& name, const fs::path& folder,
                           GltfContent wanted) {
-    if (content.size() > k_max_gltf_bytes) fail(name, "the file is larger than 2 GiB; split it");
-    GltfChunks chunks;
-    if (content.starts_with("glTF"))
-        chunks = binary_chunks(content, name);
-    else
-        chunks.json = content;
-    const Json document = parse_document(chunks.json, name);
-    check_version(document, name);
-    check_extensions(document, name);
-    GltfBuffers buffers = read_gltf_buffers(document, chunks.binary, name, folder);
-    Json plain = cut_down(document, wanted);
+    const OpenedGltf opened = open_gltf(content, name);
+    GltfBuffers buffers = read_gltf_buffers(opened.document, opened.binary, name, folder);
+    Json plain = cut_down(opened.document, wanted);
     expand_compressed(plain, buffers, name);
     tinygltf::Model model = parse_model(plain, name);
     model.buffers.resize(buffers.size());
     for (std::size_t i = 0; i < buffers.size(); ++i) model.buffers[i].data = std::move(buffers[i]);
     return model;
+}
+
+GltfDocument read_gltf_document(std::string_view content, const std::string& name, const fs::path& folder) {
+    OpenedGltf opened = open_gltf(content, name);
+    GltfBuffers buffers = read_gltf_buffers(opened.document, opened.binary, name, folder);
+    expand_compressed(opened.document, buffers, name);
+    return {std::move(opened.document), std::move(buffers)};
 }
 
 std::uint64_t gltf_external_buffer_bytes(std::string_view json, const std::string& name) {

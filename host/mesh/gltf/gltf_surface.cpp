@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -103,6 +104,7 @@ class SurfaceReader {
         const auto first = static_cast<std::uint32_t>(surface_.vertices.size());
         const std::vector<Vec3> positions = gltf_.vectors(position->second);
         surface_.vertices.insert(surface_.vertices.end(), positions.begin(), positions.end());
+        read_values(primitive, first, positions.size());
         read_faces(node, copy, primitive, first, positions.size());
         if (model_.nodes[node].skin >= 0 && primitive.attributes.contains("JOINTS_0"))
             bind_to_joints(model_.nodes[node].skin, primitive, positions.size());
@@ -112,6 +114,26 @@ class SurfaceReader {
             if (const auto offsets = primitive.targets[t].find("POSITION"); offsets != primitive.targets[t].end())
                 read_offsets(skin().targets[surface_.targets[node].begin + t], offsets->second, first,
                              positions.size());
+    }
+
+    /// Reads the values of vertices, if they are numbers.
+    void read_values(const tinygltf::Primitive& primitive, std::uint32_t first, std::size_t vertex_count) {
+        for (const char* key : {"_LABEL", "_GROUP", "_PART"}) {
+            const auto found = primitive.attributes.find(key);
+            if (found == primitive.attributes.end()) continue;
+            const tinygltf::Accessor& accessor = gltf_.item(model_.accessors, found->second, "accessor");
+            const bool is_number = accessor.type == TINYGLTF_TYPE_SCALAR && accessor.count == vertex_count &&
+                                   (accessor.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT ||
+                                    accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+                                    accessor.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT);
+            if (!is_number) continue;
+            const std::vector<float> values = gltf_.numbers(found->second, 1, GltfIntegers::any);
+            surface_.vertex_values.resize(first, std::numeric_limits<float>::quiet_NaN());
+            surface_.vertex_values.insert(surface_.vertex_values.end(), values.begin(), values.end());
+            break;
+        }
+        if (!surface_.vertex_values.empty())
+            surface_.vertex_values.resize(first + vertex_count, std::numeric_limits<float>::quiet_NaN());
     }
 
     /// A transform that mirrors reverses the faces. In glTF this holds for skinned meshes, too, although they otherwise

@@ -32,7 +32,10 @@ struct GltfSurface {
     std::vector<Vec3> vertices;  ///< as stored, before morphing and skinning; one per element of POSITION and copy
     std::vector<Face> faces;     ///< counter-clockwise also where the transform of a node mirrors
     std::vector<int> materials;  ///< per face; -1 for none
-    Skin skin;                   ///< its bones name nodes of the file
+    /// Per vertex its number in the scalar attribute _LABEL, _GROUP or _PART, as Blender exports attributes of its
+    /// meshes; NaN where a primitive has none. Empty if no primitive has one.
+    std::vector<float> vertex_values;
+    Skin skin;  ///< its bones name nodes of the file
     GltfTree tree;
     std::vector<Affine3> world;                             ///< per node of the file: its transform at rest
     std::vector<Targets> targets;                           ///< per node of the file: the morph targets of its mesh

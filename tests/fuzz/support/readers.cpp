@@ -36,6 +36,7 @@
 #include "host/mesh/io/io_import.h"
 #include "host/mesh/io/io_text.h"
 #include "tests/fuzz/support/compressed.h"
+#include "tests/fuzz/support/label_promises.h"
 #include "tests/fuzz/support/promises.h"
 #include "tests/support/mesh_files.h"
 
@@ -276,6 +277,29 @@ bool reads_seg(std::string_view content) {
     const auto reads_more = [&] { read_seg(path, faces + 1); };
     require(!accepts<DataError>(path.string(), content.size(), k_usual_bound, reads_more), "one segment too few");
     return true;
+}
+
+bool reads_label_json(std::string_view content) {
+    return keeps_label_promises(scratch_file("x.json", content), content.size());
+}
+bool reads_label_npy(std::string_view content) {
+    return keeps_label_promises(scratch_file("x.npy", content), content.size());
+}
+bool reads_label_vtp(std::string_view content) {
+    return keeps_label_promises(scratch_file("x.vtp", content), content.size());
+}
+bool reads_label_list(std::string_view content) {
+    return keeps_label_promises(scratch_file("x_list.txt", content), content.size());
+}
+bool reads_named_seg(std::string_view content) {
+    return keeps_label_promises(scratch_file("named.seg", content), content.size());
+}
+bool reads_obj_groups(std::string_view content) {
+    return keeps_label_promises(scratch_file("groups.obj", content), content.size());
+}
+bool splits_gltf(std::string_view content) {
+    return keeps_split_promises(scratch_file(content.starts_with("glTF") ? "x.glb" : "x.gltf", content),
+                                content.size());
 }
 
 bool same(const Tensor& a, const Tensor& b) {
@@ -581,7 +605,7 @@ bool reads_svg(std::string_view content) {
     return true;
 }
 
-constexpr std::array<Reader, 24> k_readers{{{"off", reads_off},
+constexpr std::array<Reader, 31> k_readers{{{"off", reads_off},
                                             {"obj", reads_obj},
                                             {"ply", reads_ply},
                                             {"stl", reads_stl},
@@ -591,6 +615,13 @@ constexpr std::array<Reader, 24> k_readers{{{"off", reads_off},
                                             {"animation", reads_animation},
                                             {"labels", reads_labels},
                                             {"seg", reads_seg},
+                                            {"label_json", reads_label_json},
+                                            {"label_npy", reads_label_npy},
+                                            {"label_vtp", reads_label_vtp},
+                                            {"label_list", reads_label_list},
+                                            {"named_seg", reads_named_seg},
+                                            {"obj_groups", reads_obj_groups},
+                                            {"gltf_split", splits_gltf},
                                             {"safetensors", reads_safetensors},
                                             {"model", reads_model},
                                             {"curvature", reads_curvature},

@@ -22,6 +22,7 @@ HOST = {
     'curvature': {'core', 'mesh', 'learn', 'data', 'animation', 'lines'},
     'shape': {'core', 'mesh', 'learn'},
     'labeling': {'core', 'mesh', 'learn', 'graphcut', 'data', 'shape'},
+    'parts': {'core', 'mesh', 'graphcut', 'animation', 'shape', 'data'},
     'hatching': {'core', 'mesh', 'learn', 'graphcut', 'data', 'imaging', 'lines', 'shape'},
 }
 GPU = {
@@ -44,6 +45,7 @@ ROOMS = {
     'host/learn': ['', 'regression', 'components', 'boosting'],
     'host/lines': ['extraction', 'strokes', ''],
     'host/mesh': ['', 'queries', 'editing', 'curvature', 'io', 'gltf'],
+    'host/parts': ['splitting', 'transfer', 'rigging', 'prototype'],
     'host/synth': ['modeling', 'shapes', 'animations', 'damage', 'arrangements', 'hatching'],
     'gpu/curvature': ['surface', 'learned', ''],
     'gpu/runtime': ['device', 'kernels', 'record', 'measure'],

@@ -11,13 +11,15 @@ void add_label_command(Command& app) {
         "  exemplar label apply human.safetensors mesh.obj --out labeled\n"
         "  exemplar label batch shapes --model human.safetensors --out labeled\n"
         "  exemplar label evaluate --protocol sb6 shapes --out report\n"
-        "  exemplar label stress human.safetensors mesh.obj");
+        "  exemplar label stress human.safetensors mesh.obj\n"
+        "  exemplar label rig human.safetensors mesh.obj --out rigged.glb");
     command->require_subcommand();
     add_train_command(*command);
     add_apply_command(*command);
     add_batch_command(*command);
     add_evaluate_command(*command);
     add_stress_command(*command);
+    add_rig_command(*command);
 }
 
 }  // namespace exemplar

@@ -41,11 +41,29 @@ std::vector<BoundaryLoop> boundary_loops(const TriangleMesh& mesh, const std::ve
     return result;
 }
 
-PartBoundary boundary_between(const TriangleMesh& mesh, const PartPair& pair, const std::vector<const Edge*>& edges) {
+/// The corner of a face that is not on an edge.
+const Vec3& third_corner(const TriangleMesh& mesh, std::uint32_t face, const Edge& edge) {
+    for (const std::uint32_t v : mesh.faces[face])
+        if (v != edge.vertex[0] && v != edge.vertex[1]) return mesh.vertices[v];
+    return mesh.vertices[edge.vertex[0]];
+}
+
+/// 1 where an edge is flat or convex, 0 where its faces stand at a right angle or less, as where a hand touches the
+/// hip.
+double flatness(const TriangleMesh& mesh, const std::vector<Vec3>& normals, const Edge& edge) {
+    const auto [f, g] = edge.face;
+    const Vec3 across = third_corner(mesh, g, edge) - mesh.vertices[edge.vertex[0]];
+    if (across.dot(normals[f]) <= 0) return 1;
+    return std::max(0.0F, normals[f].dot(normals[g]));
+}
+
+PartBoundary boundary_between(const TriangleMesh& mesh, const std::vector<Vec3>& normals, const PartPair& pair,
+                              const std::vector<const Edge*>& edges) {
     const std::vector<BoundaryLoop> loops = boundary_loops(mesh, edges);
     double longest = 0;
     for (const BoundaryLoop& loop : loops) longest = std::max(longest, loop.length);
-    PartBoundary boundary{{pair.first, pair.second}, 0, mesh.vertices[edges.front()->vertex[0]]};
+    PartBoundary boundary{{pair.first, pair.second}, 0, 0, mesh.vertices[edges.front()->vertex[0]]};
+    for (const Edge* edge : edges) boundary.strength += edge_length(mesh, *edge) * flatness(mesh, normals, *edge);
     double counted = 0;
     Vec3d moment = Vec3d::Zero();
     for (const BoundaryLoop& loop : loops) {
@@ -84,8 +102,9 @@ std::vector<PartBoundary> part_boundaries(const TriangleMesh& mesh, const Topolo
                                           std::span<const PartBoundary> contacts) {
     std::map<PartPair, PartBoundary> found;
     for (const PartBoundary& contact : contacts) found.emplace(PartPair(contact.part[0], contact.part[1]), contact);
+    const std::vector<Vec3> normals = face_normals(mesh);
     for (const auto& [pair, edges] : edges_between(topology, part_of_face))
-        found[pair] = boundary_between(mesh, pair, edges);
+        found[pair] = boundary_between(mesh, normals, pair, edges);
     std::vector<PartBoundary> boundaries;
     boundaries.reserve(found.size());
     for (const auto& [pair, boundary] : found) boundaries.push_back(boundary);

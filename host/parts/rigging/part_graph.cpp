@@ -151,7 +151,7 @@ std::vector<PartBoundary> contacts_of_parts(const std::vector<PieceContact>& con
     result.reserve(contacts.size());
     for (const PieceContact& contact : contacts) {
         const std::uint32_t a = part_of_face[contact.face], b = part_of_face[contact.other_face];
-        if (a != b) result.push_back({{std::min(a, b), std::max(a, b)}, 0, contact.point});
+        if (a != b) result.push_back({{std::min(a, b), std::max(a, b)}, 0, 0, contact.point});
     }
     return result;
 }

@@ -21,6 +21,7 @@ struct Part {
 struct PartBoundary {
     std::array<std::uint32_t, 2> part;  ///< part[0] < part[1]
     double length = 0;                  ///< of the edges between them, in mesh units; 0 if no edge connects them
+    double strength = 0;                ///< the length of its edges, less where they are concave creases
     Vec3 center;                        ///< length-weighted centroid of the longest connected boundaries, see below
 };
 

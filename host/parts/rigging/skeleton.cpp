@@ -20,7 +20,16 @@ std::uint32_t largest_part(const PartGraph& graph) {
     return static_cast<std::uint32_t>(largest - graph.parts.begin());
 }
 
-/// Adds the parts in the order of Prim's algorithm: always along the longest boundary to a part that is new.
+/// Whether a tree rather follows boundary `a` than `b`: parts of equal label, two legs that touch, hang on each other
+/// only if nothing else connects them; else the stronger boundary.
+bool is_stronger(const PartGraph& graph, const PartBoundary& a, const PartBoundary& b) {
+    const auto is_alike = [&](const PartBoundary& boundary) {
+        return graph.parts[boundary.part[0]].label == graph.parts[boundary.part[1]].label;
+    };
+    return is_alike(a) != is_alike(b) ? is_alike(b) : a.strength > b.strength;
+}
+
+/// Adds the parts in the order of Prim's algorithm: always along the strongest boundary to a part that is new.
 void grow_tree(const PartGraph& graph, Skeleton& skeleton) {
     while (skeleton.joints.size() < graph.parts.size()) {
         std::uint32_t best = k_invalid_index;
@@ -28,7 +37,7 @@ void grow_tree(const PartGraph& graph, Skeleton& skeleton) {
             const auto [p, q] = graph.boundaries[b].part;
             if ((skeleton.joint_of_part[p] == k_invalid_index) == (skeleton.joint_of_part[q] == k_invalid_index))
                 continue;
-            if (best == k_invalid_index || graph.boundaries[b].length > graph.boundaries[best].length) best = b;
+            if (best == k_invalid_index || is_stronger(graph, graph.boundaries[b], graph.boundaries[best])) best = b;
         }
         if (best == k_invalid_index) throw MeshError("its parts are not connected");
         const auto [p, q] = graph.boundaries[best].part;

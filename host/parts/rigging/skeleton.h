@@ -27,10 +27,11 @@ struct Skeleton {
     std::vector<std::uint32_t> joint_of_part;
 };
 
-/// Returns the skeleton of a part graph (thesis Sec. 3.5): the spanning tree with the longest boundaries, grown from
-/// `root`, or, if it is not given, from the part with the largest area. The axes of the root are those of the mesh. The
-/// x axis of another joint is normal to its bone and to its parent's; where these are about parallel, it is the
-/// principal axis of the surface that is most across the bone. Names are left empty (see name_parts).
+/// Returns the skeleton of a part graph (thesis Sec. 3.5): the spanning tree with the strongest boundaries, between
+/// parts of different labels first, grown from `root`, or, if it is not given, from the part with the largest area. The
+/// axes of the root are those of the mesh. The x axis of another joint is normal to its bone and to its parent's; where
+/// these are about parallel, it is the principal axis of the surface that is most across the bone. Names are left empty
+/// (see name_parts).
 Skeleton build_skeleton(const TriangleMesh& mesh, const PartGraph& graph, std::optional<std::uint32_t> root = {});
 
 }  // namespace exemplar

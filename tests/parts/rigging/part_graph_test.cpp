@@ -6,6 +6,7 @@
 
 #include "host/core/errors.h"
 #include "tests/parts/rigging/part_shapes.h"
+#include "tests/support/shapes.h"
 
 namespace exemplar {
 namespace {
@@ -70,10 +71,10 @@ TEST(PartGraph, LegsThatTouchAreTwo) {
     EXPECT_EQ(std::count_if(graph.parts.begin(), graph.parts.end(), [](const Part& p) { return p.label == 2; }), 2);
 }
 
-TEST(PartGraph, ABodyBetweenTwoArmsIsOne) {
-    const TriangleMesh mesh = tube(12);
-    std::vector<std::int32_t> label = labels_along_x(mesh, {3, 9});
-    for (std::int32_t& l : label) l = l == 1 ? 0 : 1;
+TEST(PartGraph, AHeadBetweenTwoEarsIsOne) {
+    const TriangleMesh mesh = shapes::icosphere(3, 1);
+    std::vector<std::int32_t> label;
+    for (const Vec3& center : face_centers(mesh)) label.push_back(std::abs(center.x()) > 0.92F ? 1 : 0);
     const PartGraph graph = build_part_graph(mesh, build_topology(mesh), label);
     EXPECT_EQ(graph.parts.size(), 3U);
 }

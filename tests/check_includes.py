@@ -45,7 +45,7 @@ ROOMS = {
     'host/learn': ['', 'regression', 'components', 'boosting'],
     'host/lines': ['extraction', 'strokes', ''],
     'host/mesh': ['', 'queries', 'editing', 'curvature', 'io', 'gltf'],
-    'host/parts': ['splitting', 'transfer', 'rigging', 'prototype'],
+    'host/parts': ['splitting', 'transfer', 'rigging', 'materials', 'prototype'],
     'host/synth': ['modeling', 'shapes', 'animations', 'damage', 'arrangements', 'hatching'],
     'gpu/curvature': ['surface', 'learned', ''],
     'gpu/runtime': ['device', 'kernels', 'record', 'measure'],

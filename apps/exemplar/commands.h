@@ -17,6 +17,8 @@ void add_batch_command(Command& label);
 void add_evaluate_command(Command& label);
 void add_stress_command(Command& label);
 void add_rig_command(Command& label);
+void add_materials_command(Command& label);
+void add_prototype_command(Command& label);
 void add_category_command(Command& app);
 void add_category_train_command(Command& category);
 void add_category_apply_command(Command& category);

@@ -12,7 +12,8 @@ void add_label_command(Command& app) {
         "  exemplar label batch shapes --model human.safetensors --out labeled\n"
         "  exemplar label evaluate --protocol sb6 shapes --out report\n"
         "  exemplar label stress human.safetensors mesh.obj\n"
-        "  exemplar label rig human.safetensors mesh.obj --out rigged.glb");
+        "  exemplar label rig human.safetensors mesh.obj --out rigged.glb\n"
+        "  exemplar label materials labeled.ply --materials skin.json --out dressed.glb");
     command->require_subcommand();
     add_train_command(*command);
     add_apply_command(*command);
@@ -20,6 +21,8 @@ void add_label_command(Command& app) {
     add_evaluate_command(*command);
     add_stress_command(*command);
     add_rig_command(*command);
+    add_materials_command(*command);
+    add_prototype_command(*command);
 }
 
 }  // namespace exemplar

@@ -64,7 +64,7 @@ void add_rig_example_options(Command& command, RigExamples& examples) {
 }
 
 void add_rig_examples(const RigExamples& examples, bool quiet, LabeledCorpus& corpus) {
-    require_output_folder(examples.folder);
+    if (!examples.folder.empty()) require_output_folder(examples.folder);
     for (const auto& path : examples.characters) require_input(path);
     if (!examples.map.empty()) require_input(examples.map);
     const BoneTable table = examples.map.empty() ? BoneTable::of_humans() : BoneTable::read(examples.map);

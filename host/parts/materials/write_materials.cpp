@@ -9,6 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <tuple>
+#include <utility>
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
@@ -72,7 +73,9 @@ class MaterialWriter {
         document_["meshes"][0]["primitives"].push_back({{"attributes", attributes},
                                                         {"indices", document_["accessors"].size() - 1},
                                                         {"material", document_["materials"].size()}});
-        document_["materials"].push_back(material_json(name, label_color, material));
+        // Made first: it may add entries to the document, which moves all others.
+        MaterialJson json = material_json(name, label_color, material);
+        document_["materials"].push_back(std::move(json));
     }
 
     std::string bytes() {
@@ -131,8 +134,8 @@ class MaterialWriter {
         const bool is_png = content.starts_with("\x89PNG\r\n\x1a\n"), is_jpeg = content.starts_with("\xff\xd8\xff");
         if (!is_png && !is_jpeg)
             throw DataError(path.string() + ": neither PNG nor JPEG, which glTF textures are; convert it");
-        document_["images"].push_back({{"bufferView", add_view(content.data(), content.size(), 0)},
-                                       {"mimeType", is_png ? "image/png" : "image/jpeg"}});
+        const std::size_t view = add_view(content.data(), content.size(), 0);
+        document_["images"].push_back({{"bufferView", view}, {"mimeType", is_png ? "image/png" : "image/jpeg"}});
         if (!document_.contains("samplers"))
             document_["samplers"] = {{{"magFilter", 9729}, {"minFilter", 9987}, {"wrapS", 10497}, {"wrapT", 10497}}};
         document_["textures"].push_back({{"sampler", 0}, {"source", at->second}});

@@ -60,6 +60,12 @@ class Parts(ProgramTest):
         (self.folder / "skin.json").write_text('{"torso": {"colour": "#ff0000"}}')
         self.refused("label", "materials", self.mesh, "--materials", "skin.json", "--out", "x.glb", code=1, says=["skin.json", "did you mean 'color'"])
 
+    def test_labels_that_are_paths_stay_in_the_folder(self):
+        labels = self.mesh.with_name("human_003_labels.txt").read_text().replace("head", "../../head").replace("hand", "all")
+        (self.folder / "odd.txt").write_text(labels)
+        self.call("label", "prototype", "mannequin", self.mesh, "--labels", "odd.txt", "--resolution", "60", "--out", "deep/er/odd")
+        self.assertEqual([path.name for path in self.folder.glob("*.stl")] + [path.name for path in self.folder.glob("deep/*.stl")], [])
+
     def test_a_mannequin_is_made_of_closed_solids(self):
         self.call("label", "prototype", "mannequin", self.mesh, "--root", "torso", "--resolution", "100", "--out", "mannequin", "--json", "p.json")
         report = json.loads((self.folder / "p.json").read_text())
@@ -68,9 +74,9 @@ class Parts(ProgramTest):
         self.assertEqual(len(report["solids"]), len(moving) + 1)
         self.assertGreater(len(moving), 3)
         files = {path.name for path in (self.folder / "mannequin").iterdir()}
-        self.assertEqual(files, {f"{solid['solid']}.stl" for solid in report["solids"]} | {"all.stl"})
+        self.assertEqual(files, {solid["file"] for solid in report["solids"]} | {"all.stl"})
         for solid in report["solids"]:
-            size = (self.folder / "mannequin" / f"{solid['solid']}.stl").stat().st_size
+            size = (self.folder / "mannequin" / solid["file"]).stat().st_size
             self.assertEqual(size, 84 + 50 * solid["faces"])
 
 

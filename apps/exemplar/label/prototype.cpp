@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
+#include <set>
+#include <string>
+
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/label/labeled_input.h"
@@ -38,19 +42,33 @@ nlohmann::json describe_print_joints(const Mannequin& mannequin) {
     return joints;
 }
 
+/// A file name for a solid: labels may hold any text. Other characters than letters, digits, - and _ become _, and a
+/// name that is taken gets a number.
+std::string file_of_solid(const std::string& name, std::set<std::string>& taken) {
+    std::string stem = name.substr(0, 100);
+    for (char& c : stem)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_') c = '_';
+    std::string file = stem;
+    for (int i = 2; !taken.insert(file).second; ++i) file = fmt::format("{}_{}", stem, i);
+    return file + ".stl";
+}
+
 /// Writes a file per solid, and one with all of them.
 nlohmann::json write_solids(const Mannequin& mannequin, const std::filesystem::path& folder) {
     nlohmann::json solids = nlohmann::json::array();
     TriangleMesh all;
+    std::set<std::string> taken{"all"};
     for (const PrintSolid& solid : mannequin.solids) {
-        write_stl(folder / (solid.name + ".stl"), solid.mesh);
+        const std::string file = file_of_solid(solid.name, taken);
+        write_stl(folder / file, solid.mesh);
         const auto first = static_cast<std::uint32_t>(all.vertices.size());
         all.vertices.insert(all.vertices.end(), solid.mesh.vertices.begin(), solid.mesh.vertices.end());
         for (const Face& face : solid.mesh.faces)
             all.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
         const MeshReport report = validate_mesh(solid.mesh);
         const bool is_closed = report.boundary_edges == 0 && report.non_manifold_edges.empty() && !report.inside_out;
-        solids.push_back({{"solid", solid.name}, {"faces", solid.mesh.face_count()}, {"closed", is_closed}});
+        solids.push_back(
+            {{"solid", solid.name}, {"file", file}, {"faces", solid.mesh.face_count()}, {"closed", is_closed}});
     }
     write_stl(folder / "all.stl", all);
     return solids;

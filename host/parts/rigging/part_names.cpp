@@ -117,7 +117,7 @@ Vec3 numbering_axis(const TriangleMesh& mesh, const std::optional<SymmetryPlane>
 
 std::optional<SymmetryPlane> name_parts(const TriangleMesh& mesh, const PartGraph& graph,
                                         const std::vector<std::string>& labels, bool swap_sides, Skeleton& skeleton) {
-    const std::optional<SymmetryPlane> plane = best_plane(mesh, graph, skeleton);
+    std::optional<SymmetryPlane> plane = best_plane(mesh, graph, skeleton);
     const Sides side = plane ? sides_of(graph, skeleton, *plane) : Sides(skeleton.joints.size(), 0);
     std::map<std::string, std::vector<std::size_t>> alike;
     for (std::size_t j = 0; j < side.size(); ++j) {

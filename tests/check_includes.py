@@ -21,8 +21,8 @@ HOST = {
     'lines': {'core', 'mesh', 'imaging'},
     'curvature': {'core', 'mesh', 'learn', 'data', 'animation', 'lines'},
     'shape': {'core', 'mesh', 'learn'},
-    'parts': {'core', 'mesh', 'graphcut', 'animation', 'shape', 'data'},
     'labeling': {'core', 'mesh', 'learn', 'graphcut', 'data', 'shape'},
+    'parts': {'core', 'mesh', 'graphcut', 'animation', 'shape', 'data'},
     'hatching': {'core', 'mesh', 'learn', 'graphcut', 'data', 'imaging', 'lines', 'shape'},
 }
 GPU = {
@@ -45,7 +45,7 @@ ROOMS = {
     'host/learn': ['', 'regression', 'components', 'boosting'],
     'host/lines': ['extraction', 'strokes', ''],
     'host/mesh': ['', 'queries', 'editing', 'curvature', 'io', 'gltf', 'label_files'],
-    'host/parts': ['splitting', 'transfer', 'rigging', 'prototype'],
+    'host/parts': ['splitting', 'transfer', 'rigging', 'materials', 'prototype'],
     'host/synth': ['modeling', 'shapes', 'animations', 'damage', 'arrangements', 'hatching'],
     'gpu/curvature': ['surface', 'learned', ''],
     'gpu/runtime': ['device', 'kernels', 'record', 'measure'],

@@ -76,7 +76,7 @@ class ManPages(PagesTest):
     def test_what_a_page_says(self):
         page = self.page("exemplar label train")
         self.assertIn("exemplar-label-train - Learns a model from labeled meshes\n", page)
-        self.assertRegex(page, r"exemplar label train \[OPTION\.\.\.\] SOURCE\.\.\.\n")
+        self.assertRegex(page, r"exemplar label train \[OPTION\.\.\.\] \[SOURCE\.\.\.\]\n")
         self.assertRegex(page, r"\n +--rounds NUMBER\n +boosting rounds per classifier \(for boundaries at most\)\s+"
                                r"\(from\s+1\s+to\s+100000;\s+default:\s+300\)\n")
         self.assertIn("exemplar label train shapes --out human.safetensors --seed 1\n", page)

@@ -35,6 +35,16 @@ class Reports(WithModel):
     def test_train(self):
         self.check("label train", self.json("train.json"))
 
+    def test_parts(self):
+        truth = self.cup.with_name(self.cup.stem + "_labels.txt")
+        self.call("label", "rig", "cup.safetensors", self.cup, "--truth", truth, "--out", "r.glb", "--json", "r.json")
+        self.check("label rig", self.json("r.json"))
+        (self.folder / "skin.json").write_text('{"*": {"metallic": 1}}')
+        self.call("label", "materials", self.cup, "--materials", "skin.json", "--out", "m.glb", "--json", "m.json")
+        self.check("label materials", self.json("m.json"))
+        self.call("label", "prototype", "mannequin", self.cup, "--resolution", "50", "--out", "printed", "--json", "p.json")
+        self.check("label prototype mannequin", self.json("p.json"))
+
     def test_apply(self):
         self.call("label", "apply", "cup.safetensors", "cups", "--out", "labeled", "--json", "a.json")
         self.check("label apply", self.json("a.json"))

@@ -13,7 +13,9 @@ void add_label_command(Command& app) {
         "  exemplar label evaluate --protocol sb6 shapes --out report\n"
         "  exemplar label stress human.safetensors mesh.obj\n"
         "  exemplar label split human.off --out parts --caps\n"
-        "  exemplar label transfer low.off high.obj --out high_labels.txt");
+        "  exemplar label transfer low.off high.obj --out high_labels.txt\n"
+        "  exemplar label rig human.safetensors mesh.obj --out rigged.glb\n"
+        "  exemplar label materials labeled.ply --materials skin.json --out dressed.glb");
     command->require_subcommand();
     add_train_command(*command);
     add_apply_command(*command);
@@ -24,6 +26,9 @@ void add_label_command(Command& app) {
     add_simulate_command(*command);
     add_split_command(*command);
     add_transfer_command(*command);
+    add_rig_command(*command);
+    add_materials_command(*command);
+    add_prototype_command(*command);
 }
 
 }  // namespace exemplar

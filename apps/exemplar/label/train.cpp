@@ -5,6 +5,7 @@
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/commands.h"
+#include "apps/exemplar/label/rig_examples.h"
 #include "apps/exemplar/label/training_run.h"
 #include "host/core/stopwatch.h"
 #include "host/labeling/inference/mesh_labeling.h"
@@ -17,8 +18,19 @@ struct TrainCommand {
     std::vector<std::filesystem::path> sources;
     std::filesystem::path out, labels;
     std::filesystem::path cache = default_feature_folder();
+    RigExamples rigs;
     TrainOptions train;
 };
+
+/// The labeled meshes of SOURCE, and those of characters.
+LabeledCorpus training_corpus(const TrainCommand& options) {
+    if (options.sources.empty() && options.rigs.characters.empty())
+        throw UsageError("give labeled meshes (SOURCE), or characters with --from-rig");
+    LabeledCorpus corpus;
+    if (!options.sources.empty()) corpus = load_corpus(meshes_of_arguments(options.sources), {}, options.labels);
+    add_rig_examples(options.rigs, options.common.quiet, corpus);
+    return corpus;
+}
 
 void run_label_train(const TrainCommand& options) {
     const auto limits = apply_common_options(options.common);
@@ -26,7 +38,7 @@ void run_label_train(const TrainCommand& options) {
     require_output_file(options.out);
     const std::filesystem::path cache = usable_cache(options.cache, options.common.quiet);
     if (!options.labels.empty()) require_input(options.labels);
-    const LabeledCorpus corpus = working_corpus(load_corpus(meshes_of_arguments(options.sources), {}, options.labels));
+    const LabeledCorpus corpus = working_corpus(training_corpus(options));
     if (!options.common.quiet)
         for (const std::string& warning : corpus.warnings) fmt::print(stderr, "warning: {}\n", warning);
     DeviceBackend backend(options.common.device);
@@ -98,16 +110,17 @@ void add_train_command(Command& label) {
     command->footer(
         "Labels: NAME_labels.txt beside NAME.off (a label name, then a line of 1-based face numbers, and so on),\n"
         "or a PLY with a per-face 'label' property.\n\nExample:\n"
-        "  exemplar label train shapes --out human.safetensors --seed 1");
+        "  exemplar label train shapes --out human.safetensors --seed 1\n"
+        "  exemplar label train --from-rig character.glb --poses 8 --out human.safetensors");
     command
         ->add_option(
             "SOURCE", options->sources,
             "labeled meshes: folders, lists (.txt, a path a line) or mesh files; equal label names are one label")
-        ->required()
         ->type_name("");
     command->add_option("--labels", options->labels, "folder of the NAME_labels.txt, if they are not beside the meshes")
         ->type_name("FOLDER");
     command->add_option("--out", options->out, "model file to write, .safetensors")->required()->type_name("FILE");
+    add_rig_example_options(*command, options->rigs);
     add_training_options(*command, options->train, options->cache);
     add_device_option(*command, options->common);
     add_common_options(*command, options->common);

@@ -1,0 +1,137 @@
+// exemplar label prototype: labeled meshes as things that can be printed and move.
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <set>
+#include <string>
+
+#include "apps/exemplar/arguments.h"
+#include "apps/exemplar/commands.h"
+#include "apps/exemplar/label/labeled_input.h"
+#include "host/core/stopwatch.h"
+#include "host/core/text.h"
+#include "host/mesh/editing/validate.h"
+#include "host/parts/prototype/mannequin.h"
+#include "host/parts/prototype/write_stl.h"
+
+namespace exemplar {
+namespace {
+
+struct PrototypeCommand {
+    CommonOptions common;
+    LabeledInputArguments input;
+    std::filesystem::path out;
+    MannequinOptions mannequin;
+};
+
+const char* name_of_joint(PrintJointKind kind) {
+    return kind == PrintJointKind::ball ? "ball" : kind == PrintJointKind::hinge ? "hinge" : "fused";
+}
+
+nlohmann::json describe_print_joints(const Mannequin& mannequin) {
+    nlohmann::json joints = nlohmann::json::array();
+    for (const PrintJoint& joint : mannequin.joints) {
+        const Joint& child = mannequin.skeleton.joints[joint.joint];
+        joints.push_back({{"joint", child.name},
+                          {"parent", mannequin.skeleton.joints[child.parent].name},
+                          {"kind", name_of_joint(joint.kind)},
+                          {"center", {joint.center[0], joint.center[1], joint.center[2]}},
+                          {"radius", joint.radius}});
+    }
+    return joints;
+}
+
+/// A file name for a solid: labels may hold any text. Other characters than letters, digits, - and _ become _, and a
+/// name that is taken gets a number.
+std::string file_of_solid(const std::string& name, std::set<std::string>& taken) {
+    std::string stem = name.substr(0, 100);
+    for (char& c : stem)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_') c = '_';
+    std::string file = stem;
+    for (int i = 2; !taken.insert(file).second; ++i) file = fmt::format("{}_{}", stem, i);
+    return file + ".stl";
+}
+
+/// Writes a file per solid, and one with all of them.
+nlohmann::json write_solids(const Mannequin& mannequin, const std::filesystem::path& folder) {
+    nlohmann::json solids = nlohmann::json::array();
+    TriangleMesh all;
+    std::set<std::string> taken{"all"};
+    for (const PrintSolid& solid : mannequin.solids) {
+        const std::string file = file_of_solid(solid.name, taken);
+        write_stl(folder / file, solid.mesh);
+        const auto first = static_cast<std::uint32_t>(all.vertices.size());
+        all.vertices.insert(all.vertices.end(), solid.mesh.vertices.begin(), solid.mesh.vertices.end());
+        for (const Face& face : solid.mesh.faces)
+            all.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
+        const MeshReport report = validate_mesh(solid.mesh);
+        const bool is_closed = report.boundary_edges == 0 && report.non_manifold_edges.empty() && !report.inside_out;
+        solids.push_back(
+            {{"solid", solid.name}, {"file", file}, {"faces", solid.mesh.face_count()}, {"closed", is_closed}});
+    }
+    write_stl(folder / "all.stl", all);
+    return solids;
+}
+
+void run_mannequin(const PrototypeCommand& options) {
+    const auto limits = apply_common_options(options.common);
+    const Stopwatch watch;
+    require_output_folder(options.out);
+    const LabeledInput input = read_labeled_input(options.input, options.common);
+    require_other_folder(options.out, {input.path});
+    const Mannequin mannequin = of_file(
+        input.path, [&] { return make_mannequin(input.file.mesh, input.names, input.label, options.mannequin); });
+    const nlohmann::json solids = write_solids(mannequin, options.out);
+    std::size_t moving = 0;
+    for (const PrintJoint& joint : mannequin.joints) moving += joint.kind != PrintJointKind::fused;
+    fmt::print("{}: {}, {} that move: {} in {:.1f} s\n", input.path.string(), counted(mannequin.solids.size(), "solid"),
+               counted(moving, "joint"), options.out.string(), watch.wall());
+    write_report(options.common, {{"mesh", input.path.string()},
+                                  {"labels", input.source},
+                                  {"out", options.out.string()},
+                                  {"cell", mannequin.cell},
+                                  {"solids", solids},
+                                  {"joints", describe_print_joints(mannequin)},
+                                  {"seconds", watch.wall()}});
+}
+
+void add_mannequin_command(Command& prototype) {
+    auto options = std::make_shared<PrototypeCommand>();
+    Command* command = prototype.add_subcommand("mannequin", "Makes a jointed figure to print, a solid per part");
+    command->footer(
+        "Writes NAME.stl for each solid and all.stl, in millimeters. The balls of parts sit in sockets of the parts "
+        "that\n"
+        "they hang on; labels of --hinge bend about one axis. Parts too thin for a joint stay one solid.\n\nExample:\n"
+        "  exemplar label prototype mannequin labeled.ply --root torso --height 150 --out mannequin");
+    add_labeled_input(*command, options->input, options->common);
+    command->add_option("--out", options->out, "folder to write to")->required()->type_name("FOLDER");
+    command->add_option("--height", options->mannequin.height, "longest edge of the figure, in mm")
+        ->capture_default_str()
+        ->check(in_range(1.0, 10000.0));
+    command->add_option("--gap", options->mannequin.gap, "gap between solids, in mm")
+        ->capture_default_str()
+        ->check(in_range(0.01, 100.0));
+    command->add_option("--resolution", options->mannequin.resolution, "cells along the longest edge")
+        ->capture_default_str()
+        ->check(whole_number(20, 1000));
+    command
+        ->add_option("--root", options->mannequin.root,
+                     "label of the part that all others hang on (default: the largest)")
+        ->type_name("LABEL");
+    command->add_option("--hinge", options->mannequin.hinges, "labels that hang on a hinge instead of a ball")
+        ->type_name("LABEL ...");
+    add_common_options(*command, options->common);
+    command->callback([options] { run_mannequin(*options); });
+}
+
+}  // namespace
+
+void add_prototype_command(Command& label) {
+    Command* command = label.add_subcommand("prototype", "Makes things to print out of the parts of a mesh");
+    command->footer("Example:\n  exemplar label prototype mannequin labeled.ply --out mannequin");
+    command->require_subcommand();
+    add_mannequin_command(*command);
+}
+
+}  // namespace exemplar

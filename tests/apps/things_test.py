@@ -1,0 +1,84 @@
+"""Labels from rigs, materials and mannequins, from outside. Needs a Vulkan device (a software one will do)."""
+
+import json
+import struct
+import unittest
+import zlib
+
+from program import QUICK, ProgramTest
+
+
+def png(width, height):
+    """A gray picture."""
+    def chunk(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+    rows = b"".join(b"\0" + bytes(range(width)) for _ in range(height))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+class Parts(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.call("synth", "human", "--count", "1", "--seed", "3", "--out", "humans")
+        cls.mesh = cls.folder / "humans" / "human_003.off"
+
+    def test_a_rig_teaches_labels(self):
+        self.call("label", "rig", self.mesh, "--out", "rig.glb", "--root", "torso")
+        self.call("label", "train", "--from-rig", "rig.glb", "--poses", "2", "--export", "poses", "--out", "model", *QUICK)
+        names = {path.name for path in (self.folder / "poses").iterdir()}
+        self.assertEqual(names, {"rig_1.off", "rig_1_labels.txt", "rig_2.off", "rig_2_labels.txt"})
+        lines = (self.folder / "poses" / "rig_1_labels.txt").read_text().splitlines()
+        self.assertLessEqual({"torso", "upperarm", "lowerleg", "head"}, set(lines[::2]))
+        self.call("label", "apply", "model", self.mesh, "--out", "applied")
+        self.call("label", "train", self.mesh, "--from-rig", "rig.glb", "--poses", "1", "--out", "both", *QUICK)
+
+    def test_unknown_bones_need_a_map(self):
+        self.call("synth", "figure", "--count", "1", "--seed", "1", "--out", "figures")
+        figure = next((self.folder / "figures").glob("*.glb"))
+        (self.folder / "map.json").write_text('{"*": "body", "*arm*": "arm", "*head*": "head"}')
+        self.call("label", "train", "--from-rig", figure, "--map", "map.json", "--poses", "1", "--out", "mapped", *QUICK)
+        (self.folder / "map.json").write_text('{"nothing": "body"}')
+        self.refused("label", "train", "--from-rig", figure, "--map", "map.json", "--out", "x", *QUICK, code=1, says=["--map", "bones"])
+        (self.folder / "map.json").write_text("{")
+        self.refused("label", "train", "--from-rig", figure, "--map", "map.json", "--out", "x", *QUICK, code=1, says="map.json")
+        self.refused("label", "train", "--out", "x", code=2, says="--from-rig")
+
+    def test_materials_keep_labels_and_hold_their_pictures(self):
+        (self.folder / "fur.png").write_bytes(png(16, 16))
+        (self.folder / "skin.json").write_text(json.dumps({"torso": {"texture": "fur.png"}, "*": {"color": "#ff0000", "metallic": 1}}))
+        self.call("label", "materials", self.mesh, "--materials", "skin.json", "--out", "dressed.glb", "--json", "m.json")
+        content = (self.folder / "dressed.glb").read_bytes()
+        self.assertIn(png(16, 16), content)
+        scene = json.loads(content[20:20 + struct.unpack_from("<I", content, 12)[0]])
+        materials = {material["name"]: material["pbrMetallicRoughness"] for material in scene["materials"]}
+        self.assertIn("baseColorTexture", materials["torso"])
+        self.assertEqual(materials["head"]["baseColorFactor"], [1, 0, 0, 1])
+        self.call("label", "rig", "dressed.glb", "--out", "again.glb")
+        self.refused("label", "materials", self.mesh, "--materials", "none.json", "--out", "x.glb", code=1, says="none.json")
+        (self.folder / "skin.json").write_text('{"torso": {"colour": "#ff0000"}}')
+        self.refused("label", "materials", self.mesh, "--materials", "skin.json", "--out", "x.glb", code=1, says=["skin.json", "did you mean 'color'"])
+
+    def test_labels_that_are_paths_stay_in_the_folder(self):
+        labels = self.mesh.with_name("human_003_labels.txt").read_text().replace("head", "../../head").replace("hand", "all")
+        (self.folder / "odd.txt").write_text(labels)
+        self.call("label", "prototype", "mannequin", self.mesh, "--labels", "odd.txt", "--resolution", "60", "--out", "deep/er/odd")
+        self.assertEqual([path.name for path in self.folder.glob("*.stl")] + [path.name for path in self.folder.glob("deep/*.stl")], [])
+
+    def test_a_mannequin_is_made_of_closed_solids(self):
+        self.call("label", "prototype", "mannequin", self.mesh, "--root", "torso", "--resolution", "100", "--out", "mannequin", "--json", "p.json")
+        report = json.loads((self.folder / "p.json").read_text())
+        self.assertTrue(all(solid["closed"] for solid in report["solids"]))
+        moving = [joint for joint in report["joints"] if joint["kind"] != "fused"]
+        self.assertEqual(len(report["solids"]), len(moving) + 1)
+        self.assertGreater(len(moving), 3)
+        files = {path.name for path in (self.folder / "mannequin").iterdir()}
+        self.assertEqual(files, {solid["file"] for solid in report["solids"]} | {"all.stl"})
+        for solid in report["solids"]:
+            size = (self.folder / "mannequin" / solid["file"]).stat().st_size
+            self.assertEqual(size, 84 + 50 * solid["faces"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -77,7 +77,7 @@ class ByScript(Painting):
         self.script(*THREE_STROKES, "wait features", "verify")
         self.assertGreater(self.right("bell0"), 0.93)
         self.assertFalse((self.shapes / "bell0_painting.json").exists())
-        self.assertEqual([entry["name"] for entry in json.loads((self.shapes / "labels.json").read_text())["labels"]],
+        self.assertEqual([entry["name"] for entry in json.loads((self.shapes / "palette.json").read_text())["labels"]],
                          ["ball left", "bar", "ball right"])
 
     def test_what_was_learned_labels_the_other_shapes(self):
@@ -206,7 +206,7 @@ class ByHand(WindowTest, Painting):
         return sum(run[1] for label in json.loads(path.read_text())["labels"] for run in label["faces"])
 
     def test_paints_undoes_is_killed_and_goes_on(self):
-        (self.shapes / "labels.json").write_text(json.dumps({"labels": [{"name": name} for name in ("ball left", "bar", "ball right")]}))
+        (self.shapes / "palette.json").write_text(json.dumps({"labels": [{"name": name} for name in ("ball left", "bar", "ball right")]}))
         process, _ = self.open(self.shapes.name, "--label", "--plain", "--size", "400x300", "--side", "front")
         self.xdotool("mousemove", 200, 20, "key", "1")
         self.drag((60, 150), (70, 150), (80, 150))

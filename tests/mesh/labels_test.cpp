@@ -96,27 +96,6 @@ TEST(LabelsTxt, MissingFilesAndFoldersAreDataErrors) {
     EXPECT_THROW(read_labels_txt(folder / "", 3), DataError);
 }
 
-/// Whatever file labels come in, they are those of the faces.
-TEST(FaceLabelFiles, AreReadByTheirEnding) {
-    const TemporaryFolder folder;
-    const TriangleMesh strip = shapes::grid(2, 1, 2);
-    const FaceLabels labels{{"leg", "arm"}, {0, 1, 1, 0}};
-    write_labels_txt(folder / "a_labels.txt", labels);
-    write_ply(folder / "a.ply", strip, &labels);
-    mesh_files::write_bytes(folder / "a.seg", "0\n2\n2\n0\n");
-    for (const char* name : {"a_labels.txt", "a.ply"}) {
-        const FaceLabels read = read_face_labels(folder / name, 4);
-        EXPECT_THAT(read.names, ElementsAre("leg", "arm")) << name;
-        EXPECT_EQ(read.label, labels.label) << name;
-        EXPECT_THROW(read_face_labels(folder / name, 3), DataError) << name;
-    }
-    const FaceLabels segments = read_face_labels(folder / "a.seg", 4);
-    EXPECT_THAT(segments.names, ElementsAre("segment 0", "segment 1", "segment 2"));
-    EXPECT_THAT(segments.label, ElementsAre(0, 2, 2, 0));
-    write_off(folder / "plain.off", strip);
-    EXPECT_THAT(error_of<DataError>([&] { read_face_labels(folder / "plain.off", 4); }), HasSubstr("no labels"));
-}
-
 TEST(Seg, SegmentsAreConnectedPartsInOrderOfFirstFace) {
     // Two separate squares of two triangles each, and a strip of four squares with a stripe of another label.
     const TemporaryFolder folder;

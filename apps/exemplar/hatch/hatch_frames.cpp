@@ -21,6 +21,7 @@
 #include "host/imaging/png.h"
 #include "host/mesh/editing/loose_vertices.h"
 #include "host/mesh/io/io.h"
+#include "host/mesh/label_files/label_files.h"
 
 namespace exemplar {
 namespace {
@@ -69,7 +70,7 @@ class HatchedFrames {
         return view;
     }
     float unit_depth() const { return unit_depth_; }
-    std::size_t source_face_count() const { return surface_.source_face_count; }
+    const TriangleMesh& surface() const { return surface_; }
 
   private:
     /// For a mesh the frames are those of its turning, not of an animation.
@@ -122,7 +123,7 @@ class FrameHatcher {
         const HatchingView view = frames.view(0);
         style_.resize(view.width, view.height);
         look_ = curve_look(style_);
-        if (!job.scene.labels.empty()) labels_ = read_face_labels(job.scene.labels, frames.source_face_count());
+        if (!job.scene.labels.empty()) labels_ = read_face_labels(job.scene.labels, frames.surface());
     }
 
     HatchedDrawing draw(std::size_t frame) {

@@ -1,11 +1,14 @@
 #include "apps/exemplar/label/labeled_input.h"
 
+#include <fmt/format.h>
+
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/backend.h"
 #include "host/core/errors.h"
 #include "host/data/corpus.h"
 #include "host/labeling/features/feature_cache.h"
 #include "host/labeling/inference/mesh_labeling.h"
+#include "host/mesh/label_files/label_files.h"
 
 namespace exemplar {
 namespace {
@@ -23,20 +26,17 @@ void label_by_model(const std::filesystem::path& model_path, const LabeledInputA
 }
 
 FaceLabels labels_of_input(const LabeledInputArguments& arguments, LabeledInput& input) {
-    const std::filesystem::path beside = labels_path(input.path);
-    std::filesystem::path source = arguments.labels;
-    if (source.empty()) {
-        if (!std::filesystem::exists(beside)) {
-            input.source = input.path.string();
-            if (input.file.labels) return *input.file.labels;
-            throw DataError(input.path.string() + ": no labels; give a MODEL before the mesh, --labels FILE, or put " +
-                            beside.filename().string() + " beside it");
-        }
-        source = beside;
+    if (!arguments.labels.empty()) {
+        input.source = arguments.labels.string();
+        require_input(arguments.labels);
+        return read_face_labels(arguments.labels, input.file.mesh);
     }
-    input.source = source.string();
-    require_input(source);
-    return read_face_labels(source, input.file.mesh.source_face_count);
+    input.source = input.path.string();
+    try {
+        return labels_of_mesh(input.path, input.file);
+    } catch (const DataError& error) {
+        throw DataError(fmt::format("{}; or give a MODEL before the mesh, or --labels FILE", error.what()));
+    }
 }
 
 }  // namespace

@@ -12,8 +12,8 @@
 #include "host/core/stopwatch.h"
 #include "host/core/text.h"
 #include "host/mesh/editing/validate.h"
+#include "host/mesh/io/io.h"
 #include "host/parts/prototype/mannequin.h"
-#include "host/parts/prototype/write_stl.h"
 
 namespace exemplar {
 namespace {

@@ -8,6 +8,7 @@
 #include "host/animation/write_animation.h"
 #include "host/core/stopwatch.h"
 #include "host/core/text.h"
+#include "host/mesh/label_files/label_files.h"
 #include "host/parts/rigging/bend_clip.h"
 #include "host/parts/rigging/joint_error.h"
 #include "host/parts/rigging/make_rig.h"
@@ -50,7 +51,7 @@ nlohmann::json describe_joints(const PartRig& rig, const std::vector<std::string
 /// Compares the joints with those of the labels in `truth`, and prints the share that is near.
 nlohmann::json compare_with_truth(const RigCommand& options, const LabeledInput& input, const PartRig& rig) {
     const TriangleMesh& mesh = input.file.mesh;
-    const FaceLabels truth = read_face_labels(options.truth, mesh.source_face_count);
+    const FaceLabels truth = read_face_labels(options.truth, mesh);
     std::vector<std::int32_t> label;
     label.reserve(mesh.face_count());
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) label.push_back(truth.label[mesh.source_of(f)]);

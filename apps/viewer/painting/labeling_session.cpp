@@ -57,6 +57,8 @@ void LabelingSession::open_shape(std::size_t shape) {
             painter->start_with(*strokes);
         else if (folder_.shapes()[shape].verified)
             painter->start_with(folder_.read_labels(shape, faces));
+        else if (const auto labels = folder_.read_other_labels(shape, file))
+            painter->start_with(*labels);
     } catch (const Error& error) {
         remarks_.emplace_back(error.what());
     }

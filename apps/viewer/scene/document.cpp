@@ -10,6 +10,7 @@
 #include "host/core/text.h"
 #include "host/data/corpus.h"
 #include "host/mesh/io/io.h"
+#include "host/mesh/label_files/label_files.h"
 
 namespace exemplar {
 namespace {
@@ -59,8 +60,7 @@ Document read_document(const fs::path& path) {
 }
 
 void add_labels(Document& document, const fs::path& path) {
-    const std::size_t polygons = document.animation.rest.source_face_count;
-    color_by(document, read_face_labels(path, polygons));
+    color_by(document, read_face_labels(path, document.animation.rest));
 }
 
 }  // namespace exemplar

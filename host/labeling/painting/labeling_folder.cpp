@@ -13,14 +13,14 @@
 #include "host/data/corpus.h"
 #include "host/labeling/painting/painting_file.h"
 #include "host/learn/boosting/boosted_stumps.h"
-#include "host/mesh/io/io.h"
+#include "host/mesh/label_files/label_files.h"
 
 namespace exemplar {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* k_palette_file = "labels.json";
+constexpr const char* k_palette_file = "palette.json";
 
 std::optional<fs::file_time_type> time_of(const fs::path& path) {
     std::error_code error;
@@ -133,6 +133,12 @@ std::vector<std::int32_t> LabelingFolder::in_palette(const FaceLabels& labels) {
 std::vector<std::int32_t> LabelingFolder::read_labels(std::size_t shape, std::size_t faces) {
     note_version(shape);
     return in_palette(read_labels_txt(labels_file(shape), faces));
+}
+
+std::optional<std::vector<std::int32_t>> LabelingFolder::read_other_labels(std::size_t shape, const MeshFile& file) {
+    if (file.labels) return in_palette(*file.labels);
+    const std::optional<FaceLabels> labels = find_other_labels(shapes_[shape].path, file.mesh);
+    return labels ? std::optional(in_palette(*labels)) : std::nullopt;
 }
 
 std::optional<std::vector<std::int32_t>> LabelingFolder::read_strokes(std::size_t shape, std::size_t faces) {

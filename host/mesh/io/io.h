@@ -54,6 +54,8 @@ std::span<const std::string_view> mesh_extensions();
 /// not fit the mesh.
 void write_off(const std::filesystem::path& path, const TriangleMesh& mesh);
 void write_obj(const std::filesystem::path& path, const TriangleMesh& mesh);
+/// Writes binary STL, rounded to floats, since STL holds no others. Throws MeshError if a vertex is not finite.
+void write_stl(const std::filesystem::path& path, const TriangleMesh& mesh);
 /// Writes binary little-endian PLY, with double coordinates if the mesh has an origin. If given, labels add per face an
 /// int property `label` and uchar red, green, blue
 /// (`comment label INDEX NAME` lines name them), and confidences a float `confidence`. Both are per source face of
@@ -72,10 +74,6 @@ void write_labels_txt(const std::filesystem::path& path, const FaceLabels& label
 /// Reads a label file of the benchmark; throws DataError with file and line if a face is unlabeled, labeled twice or
 /// out of range.
 FaceLabels read_labels_txt(const std::filesystem::path& path, std::size_t face_count);
-/// Reads the labels of a mesh with so many faces, by the file's ending: a .seg file, whose segments are named by their
-/// numbers; the labels in a mesh file; and else a label file of the benchmark. Throws DataError if there are none, or
-/// not of so many faces.
-FaceLabels read_face_labels(const std::filesystem::path& path, std::size_t face_count);
 /// Writes one 0-based segment index per face and line. Segments are the connected components of equal label,
 /// numbered in order of their first face. Faces are the source faces of `mesh`; two are connected if they share an
 /// edge.

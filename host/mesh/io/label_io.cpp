@@ -160,25 +160,6 @@ FaceLabels read_labels_txt(const std::filesystem::path& path, std::size_t face_c
     return labels;
 }
 
-FaceLabels read_face_labels(const std::filesystem::path& path, std::size_t face_count) {
-    const std::string extension = lower_case(path.extension().string());
-    if (extension == ".seg") {
-        FaceLabels labels{{}, read_seg(path, face_count)};
-        const auto most = labels.label.empty() ? -1 : *std::ranges::max_element(labels.label);
-        for (std::int32_t i = 0; i <= most; ++i) labels.names.push_back(fmt::format("segment {}", i));
-        return labels;
-    }
-    if (std::ranges::find(mesh_extensions(), extension) == mesh_extensions().end())
-        return read_labels_txt(path, face_count);
-    const MeshFile file = read_mesh(path);
-    if (!file.labels)
-        throw DataError(fmt::format("{}: has no labels of faces; a PLY has them as a property 'label'", path.string()));
-    if (file.labels->label.size() != face_count)
-        throw DataError(fmt::format("{}: labels {} faces, but the mesh has {}", path.string(),
-                                    file.labels->label.size(), face_count));
-    return *file.labels;
-}
-
 void write_seg(const std::filesystem::path& path, const TriangleMesh& mesh, const FaceLabels& labels) {
     mesh_io::check_labels(mesh, labels);
     DisjointSets sets(labels.label.size());

@@ -20,9 +20,6 @@ std::span<const std::string_view> part_formats();
 std::vector<std::filesystem::path> write_parts(const std::filesystem::path& stem, const std::string& format,
                                                const MeshParts& names, std::span<const PartMesh> parts);
 
-/// Writes binary STL, in the mesh's frame rounded to floats, since STL holds no others.
-void write_stl(const std::filesystem::path& path, const TriangleMesh& mesh);
-
 /// Writes binary glTF (.glb) with a node, a mesh and a colored material per part, named after it.
 void write_parts_gltf(const std::filesystem::path& path, const MeshParts& names, std::span<const PartMesh> parts);
 

@@ -111,7 +111,7 @@ TEST_F(LabelingFolderTest, VerifiedLabelsAndStrokesAreInFilesBesideTheShapes) {
 }
 
 TEST_F(LabelingFolderTest, LabelsOfOthersJoinThePalette) {
-    write("labels.json", R"({"labels": [{"name": "wing", "color": "#010203"}, {"name": "tail"}]})");
+    write("palette.json", R"({"labels": [{"name": "wing", "color": "#010203"}, {"name": "tail"}]})");
     write("a_labels.txt", "tail\n1 2 3 4 5 6 7 8 9 10\nbody\n11 12 13 14 15 16 17 18 19 20\n");
     LabelingFolder folder(folder_.path());
     ASSERT_EQ(folder.palette().size(), 3u);
@@ -125,7 +125,7 @@ TEST_F(LabelingFolderTest, LabelsOfOthersJoinThePalette) {
 TEST_F(LabelingFolderTest, ADamagedPaletteIsToldAndLeft) {
     for (const char* text :
          {"{", "[]", R"({"labels": 3})", R"({"labels": [{"name": 3}]})", R"({"labels": [{"name": " "}]})"}) {
-        write("labels.json", text);
+        write("palette.json", text);
         const LabelingFolder folder(folder_.path());
         EXPECT_EQ(folder.warnings().size(), 1u) << text;
         EXPECT_TRUE(folder.palette().empty());

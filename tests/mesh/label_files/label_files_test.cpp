@@ -352,5 +352,26 @@ TEST(LabelFiles, UnknownFormsAreRefused) {
     EXPECT_THROW(write_label_file(folder / "a", "json", strip(), {{"a"}, {0, 0}}), UsageError);
 }
 
+/// Whatever file labels come in, they are those of the faces.
+TEST(LabelFiles, AreReadByTheirEnding) {
+    const TemporaryFolder folder;
+    const TriangleMesh strip = shapes::grid(2, 1, 2);
+    const FaceLabels labels{{"leg", "arm"}, {0, 1, 1, 0}};
+    write_labels_txt(folder / "a_labels.txt", labels);
+    write_ply(folder / "a.ply", strip, &labels);
+    mesh_files::write_bytes(folder / "a.seg", "0\n2\n2\n0\n");
+    for (const char* name : {"a_labels.txt", "a.ply"}) {
+        const FaceLabels read = read_face_labels(folder / name, strip);
+        EXPECT_THAT(read.names, ElementsAre("leg", "arm")) << name;
+        EXPECT_EQ(read.label, labels.label) << name;
+        EXPECT_THROW(read_face_labels(folder / name, shapes::grid(1, 1, 1)), DataError) << name;
+    }
+    const FaceLabels segments = read_face_labels(folder / "a.seg", strip);
+    EXPECT_THAT(segments.names, ElementsAre("segment 0", "segment 1", "segment 2"));
+    EXPECT_THAT(segments.label, ElementsAre(0, 2, 2, 0));
+    write_off(folder / "plain.off", strip);
+    EXPECT_THAT(error_of<DataError>([&] { read_face_labels(folder / "plain.off", strip); }), HasSubstr("no labels"));
+}
+
 }  // namespace
 }  // namespace exemplar

@@ -9,7 +9,6 @@
 #include "host/mesh/io/io.h"
 #include "host/parts/prototype/level_surface.h"
 #include "host/parts/prototype/solid_distance.h"
-#include "host/parts/prototype/write_stl.h"
 #include "tests/parts/rigging/part_shapes.h"
 #include "tests/support/manifold.h"
 #include "tests/support/shapes.h"
@@ -122,16 +121,6 @@ TEST(Mannequin, WhatIsTooThinForAJointIsOneSolid) {
 TEST(Mannequin, OpenSurfacesAreRefused) {
     const TriangleMesh mesh = shapes::grid(4, 4, 1);
     EXPECT_THROW(make_mannequin(mesh, {"a"}, std::vector<std::int32_t>(mesh.face_count(), 0)), MeshError);
-}
-
-TEST(WriteStl, ComesBack) {
-    const TemporaryFolder folder;
-    const TriangleMesh mesh = shapes::icosphere(2, 3);
-    write_stl(folder / "ball.stl", mesh);
-    const MeshFile read = read_mesh(folder / "ball.stl");
-    EXPECT_EQ(read.mesh.face_count(), mesh.face_count());
-    EXPECT_NEAR(signed_volume(read.mesh), signed_volume(mesh), 1e-3);
-    EXPECT_THROW(write_stl(folder / "none.stl", {}), MeshError);
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ ROOMS = {
     'gpu/curvature': ['surface', 'learned', ''],
     'gpu/runtime': ['device', 'kernels', 'record', 'measure'],
     'apps/bench': ['kernels', ''],
-    'apps/exemplar': ['', 'label', 'category', 'catalog', 'batch', 'curvature', 'lines', 'hatch', 'bench', 'demo'],
+    'apps/exemplar': ['', 'parts', 'label', 'category', 'catalog', 'batch', 'curvature', 'lines', 'hatch', 'bench', 'demo'],
     'apps/viewer': ['controls', 'painting', 'scene', 'window', ''],
 }
 FOLDERS = ('apps', 'cmake', 'docs', 'gpu', 'host', 'python', 'shaders', 'tests')

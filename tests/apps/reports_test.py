@@ -46,13 +46,26 @@ class Reports(WithModel):
         self.check("label prototype mannequin", self.json("p.json"))
 
     def test_apply(self):
-        self.call("label", "apply", "cup.safetensors", "cups", "--out", "labeled", "--json", "a.json")
-        self.check("label apply", self.json("a.json"))
+        self.call("label", "apply", "cup.safetensors", "cups", "--out", "labeled", "--split", "parts", "--json", "a.json")
+        report = self.json("a.json")
+        self.check("label split", {"meshes": [{**mesh.pop("split"), "mesh": "", "warnings": []} for mesh in report["meshes"]]})
+        self.call("label", "split", "cups", "--out", "cut", "--json", "c.json")
+        self.check("label split", self.json("c.json"))
+        self.check("label apply", {**report, "split": None})
 
     def test_evaluate(self):
         self.call("label", "evaluate", "--train-on", "cups", "cups/cup_001.off", "--test-on", self.mistaken_cups(), "--out", "e", "--json",
-                  "e.json", *QUICK)
+                  "e.json", "--curve", *QUICK)
         self.check("label evaluate", self.json("e.json"))
+
+    def test_people(self):
+        self.call("label", "simulate", "cups", "--order", "gain", "--json", "s.json")
+        self.check("label simulate", self.json("s.json"))
+        self.call("label", "next", "cups", "--json", "n.json")
+        (self.folder / "cups" / "cup_002_labels.txt").rename(self.folder / "away.txt")
+        self.call("label", "next", "cups", "--json", "n.json")
+        (self.folder / "away.txt").rename(self.folder / "cups" / "cup_002_labels.txt")
+        self.check("label next", self.json("n.json"))
 
     def test_stress(self):
         self.call("label", "stress", "cup.safetensors", "cups", "--damage", "holes", "--json", "x.json")

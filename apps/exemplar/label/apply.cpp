@@ -8,7 +8,7 @@
 #include "apps/exemplar/backend.h"
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/label/labeled_output.h"
-#include "apps/exemplar/label/part_output.h"
+#include "apps/exemplar/parts/part_output.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"

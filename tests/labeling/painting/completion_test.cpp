@@ -86,7 +86,8 @@ TEST(LabelCompletion, LikenessReachesWhatIsFar) {
     LabelCompletion completion(balls.mesh, {.lambda = 0.01});  // the border around the middle is long
     // Both tips are alike, and unlike the middle.
     FaceDescriptors descriptors{1, {}};
-    for (const Vec3& center : face_centers(balls.mesh)) descriptors.values.push_back(std::abs(center.x()) > 0.5F ? 2.0F : 0.0F);
+    for (const Vec3& center : face_centers(balls.mesh))
+        descriptors.values.push_back(std::abs(center.x()) > 0.5F ? 2.0F : 0.0F);
     completion.set_descriptors(std::move(descriptors));
     const CompletedLabels completed = completion.complete(painted_at(balls, {{{-1, 0, 0}, 0}, {{0, 0.3F, 0}, 1}}), 2);
     EXPECT_EQ(completed.label[balls.face_nearest({1, 0, 0})], 0) << "the other tip";

@@ -1,4 +1,4 @@
-#include "apps/exemplar/label/labeled_input.h"
+#include "apps/exemplar/parts/labeled_input.h"
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/commands.h"
-#include "apps/exemplar/label/labeled_input.h"
+#include "apps/exemplar/parts/labeled_input.h"
 #include "host/core/stopwatch.h"
 #include "host/core/text.h"
 #include "host/mesh/editing/validate.h"

@@ -1,4 +1,4 @@
-#include "apps/exemplar/label/part_output.h"
+#include "apps/exemplar/parts/part_output.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/commands.h"
-#include "apps/exemplar/label/part_output.h"
+#include "apps/exemplar/parts/part_output.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"

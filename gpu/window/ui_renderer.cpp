@@ -52,6 +52,11 @@ VkRect2D scissor_of(const ImVec4& clip, const ImDrawData& interface, VkExtent2D 
 
 }  // namespace
 
+void* picture_texture() {
+    static char tag;  // only its address counts
+    return &tag;
+}
+
 UiRenderer::UiRenderer(Device& device, VkFormat color, ImFontAtlas& fonts)
     : device_(device),
       pipeline_(device, shaders::window_interface_vert, shaders::window_interface_frag,
@@ -111,7 +116,7 @@ void UiRenderer::record(Stream& stream, const ImDrawData& interface, VkImageView
         for (const ImDrawCmd& command : list.CmdBuffer) {
             const VkRect2D scissor = scissor_of(command.ClipRect, interface, extent);
             if (command.UserCallback || scissor.extent.width == 0 || scissor.extent.height == 0) continue;
-            const bool picture = reinterpret_cast<std::uintptr_t>(command.GetTexID()) == k_picture_texture;
+            const bool picture = command.GetTexID() == picture_texture();
             parameters.picture_width = picture ? picture_width_ : 0;
             parameters.picture_height = picture ? picture_height_ : 0;
             pass.draw(pipeline_,

@@ -16,8 +16,9 @@ struct ImFontAtlas;
 
 namespace exemplar {
 
-/// The texture of images in the interface: the pictures of set_pictures(). Everything else uses the font atlas.
-constexpr std::uintptr_t k_picture_texture = 1;
+/// Returns the texture that images in the interface name: the pictures of set_pictures(). Everything else uses the font
+/// atlas.
+void* picture_texture();
 
 /// Draws the interface that Dear ImGui has laid out over an image.
 class UiRenderer {
@@ -26,7 +27,7 @@ class UiRenderer {
     /// drawn over.
     UiRenderer(Device& device, VkFormat color, ImFontAtlas& fonts);
 
-    /// Sets the pictures of k_picture_texture: RGBA texels, red lowest, row by row. Throws UsageError if they are not
+    /// Sets the pictures of picture_texture(): RGBA texels, red lowest, row by row. Throws UsageError if they are not
     /// width x height.
     void set_pictures(std::span<const std::uint32_t> texels, std::uint32_t width, std::uint32_t height);
 

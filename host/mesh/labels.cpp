@@ -1,6 +1,7 @@
 #include "host/mesh/labels.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace exemplar {
 namespace {
@@ -23,6 +24,15 @@ Color label_color(std::size_t label) {
         if (round == 2) channel = static_cast<std::uint8_t>(value + (255 - value) / 2);  // lighter
     }
     return color;
+}
+
+std::array<double, 3> linear_color(const Color& color) {
+    std::array<double, 3> linear{};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double s = color[c] / 255.0;
+        linear[c] = std::round(1e5 * (s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4))) / 1e5;
+    }
+    return linear;
 }
 
 }  // namespace exemplar

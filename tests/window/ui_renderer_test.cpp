@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 
+#include "gpu/runtime/device/errors.h"
 #include "tests/gpu/support/texels.h"
 
 namespace exemplar {
@@ -114,6 +115,31 @@ TEST_F(Interface, ManyTrianglesNeedNoOtherIndices) {
 TEST_F(Interface, NothingIsDrawnWithoutShapesOrPixels) {
     const auto texels = draw([](ImDrawList&) {});
     EXPECT_EQ(texels[0], 0xffff0000u);
+}
+
+TEST_F(Interface, ShowsPicturesWithTheirColors) {
+    ImGui::GetIO().DisplayFramebufferScale = ImVec2(1, 1);
+    UiRenderer renderer(shared_device(), Canvas::k_rgba, *ImGui::GetIO().Fonts);
+    const std::vector<std::uint32_t> picture{0xff0000ff, 0xff00ff00, 0xffff0000, 0xff808080};  // 2 x 2
+    renderer.set_pictures(picture, 2, 2);
+    EXPECT_THROW(renderer.set_pictures(picture, 3, 2), UsageError);
+    ImGui::NewFrame();
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    list.AddImage(picture_texture(), ImVec2(10, 10), ImVec2(30, 30));
+    list.AddRectFilled(ImVec2(40, 10), ImVec2(50, 20), IM_COL32(255, 255, 255, 255));  // with the font atlas again
+    ImGui::Render();
+    Canvas canvas(shared_device());
+    canvas.resize({k_width, k_height});
+    const auto texels = test_support::drawn_texels(canvas, {0, 0, 1, 1}, [&](Stream& stream) {
+        renderer.record(stream, *ImGui::GetDrawData(), canvas.color_view(), canvas.extent());
+    });
+    const auto at = [&](std::uint32_t x, std::uint32_t y) { return texels[y * k_width + x] & 0xffffff; };
+    EXPECT_EQ(at(12, 12), 0x0000ffu);
+    EXPECT_EQ(at(28, 12), 0x00ff00u);
+    EXPECT_EQ(at(12, 28), 0xff0000u);
+    EXPECT_EQ(at(28, 28), 0x808080u);
+    EXPECT_EQ(at(45, 15), 0xffffffu);
+    EXPECT_EQ(at(35, 15), 0xff0000u) << "the background";
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ struct HostBackend {
 
 /// Returns the direction from which a thumbnail is seen: obliquely, or on the side that is least certain.
 Vec3 thumbnail_direction(const TriangleMesh& mesh, std::span<const float> confidence) {
-    const Vec3 oblique = Vec3(0.6F, 0.5F, 1).normalized();
+    Vec3 oblique = Vec3(0.6F, 0.5F, 1).normalized();
     if (confidence.empty()) return oblique;
     const std::vector<Vec3> normal = face_normals(mesh);
     const std::vector<float> area = face_areas(mesh);

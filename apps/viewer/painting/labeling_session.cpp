@@ -33,18 +33,26 @@ LabelingSession::LabelingSession(const std::filesystem::path& source, std::files
     : folder_(source), cache_(std::move(cache)), shapes_(folder_.shapes().size()), model_(std::move(model)) {
     remarks_ = folder_.warnings();
     if (!model_) model_ = earlier_model(folder_);
-    if (model_) {
-        std::vector<PaletteEntry> palette = folder_.palette();
-        for (std::size_t c = 0; c < model_->class_count(); ++c)
-            if (std::ranges::find(palette, model_->label_names[c], &PaletteEntry::name) == palette.end())
-                palette.push_back({model_->label_names[c], model_->label_colors[c]});
-        if (palette.size() > folder_.palette().size()) change_palette(std::move(palette));
-    }
+    if (model_) add_labels_of(*model_);
     const auto first = std::ranges::find(folder_.shapes(), false, &FolderShape::verified);
     const auto begun = std::ranges::find(folder_.shapes(), true, &FolderShape::begun);
     const auto start = begun != folder_.shapes().end() ? begun : first;
     open_shape(start == folder_.shapes().end() ? 0 : static_cast<std::size_t>(start - folder_.shapes().begin()));
     start_job(true);
+}
+
+void LabelingSession::add_labels_of(const LabelingModel& model) {
+    std::vector<PaletteEntry> palette = folder_.palette();
+    for (std::size_t c = 0; c < model.class_count(); ++c)
+        if (std::ranges::find(palette, model.label_names[c], &PaletteEntry::name) == palette.end())
+            palette.push_back({model.label_names[c], model.label_colors[c]});
+    if (palette.size() > folder_.palette().size()) change_palette(std::move(palette));
+}
+
+void LabelingSession::use_model(std::shared_ptr<const LabelingModel> model) {
+    model_ = std::move(model);
+    add_labels_of(*model_);
+    show_suggestion();
 }
 
 void LabelingSession::open_shape(std::size_t shape) {

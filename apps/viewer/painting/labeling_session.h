@@ -36,6 +36,9 @@ class LabelingSession {
     LabelingSession(const std::filesystem::path& source, std::filesystem::path cache,
                     std::shared_ptr<const LabelingModel> model = nullptr);
 
+    /// Lets a model suggest labels from now on; its labels join the palette.
+    void use_model(std::shared_ptr<const LabelingModel> model);
+
     /// Opens a shape with its labels, or its strokes, or the suggestion of the model. Throws an Error if it cannot be
     /// read, and keeps the open one. Damaged labels or strokes become remarks.
     void open_shape(std::size_t shape);
@@ -82,6 +85,7 @@ class LabelingSession {
 
   private:
     void change_palette(std::vector<PaletteEntry> palette);
+    void add_labels_of(const LabelingModel& model);
     void start_job(bool draws_thumbnails);
     void show_suggestion();
     void collect(ShapeResult result);

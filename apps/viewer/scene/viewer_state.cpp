@@ -52,7 +52,9 @@ SurfacePaint next_paint(SurfacePaint paint, bool has_colors) {
 }  // namespace
 
 void ViewerState::open(const fs::path& path, ViewSize view) {
-    if (path.extension() == ".safetensors")
+    if (path.extension() == ".safetensors" && labeling)
+        labeling->use_model(std::make_shared<const LabelingModel>(load_model(path)));
+    else if (path.extension() == ".safetensors")
         is_hatching_style(path) ? open_hatching(path) : open_model(path);
     else if (path.extension() == ".json")
         settings.set_style(load_style(path.string()));

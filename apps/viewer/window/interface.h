@@ -27,6 +27,7 @@ struct InterfaceRequests {
     std::vector<std::filesystem::path> open;
     std::vector<PaintEvent> paint;
     std::optional<std::size_t> shape;  ///< to open, of the folder that is being labeled
+    bool start_labeling = false;       ///< of the open mesh
 };
 
 /// The area that shows the surface: in units of the window, and in pixels.

@@ -94,6 +94,20 @@ void draw_painting_status(const LabelPainter& painter) {
     ImGui::PopTextWrapPos();
 }
 
+void draw_shape_row(const LabelingSession& session, std::size_t shape, InterfaceRequests& requests) {
+    constexpr std::array k_states = {"empty", "suggested", "verified", "broken"};
+    const float height = ImGui::GetFontSize() * 3;
+    ImGui::PushID(static_cast<int>(shape));
+    if (ImGui::Selectable("##shape", shape == session.shape(), 0, ImVec2(0, height))) requests.shape = shape;
+    ImGui::SameLine(4);
+    draw_thumbnail(session, shape, height);
+    ImGui::SameLine();
+    const char* const shape_state = k_states[static_cast<std::size_t>(session.state_of(shape))];
+    ImGui::TextUnformatted(
+        fmt::format("{}\n{}", session.folder().shapes()[shape].path.filename().string(), shape_state).c_str());
+    ImGui::PopID();
+}
+
 void draw_shape_list(ViewerState& state, InterfaceRequests& requests) {
     const LabelingSession& session = *state.labeling;
     const std::size_t count = session.folder().shapes().size(), verified = session.folder().verified_count();
@@ -107,20 +121,12 @@ void draw_shape_list(ViewerState& state, InterfaceRequests& requests) {
     if (waiting > 0 &&
         ImGui::Button(fmt::format("Check {} (Tab)", counted(waiting, "suggested shape")).c_str(), ImVec2(-1, 0)))
         requests.actions.push_back(Action::shape_grid);
-    constexpr std::array k_states = {"empty", "suggested", "verified", "broken"};
     ImGui::BeginChild("shapes", ImVec2(0, ImGui::GetFontSize() * 18), true);
-    for (std::size_t s = 0; s < count; ++s) {
-        ImGui::PushID(static_cast<int>(s));
-        const float height = ImGui::GetFontSize() * 3;
-        if (ImGui::Selectable("##shape", s == session.shape(), 0, ImVec2(0, height))) requests.shape = s;
-        ImGui::SameLine(4);
-        draw_thumbnail(session, s, height);
-        ImGui::SameLine();
-        const char* const shape_state = k_states[static_cast<std::size_t>(session.state_of(s))];
-        ImGui::TextUnformatted(
-            fmt::format("{}\n{}", session.folder().shapes()[s].path.filename().string(), shape_state).c_str());
-        ImGui::PopID();
-    }
+    ImGuiListClipper clipper;  // a folder may have thousands
+    clipper.Begin(static_cast<int>(count));
+    while (clipper.Step())
+        for (int s = clipper.DisplayStart; s < clipper.DisplayEnd; ++s)
+            draw_shape_row(session, static_cast<std::size_t>(s), requests);
     ImGui::EndChild();
 }
 

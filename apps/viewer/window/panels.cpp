@@ -37,6 +37,8 @@ void draw_file(ViewerState& state, std::string& path, InterfaceRequests& request
     if (ImGui::Button("Save SVG", ImVec2(width, 0))) requests.actions.push_back(Action::save_svg);
     ImGui::SameLine();
     if (ImGui::Button("Keys", ImVec2(width, 0))) state.show_help = !state.show_help;
+    if (!state.labeling && !state.document().animation.moves() && ImGui::Button("Paint labels", ImVec2(-1, 0)))
+        requests.start_labeling = true;
 }
 
 void draw_clips(ViewerState& state) {

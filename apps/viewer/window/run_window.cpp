@@ -248,6 +248,8 @@ void Viewer::perform(Action action, Session& session) {
 
 // Paints along the mouse, and opens the shape that was chosen.
 void Viewer::paint(const InterfaceRequests& requests, Session& session) {
+    if (requests.start_labeling && state_.has_document())
+        state_.try_labeling([&] { state_.start_labeling(state_.document().path, {}, interface_.view().size()); });
     if (!state_.labeling) return;
     for (const PaintEvent& event : requests.paint) {
         restless_ = k_settling_frames;

@@ -34,8 +34,7 @@ void draw_thumbnail(const LabelingSession& session, std::size_t shape, float hei
     const auto count = static_cast<float>(std::min(session.folder().shapes().size(), k_max_thumbnails));
     const auto place = static_cast<float>(shape);
     if (place >= count) return ImGui::Dummy(ImVec2(width, height));
-    ImGui::Image(reinterpret_cast<ImTextureID>(k_picture_texture), ImVec2(width, height), ImVec2(0, place / count),
-                 ImVec2(1, (place + 1) / count));
+    ImGui::Image(picture_texture(), ImVec2(width, height), ImVec2(0, place / count), ImVec2(1, (place + 1) / count));
 }
 
 }  // namespace exemplar

@@ -1,7 +1,6 @@
 #include "host/labeling/painting/painted_labels.h"
 
 #include <algorithm>
-#include <ranges>
 
 #include "host/core/errors.h"
 
@@ -43,7 +42,8 @@ void PaintedLabels::paint(std::span<const std::uint32_t> faces, std::int32_t lab
 bool PaintedLabels::undo() {
     while (done_ > 0 && steps_[done_ - 1].empty()) --done_;
     if (done_ == 0) return false;
-    for (const Change& change : steps_[--done_] | std::views::reverse) set(change.face, change.before);
+    const std::vector<Change>& step = steps_[--done_];
+    for (auto change = step.rbegin(); change != step.rend(); ++change) set(change->face, change->before);
     ++version_;
     return true;
 }

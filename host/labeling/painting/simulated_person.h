@@ -15,13 +15,16 @@ struct PersonOptions {
     float stroke_length = 0.25F;  ///< at most, in the same unit
 };
 
+/// The faces that one stroke paints.
 struct PersonStroke {
     std::int32_t label = 0;
     std::vector<std::uint32_t> faces;
 };
 
+/// A person who knows the true labels of a mesh and mends what is shown wrong, stroke by stroke.
 class SimulatedPerson {
   public:
+    /// `truth`: a label per face; -1 where nobody knows it.
     SimulatedPerson(const TriangleMesh& mesh, std::span<const std::int32_t> truth, const PersonOptions& options = {});
     /// Returns a stroke of the right label at the middle of the largest region that is shown wrong and has one true
     /// label; nothing if all is right.
@@ -30,6 +33,8 @@ class SimulatedPerson {
     double right(std::span<const std::int32_t> shown) const;
 
   private:
+    std::vector<std::uint32_t> largest_wrong_region(std::span<const std::int32_t> shown) const;
+    std::vector<std::uint32_t> brush_path(std::span<const std::uint32_t> region) const;
     PersonOptions options_;
     std::vector<std::int32_t> truth_;
     std::vector<float> area_;

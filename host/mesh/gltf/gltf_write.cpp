@@ -35,23 +35,15 @@ std::vector<Part> parts_by_label(const TriangleMesh& mesh, const FaceLabels& lab
     return parts;
 }
 
-/// glTF colors are linear, label colors sRGB. Five digits are finer than eight bits.
-double linear_of_srgb(std::uint8_t channel) {
-    const double s = channel / 255.0;
-    const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-    return std::round(linear * 1e5) / 1e5;
-}
-
 /// The material of unlabeled faces has no name, which distinguishes it from every label.
 OrderedJson material_of(std::int32_t label, const FaceLabels& labels) {
     const Color color = label < 0 ? k_unlabeled_color : label_color(static_cast<std::size_t>(label));
+    const std::array<double, 3> linear = linear_color(color);
     OrderedJson material;
     if (label >= 0) material["name"] = labels.names[static_cast<std::size_t>(label)];
     material["doubleSided"] = true;
     material["pbrMetallicRoughness"] = {
-        {"baseColorFactor", {linear_of_srgb(color[0]), linear_of_srgb(color[1]), linear_of_srgb(color[2]), 1.0}},
-        {"metallicFactor", 0.0},
-        {"roughnessFactor", 1.0}};
+        {"baseColorFactor", {linear[0], linear[1], linear[2], 1.0}}, {"metallicFactor", 0.0}, {"roughnessFactor", 1.0}};
     return material;
 }
 

@@ -23,12 +23,6 @@ namespace {
 
 using MaterialJson = nlohmann::ordered_json;
 
-double linear_channel(std::uint8_t channel) {
-    const double s = channel / 255.0;
-    const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-    return std::round(linear * 1e5) / 1e5;
-}
-
 /// The vertices and triangles of one label.
 struct LabelSurface {
     std::vector<float> positions, normals, uvs;
@@ -114,13 +108,13 @@ class MaterialWriter {
 
     MaterialJson material_json(const std::string& name, const Color& label_color, const PartMaterial& material) {
         const Color color = material.color.value_or(material.texture.empty() ? label_color : Color{255, 255, 255});
+        const std::array<double, 3> linear = linear_color(color);
         MaterialJson json;
         if (!name.empty()) json["name"] = name;
         json["doubleSided"] = true;
-        json["pbrMetallicRoughness"] = {
-            {"baseColorFactor", {linear_channel(color[0]), linear_channel(color[1]), linear_channel(color[2]), 1.0}},
-            {"metallicFactor", material.metallic},
-            {"roughnessFactor", material.roughness}};
+        json["pbrMetallicRoughness"] = {{"baseColorFactor", {linear[0], linear[1], linear[2], 1.0}},
+                                        {"metallicFactor", material.metallic},
+                                        {"roughnessFactor", material.roughness}};
         if (!material.texture.empty())
             json["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", add_texture(material.texture)}};
         return json;

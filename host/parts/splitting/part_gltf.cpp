@@ -13,19 +13,13 @@ namespace {
 
 using PartJson = nlohmann::ordered_json;
 
-/// glTF colors are linear, label colors sRGB.
-double linear_channel(std::uint8_t channel) {
-    const double s = channel / 255.0;
-    const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-    return std::round(linear * 1e5) / 1e5;
-}
-
 PartJson material_of_part(const std::string& name, std::int32_t label) {
     const Color color = label < 0 ? k_unlabeled_color : label_color(static_cast<std::size_t>(label));
+    const std::array<double, 3> linear = linear_color(color);
     return {{"name", name},
             {"doubleSided", true},
             {"pbrMetallicRoughness",
-             {{"baseColorFactor", {linear_channel(color[0]), linear_channel(color[1]), linear_channel(color[2]), 1.0}},
+             {{"baseColorFactor", {linear[0], linear[1], linear[2], 1.0}},
               {"metallicFactor", 0.0},
               {"roughnessFactor", 1.0}}}};
 }

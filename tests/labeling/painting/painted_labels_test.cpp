@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "host/core/errors.h"
 #include "host/core/random.h"
 
@@ -20,8 +22,8 @@ TEST(PaintedLabels, UndoAndRedoGoThroughAllStatesOfRandomEdits) {
         painted.begin_step();
         const std::size_t parts = 1 + random.index(3);  // a stroke comes in parts
         for (std::size_t part = 0; part < parts; ++part) {
-            std::vector<std::uint32_t> faces;
-            for (int i = 0; i < 8; ++i) faces.push_back(static_cast<std::uint32_t>(random.index(50)));
+            std::array<std::uint32_t, 8> faces{};
+            for (std::uint32_t& face : faces) face = static_cast<std::uint32_t>(random.index(50));
             painted.paint(faces, static_cast<std::int32_t>(random.index(4)) - 1);
         }
         if (labels_of(painted) != states.back()) states.push_back(labels_of(painted));

@@ -9,6 +9,7 @@ namespace {
 
 std::vector<ShapeDescriptor> on_a_line(const std::vector<float>& places) {
     std::vector<ShapeDescriptor> shapes;
+    shapes.reserve(places.size());
     for (const float place : places) shapes.push_back({{"x"}, {place, 1, 1}});
     return shapes;
 }

@@ -36,7 +36,7 @@ FaceLabels read_label_bytes(const std::string& file_name, const std::string& byt
 }
 
 std::string refusal(const std::string& file_name, const std::string& bytes) {
-    const std::string message = error_of<DataError>([&] { read_label_bytes(file_name, bytes, strip().mesh); });
+    std::string message = error_of<DataError>([&] { read_label_bytes(file_name, bytes, strip().mesh); });
     EXPECT_THAT(message, HasSubstr(file_name)) << "names the file";
     EXPECT_EQ(message.find('\n'), std::string::npos);
     return message;

@@ -111,8 +111,9 @@ std::vector<std::int64_t> values_of_labels(const std::vector<std::string>& names
 FaceLabels read_json_labels(std::string_view content, const TriangleMesh& mesh, const std::string& name) {
     const LabelJson json = parse_labels(content, name);
     const auto labels = json.find("labels");
-    if (labels == json.end() || !labels->is_array() || labels->empty()) fail(name, "has no list 'labels'");
-    if (labels->front().is_string()) return labels_with_names(json, mesh, name);
+    const bool is_list = labels != json.end() && labels->is_array();
+    if (!is_list || (labels->empty() && !json.contains("faces"))) fail(name, "has no list 'labels'");
+    if (labels->empty() || labels->front().is_string()) return labels_with_names(json, mesh, name);
     std::vector<std::string> names;
     if (const auto found = json.find("names"); found != json.end() && found->is_array())
         names = names_of(*found, "names", name);

@@ -5,7 +5,7 @@
 
 namespace exemplar {
 
-/// Where the parallel loops of work run.
+/// Threads that run the parallel loops of cancelable work.
 enum class LoopThreads { all_cores, this_thread };
 
 /// Runs `work` on this thread, and its parallel loops on all cores unless said otherwise, so that it can be canceled:

@@ -15,7 +15,7 @@
 
 namespace exemplar {
 
-/// What the background work found out about one shape of a folder.
+/// Results of the background work for one shape of a folder.
 struct ShapeResult {
     std::size_t shape = 0;
     std::optional<Image> thumbnail{};             ///< RGB

@@ -1,4 +1,4 @@
-// What the viewer's state does while labels are painted.
+// Members of ViewerState for painting labels.
 
 #include <fmt/format.h>
 

@@ -137,6 +137,7 @@ std::vector<float> LabelCompletion::probabilities(std::span<const std::int32_t> 
         if (known[c]) distance[c] = distances(painted, static_cast<std::int32_t>(c));
     });
     const bool model = !evidence_.probabilities.empty();
+    const std::size_t suggested = evidence_.labels(faces);  // labels may have been added since
     std::vector<float> result(faces * labels, 0);
     parallel_ranges(faces, 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
@@ -145,7 +146,7 @@ std::vector<float> LabelCompletion::probabilities(std::span<const std::int32_t> 
                 const float unlike = known[c] && !alike.empty() ? alike[f * labels + c] : 0;
                 const float near = known[c] ? std::exp(-distance[c][f] / options_.reach) : 0;
                 if (model)
-                    score[c] = std::log(evidence_.probabilities[f * labels + c] + 0.01F) +
+                    score[c] = std::log((c < suggested ? evidence_.probabilities[f * suggested + c] : 0) + 0.01F) +
                                options_.correction * near * std::exp(-options_.likeness * unlike);
                 else
                     score[c] = known[c] ? options_.nearness * near - options_.likeness * unlike : -k_far;
@@ -168,11 +169,15 @@ std::vector<std::int32_t> LabelCompletion::cut(std::span<const std::int32_t> pai
             else
                 cost = -area_[f] * std::log(std::max(probability[f * labels + c], 1e-6F));
         }
-    if (!evidence_.probabilities.empty())
-        return alpha_expansion(unary, labels, evidence_.edges, evidence_.edge_cost, evidence_.compatibility).labels;
-    std::vector<double> potts(labels * labels, 1.0);
-    for (std::size_t c = 0; c < labels; ++c) potts[c * labels + c] = 0;
-    return alpha_expansion(unary, labels, edges_, edge_cost_, potts).labels;
+    std::vector<double> compatibility(labels * labels, 1.0);
+    for (std::size_t c = 0; c < labels; ++c) compatibility[c * labels + c] = 0;
+    if (evidence_.probabilities.empty())
+        return alpha_expansion(unary, labels, edges_, edge_cost_, compatibility).labels;
+    const std::size_t suggested = evidence_.labels(painted.size());
+    for (std::size_t c = 0; c < std::min(suggested, labels); ++c)
+        for (std::size_t other = 0; other < std::min(suggested, labels); ++other)
+            compatibility[c * labels + other] = evidence_.compatibility[c * suggested + other];
+    return alpha_expansion(unary, labels, evidence_.edges, evidence_.edge_cost, compatibility).labels;
 }
 
 CompletedLabels LabelCompletion::complete(std::span<const std::int32_t> painted, std::size_t labels) const {

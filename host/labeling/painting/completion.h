@@ -17,22 +17,26 @@ struct CompletedLabels {
     std::vector<float> confidence;    ///< per face, in [0, 1]: probability of its label; 1 where it is painted
 };
 
-/// What a trained model says about a mesh, as a start for painting.
+/// The output of a trained model for a mesh, from which completion starts.
 struct LabelEvidence {
     std::vector<float> probabilities;                 ///< faces x labels of the palette; empty: there is no model
     std::vector<std::array<std::uint32_t, 2>> edges;  ///< interior edges: the two faces
     std::vector<double> edge_cost;      ///< of a border along each edge (Eq. 3.3), where faces cost their area share
     std::vector<double> compatibility;  ///< labels x labels, symmetric, zero diagonal (Eq. 3.3)
+
+    /// Returns the number of labels that the evidence is about; the palette may have grown since.
+    std::size_t labels(std::size_t faces) const { return faces == 0 ? 0 : probabilities.size() / faces; }
 };
 
+/// Parameters of completion; docs/labeling.md says how they were chosen.
 struct CompletionOptions {
-    float likeness = 8;
-    float nearness = 3;
-    float reach = 0.25F;  ///< of the nearness, in square roots of the surface's area
-    float concave_length = 4;
-    double lambda = 0.15, mu = 0.05;
-    float outlier = 0.02F;
-    float correction = 10;
+    float likeness = 8;               ///< weight of the squared distance of descriptors
+    float nearness = 3;               ///< weight of nearness
+    float reach = 0.25F;              ///< of the nearness, in square roots of the surface's area
+    float concave_length = 4;         ///< an edge bent inward by 180 degrees is longer by this factor
+    double lambda = 0.15, mu = 0.05;  ///< of the cut: weights of the dihedral term (Eq. 3.4) and of length
+    float outlier = 0.02F;            ///< probability that is shared by all labels
+    float correction = 10;            ///< of a model's log probability, at a stroke
 };
 
 /// Completes painted labels to the whole mesh: a face takes the label of painted faces that are alike (descriptors)

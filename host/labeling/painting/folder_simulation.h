@@ -15,7 +15,7 @@
 
 namespace exemplar {
 
-/// What a person's actions cost, in seconds.
+/// Seconds that each action of a person takes.
 struct PersonCosts {
     double open = 5;      ///< opens a shape and finds out what is wrong
     double stroke = 3;    ///< one stroke

@@ -9,7 +9,7 @@
 
 namespace exemplar {
 
-/// What a person has painted so far on one mesh: its palette, and a label per face.
+/// The painted labels of one mesh that is not verified yet, and their palette.
 struct Painting {
     std::vector<PaletteEntry> palette;
     std::vector<std::int32_t> label;  ///< per face: an index into the palette, or k_unpainted

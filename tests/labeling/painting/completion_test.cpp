@@ -113,6 +113,11 @@ TEST(LabelCompletion, AStrokeCorrectsWhatAModelSaysAroundIt) {
     const CompletedLabels completed = completion.complete(painted_at(balls, {{{1, 0, 0}, 1}}), 2);
     EXPECT_EQ(completed.label[balls.face_nearest({0.9F, 0.2F, 0})], 1) << "near the stroke";
     EXPECT_EQ(completed.label[balls.face_nearest({-1, 0, 0})], 0) << "far from it";
+
+    // A label that the palette gained after the model was trained.
+    const CompletedLabels grown = completion.complete(painted_at(balls, {{{1, 0, 0}, 2}}), 3);
+    EXPECT_EQ(grown.label[balls.face_nearest({0.9F, 0.2F, 0})], 2);
+    EXPECT_EQ(grown.label[balls.face_nearest({-1, 0, 0})], 0);
 }
 
 TEST(LabelCompletion, ALargeMeshIsCompletedOnASmallerOne) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <map>
 
 #include "apps/exemplar/arguments.h"
@@ -100,6 +101,7 @@ void run_simulate(const SimulateOptions& options) {
         runs.push_back(simulate_way(corpus, features, backend.labeling(), simulation, way));
         fmt::print("{:>8} {:>9.1f} {:>8} {:>9}\n", way, runs.back()["seconds"].get<double>(),
                    runs.back()["strokes"].get<std::size_t>(), runs.back()["verified"].get<std::size_t>());
+        std::fflush(stdout);  // a way takes minutes
     }
     const double by_hand = seconds_by_hand(corpus, simulation.quality, simulation.costs);
     fmt::print("{:>8} {:>9.0f}\n", "by hand", by_hand);

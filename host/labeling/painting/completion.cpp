@@ -125,34 +125,42 @@ std::vector<float> LabelCompletion::likeness(std::span<const std::int32_t> paint
     return nearest;
 }
 
-std::vector<float> LabelCompletion::probabilities(std::span<const std::int32_t> painted, std::size_t labels) const {
-    const std::size_t faces = area_.size();
+LabelCompletion::StrokeDistances LabelCompletion::stroke_distances(std::span<const std::int32_t> painted,
+                                                                   std::size_t labels) const {
     std::vector<bool> known(labels, false);
     for (const std::int32_t label : painted)
         if (label >= 0) known[static_cast<std::size_t>(label)] = true;
-    std::vector<float> alike;
-    if (descriptors_.dimensions > 0) alike = likeness(painted, labels);
-    std::vector<std::vector<float>> distance(labels);
+    StrokeDistances strokes;
+    if (descriptors_.dimensions > 0) strokes.unlike = likeness(painted, labels);
+    strokes.distance.resize(labels);
     parallel_for(labels, [&](std::size_t c) {
-        if (known[c]) distance[c] = distances(painted, static_cast<std::int32_t>(c));
+        if (known[c]) strokes.distance[c] = distances(painted, static_cast<std::int32_t>(c));
     });
-    const bool model = !evidence_.probabilities.empty();
-    const std::size_t suggested = evidence_.labels(faces);  // labels may have been added since
-    std::vector<float> result(faces * labels, 0);
-    parallel_ranges(faces, 1024, [&](std::size_t begin, std::size_t end) {
+    return strokes;
+}
+
+float LabelCompletion::score(const StrokeDistances& strokes, std::size_t face, std::size_t label) const {
+    const std::vector<float>& distance = strokes.distance[label];
+    const float near = distance.empty() ? 0 : std::exp(-distance[face] / options_.reach);
+    const bool compared = !distance.empty() && !strokes.unlike.empty();
+    const float unlike = compared ? strokes.unlike[face * strokes.distance.size() + label] : 0;
+    if (evidence_.probabilities.empty())
+        return distance.empty() ? -k_far : options_.nearness * near - options_.likeness * unlike;
+    const std::size_t suggested = evidence_.labels(area_.size());  // labels may have been added since
+    const float probability = label < suggested ? evidence_.probabilities[face * suggested + label] : 0;
+    return std::log(probability + 0.01F) + options_.correction * near * std::exp(-options_.likeness * unlike);
+}
+
+std::vector<float> LabelCompletion::probabilities(std::span<const std::int32_t> painted, std::size_t labels) const {
+    const StrokeDistances strokes = stroke_distances(painted, labels);
+    const bool distance_alone = strokes.unlike.empty() && evidence_.probabilities.empty();
+    std::vector<float> result(area_.size() * labels, 0);
+    parallel_ranges(area_.size(), 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
-            const std::span<float> score = std::span(result).subspan(f * labels, labels);
-            for (std::size_t c = 0; c < labels; ++c) {
-                const float unlike = known[c] && !alike.empty() ? alike[f * labels + c] : 0;
-                const float near = known[c] ? std::exp(-distance[c][f] / options_.reach) : 0;
-                if (model)
-                    score[c] = std::log((c < suggested ? evidence_.probabilities[f * suggested + c] : 0) + 0.01F) +
-                               options_.correction * near * std::exp(-options_.likeness * unlike);
-                else
-                    score[c] = known[c] ? options_.nearness * near - options_.likeness * unlike : -k_far;
-            }
-            if (alike.empty() && !model) score_by_distance(distance, f, score);
-            softmax_with_floor(score, options_.outlier);
+            const std::span<float> scores = std::span(result).subspan(f * labels, labels);
+            for (std::size_t c = 0; c < labels; ++c) scores[c] = score(strokes, f, c);
+            if (distance_alone) score_by_distance(strokes.distance, f, scores);
+            softmax_with_floor(scores, options_.outlier);
         }
     });
     return result;

@@ -60,6 +60,13 @@ class LabelCompletion {
     std::span<const float> area() const { return area_; }
 
   private:
+    /// How far the faces are from the strokes of each label.
+    struct StrokeDistances {
+        std::vector<std::vector<float>> distance;  ///< along the surface, per label and face; empty without strokes
+        std::vector<float> unlike;                 ///< squared, of descriptors, per face and label; may be empty
+    };
+    StrokeDistances stroke_distances(std::span<const std::int32_t> painted, std::size_t labels) const;
+    float score(const StrokeDistances& strokes, std::size_t face, std::size_t label) const;
     std::vector<float> likeness(std::span<const std::int32_t> painted, std::size_t labels) const;
     std::vector<float> distances(std::span<const std::int32_t> painted, std::int32_t label) const;
     std::vector<float> probabilities(std::span<const std::int32_t> painted, std::size_t labels) const;

@@ -20,6 +20,7 @@ void label_by_model(const std::filesystem::path& model_path, const LabeledInputA
     const std::filesystem::path cache = usable_cache(arguments.cache, common.quiet);
     DeviceBackend backend(common.device);
     input.names = model.label_names;
+    input.compatibility = model.crf.compatibility;
     input.label =
         of_file(input.path, [&] { return label_mesh(model, input.file.mesh, cache, backend.labeling()); }).label;
     input.source = model_path.string();

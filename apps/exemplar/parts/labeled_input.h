@@ -20,8 +20,9 @@ struct LabeledInput {
     std::filesystem::path path;  ///< of the mesh
     MeshFile file;
     std::vector<std::string> names;
-    std::vector<std::int32_t> label;  ///< per triangle, index into `names`
-    std::string source;               ///< where the labels are from, for messages and reports
+    std::vector<std::int32_t> label;    ///< per triangle, index into `names`
+    std::vector<double> compatibility;  ///< labels x labels, of the model (Eq. 3.3); empty without a model
+    std::string source;                 ///< where the labels are from, for messages and reports
 };
 
 /// Adds the argument "[MODEL] MESH", --labels, --cache and --device to a subcommand.

@@ -48,6 +48,18 @@ nlohmann::json describe_joints(const PartRig& rig, const std::vector<std::string
     return joints;
 }
 
+/// The options, with what the model knows of pairs of labels.
+RigOptions rig_options(const RigCommand& options, const LabeledInput& input) {
+    RigOptions rig = options.rig;
+    const std::size_t count = input.names.size();
+    if (input.compatibility.size() != count * count) return rig;
+    for (std::size_t a = 0; a < count; ++a)
+        for (std::size_t b = 0; b < count; ++b)
+            if (input.names[a] < input.names[b])
+                rig.costs[{input.names[a], input.names[b]}] = input.compatibility[a * count + b];
+    return rig;
+}
+
 /// Compares the joints with those of the labels in `truth`, and prints the share that is near.
 nlohmann::json compare_with_truth(const RigCommand& options, const LabeledInput& input, const PartRig& rig) {
     const TriangleMesh& mesh = input.file.mesh;
@@ -55,7 +67,7 @@ nlohmann::json compare_with_truth(const RigCommand& options, const LabeledInput&
     std::vector<std::int32_t> label;
     label.reserve(mesh.face_count());
     for (std::uint32_t f = 0; f < mesh.face_count(); ++f) label.push_back(truth.label[mesh.source_of(f)]);
-    const PartRig true_rig = make_skeleton(mesh, truth.names, label, options.rig.root);
+    const PartRig true_rig = make_skeleton(mesh, truth.names, label, rig_options(options, input));
     const BoundingBox box = bounding_box(mesh);
     const double height = (box.high - box.low).maxCoeff();
     nlohmann::json joints = nlohmann::json::array();
@@ -81,7 +93,8 @@ void run_rig(const RigCommand& options) {
     const std::vector<JointAngles> poses = options.pose.empty() ? std::vector<JointAngles>() : read_poses(options.pose);
     const LabeledInput input = read_labeled_input(options.input, options.common);
     require_not_replaced(options.out, {input.path, input.source});
-    PartRig rig = of_file(input.path, [&] { return make_rig(input.file.mesh, input.names, input.label, options.rig); });
+    PartRig rig = of_file(
+        input.path, [&] { return make_rig(input.file.mesh, input.names, input.label, rig_options(options, input)); });
     Animation& animation = rig.animation;
     animation.clips.push_back(poses.empty() ? bend_each_joint(animation.rig, options.degrees)
                                             : clip_of_poses(animation.rig, poses, options.pose.string()));

@@ -26,6 +26,20 @@ std::optional<std::uint32_t> part_of_root(const PartGraph& graph, const std::vec
     return best;
 }
 
+/// Divides the strengths of boundaries by the costs of their labels.
+void weaken_unlikely(const LabelPairCosts& costs, const std::vector<std::string>& names, PartGraph& graph) {
+    const auto name_of_part = [&](std::uint32_t part) {
+        const std::int32_t label = graph.parts[part].label;
+        return label < 0 ? std::string() : names.at(static_cast<std::size_t>(label));
+    };
+    for (PartBoundary& boundary : graph.boundaries) {
+        std::pair<std::string, std::string> labels(name_of_part(boundary.part[0]), name_of_part(boundary.part[1]));
+        if (labels.first > labels.second) std::swap(labels.first, labels.second);
+        const auto cost = costs.find(labels);
+        if (cost != costs.end()) boundary.strength /= std::max(cost->second, 1e-3);
+    }
+}
+
 /// Fills the nodes of a rig with the joints at rest, each relative to its parent.
 void add_joint_nodes(const Skeleton& skeleton, Rig& rig) {
     rig.nodes.reserve(skeleton.joints.size());
@@ -46,18 +60,19 @@ void add_joint_nodes(const Skeleton& skeleton, Rig& rig) {
 }  // namespace
 
 PartRig make_skeleton(const TriangleMesh& mesh, const std::vector<std::string>& names,
-                      std::span<const std::int32_t> label, const std::string& root) {
+                      std::span<const std::int32_t> label, const RigOptions& options) {
     PartRig result;
     result.animation.rest = welded(mesh);
     const TriangleMesh& rest = result.animation.rest;
     result.graph = build_part_graph(rest, build_topology(rest), label);
-    result.skeleton = build_skeleton(rest, result.graph, part_of_root(result.graph, names, root));
+    weaken_unlikely(options.costs, names, result.graph);
+    result.skeleton = build_skeleton(rest, result.graph, part_of_root(result.graph, names, options.root));
     return result;
 }
 
 PartRig make_rig(const TriangleMesh& mesh, const std::vector<std::string>& names, std::span<const std::int32_t> label,
                  const RigOptions& options) {
-    PartRig result = make_skeleton(mesh, names, label, options.root);
+    PartRig result = make_skeleton(mesh, names, label, options);
     Animation& animation = result.animation;
     result.mirror = name_parts(animation.rest, result.graph, names, options.swap_sides, result.skeleton);
     animation.kind = AnimationKind::skeleton;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host/animation/animation.h"
@@ -11,10 +13,16 @@
 
 namespace exemplar {
 
+/// How unlikely it is that parts of two labels belong together, by the names of the labels in alphabetical order; 1 for
+/// pairs that are missing. The compatibilities of a labeling model (Eq. 3.3) are such costs: they are large for labels
+/// that never touch in its training meshes.
+using LabelPairCosts = std::map<std::pair<std::string, std::string>, double>;
+
 struct RigOptions {
-    std::string root;         ///< label of the root's part; empty: the largest part
+    std::string root{};       ///< label of the root's part; empty: the largest part
     bool swap_sides = false;  ///< exchange left and right in names
     double falloff = 0.5;     ///< reach of bends, in radii of the boundary (see weights_of_parts)
+    LabelPairCosts costs{};   ///< divide the strengths of boundaries, so that a hand on a thigh is no joint
 };
 
 /// A mesh with a skeleton that was made from its parts.
@@ -32,8 +40,8 @@ PartRig make_rig(const TriangleMesh& mesh, const std::vector<std::string>& names
                  const RigOptions& options = {});
 
 /// The skeleton alone, without weights: for comparisons. Of make_rig's result only `animation.rest`, `graph` and
-/// `skeleton` are filled in, and joints have no names.
+/// `skeleton` are filled in, and joints have no names. Of the options `root` and `costs` count.
 PartRig make_skeleton(const TriangleMesh& mesh, const std::vector<std::string>& names,
-                      std::span<const std::int32_t> label, const std::string& root = {});
+                      std::span<const std::int32_t> label, const RigOptions& options = {});
 
 }  // namespace exemplar

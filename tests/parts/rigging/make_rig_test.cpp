@@ -12,6 +12,7 @@
 #include "host/parts/rigging/bend_clip.h"
 #include "host/parts/rigging/joint_error.h"
 #include "tests/parts/rigging/part_shapes.h"
+#include "tests/support/shapes.h"
 #include "tests/support/temporary_folder.h"
 
 namespace exemplar {
@@ -173,6 +174,27 @@ TEST(BendClip, RefusesWhatIsNoPose) {
         EXPECT_THROW(read_poses(folder.path() / "pose.json"), DataError) << text;
     }
     EXPECT_THROW(clip_of_poses(rig.animation.rig, {{{"hnad", Vec3::Zero()}}}, "x"), DataError);
+}
+
+// Four parts around a ring: where the ring is cut decides which part hangs on which.
+TEST(MakeSkeleton, CutsARingBetweenLabelsThatRarelyTouch) {
+    const TriangleMesh ring = shapes::torus(3, 1, 32, 12);
+    const std::vector<std::string> names{"torso", "arm", "hand", "leg"};
+    std::vector<std::int32_t> label;
+    for (const Vec3& center : face_centers(ring))
+        label.push_back(center.y() > 0 ? (center.x() > 0 ? 0 : 1) : (center.x() > 0 ? 3 : 2));
+    for (const auto& rare : std::vector<std::pair<std::string, std::string>>{{"hand", "leg"}, {"arm", "hand"}}) {
+        const PartRig rig = make_skeleton(ring, names, label, {.root = "torso", .costs = {{rare, 100}}});
+        ASSERT_EQ(rig.skeleton.joints.size(), 4U);
+        for (const Joint& joint : rig.skeleton.joints) {
+            if (joint.parent == k_invalid_index) continue;
+            const auto name = [&](std::uint32_t part) {
+                return names[static_cast<std::size_t>(rig.graph.parts[part].label)];
+            };
+            const std::string own = name(joint.part), above = name(rig.skeleton.joints[joint.parent].part);
+            EXPECT_FALSE(std::min(own, above) == rare.first && std::max(own, above) == rare.second) << own;
+        }
+    }
 }
 
 TEST(JointErrors, MeasuresTheDistanceOfJointsBetweenTheSameLabels) {

@@ -22,7 +22,7 @@ HOST = {
     'curvature': {'core', 'mesh', 'learn', 'data', 'animation', 'lines'},
     'shape': {'core', 'mesh', 'learn'},
     'labeling': {'core', 'mesh', 'learn', 'graphcut', 'data', 'shape'},
-    'parts': {'core', 'mesh', 'graphcut', 'animation', 'shape', 'data'},
+    'parts': {'core', 'mesh', 'graphcut', 'animation', 'shape', 'data', 'lines'},
     'hatching': {'core', 'mesh', 'learn', 'graphcut', 'data', 'imaging', 'lines', 'shape'},
 }
 GPU = {

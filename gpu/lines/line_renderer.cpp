@@ -17,13 +17,14 @@ using shared::LineCounts;
 using shared::vec4;
 
 DrawPipeline stroke_pipeline(Device& device) {
-    return {device,
-            shaders::lines_stroke_vert,
-            shaders::lines_stroke_frag,
-            {.push_constants = layout_of<shared::StrokeDrawParameters>(),
-             .elements = {layout_of<vec4>(), layout_of<vec4>(), layout_of<std::uint32_t>(),
-                          layout_of<shared::StrokeLook>(), layout_of<float>(), layout_of<shared::vec2>()}},
-            {.color = Canvas::k_rgba, .blends = true}};
+    return {
+        device,
+        shaders::lines_stroke_vert,
+        shaders::lines_stroke_frag,
+        {.push_constants = layout_of<shared::StrokeDrawParameters>(),
+         .elements = {layout_of<vec4>(), layout_of<vec4>(), layout_of<std::uint32_t>(), layout_of<shared::StrokeLook>(),
+                      layout_of<float>(), layout_of<shared::vec2>(), layout_of<vec4>()}},
+        {.color = Canvas::k_rgba, .blends = true}};
 }
 
 // Maximum vertex index that every device supports in index buffers.
@@ -49,6 +50,11 @@ void LineRenderer::set_face_colors(std::span<const Color> colors) {
         throw UsageError(fmt::format("{} colors for {} faces; give one color per face", colors.size(),
                                      surface_.surface().face_count()));
     face_colors_ = Buffer::of<std::uint32_t>(device_, packed_colors(colors));
+}
+
+void LineRenderer::set_part_inks(const PartInks& inks) {
+    inks_.reset();
+    if (!inks.empty()) inks_.emplace(surface_.surface(), inks);
 }
 
 void LineRenderer::set_textures(std::span<const std::uint8_t> opacities) {
@@ -94,7 +100,7 @@ void LineRenderer::draw_strokes(Stream& stream, const LinePicture& picture) {
     pass.draw(lines_->pipeline,
               {.indirect = &lines_->extraction.counts(), .indirect_offset = offsetof(LineCounts, draw)},
               {lines_->chains.points(), lines_->strokes.strokes(), lines_->strokes.visible(), lines_->strokes.looks(),
-               textures_, lines_->coherence.phases()},
+               textures_, lines_->coherence.phases(), inks_ ? inks_->inks() : lines_->strokes.looks()},
               shared::StrokeDrawParameters{.width = static_cast<float>(picture.view.width),
                                            .height = static_cast<float>(picture.view.height)});
     stream.render(pass);
@@ -118,7 +124,7 @@ void LineRenderer::record(Stream& stream, const GpuCurvedSurface& snapshot, cons
     lines_->chains.record(stream, snapshot.vertices, view.camera, view.width, view.height);
     draw_surface(stream, snapshot, picture);
     canvas_.copy_depth(stream, depths_);
-    lines_->strokes.record(stream, snapshot, depths_, view, picture.looks);
+    lines_->strokes.record(stream, snapshot, depths_, view, picture.looks, inks_ ? &*inks_ : nullptr);
     lines_->coherence.record(stream, snapshot.vertices, view, picture.coherent);
     draw_strokes(stream, picture);
 }

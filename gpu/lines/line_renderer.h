@@ -39,6 +39,8 @@ class LineRenderer {
 
     /// Sets one color per face, for SurfacePaint::faces. Throws UsageError for another number.
     void set_face_colors(std::span<const Color> colors);
+    /// Sets the inks of the faces; empty ones: all are drawn as LinePicture::looks says. Throws as GpuPartInks.
+    void set_part_inks(const PartInks& inks);
     /// Sets the textures that StrokeLook refers to: opacities of shared::k_texture_width x k_texture_height texels,
     /// row by row, one texture after the other. Throws UsageError if they are not whole textures.
     void set_textures(std::span<const std::uint8_t> opacities);
@@ -79,6 +81,7 @@ class LineRenderer {
     SurfacePainter painter_;
     bool transparent_ = false;
     Buffer depths_, face_colors_, textures_;
+    std::optional<GpuPartInks> inks_;
 };
 
 }  // namespace exemplar

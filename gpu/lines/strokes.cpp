@@ -23,7 +23,7 @@ static_assert(shared::k_min_smoothing_window == k_min_smoothing_window &&
               shared::k_smoothing_window_points == k_smoothing_window_points &&
               shared::k_smoothing_window_reach == k_smoothing_window_reach);
 
-StrokeParameters stroke_parameters(const StrokeView& view, bool curved, bool closed) {
+StrokeParameters stroke_parameters(const StrokeView& view, bool curved, bool closed, bool inked) {
     const Eigen::Matrix4f& m = view.camera.projection;
     const bool parallel = is_parallel(view.camera);
     const auto toward = view.camera.view.row(2);
@@ -37,7 +37,8 @@ StrokeParameters stroke_parameters(const StrokeView& view, bool curved, bool clo
             .unit_depth = view.unit_depth,
             .parallel = parallel ? 1u : 0u,
             .curved = curved ? 1u : 0u,
-            .closed = closed ? 1u : 0u};
+            .closed = closed ? 1u : 0u,
+            .inked = inked ? 1u : 0u};
 }
 
 }  // namespace
@@ -60,6 +61,21 @@ StrokeLooks plain_looks(const LineThresholds& thresholds, const StrokeThickness&
     return looks;
 }
 
+GpuPartInks::GpuPartInks(const GpuSurface& surface, const PartInks& inks) {
+    if (inks.ink_of_face.size() != surface.face_count())
+        throw UsageError(
+            fmt::format("{} inks for {} faces; give one per face", inks.ink_of_face.size(), surface.face_count()));
+    std::vector<vec4> looks;
+    looks.reserve(inks.inks.size());
+    for (const PartInk& ink : inks.inks) {
+        const Color color = ink.color.value_or(Color{});
+        looks.push_back({ink.color ? static_cast<float>(color[0]) / 255 : -1, static_cast<float>(color[1]) / 255,
+                         static_cast<float>(color[2]) / 255, ink.width});
+    }
+    of_faces_ = Buffer::of<std::uint32_t>(surface.device(), inks.ink_of_face);
+    inks_ = Buffer::of<vec4>(surface.device(), looks);
+}
+
 GpuStrokes::GpuStrokes(const GpuChains& chains) : chains_(chains) {
     Device& device = chains.lines().surface().surface().device();
     const std::size_t room = 2 * chains.lines().room();
@@ -68,18 +84,18 @@ GpuStrokes::GpuStrokes(const GpuChains& chains) : chains_(chains) {
         {.push_constants = layout_of<StrokeParameters>(),
          .elements = {layout_of<float>(), layout_of<vec4>(), layout_of<uvec4>(), layout_of<uvec4>(), layout_of<vec4>(),
                       layout_of<vec4>(), layout_of<vec4>(), layout_of<uvec4>(), layout_of<vec4>()}});
-    stroke_kernel_ =
-        Kernel(device, shaders::lines_strokes_comp,
-               {.push_constants = layout_of<StrokeParameters>(),
-                .elements = {layout_of<vec4>(), layout_of<std::uint32_t>(), layout_of<uvec4>(), layout_of<uvec4>(),
-                             layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<uvec4>()}});
+    stroke_kernel_ = Kernel(device, shaders::lines_strokes_comp,
+                            {.push_constants = layout_of<StrokeParameters>(),
+                             .elements = {layout_of<vec4>(), layout_of<std::uint32_t>(), layout_of<uvec4>(),
+                                          layout_of<uvec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(),
+                                          layout_of<uvec4>(), layout_of<std::uint32_t>()}});
     visible_ = Buffer(device, 2 * room * sizeof(std::uint32_t));
     strokes_ = Buffer(device, 2 * room * sizeof(vec4));
     looks_ = Buffer(device, sizeof(StrokeLooks));
 }
 
 void GpuStrokes::record(Stream& stream, const GpuCurvedSurface& snapshot, const Buffer& depths, const StrokeView& view,
-                        const StrokeLooks& looks) {
+                        const StrokeLooks& looks, const GpuPartInks* inks) {
     const std::size_t wanted = std::size_t{4} * static_cast<std::size_t>(view.width) * view.height;
     if (depths.bytes() < wanted)
         throw UsageError(fmt::format("depths of {} bytes for a picture of {} x {}; give a float per pixel",
@@ -89,7 +105,7 @@ void GpuStrokes::record(Stream& stream, const GpuCurvedSurface& snapshot, const 
     constexpr std::size_t k_points = offsetof(LineCounts, point_groups);
     stream.upload(looks_, std::span<const StrokeLook>(looks));
     const bool curved = snapshot.first && snapshot.second;
-    const StrokeParameters parameters = stroke_parameters(view, curved, lines.surface().is_closed());
+    const StrokeParameters parameters = stroke_parameters(view, curved, lines.surface().is_closed(), inks != nullptr);
     const Buffer &faces = lines.surface().surface().faces(), &first = curved ? *snapshot.first : snapshot.vertices,
                  &second = curved ? *snapshot.second : snapshot.vertices;
     stream.dispatch_indirect(
@@ -99,7 +115,8 @@ void GpuStrokes::record(Stream& stream, const GpuCurvedSurface& snapshot, const 
         parameters);
     stream.dispatch_indirect(stroke_kernel_, counts, k_points,
                              {chains_.points(), visible_, lines.segments(), faces, snapshot.vertices, first, second,
-                              lines.surface().neighbors(), counts, looks_, strokes_},
+                              lines.surface().neighbors(), inks ? inks->of_faces() : faces, counts, looks_, strokes_,
+                              inks ? inks->inks() : looks_},
                              parameters);
 }
 

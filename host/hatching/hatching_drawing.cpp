@@ -2,14 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <map>
 #include <numbers>
 
 #include "host/hatching/fields/ink.h"
+#include "host/imaging/gbuffer.h"
 #include "host/lines/strokes/stroke_raster.h"
 #include "host/mesh/labels.h"
 
 namespace exemplar {
 namespace {
+
+constexpr Color k_black{0, 0, 0};
 
 std::vector<float> distances_along(const HatchStroke& stroke) {
     std::vector<float> along{0};
@@ -31,6 +36,74 @@ Stroke scaled_stroke(Stroke stroke, float scale) {
         point.parameter *= scale;
     }
     return stroke;
+}
+
+/// Divides strokes by the inks of the faces that they are drawn on, and scales their widths. A stroke that leaves the
+/// surface keeps its ink.
+std::map<std::uint32_t, std::vector<HatchStroke>> hatching_by_ink(const HatchedDrawing& drawing) {
+    const PartInks& inks = drawing.inks.strokes;
+    if (inks.empty()) return {{0, drawing.strokes}};
+    const auto ink_at = [&](const Vec2& point, std::uint32_t before) {
+        const int x = std::clamp(static_cast<int>(point.x()), 0, drawing.width - 1);
+        const int y = std::clamp(static_cast<int>(point.y()), 0, drawing.height - 1);
+        const std::uint32_t face = drawing.inks.face.at(static_cast<std::size_t>(y * drawing.width + x));
+        return face == k_no_face ? before : inks.ink_of_face.at(face);
+    };
+    std::map<std::uint32_t, std::vector<HatchStroke>> result;
+    const auto add = [&](const HatchStroke& stroke, std::size_t first, std::size_t last, std::uint32_t ink) {
+        if (inks.inks[ink].width <= 0) return;
+        HatchStroke& part = result[ink].emplace_back(HatchStroke{stroke.layer, {}, {}, stroke.darkness});
+        for (std::size_t i = first; i <= last; ++i) {
+            part.points.push_back(stroke.points[i]);
+            part.widths.push_back(inks.inks[ink].width * stroke.widths[i]);
+        }
+    };
+    for (const HatchStroke& stroke : drawing.strokes) {
+        std::size_t first = 0;
+        std::uint32_t ink = ink_at(stroke.points[0], 0);
+        for (std::size_t i = 1; i + 1 < stroke.points.size(); ++i) {
+            const std::uint32_t next = ink_at(stroke.points[i], ink);
+            if (next == ink) continue;
+            add(stroke, first, i, ink);
+            first = i;
+            ink = next;
+        }
+        add(stroke, first, stroke.points.size() - 1, ink);
+    }
+    return result;
+}
+
+/// Darkens a picture by the ink of strokes of one color.
+void add_ink(std::span<const float> ink, const Color& color, FloatImage& picture) {
+    for (std::size_t i = 0; i < ink.size(); ++i)
+        for (std::size_t c = 0; c < 3; ++c) {
+            float& value = picture.data[3 * i + c];
+            value = std::lerp(value, static_cast<float>(color[c]) / 255, ink[i]);
+        }
+}
+
+/// Feature curves of one type and ink.
+struct InkedCurves {
+    std::string name;
+    LineStyle style;
+    std::vector<Stroke> strokes;
+};
+
+std::vector<InkedCurves> curves_by_ink(const HatchedDrawing& drawing, const DrawingStyle& style) {
+    const PartInks& inks = drawing.inks.curves;
+    std::vector<InkedCurves> result;
+    for (const DrawingLayer& layer : drawing.curves.layers) {
+        const std::string name(name_of(layer.type));
+        if (inks.empty()) {
+            result.push_back({name, style.of(layer.type), layer.strokes});
+            continue;
+        }
+        for (auto& [ink, strokes] : strokes_by_ink(layer.strokes, inks)) {
+            result.push_back({name_of_layer(name, inks, ink), style.of(layer.type), std::move(strokes)});
+            result.back().style.color = inks.inks[ink].color.value_or(result.back().style.color);
+        }
+    }
+    return result;
 }
 
 Color hue_color(float hue) {
@@ -90,13 +163,19 @@ std::vector<Stroke> layer_strokes(std::span<const HatchStroke> strokes, std::siz
 
 SvgSummary write_hatching_svg(const std::filesystem::path& path, const HatchedDrawing& drawing,
                               const DrawingStyle& style, const SvgOptions& options) {
-    const std::array<std::vector<Stroke>, k_hatch_layers> hatches{layer_strokes(drawing.strokes, 0),
-                                                                  layer_strokes(drawing.strokes, 1)};
-    std::vector<SvgLayer> layers{{"hatching", {0, 0, 0}, 1, hatches[0]}, {"cross_hatching", {0, 0, 0}, 1, hatches[1]}};
-    for (const DrawingLayer& layer : drawing.curves.layers) {
-        const LineStyle& line = style.of(layer.type);
-        layers.push_back({std::string(name_of(layer.type)), line.color, line.opacity, layer.strokes});
-    }
+    const std::map<std::uint32_t, std::vector<HatchStroke>> by_ink = hatching_by_ink(drawing);
+    const std::vector<InkedCurves> curves = curves_by_ink(drawing, style);
+    std::deque<std::vector<Stroke>> hatches;  // that the layers refer to
+    std::vector<SvgLayer> layers;
+    for (std::size_t layer = 0; layer < k_hatch_layers; ++layer)
+        for (const auto& [ink, strokes] : by_ink) {
+            hatches.push_back(layer_strokes(strokes, layer));
+            const Color color = ink > 0 ? drawing.inks.strokes.inks[ink].color.value_or(k_black) : k_black;
+            layers.push_back({name_of_layer(layer == 0 ? "hatching" : "cross_hatching", drawing.inks.strokes, ink),
+                              color, 1, hatches.back()});
+        }
+    for (const InkedCurves& curve : curves)
+        layers.push_back({curve.name, curve.style.color, curve.style.opacity, curve.strokes});
     constexpr Color k_paper{255, 255, 255};
     return write_layers_svg(path, drawing.width, drawing.height, k_paper, layers, options);
 }
@@ -104,17 +183,17 @@ SvgSummary write_hatching_svg(const std::filesystem::path& path, const HatchedDr
 Image hatching_picture(const HatchedDrawing& drawing, const DrawingStyle& style, float scale) {
     const int width = std::max(1, static_cast<int>(std::lround(scale * static_cast<float>(drawing.width))));
     const int height = std::max(1, static_cast<int>(std::lround(scale * static_cast<float>(drawing.height))));
-    std::vector<HatchStroke> strokes;
-    for (const HatchStroke& stroke : drawing.strokes) strokes.push_back(scaled_stroke(stroke, scale));
-    const std::vector<float> ink = render_ink(strokes, width, height);
-    FloatImage picture(width, height, 3);
-    for (std::size_t i = 0; i < ink.size(); ++i) {
-        for (std::size_t c = 0; c < 3; ++c) picture.data[3 * i + c] = 1 - ink[i];
+    FloatImage picture(width, height, 3, 1.0F);
+    for (const auto& [ink, own] : hatching_by_ink(drawing)) {
+        std::vector<HatchStroke> strokes;
+        strokes.reserve(own.size());
+        for (const HatchStroke& stroke : own) strokes.push_back(scaled_stroke(stroke, scale));
+        const Color color = ink > 0 ? drawing.inks.strokes.inks[ink].color.value_or(k_black) : k_black;
+        add_ink(render_ink(strokes, width, height), color, picture);
     }
-    for (const DrawingLayer& layer : drawing.curves.layers) {
-        std::vector<Stroke> curves;
-        for (const Stroke& stroke : layer.strokes) curves.push_back(scaled_stroke(stroke, scale));
-        draw_strokes(curves, style.of(layer.type), {}, picture);
+    for (InkedCurves& curve : curves_by_ink(drawing, style)) {
+        for (Stroke& stroke : curve.strokes) stroke = scaled_stroke(std::move(stroke), scale);
+        draw_strokes(curve.strokes, curve.style, {}, picture);
     }
     Image image(width, height, 3);
     for (std::size_t i = 0; i < image.data.size(); ++i)

@@ -12,15 +12,23 @@
 #include "host/imaging/image.h"
 #include "host/lines/drawing.h"
 #include "host/lines/drawing_svg.h"
+#include "host/lines/part_inks.h"
 #include "host/lines/strokes/strokes.h"
 
 namespace exemplar {
+
+/// The inks of the parts in a hatched view.
+struct HatchingInks {
+    PartInks strokes, curves;         ///< of hatching strokes and feature curves; empty: all are black
+    std::vector<std::uint32_t> face;  ///< per pixel, row by row: the face that is seen there, or k_no_face
+};
 
 /// The hatching of a view: strokes, with feature curves drawn over them.
 struct HatchedDrawing {
     int width = 0, height = 0;  ///< pixels
     std::vector<HatchStroke> strokes;
     Drawing curves;  ///< may be without layers
+    HatchingInks inks{};
 };
 
 /// Tapers the widths of strokes to points at both ends: along a quarter of an ellipse over `taper` pixels (see
@@ -34,8 +42,8 @@ DrawingStyle curve_look(const HatchingStyle& style);
 /// Returns the strokes of a layer as strokes of line drawings; their darkness becomes opacity.
 std::vector<Stroke> layer_strokes(std::span<const HatchStroke> strokes, std::size_t layer);
 
-/// Writes the layers "hatching" and "cross_hatching", and one layer per type of feature curve. Throws as
-/// write_drawing_svg.
+/// Writes the layers "hatching" and "cross_hatching", and one layer per type of feature curve; strokes of a part with
+/// its own ink are a layer of their own, as "hatching: torso". Throws as write_drawing_svg.
 SvgSummary write_hatching_svg(const std::filesystem::path& path, const HatchedDrawing& drawing,
                               const DrawingStyle& style, const SvgOptions& options = {});
 

@@ -272,6 +272,14 @@ class SvgWriter {
                                                         {"fill", svg_color(*background_)}});
         document_.close();
     }
+    /// Adds the strokes of a type of lines, a layer for each ink.
+    void add_inked_layers(const DrawingLayer& layer, const LineStyle& line, const PartInks& inks) {
+        const std::string name(name_of(layer.type));
+        if (inks.empty()) return add_layer({name, line.color, line.opacity, layer.strokes});
+        for (const auto& [ink, strokes] : strokes_by_ink(layer.strokes, inks))
+            add_layer(
+                {name_of_layer(name, inks, ink), inks.inks[ink].color.value_or(line.color), line.opacity, strokes});
+    }
     void add_layer(const SvgLayer& layer) {
         const std::string color = svg_color(layer.color);
         std::vector<SvgAttribute> attributes = {{"fill", color}, {"stroke", "none"}};
@@ -363,7 +371,7 @@ SvgSummary write_layers_svg(const std::filesystem::path& path, int width, int he
 }
 
 SvgSummary write_drawing_svg(const std::filesystem::path& path, std::span<const Drawing> frames,
-                             const DrawingStyle& style, const SvgOptions& options) {
+                             const DrawingStyle& style, const SvgOptions& options, const PartInks& inks) {
     check_frames(frames, options);
     SvgDocument document(frames[0].width, frames[0].height, options.title);
     SvgWriter writer(document, {frames[0].width, frames[0].height}, style.background, options);
@@ -376,10 +384,7 @@ SvgSummary write_drawing_svg(const std::filesystem::path& path, std::span<const 
             document.open_layer(fmt::format("frame {}", f), attributes);
             add_animation(document, f, frames.size(), options.frames_per_second);
         }
-        for (const DrawingLayer& layer : frames[f].layers) {
-            const LineStyle& line = style.of(layer.type);
-            writer.add_layer({std::string(name_of(layer.type)), line.color, line.opacity, layer.strokes});
-        }
+        for (const DrawingLayer& layer : frames[f].layers) writer.add_inked_layers(layer, style.of(layer.type), inks);
         if (frames.size() > 1) document.close();
     }
     write_svg(path, document);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "host/lines/drawing.h"
+#include "host/lines/part_inks.h"
 #include "host/lines/strokes/style.h"
 
 namespace exemplar {
@@ -56,9 +57,10 @@ SvgSummary write_layers_svg(const std::filesystem::path& path, int width, int he
 
 /// Writes drawings of one size as an SVG file with a layer per line type, named after it, without hidden lines.
 /// Paths of a layer are ordered so that a plotter's pen moves little between them. Several drawings become the
-/// frames of a looping animation, a layer each; programs that do not play it show the first. Throws UsageError if
+/// frames of a looping animation, a layer each; programs that do not play it show the first. With `inks`, strokes of a
+/// part with its own ink are a layer of their own, as "contours: torso". Throws UsageError if
 /// there is no drawing, sizes differ or an option is out of range, DataError if the file cannot be written.
 SvgSummary write_drawing_svg(const std::filesystem::path& path, std::span<const Drawing> frames,
-                             const DrawingStyle& style, const SvgOptions& options = {});
+                             const DrawingStyle& style, const SvgOptions& options = {}, const PartInks& inks = {});
 
 }  // namespace exemplar

@@ -13,6 +13,8 @@ layout(set = 0, binding = 3, std430) readonly buffer Looks { StrokeLook looks[];
 // Binding 4 is the fragment shader's.
 layout(set = 0, binding = 5, std430) readonly buffer Phases { vec2 phases[]; };
 
+layout(set = 0, binding = 6, std430) readonly buffer Inks { vec4 inks[]; };  // red below 0: the color of the look
+
 layout(location = 0) out vec4 along;       // pixels across, half width, opacity, share of the way to the next point
 layout(location = 1) out float texture_at;  // texture coordinate along the chain, in pixels
 layout(location = 2) flat out uvec2 seen;  // bits of the visible samples, and number of samples
@@ -57,7 +59,13 @@ void main() {
     const vec2 coordinates = texture_ends(phase, phases[point + 1], texelFetch(points, 2 * point).w,
                                           texelFetch(points, 2 * point + 2).w, look.period);
     texture_at = next ? coordinates.y : coordinates.x;
-    color = look.color;
+    const uint ink = uint(texelFetch(strokes, 2 * point + 1).z);
+    color = ink > 0u && inks[ink].r >= 0.0 ? vec4(inks[ink].rgb, look.color.a) : look.color;
+    // A part without lines: strokes of no width would still be a pixel of soft edge.
+    if (ink > 0u && inks[ink].w <= 0.0) {
+        gl_Position = vec4(0.0, 0.0, 0.0, 1.0);
+        return;
+    }
     texture_of = vec3(uintBitsToFloat(look.texture), look.period, phase.x);
     gl_Position = vec4(2.0 * pixel / vec2(parameters.width, parameters.height) - 1.0, 0.0, 1.0);
 }

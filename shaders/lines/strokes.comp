@@ -16,10 +16,12 @@ layout(set = 0, binding = 4) uniform samplerBuffer positions;
 layout(set = 0, binding = 5) uniform samplerBuffer first;
 layout(set = 0, binding = 6) uniform samplerBuffer second;
 layout(set = 0, binding = 7) uniform usamplerBuffer neighbors;
-layout(set = 0, binding = 8, std430) readonly buffer Counts { LineCounts counts; };
-layout(set = 0, binding = 9, std430) readonly buffer Looks { StrokeLook looks[]; };  // per family
-// Two per point: position, width, opacity; normal.
-layout(set = 0, binding = 10, std430) writeonly buffer Strokes { vec4 strokes[]; };
+layout(set = 0, binding = 8) uniform usamplerBuffer face_inks;  // index of an ink per face, if there are some
+layout(set = 0, binding = 9, std430) readonly buffer Counts { LineCounts counts; };
+layout(set = 0, binding = 10, std430) readonly buffer Looks { StrokeLook looks[]; };  // per family
+layout(set = 0, binding = 12, std430) readonly buffer Inks { vec4 inks[]; };  // color; factor of the width
+// Two per point: position, width, opacity; normal, index of the ink.
+layout(set = 0, binding = 11, std430) writeonly buffer Strokes { vec4 strokes[]; };
 #include "shaders/lines/segments.glsl"
 #include "shaders/lines/stroke_points.glsl"
 
@@ -139,9 +141,8 @@ bool goes_on_along_edge(int point) {
     return across >= k_blocked_side || (across & k_sharp_side) != 0u;
 }
 
-float thickness(uvec2 walked_end, StrokeLook look) {
-    const LineSegmentRecord segment = segment_at(walked_end.x);
-    const vec3 weights = end_of(segment, walked_end.y);
+float thickness(LineSegmentRecord segment, uint end, StrokeLook look) {
+    const vec3 weights = end_of(segment, end);
     const uvec3 corners = texelFetch(faces, int(segment.face)).xyz;
     float curvature = 0.0, z = 0.0;
     for (uint i = 0; i < 3; ++i) {
@@ -189,10 +190,13 @@ void main() {
     const StrokeLook look = looks[kind & k_kind_family];
     const SmoothedPoint drawn = smoothed_point(point, kind);
     const bool along_edge = (1u << (kind & k_kind_family) & k_edge_families) != 0u;
-    const float width = thickness(segment_end(point), look) *
-                        (along_edge ? 1.0 : tapered(point, drawn.straightness, look));
+    const uvec2 at = segment_end(point);
+    const LineSegmentRecord segment = segment_at(at.x);
+    const uint ink = parameters.inked != 0u ? texelFetch(face_inks, int(segment.face)).x : 0u;
+    float width = thickness(segment, at.y, look) * (along_edge ? 1.0 : tapered(point, drawn.straightness, look));
+    if (parameters.inked != 0u) width *= inks[ink].w;
     const float above = max(more.w - look.threshold, 0.0);
     const float opacity = look.fade > 0.0 ? above / (above + look.fade) : 1.0;
     strokes[2 * point] = vec4(drawn.at, width, opacity);
-    strokes[2 * point + 1] = vec4(drawn.normal, 0.0, 0.0);
+    strokes[2 * point + 1] = vec4(drawn.normal, float(ink), 0.0);
 }

@@ -170,6 +170,7 @@ struct StrokeParameters {
     uint parallel;
     uint curved;  // whether there is curvature
     uint closed;  // whether the surface has no boundary
+    uint inked;   // whether faces have inks
 };
 
 struct StrokeDrawParameters {
@@ -186,7 +187,7 @@ EXEMPLAR_LAYOUT(LinkParameters, matrix, width, height)
 EXEMPLAR_LAYOUT(LinePoint, x, y, depth, parameter, kind, chain, segment, strength)
 EXEMPLAR_LAYOUT(StrokeLook, color, width, epsilon, least, most, taper, threshold, fade, texture, period)
 EXEMPLAR_LAYOUT(StrokeParameters, eye, axis, width, height, near_term, far_term, feature_size, unit_depth, parallel,
-                curved, closed)
+                curved, closed, inked)
 EXEMPLAR_LAYOUT(StrokeDrawParameters, width, height)
 #endif
 

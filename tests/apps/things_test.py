@@ -60,6 +60,34 @@ class Parts(ProgramTest):
         (self.folder / "skin.json").write_text('{"torso": {"colour": "#ff0000"}}')
         self.refused("label", "materials", self.mesh, "--materials", "skin.json", "--out", "x.glb", code=1, says=["skin.json", "did you mean 'color'"])
 
+    def test_drawings_take_the_inks_of_labels(self):
+        inks = {"torso": {"line": {"color": "#cc2200", "width": 2}}, "head": {"line": {"width": 0}}}
+        (self.folder / "inks.json").write_text(json.dumps(inks))
+        self.call("lines", self.mesh, "--materials", "inks.json", "--out", "lines.svg")
+        drawing = (self.folder / "lines.svg").read_text()
+        self.assertIn('"contours: torso"', drawing)
+        self.assertIn("#cc2200", drawing)
+        self.assertNotIn("head", drawing)
+        self.call("lines", self.mesh, "--out", "plain.svg")
+        self.assertNotIn("torso", (self.folder / "plain.svg").read_text())
+        self.call("lines", self.mesh, "--materials", "inks.json", "--size", "200x160", "--out", "lines.png")
+        (self.folder / "wrong.json").write_text('{"torso": {"line": {"widht": 2}}}')
+        self.refused("lines", self.mesh, "--materials", "wrong.json", "--out", "x.svg", code=1, says=["widht", "'width'"])
+        (self.folder / "other.json").write_text('{"wing": {"line": {"width": 2}}}')
+        self.refused("lines", self.mesh, "--materials", "other.json", "--out", "x.svg", code=2, says=["other.json", "torso"])
+
+    def test_hatching_takes_the_inks_of_labels(self):
+        self.call("hatch", "example", "light", self.mesh, "--size", "300x240", "--out", "drawing.png")
+        self.call("hatch", "train", self.mesh, "drawing.png", "--size", "300x240", "--out", "style")
+        inks = {"torso": {"hatching": {"color": "#cc2200"}, "line": {"color": "#0000cc"}}, "*": {"hatching": {"width": 0}}}
+        (self.folder / "hatches.json").write_text(json.dumps(inks))
+        self.call("hatch", "draw", "style", self.mesh, "--materials", "hatches.json", "--size", "300x240", "--out", "hatching.svg")
+        drawing = (self.folder / "hatching.svg").read_text()
+        self.assertIn('"hatching: torso"', drawing)
+        self.assertIn('"contours: torso"', drawing)
+        self.assertNotIn('"hatching: upperleg"', drawing)
+        self.call("hatch", "draw", "style", self.mesh, "--materials", "hatches.json", "--size", "300x240", "--out", "hatching.png")
+
     def test_labels_that_are_paths_stay_in_the_folder(self):
         labels = self.mesh.with_name("human_003_labels.txt").read_text().replace("head", "../../head").replace("hand", "all")
         (self.folder / "odd.txt").write_text(labels)

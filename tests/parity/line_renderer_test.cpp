@@ -112,6 +112,37 @@ TEST(LineRenderer, FacesHaveTheColorsTheyWereGivenLast) {
     EXPECT_THROW(renderer.set_face_colors(std::vector<Color>(3)), UsageError);
 }
 
+TEST(LineRenderer, LinesOfAPartHaveItsInkOrNone) {
+    Ball ball;
+    ball.picture.families = 1u << shared::k_contours;
+    LineRenderer renderer(shared_device(), ball.line_surface);
+    const Image plain = ball.render(renderer);
+    const auto count = [](const Image& image, bool red) {
+        std::size_t pixels = 0;
+        for (std::size_t i = 0; i < image.data.size(); i += static_cast<std::size_t>(image.channels)) {
+            const int green = image.data[i + 1];
+            pixels += green < 80 && (image.data[i] > green + 100) == red;
+        }
+        return pixels;
+    };
+    const std::size_t black = count(plain, false);
+    ASSERT_GT(black, 50U);
+    for (const float width : {1.0F, 0.0F}) {
+        PartInks inks{{PartInk{}, {Color{255, 0, 0}, width}}, {"", "part"}, {}};
+        for (const Face& face : ball.mesh.faces)
+            inks.ink_of_face.push_back(ball.mesh.vertices[face[0]].x() > 0 ? 1 : 0);
+        renderer.set_part_inks(inks);
+        const Image image = ball.render(renderer);
+        EXPECT_NEAR(static_cast<double>(count(image, false)), static_cast<double>(black) / 2,
+                    0.1 * static_cast<double>(black));
+        EXPECT_EQ(count(image, true) > black / 3, width > 0);
+        EXPECT_EQ(count(image, true) > 0, width > 0);
+    }
+    renderer.set_part_inks({});
+    EXPECT_EQ(ball.render(renderer), plain);
+    EXPECT_THROW(renderer.set_part_inks({{PartInk{}}, {""}, {0, 0}}), UsageError);
+}
+
 TEST(LineRenderer, OtherVerticesAreRefused) {
     const Ball ball;
     LineRenderer renderer(shared_device(), ball.line_surface);

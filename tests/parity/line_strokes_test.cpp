@@ -40,7 +40,8 @@ struct DrawnLines {
     Image image;
 };
 
-DrawnLines draw(const Scene& scene, LineType type, bool parallel, const LineStyle& line = even_style()) {
+DrawnLines draw(const Scene& scene, LineType type, bool parallel, const LineStyle& line = even_style(),
+                const PartInks& inks = {}) {
     DrawnLines drawn;
     const FitOptions fit{.vertical_fov = parallel ? 0.0f : 0.4f};
     drawn.view = {.camera = fit_camera(scene.mesh, Vec3(3.07f, 2.11f, 4.23f), picture_aspect(), fit),
@@ -62,6 +63,7 @@ DrawnLines draw(const Scene& scene, LineType type, bool parallel, const LineStyl
     picture.looks = looks.looks;
     LineRenderer renderer(shared_device(), scene.line_surface);
     renderer.set_textures(looks.textures);
+    renderer.set_part_inks(inks);
     Stream stream(shared_device());
     drawn.image = renderer.render(stream, scene.snapshot(), picture);
 
@@ -146,6 +148,24 @@ TEST(StrokesOfACan, KeepTheirWidthWhereTheyMeetItsRims) {
     }
     EXPECT_EQ(ends, 4);
     EXPECT_GT(narrowest, 1);
+}
+
+TEST(StrokesOfParts, HaveTheirInkAndItsWidth) {
+    const Scene scene(lumpy());
+    PartInks inks{{PartInk{}, {Color{255, 0, 0}, 2.5F}}, {"", "part"}, {}};
+    for (const Face& face : scene.mesh.faces) inks.ink_of_face.push_back(scene.mesh.vertices[face[0]].x() > 0 ? 1 : 0);
+    const DrawnLines plain = draw(scene, LineType::contours, false);
+    const DrawnLines inked = draw(scene, LineType::contours, false, even_style(), inks);
+    ASSERT_EQ(inked.points.size(), plain.points.size());
+    std::array<std::size_t, 2> points{};
+    for (std::size_t i = 0; i < inked.points.size(); ++i) {
+        const std::uint32_t ink = inks.ink_of_face[inked.segments.at(inked.points[i].segment / 2).face];
+        ++points[ink];
+        ASSERT_EQ(inked.strokes[2 * i + 1].z, static_cast<float>(ink));
+        ASSERT_FLOAT_EQ(inked.strokes[2 * i].z, (ink ? 2.5F : 1.0F) * plain.strokes[2 * i].z);
+    }
+    EXPECT_GT(points[0], 50U);
+    EXPECT_GT(points[1], 50U);
 }
 
 bool seen_by_rays(const DrawnLines& drawn, const LinePoint& from, float t) {

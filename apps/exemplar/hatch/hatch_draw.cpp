@@ -5,6 +5,7 @@
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/common_options.h"
 #include "apps/exemplar/hatch/hatch_draw.h"
+#include "apps/exemplar/ink_arguments.h"
 #include "apps/help/command.h"
 #include "host/core/errors.h"
 #include "host/core/progress.h"
@@ -59,7 +60,7 @@ void draw_still(const HatchDrawJob& job) {
     watch = {};
     const SpacingMeasure spacing = measure_spacing(hatching.strokes, fields);
     const ToneMeasure tone = measure_tone(hatching.strokes, fields);
-    HatchedDrawing drawing{fields.width, fields.height, hatching.strokes, {}};
+    HatchedDrawing drawing{fields.width, fields.height, hatching.strokes, {}, scene.inks()};
     taper_strokes(drawing.strokes, job.taper_of(style));
     const DrawingStyle look = curve_look(style);
     drawing.curves = feature_curves(scene.surface(), scene.pixels().view(), job.curve_types(), look);
@@ -157,6 +158,7 @@ void add_hatch_draw_command(Command& hatch) {
         "Examples:\n"
         "  exemplar hatch draw mine.safetensors cow.obj --out cow.svg\n"
         "  exemplar hatch draw mine.safetensors cow.obj --view side --curves contours,suggestive --out cow.png\n"
+        "  exemplar hatch draw mine.safetensors cow.obj --labels cow_labels.txt --materials inks.json --out cow.svg\n"
         "  exemplar hatch draw mine.safetensors figure.glb --frames 0:60 --out walk.mp4\n"
         "  exemplar hatch draw mine.safetensors cow.obj --turn 3 --out turning");
     command->add_option("STYLE", arguments->style, "style file of 'exemplar hatch train'")->required()->type_name("");
@@ -175,10 +177,12 @@ void add_hatch_draw_command(Command& hatch) {
         ->allow_extra_args(false)
         ->capture_default_str();
     command
-        ->add_option("--labels", arguments->scene.labels,
-                     "labels of the mesh's faces (_labels.txt, .seg or labeled PLY), for a style that was learned with "
-                     "labels")
+        ->add_option(
+            "--labels", arguments->scene.labels,
+            "labels of the mesh's faces (_labels.txt, .seg or labeled PLY), for --materials and for a style that "
+            "was learned with labels")
         ->type_name("FILE");
+    add_materials_option(*command, arguments->scene.materials);
     command->add_option("--properties", arguments->properties, "writes a picture of each property into this folder")
         ->type_name("FOLDER");
     command

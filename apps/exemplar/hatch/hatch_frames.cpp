@@ -52,6 +52,7 @@ class HatchedFrames {
     std::size_t count() const { return count_; }
     double frames_per_second() const { return moves() ? source_.frames_per_second() : job_.source.frames_per_second; }
     bool moves() const { return source_.is_animation(); }
+    const std::optional<FaceLabels>& labels() const { return source_.labels(); }
     TriangleMesh mesh(std::size_t frame) const {
         const std::vector<Vec3> all = source_.vertices(moves() ? frame : 0);
         TriangleMesh mesh = surface_;
@@ -124,6 +125,10 @@ class FrameHatcher {
         style_.resize(view.width, view.height);
         look_ = curve_look(style_);
         if (!job.scene.labels.empty()) labels_ = read_face_labels(job.scene.labels, frames.surface());
+        MeshFile still;
+        still.mesh = frames.surface();
+        still.labels = frames.labels();
+        inks_ = read_hatching_inks(job.scene, still);
     }
 
     HatchedDrawing draw(std::size_t frame) {
@@ -138,10 +143,11 @@ class FrameHatcher {
         ViewHatching hatching = hatch_view(style_, pixels, device_.tools(), job_.hatching, kept);
         if (frame > 0) flicker_.push_back(measure_flicker(hatching.strokes, carried));
         stroke_counts_.push_back(hatching.strokes.size());
+        inks_.face = pixels.gbuffer().face;
         before_ = strokes_on_surface(hatching.strokes, surface_->mesh, view, pixels.gbuffer());
         taper_strokes(hatching.strokes, job_.taper_of(style_));
         return {view.width, view.height, std::move(hatching.strokes),
-                feature_curves(*surface_, view, job_.curve_types(), look_, frames_.unit_depth())};
+                feature_curves(*surface_, view, job_.curve_types(), look_, frames_.unit_depth()), inks_};
     }
 
     const DrawingStyle& look() const { return look_; }
@@ -168,6 +174,7 @@ class FrameHatcher {
     HatchingDevice device_;
     DrawingStyle look_;
     std::optional<FaceLabels> labels_;
+    HatchingInks inks_;
     std::optional<HatchingSurface> surface_;
     std::vector<SurfaceStroke> before_;
     std::vector<HatchingFlicker> flicker_;

@@ -1,4 +1,5 @@
 #include "apps/exemplar/hatch/hatch_scene.h"
+#include "apps/exemplar/ink_arguments.h"
 
 #include <fmt/format.h>
 
@@ -51,6 +52,7 @@ void require_hatch_scene(HatchSceneArguments& arguments) {
         arguments.registered = !file.drawing.empty();
     }
     if (!arguments.labels.empty()) require_input(arguments.labels);
+    require_inks({arguments.labels, arguments.materials});
     require_camera(arguments.camera);
     if (!(point_of(arguments.light, "--light").norm() > 0))
         throw UsageError("--light is zero; give a direction as -0.5,0.5,0.7");
@@ -62,12 +64,20 @@ HatchingView hatching_view(const HatchSceneArguments& arguments, const TriangleM
             point_of(arguments.camera.up, "--up").normalized()};
 }
 
+HatchingInks read_hatching_inks(const HatchSceneArguments& arguments, const MeshFile& file) {
+    const InkArguments inks{arguments.labels, arguments.materials};
+    return {read_inks(inks, arguments.mesh, file, &PartMaterial::hatching),
+            read_inks(inks, arguments.mesh, file, &PartMaterial::line),
+            {}};
+}
+
 struct HatchScene::Impl {
     explicit Impl(const std::string& name) : device({.name = name}) {}
     HatchingDevice device;
     HatchingSurface surface;
     HatchingView view;
     std::unique_ptr<PixelFeatures> pixels;
+    HatchingInks inks;
 };
 
 HatchScene::HatchScene(const HatchSceneArguments& arguments, const std::string& device, bool quiet)
@@ -84,6 +94,8 @@ HatchScene::HatchScene(const HatchSceneArguments& arguments, const std::string& 
     impl_->view = hatching_view(arguments, impl_->surface.mesh);
     impl_->pixels = std::make_unique<PixelFeatures>(impl_->surface, impl_->view, impl_->device.tools().images);
     if (!arguments.labels.empty()) impl_->pixels->set_labels(read_face_labels(arguments.labels, file.mesh));
+    impl_->inks = read_hatching_inks(arguments, file);
+    impl_->inks.face = impl_->pixels->gbuffer().face;
 }
 
 HatchScene::~HatchScene() = default;
@@ -96,6 +108,9 @@ PixelFeatures& HatchScene::pixels() {
 }
 const HatchingTools& HatchScene::tools() const {
     return impl_->device.tools();
+}
+HatchingInks HatchScene::inks() const {
+    return impl_->inks;
 }
 const std::string& HatchScene::device_name() const {
     return impl_->device.device().info().name;

@@ -13,7 +13,9 @@
 #include "host/hatching/features/hatching_surface.h"
 #include "host/hatching/features/pixel_features.h"
 #include "host/hatching/features/surface_cache.h"
+#include "host/hatching/hatching_drawing.h"
 #include "host/hatching/view_hatching.h"
+#include "host/mesh/io/io.h"
 
 namespace exemplar {
 
@@ -24,7 +26,8 @@ struct HatchSceneArguments {
     std::string sheet;                ///< paper that the view was printed on; empty: none
     bool registered = false;          ///< whether drawings show exactly this view
     std::filesystem::path mesh;
-    std::filesystem::path labels;  ///< of the mesh's parts; empty: none
+    std::filesystem::path labels;     ///< of the mesh's parts; empty: none
+    std::filesystem::path materials;  ///< inks of the parts; empty: none
     CameraArguments camera;
     std::string light = "-0.45,0.55,0.7";                    ///< direction to it: x right, y up, z towards the eye
     std::filesystem::path cache = default_surface_folder();  ///< cache of measured surfaces; empty: none
@@ -39,6 +42,9 @@ void require_hatch_scene(HatchSceneArguments& arguments);
 /// Returns the view of a mesh.
 HatchingView hatching_view(const HatchSceneArguments& arguments, const TriangleMesh& mesh);
 
+/// Returns the inks of a hatched mesh's parts by its labels, without faces of pixels; empty ones without materials.
+HatchingInks read_hatching_inks(const HatchSceneArguments& arguments, const MeshFile& file);
+
 /// A mesh in a view, and everything that measures and hatches it on a device.
 class HatchScene {
   public:
@@ -49,6 +55,8 @@ class HatchScene {
     const HatchingSurface& surface() const;
     PixelFeatures& pixels();
     const HatchingTools& tools() const;
+    /// The inks of the parts; empty ones without materials.
+    HatchingInks inks() const;
     const std::string& device_name() const;
 
   private:

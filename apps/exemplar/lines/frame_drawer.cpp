@@ -36,7 +36,11 @@ FrameDrawer::FrameDrawer(const LinesJob& job, LinesSource& source, const StrokeV
     renderer_.set_cut_curvature(job.source.measuring.cut_curvature);
     const DeviceStyle style = device_style(job.style);
     renderer_.view().set_textures(style.textures);
-    if (job.check) renderer_.view(1).set_textures(style.textures);  // for redraw()
+    renderer_.view().set_part_inks(source.inks());
+    if (job.check) {  // for redraw()
+        renderer_.view(1).set_textures(style.textures);
+        renderer_.view(1).set_part_inks(source.inks());
+    }
     picture_.view = view;
     apply_style(style, job.types, picture_);
 }

@@ -107,6 +107,7 @@ LinesJob job_of(const LinesArguments& arguments) {
     else
         require_output_file(job.out);
     require_camera(job.camera);
+    require_inks(job.source.inks);
     job.types = types_of(arguments.types);
     if (job.compare) require_comparable(job);
     job.style = load_style(arguments.style);
@@ -157,6 +158,11 @@ void add_look_options(Command& command, LinesArguments& arguments) {
         ->type_name("NAME|FILE")
         ->check(completion_words(builtin_style_names()))
         ->capture_default_str();
+    command
+        .add_option("--labels", arguments.job.source.inks.labels,
+                    "labels of the mesh's faces for --materials (default: those in its file or beside it)")
+        ->type_name("FILE");
+    add_materials_option(command, arguments.job.source.inks.materials);
     command.add_option("--print-style", arguments.print_style, "prints a built-in style, to start a file from")
         ->check(completion_words(builtin_style_names()))
         ->type_name("NAME");
@@ -246,6 +252,7 @@ void add_lines_command(Command& app) {
         "the Vulkan device.\n\nExamples:\n"
         "  exemplar lines bunny.off --out bunny.svg\n"
         "  exemplar lines part.obj --types contours,creases,boundaries --style technical --view top --out part.svg\n"
+        "  exemplar lines cow.off --labels cow_labels.txt --materials inks.json --out cow.svg\n"
         "  exemplar lines figure.glb --model figure.safetensors --frames 0:40 --style pencil --out walk.mp4\n"
         "  exemplar lines figure.glb --model figure.safetensors --frames 40: --compare --out unseen");
     LinesJob& job = arguments->job;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/exemplar/animation_arguments.h"
+#include "apps/exemplar/ink_arguments.h"
 #include "host/animation/animation.h"
 #include "host/curvature/model/model.h"
 #include "host/curvature/state/samples.h"
@@ -24,6 +25,7 @@ struct LinesSourceArguments {
     bool first_frame_only = false;  ///< if no frames are selected
     double frames_per_second = 30;
     DrawableOptions measuring{};  ///< if there is no model
+    InkArguments inks;
     bool quiet = false;
 };
 
@@ -47,6 +49,11 @@ class LinesSource {
     /// Feature size of the first frame, or of the model's training. It is constant, so that lines do not flicker.
     float feature_size();
 
+    /// The labels in the file of a mesh.
+    const std::optional<FaceLabels>& labels() const { return labels_; }
+    /// The inks of the parts' lines; empty if the arguments name none.
+    const PartInks& inks() const { return inks_; }
+
     const Animation& animation() const { return animation_; }
     const std::vector<FrameRef>& frames() const { return frames_; }
     const std::optional<CurvatureModel>& model() const { return model_; }
@@ -58,6 +65,8 @@ class LinesSource {
     Animation animation_;  ///< of a mesh: one clip of one frame
     bool animated_ = false;
     std::vector<FrameRef> frames_;
+    std::optional<FaceLabels> labels_;
+    PartInks inks_;
     std::optional<CurvatureModel> model_;
     std::unique_ptr<DrawableSurface> drawable_;
     std::unique_ptr<CurvatureEstimator> estimator_;  ///< for normals, with a model

@@ -80,7 +80,7 @@ void write_lines_svg(const LinesJob& job) {
     SvgOptions options = job.svg;
     options.frames_per_second = source.frames_per_second();
     options.title = job.source.input.stem().string();
-    const SvgSummary summary = write_drawing_svg(job.out, drawings, job.style, options);
+    const SvgSummary summary = write_drawing_svg(job.out, drawings, job.style, options, source.inks());
     if (!job.common.quiet)
         fmt::print("{}: {} of {}, {:.0f} pixels long\n", job.out.string(), counted(summary.paths, "path"),
                    counted(drawings.size(), "frame"), summary.length);

@@ -176,6 +176,7 @@ class StrokeMaker {
         const Vec3 projected = view_.camera.project(place, view_.width, view_.height);
         const float depth = -backward_.dot(place) - view_.camera.view(2, 3);
         StrokePoint point;
+        point.face = segment.face;
         point.position = projected.head<2>();
         point.depth = projected.z();
         point.width = stroke_width(thickness_, curvature * view_.feature_size,

@@ -65,6 +65,7 @@ struct StrokePoint {
     float width = 0;               ///< pixels; tapered towards the ends of visible runs
     float opacity = 1;             ///< line_opacity() of its strength
     float parameter = 0;           ///< arc length from the chain's start, in pixels
+    std::uint32_t face = 0;        ///< that the piece to the next point lies on
     bool visible = true;           ///< whether the piece to the next point is visible
 };
 

@@ -13,7 +13,8 @@
 namespace exemplar {
 namespace {
 
-const std::vector<std::string> k_material_keys{"color", "metallic", "roughness", "texture", "size"};
+const std::vector<std::string> k_material_keys{"color", "metallic", "roughness", "texture", "size", "line", "hatching"};
+const std::vector<std::string> k_ink_keys{"color", "width"};
 
 [[noreturn]] void fail_material(const std::string& where, const std::string& expected) {
     throw DataError(where + ": " + expected);
@@ -34,6 +35,27 @@ float number_between(const nlohmann::json& json, double low, double high, const 
     return json.get<float>();
 }
 
+[[noreturn]] void fail_key(const std::string& place, const std::string& key, const std::vector<std::string>& known) {
+    fail_material(without_controls(place), "no such entry" + suggestion(key.substr(0, 255), known));
+}
+
+PartInk ink_of_json(const nlohmann::json& json, const std::string& where) {
+    if (!json.is_object()) fail_material(where, "expected an object, as {\"color\": \"#aa7744\", \"width\": 1.5}");
+    PartInk ink;
+    for (const auto& [key, value] : json.items()) {
+        const std::string place = where + ": " + key.substr(0, 40);
+        if (key == "color") {
+            if (!value.is_string()) fail_material(place, "expected text");
+            ink.color = color_of_hex(value.get<std::string>(), place);
+        } else if (key == "width") {
+            ink.width = number_between(value, 0, 100, place);
+        } else {
+            fail_key(place, key, k_ink_keys);
+        }
+    }
+    return ink;
+}
+
 PartMaterial material_of_json(const nlohmann::json& json, const std::string& where,
                               const std::filesystem::path& folder) {
     if (!json.is_object()) fail_material(where, "expected an object, as {\"color\": \"#aa7744\", \"roughness\": 0.8}");
@@ -51,8 +73,12 @@ PartMaterial material_of_json(const nlohmann::json& json, const std::string& whe
             material.roughness = number_between(value, 0, 1, place);
         } else if (key == "size") {
             material.size = number_between(value, 0.001, 1000, place);
+        } else if (key == "line") {
+            material.line = ink_of_json(value, place);
+        } else if (key == "hatching") {
+            material.hatching = ink_of_json(value, place);
         } else {
-            fail_material(without_controls(place), "no such entry" + suggestion(key.substr(0, 255), k_material_keys));
+            fail_key(place, key, k_material_keys);
         }
     }
     return material;

@@ -84,9 +84,8 @@ std::string text_of_vertices(const TriangleMesh& mesh, const FaceLabels& labels)
     return text;
 }
 
-}  // namespace
-
-FaceLabels read_face_labels(const fs::path& path, const TriangleMesh& mesh) {
+/// Reads labels as read_face_labels does.
+FaceLabels read_labels(const fs::path& path, const TriangleMesh& mesh, label_files::GltfJoints joints) {
     const std::string extension = lower_case(path.extension().string()), name = path.string();
     const std::size_t faces = mesh_io::source_faces(mesh);
     if (faces == 0 || mesh.vertices.empty()) throw DataError(name + ": the mesh has no faces to label");
@@ -103,10 +102,16 @@ FaceLabels read_face_labels(const fs::path& path, const TriangleMesh& mesh) {
     }
     const MeshFile file = read_mesh(path);
     if (!file.labels && is_gltf)
-        return label_files::read_gltf_materials(read_file(path), path.parent_path(), mesh, name);
+        return label_files::read_gltf_labels(read_file(path), path.parent_path(), mesh, name, joints);
     if (!file.labels)
         throw DataError(fmt::format("{}: has no labels of faces; a PLY has them as a property 'label'", name));
     return of_mesh(*file.labels, mesh, path);
+}
+
+}  // namespace
+
+FaceLabels read_face_labels(const fs::path& path, const TriangleMesh& mesh) {
+    return read_labels(path, mesh, label_files::GltfJoints::are_labels);
 }
 
 std::optional<FaceLabels> find_other_labels(const fs::path& mesh_path, const TriangleMesh& mesh) {
@@ -122,7 +127,7 @@ std::optional<FaceLabels> find_other_labels(const fs::path& mesh_path, const Tri
     const std::string extension = lower_case(mesh_path.extension().string());
     if (extension != ".obj" && extension != ".gltf" && extension != ".glb") return {};
     try {
-        FaceLabels labels = read_face_labels(mesh_path, mesh);
+        FaceLabels labels = read_labels(mesh_path, mesh, label_files::GltfJoints::are_none);
         if (count_of_used(labels) < 2) return {};
         return labels;
     } catch (const DataError&) {  // it has no names for its faces

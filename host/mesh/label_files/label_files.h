@@ -23,7 +23,8 @@ namespace exemplar {
 /// - .npy: a one-dimensional array of integers, one per face, or else one per vertex;
 /// - .vtp: an array of the cells: Label, Labels, MaterialIds, GroupIds, or the only one;
 /// - .obj: groups, materials or objects (the first of these with two names); .gltf, .glb: the
-///   vertex attribute _LABEL, _GROUP or _PART, else names of materials;
+///   vertex attribute _LABEL, _GROUP or _PART, else names of materials, else, if there are fewer than two, the joint
+///   with the largest weight on each face: groups of vertices are exported so;
 /// - other meshes: their labels.
 /// Labels of vertices become those of faces as labels_of_faces tells. Throws DataError, with the file and the place, if
 /// the file is malformed or of another number of faces.

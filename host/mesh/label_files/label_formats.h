@@ -36,10 +36,13 @@ FaceLabels read_npy_labels(std::string_view content, const TriangleMesh& mesh, c
 FaceLabels read_vtp_labels(std::string_view content, const TriangleMesh& mesh, const std::string& name);
 /// Reads the groups, materials or objects of an OBJ file. Faces before the first name have no label.
 FaceLabels read_obj_groups(std::string_view content, const TriangleMesh& mesh, const std::string& name);
-/// Reads the numbers of vertices in a glTF file (see GltfSurface::vertex_values), else the names of its materials;
-/// unnamed ones are named by their numbers.
-FaceLabels read_gltf_materials(std::string_view content, const std::filesystem::path& folder, const TriangleMesh& mesh,
-                               const std::string& name);
+/// Whether the joints of a skin are labels.
+enum class GltfJoints { are_labels, are_none };
+/// Reads the numbers of vertices in a glTF file (see GltfSurface::vertex_values), else the names of its materials,
+/// else, if there are fewer than two and joints are labels, those of the joints with the largest weight on each
+/// triangle. Unnamed ones are named by their numbers.
+FaceLabels read_gltf_labels(std::string_view content, const std::filesystem::path& folder, const TriangleMesh& mesh,
+                            const std::string& name, GltfJoints joints);
 
 std::string json_of_labels(const TriangleMesh& mesh, const FaceLabels& labels);
 std::string json_of_vertices(const TriangleMesh& mesh, const FaceLabels& labels);

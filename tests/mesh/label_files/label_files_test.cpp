@@ -196,6 +196,30 @@ TEST(LabelFiles, AttributesOfGltfAreLabels) {
     EXPECT_THAT(error_of<DataError>([&] { read(glb({4, 4.5F, 7, 7})); }), HasSubstr("no materials"));
 }
 
+// A triangle follows the joint with the largest weight over its corners, as groups of vertices are exported.
+TEST(LabelFiles, JointsOfGltfAreLabelsIfAskedFor) {
+    std::string json = mesh_files::tetrahedron_gltf("", "[{'mesh':0,'skin':0,'children':[1,2]},{'name':'arm'},{}]");
+    json.insert(json.size() - 1, R"(,"skins":[{"joints":[1,2]}])");
+    json.replace(json.find("\"POSITION\":0"), 12, R"("POSITION":0,"JOINTS_0":2,"WEIGHTS_0":3)");
+    json.replace(json.find("],\"bufferViews\":["), 1,
+                 R"(,{"bufferView":2,"componentType":5121,"count":4,"type":"VEC4"},)"
+                 R"({"bufferView":3,"componentType":5126,"count":4,"type":"VEC4"}])");
+    json.replace(json.find("\"byteLength\":24}"), 16,
+                 R"("byteLength":24},{"buffer":0,"byteOffset":72,"byteLength":16},)"
+                 R"({"buffer":0,"byteOffset":88,"byteLength":64})");
+    json.replace(json.find("\"byteLength\":72"), 15, "\"byteLength\":152");
+    std::string binary = mesh_files::tetrahedron_positions() + mesh_files::tetrahedron_indices();
+    for (int vertex = 0; vertex < 4; ++vertex) binary += std::string("\0\1\0\0", 4);
+    for (const float of_second : {1.0F, 1.0F, 0.0F, 0.25F})
+        for (const float weight : {1 - of_second, of_second, 0.0F, 0.0F}) binary += bytes_of(weight);
+    const TemporaryFolder folder;
+    write_bytes(folder / "a.glb", mesh_files::glb_of(json, binary));
+    const TriangleMesh mesh = read_mesh(folder / "a.glb").mesh;
+    // The triangles are 0 2 1, 0 1 3, 0 3 2 and 1 2 3; the second joint has no name.
+    EXPECT_THAT(face_names(read_face_labels(folder / "a.glb", mesh)), ElementsAre("joint 2", "joint 2", "arm", "arm"));
+    EXPECT_FALSE(find_other_labels(folder / "a.glb", mesh)) << "a character in a folder has no labels yet";
+}
+
 /// A file as VTK writes it; `array` is the element of the labels, `rest` what follows the data set.
 std::string vtp(const std::string& array, const std::string& attributes = "", const std::string& rest = "") {
     return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\" " +

@@ -6,6 +6,7 @@
 #include <new>
 
 #include "host/core/errors.h"
+#include "host/core/text.h"
 #include "host/labeling/painting/painting_file.h"
 #include "host/labeling/painting/shape_order.h"
 #include "host/mesh/editing/drawable_mesh.h"
@@ -213,7 +214,7 @@ bool LabelingSession::poll() {
         if (std::shared_ptr<const LabelingModel> model = job->take()) {
             model_ = std::move(model);
             show_suggestion();
-            remarks_.push_back(fmt::format("Learned from {} verified shapes", learned_));
+            remarks_.push_back("Learned from " + counted(learned_, "verified shape"));
         }
     } catch (const Interrupted&) {
         return true;

@@ -30,6 +30,7 @@ void draw_file(ViewerState& state, std::string& path, InterfaceRequests& request
     }
     if (!state.has_document()) return;
     const float width = (ImGui::GetContentRegionAvail().x - 3 * ImGui::GetStyle().ItemSpacing.x) / 4;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(1, ImGui::GetStyle().FramePadding.y));  // all words fit
     if (ImGui::Button("Fit", ImVec2(width, 0))) requests.actions.push_back(Action::fit);
     ImGui::SameLine();
     if (ImGui::Button("Save PNG", ImVec2(width, 0))) requests.actions.push_back(Action::save_png);
@@ -37,6 +38,7 @@ void draw_file(ViewerState& state, std::string& path, InterfaceRequests& request
     if (ImGui::Button("Save SVG", ImVec2(width, 0))) requests.actions.push_back(Action::save_svg);
     ImGui::SameLine();
     if (ImGui::Button("Keys", ImVec2(width, 0))) state.show_help = !state.show_help;
+    ImGui::PopStyleVar();
     if (!state.labeling && !state.document().animation.moves() && ImGui::Button("Paint labels", ImVec2(-1, 0)))
         requests.start_labeling = true;
 }

@@ -23,6 +23,7 @@ void add_transfer_command(Command& label);
 void add_rig_command(Command& label);
 void add_materials_command(Command& label);
 void add_prototype_command(Command& label);
+void add_glasses_command(Command& prototype);
 void add_category_command(Command& app);
 void add_category_train_command(Command& category);
 void add_category_apply_command(Command& category);

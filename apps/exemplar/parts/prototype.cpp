@@ -1,18 +1,15 @@
-// exemplar label prototype: labeled meshes as things that can be printed and move.
+// exemplar label prototype: labeled meshes as things that can be printed and move. prototype mannequin.
 
 #include <fmt/format.h>
 
-#include <cctype>
-#include <set>
 #include <string>
 
 #include "apps/exemplar/arguments.h"
 #include "apps/exemplar/commands.h"
 #include "apps/exemplar/parts/labeled_input.h"
+#include "apps/exemplar/parts/solid_output.h"
 #include "host/core/stopwatch.h"
 #include "host/core/text.h"
-#include "host/mesh/editing/validate.h"
-#include "host/mesh/io/io.h"
 #include "host/parts/prototype/mannequin.h"
 
 namespace exemplar {
@@ -42,38 +39,6 @@ nlohmann::json describe_print_joints(const Mannequin& mannequin) {
     return joints;
 }
 
-/// A file name for a solid: labels may hold any text. Other characters than letters, digits, - and _ become _, and a
-/// name that is taken gets a number.
-std::string file_of_solid(const std::string& name, std::set<std::string>& taken) {
-    std::string stem = name.substr(0, 100);
-    for (char& c : stem)
-        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_') c = '_';
-    std::string file = stem;
-    for (int i = 2; !taken.insert(file).second; ++i) file = fmt::format("{}_{}", stem, i);
-    return file + ".stl";
-}
-
-/// Writes a file per solid, and one with all of them.
-nlohmann::json write_solids(const Mannequin& mannequin, const std::filesystem::path& folder) {
-    nlohmann::json solids = nlohmann::json::array();
-    TriangleMesh all;
-    std::set<std::string> taken{"all"};
-    for (const PrintSolid& solid : mannequin.solids) {
-        const std::string file = file_of_solid(solid.name, taken);
-        write_stl(folder / file, solid.mesh);
-        const auto first = static_cast<std::uint32_t>(all.vertices.size());
-        all.vertices.insert(all.vertices.end(), solid.mesh.vertices.begin(), solid.mesh.vertices.end());
-        for (const Face& face : solid.mesh.faces)
-            all.faces.push_back({face[0] + first, face[1] + first, face[2] + first});
-        const MeshReport report = validate_mesh(solid.mesh);
-        const bool is_closed = report.boundary_edges == 0 && report.non_manifold_edges.empty() && !report.inside_out;
-        solids.push_back(
-            {{"solid", solid.name}, {"file", file}, {"faces", solid.mesh.face_count()}, {"closed", is_closed}});
-    }
-    write_stl(folder / "all.stl", all);
-    return solids;
-}
-
 void run_mannequin(const PrototypeCommand& options) {
     const auto limits = apply_common_options(options.common);
     const Stopwatch watch;
@@ -82,7 +47,7 @@ void run_mannequin(const PrototypeCommand& options) {
     require_other_folder(options.out, {input.path});
     const Mannequin mannequin = of_file(
         input.path, [&] { return make_mannequin(input.file.mesh, input.names, input.label, options.mannequin); });
-    const nlohmann::json solids = write_solids(mannequin, options.out);
+    const nlohmann::json solids = write_solids(mannequin.solids, options.out);
     std::size_t moving = 0;
     for (const PrintJoint& joint : mannequin.joints) moving += joint.kind != PrintJointKind::fused;
     fmt::print("{}: {}, {} that move: {} in {:.1f} s\n", input.path.string(), counted(mannequin.solids.size(), "solid"),
@@ -129,9 +94,13 @@ void add_mannequin_command(Command& prototype) {
 
 void add_prototype_command(Command& label) {
     Command* command = label.add_subcommand("prototype", "Makes things to print out of the parts of a mesh");
-    command->footer("Example:\n  exemplar label prototype mannequin labeled.ply --out mannequin");
+    command->footer(
+        "Examples:\n"
+        "  exemplar label prototype mannequin labeled.ply --out mannequin\n"
+        "  exemplar label prototype glasses glasses.off --out glasses");
     command->require_subcommand();
     add_mannequin_command(*command);
+    add_glasses_command(*command);
 }
 
 }  // namespace exemplar

@@ -11,8 +11,6 @@
 #include "host/core/interrupt.h"
 #include "host/core/parallel.h"
 #include "host/core/progress.h"
-#include "host/mesh/editing/validate.h"
-#include "host/mesh/editing/weld.h"
 #include "host/parts/prototype/level_surface.h"
 #include "host/parts/prototype/solid_distance.h"
 
@@ -21,16 +19,10 @@ namespace {
 
 /// The largest radius of a ball, in radii of the boundary.
 constexpr float k_ball_share = 0.6F;
-/// Pieces of a solid with less than this share of its volume are crumbs of the grid.
-constexpr double k_crumb_share = 0.02;
 
 /// The mesh in mm, with its corner at the origin.
 TriangleMesh scaled_to_print(const TriangleMesh& mesh, double height) {
-    TriangleMesh print = welded(mesh);
-    const MeshReport report = require_usable(print, "the mesh");
-    if (report.boundary_edges > 0)
-        throw MeshError(
-            fmt::format("its surface is open at {} edges; solids need a closed surface", report.boundary_edges));
+    TriangleMesh print = closed_for_print(mesh);
     const BoundingBox box = bounding_box(print);
     const auto scale = static_cast<float>(height / (box.high - box.low).maxCoeff());
     const Vec3 low = box.low.cast<float>();
@@ -200,35 +192,6 @@ float solid_value(const PrintPlan& plan, const SolidJoints& joints, const Vec3& 
     for (const PrintJoint* joint : joints.balls)
         value = std::min({value, joint->head_distance(p, 0), joint->pin_distance(p)});
     return value;
-}
-
-/// Removes pieces that are crumbs; keeps closed surfaces closed.
-TriangleMesh without_crumbs(const TriangleMesh& mesh) {
-    const std::vector<std::uint32_t> component = face_components(mesh, build_topology(mesh));
-    std::vector<double> volume;
-    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-        if (component[f] >= volume.size()) volume.resize(component[f] + 1, 0);
-        const Face& face = mesh.faces[f];
-        volume[component[f]] +=
-            static_cast<double>(mesh.vertices[face[0]].cross(mesh.vertices[face[1]]).dot(mesh.vertices[face[2]])) / 6;
-    }
-    const double largest = volume.empty() ? 0 : *std::max_element(volume.begin(), volume.end());
-    TriangleMesh kept;
-    std::vector<std::uint32_t> number(mesh.vertex_count(), k_invalid_index);
-    for (std::size_t f = 0; f < mesh.face_count(); ++f) {
-        if (std::abs(volume[component[f]]) < k_crumb_share * largest) continue;
-        Face face = mesh.faces[f];
-        for (std::uint32_t& v : face) {
-            if (number[v] == k_invalid_index) {
-                number[v] = static_cast<std::uint32_t>(kept.vertices.size());
-                kept.vertices.push_back(mesh.vertices[v]);
-            }
-            v = number[v];
-        }
-        kept.faces.push_back(face);
-    }
-    kept.source_face_count = static_cast<std::uint32_t>(kept.faces.size());
-    return kept;
 }
 
 TriangleMesh solid_mesh(const PrintPlan& plan, std::uint32_t solid) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "host/parts/prototype/print_joint.h"
+#include "host/parts/prototype/print_solid.h"
 #include "host/parts/rigging/make_rig.h"
 
 namespace exemplar {
@@ -18,15 +19,9 @@ struct MannequinOptions {
     std::vector<std::string> hinges{"lowerarm", "lower_arm", "lowerleg", "lower_leg"};  ///< labels that hang on a hinge
 };
 
-/// A solid to print.
-struct PrintSolid {
-    std::string name;   ///< of its first joint
-    TriangleMesh mesh;  ///< closed and manifold, in mm, in the frame of the print
-};
-
 /// An articulated figure.
 struct Mannequin {
-    std::vector<PrintSolid> solids;
+    std::vector<PrintSolid> solids;  ///< named after their first joints
     std::vector<PrintJoint> joints;  ///< one per joint of the skeleton but the root, in its order, in mm
     Skeleton skeleton;               ///< in mm
     float cell = 0;                  ///< of the grid, in mm

@@ -1,21 +1,8 @@
 #include "host/parts/prototype/print_joint.h"
 
-#include <algorithm>
-#include <cmath>
+#include "host/parts/prototype/print_shapes.h"
 
 namespace exemplar {
-namespace {
-
-/// Signed distance to a cylinder with flat ends around `center`.
-float cylinder_distance(const Vec3& point, const Vec3& center, const Vec3& axis, float radius, float half_length) {
-    const Vec3 p = point - center;
-    const float along = std::abs(p.dot(axis)) - half_length;
-    const float around = (p - p.dot(axis) * axis).norm() - radius;
-    const float outside = std::hypot(std::max(along, 0.0F), std::max(around, 0.0F));
-    return outside + std::min(std::max(along, around), 0.0F);
-}
-
-}  // namespace
 
 float PrintJoint::head_distance(const Vec3& point, float gap) const {
     if (kind == PrintJointKind::hinge)

@@ -88,6 +88,24 @@ class Parts(ProgramTest):
         self.assertNotIn('"hatching: upperleg"', drawing)
         self.call("hatch", "draw", "style", self.mesh, "--materials", "hatches.json", "--size", "300x240", "--out", "hatching.png")
 
+    def test_glasses_are_made_of_closed_solids(self):
+        self.call("synth", "glasses", "--count", "1", "--seed", "1", "--faces", "6000", "--out", "glasses")
+        mesh = next((self.folder / "glasses").glob("*.off"))
+        self.call("label", "prototype", "glasses", mesh, "--resolution", "120", "--out", "print", "--json", "print.json")
+        report = json.loads((self.folder / "print.json").read_text())
+        names = {solid["solid"]: solid["closed"] for solid in report["solids"]}
+        self.assertEqual(names, dict.fromkeys(("frame", "arm_left", "arm_right", "lens_left", "lens_right"), True))
+        self.assertIn("<path", (self.folder / "print" / "lens_left.svg").read_text())
+        self.refused("label", "prototype", "glasses", mesh, "--lens", "wheel", "--out", "x", code=2, says=["wheel", "temple"])
+        self.refused("label", "prototype", "glasses", self.mesh, "--out", "x", code=2, says=["torso", "--lens"])
+
+    def test_wrong_arguments_of_prototypes(self):
+        self.refused("label", "prototype", "mannequin", self.mesh, "--root", "trunk", "--out", "x", code=1, says="trunk")
+        (self.folder / "open.off").write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+        self.refused("label", "prototype", "mannequin", "open.off", "--out", "x", code=1, says="open.off")
+        (self.folder / "open_labels.txt").write_text("leg\n1\n")
+        self.refused("label", "prototype", "mannequin", "open.off", "--out", "x", code=1, says=["open.off", "closed"])
+
     def test_labels_that_are_paths_stay_in_the_folder(self):
         labels = self.mesh.with_name("human_003_labels.txt").read_text().replace("head", "../../head").replace("hand", "all")
         (self.folder / "odd.txt").write_text(labels)

@@ -81,6 +81,10 @@ nlohmann::json write_part_files(const std::filesystem::path& stem, const std::fi
         write_file_atomically(stem.string() + ".glb", [&](std::ostream& out) { out << gltf.bytes; });
         return json;
     }
+    if (is_gltf_file(mesh_path))
+        json["warnings"] = {
+            "the parts have no textures, skins or animations; only --format glb without --caps and --explode keeps "
+            "them"};
     if (options.explode > 0) explode_parts(split.parts, options.explode);
     json["files"] = nlohmann::json::array();
     for (const std::filesystem::path& path : write_parts(stem, options.format, names, split.parts))

@@ -69,6 +69,8 @@ constexpr std::array k_shortcuts = {
     Shortcut{Action::paint_through, GLFW_KEY_T, false, "T", "Paint hidden faces, too", KeyMode::painting},
     Shortcut{Action::show_confidence, GLFW_KEY_C, false, "C", "Show confidence", KeyMode::painting},
     Shortcut{Action::uncertain_place, GLFW_KEY_N, false, "N", "Turn to the next uncertain place", KeyMode::painting},
+    Shortcut{Action::discard_suggestion, GLFW_KEY_X, false, "X", "Paint anew, without the suggestion",
+             KeyMode::painting},
     Shortcut{Action::verify, GLFW_KEY_ENTER, false, "Enter", "Save these labels, open the next", KeyMode::painting},
     Shortcut{Action::next_shape, GLFW_KEY_PAGE_DOWN, false, "Page down", "Open the next shape", KeyMode::painting},
     Shortcut{Action::shape_grid, GLFW_KEY_TAB, false, "Tab", "Grid of suggested shapes", KeyMode::painting},

@@ -67,6 +67,7 @@ enum class Action {
     paint_through,
     show_confidence,
     uncertain_place,
+    discard_suggestion,
     verify,
     next_shape,
     shape_grid,

@@ -38,6 +38,14 @@ void CompletionWorker::suggest_by(std::shared_ptr<const LabelingModel> model, st
     wake_.notify_all();
 }
 
+void CompletionWorker::discard_suggestion() {
+    const std::lock_guard lock(mutex_);
+    model_.reset();
+    suggestion_.reset();
+    discards_ = repeats_ = true;
+    wake_.notify_all();
+}
+
 std::optional<CompletedLabels> CompletionWorker::take_suggestion() {
     const std::lock_guard lock(mutex_);
     return std::exchange(suggestion_, std::nullopt);
@@ -116,6 +124,10 @@ void CompletionWorker::run() {
             if (auto descriptors = std::exchange(descriptors_, std::nullopt)) {
                 completion_->set_descriptors(std::move(*descriptors));
                 has_features_ = true;
+            }
+            if (std::exchange(discards_, false)) {
+                completion_->set_evidence({});
+                suggestion_.reset();
             }
             const auto model = features_ ? std::exchange(model_, nullptr) : nullptr;
             const std::vector<std::string> palette = palette_;

@@ -32,6 +32,8 @@ class CompletionWorker {
     void request(std::vector<std::int32_t> painted, std::size_t labels, std::uint64_t version);
     /// Lets a model suggest labels, as soon as the features are computed. `palette`: the names of the labels.
     void suggest_by(std::shared_ptr<const LabelingModel> model, std::vector<std::string> palette);
+    /// Completes without the model's labels from now on.
+    void discard_suggestion();
     /// Returns the model's labels, once. Completions from then on correct these.
     std::optional<CompletedLabels> take_suggestion();
 
@@ -59,14 +61,14 @@ class CompletionWorker {
     void compute_features();
     void answer(const Request& request);
     void suggest(const LabelingModel& model, const std::vector<std::string>& palette);
-    bool has_work() const { return next_ || repeats_ || (model_ && features_); }
+    bool has_work() const { return next_ || repeats_ || discards_ || (model_ && features_); }
 
     TriangleMesh mesh_;
     std::filesystem::path cache_;
     mutable std::mutex mutex_;
     std::condition_variable wake_;
     std::atomic<bool> ends_ = false;
-    bool working_ = true, repeats_ = false, has_features_ = false;
+    bool working_ = true, repeats_ = false, has_features_ = false, discards_ = false;
     std::optional<Request> next_;
     Request last_;
     std::shared_ptr<const LabelingModel> model_;  ///< that has not yet made a suggestion

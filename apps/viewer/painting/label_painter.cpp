@@ -133,6 +133,15 @@ bool LabelPainter::redo() {
     return true;
 }
 
+bool LabelPainter::discard_suggestion() {
+    if (suggested_.empty()) return false;
+    suggested_.clear();
+    suggested_confidence_.clear();
+    worker_.discard_suggestion();
+    show_painted();
+    return true;
+}
+
 // Shows what is painted over what is suggested; a completion then replaces it.
 void LabelPainter::show_painted() {
     for (std::size_t face = 0; face < label_.size(); ++face) {

@@ -51,6 +51,9 @@ class LabelPainter {
         worker_.suggest_by(std::move(model), std::move(palette));
     }
 
+    /// Forgets what the model suggested, so that the shape is painted anew. Returns whether there was a suggestion.
+    bool discard_suggestion();
+
     // A stroke, lasso or fill is one step of undo.
     void begin_stroke() { painted_.begin_step(); }
     /// Paints or erases along a part of the way of the mouse.

@@ -113,6 +113,8 @@ void ViewerState::perform_labeling(Action action, ViewSize view) {
     if (action == Action::paint_through) paint.through = !paint.through;
     if (action == Action::show_confidence) paint.confidence = !paint.confidence;
     if (action == Action::uncertain_place) show_uncertain_place();
+    if (action == Action::discard_suggestion && !labeling->painter().discard_suggestion())
+        messages.remark("There are no suggested labels on this shape");
     if (action == Action::verify) verify_shape(view);
     if (action == Action::shape_grid) {
         show_grid = !show_grid;

@@ -71,10 +71,11 @@ void draw_tools(ViewerState& state, InterfaceRequests& requests) {
     ImGui::SameLine();
     ImGui::Checkbox("Hidden", &paint.through);
     if (changed) ++state.labeling->settings_version;
-    const float width = (ImGui::GetContentRegionAvail().x - 3 * ImGui::GetStyle().ItemSpacing.x) / 4;
+    const float width = (ImGui::GetContentRegionAvail().x - 4 * ImGui::GetStyle().ItemSpacing.x) / 5;
     constexpr std::array k_edits = {std::pair{Action::undo, "Undo"}, std::pair{Action::redo, "Redo"},
                                     std::pair{Action::paint_mirror_image, "Mirror"},
-                                    std::pair{Action::uncertain_place, "Unsure"}};
+                                    std::pair{Action::uncertain_place, "Unsure"},
+                                    std::pair{Action::discard_suggestion, "Anew"}};
     for (const auto& [action, name] : k_edits) {
         if (action != Action::undo) ImGui::SameLine();
         if (ImGui::Button(name, ImVec2(width, 0))) requests.actions.push_back(action);

@@ -176,6 +176,8 @@ void PaintScript::edit(const Words& words) {
     LabelPainter& painter = session().painter();
     if (words[0] == "mirror")
         fmt::print("{} faces painted like their mirror images\n", painter.mirror());
+    else if (words[0] == "anew")
+        painter.discard_suggestion();
     else
         words[0] == "undo" ? painter.undo() : painter.redo();
     session().keep_strokes();
@@ -244,6 +246,7 @@ void PaintScript::run(const std::string& line) {
                                                       {"label", &PaintScript::choose_label},
                                                       {"lasso", &PaintScript::paint},
                                                       {"learn", &PaintScript::learn},
+                                                      {"anew", &PaintScript::edit},
                                                       {"mirror", &PaintScript::edit},
                                                       {"next", &PaintScript::next},
                                                       {"open", &PaintScript::open},

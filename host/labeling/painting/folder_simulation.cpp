@@ -61,6 +61,12 @@ void FolderSimulation::note(double seconds) {
 }
 
 void FolderSimulation::mend(Shape& shape) {
+    if (shape.right > 0 && shape.right < options_.discarded) {  // a glance shows that most of it is wrong
+        shape.completion.set_evidence({});
+        shape.shown.assign(shape.shown.size(), -1);
+        shape.right = 0;
+        note(options_.costs.verify);
+    }
     std::vector<std::int32_t> painted(shape.shown.size(), -1);
     for (std::size_t stroke = 0; stroke < k_max_strokes && shape.right < options_.quality; ++stroke) {
         const std::optional<PersonStroke> next = shape.person.next_stroke(shape.shown);

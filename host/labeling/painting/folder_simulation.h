@@ -36,6 +36,7 @@ struct SimulationOptions {
     /// A shape is mended until this share of its surface is right, and accepted in the grid if it is. The simulation
     /// ends when the folder's mean reaches it.
     double quality = 0.95;
+    double discarded = 0.5;      ///< a suggestion of which less is right is discarded, and the shape painted anew
     std::size_t rejections = 2;  ///< the person leaves the grid after so many rejected shapes
     std::uint64_t seed = 1;      ///< of training and of the random order
 };

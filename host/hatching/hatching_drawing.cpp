@@ -14,7 +14,7 @@
 namespace exemplar {
 namespace {
 
-constexpr Color k_black{0, 0, 0};
+constexpr Color k_black_ink{0, 0, 0};
 
 std::vector<float> distances_along(const HatchStroke& stroke) {
     std::vector<float> along{0};
@@ -170,7 +170,7 @@ SvgSummary write_hatching_svg(const std::filesystem::path& path, const HatchedDr
     for (std::size_t layer = 0; layer < k_hatch_layers; ++layer)
         for (const auto& [ink, strokes] : by_ink) {
             hatches.push_back(layer_strokes(strokes, layer));
-            const Color color = ink > 0 ? drawing.inks.strokes.inks[ink].color.value_or(k_black) : k_black;
+            const Color color = ink > 0 ? drawing.inks.strokes.inks[ink].color.value_or(k_black_ink) : k_black_ink;
             layers.push_back({name_of_layer(layer == 0 ? "hatching" : "cross_hatching", drawing.inks.strokes, ink),
                               color, 1, hatches.back()});
         }
@@ -188,7 +188,7 @@ Image hatching_picture(const HatchedDrawing& drawing, const DrawingStyle& style,
         std::vector<HatchStroke> strokes;
         strokes.reserve(own.size());
         for (const HatchStroke& stroke : own) strokes.push_back(scaled_stroke(stroke, scale));
-        const Color color = ink > 0 ? drawing.inks.strokes.inks[ink].color.value_or(k_black) : k_black;
+        const Color color = ink > 0 ? drawing.inks.strokes.inks[ink].color.value_or(k_black_ink) : k_black_ink;
         add_ink(render_ink(strokes, width, height), color, picture);
     }
     for (InkedCurves& curve : curves_by_ink(drawing, style)) {

@@ -34,6 +34,21 @@ class Parts(ProgramTest):
         self.call("label", "apply", "model", self.mesh, "--out", "applied")
         self.call("label", "train", self.mesh, "--from-rig", "rig.glb", "--poses", "1", "--out", "both", *QUICK)
 
+    def test_a_rig_of_a_mesh_far_away_says_where_it_is(self):
+        lines = self.mesh.read_text().splitlines()
+        count = int(lines[1].split()[0])
+        far = [" ".join((str(float(x) + 5e6), y, z)) for x, y, z in (line.split() for line in lines[2:2 + count])]
+        (self.folder / "far.off").write_text("\n".join(lines[:2] + far + lines[2 + count:]) + "\n")
+        labels = self.mesh.with_name(self.mesh.stem + "_labels.txt")
+        said = self.call("label", "rig", "far.off", "--labels", labels, "--root", "torso", "--out", "far.glb", "--json", "far.json").stderr
+        self.assertIn("far from the origin", said)
+        self.call("label", "rig", self.mesh, "--root", "torso", "--out", "near.glb", "--json", "near.json")
+        far, near = (json.loads((self.folder / name).read_text()) for name in ("far.json", "near.json"))
+        self.assertEqual(near["origin"], [0, 0, 0])
+        for a, b in zip(far["joints"], near["joints"]):
+            self.assertEqual(a["joint"], b["joint"])
+            self.assertAlmostEqual(a["head"][0] + far["origin"][0] - 5e6, b["head"][0], delta=1e-3)
+
     def test_unknown_bones_need_a_map(self):
         self.call("synth", "figure", "--count", "1", "--seed", "1", "--out", "figures")
         figure = next((self.folder / "figures").glob("*.glb"))

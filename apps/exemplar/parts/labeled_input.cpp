@@ -42,6 +42,17 @@ FaceLabels labels_of_input(const LabeledInputArguments& arguments, LabeledInput&
 
 }  // namespace
 
+LabelPairCosts pair_costs(const LabeledInput& input) {
+    LabelPairCosts costs;
+    const std::size_t count = input.names.size();
+    if (input.compatibility.size() != count * count) return costs;
+    for (std::size_t a = 0; a < count; ++a)
+        for (std::size_t b = 0; b < count; ++b)
+            if (input.names[a] < input.names[b])
+                costs[{input.names[a], input.names[b]}] = input.compatibility[a * count + b];
+    return costs;
+}
+
 void add_labeled_input(Command& command, LabeledInputArguments& arguments, CommonOptions& common) {
     arguments.cache = default_feature_folder();
     command

@@ -6,6 +6,7 @@
 
 #include "apps/exemplar/commands.h"
 #include "host/mesh/io/io.h"
+#include "host/parts/rigging/make_rig.h"
 
 namespace exemplar {
 
@@ -24,6 +25,9 @@ struct LabeledInput {
     std::vector<double> compatibility;  ///< labels x labels, of the model (Eq. 3.3); empty without a model
     std::string source;                 ///< where the labels are from, for messages and reports
 };
+
+/// Returns how unlikely it is that parts of two labels touch, by the compatibilities of the model; nothing without one.
+LabelPairCosts pair_costs(const LabeledInput& input);
 
 /// Adds the argument "[MODEL] MESH", --labels, --cache and --device to a subcommand.
 void add_labeled_input(Command& command, LabeledInputArguments& arguments, CommonOptions& common);

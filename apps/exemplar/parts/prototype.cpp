@@ -45,8 +45,10 @@ void run_mannequin(const PrototypeCommand& options) {
     require_output_folder(options.out);
     const LabeledInput input = read_labeled_input(options.input, options.common);
     require_other_folder(options.out, {input.path});
-    const Mannequin mannequin = of_file(
-        input.path, [&] { return make_mannequin(input.file.mesh, input.names, input.label, options.mannequin); });
+    MannequinOptions making = options.mannequin;
+    making.costs = pair_costs(input);
+    const Mannequin mannequin =
+        of_file(input.path, [&] { return make_mannequin(input.file.mesh, input.names, input.label, making); });
     const nlohmann::json solids = write_solids(mannequin.solids, options.out);
     std::size_t moving = 0;
     for (const PrintJoint& joint : mannequin.joints) moving += joint.kind != PrintJointKind::fused;

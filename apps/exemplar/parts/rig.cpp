@@ -51,13 +51,16 @@ nlohmann::json describe_joints(const PartRig& rig, const std::vector<std::string
 /// The options, with what the model knows of pairs of labels.
 RigOptions rig_options(const RigCommand& options, const LabeledInput& input) {
     RigOptions rig = options.rig;
-    const std::size_t count = input.names.size();
-    if (input.compatibility.size() != count * count) return rig;
-    for (std::size_t a = 0; a < count; ++a)
-        for (std::size_t b = 0; b < count; ++b)
-            if (input.names[a] < input.names[b])
-                rig.costs[{input.names[a], input.names[b]}] = input.compatibility[a * count + b];
+    rig.costs = pair_costs(input);
     return rig;
+}
+
+/// Rigs are written near the origin: floats would not hold the detail of a mesh that is far from it.
+void warn_of_origin(const LabeledInput& input, bool quiet) {
+    const Vec3d& origin = input.file.mesh.origin;
+    if (origin != Vec3d::Zero() && !quiet)
+        fmt::print(stderr, "warning: {}: is far from the origin; the rig is near it: add ({}, {}, {}) to its places\n",
+                   input.path.string(), origin[0], origin[1], origin[2]);
 }
 
 /// Compares the joints with those of the labels in `truth`, and prints the share that is near.
@@ -95,6 +98,7 @@ void run_rig(const RigCommand& options) {
     require_not_replaced(options.out, {input.path, input.source});
     PartRig rig = of_file(
         input.path, [&] { return make_rig(input.file.mesh, input.names, input.label, rig_options(options, input)); });
+    warn_of_origin(input, options.common.quiet);
     Animation& animation = rig.animation;
     animation.clips.push_back(poses.empty() ? bend_each_joint(animation.rig, options.degrees)
                                             : clip_of_poses(animation.rig, poses, options.pose.string()));
@@ -105,6 +109,7 @@ void run_rig(const RigCommand& options) {
     nlohmann::json json{{"mesh", input.path.string()},
                         {"labels", input.source},
                         {"rig", options.out.string()},
+                        {"origin", {input.file.mesh.origin[0], input.file.mesh.origin[1], input.file.mesh.origin[2]}},
                         {"mirror_normal", nullptr},
                         {"joints", describe_joints(rig, input.names)},
                         {"clip", animation.clips[0].name},

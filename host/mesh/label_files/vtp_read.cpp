@@ -17,7 +17,7 @@
 namespace exemplar::label_files {
 namespace {
 
-/// What is kept of a file: the arrays of its cells, and the names of labels that Exemplar writes.
+/// The parts of a file that can be labels: the arrays of its cells, and the label names that Exemplar writes.
 struct VtpContent {
     VtkEncoding encoding;
     std::vector<VtkArray> arrays;

@@ -30,8 +30,8 @@ GlassesLabels glasses_labels(const std::vector<std::string>& names, const std::s
 
 /// Finds the parts of glasses and turns them upright. x is the normal of the mirror plane of everything but the arms
 /// that separates the arms; z is the direction within that plane in which the lenses have the largest projected area,
-/// away from the arms; the arms fall from their roots. The frame, which is everything but the arms, becomes `width`
-/// wide. Throws MeshError if the surface is open or has no two arms.
+/// away from the arms; y points up, as arms bend down towards their tips. The frame, which is everything but the arms,
+/// becomes `width` wide. Throws MeshError if the surface is open or has no two arms.
 GlassesParts glasses_parts(const TriangleMesh& mesh, std::span<const std::int32_t> label, const GlassesLabels& labels,
                            double width);
 

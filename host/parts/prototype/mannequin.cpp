@@ -224,7 +224,7 @@ Mannequin make_mannequin(const TriangleMesh& mesh, const std::vector<std::string
                          std::span<const std::int32_t> label, const MannequinOptions& options) {
     PrintPlan plan;
     const TriangleMesh print = scaled_to_print(mesh, options.height);
-    PartRig rig = make_skeleton(print, names, label, {.root = options.root});
+    PartRig rig = make_skeleton(print, names, label, {.root = options.root, .costs = options.costs});
     plan.mesh = std::move(rig.animation.rest);
     plan.graph = std::move(rig.graph);
     plan.skeleton = std::move(rig.skeleton);

@@ -17,6 +17,7 @@ struct MannequinOptions {
     std::size_t resolution = 200;  ///< cells of the grid along the longest edge
     std::string root;              ///< label of the root's part; empty: the largest
     std::vector<std::string> hinges{"lowerarm", "lower_arm", "lowerleg", "lower_leg"};  ///< labels that hang on a hinge
+    LabelPairCosts costs{};                                                             ///< as in RigOptions
 };
 
 /// An articulated figure.

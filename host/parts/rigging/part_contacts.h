@@ -8,7 +8,7 @@
 
 namespace exemplar {
 
-/// Where a component of a mesh is nearest to a larger one.
+/// The place where one component of a mesh is nearest to another, larger one.
 struct PieceContact {
     std::uint32_t face = 0;        ///< of the component
     std::uint32_t other_face = 0;  ///< of the larger one

@@ -125,6 +125,7 @@ class FrameHatcher {
         style_.resize(view.width, view.height);
         look_ = curve_look(style_);
         if (!job.scene.labels.empty()) labels_ = read_face_labels(job.scene.labels, frames.surface());
+        if (job.scene.materials.empty()) return;
         MeshFile still;
         still.mesh = frames.surface();
         still.labels = frames.labels();
@@ -143,7 +144,7 @@ class FrameHatcher {
         ViewHatching hatching = hatch_view(style_, pixels, device_.tools(), job_.hatching, kept);
         if (frame > 0) flicker_.push_back(measure_flicker(hatching.strokes, carried));
         stroke_counts_.push_back(hatching.strokes.size());
-        inks_.face = pixels.gbuffer().face;
+        if (!inks_.strokes.empty()) inks_.face = pixels.gbuffer().face;
         before_ = strokes_on_surface(hatching.strokes, surface_->mesh, view, pixels.gbuffer());
         taper_strokes(hatching.strokes, job_.taper_of(style_));
         return {view.width, view.height, std::move(hatching.strokes),

@@ -95,7 +95,7 @@ HatchScene::HatchScene(const HatchSceneArguments& arguments, const std::string& 
     impl_->pixels = std::make_unique<PixelFeatures>(impl_->surface, impl_->view, impl_->device.tools().images);
     if (!arguments.labels.empty()) impl_->pixels->set_labels(read_face_labels(arguments.labels, file.mesh));
     impl_->inks = read_hatching_inks(arguments, file);
-    impl_->inks.face = impl_->pixels->gbuffer().face;
+    if (!impl_->inks.strokes.empty()) impl_->inks.face = impl_->pixels->gbuffer().face;
 }
 
 HatchScene::~HatchScene() = default;
@@ -109,7 +109,7 @@ PixelFeatures& HatchScene::pixels() {
 const HatchingTools& HatchScene::tools() const {
     return impl_->device.tools();
 }
-HatchingInks HatchScene::inks() const {
+const HatchingInks& HatchScene::inks() const {
     return impl_->inks;
 }
 const std::string& HatchScene::device_name() const {

@@ -56,7 +56,7 @@ class HatchScene {
     PixelFeatures& pixels();
     const HatchingTools& tools() const;
     /// The inks of the parts; empty ones without materials.
-    HatchingInks inks() const;
+    const HatchingInks& inks() const;
     const std::string& device_name() const;
 
   private:

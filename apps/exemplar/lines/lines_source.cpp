@@ -38,10 +38,13 @@ LinesSource::LinesSource(const LinesSourceArguments& arguments) : arguments_(arg
     FrameSelection selection = selection_of(arguments.frames);
     if (arguments.first_frame_only && arguments.frames.range.empty() && arguments.frames.most == 0) selection.most = 1;
     frames_ = select_frames(animation_, selection);
-    MeshFile still;
-    still.mesh = animation_.rest;
-    still.labels = labels_ = std::move(file.labels);
-    inks_ = read_inks(arguments.inks, arguments.input, still, &PartMaterial::line);
+    labels_ = std::move(file.labels);
+    if (!arguments.inks.materials.empty()) {
+        MeshFile still;
+        still.mesh = animation_.rest;
+        still.labels = labels_;
+        inks_ = read_inks(arguments.inks, arguments.input, still, &PartMaterial::line);
+    }
     if (!arguments.model.empty()) {
         require_input(arguments.model);
         model_ = load_curvature_model(arguments.model);

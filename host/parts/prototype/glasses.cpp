@@ -23,9 +23,10 @@ namespace {
 
 constexpr std::array<const char*, 2> k_side_names{"left", "right"};
 
-/// The plane of a lens: where it crosses the z axis, and how z grows with x and y.
+/// The plane of a lens: the point where it crosses the z axis, and its axes.
 struct LensPlane {
-    Vec3 point, normal, right, up;  ///< orthonormal axes; `right` is level
+    Vec3 point;
+    Vec3 normal, right, up;  ///< orthonormal; `right` is level
 };
 
 /// Everything that the solids are made of.

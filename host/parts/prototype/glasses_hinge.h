@@ -12,7 +12,7 @@ namespace exemplar {
 /// Arms that spread by more than this many degrees are cut across themselves, not by the frontal plane.
 constexpr float k_frontal_spread = 30;
 
-/// Where an arm is cut off, and its hinge.
+/// The cut that separates an arm from the frame, and the hinge of the arm.
 struct ArmCut {
     PinHinge hinge;
     float spread = 0, turn_to_frame = 0;  ///< in degrees, as in GlassesArm

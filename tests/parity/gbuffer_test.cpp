@@ -48,7 +48,9 @@ double barycentric_error(const TriangleMesh& mesh, const Camera& camera, const G
     std::array<Vec2, 3> p;
     for (std::size_t i = 0; i < 3; ++i) {
         const Vec3& corner = mesh.vertices[mesh.faces[face][i]];
-        if ((camera.view_projection() * corner.homogeneous()).w() < 0.01f) return 1e-3;  // no place behind the eye
+        const float w = (camera.view_projection() * corner.homogeneous()).w();
+        const float distance = (camera.view * corner.homogeneous()).head<3>().norm();
+        if (w < 0.01f * std::min(distance, 1.0f)) return 1e-3;  // no place behind the eye
         p[i] = camera.project(corner, gbuffer.width, gbuffer.height).head<2>();
     }
     const auto twice_area =

@@ -102,7 +102,7 @@ Json learning_curve_of(const EvaluationTask& task, DeviceBackend& backend, const
         const auto count = static_cast<double>(order.size());
         curve["expected_gain"] = law.error(count) - law.error(count + k_more_shapes);
     }
-    const std::vector<std::size_t> next = order_by_gain(ShapeLikeness(descriptors), uncertainty);
+    const std::vector<std::size_t> next = order_by_gain(ShapeLikeness(descriptors), uncertainty, corpus.names.size());
     if (!next.empty()) curve["label_next"] = corpus.meshes[next.front()].path.string();
     return curve;
 }

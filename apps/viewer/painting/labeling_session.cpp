@@ -9,6 +9,7 @@
 #include "host/core/text.h"
 #include "host/labeling/painting/painting_file.h"
 #include "host/labeling/painting/shape_order.h"
+#include "host/labeling/painting/suggestions.h"
 #include "host/mesh/editing/drawable_mesh.h"
 
 namespace exemplar {
@@ -107,14 +108,15 @@ std::optional<std::size_t> LabelingSession::next_shape() const {
         uncertainty.push_back(waits ? shapes_[s].uncertainty.value_or(1) : 0);
     }
     if (std::ranges::any_of(uncertainty, [](float u) { return u > 0; }))
-        return known[order_by_gain(ShapeLikeness(descriptors), uncertainty).front()];
+        return known[order_by_gain(ShapeLikeness(descriptors), uncertainty, palette().size()).front()];
     return unknown;
 }
 
 std::vector<std::size_t> LabelingSession::to_verify() const {
     std::vector<std::size_t> order;
     for (std::size_t s = 0; s < shapes_.size(); ++s)
-        if (state_of(s) == ShapeState::suggested && !shapes_[s].rejected) order.push_back(s);
+        if (state_of(s) == ShapeState::suggested && !much_the_same(shapes_[s].rejected, shapes_[s].suggestion))
+            order.push_back(s);
     std::ranges::stable_sort(order, {}, [&](std::size_t s) { return shapes_[s].uncertainty.value_or(1); });
     return order;
 }
@@ -197,7 +199,6 @@ void LabelingSession::collect(ShapeResult result) {
     if (result.uncertainty) {
         shape.uncertainty = result.uncertainty;
         shape.suggestion = std::move(result.label);
-        shape.rejected = false;
     }
     if (!result.error.empty()) shape.error = std::move(result.error);
 }

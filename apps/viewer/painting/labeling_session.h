@@ -24,7 +24,7 @@ struct SessionShape {
     std::optional<float> uncertainty;
     std::vector<std::int32_t> suggestion;  ///< per face of the file; empty: none
     std::string error;
-    bool rejected = false;  ///< in the grid, since the last training
+    std::vector<std::int32_t> rejected;    ///< labels that a person rejected in the grid; empty: none
 };
 
 /// A person who labels the shapes of a folder in the viewer: the palette, the open shape, and the background work that
@@ -71,7 +71,8 @@ class LabelingSession {
     void verify();
     /// Saves the suggested labels of a shape. Throws DataError likewise.
     void accept(std::size_t shape);
-    void reject(std::size_t shape) { shapes_[shape].rejected = true; }
+    /// Keeps a suggestion out of to_verify() until another one comes.
+    void reject(std::size_t shape) { shapes_[shape].rejected = shapes_[shape].suggestion; }
     /// Starts to learn from what is verified since the last call. Ends earlier work.
     void learn();
 

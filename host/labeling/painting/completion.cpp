@@ -148,7 +148,10 @@ float LabelCompletion::score(const StrokeDistances& strokes, std::size_t face, s
         return distance.empty() ? -k_far : options_.nearness * near - options_.likeness * unlike;
     const std::size_t suggested = evidence_.labels(area_.size());  // labels may have been added since
     const float probability = label < suggested ? evidence_.probabilities[face * suggested + label] : 0;
-    return std::log(probability + 0.01F) + options_.correction * near * std::exp(-options_.likeness * unlike);
+    // A model that errs at a stroke errs wherever the surface is like that, so the stroke counts there, too.
+    const float elsewhere = compared ? options_.elsewhere : 0;
+    const float corrected = (elsewhere + (1 - elsewhere) * near) * std::exp(-options_.correction_likeness * unlike);
+    return options_.trust * std::log(probability + 0.05F) + options_.correction * corrected;
 }
 
 std::vector<float> LabelCompletion::probabilities(std::span<const std::int32_t> painted, std::size_t labels) const {

@@ -36,7 +36,11 @@ struct CompletionOptions {
     float concave_length = 4;         ///< an edge bent inward by 180 degrees is longer by this factor
     double lambda = 0.15, mu = 0.05;  ///< of the cut: weights of the dihedral term (Eq. 3.4) and of length
     float outlier = 0.02F;            ///< probability that is shared by all labels
-    float correction = 10;            ///< of a model's log probability, at a stroke
+    // Where a model suggests labels:
+    float trust = 0.4F;              ///< weight of its log probabilities, once there are strokes
+    float correction = 7;            ///< what a stroke adds to the score of its label
+    float correction_likeness = 16;  ///< as `likeness`, for what a stroke adds
+    float elsewhere = 0.6F;          ///< share of what a stroke adds that counts far from it, too
 };
 
 /// Completes painted labels to the whole mesh: a face takes the label of painted faces that are alike (descriptors)
@@ -48,7 +52,7 @@ class LabelCompletion {
     explicit LabelCompletion(const TriangleMesh& mesh, const CompletionOptions& options = {});
     /// Adds the descriptors of the same faces, when they are computed.
     void set_descriptors(FaceDescriptors descriptors) { descriptors_ = std::move(descriptors); }
-    /// Sets what a model says about the mesh; strokes then correct it around them.
+    /// Sets what a model says about the mesh; strokes then correct it where the surface is like theirs.
     void set_evidence(LabelEvidence evidence) { evidence_ = std::move(evidence); }
 
     /// Completes `painted`: per face a label below `labels`, or -1. Labels that occur neither in it nor in the

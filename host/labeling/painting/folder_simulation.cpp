@@ -25,6 +25,7 @@ struct FolderSimulation::Shape {
     SimulatedPerson person;
     LabelCompletion completion;
     std::vector<std::int32_t> shown;
+    std::vector<std::int32_t> rejected;  ///< labels that the person rejected in the grid; empty: none
     float uncertainty = 1;
     bool verified = false;
     double right = 0;
@@ -124,7 +125,7 @@ void FolderSimulation::suggest_all() {
 void FolderSimulation::look_through_grid() {
     std::vector<std::size_t> order;
     for (std::size_t s = 0; s < shapes_.size(); ++s)
-        if (!shapes_[s].verified) order.push_back(s);
+        if (!shapes_[s].verified && !much_the_same(shapes_[s].rejected, shapes_[s].shown)) order.push_back(s);
     std::ranges::stable_sort(order, {}, [&](std::size_t s) { return shapes_[s].uncertainty; });
     std::size_t rejections = 0;
     for (const std::size_t s : order) {
@@ -132,7 +133,7 @@ void FolderSimulation::look_through_grid() {
         if (shapes_[s].right >= options_.quality)
             verify(shapes_[s]);
         else
-            ++rejections, note(options_.costs.verify);
+            shapes_[s].rejected = shapes_[s].shown, ++rejections, note(options_.costs.verify);
     }
 }
 
@@ -141,7 +142,7 @@ std::size_t FolderSimulation::choose(LabelingWay way) {
         std::vector<float> uncertainty;
         uncertainty.reserve(shapes_.size());
         for (const Shape& shape : shapes_) uncertainty.push_back(shape.uncertainty);
-        return order_by_gain(likeness_, uncertainty).front();
+        return order_by_gain(likeness_, uncertainty, truth_.names.size(), options_.costs).front();
     }
     for (std::size_t i = 0; i < shapes_.size(); ++i) {
         const std::size_t s = way == LabelingWay::random_order ? random_order_[i] : i;

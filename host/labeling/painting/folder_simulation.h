@@ -15,14 +15,6 @@
 
 namespace exemplar {
 
-/// Seconds that each action of a person takes.
-struct PersonCosts {
-    double open = 5;      ///< opens a shape and finds out what is wrong
-    double stroke = 3;    ///< one stroke
-    double verify = 1.5;  ///< looks at a shape, in the grid or after painting, and accepts or rejects it
-    double face = 1;      ///< labels one face by hand: a click on each triangle
-};
-
 /// How the shapes of a folder are labeled.
 enum class LabelingWay {
     each_alone,    ///< every shape is painted with completion, in the order of the folder; no model is trained

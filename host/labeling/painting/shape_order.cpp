@@ -65,7 +65,14 @@ ShapeLikeness::ShapeLikeness(std::span<const ShapeDescriptor> shapes) : size_(sh
     for (float& value : value_) value = std::exp(-value / (2 * width));
 }
 
-std::vector<std::size_t> order_by_gain(const ShapeLikeness& likeness, std::span<const float> uncertainty) {
+double expected_seconds(float uncertainty, std::size_t labels, const PersonCosts& costs) {
+    constexpr double k_strokes_a_label = 2;
+    const double strokes = k_strokes_a_label * static_cast<double>(labels) * static_cast<double>(uncertainty);
+    return costs.open + costs.stroke * strokes + costs.verify;
+}
+
+std::vector<std::size_t> order_by_gain(const ShapeLikeness& likeness, std::span<const float> uncertainty,
+                                       std::size_t labels, const PersonCosts& costs) {
     if (uncertainty.size() != likeness.size()) throw UsageError("uncertainties and shapes differ in number");
     std::vector<float> left(uncertainty.begin(), uncertainty.end());
     std::vector<bool> waiting(left.size());
@@ -75,12 +82,13 @@ std::vector<std::size_t> order_by_gain(const ShapeLikeness& likeness, std::span<
     order.reserve(count);
     while (order.size() < count) {
         std::size_t best = 0;
-        float most = -1;
+        double most = -1;
         for (std::size_t s = 0; s < left.size(); ++s) {
             if (!waiting[s]) continue;
             float gain = 0;
             for (std::size_t other = 0; other < left.size(); ++other) gain += left[other] * likeness(s, other);
-            if (gain > most) most = gain, best = s;
+            const double rate = static_cast<double>(gain) / expected_seconds(uncertainty[s], labels, costs);
+            if (rate > most) most = rate, best = s;
         }
         order.push_back(best);
         waiting[best] = false;

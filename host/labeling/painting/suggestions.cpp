@@ -92,6 +92,13 @@ std::vector<Suggestion> suggest_labels(const LabelingModel& model, std::span<Mes
     return suggestions;
 }
 
+bool much_the_same(std::span<const std::int32_t> rejected, std::span<const std::int32_t> now) {
+    if (rejected.size() != now.size()) return false;
+    std::size_t changed = 0;
+    for (std::size_t f = 0; f < now.size(); ++f) changed += rejected[f] != now[f] ? 1 : 0;
+    return changed * 20 < now.size();
+}
+
 float uncertainty_of(std::span<const float> face_area, std::span<const float> confidence) {
     double sum = 0, total = 0;
     for (std::size_t f = 0; f < face_area.size(); ++f) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,6 +28,10 @@ struct Suggestion {
 /// lacks get no probability.
 std::vector<Suggestion> suggest_labels(const LabelingModel& model, std::span<MeshFeatures* const> meshes,
                                        std::span<const std::string> palette, const LabelingBackend& backend);
+
+/// Returns whether a suggestion that a person rejected is still much the same: fewer than one face in twenty has another
+/// label in `now`.
+bool much_the_same(std::span<const std::int32_t> rejected, std::span<const std::int32_t> now);
 
 /// Returns 1 minus the mean confidence over the surface: how little is known about a shape.
 float uncertainty_of(std::span<const float> face_area, std::span<const float> confidence);

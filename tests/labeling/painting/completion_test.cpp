@@ -35,6 +35,14 @@ std::vector<std::int32_t> painted_at(const TwoBalls& balls,
     return painted;
 }
 
+/// Descriptors of which both tips are alike, and unlike the middle.
+FaceDescriptors tips_and_middle(const TwoBalls& balls) {
+    FaceDescriptors descriptors{1, {}};
+    for (const Vec3& center : face_centers(balls.mesh))
+        descriptors.values.push_back(std::abs(center.x()) > 0.5F ? 2.0F : 0.0F);
+    return descriptors;
+}
+
 double share_right(const std::vector<std::int32_t>& label, const std::vector<std::int32_t>& truth) {
     std::size_t right = 0;
     for (std::size_t f = 0; f < label.size(); ++f) right += label[f] == truth[f] ? 1 : 0;
@@ -84,22 +92,14 @@ TEST(LabelCompletion, ConfidenceIsAProbability) {
 TEST(LabelCompletion, LikenessReachesWhatIsFar) {
     const TwoBalls balls;
     LabelCompletion completion(balls.mesh, {.lambda = 0.01});  // the border around the middle is long
-    // Both tips are alike, and unlike the middle.
-    FaceDescriptors descriptors{1, {}};
-    for (const Vec3& center : face_centers(balls.mesh))
-        descriptors.values.push_back(std::abs(center.x()) > 0.5F ? 2.0F : 0.0F);
-    completion.set_descriptors(std::move(descriptors));
+    completion.set_descriptors(tips_and_middle(balls));
     const CompletedLabels completed = completion.complete(painted_at(balls, {{{-1, 0, 0}, 0}, {{0, 0.3F, 0}, 1}}), 2);
     EXPECT_EQ(completed.label[balls.face_nearest({1, 0, 0})], 0) << "the other tip";
     EXPECT_EQ(completed.label[balls.face_nearest({0, -0.3F, 0})], 1);
 }
 
-TEST(LabelCompletion, AStrokeCorrectsWhatAModelSaysAroundIt) {
-    const TwoBalls balls;
-    LabelCompletion completion(balls.mesh);
-    // The model says label 0 everywhere, and rates label 1 low.
-    const CompletedLabels none = completion.complete(painted_at(balls, {{{1, 0, 0}, 1}}), 2);
-    EXPECT_EQ(std::ranges::count(none.label, 1), static_cast<std::ptrdiff_t>(balls.truth.size())) << "no model yet";
+/// A model that says label 0 everywhere, and rates label 1 low.
+LabelEvidence evidence_for_label_0(const TwoBalls& balls) {
     LabelEvidence evidence;
     for (std::size_t f = 0; f < balls.truth.size(); ++f)
         evidence.probabilities.insert(evidence.probabilities.end(), {0.95F, 0.05F});
@@ -109,7 +109,15 @@ TEST(LabelCompletion, AStrokeCorrectsWhatAModelSaysAroundIt) {
         evidence.edge_cost.push_back(1e-4);
     }
     evidence.compatibility = {0, 1, 1, 0};
-    completion.set_evidence(std::move(evidence));
+    return evidence;
+}
+
+TEST(LabelCompletion, AStrokeCorrectsWhatAModelSaysAroundIt) {
+    const TwoBalls balls;
+    LabelCompletion completion(balls.mesh);
+    const CompletedLabels none = completion.complete(painted_at(balls, {{{1, 0, 0}, 1}}), 2);
+    EXPECT_EQ(std::ranges::count(none.label, 1), static_cast<std::ptrdiff_t>(balls.truth.size())) << "no model yet";
+    completion.set_evidence(evidence_for_label_0(balls));
     const CompletedLabels completed = completion.complete(painted_at(balls, {{{1, 0, 0}, 1}}), 2);
     EXPECT_EQ(completed.label[balls.face_nearest({0.9F, 0.2F, 0})], 1) << "near the stroke";
     EXPECT_EQ(completed.label[balls.face_nearest({-1, 0, 0})], 0) << "far from it";
@@ -118,6 +126,21 @@ TEST(LabelCompletion, AStrokeCorrectsWhatAModelSaysAroundIt) {
     const CompletedLabels grown = completion.complete(painted_at(balls, {{{1, 0, 0}, 2}}), 3);
     EXPECT_EQ(grown.label[balls.face_nearest({0.9F, 0.2F, 0})], 2);
     EXPECT_EQ(grown.label[balls.face_nearest({-1, 0, 0})], 0);
+}
+
+TEST(LabelCompletion, AStrokeCorrectsAModelWhereverTheSurfaceIsAlike) {
+    const TwoBalls balls;
+    LabelCompletion completion(balls.mesh);
+    completion.set_evidence(evidence_for_label_0(balls));
+    completion.set_descriptors(tips_and_middle(balls));
+    const CompletedLabels completed = completion.complete(painted_at(balls, {{{1, 0, 0}, 1}}), 2);
+    EXPECT_EQ(completed.label[balls.face_nearest({-1, 0, 0})], 1) << "the other tip";
+    EXPECT_EQ(completed.label[balls.face_nearest({0, 0.3F, 0})], 0) << "what is unlike stays as the model says";
+
+    // Where two strokes are as alike, the nearer one counts.
+    const CompletedLabels told = completion.complete(painted_at(balls, {{{1, 0, 0}, 1}, {{-1, 0, 0}, 0}}), 2);
+    EXPECT_EQ(told.label[balls.face_nearest({0.9F, 0.2F, 0})], 1);
+    EXPECT_EQ(told.label[balls.face_nearest({-0.9F, 0.2F, 0})], 0);
 }
 
 TEST(LabelCompletion, ALargeMeshIsCompletedOnASmallerOne) {

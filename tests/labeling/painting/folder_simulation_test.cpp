@@ -65,6 +65,16 @@ TEST(FolderSimulation, AModelSparesStrokes) {
         EXPECT_EQ(mesh.unary.cols(), folder.features.front().unary.cols()) << "no columns of context are left behind";
 }
 
+TEST(Suggestions, ARejectedOneIsMuchTheSameUntilOneFaceInTwentyChanges) {
+    std::vector<std::int32_t> rejected(100, 0), now = rejected;
+    EXPECT_TRUE(much_the_same(rejected, now));
+    for (std::size_t f = 0; f < 4; ++f) now[f] = 1;
+    EXPECT_TRUE(much_the_same(rejected, now));
+    now[4] = 1;
+    EXPECT_FALSE(much_the_same(rejected, now));
+    EXPECT_FALSE(much_the_same({}, now)) << "none was rejected";
+}
+
 TEST(FolderLearning, NeedsTwoLabels) {
     Folder folder(1);
     EXPECT_EQ(learn_from_verified({}, {}, {folder.scorer, folder.context}), nullptr);

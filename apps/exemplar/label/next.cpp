@@ -84,7 +84,8 @@ void run_next(const NextOptions& options) {
         descriptors.push_back(shape.descriptor);
         uncertainty.push_back(shape.uncertainty);
     }
-    const std::vector<std::size_t> order = order_by_gain(ShapeLikeness(descriptors), uncertainty, folder.palette().size());
+    const std::vector<std::size_t> order =
+        order_by_gain(ShapeLikeness(descriptors), uncertainty, folder.palette().size());
     nlohmann::json json = nlohmann::json::array();
     for (const std::size_t s : order) {
         json.push_back({{"mesh", shapes[s].path.string()}, {"uncertainty", shapes[s].uncertainty}});

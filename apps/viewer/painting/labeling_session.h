@@ -24,7 +24,7 @@ struct SessionShape {
     std::optional<float> uncertainty;
     std::vector<std::int32_t> suggestion;  ///< per face of the file; empty: none
     std::string error;
-    std::vector<std::int32_t> rejected;    ///< labels that a person rejected in the grid; empty: none
+    std::vector<std::int32_t> rejected;  ///< labels that a person rejected in the grid; empty: none
 };
 
 /// A person who labels the shapes of a folder in the viewer: the palette, the open shape, and the background work that

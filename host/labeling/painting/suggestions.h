@@ -29,8 +29,8 @@ struct Suggestion {
 std::vector<Suggestion> suggest_labels(const LabelingModel& model, std::span<MeshFeatures* const> meshes,
                                        std::span<const std::string> palette, const LabelingBackend& backend);
 
-/// Returns whether a suggestion that a person rejected is still much the same: fewer than one face in twenty has another
-/// label in `now`.
+/// Returns whether a suggestion that a person rejected is still much the same: fewer than one face in twenty has
+/// another label in `now`.
 bool much_the_same(std::span<const std::int32_t> rejected, std::span<const std::int32_t> now);
 
 /// Returns 1 minus the mean confidence over the surface: how little is known about a shape.

@@ -61,10 +61,6 @@ std::string svg_escaped(std::string_view text) {
     return result;
 }
 
-std::string svg_color(const Color& color) {
-    return fmt::format("#{:02x}{:02x}{:02x}", color[0], color[1], color[2]);
-}
-
 void SvgPath::add(const Vec2& point) {
     const Vec2 inside = point.cwiseMax(0).cwiseMin(most_);
     append_number(static_cast<double>(inside.x()), 2, data_);

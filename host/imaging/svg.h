@@ -17,8 +17,6 @@ namespace exemplar {
 std::string svg_number(double value, int decimals = 2);
 /// Escapes text for an attribute or for between tags; replaces what XML cannot hold by U+FFFD.
 std::string svg_escaped(std::string_view text);
-/// Returns the color as "#rrggbb".
-std::string svg_color(const Color& color);
 
 /// Builds the data of a path, with coordinates to a hundredth.
 class SvgPath {

@@ -9,6 +9,7 @@
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/imaging/svg.h"
+#include "host/mesh/color_text.h"
 
 namespace exemplar {
 
@@ -269,7 +270,7 @@ class SvgWriter {
         document_.open_layer("background");
         document_.add("rect", std::vector<SvgAttribute>{{"width", svg_number(size_.width)},
                                                         {"height", svg_number(size_.height)},
-                                                        {"fill", svg_color(*background_)}});
+                                                        {"fill", hex_of_color(*background_)}});
         document_.close();
     }
     /// Adds the strokes of a type of lines, a layer for each ink.
@@ -281,7 +282,7 @@ class SvgWriter {
                 {name_of_layer(name, inks, ink), inks.inks[ink].color.value_or(line.color), line.opacity, strokes});
     }
     void add_layer(const SvgLayer& layer) {
-        const std::string color = svg_color(layer.color);
+        const std::string color = hex_of_color(layer.color);
         std::vector<SvgAttribute> attributes = {{"fill", color}, {"stroke", "none"}};
         if (options_.form == SvgForm::lines)
             attributes = {
@@ -301,7 +302,7 @@ class SvgWriter {
         if (lines) attributes.emplace_back("stroke-width", svg_number(static_cast<double>(piece.width)));
         const float opacity = piece.opacity * layer.opacity;
         if (opacity < 0.995f && background_)
-            attributes.emplace_back(lines ? "stroke" : "fill", svg_color(mixed(layer.color, opacity)));
+            attributes.emplace_back(lines ? "stroke" : "fill", hex_of_color(mixed(layer.color, opacity)));
         else if (opacity < 0.995f)
             attributes.emplace_back("opacity", svg_number(static_cast<double>(opacity)));
         document_.add("path", attributes);

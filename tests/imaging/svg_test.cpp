@@ -9,6 +9,7 @@
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
+#include "host/mesh/color_text.h"
 
 namespace exemplar {
 namespace {
@@ -52,7 +53,7 @@ TEST(SvgText, IsEscaped) {
               "a\xEF\xBF\xBD\xEF\xBF\xBD"
               "b");
     EXPECT_EQ(svg_escaped("\xff"), "\xEF\xBF\xBD");
-    EXPECT_EQ(svg_color({1, 171, 255}), "#01abff");
+    EXPECT_EQ(hex_of_color({1, 171, 255}), "#01abff");
 }
 
 TEST(SvgDocuments, NestLayersAndGroups) {

@@ -9,6 +9,7 @@
 #include "host/core/text.h"
 #include "host/imaging/png.h"
 #include "host/imaging/svg.h"
+#include "host/mesh/color_text.h"
 
 namespace exemplar {
 namespace {
@@ -95,7 +96,7 @@ class FigurePage {
                                                       {"y", svg_number(y)},
                                                       {"width", svg_number(width)},
                                                       {"height", svg_number(height)},
-                                                      {"fill", svg_color(color)}}};
+                                                      {"fill", hex_of_color(color)}}};
         document_.add("rect", attributes);
     }
 

@@ -16,6 +16,7 @@
 #include "host/core/text.h"
 #include "host/imaging/png.h"
 #include "host/labeling/painting/painting_file.h"
+#include "host/mesh/color_text.h"
 
 namespace exemplar {
 namespace {
@@ -99,12 +100,12 @@ void PaintScript::choose_label(const Words& words) {
     need(words, 2, "label NAME [#rrggbb]");
     const auto place = std::ranges::find(session().palette(), words[1], &PaletteEntry::name);
     if (place == session().palette().end()) {
-        session().add_label(words[1], words.size() > 2 ? color_from_text(words[2]) : std::nullopt);
+        session().add_label(words[1], words.size() > 2 ? color_of_hex(words[2]) : std::nullopt);
         return;
     }
     session().settings.label = static_cast<std::int32_t>(place - session().palette().begin());
     if (words.size() < 3) return;
-    if (const auto color = color_from_text(words[2]))
+    if (const auto color = color_of_hex(words[2]))
         session().recolor_label(static_cast<std::size_t>(session().settings.label), *color);
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "host/core/errors.h"
 #include "host/core/text.h"
 #include "host/imaging/vectors/path_data.h"
+#include "host/mesh/color_text.h"
 
 namespace exemplar {
 namespace {
@@ -42,18 +42,10 @@ std::string_view take_part(std::string_view& text, char separator) {
     return part;
 }
 
-std::optional<Color> hex_color(std::string_view text) {
-    const bool is_short = text.size() == 4 || text.size() == 5;
-    if (!is_short && text.size() != 7 && text.size() != 9) return std::nullopt;
-    Color color{};
-    for (std::size_t c = 0; c < 3; ++c) {
-        const std::string_view digits = text.substr(is_short ? 1 + c : 1 + 2 * c, is_short ? 1 : 2);
-        int value = 0;
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
-        if (error != std::errc() || end != digits.data() + digits.size() || value < 0) return std::nullopt;
-        color[c] = static_cast<std::uint8_t>(is_short ? 17 * value : value);
-    }
-    return color;
+/// Returns "#rgba" and "#rrggbbaa" without their last channel.
+std::string_view without_alpha(std::string_view hex) {
+    const std::size_t digits = hex.size() == 5 ? 1 : hex.size() == 9 ? 2 : 0;
+    return hex.substr(0, hex.size() - digits);
 }
 
 std::optional<Color> rgb_color(std::string_view text) {
@@ -94,7 +86,7 @@ Color svg_color_of(std::string_view text) {
                                                                           {"purple", {128, 0, 128}}}};
     for (const auto& [name, color] : k_names)
         if (text == name) return color;
-    std::optional<Color> color = text.starts_with('#') ? hex_color(text) : rgb_color(text);
+    std::optional<Color> color = text.starts_with('#') ? color_of_hex(without_alpha(text)) : rgb_color(text);
     if (!color) throw UsageError(fmt::format("strokes of color '{}'", beginning_of(text)));
     return *color;
 }

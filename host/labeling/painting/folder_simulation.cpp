@@ -25,7 +25,7 @@ struct FolderSimulation::Shape {
     SimulatedPerson person;
     LabelCompletion completion;
     std::vector<std::int32_t> shown;
-    std::vector<std::int32_t> rejected;  ///< labels that the person rejected in the grid; empty: none
+    std::vector<std::int32_t> rejected{};  ///< labels that the person rejected in the grid; empty: none
     float uncertainty = 1;
     bool verified = false;
     double right = 0;

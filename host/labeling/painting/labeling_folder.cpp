@@ -13,6 +13,7 @@
 #include "host/data/corpus.h"
 #include "host/labeling/painting/painting_file.h"
 #include "host/learn/boosting/boosted_stumps.h"
+#include "host/mesh/color_text.h"
 #include "host/mesh/label_files/label_files.h"
 
 namespace exemplar {
@@ -33,7 +34,7 @@ std::vector<PaletteEntry> read_palette(const fs::path& path) {
     try {
         const nlohmann::json json = nlohmann::json::parse(read_file(path));
         for (const nlohmann::json& entry : json.at("labels")) {
-            const std::optional<Color> color = color_from_text(entry.value("color", std::string()));
+            const std::optional<Color> color = color_of_hex(entry.value("color", std::string()));
             palette.push_back(
                 {checked_label_name(entry.at("name").get<std::string>()), color.value_or(label_color(palette.size()))});
         }
@@ -109,7 +110,7 @@ void LabelingFolder::set_palette(std::vector<PaletteEntry> palette) {
     palette_ = std::move(palette);
     nlohmann::json labels = nlohmann::json::array();
     for (const PaletteEntry& entry : palette_)
-        labels.push_back({{"name", entry.name}, {"color", color_text(entry.color)}});
+        labels.push_back({{"name", entry.name}, {"color", hex_of_color(entry.color)}});
     write_file_atomically(folder_ / k_palette_file, [&](std::ostream& out) {
         out << nlohmann::json{{"labels", labels}}.dump(1) << '\n';
     });

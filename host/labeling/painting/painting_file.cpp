@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/learn/boosting/boosted_stumps.h"
+#include "host/mesh/color_text.h"
 
 namespace exemplar {
 namespace {
@@ -55,8 +55,9 @@ void save_painting(const std::filesystem::path& path, const Painting& painting) 
     const std::vector<nlohmann::json> runs = runs_of(painting);
     nlohmann::json labels = nlohmann::json::array();
     for (std::size_t c = 0; c < painting.palette.size(); ++c)
-        labels.push_back(
-            {{"name", painting.palette[c].name}, {"color", color_text(painting.palette[c].color)}, {"faces", runs[c]}});
+        labels.push_back({{"name", painting.palette[c].name},
+                          {"color", hex_of_color(painting.palette[c].color)},
+                          {"faces", runs[c]}});
     const nlohmann::json json{{"kind", k_painting_kind},
                               {"format_version", k_painting_version},
                               {"faces", painting.label.size()},
@@ -78,7 +79,7 @@ Painting load_painting(const std::filesystem::path& path, std::size_t faces) {
         const nlohmann::json& labels = json.at("labels");
         if (labels.size() > k_max_classes) damaged(path, fmt::format("more than {} labels", k_max_classes));
         for (std::size_t c = 0; c < labels.size(); ++c) {
-            const std::optional<Color> color = color_from_text(labels[c].at("color").get<std::string>());
+            const std::optional<Color> color = color_of_hex(labels[c].at("color").get<std::string>());
             painting.palette.push_back(
                 {checked_label_name(labels[c].at("name").get<std::string>()), color.value_or(label_color(c))});
             add_runs(path, labels[c].at("faces"), static_cast<std::int32_t>(c), painting);
@@ -101,19 +102,6 @@ std::string checked_label_name(const std::string& name) {
     if (std::ranges::any_of(trimmed, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; }))
         throw UsageError("the name of a label has a line break or another control character");
     return trimmed;
-}
-
-std::string color_text(const Color& color) {
-    return fmt::format("#{:02x}{:02x}{:02x}", color[0], color[1], color[2]);
-}
-
-std::optional<Color> color_from_text(const std::string& text) {
-    if (text.size() != 7 || text[0] != '#') return std::nullopt;
-    unsigned value = 0;
-    const auto [end, error] = std::from_chars(text.data() + 1, text.data() + 7, value, 16);
-    if (error != std::errc() || end != text.data() + 7) return std::nullopt;
-    return Color{static_cast<std::uint8_t>(value >> 16), static_cast<std::uint8_t>(value >> 8 & 0xff),
-                 static_cast<std::uint8_t>(value & 0xff)};
 }
 
 }  // namespace exemplar

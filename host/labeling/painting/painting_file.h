@@ -29,9 +29,4 @@ Painting load_painting(const std::filesystem::path& path, std::size_t faces);
 /// has characters that label files cannot hold (line breaks and other control characters).
 std::string checked_label_name(const std::string& name);
 
-/// Returns a color as "#rrggbb".
-std::string color_text(const Color& color);
-/// Reads "#rrggbb"; nullopt for anything else.
-std::optional<Color> color_from_text(const std::string& text);
-
 }  // namespace exemplar

@@ -14,6 +14,7 @@
 #include "host/core/json_text.h"
 #include "host/core/text.h"
 #include "host/lines/strokes/stroke_textures.h"
+#include "host/mesh/color_text.h"
 
 namespace exemplar {
 
@@ -34,20 +35,7 @@ constexpr std::array k_colors = {
 std::optional<Color> color_named(std::string_view text) {
     for (const NamedColor& known : k_colors)
         if (text == known.name) return known.color;
-    if ((text.size() != 4 && text.size() != 7) || text[0] != '#') return std::nullopt;
-    Color color{};
-    const std::size_t digits = text.size() / 3;  // of each channel
-    for (std::size_t c = 0; c < 3; ++c) {
-        unsigned value = 0;
-        for (std::size_t i = 0; i < digits; ++i) {
-            const char d = text[1 + c * digits + i];
-            const bool digit = d >= '0' && d <= '9', lower = d >= 'a' && d <= 'f', upper = d >= 'A' && d <= 'F';
-            if (!digit && !lower && !upper) return std::nullopt;
-            value = 16 * value + static_cast<unsigned>(digit ? d - '0' : lower ? d - 'a' + 10 : d - 'A' + 10);
-        }
-        color[c] = static_cast<std::uint8_t>(digits == 1 ? 17 * value : value);
-    }
-    return color;
+    return color_of_hex(text);
 }
 
 /// Returns text from a file as messages may show it: printable ASCII of limited length.

@@ -9,6 +9,7 @@
 #include "host/core/files.h"
 #include "host/core/json_text.h"
 #include "host/core/text.h"
+#include "host/mesh/color_text.h"
 
 namespace exemplar {
 namespace {
@@ -20,13 +21,10 @@ const std::vector<std::string> k_ink_keys{"color", "width"};
     throw DataError(where + ": " + expected);
 }
 
-Color color_of_hex(const std::string& text, const std::string& where) {
-    const bool is_hex =
-        text.size() == 7 && text[0] == '#' && text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
-    if (!is_hex) fail_material(where, "a color is written \"#RRGGBB\", as \"#aa7744\"");
-    const auto value = static_cast<std::uint32_t>(std::stoul(text.substr(1), nullptr, 16));
-    return {static_cast<std::uint8_t>(value >> 16), static_cast<std::uint8_t>(value >> 8 & 255),
-            static_cast<std::uint8_t>(value & 255)};
+Color material_color(const std::string& text, const std::string& where) {
+    const std::optional<Color> color = color_of_hex(text);
+    if (!color) fail_material(where, "a color is written \"#RRGGBB\", as \"#aa7744\"");
+    return *color;
 }
 
 float number_between(const nlohmann::json& json, double low, double high, const std::string& where) {
@@ -46,7 +44,7 @@ PartInk ink_of_json(const nlohmann::json& json, const std::string& where) {
         const std::string place = where + ": " + key.substr(0, 40);
         if (key == "color") {
             if (!value.is_string()) fail_material(place, "expected text");
-            ink.color = color_of_hex(value.get<std::string>(), place);
+            ink.color = material_color(value.get<std::string>(), place);
         } else if (key == "width") {
             ink.width = number_between(value, 0, 100, place);
         } else {
@@ -64,7 +62,7 @@ PartMaterial material_of_json(const nlohmann::json& json, const std::string& whe
         const std::string place = where + ": " + key.substr(0, 40);
         if ((key == "color" || key == "texture") && !value.is_string()) fail_material(place, "expected text");
         if (key == "color") {
-            material.color = color_of_hex(value.get<std::string>(), place);
+            material.color = material_color(value.get<std::string>(), place);
         } else if (key == "texture") {
             material.texture = folder / value.get<std::string>();
         } else if (key == "metallic") {

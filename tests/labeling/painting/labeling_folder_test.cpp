@@ -82,13 +82,6 @@ TEST(LabelNames, AreTrimmedAndChecked) {
     EXPECT_THROW(checked_label_name(std::string(101, 'a')), UsageError);
 }
 
-TEST(LabelColors, AreReadAndWritten) {
-    EXPECT_EQ(color_text({1, 171, 255}), "#01abff");
-    EXPECT_EQ(color_from_text("#01ABff"), (Color{1, 171, 255}));
-    for (const char* text : {"", "#12345", "123456#", "#12345g", "#1234567", "#+12345"})
-        EXPECT_FALSE(color_from_text(text)) << text;
-}
-
 TEST_F(LabelingFolderTest, VerifiedLabelsAndStrokesAreInFilesBesideTheShapes) {
     LabelingFolder folder(folder_.path());
     ASSERT_EQ(folder.shapes().size(), 2u);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "host/core/progress.h"
 #include "host/data/corpus.h"
 #include "host/labeling/features/feature_cache.h"
 #include "host/labeling/inference/mesh_labeling.h"
@@ -23,8 +24,12 @@ std::shared_ptr<const LabelingModel> learn_from_verified(std::span<const FolderS
     if (corpus.names.size() < 2) return nullptr;
     std::vector<MeshFeatures> features;
     features.reserve(corpus.meshes.size());
-    for (const LabeledMesh& mesh : corpus.meshes)
+    Progress progress("measuring verified shapes", corpus.meshes.size());
+    for (const LabeledMesh& mesh : corpus.meshes) {
         features.push_back(cached_features(mesh.mesh, suggestion_training().features, cache));
+        progress.advance();
+    }
+    progress.finish();
     TrainReport report;
     return std::make_shared<const LabelingModel>(
         train_labeling(corpus, features, suggestion_training(), backend, report));

@@ -37,10 +37,10 @@ struct CompletionOptions {
     double lambda = 0.15, mu = 0.05;  ///< of the cut: weights of the dihedral term (Eq. 3.4) and of length
     float outlier = 0.02F;            ///< probability that is shared by all labels
     // Where a model suggests labels:
-    float trust = 0.4F;              ///< weight of its log probabilities, once there are strokes
-    float correction = 7;            ///< what a stroke adds to the score of its label
-    float correction_likeness = 16;  ///< as `likeness`, for what a stroke adds
-    float elsewhere = 0.6F;          ///< share of what a stroke adds that counts far from it, too
+    float trust = 0.8F;              ///< weight of its log probabilities, once there are strokes
+    float correction = 10;           ///< what a stroke adds to the score of its label
+    float correction_likeness = 12;  ///< as `likeness`, for what a stroke adds
+    float elsewhere = 0.3F;          ///< share of what a stroke adds that counts far from it, too
 };
 
 /// Completes painted labels to the whole mesh: a face takes the label of painted faces that are alike (descriptors)

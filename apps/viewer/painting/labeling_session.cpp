@@ -115,8 +115,7 @@ std::optional<std::size_t> LabelingSession::next_shape() const {
 std::vector<std::size_t> LabelingSession::to_verify() const {
     std::vector<std::size_t> order;
     for (std::size_t s = 0; s < shapes_.size(); ++s)
-        if (state_of(s) == ShapeState::suggested && !much_the_same(shapes_[s].rejected, shapes_[s].suggestion))
-            order.push_back(s);
+        if (state_of(s) == ShapeState::suggested && shapes_[s].rejected.empty()) order.push_back(s);
     std::ranges::stable_sort(order, {}, [&](std::size_t s) { return shapes_[s].uncertainty.value_or(1); });
     return order;
 }
@@ -199,6 +198,7 @@ void LabelingSession::collect(ShapeResult result) {
     if (result.uncertainty) {
         shape.uncertainty = result.uncertainty;
         shape.suggestion = std::move(result.label);
+        if (!much_the_same(shape.rejected, shape.suggestion)) shape.rejected.clear();
     }
     if (!result.error.empty()) shape.error = std::move(result.error);
 }

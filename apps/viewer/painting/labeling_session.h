@@ -24,7 +24,7 @@ struct SessionShape {
     std::optional<float> uncertainty;
     std::vector<std::int32_t> suggestion;  ///< per face of the file; empty: none
     std::string error;
-    std::vector<std::int32_t> rejected;  ///< labels that a person rejected in the grid; empty: none
+    std::vector<std::int32_t> rejected;  ///< the suggestion that a person rejected; empty: none, or it has changed
 };
 
 /// A person who labels the shapes of a folder in the viewer: the palette, the open shape, and the background work that
@@ -71,7 +71,7 @@ class LabelingSession {
     void verify();
     /// Saves the suggested labels of a shape. Throws DataError likewise.
     void accept(std::size_t shape);
-    /// Keeps a suggestion out of to_verify() until another one comes.
+    /// Leaves a shape out of to_verify() until its suggestion has changed (see much_the_same).
     void reject(std::size_t shape) { shapes_[shape].rejected = shapes_[shape].suggestion; }
     /// Starts to learn from what is verified since the last call. Ends earlier work.
     void learn();

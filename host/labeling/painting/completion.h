@@ -36,7 +36,7 @@ struct CompletionOptions {
     float concave_length = 4;         ///< an edge bent inward by 180 degrees is longer by this factor
     double lambda = 0.15, mu = 0.05;  ///< of the cut: weights of the dihedral term (Eq. 3.4) and of length
     float outlier = 0.02F;            ///< probability that is shared by all labels
-    // Where a model suggests labels:
+    // The following count only if a model suggests labels.
     float trust = 0.8F;              ///< weight of its log probabilities, once there are strokes
     float correction = 10;           ///< what a stroke adds to the score of its label
     float correction_likeness = 12;  ///< as `likeness`, for what a stroke adds

@@ -137,7 +137,7 @@ TEST(LabelCompletion, AStrokeCorrectsAModelWhereverTheSurfaceIsAlike) {
     EXPECT_EQ(completed.label[balls.face_nearest({-1, 0, 0})], 1) << "the other tip";
     EXPECT_EQ(completed.label[balls.face_nearest({0, 0.3F, 0})], 0) << "what is unlike stays as the model says";
 
-    // Where two strokes are as alike, the nearer one counts.
+    // Both tips are like both strokes. Each tip takes the label of the nearer stroke.
     const CompletedLabels told = completion.complete(painted_at(balls, {{{1, 0, 0}, 1}, {{-1, 0, 0}, 0}}), 2);
     EXPECT_EQ(told.label[balls.face_nearest({0.9F, 0.2F, 0})], 1);
     EXPECT_EQ(told.label[balls.face_nearest({-0.9F, 0.2F, 0})], 0);

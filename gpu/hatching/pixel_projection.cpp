@@ -326,7 +326,7 @@ void GpuPixelProjection::record_curvature(const Buffer& states, const Buffer& sl
 // On the host if the device is a CPU (D6 in docs/portability.md): there the kernels take twice as long as the
 // reference on the same cores, even without the time to lay out their input.
 std::unique_ptr<PixelProjection> projection_for(Device& device) {
-    if (device.info().type == DeviceType::cpu) return std::make_unique<CpuPixelProjection>();
+    if (device.host_is_faster()) return std::make_unique<CpuPixelProjection>();
     return std::make_unique<GpuPixelProjection>(device);
 }
 

@@ -26,7 +26,7 @@ void check_extent(const Device& device, VkExtent2D extent) {
 
 Attachment::Attachment(Device& device, VkFormat format, VkExtent2D extent, VkImageUsageFlags usage,
                        VkImageAspectFlags aspect)
-    : memory_(device.handle()), image_(device.handle()), view_(device.handle()) {
+    : image_(device.handle()), view_(device.handle()) {
     check_extent(device, extent);
     const auto what = [&] {
         return fmt::format("make an image of {} x {} on '{}'", extent.width, extent.height, device.info().name);
@@ -43,13 +43,9 @@ Attachment::Attachment(Device& device, VkFormat format, VkExtent2D extent, VkIma
 
     VkMemoryRequirements needs{};
     vkGetImageMemoryRequirements(device.handle(), image_.get(), &needs);
-    const VkMemoryAllocateInfo allocate{
-        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-        .pNext = nullptr,
-        .allocationSize = needs.size,
-        .memoryTypeIndex = device.memory_type(needs.memoryTypeBits, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT)};
-    check(vkAllocateMemory(device.handle(), &allocate, nullptr, memory_.put()), what);
-    check(vkBindImageMemory(device.handle(), image_.get(), memory_.get(), 0), what);
+    const std::uint32_t type = device.memory_type(needs.memoryTypeBits, 0, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    check(device.memory().allocate(needs, type, MemoryContent::image, memory_), what);
+    check(vkBindImageMemory(device.handle(), image_.get(), memory_.memory(), memory_.offset()), what);
 
     auto view = empty_structure<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);
     view.image = image_.get();

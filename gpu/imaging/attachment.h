@@ -2,6 +2,7 @@
 
 #include <volk.h>
 
+#include "gpu/runtime/device/memory_allocator.h"
 #include "gpu/runtime/device/unique_handle.h"
 
 namespace exemplar {
@@ -21,7 +22,7 @@ class Attachment {
 
   private:
     // The view is destroyed before the image, the image before its memory.
-    UniqueMemory memory_;
+    MemoryPart memory_;  // returned after the image in it
     UniqueImage image_;
     UniqueImageView view_;
 };

@@ -57,7 +57,6 @@ void Canvas::resize(VkExtent2D extent) {
     depth_ = Attachment(device_, depth_format_, extent,
                         VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
                         VK_IMAGE_ASPECT_DEPTH_BIT);
-    pixels_ = Buffer();
     extent_ = extent;
 }
 
@@ -100,20 +99,17 @@ void Canvas::copy_color(Stream& stream, VkExtent2D part, const Buffer& target) c
 }
 
 void Canvas::record_download(Stream& stream) {
-    const std::size_t bytes = pixel_count(extent_) * texel_bytes(color_format_);
-    if (pixels_.bytes() != bytes) pixels_ = Buffer(device_, bytes, BufferMemory::readback);
-    copy_color(stream, extent_, pixels_);
+    rgba_.resize(4 * pixel_count(extent_));
+    stream.download_image(color_.image(), VK_IMAGE_ASPECT_COLOR_BIT, extent_, std::as_writable_bytes(std::span(rgba_)));
 }
 
 Image Canvas::read_image(bool with_alpha) const {
-    std::vector<std::uint8_t> rgba(4 * pixel_count(extent_));
-    pixels_.download<std::uint8_t>(rgba);
     const std::size_t channels = with_alpha ? 4 : 3;
     Image image(static_cast<int>(extent_.width), static_cast<int>(extent_.height), static_cast<int>(channels));
     for (std::size_t i = 0; i < pixel_count(extent_); ++i) {
-        const std::uint8_t alpha = rgba[4 * i + 3];
+        const std::uint8_t alpha = rgba_[4 * i + 3];
         for (std::size_t c = 0; c < 3; ++c) {
-            const unsigned value = rgba[4 * i + c];
+            const unsigned value = rgba_[4 * i + c];
             const unsigned straight = alpha ? std::min(255u, (255 * value + alpha / 2) / alpha) : 0;
             image.data[channels * i + c] = static_cast<std::uint8_t>(with_alpha ? straight : value);
         }

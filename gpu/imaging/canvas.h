@@ -60,7 +60,7 @@ class Canvas {
     VkFormat color_format_, depth_format_;
     VkExtent2D extent_{};
     Attachment color_, depth_;
-    Buffer pixels_;
+    std::vector<std::uint8_t> rgba_;  // of record_download
 };
 
 }  // namespace exemplar

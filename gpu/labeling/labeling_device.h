@@ -17,7 +17,7 @@ class LabelingDevice {
   public:
     explicit LabelingDevice(const DeviceOptions& options = {}) : device_(options), labels_on_(device_.info().name) {
         scorer_ = stump_scorer_for(device_);
-        if (device_.info().type == DeviceType::cpu) {  // the host is faster, for the scorer, too
+        if (device_.host_is_faster()) {  // so is its scorer
             labels_on_ = "the host";
             context_ = std::make_unique<FastContextHistograms>();
         } else {

@@ -281,7 +281,7 @@ void GpuStumpScorer::score_tile(const Classifier& classifier, std::span<const Sc
 }
 
 std::unique_ptr<StumpScorer> stump_scorer_for(Device& device) {
-    if (device.info().type == DeviceType::cpu) return std::make_unique<CpuStumpScorer>();
+    if (device.host_is_faster()) return std::make_unique<CpuStumpScorer>();
     return std::make_unique<GpuStumpScorer>(device);
 }
 

@@ -44,16 +44,16 @@ GpuCoherence::GpuCoherence(const GpuStrokes& strokes) : strokes_(strokes) {
     trace_kernel_ = Kernel(device, shaders::lines_traces_comp,
                            {.push_constants = layout_of<FollowParameters>(), .elements = {four, words, words, four}});
     vote_kernel_ = Kernel(device, shaders::lines_votes_comp,
-                          {.elements = {four, words, words, words, four, word, word, words, four}});
+                          {.elements = {words, words, words, words, four, word, word, words, four}});
     phase_kernel_ = Kernel(device, shaders::lines_phases_comp,
-                           {.push_constants = layout_of<FollowParameters>(), .elements = {four, four}});
+                           {.push_constants = layout_of<FollowParameters>(), .elements = {words, words}});
     trace_writing_kernel_ =
-        Kernel(device, shaders::lines_write_traces_comp, {.elements = {four, word, four, four, layout_of<float>()}});
+        Kernel(device, shaders::lines_write_traces_comp, {.elements = {words, word, four, words, layout_of<float>()}});
     traces_ = Buffer(device, room * sizeof(vec4));
     previous_traces_ = Buffer(device, room * sizeof(vec4));
     ends_ = Buffer(device, 2 * room * sizeof(vec4));
     votes_ = Buffer(device, room * sizeof(ChainVotes));
-    matches_ = Buffer(device, 4 * room * sizeof(vec4));
+    matches_ = Buffer(device, 4 * room * sizeof(uvec4));
     phases_ = Buffer(device, 2 * room * sizeof(vec2));
     flicker_ = Buffer(device, sizeof(FlickerSums));
 }

@@ -67,7 +67,8 @@ GpuLineExtraction::GpuLineExtraction(const GpuLineSurface& surface, std::size_t 
     Device& device = surface.surface().device();
     check_texels(device, 2 * room_, "the lines of a surface");
     const std::size_t faces = surface.surface().face_count();
-    for (Buffer* buffer : {&face_counts_, &old_face_counts_}) *buffer = Buffer(device, faces * sizeof(std::uint32_t));
+    for (Buffer* buffer : {&face_counts_, &old_face_counts_, &face_slots_})
+        *buffer = Buffer(device, faces * sizeof(std::uint32_t));
     for (Buffer* buffer : {&face_groups_, &old_face_groups_})
         *buffer = Buffer(device, divide_up(faces, shared::k_count_group) * sizeof(std::uint32_t));
     for (Buffer* buffer : {&segments_, &old_segments_})
@@ -87,10 +88,10 @@ GpuLineExtraction::Kernels GpuLineExtraction::make_kernels(std::uint32_t familie
     const StructLayout field = layout_of<FieldParameters>(), face = layout_of<FaceLineParameters>();
     Kernels kernels;
     kernels.fields = kernel(shaders::lines_fields_comp, field, std::vector<StructLayout>(7, four));
-    kernels.count = kernel(shaders::lines_count_comp, face, {four, words, words, four, four, words, word, word});
+    kernels.count = kernel(shaders::lines_count_comp, face, {four, words, words, four, four, words, word, word, word});
     kernels.segments =
         kernel(shaders::lines_segments_comp, face,
-               {four, words, words, four, four, words, word, word, layout_of<shared::LineSegmentRecord>()});
+               {four, words, words, four, four, words, word, word, word, layout_of<shared::LineSegmentRecord>()});
     if (families & 1u << shared::k_apparent_ridges)
         kernels.ridges =
             kernel(shaders::lines_apparent_ridges_comp, field, {four, four, four, four, word, words, four, four});
@@ -158,7 +159,7 @@ void GpuLineExtraction::record(Stream& stream, const GpuCurvedSurface& snapshot,
                                         .max_segments = static_cast<std::uint32_t>(room_)};
     stream.dispatch(kernels.count, faces,
                     {snapshot.vertices, surface.faces(), surface_.neighbors(), fields_, directions_,
-                     surface_.joined_faces(), face_counts_, face_groups_},
+                     surface_.joined_faces(), face_counts_, face_groups_, face_slots_},
                     parameters);
     stream.dispatch(
         scan_kernel_, 1, {face_groups_, counts_},
@@ -166,7 +167,7 @@ void GpuLineExtraction::record(Stream& stream, const GpuCurvedSurface& snapshot,
                                .most = static_cast<std::uint32_t>(room_)});
     stream.dispatch(kernels.segments, faces,
                     {snapshot.vertices, surface.faces(), surface_.neighbors(), fields_, directions_,
-                     surface_.joined_faces(), face_counts_, face_groups_, segments_},
+                     surface_.joined_faces(), face_counts_, face_groups_, face_slots_, segments_},
                     parameters);
 }
 

@@ -76,7 +76,7 @@ class GpuLineExtraction {
     std::map<std::uint32_t, Kernels> kernels_;  // by their set of families
     Kernel view_kernel_, scan_kernel_;
     Buffer fields_, directions_, views_;
-    Buffer face_counts_, face_groups_, segments_, counts_;
+    Buffer face_counts_, face_groups_, face_slots_, segments_, counts_;
     Buffer old_face_counts_, old_face_groups_, old_segments_;
 };
 

@@ -14,17 +14,18 @@ namespace exemplar {
 namespace {
 
 using shared::LineCounts;
+using shared::uvec4;
 using shared::vec4;
 
 DrawPipeline stroke_pipeline(Device& device) {
-    return {
-        device,
-        shaders::lines_stroke_vert,
-        shaders::lines_stroke_frag,
-        {.push_constants = layout_of<shared::StrokeDrawParameters>(),
-         .elements = {layout_of<vec4>(), layout_of<vec4>(), layout_of<std::uint32_t>(), layout_of<shared::StrokeLook>(),
-                      layout_of<float>(), layout_of<shared::vec2>(), layout_of<vec4>()}},
-        {.color = Canvas::k_rgba, .blends = true}};
+    return {device,
+            shaders::lines_stroke_vert,
+            shaders::lines_stroke_frag,
+            {.push_constants = layout_of<shared::StrokeDrawParameters>(),
+             .elements = {layout_of<uvec4>(), layout_of<vec4>(), layout_of<std::uint32_t>(),
+                          layout_of<shared::StrokeLook>(), layout_of<float>(), layout_of<shared::vec2>(),
+                          layout_of<vec4>()}},
+            {.color = Canvas::k_rgba, .blends = true}};
 }
 
 // Maximum vertex index that every device supports in index buffers.

@@ -82,11 +82,11 @@ GpuStrokes::GpuStrokes(const GpuChains& chains) : chains_(chains) {
     visibility_kernel_ = Kernel(
         device, shaders::lines_visibility_comp,
         {.push_constants = layout_of<StrokeParameters>(),
-         .elements = {layout_of<float>(), layout_of<vec4>(), layout_of<uvec4>(), layout_of<uvec4>(), layout_of<vec4>(),
+         .elements = {layout_of<float>(), layout_of<uvec4>(), layout_of<uvec4>(), layout_of<uvec4>(), layout_of<vec4>(),
                       layout_of<vec4>(), layout_of<vec4>(), layout_of<uvec4>(), layout_of<vec4>()}});
     stroke_kernel_ = Kernel(device, shaders::lines_strokes_comp,
                             {.push_constants = layout_of<StrokeParameters>(),
-                             .elements = {layout_of<vec4>(), layout_of<std::uint32_t>(), layout_of<uvec4>(),
+                             .elements = {layout_of<uvec4>(), layout_of<std::uint32_t>(), layout_of<uvec4>(),
                                           layout_of<uvec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(),
                                           layout_of<uvec4>(), layout_of<std::uint32_t>()}});
     visible_ = Buffer(device, 2 * room * sizeof(std::uint32_t));

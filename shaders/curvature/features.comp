@@ -22,7 +22,8 @@ float neuron(uint index) {
     for (uint i = 0; i < parameters.input_texels; ++i)
         sum += texelFetch(weights, int(index * parameters.input_texels + i)) *
                texelFetch(inputs_by_four, int(parameters.first_input / 4 + i));
-    return tanh(sum.x + sum.y + sum.z + sum.w);
+    // Beyond 10, tanh is 1 in 32 bits, and devices may compute it from exponentials that overflow.
+    return tanh(clamp(sum.x + sum.y + sum.z + sum.w, -10.0, 10.0));
 }
 
 void main() {

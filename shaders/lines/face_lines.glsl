@@ -1,12 +1,19 @@
 // Finds the segments of lines in a face (host/lines/extraction/lines.cpp). The including shader declares
 // `positions`, `faces`, `joined_faces`, `neighbors`, `fields`, `directions`, the constant `k_families` and FaceLineParameters
-// `parameters`, and defines what is done with each segment:
-//   void emit(uint family, uint first_place, uint second_place, vec3 first_end, vec3 second_end, vec2 strength)
+// `parameters`, and defines which of the 26 slots of a face to look at, and what is done with each segment:
+//   bool wants(uint slots)
+//   void emit(uint slot, uint family, uint first_place, uint second_place, vec3 first_end, vec3 second_end, vec2 strength)
+// A slot is a segment that a face may have: one for each zero set, and three each for extrema and edges. They are in the order
+// of the segments. `precise` keeps compilers from rounding differently in different kernels.
 #ifndef EXEMPLAR_FACE_LINES_GLSL
 #define EXEMPLAR_FACE_LINES_GLSL
 #include "shaders/lib/eye.glsl"
 #include "shaders/lib/when.glsl"
 #include "shaders/shared/lines.h"
+
+// Slots of each family; boundaries that are drawn as contours have the three after the last.
+const uint k_slot_of_family[k_line_families] = uint[](0u, 1u, 2u, 3u, 6u, 9u, 12u, 13u, 14u, 17u, 20u);
+const uint k_outer_contour_slot = 23u;
 
 // Shrinks [range.x, range.y] to where the linear function with value `first` at 0 and `last` at 1 is positive.
 void clip(float first, float last, inout vec2 range) {
@@ -15,7 +22,7 @@ void clip(float first, float last, inout vec2 range) {
         range.y = range.x;
         return;
     }
-    const float zero = first / (first - last);
+    precise float zero = first / (first - last);
     if (first > 0.0)
         range.y = min(range.y, zero);
     else
@@ -23,14 +30,14 @@ void clip(float first, float last, inout vec2 range) {
 }
 
 // Emits the part of a segment that faces the eye and passes the threshold. `corners`: fields as columns.
-void add_segment(uint family, mat3x4 corners, vec3 a, uint place_a, vec3 b, uint place_b) {
-    const vec4 at_a = corners * a, at_b = corners * b;
+void add_segment(uint slot, uint family, mat3x4 corners, vec3 a, uint place_a, vec3 b, uint place_b) {
+    precise vec4 at_a = corners * a, at_b = corners * b;
     vec2 range = vec2(0.0, 1.0);
     clip(at_a.w, at_b.w, range);
     clip(at_a.z, at_b.z, range);
     if (!(range.x < range.y)) return;
     const vec3 first = a + range.x * (b - a), second = a + range.y * (b - a);
-    emit(family, range.x > 0.0 ? k_place_inside : place_a, range.y < 1.0 ? k_place_inside : place_b, first, second,
+    emit(slot, family, range.x > 0.0 ? k_place_inside : place_a, range.y < 1.0 ? k_place_inside : place_b, first, second,
          vec2((corners * first).y, (corners * second).y));
 }
 
@@ -65,8 +72,9 @@ void add_zero_set(uint family, mat3x4 corners, mat3 axes) {
             if (!above[i] && above[next]) rises = i;
         }
         const uint after_falls = falls == 2u ? 0u : falls + 1u, after_rises = rises == 2u ? 0u : rises + 1u;
-        add_segment(family, corners, on_side(falls, value[falls] / (value[falls] - value[after_falls])), falls,
-                    on_side(rises, value[rises] / (value[rises] - value[after_rises])), rises);
+        precise float at_fall = value[falls] / (value[falls] - value[after_falls]);
+        precise float at_rise = value[rises] / (value[rises] - value[after_rises]);
+        add_segment(k_slot_of_family[family], family, corners, on_side(falls, at_fall), falls, on_side(rises, at_rise), rises);
     }
 }
 
@@ -78,15 +86,17 @@ void add_extrema(uint family, mat3x4 corners, mat3 growing, mat3 points) {
         for (uint i = 0; i < 3; ++i) {
             const uint j = i == 2u ? 0u : i + 1u;
             const vec3 a = growing[i], b = growing[j];
-            if (!(dot(a, b) < 0.0 && dot(a - b, points[j] - points[i]) > 0.0)) continue;
-            const float at_a = length(a), at_b = length(b);
-            ends[found] = on_side(i, at_a / (at_a + at_b));
+            precise float turn = dot(a, b), descent = dot(a - b, points[j] - points[i]);
+            if (!(turn < 0.0 && descent > 0.0)) continue;
+            precise float at_a = length(a), at_b = length(b), at = at_a / (at_a + at_b);
+            ends[found] = on_side(i, at);
             places[found++] = i;
         }
-        if (found == 2u) add_segment(family, corners, ends[0], places[0], ends[1], places[1]);
+        const uint slot = k_slot_of_family[family];
+        if (found == 2u) add_segment(slot, family, corners, ends[0], places[0], ends[1], places[1]);
         if (found == 3u)
             for (uint i = 0; i < 3; ++i)
-                add_segment(family, corners, ends[i], places[i], vec3(1.0 / 3.0), k_place_inside);
+                add_segment(slot + i, family, corners, ends[i], places[i], vec3(1.0 / 3.0), k_place_inside);
     }
 }
 
@@ -103,9 +113,9 @@ vec3 position_of(uvec3 corners, uint corner) {
 }
 
 // Emits the part from x to y of a side.
-void emit_side(uint family, uint side, vec2 part, float strength) {
+void emit_side(uint slot, uint family, uint side, vec2 part, float strength) {
     const uint next = next_side(side);
-    emit(family, part.x > 0.0 ? k_place_inside : k_place_corner + side,
+    emit(slot, family, part.x > 0.0 ? k_place_inside : k_place_corner + side,
          part.y < 1.0 ? k_place_inside : k_place_corner + next, on_side(side, part.x), on_side(side, part.y), vec2(strength));
 }
 
@@ -177,19 +187,20 @@ void add_creases(uint face, uvec3 corners) {
             const vec3 a = face_cross(corners);
             const vec3 b = oriented_alike(face, i, code / 4u, code % 4u) ? face_cross(others) : -face_cross(others);
             if (!(dot(a, a) > 0.0 && dot(b, b) > 0.0)) continue;
-            strength = atan(length(cross(a, b)), dot(a, b));
+            precise float sine = length(cross(a, b)), cosine = dot(a, b);
+            strength = atan(sine, cosine);
         }
         if (!(strength > parameters.crease_angle)) continue;
         // On the outline they are contours.
         if ((k_families & 1u << k_edge_contours) != 0u && is_outline(corners, i, others, code % 4u)) continue;
-        emit_side(k_creases, i, vec2(0.0, 1.0), strength);
+        emit_side(k_slot_of_family[k_creases] + i, k_creases, i, vec2(0.0, 1.0), strength);
     }
 }
 
-void add_boundaries(uint family, uint face) {
+void add_boundaries(uint slot, uint family, uint face) {
     const uvec3 sides = texelFetch(neighbors, int(face)).xyz;
     for (uint i = 0; i < 3; ++i)
-        if (sides[i] == k_boundary_side) emit_side(family, i, vec2(0.0, 1.0), 1.0);
+        if (sides[i] == k_boundary_side) emit_side(slot + i, family, i, vec2(0.0, 1.0), 1.0);
 }
 
 // Boundaries are contours if they are not drawn as such.
@@ -200,10 +211,10 @@ void add_edge_contours(uint face, uvec3 corners) {
         when (has_neighbor(sides[i]) && (sides[i] & k_sharp_side) != 0u && owns_edge(face, i, sides[i])) {
             const uvec3 others = texelFetch(faces, int(code / 4u)).xyz;
             const vec2 part = contour_along(corners, i, others, code % 4u, face, code / 4u);
-            if (part.x < part.y) emit_side(k_edge_contours, i, part, 1.0);
+            if (part.x < part.y) emit_side(k_slot_of_family[k_edge_contours] + i, k_edge_contours, i, part, 1.0);
         }
     }
-    if ((k_families & 1u << k_boundaries) == 0u) add_boundaries(k_edge_contours, face);
+    if ((k_families & 1u << k_boundaries) == 0u) add_boundaries(k_outer_contour_slot, k_edge_contours, face);
 }
 
 mat3 three(samplerBuffer source, uint slot, uvec3 corners) {
@@ -212,10 +223,8 @@ mat3 three(samplerBuffer source, uint slot, uvec3 corners) {
                 texelFetch(source, int(begin + corners.z)).xyz);
 }
 
-// Finds the lines of one family in a face; `k_families` decides at compile time whether there are any.
-void find_lines_of(uint family, uint face, uvec3 corners) {
+void find_lines_in_field(uint family, uint face, uvec3 corners) {
     const uint bit = 1u << family, before = bit - 1u;
-    if ((k_families & bit) == 0u) return;
     const uint begin = bitCount(k_families & k_field_families & before) * parameters.vertices;
     const mat3x4 field = mat3x4(texelFetch(fields, int(begin + corners.x)), texelFetch(fields, int(begin + corners.y)),
                                 texelFetch(fields, int(begin + corners.z)));
@@ -228,6 +237,14 @@ void find_lines_of(uint family, uint face, uvec3 corners) {
         add_zero_set(family, field, axes);
 }
 
+// Finds the lines of one family in a face; `k_families` decides at compile time whether there are any.
+void find_lines_of(uint family, uint face, uvec3 corners) {
+    const uint bit = 1u << family;
+    if ((k_families & bit) == 0u) return;
+    const uint slots = ((bit & k_extremum_families) != 0u ? 7u : 1u) << k_slot_of_family[family];
+    when (wants(slots)) find_lines_in_field(family, face, corners);
+}
+
 void find_lines(uint face) {
     const uvec3 corners = texelFetch(faces, int(face)).xyz;
     find_lines_of(k_contours, face, corners);
@@ -238,9 +255,10 @@ void find_lines(uint face) {
     find_lines_of(k_apparent_ridges, face, corners);
     find_lines_of(k_first_highlights, face, corners);
     find_lines_of(k_second_highlights, face, corners);
-    if ((k_families & 1u << k_creases) != 0u) add_creases(face, corners);
-    if ((k_families & 1u << k_boundaries) != 0u) add_boundaries(k_boundaries, face);
-    if ((k_families & 1u << k_edge_contours) != 0u) add_edge_contours(face, corners);
+    if ((k_families & 1u << k_creases) != 0u) when (wants(7u << k_slot_of_family[k_creases])) add_creases(face, corners);
+    if ((k_families & 1u << k_boundaries) != 0u) add_boundaries(k_slot_of_family[k_boundaries], k_boundaries, face);
+    if ((k_families & 1u << k_edge_contours) != 0u)
+        when (wants(7u << k_slot_of_family[k_edge_contours] | 7u << k_outer_contour_slot)) add_edge_contours(face, corners);
 }
 
 #endif

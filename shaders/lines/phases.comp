@@ -8,8 +8,8 @@
 // invocation: reads the votes of its chain and, from caches, 16 bytes of each point around it; writes 8.
 layout(local_size_x = k_count_group) in;
 layout(push_constant) uniform Push { FollowParameters parameters; };
-layout(set = 0, binding = 0) uniform samplerBuffer points;  // LinePoint, two texels each
-layout(set = 0, binding = 1) uniform samplerBuffer matches;  // votes.comp, two texels each
+layout(set = 0, binding = 0) uniform usamplerBuffer points;  // LinePoint, two texels each
+layout(set = 0, binding = 1) uniform usamplerBuffer matches;  // votes.comp, two texels each
 layout(set = 0, binding = 2, std430) readonly buffer Counts { LineCounts counts; };
 layout(set = 0, binding = 3, std430) readonly buffer Votes { ChainVotes votes[]; };
 // Direction (+1 or -1) and offset in pixels, see texture_phase.glsl.
@@ -23,11 +23,11 @@ vec2 votes_beside(int point, int step, float here, uint chain_and_way) {
     for (int i = 0; i < k_follow_points; ++i) {
         const int at = point + step * i;
         if (at < 0 || at >= int(counts.points)) break;
-        const vec4 vote = texelFetch(matches, 2 * at + 1);
+        const uvec4 texel = texelFetch(matches, 2 * at + 1);
+        const vec3 vote = uintBitsToFloat(texel.xyz);
         const float near = 1.0 - abs(vote.z - here) / float(k_follow_reach);
-        const uint of = floatBitsToUint(vote.w);
-        if ((of ^ chain_and_way) > 1u || !(near > 0.0)) break;
-        if (of == chain_and_way) sum += near * vote.xy;
+        if ((texel.w ^ chain_and_way) > 1u || !(near > 0.0)) break;
+        if (texel.w == chain_and_way) sum += near * vote.xy;
     }
     return sum;
 }
@@ -41,10 +41,9 @@ void main() {
     const uint index = linear_thread();
     if (index >= counts.points) return;
 
-    const float here = texelFetch(points, int(2u * index)).w;
-    const vec4 more = texelFetch(points, int(2u * index + 1u));
-    const float period = texelFetch(matches, int(2u * index)).z;
-    const uint chain = floatBitsToUint(more.y);
+    const float here = uintBitsToFloat(texelFetch(points, int(2u * index)).w);
+    const float period = uintBitsToFloat(texelFetch(matches, int(2u * index)).z);
+    const uint chain = texelFetch(points, int(2u * index + 1u)).y;
     const ChainVotes v = votes[chain];
     const bool along = v.balance >= 0;
     const vec2 of_all = unit(along ? vec2(v.along_cos, v.along_sin) : vec2(v.against_cos, v.against_sin));

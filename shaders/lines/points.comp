@@ -22,7 +22,9 @@ void main() {
     const uvec4 rank = texelFetch(ranks, int(index));
     const uint first = rank.x, on = rank.w & 1u;
     const bool closed = (rank.w & 2u) != 0u, ends = (rank.w & 4u) != 0u;
-    const uint place = texelFetch(groups, int(first / k_count_group)).x + texelFetch(point_counts, int(first)).x + rank.y;
+    const uint begin_of_chain = texelFetch(groups, int(first / k_count_group)).x + texelFetch(point_counts, int(first)).x;
+    const uint place = begin_of_chain + rank.y;
+    if (place + (ends ? 1u : 0u) >= counts.points) return;  // never, unless links contradict each other
     const LineSegmentRecord segment = segment_at(index);
     const vec4 begin = texelFetch(picture_ends, int(2u * index + 1u - on)), end = texelFetch(picture_ends, int(2u * index + on));
     const vec2 strength = on == 1u ? vec2(segment.first_strength, segment.second_strength)

@@ -16,36 +16,39 @@ uint groups_of(uint items) {
     return (items + k_count_group - 1u) / k_count_group;
 }
 
+// The counts of workgroups for items, folded as linear_group() expects it: devices allow 65,535 along an axis.
+uint[3] folded_groups(uint items) {
+    const uint groups = groups_of(items), rows = max((groups + 0xfffeu) / 0xffffu, 1u);
+    return uint[3]((groups + rows - 1u) / rows, rows, 1u);
+}
+
 void put_segments(uint total) {
     const uint segments = min(total, parameters.most), previous = counts.segments;
     counts.previous_segments = previous;
     counts.segments = segments;
     counts.dropped_segments = total - segments;
-    counts.segment_groups[0] = groups_of(segments);
-    counts.trace_groups[0] = groups_of(max(segments, previous));
-    counts.node_groups[0] = groups_of(2u * segments);
+    counts.segment_groups = folded_groups(segments);
+    counts.trace_groups = folded_groups(max(segments, previous));
+    counts.node_groups = folded_groups(2u * segments);
     // Enough rounds for the longest possible chain. Their number is even, so that the result is in the first buffer.
     uint rounds = segments > 1u ? uint(findMSB(segments - 1u)) + 1u : 0u;
     rounds += rounds & 1u;
     for (uint i = 0; i < k_line_rounds; ++i) {
-        counts.round_groups[3u * i] = i < rounds ? groups_of(2u * segments) : 0u;
-        counts.round_groups[3u * i + 1u] = counts.round_groups[3u * i + 2u] = 1u;
+        const uint groups[3] = folded_groups(i < rounds ? 2u * segments : 0u);
+        for (uint axis = 0; axis < 3; ++axis) counts.round_groups[3u * i + axis] = groups[axis];
     }
-    counts.segment_groups[1] = counts.segment_groups[2] = counts.node_groups[1] = counts.node_groups[2] = 1u;
-    counts.trace_groups[1] = counts.trace_groups[2] = 1u;
 }
 
 void put_points(uint total) {
     counts.points = total;
-    counts.point_groups[0] = groups_of(total);
-    counts.point_groups[1] = counts.point_groups[2] = 1u;
+    counts.point_groups = folded_groups(total);
     counts.draw[0] = 6u * total;
     counts.draw[1] = 1u;
     counts.draw[2] = counts.draw[3] = 0u;
 }
 
 void main() {
-    const uint count = k_of_points ? counts.segment_groups[0] : parameters.groups;
+    const uint count = k_of_points ? groups_of(counts.segments) : parameters.groups;
     const uint share = (count + gl_WorkGroupSize.x - 1u) / gl_WorkGroupSize.x;
     const uint begin = min(gl_LocalInvocationID.x * share, count), end = min(begin + share, count);
     uint sum = 0;

@@ -7,9 +7,9 @@ layout(set = 0, binding = 4) uniform samplerBuffer textures;  // rows of opaciti
 
 layout(location = 0) in vec4 along;
 layout(location = 1) in float texture_at;
-layout(location = 2) flat in uvec2 seen;
+layout(location = 2) flat in uvec3 seen;
 layout(location = 3) flat in vec4 color;
-layout(location = 4) flat in vec3 texture_of;
+layout(location = 4) flat in vec2 texture_of;
 layout(location = 0) out vec4 drawn;
 
 float texel(uint begin, int column, int row) {
@@ -34,9 +34,8 @@ void main() {
     // The share of the pixel's width that the stroke covers.
     const float covered = min(half_width, along.x + 0.5) - max(-half_width, along.x - 0.5);
     float alpha = along.z * max(covered, 0.0);
-    const uint begin = floatBitsToUint(texture_of.x);
-    if (begin != 0u)
-        alpha *= opacity_at(begin - 1u, texture_at / texture_of.y,
-                            0.5 + 0.5 * texture_of.z * along.x / max(half_width, 0.5));
+    if (seen.z != 0u)
+        alpha *= opacity_at(seen.z - 1u, texture_at / texture_of.x,
+                            0.5 + 0.5 * texture_of.y * along.x / max(half_width, 0.5));
     drawn = vec4(color.rgb * alpha, alpha);
 }

@@ -8,7 +8,7 @@
 // face and the points around it, all from caches, and writes 32.
 layout(local_size_x = k_count_group) in;
 layout(push_constant) uniform Push { StrokeParameters parameters; };
-layout(set = 0, binding = 0) uniform samplerBuffer points;  // LinePoint, two texels each
+layout(set = 0, binding = 0) uniform usamplerBuffer points;  // LinePoint, two texels each
 layout(set = 0, binding = 1) uniform usamplerBuffer visible;  // two words per point
 layout(set = 0, binding = 2) uniform usamplerBuffer segments;
 layout(set = 0, binding = 3) uniform usamplerBuffer faces;
@@ -28,7 +28,7 @@ layout(set = 0, binding = 11, std430) writeonly buffer Strokes { vec4 strokes[];
 const uint k_max_taper_points = 64;
 
 uint kind_of(int point) {
-    return floatBitsToUint(texelFetch(points, 2 * point + 1).x);
+    return texelFetch(points, 2 * point + 1).x;
 }
 bool is_first(int point) {
     return (kind_of(point) & k_point_first) != 0u;
@@ -50,7 +50,7 @@ int neighbor(int point, int way) {
 }
 
 vec2 place_of_point(int point) {
-    return texelFetch(points, 2 * point).xy;
+    return uintBitsToFloat(texelFetch(points, 2 * point).xy);
 }
 
 // The smoothing window on one side of a point: integral of the position over its length, length, and end.
@@ -125,10 +125,10 @@ SmoothedPoint smoothed_point(int point, uint kind) {
 
 // Returns the segment at a point, and which end of it is there.
 uvec2 segment_end(int point) {
-    const vec4 more = texelFetch(points, 2 * point + 1);
-    const uint walked = floatBitsToUint(more.z), begin_end = walked & 1u;
-    const bool last = (floatBitsToUint(more.x) & k_point_last) != 0u;
-    return uvec2(walked >> 1, last ? 1u - begin_end : begin_end);
+    const uvec4 more = texelFetch(points, 2 * point + 1);
+    const uint begin_end = more.z & 1u;
+    const bool last = (more.x & k_point_last) != 0u;
+    return uvec2(more.z >> 1, last ? 1u - begin_end : begin_end);
 }
 
 // Returns whether a contour ends at a point on an edge, along which another goes on.
@@ -162,7 +162,7 @@ float visible_length(int point, int way, float most) {
         const int link = way > 0 ? (next == point + 1 ? point : next - 1) : next;
         const uint mask = texelFetch(visible, 2 * link).x, samples = texelFetch(visible, 2 * link + 1).x;
         const uint all = samples == 32u ? 0xffffffffu : (1u << samples) - 1u;
-        const float pixels = distance(texelFetch(points, 2 * link).xy, texelFetch(points, 2 * link + 2).xy);
+        const float pixels = distance(place_of_point(link), place_of_point(link + 1));
         if (mask != all) {
             const uint hidden = ~mask & all;
             const uint seen = way > 0 ? uint(findLSB(hidden)) : samples - 1u - uint(findMSB(hidden));
@@ -185,8 +185,8 @@ void main() {
     const int point = int(linear_thread());
     if (point >= int(counts.points)) return;
 
-    const vec4 more = texelFetch(points, 2 * point + 1);
-    const uint kind = floatBitsToUint(more.x);
+    const uvec4 more = texelFetch(points, 2 * point + 1);
+    const uint kind = more.x;
     const StrokeLook look = looks[kind & k_kind_family];
     const SmoothedPoint drawn = smoothed_point(point, kind);
     const bool along_edge = (1u << (kind & k_kind_family) & k_edge_families) != 0u;
@@ -195,7 +195,7 @@ void main() {
     const uint ink = parameters.inked != 0u ? texelFetch(face_inks, int(segment.face)).x : 0u;
     float width = thickness(segment, at.y, look) * (along_edge ? 1.0 : tapered(point, drawn.straightness, look));
     if (parameters.inked != 0u) width *= inks[ink].w;
-    const float above = max(more.w - look.threshold, 0.0);
+    const float above = max(uintBitsToFloat(more.w) - look.threshold, 0.0);
     const float opacity = look.fade > 0.0 ? above / (above + look.fade) : 1.0;
     strokes[2 * point] = vec4(drawn.at, width, opacity);
     strokes[2 * point + 1] = vec4(drawn.normal, float(ink), 0.0);

@@ -9,7 +9,7 @@
 layout(local_size_x = k_count_group) in;
 layout(push_constant) uniform Push { StrokeParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer depths;  // rows of pixels from the top
-layout(set = 0, binding = 1) uniform samplerBuffer points;  // LinePoint, two texels each
+layout(set = 0, binding = 1) uniform usamplerBuffer points;  // LinePoint, two texels each
 layout(set = 0, binding = 2) uniform usamplerBuffer segments;
 layout(set = 0, binding = 3) uniform usamplerBuffer faces;
 layout(set = 0, binding = 4) uniform samplerBuffer positions;
@@ -106,13 +106,14 @@ void main() {
     const uint index = linear_thread();
     if (index >= counts.points) return;
 
-    const vec4 here = texelFetch(points, int(2u * index)), kind = texelFetch(points, int(2u * index + 1u));
-    const float tolerance = tolerance_of(floatBitsToUint(kind.z) / 2u);
-    if ((floatBitsToUint(kind.x) & k_point_last) != 0u) {
+    const vec4 here = uintBitsToFloat(texelFetch(points, int(2u * index)));
+    const uvec4 kind = texelFetch(points, int(2u * index + 1u));
+    const float tolerance = tolerance_of(kind.z / 2u);
+    if ((kind.x & k_point_last) != 0u) {
         visible[index] = uvec2(is_visible(here.xy, here.z, tolerance) ? 1u : 0u, 1u);
         return;
     }
-    const vec3 there = texelFetch(points, int(2u * index + 2u)).xyz;
+    const vec3 there = uintBitsToFloat(texelFetch(points, int(2u * index + 2u)).xyz);
     // The length of a piece behind the eye or far outside of the picture is meaningless, so it is clamped.
     const float pixels = distance(here.xy, there.xy);
     const uint samples = uint(clamp(ceil(pixels / k_sample_spacing), 1.0, 32.0));

@@ -10,7 +10,7 @@
 // some faces and their lines; writes 32 and adds 12 to the votes of its chain. The sums are of integers, so their
 // order does not matter.
 layout(local_size_x = k_count_group) in;
-layout(set = 0, binding = 0) uniform samplerBuffer points;  // LinePoint, two texels each
+layout(set = 0, binding = 0) uniform usamplerBuffer points;  // LinePoint, two texels each
 layout(set = 0, binding = 1) uniform usamplerBuffer segments;
 layout(set = 0, binding = 2) uniform usamplerBuffer faces;
 layout(set = 0, binding = 3) uniform usamplerBuffer neighbors;
@@ -23,10 +23,10 @@ layout(set = 0, binding = 8) uniform samplerBuffer old_ends;
 layout(set = 0, binding = 9, std430) readonly buffer Counts { LineCounts counts; };
 layout(set = 0, binding = 10, std430) readonly buffer Looks { StrokeLook looks[]; };
 layout(set = 0, binding = 11, std430) buffer Votes { ChainVotes votes[]; };
-// Two texels per point, for the piece to the next point. Match: texture coordinate of the previous line, share of it
+// Two texels of bits per point, for the piece to the next point. Match: texture coordinate of the previous line, share of it
 // that was drawn or -1 if there was none, period of the texture. Vote: weight times cosine and sine, pixels along
 // the chain, and 2 * chain + 1 if the texture runs against the chain, else + 0.
-layout(set = 0, binding = 12, std430) writeonly buffer Matches { vec4 matches[]; };
+layout(set = 0, binding = 12, std430) writeonly buffer Matches { uvec4 matches[]; };
 #include "shaders/lines/face_segments.glsl"
 #include "shaders/lines/segments.glsl"
 
@@ -117,23 +117,24 @@ void main() {
     const uint index = linear_thread();
     if (index >= counts.points) return;
 
-    const vec4 here = texelFetch(points, int(2u * index)), more = texelFetch(points, int(2u * index + 1u));
-    const uint kind = floatBitsToUint(more.x), chain = floatBitsToUint(more.y), segment = floatBitsToUint(more.z) / 2u;
+    const vec4 here = uintBitsToFloat(texelFetch(points, int(2u * index)));
+    const uvec4 more = texelFetch(points, int(2u * index + 1u));
+    const uint kind = more.x, chain = more.y, segment = more.z / 2u;
     const uint family = kind & k_kind_family;
     const float period = looks[family].period;
     if ((kind & k_point_last) != 0u) {
-        matches[2u * index] = vec4(0.0, -1.0, period, 0.0);
-        matches[2u * index + 1u] = vec4(0.0, 0.0, here.w, uintBitsToFloat(2u * chain));
+        matches[2u * index] = floatBitsToUint(vec4(0.0, -1.0, period, 0.0));
+        matches[2u * index + 1u] = uvec4(floatBitsToUint(vec3(0.0, 0.0, here.w)), 2u * chain);
         return;
     }
-    const vec2 there = texelFetch(points, int(2u * index + 2u)).xy, middle = 0.5 * (here.xy + there), way = there - here.xy;
+    const vec2 there = uintBitsToFloat(texelFetch(points, int(2u * index + 2u)).xy), middle = 0.5 * (here.xy + there), way = there - here.xy;
     const float size = length(way), along = here.w + 0.5 * size;
     Match match = Match(k_nowhere, 0.0, true, -1.0);
     look_in(texelFetch(segments, int(2u * segment)).x, family, middle, way, match);
     when (match.away == k_nowhere) look_beside(segment, family, middle, way, match);
     const bool found = match.away < k_nowhere;
     const vec2 own = found ? vote(match, along, size, period) : vec2(0.0);
-    matches[2u * index] = vec4(match.texture_at, match.drawn, period, 0.0);
-    matches[2u * index + 1u] = vec4(own, along, uintBitsToFloat(2u * chain + (match.along ? 0u : 1u)));
+    matches[2u * index] = floatBitsToUint(vec4(match.texture_at, match.drawn, period, 0.0));
+    matches[2u * index + 1u] = uvec4(floatBitsToUint(vec3(own, along)), 2u * chain + (match.along ? 0u : 1u));
     when (own != vec2(0.0)) add_vote(chain, own, match.along);
 }

@@ -7,10 +7,10 @@
 // Writes the traces of the segments for the next frame, and sums up the flicker of lines. One point per invocation:
 // reads 128 bytes, writes 16, and adds 20 per group.
 layout(local_size_x = k_count_group) in;
-layout(set = 0, binding = 0) uniform samplerBuffer points;    // LinePoint, two texels each
+layout(set = 0, binding = 0) uniform usamplerBuffer points;   // LinePoint, two texels each
 layout(set = 0, binding = 1) uniform usamplerBuffer visible;  // two words per point
 layout(set = 0, binding = 2) uniform samplerBuffer strokes;   // two texels per point
-layout(set = 0, binding = 3) uniform samplerBuffer matches;   // votes.comp, two texels each
+layout(set = 0, binding = 3) uniform usamplerBuffer matches;  // votes.comp, two texels each
 layout(set = 0, binding = 4) uniform samplerBuffer phases;    // two texels per point
 layout(set = 0, binding = 5, std430) readonly buffer Counts { LineCounts counts; };
 layout(set = 0, binding = 6, std430) writeonly buffer Traces { vec4 traces[]; };  // per segment
@@ -29,12 +29,12 @@ vec2 phase_of(uint point) {
 
 // Writes the trace of the segment to the next point; returns its contribution to the sums.
 Flickering trace_and_flicker(uint index) {
-    const vec4 more = texelFetch(points, int(2u * index + 1u));
-    const uint kind = floatBitsToUint(more.x), walked = floatBitsToUint(more.z);
+    const uvec4 more = texelFetch(points, int(2u * index + 1u));
+    const uint kind = more.x, walked = more.z;
     if ((kind & k_point_last) != 0u) return k_invalid_index;
-    const vec4 match = texelFetch(matches, int(2u * index));
-    const float period = match.z, along = texelFetch(points, int(2u * index)).w,
-                along_next = texelFetch(points, int(2u * index + 2u)).w, size = along_next - along;
+    const vec3 match = uintBitsToFloat(texelFetch(matches, int(2u * index)).xyz);
+    const float period = match.z, along = uintBitsToFloat(texelFetch(points, int(2u * index)).w),
+                along_next = uintBitsToFloat(texelFetch(points, int(2u * index + 2u)).w), size = along_next - along;
     const vec2 ends = texture_ends(phase_of(index), phase_of(index + 1u), along, along_next, period);
     const uint mask = texelFetch(visible, int(2u * index)).x, samples = texelFetch(visible, int(2u * index + 1u)).x;
     const float share = float(bitCount(mask)) / float(samples) * texelFetch(strokes, int(2u * index)).w;

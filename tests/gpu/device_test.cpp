@@ -148,7 +148,7 @@ TEST(Buffer, RoundTripsAtOffsets) {
 
 // Leaked objects are reported when their device ends.
 TEST(Validation, TheLogOutlivesTheDevice) {
-    if (!shared_device().validating()) GTEST_SKIP() << "EXEMPLAR_VALIDATION is not set; tests/run.sh sets it";
+    if (!shared_device().switches().validates) GTEST_SKIP() << "EXEMPLAR_VALIDATION is not set; tests/run.sh sets it";
     auto device = std::make_unique<Device>(DeviceOptions{.name = std::to_string(shared_device().info().index)});
     const auto log = device->validation_log();
     auto info = empty_structure<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
@@ -161,7 +161,7 @@ TEST(Validation, TheLogOutlivesTheDevice) {
 
 // The messages a test provokes belong to a device of its own.
 TEST(Validation, CollectsWhatTheLayerSays) {
-    if (!shared_device().validating()) GTEST_SKIP() << "EXEMPLAR_VALIDATION is not set; tests/run.sh sets it";
+    if (!shared_device().switches().validates) GTEST_SKIP() << "EXEMPLAR_VALIDATION is not set; tests/run.sh sets it";
     Device device({.name = std::to_string(shared_device().info().index)});
     EXPECT_TRUE(device.validation_messages().empty());
     VkBufferCreateInfo info = empty_structure<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);

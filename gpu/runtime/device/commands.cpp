@@ -1,8 +1,7 @@
 #include "gpu/runtime/device/commands.h"
 
-#include <fmt/format.h>
-
 #include <cstdint>
+#include <utility>
 
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/device/errors.h"
@@ -27,24 +26,15 @@ void make_visible(VkCommandBuffer commands) {
 
 }  // namespace
 
-Commands::Commands(Device& device) : device_(device), pool_(device.handle()), fence_(device.handle()) {
-    auto pool = empty_structure<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
-    pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
-    pool.queueFamilyIndex = device.queue_family();
-    check(vkCreateCommandPool(device.handle(), &pool, nullptr, pool_.put()), "make a command pool");
-    const VkCommandBufferAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                               .pNext = nullptr,
-                                               .commandPool = pool_.get(),
-                                               .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                               .commandBufferCount = 1};
-    check(vkAllocateCommandBuffers(device.handle(), &allocate, &buffer_), "make a command buffer");
-    const auto fence = empty_structure<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
-    check(vkCreateFence(device.handle(), &fence, nullptr, fence_.put()), "make a fence");
-}
+Commands::Commands(Device& device) : device_(device), memory_(device.lend_commands()) {}
 
 Commands::~Commands() {
-    const VkFence fence = fence_.get();
-    if (state_ == State::submitted) vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX);
+    try {
+        wait();
+    } catch (const DeviceError&) {
+        // A lost device runs nothing to wait for.
+    }
+    device_.return_commands(std::move(memory_));
 }
 
 void Commands::begin() {
@@ -53,34 +43,32 @@ void Commands::begin() {
     if (state_ == State::recording) return;
     auto info = empty_structure<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
     info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-    check(vkBeginCommandBuffer(buffer_, &info), "record commands");
+    check(vkBeginCommandBuffer(memory_.buffer, &info), "record commands");
     state_ = State::recording;
 }
 
-void Commands::submit(const SubmitOrder& order) {
+Ticket Commands::submit(const SubmitOrder& order) {
     begin();
-    make_visible(buffer_);
+    make_visible(memory_.buffer);
     try {
-        check(vkEndCommandBuffer(buffer_), "record commands");
-        device_.submit(buffer_, fence_.get(), order);
+        check(vkEndCommandBuffer(memory_.buffer), "record commands");
+        ticket_ = device_.submit(memory_.buffer, order);
     } catch (const DeviceError&) {
         reset();
         throw;
     }
     state_ = State::submitted;
+    return ticket_;
 }
 
 void Commands::wait() {
     if (state_ != State::submitted) return;
-    const VkFence fence = fence_.get();
-    const auto what = [&] { return fmt::format("finish the work on device '{}'", device_.info().name); };
-    check(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX), what);
-    check(vkResetFences(device_.handle(), 1, &fence), what);
+    device_.wait(ticket_);
     reset();
 }
 
 void Commands::reset() {
-    vkResetCommandPool(device_.handle(), pool_.get(), 0);
+    vkResetCommandPool(device_.handle(), memory_.pool.get(), 0);
     state_ = State::idle;
 }
 

@@ -2,17 +2,30 @@
 
 #include <volk.h>
 
+#include <cstdint>
+#include <optional>
+
 #include "gpu/runtime/device/unique_handle.h"
 
 namespace exemplar {
 
 class Device;
 
-/// Semaphores of a submission, in addition to its fence; null: none.
+/// Semaphores of a submission; null: none.
 struct SubmitOrder {
     VkSemaphore wait = VK_NULL_HANDLE;
     VkPipelineStageFlags2 wait_stage = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;  ///< stages of the work that wait
     VkSemaphore signal = VK_NULL_HANDLE;
+    std::uint64_t wait_value = 0, signal_value = 0;  ///< of timeline semaphores
+};
+
+/// Number of a submission to a device, counted from 1. Submissions end in this order.
+using Ticket = std::uint64_t;
+
+/// A command buffer in a pool of its own.
+struct CommandMemory {
+    UniqueCommandPool pool;
+    VkCommandBuffer buffer = VK_NULL_HANDLE;
 };
 
 /// A command buffer that is recorded, submitted, waited for and then recorded again. Its writes are visible to all
@@ -29,22 +42,21 @@ class Commands {
 
     State state() const { return state_; }
     /// Valid only while recording.
-    VkCommandBuffer handle() const { return buffer_; }
+    VkCommandBuffer handle() const { return memory_.buffer; }
 
     /// Starts recording unless it has started. Throws DeviceError while submitted work has not been waited for.
     void begin();
     /// Ends recording with a barrier that makes all writes visible, submits, and returns at once. Discards what was
     /// recorded if it throws.
-    void submit(const SubmitOrder& order = {});
+    Ticket submit(const SubmitOrder& order = {});
     /// Waits until submitted work is done, if there is any. Throws DeviceLostError if the device was lost.
     void wait();
 
   private:
     void reset();
     Device& device_;
-    UniqueCommandPool pool_;
-    UniqueFence fence_;
-    VkCommandBuffer buffer_ = VK_NULL_HANDLE;
+    CommandMemory memory_;
+    Ticket ticket_ = 0;
     State state_ = State::idle;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <cstring>
 
@@ -14,11 +15,6 @@ namespace {
 std::string environment(const char* name) {
     const char* value = std::getenv(name);
     return value ? value : "";
-}
-
-bool wants_validation() {
-    const std::string value = environment("EXEMPLAR_VALIDATION");
-    return !value.empty() && value != "0";
 }
 
 // A damaged file is ignored, which costs only speed; `exemplar doctor` reports it.
@@ -43,8 +39,8 @@ bool has_extension(VkPhysicalDevice device, const char* name) {
 }
 
 Device::Device(const DeviceOptions& options)
-    : validating_(wants_validation()),
-      instance_(validating_,
+    : switches_(environment_switches()),
+      instance_(switches_.validates,
                 options.presentation ? options.presentation->instance_extensions : std::vector<std::string>{}) {
     const std::vector<DeviceInfo> devices = instance_.devices();
     const std::size_t index =
@@ -52,18 +48,39 @@ Device::Device(const DeviceOptions& options)
     info_ = devices[index];
     physical_ = instance_.physical_devices()[index];
     queue_family_ = find_compute_queue(physical_).value();
-    vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
+    vkGetPhysicalDeviceMemoryProperties(physical_, &memory_types_);
     if (options.presentation) require_presentation(*options.presentation);
     statistics_ = options.statistics && has_executable_statistics(physical_);
     tuning_ = load_tuning(info_);
     create(options.presentation.has_value());
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
     try {
-        pipeline_cache_ = std::make_unique<PipelineCache>(device_, info_);
+        create_tools();
     } catch (...) {
-        vkDestroyDevice(device_, nullptr);
+        destroy();
         throw;
     }
+}
+
+// Creates what needs the opened device.
+void Device::create_tools() {
+    memory_ = std::make_unique<MemoryAllocator>(device_, memory_types_, host_work_);
+    staging_ = std::make_unique<StagingPool>(*this);
+    auto type = empty_structure<VkSemaphoreTypeCreateInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO);
+    type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+    const auto info = empty_structure<VkSemaphoreCreateInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, &type);
+    timeline_ = UniqueSemaphore(device_);
+    check(vkCreateSemaphore(device_, &info, nullptr, timeline_.put()), "make a semaphore");
+    pipeline_cache_ = std::make_unique<PipelineCache>(device_, info_);
+}
+
+void Device::destroy() {
+    pipeline_cache_.reset();
+    idle_commands_.clear();
+    timeline_ = UniqueSemaphore();
+    staging_.reset();
+    memory_.reset();
+    vkDestroyDevice(device_, nullptr);
 }
 
 // Requires that the queue for compute and drawing can present too, as it can with drivers that have windows.
@@ -87,13 +104,20 @@ void Device::create(bool presents) {
         empty_structure<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
     features13.synchronization2 = VK_TRUE;
     features13.dynamicRendering = VK_TRUE;
+    auto features12 = empty_structure<VkPhysicalDeviceVulkan12Features>(
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &features13);
+    features12.timelineSemaphore = VK_TRUE;
     auto features =
-        empty_structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &features13);
+        empty_structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &features12);
+    // Accesses out of bounds then do no harm before the validation layer reports them; all devices offer it.
+    features.features.robustBufferAccess = switches_.validates ? VK_TRUE : VK_FALSE;
     auto executables = empty_structure<VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR>(
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR);
     executables.pipelineExecutableInfo = VK_TRUE;
     std::vector<const char*> extensions;
     if (presents) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
+    constexpr const char* k_portability_subset = "VK_KHR_portability_subset";  // where offered, it must be enabled
+    if (has_extension(physical_, k_portability_subset)) extensions.push_back(k_portability_subset);
     if (statistics_) {
         extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
         features13.pNext = &executables;
@@ -115,8 +139,7 @@ void Device::create(bool presents) {
 Device::~Device() {
     if (!device_) return;
     vkDeviceWaitIdle(device_);
-    pipeline_cache_.reset();
-    vkDestroyDevice(device_, nullptr);
+    destroy();
 }
 
 std::vector<ExecutableStatistic> Device::statistics_of(const std::string& kernel) const {
@@ -130,26 +153,87 @@ void Device::store_statistics(const std::string& kernel, std::vector<ExecutableS
     statistics_of_kernels_[kernel] = std::move(statistics);
 }
 
-void Device::submit(VkCommandBuffer commands, VkFence fence, const SubmitOrder& order) {
+Ticket Device::submit(VkCommandBuffer commands, const SubmitOrder& order) {
     const VkCommandBufferSubmitInfo command_info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
                                                  .pNext = nullptr,
                                                  .commandBuffer = commands,
                                                  .deviceMask = 0};
-    auto wait = empty_structure<VkSemaphoreSubmitInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO), signal = wait;
+    auto wait = empty_structure<VkSemaphoreSubmitInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO);
     wait.semaphore = order.wait;
+    wait.value = order.wait_value;
     wait.stageMask = order.wait_stage;
-    signal.semaphore = order.signal;
-    signal.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    std::array<VkSemaphoreSubmitInfo, 2> signals{};
+    for (VkSemaphoreSubmitInfo& signal : signals) {
+        signal.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO;
+        signal.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    }
+    signals[0].semaphore = timeline_.get();
+    signals[1].semaphore = order.signal;
+    signals[1].value = order.signal_value;
     auto info = empty_structure<VkSubmitInfo2>(VK_STRUCTURE_TYPE_SUBMIT_INFO_2);
     info.commandBufferInfoCount = 1;
     info.pCommandBufferInfos = &command_info;
     info.waitSemaphoreInfoCount = order.wait ? 1 : 0;
     info.pWaitSemaphoreInfos = &wait;
-    info.signalSemaphoreInfoCount = order.signal ? 1 : 0;
-    info.pSignalSemaphoreInfos = &signal;
+    info.signalSemaphoreInfoCount = order.signal ? 2 : 1;
+    info.pSignalSemaphoreInfos = signals.data();
     const std::lock_guard lock(queue_mutex_);
-    check(vkQueueSubmit2(queue_, 1, &info, fence),
+    signals[0].value = last_ticket_ + 1;
+    check(vkQueueSubmit2(queue_, 1, &info, VK_NULL_HANDLE),
           [&] { return fmt::format("submit work to device '{}'", info_.name); });
+    host_work_.add(HostTask::submission);
+    return ++last_ticket_;
+}
+
+void Device::wait(Ticket ticket) {
+    if (ticket == 0) return;
+    host_work_.add(HostTask::wait);
+    const VkSemaphore timeline = timeline_.get();
+    auto info = empty_structure<VkSemaphoreWaitInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO);
+    info.semaphoreCount = 1;
+    info.pSemaphores = &timeline;
+    info.pValues = &ticket;
+    check(vkWaitSemaphores(device_, &info, UINT64_MAX),
+          [&] { return fmt::format("finish the work on device '{}'", info_.name); });
+}
+
+CommandMemory Device::lend_commands() {
+    {
+        const std::lock_guard lock(commands_mutex_);
+        if (!idle_commands_.empty()) {
+            CommandMemory memory = std::move(idle_commands_.back());
+            idle_commands_.pop_back();
+            return memory;
+        }
+    }
+    CommandMemory memory{.pool = UniqueCommandPool(device_)};
+    auto pool = empty_structure<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
+    pool.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+    pool.queueFamilyIndex = queue_family_;
+    check(vkCreateCommandPool(device_, &pool, nullptr, memory.pool.put()), "make a command pool");
+    const VkCommandBufferAllocateInfo allocate{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                               .pNext = nullptr,
+                                               .commandPool = memory.pool.get(),
+                                               .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                               .commandBufferCount = 1};
+    check(vkAllocateCommandBuffers(device_, &allocate, &memory.buffer), "make a command buffer");
+    return memory;
+}
+
+// What was recorded and not submitted is dropped.
+void Device::return_commands(CommandMemory memory) {
+    vkResetCommandPool(device_, memory.pool.get(), 0);
+    const std::lock_guard lock(commands_mutex_);
+    idle_commands_.push_back(std::move(memory));
+}
+
+void Device::name_pipeline(VkPipeline pipeline, const std::string& name) const {
+    if (!instance_.names_objects() || !vkSetDebugUtilsObjectNameEXT) return;
+    auto info = empty_structure<VkDebugUtilsObjectNameInfoEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT);
+    info.objectType = VK_OBJECT_TYPE_PIPELINE;
+    info.objectHandle = reinterpret_cast<std::uint64_t>(pipeline);
+    info.pObjectName = name.c_str();
+    vkSetDebugUtilsObjectNameEXT(device_, &info);
 }
 
 VkResult Device::present(const VkPresentInfoKHR& info) {
@@ -159,13 +243,14 @@ VkResult Device::present(const VkPresentInfoKHR& info) {
 
 void Device::wait_idle() {
     const std::lock_guard lock(queue_mutex_);
+    host_work_.add(HostTask::wait);
     check(vkDeviceWaitIdle(device_), [&] { return fmt::format("wait for device '{}'", info_.name); });
 }
 
 std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
                                   VkMemoryPropertyFlags preferred) const {
     for (const VkMemoryPropertyFlags wanted : {required | preferred, required})
-        for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i)
+        for (std::uint32_t i = 0; i < memory_types_.memoryTypeCount; ++i)
             if ((allowed >> i & 1) && (memory_properties(i) & wanted) == wanted) return i;
     throw DeviceError(fmt::format("device '{}' has no memory of the needed kind (Vulkan property flags {:#x})",
                                   info_.name, required));

@@ -14,8 +14,12 @@
 #include "gpu/runtime/device/commands.h"
 #include "gpu/runtime/device/device_info.h"
 #include "gpu/runtime/device/executable_statistics.h"
+#include "gpu/runtime/device/host_work.h"
 #include "gpu/runtime/device/instance.h"
+#include "gpu/runtime/device/memory_allocator.h"
 #include "gpu/runtime/device/pipeline_cache.h"
+#include "gpu/runtime/device/staging_pool.h"
+#include "gpu/runtime/device/switches.h"
 #include "gpu/runtime/device/tuning.h"
 
 namespace exemplar {
@@ -28,7 +32,7 @@ struct PresentationOptions {
 };
 
 struct DeviceOptions {
-    /// Index in list_devices(), or part of a device's name in any case. Empty: the environment variable
+    /// What select_device accepts: an index, a UUID, a PCI address or part of a name. Empty: the environment variable
     /// EXEMPLAR_DEVICE, else the best device.
     std::string name{};
     std::optional<PresentationOptions> presentation{};  ///< none: nothing is shown in windows
@@ -36,7 +40,7 @@ struct DeviceOptions {
 };
 
 /// An opened Vulkan device with one queue for compute, copies and drawing. Objects made from it must be destroyed
-/// before it. EXEMPLAR_VALIDATION=1 in the environment turns the validation layer on; see validation_messages().
+/// before it. Variables of the environment change what it does for tests: DeviceSwitches.
 class Device {
   public:
     /// Throws NoDeviceError, which lists the available devices, if there is no such device; another DeviceError for
@@ -51,7 +55,10 @@ class Device {
     std::vector<std::string> validation_messages() const { return validation_log()->messages(); }
     /// Returns the same log. It outlives the device, whose end reports objects that were not destroyed.
     std::shared_ptr<const ValidationLog> validation_log() const { return instance_.validation_log(); }
-    bool validating() const { return validating_; }
+    const DeviceSwitches& switches() const { return switches_; }
+    /// Whether operations that the host can do as well are faster there: the device is a CPU, so that the host has
+    /// the same cores without the detour (D6 in docs/portability.md). Never with EXEMPLAR_HOST=never.
+    bool host_is_faster() const { return info_.type == DeviceType::cpu && switches_.prefers_host; }
 
     VkInstance instance() const { return instance_.handle(); }
     VkPhysicalDevice physical() const { return physical_; }
@@ -70,33 +77,56 @@ class Device {
     std::vector<ExecutableStatistic> statistics_of(const std::string& kernel) const;
     void store_statistics(const std::string& kernel, std::vector<ExecutableStatistic> statistics);
 
-    /// Submits recorded commands; any thread may call it. `fence` is signaled when they are done.
-    void submit(VkCommandBuffer commands, VkFence fence, const SubmitOrder& order = {});
+    /// Names a pipeline for captures and the messages of the validation layer.
+    void name_pipeline(VkPipeline pipeline, const std::string& name) const;
+
+    /// Submits recorded commands; any thread may call it.
+    Ticket submit(VkCommandBuffer commands, const SubmitOrder& order = {});
+    /// Waits until a submission, and all before it, are done; any thread may call it. Throws DeviceLostError if the
+    /// device was lost.
+    void wait(Ticket ticket);
     /// Calls vkQueuePresentKHR; any thread may call it.
     VkResult present(const VkPresentInfoKHR& info);
-    /// Waits until the device is idle.
+    /// Waits until all work is done, also that of the window system.
     void wait_idle();
+
+    MemoryAllocator& memory() { return *memory_; }
+    StagingPool& staging() { return *staging_; }
+    /// Lends memory for commands that nothing is recorded in; any thread may call it.
+    CommandMemory lend_commands();
+    /// Takes it back once the device has finished with it.
+    void return_commands(CommandMemory memory);
+    HostWorkCounter& host_work() { return host_work_; }
 
     /// Returns a memory type among the bits `allowed` that has all `required` properties, and all `preferred` ones if
     /// there is such a type. Throws DeviceError if none has the required ones.
     std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags required,
                               VkMemoryPropertyFlags preferred) const;
     VkMemoryPropertyFlags memory_properties(std::uint32_t type) const {
-        return memory_.memoryTypes[type].propertyFlags;
+        return memory_types_.memoryTypes[type].propertyFlags;
     }
 
   private:
     void require_presentation(const PresentationOptions& presentation) const;
     void create(bool presents);
-    bool validating_;
+    void create_tools();
+    void destroy();
+    DeviceSwitches switches_;
+    HostWorkCounter host_work_;
     Instance instance_;
     DeviceInfo info_;
     VkPhysicalDevice physical_ = VK_NULL_HANDLE;
-    VkPhysicalDeviceMemoryProperties memory_{};
+    VkPhysicalDeviceMemoryProperties memory_types_{};
     VkDevice device_ = VK_NULL_HANDLE;
     VkQueue queue_ = VK_NULL_HANDLE;
     std::uint32_t queue_family_ = 0;
     std::mutex queue_mutex_;
+    UniqueSemaphore timeline_;  // its value is the ticket of the last finished submission
+    Ticket last_ticket_ = 0;
+    std::unique_ptr<MemoryAllocator> memory_;
+    std::unique_ptr<StagingPool> staging_;
+    std::mutex commands_mutex_;
+    std::vector<CommandMemory> idle_commands_;
     std::unique_ptr<PipelineCache> pipeline_cache_;
     Tuning tuning_;
     bool statistics_ = false;

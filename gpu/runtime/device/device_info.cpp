@@ -9,6 +9,7 @@
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/device/errors.h"
 #include "gpu/runtime/device/instance.h"
+#include "gpu/runtime/device/visible_devices.h"
 #include "host/core/text.h"
 
 namespace exemplar {
@@ -87,6 +88,16 @@ std::string device_list(std::span<const DeviceInfo> devices) {
     return list;
 }
 
+std::string pci_address(VkPhysicalDevice device) {
+    if (!has_extension(device, VK_EXT_PCI_BUS_INFO_EXTENSION_NAME)) return {};
+    auto pci = empty_structure<VkPhysicalDevicePCIBusInfoPropertiesEXT>(
+        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PCI_BUS_INFO_PROPERTIES_EXT);
+    auto properties =
+        empty_structure<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &pci);
+    vkGetPhysicalDeviceProperties2(device, &properties);
+    return fmt::format("{:04x}:{:02x}:{:02x}.{:x}", pci.pciDomain, pci.pciBus, pci.pciDevice, pci.pciFunction);
+}
+
 // Suggests the nearest device name, or word of one.
 std::string suggest_name(std::span<const DeviceInfo> devices, std::string_view wanted) {
     std::vector<std::string> candidates;
@@ -116,6 +127,11 @@ const DeviceInfo* find_device(std::span<const DeviceInfo> devices, std::string_v
     const auto [end, error] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
     const bool number = error == std::errc{} && end == wanted.data() + wanted.size();
     if (number && index < devices.size()) return &devices[index];
+    constexpr std::string_view k_uuid = "uuid:", k_pci = "pci:";
+    for (const DeviceInfo& device : devices)
+        if ((wanted.starts_with(k_uuid) && is_uuid_of(wanted.substr(k_uuid.size()), device)) ||
+            (wanted.starts_with(k_pci) && is_pci_address_of(wanted.substr(k_pci.size()), device)))
+            return &device;
     const std::string part = lower_case(wanted);
     const DeviceInfo* best = nullptr;
     for (const DeviceInfo& device : devices)
@@ -151,8 +167,10 @@ DeviceInfo describe(VkPhysicalDevice device, std::size_t index) {
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES, &buffers);
     auto subgroup = empty_structure<VkPhysicalDeviceSubgroupProperties>(
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SUBGROUP_PROPERTIES, &maintenance);
+    auto identity =
+        empty_structure<VkPhysicalDeviceIDProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ID_PROPERTIES, &subgroup);
     auto driver = empty_structure<VkPhysicalDeviceDriverProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES,
-                                                                    &subgroup);
+                                                                    &identity);
     auto properties =
         empty_structure<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, &driver);
     vkGetPhysicalDeviceProperties2(device, &properties);
@@ -167,7 +185,10 @@ DeviceInfo describe(VkPhysicalDevice device, std::size_t index) {
     info.driver_number = core.driverVersion;
     info.api_version = version_text(core.apiVersion);
     info.unusable = missing_feature(device, core.apiVersion);
+    std::copy_n(identity.deviceUUID, VK_UUID_SIZE, info.uuid.begin());
     std::copy_n(core.pipelineCacheUUID, VK_UUID_SIZE, info.cache_uuid.begin());
+    info.pci_address = pci_address(device);
+    info.vendor = core.vendorID;
     info.memory = local_memory(device);
     info.max_allocation = maintenance.maxMemoryAllocationSize;
     if (buffers.maxBufferSize) info.max_allocation = std::min(info.max_allocation, buffers.maxBufferSize);
@@ -242,6 +263,8 @@ nlohmann::ordered_json to_json(const DeviceReport& report) {
                                    {"driver", info.driver_name},
                                    {"driver_version", info.driver_version},
                                    {"api_version", info.api_version},
+                                   {"uuid", uuid_text(info)},
+                                   {"pci_address", info.pci_address},
                                    {"usable", info.unusable.empty()},
                                    {"memory_bytes", info.memory},
                                    {"max_allocation_bytes", info.max_allocation},

@@ -24,10 +24,13 @@ struct DeviceInfo {
     std::string name;
     DeviceType type = DeviceType::other;
     std::string driver_name;
-    std::string driver_version;  ///< the driver's own text where it has one
-    std::string api_version;     ///< "major.minor.patch"
-    std::string unusable;        ///< why Exemplar cannot use it; empty if it can
-    std::array<std::uint8_t, VK_UUID_SIZE> cache_uuid{};
+    std::string driver_version;                           ///< the driver's own text where it has one
+    std::string api_version;                              ///< "major.minor.patch"
+    std::string unusable;                                 ///< why Exemplar cannot use it; empty if it can
+    std::array<std::uint8_t, VK_UUID_SIZE> uuid{};        ///< of the device, the same in all programs and APIs
+    std::array<std::uint8_t, VK_UUID_SIZE> cache_uuid{};  ///< of the driver's compiled pipelines
+    std::string pci_address;                              ///< "0000:41:00.0"; empty if the driver does not tell
+    std::uint32_t vendor = 0;                             ///< PCI number of the vendor
     std::uint32_t driver_number = 0;
     std::uint64_t memory = 0;                       ///< bytes of the largest device-local heap
     std::uint64_t max_allocation = 0;               ///< bytes of one buffer
@@ -73,9 +76,10 @@ std::vector<DeviceInfo> list_devices();
 /// ones in this order (among CPU drivers D13 in docs/portability.md), then those with more memory.
 bool is_better(const DeviceInfo& a, const DeviceInfo& b);
 
-/// Returns the index of the device that `wanted` names: an index, or part of a name in any case (the best match; a
-/// number that is no index counts as part of a name), or empty for the best usable device. Throws NoDeviceError, with
-/// the list of devices and the nearest name, if there is no such device or it is unusable.
+/// Returns the index of the device that `wanted` names: an index, "uuid:" and a UUID or its beginning, "pci:" and a PCI
+/// address, or part of a name in any case (the best match; a number that is no index counts as part of a name), or
+/// empty for the best usable device. Throws NoDeviceError, with the list of devices and the nearest name, if there is
+/// no such device or it is unusable.
 std::size_t select_device(std::span<const DeviceInfo> devices, std::string_view wanted);
 
 /// Opens the device, measures its ceilings (about a second) and returns the full report.

@@ -4,9 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
 
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/device/visible_devices.h"
 
 namespace exemplar {
 namespace {
@@ -43,6 +45,15 @@ bool has_layer(const char* name) {
     return std::ranges::any_of(layers, [&](const VkLayerProperties& l) { return std::strcmp(l.layerName, name) == 0; });
 }
 
+bool has_instance_extension(const char* name) {
+    std::uint32_t count = 0;
+    vkEnumerateInstanceExtensionProperties(nullptr, &count, nullptr);
+    std::vector<VkExtensionProperties> extensions(count);
+    vkEnumerateInstanceExtensionProperties(nullptr, &count, extensions.data());
+    return std::ranges::any_of(extensions,
+                               [&](const VkExtensionProperties& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
 VkDebugUtilsMessengerCreateInfoEXT messenger_info(PFN_vkDebugUtilsMessengerCallbackEXT callback, void* user) {
     return {
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
@@ -68,10 +79,13 @@ void Instance::create(bool validation, const std::vector<std::string>& wanted_ex
         throw DeviceError(
             "EXEMPLAR_VALIDATION is set but the validation layer is missing; install vulkan-validationlayers");
     std::vector<const char*> layers, extensions;
-    if (validation) {
-        layers.push_back(k_validation_layer);
-        extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
-    }
+    if (validation) layers.push_back(k_validation_layer);
+    // Names of kernels in captures. The layer has the extension even where no driver does.
+    names_objects_ = validation || has_instance_extension(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    if (names_objects_) extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    // Drivers that translate to another interface, such as MoltenVK, are listed only if asked for.
+    const bool portable = has_instance_extension(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
+    if (portable) extensions.push_back(VK_KHR_PORTABILITY_ENUMERATION_EXTENSION_NAME);
     for (const std::string& extension : wanted_extensions) extensions.push_back(extension.c_str());
     VkDebugUtilsMessengerCreateInfoEXT messenger = messenger_info(&Instance::collect, log_.get());
     const VkValidationFeatureEnableEXT enabled = VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
@@ -88,14 +102,15 @@ void Instance::create(bool validation, const std::vector<std::string>& wanted_ex
                                         .pEngineName = "exemplar",
                                         .engineVersion = 1,
                                         .apiVersion = VK_API_VERSION_1_3};
-    const VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-                                    .pNext = validation ? &features : nullptr,
-                                    .flags = 0,
-                                    .pApplicationInfo = &application,
-                                    .enabledLayerCount = static_cast<std::uint32_t>(layers.size()),
-                                    .ppEnabledLayerNames = layers.data(),
-                                    .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
-                                    .ppEnabledExtensionNames = extensions.data()};
+    const VkInstanceCreateInfo info{
+        .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+        .pNext = validation ? &features : nullptr,
+        .flags = portable ? VkInstanceCreateFlags{VK_INSTANCE_CREATE_ENUMERATE_PORTABILITY_BIT_KHR} : 0,
+        .pApplicationInfo = &application,
+        .enabledLayerCount = static_cast<std::uint32_t>(layers.size()),
+        .ppEnabledLayerNames = layers.data(),
+        .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+        .ppEnabledExtensionNames = extensions.data()};
     const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
         throw NoDeviceError("no Vulkan driver found; install one (mesa-vulkan-drivers has one for any CPU)");
@@ -139,6 +154,7 @@ std::vector<VkPhysicalDevice> Instance::physical_devices() const {
 std::vector<DeviceInfo> Instance::devices() const {
     std::vector<DeviceInfo> infos;
     for (VkPhysicalDevice device : physical_devices()) infos.push_back(describe(device, infos.size()));
+    hide_devices_of_others(infos, [](const char* variable) { return std::getenv(variable); });
     return infos;
 }
 

@@ -45,6 +45,8 @@ class Instance {
     std::vector<VkPhysicalDevice> physical_devices() const;
     std::vector<DeviceInfo> devices() const;
     const std::shared_ptr<ValidationLog>& validation_log() const { return log_; }
+    /// Whether objects and commands can be given names for captures (VK_EXT_debug_utils).
+    bool names_objects() const { return names_objects_; }
 
   private:
     Instance() = default;
@@ -54,6 +56,7 @@ class Instance {
     void create(bool validation, const std::vector<std::string>& wanted_extensions);
     VkInstance instance_ = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
+    bool names_objects_ = false;
     std::shared_ptr<ValidationLog> log_ = std::make_shared<ValidationLog>();
 };
 

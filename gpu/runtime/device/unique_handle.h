@@ -47,7 +47,6 @@ using UniquePipeline = UniqueHandle<VkPipeline, &vkDestroyPipeline>;
 using UniqueCommandPool = UniqueHandle<VkCommandPool, &vkDestroyCommandPool>;
 using UniqueSemaphore = UniqueHandle<VkSemaphore, &vkDestroySemaphore>;
 using UniqueSwapchain = UniqueHandle<VkSwapchainKHR, &vkDestroySwapchainKHR>;
-using UniqueFence = UniqueHandle<VkFence, &vkDestroyFence>;
 using UniqueQueryPool = UniqueHandle<VkQueryPool, &vkDestroyQueryPool>;
 
 }  // namespace exemplar

@@ -158,6 +158,7 @@ DrawPipeline::DrawPipeline(Device& device, const Shader& vertex, const Shader& f
     check(vkCreateGraphicsPipelines(device.handle(), device.pipeline_cache().handle(), 1, &info, nullptr,
                                     program->pipeline.put()),
           [&] { return fmt::format("make the pipeline {}", program->name); });
+    device.name_pipeline(program->pipeline.get(), program->name);
     program_ = program;
 }
 

@@ -76,6 +76,7 @@ void create_pipeline(Device& device, Program& program, const Shader& shader, con
     check(vkCreateComputePipelines(device.handle(), device.pipeline_cache().handle(), 1, &info, nullptr,
                                    program.pipeline.put()),
           [&] { return fmt::format("compile kernel {}", program.name); });
+    device.name_pipeline(program.pipeline.get(), program.name);
     if (device.captures_statistics())
         device.store_statistics(program.name, executable_statistics(device, program.pipeline.get()));
 }

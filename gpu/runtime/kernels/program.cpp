@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/device/errors.h"
@@ -56,6 +57,11 @@ void set_texel_formats(const Shader& shader, const ProgramInterface& interface, 
 }
 
 }  // namespace
+
+std::uint64_t next_program_id() {
+    static std::atomic<std::uint64_t> last = 0;
+    return ++last;
+}
 
 void check_interface(const Shader& shader, const ProgramInterface& interface, Reflection& reflection) {
     pad_push_constants(interface, reflection);

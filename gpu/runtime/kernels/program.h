@@ -2,6 +2,7 @@
 
 #include <volk.h>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,6 +28,9 @@ struct ProgramInterface {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> constants{};
 };
 
+/// Returns a number that no program had before.
+std::uint64_t next_program_id();
+
 /// The Vulkan objects behind a kernel or a drawing pipeline.
 struct Program {
     std::string name;
@@ -35,6 +39,7 @@ struct Program {
     UniqueSetLayout set_layout;
     UniquePipelineLayout layout;
     UniquePipeline pipeline;
+    std::uint64_t id = next_program_id();
 };
 
 /// Throws ShaderError if the declarations of a shader differ from `interface`. Sets the texel formats in

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
+#include <utility>
 
 #include "gpu/runtime/device/device.h"
 #include "gpu/runtime/device/errors.h"
@@ -12,39 +14,22 @@
 namespace exemplar {
 namespace {
 
-struct MemoryRequest {
-    VkMemoryPropertyFlags required;
-    VkMemoryPropertyFlags preferred;
-};
-
-constexpr VkMemoryPropertyFlags k_mappable = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-
-MemoryRequest memory_request_for(BufferMemory memory) {
-    switch (memory) {
-        case BufferMemory::upload:
-            return {k_mappable, 0};
-        case BufferMemory::readback:
-            return {k_mappable, VK_MEMORY_PROPERTY_HOST_CACHED_BIT};
-        case BufferMemory::device:
-            break;
-    }
-    return {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, k_mappable | VK_MEMORY_PROPERTY_HOST_CACHED_BIT};
-}
-
-// Device memory that is not cached is never mapped: reading it directly is slower than copying.
-bool can_map(VkMemoryPropertyFlags properties, BufferMemory memory) {
-    const VkMemoryPropertyFlags needed =
-        memory == BufferMemory::device ? k_mappable | VK_MEMORY_PROPERTY_HOST_CACHED_BIT : k_mappable;
-    return (properties & needed) == needed;
-}
+// Device memory that the host sees is used directly only if it is cached: reading it is slower than copying otherwise.
+constexpr VkMemoryPropertyFlags k_mapped_properties =
+    VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
 
 // Staged transfers go in pieces, so that they need little memory beside the buffer.
 constexpr std::size_t k_piece_bytes = std::size_t{64} << 20;
 
+std::uint64_t next_buffer_id() {
+    static std::atomic<std::uint64_t> last = 0;
+    return ++last;
+}
+
 }  // namespace
 
-Buffer::Resource::Resource(Device& owner, std::size_t capacity, BufferMemory memory)
-    : device(owner), allocation(owner.handle()), buffer(owner.handle()) {
+Buffer::Resource::Resource(Device& owner, std::size_t capacity)
+    : device(owner), id(next_buffer_id()), buffer(owner.handle()) {
     const auto what = [&] {
         return fmt::format("allocate a buffer of {} on '{}'", format_bytes(capacity), device.info().name);
     };
@@ -56,28 +41,50 @@ Buffer::Resource::Resource(Device& owner, std::size_t capacity, BufferMemory mem
     check(vkCreateBuffer(device.handle(), &info, nullptr, buffer.put()), what);
     VkMemoryRequirements needs{};
     vkGetBufferMemoryRequirements(device.handle(), buffer.get(), &needs);
-    const MemoryRequest wish = memory_request_for(memory);
-    const VkMemoryAllocateInfo allocate{
-        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-        .pNext = nullptr,
-        .allocationSize = needs.size,
-        .memoryTypeIndex = device.memory_type(needs.memoryTypeBits, wish.required, wish.preferred)};
-    check(vkAllocateMemory(device.handle(), &allocate, nullptr, allocation.put()), what);
-    check(vkBindBufferMemory(device.handle(), buffer.get(), allocation.get(), 0), what);
-    if (!can_map(device.memory_properties(allocate.memoryTypeIndex), memory)) return;
-    void* address = nullptr;
-    check(vkMapMemory(device.handle(), allocation.get(), 0, VK_WHOLE_SIZE, 0, &address), what);
-    mapped = static_cast<std::byte*>(address);
+    const bool maps = device.switches().maps_memory;
+    const std::uint32_t type =
+        device.memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, maps ? k_mapped_properties : 0);
+    check(device.memory().allocate(needs, type, MemoryContent::buffer, memory), what);
+    check(vkBindBufferMemory(device.handle(), buffer.get(), memory.memory(), memory.offset()), what);
+    device.host_work().add(HostTask::buffer);
+    if (maps && (device.memory_properties(type) & k_mapped_properties) == k_mapped_properties) mapped = memory.mapped();
 }
 
-Buffer::Buffer(Device& device, std::size_t bytes, BufferMemory memory) : bytes_(bytes) {
+VkBufferView Buffer::Resource::view(VkFormat format, VkDeviceSize offset, VkDeviceSize range) {
+    const std::lock_guard lock(mutex_);
+    for (const View& view : views_)
+        if (view.format == format && view.offset == offset && view.range == range) return view.handle.get();
+    auto info = empty_structure<VkBufferViewCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO);
+    info.buffer = buffer.get();
+    info.format = format;
+    info.offset = offset;
+    info.range = range;
+    UniqueBufferView view(device.handle());
+    check(vkCreateBufferView(device.handle(), &info, nullptr, view.put()), "make a view of a buffer");
+    device.host_work().add(HostTask::view);
+    return views_.emplace_back(format, offset, range, std::move(view)).handle.get();
+}
+
+Buffer::Buffer(Device& device, std::size_t bytes) : bytes_(bytes) {
     if (const std::uint64_t limit = device.info().max_allocation; bytes > limit)
         throw DeviceLimitError(fmt::format("a buffer of {} is over the limit of {} of device '{}'; split the work",
                                            format_bytes(bytes), format_bytes(limit), device.info().name),
                                bytes, limit);
     // Rounded up to 16 bytes: Vulkan has no empty buffers, and kernels may bind the tail of a vec4.
     const std::size_t capacity = std::max<std::size_t>((bytes + 15) / 16 * 16, 16);
-    resource_ = std::make_shared<Resource>(device, capacity, memory);
+    resource_ = std::make_shared<Resource>(device, capacity);
+    if (device.switches().poisons) poison(capacity);
+}
+
+void Buffer::poison(std::size_t capacity) {
+    constexpr unsigned char k_poison = 0xff;
+    if (std::byte* memory = resource_->memory.mapped()) {
+        std::memset(memory, k_poison, capacity);
+        return;
+    }
+    Stream stream(resource_->device);
+    stream.fill(*this, 0xffffffffu);
+    stream.finish();
 }
 
 void Buffer::check_range(std::size_t offset, std::size_t size) const {
@@ -90,8 +97,9 @@ void Buffer::write(std::span<const std::byte> data, std::size_t offset) {
     check_range(offset, data.size());
     if (data.empty()) return;
     if (resource_->mapped) {
-        if (resource_->streams != 0) resource_->device.wait_idle();
+        if (resource_->streams != 0) resource_->device.wait(resource_->last_use);
         std::memcpy(resource_->mapped + offset, data.data(), data.size());
+        resource_->device.host_work().add(HostTask::byte_up, data.size());
         return;
     }
     Stream stream(resource_->device);
@@ -105,8 +113,9 @@ void Buffer::read(std::span<std::byte> data, std::size_t offset) const {
     check_range(offset, data.size());
     if (data.empty()) return;
     if (resource_->mapped) {
-        if (resource_->streams != 0) resource_->device.wait_idle();
+        if (resource_->streams != 0) resource_->device.wait(resource_->last_use);
         std::memcpy(data.data(), resource_->mapped + offset, data.size());
+        resource_->device.host_work().add(HostTask::byte_down, data.size());
         return;
     }
     Stream stream(resource_->device);

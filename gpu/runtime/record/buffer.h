@@ -6,29 +6,27 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <type_traits>
+#include <vector>
 
+#include "gpu/runtime/device/commands.h"
+#include "gpu/runtime/device/memory_allocator.h"
 #include "gpu/runtime/device/unique_handle.h"
 
 namespace exemplar {
 
 class Device;
 
-/// Where a buffer lives.
-enum class BufferMemory {
-    device,    ///< fastest for kernels; mapped too where device and host share cached memory
-    upload,    ///< host memory that the host writes and the device reads once
-    readback,  ///< cached host memory for reading what the device wrote
-};
-
-/// A storage, texel and index buffer. Streams that use a buffer keep its memory alive until they are done.
-/// Contents are undefined until written. Movable, not copyable; a default-constructed buffer has no memory.
+/// A storage, texel and index buffer in the device's memory, which the host sees where both share cached memory.
+/// Streams that use a buffer keep its memory alive until they are done. Contents are undefined until written. Movable,
+/// not copyable; a default-constructed buffer has no memory.
 class Buffer {
   public:
     Buffer() = default;
     /// Throws DeviceLimitError if the device cannot allocate that much at once, DeviceMemoryError if memory is used up.
-    Buffer(Device& device, std::size_t bytes, BufferMemory memory = BufferMemory::device);
+    Buffer(Device& device, std::size_t bytes);
     Buffer(Buffer&&) = default;
     Buffer& operator=(Buffer&&) = default;
     Buffer(const Buffer&) = delete;
@@ -62,21 +60,37 @@ class Buffer {
     void write(std::span<const std::byte> data, std::size_t offset);
     void read(std::span<std::byte> data, std::size_t offset) const;
 
-    /// The Vulkan objects behind a buffer.
-    struct Resource {
-        Resource(Device& owner, std::size_t capacity, BufferMemory memory);
+    /// The Vulkan objects behind a buffer. Any thread may use them.
+    class Resource {
+      public:
+        Resource(Device& owner, std::size_t capacity);
         Resource(const Resource&) = delete;
         Resource& operator=(const Resource&) = delete;
+        /// Returns a view of texels, made at the first call and kept.
+        VkBufferView view(VkFormat format, VkDeviceSize offset, VkDeviceSize range);
+
         Device& device;
-        UniqueMemory allocation;  // destroyed after the buffer in it
+        const std::uint64_t id;  ///< of no other buffer, not even of one that takes the place of this one
+        MemoryPart memory;       // returned after the buffer in it
         UniqueBuffer buffer;
-        std::byte* mapped = nullptr;             ///< null if the host cannot see the memory
+        std::byte* mapped = nullptr;             ///< null if the host does not see the memory
         std::atomic<std::uint32_t> streams = 0;  ///< streams that have recorded a use and are not done
+        std::atomic<Ticket> last_use = 0;        ///< the last submission that uses it
+
+      private:
+        struct View {
+            VkFormat format;
+            VkDeviceSize offset, range;
+            UniqueBufferView handle;
+        };
+        std::mutex mutex_;
+        std::vector<View> views_;
     };
     const std::shared_ptr<Resource>& resource() const { return resource_; }
 
   private:
     void check_range(std::size_t offset, std::size_t size) const;
+    void poison(std::size_t capacity);
     std::shared_ptr<Resource> resource_;
     std::size_t bytes_ = 0;
 };

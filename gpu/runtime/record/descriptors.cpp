@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::uint32_t k_sets_per_pool = 256;
 constexpr std::uint32_t k_bindings_per_pool = 8 * k_sets_per_pool;
+constexpr std::size_t k_most_sets = 512;   // kept beyond the end of a recording
 constexpr std::uint64_t k_min_bytes = 16;  // what every buffer has, empty ones too
 
 // The device's limits for ranges of one descriptor type.
@@ -50,8 +51,10 @@ void check_binding(const Program& program, const ReflectedBinding& binding, cons
 // multiple of 16 bytes, for kernels that read four values at once.
 VkDescriptorBufferInfo bound_range(const ReflectedBinding& binding, const BufferRange& range, const DeviceInfo& info) {
     if (range.bytes == 0) return {range.buffer->handle(), 0, k_min_bytes};
-    const bool last = range.offset + range.bytes == range.buffer->bytes();
-    const std::uint64_t padded = (range.bytes + k_min_bytes - 1) / k_min_bytes * k_min_bytes;
+    const std::uint64_t end = range.offset + range.bytes;
+    const bool last = end == range.buffer->bytes();
+    // The end is rounded, not the length: buffers end at a multiple of 16 bytes, but ranges may begin at any.
+    const std::uint64_t padded = (end + k_min_bytes - 1) / k_min_bytes * k_min_bytes - range.offset;
     const std::uint64_t bytes = last ? std::min(padded, limits_of(binding, info).bytes) : range.bytes;
     const bool whole_texels = binding.type == BindingType::texels;
     return {range.buffer->handle(), range.offset, whole_texels ? bytes / binding.stride * binding.stride : bytes};
@@ -68,6 +71,17 @@ void Descriptors::check_bindings(const Program& program, std::span<const BufferR
 
 void Descriptors::bind(VkCommandBuffer commands, const Program& program, std::span<const BufferRange> ranges) {
     if (ranges.empty()) return;
+    key_.assign(1, program.id);
+    for (const BufferRange& range : ranges)
+        key_.insert(key_.end(), {range.buffer->resource()->id, range.offset, range.bytes});
+    auto found = sets_.find(key_);
+    if (found == sets_.end()) found = sets_.emplace(key_, write(program, ranges)).first;
+    const bool computes = program.stages == VK_SHADER_STAGE_COMPUTE_BIT;
+    vkCmdBindDescriptorSets(commands, computes ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS,
+                            program.layout.get(), 0, 1, &found->second, 0, nullptr);
+}
+
+VkDescriptorSet Descriptors::write(const Program& program, std::span<const BufferRange> ranges) {
     const VkDescriptorSet set = allocate(program.set_layout.get());
     std::vector<VkDescriptorBufferInfo> infos(ranges.size());
     std::vector<VkBufferView> views(ranges.size());
@@ -81,28 +95,15 @@ void Descriptors::bind(VkCommandBuffer commands, const Program& program, std::sp
         writes[i].descriptorCount = 1;
         writes[i].descriptorType = descriptor_type(binding.type);
         if (binding.type == BindingType::texels) {
-            views[i] = texel_view(binding, infos[i]);
+            views[i] = ranges[i].buffer->resource()->view(binding.format, infos[i].offset, infos[i].range);
             writes[i].pTexelBufferView = &views[i];
         } else {
             writes[i].pBufferInfo = &infos[i];
         }
     }
     vkUpdateDescriptorSets(device_.handle(), static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
-    const bool computes = program.stages == VK_SHADER_STAGE_COMPUTE_BIT;
-    vkCmdBindDescriptorSets(commands, computes ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS,
-                            program.layout.get(), 0, 1, &set, 0, nullptr);
-}
-
-VkBufferView Descriptors::texel_view(const ReflectedBinding& binding, const VkDescriptorBufferInfo& range) {
-    auto info = empty_structure<VkBufferViewCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO);
-    info.buffer = range.buffer;
-    info.format = binding.format;
-    info.offset = range.offset;
-    info.range = range.range;
-    UniqueBufferView view(device_.handle());
-    check(vkCreateBufferView(device_.handle(), &info, nullptr, view.put()), "make a view of a buffer");
-    views_.push_back(std::move(view));
-    return views_.back().get();
+    device_.host_work().add(HostTask::descriptor_set);
+    return set;
 }
 
 void Descriptors::add_pool() {
@@ -137,9 +138,10 @@ VkDescriptorSet Descriptors::allocate(VkDescriptorSetLayout layout) {
 }
 
 void Descriptors::reset() {
+    if (sets_.size() < k_most_sets) return;
     for (const UniqueDescriptorPool& pool : pools_) vkResetDescriptorPool(device_.handle(), pool.get(), 0);
     current_pool_ = 0;
-    views_.clear();
+    sets_.clear();
 }
 
 }  // namespace exemplar

@@ -3,6 +3,8 @@
 #include <volk.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -14,7 +16,8 @@ namespace exemplar {
 
 class Device;
 
-/// Descriptor sets of one command sequence.
+/// Descriptor sets of one command sequence. A set is kept and bound again by later commands with the same bindings, so
+/// that a frame that is recorded like the one before writes none.
 class Descriptors {
   public:
     explicit Descriptors(Device& device) : device_(device) {}
@@ -26,17 +29,20 @@ class Descriptors {
     void check_bindings(const Program& program, std::span<const BufferRange> ranges) const;
     /// Records the binding of ranges that passed check_bindings.
     void bind(VkCommandBuffer commands, const Program& program, std::span<const BufferRange> ranges);
-    /// Frees all sets; call it when the commands are done.
+    /// Call it when the commands are done. Frees all sets once there are many.
     void reset();
 
   private:
+    // The program, and buffer, offset and bytes of each binding, by numbers that are never used twice.
+    using Key = std::vector<std::uint64_t>;
     void add_pool();
     VkDescriptorSet allocate(VkDescriptorSetLayout layout);
-    VkBufferView texel_view(const ReflectedBinding& binding, const VkDescriptorBufferInfo& range);
+    VkDescriptorSet write(const Program& program, std::span<const BufferRange> ranges);
     Device& device_;
     std::vector<UniqueDescriptorPool> pools_;
     std::size_t current_pool_ = 0;
-    std::vector<UniqueBufferView> views_;
+    std::map<Key, VkDescriptorSet> sets_;
+    Key key_;  // of the set that is looked for; a member so that its memory is kept
 };
 
 }  // namespace exemplar

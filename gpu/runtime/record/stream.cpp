@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstring>
 
 #include "gpu/runtime/device/device.h"
@@ -12,8 +13,17 @@
 namespace exemplar {
 namespace {
 
-constexpr std::size_t k_staging_block = std::size_t{4} << 20;
 constexpr std::size_t k_staging_alignment = 16;
+
+bool overlap(const VkBufferCopy& a, const VkBufferCopy& b) {
+    return a.dstOffset < b.dstOffset + b.size && b.dstOffset < a.dstOffset + a.size;
+}
+
+// Sets the ticket to a later one; other threads may do so at the same time.
+void raise(std::atomic<Ticket>& ticket, Ticket later) {
+    for (Ticket now = ticket; now < later && !ticket.compare_exchange_weak(now, later);) {
+    }
+}
 
 Access access_of(const ReflectedBinding& binding, const BufferRange& range, VkPipelineStageFlags2 stage) {
     return {.buffer = range.buffer->handle(),
@@ -97,6 +107,15 @@ void check_bytes(const Buffer& buffer, std::size_t offset, std::size_t bytes) {
             fmt::format("bytes {} to {} are outside a buffer of {} bytes", offset, offset + bytes, buffer.bytes()));
 }
 
+void copy_texels(VkCommandBuffer commands, VkImage image, VkImageAspectFlags aspect, VkExtent2D extent, VkBuffer target,
+                 VkDeviceSize offset) {
+    VkBufferImageCopy region{};
+    region.bufferOffset = offset;
+    region.imageSubresource = {aspect, 0, 0, 1};
+    region.imageExtent = {extent.width, extent.height, 1};
+    vkCmdCopyImageToBuffer(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target, 1, &region);
+}
+
 }  // namespace
 
 Stream::Stream(Device& device, Profiler* profiler)
@@ -111,9 +130,16 @@ Stream::~Stream() {
     release();
 }
 
-void Stream::begin() {
+// Starts a recording unless it has started.
+void Stream::start() {
     if (commands_.state() == Commands::State::idle) barriers_.clear();
     commands_.begin();
+}
+
+// Begins the next command: copies that were collected come before it.
+void Stream::begin() {
+    start();
+    record_copies();
 }
 
 void Stream::use(const Buffer& buffer) {
@@ -123,24 +149,19 @@ void Stream::use(const Buffer& buffer) {
 void Stream::order(std::span<const Access> accesses) {
     const std::vector<Barrier> barriers = hazards_.before(accesses);
     if (barriers.empty()) return;
-    std::vector<VkBufferMemoryBarrier2> infos;
-    infos.reserve(barriers.size());
-    for (const Barrier& barrier : barriers)
-        infos.push_back({.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER_2,
-                         .pNext = nullptr,
-                         .srcStageMask = barrier.source_stage,
-                         .srcAccessMask = barrier.source_access,
-                         .dstStageMask = barrier.target_stage,
-                         .dstAccessMask = barrier.target_access,
-                         .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                         .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                         .buffer = barrier.buffer,
-                         .offset = 0,
-                         .size = VK_WHOLE_SIZE});
+    // One barrier for all memory: drivers treat those of single buffers alike.
+    auto all = empty_structure<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);
+    for (const Barrier& barrier : barriers) {
+        all.srcStageMask |= barrier.source_stage;
+        all.srcAccessMask |= barrier.source_access;
+        all.dstStageMask |= barrier.target_stage;
+        all.dstAccessMask |= barrier.target_access;
+    }
     auto dependency = empty_structure<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
-    dependency.bufferMemoryBarrierCount = static_cast<std::uint32_t>(infos.size());
-    dependency.pBufferMemoryBarriers = infos.data();
+    dependency.memoryBarrierCount = 1;
+    dependency.pMemoryBarriers = &all;
     vkCmdPipelineBarrier2(commands_.handle(), &dependency);
+    device_.host_work().add(HostTask::barrier);
     barriers_.insert(barriers_.end(), barriers.begin(), barriers.end());
 }
 
@@ -172,6 +193,7 @@ void Stream::dispatch_bytes(const Kernel& kernel, Threads threads, std::span<con
     begin();
     prepare(kernel, ranges, push, {});
     vkCmdDispatch(commands_.handle(), groups[0], groups[1], groups[2]);
+    device_.host_work().add(HostTask::dispatch);
     timestamps_.stop(commands_.handle(), VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }
 
@@ -184,6 +206,7 @@ void Stream::dispatch_indirect_bytes(const Kernel& kernel, const Buffer& argumen
     use(arguments);
     prepare(kernel, ranges, push, {indirect_read(arguments)});
     vkCmdDispatchIndirect(commands_.handle(), arguments.handle(), offset);
+    device_.host_work().add(HostTask::dispatch);
     timestamps_.stop(commands_.handle(), VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }
 
@@ -226,6 +249,7 @@ void Stream::render(const Pass& pass) {
         record_draw(commands_.handle(), item.draw, pass.target().extent);
     }
     vkCmdEndRendering(commands_.handle());
+    device_.host_work().add(HostTask::pass);
     timestamps_.stop(commands_.handle(), VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT);
 }
 
@@ -241,11 +265,16 @@ void Stream::copy_image(VkImage image, VkImageAspectFlags aspect, VkExtent2D ext
     begin();
     use(target);
     order(std::array{copy_write(target)});
-    VkBufferImageCopy region{};
-    region.imageSubresource = {aspect, 0, 0, 1};
-    region.imageExtent = {extent.width, extent.height, 1};
-    vkCmdCopyImageToBuffer(commands_.handle(), image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, target.handle(), 1,
-                           &region);
+    copy_texels(commands_.handle(), image, aspect, extent, target.handle(), 0);
+}
+
+void Stream::download_image(VkImage image, VkImageAspectFlags aspect, VkExtent2D extent, std::span<std::byte> target) {
+    if (target.empty()) return;
+    device_.host_work().add(HostTask::byte_down, target.size());
+    begin();
+    const auto [block, first] = stage(readbacks_, target.size(), StagingUse::readback);
+    copy_texels(commands_.handle(), image, aspect, extent, block->buffer.get(), first);
+    downloads_.push_back({block->mapped() + first, target});
 }
 
 void Stream::blit(VkImage source, VkExtent2D extent, VkImage target, VkRect2D part) {
@@ -264,30 +293,37 @@ void Stream::blit(VkImage source, VkExtent2D extent, VkImage target, VkRect2D pa
                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, scales ? VK_FILTER_LINEAR : VK_FILTER_NEAREST);
 }
 
-std::pair<Stream::Staging*, std::size_t> Stream::stage(std::vector<Staging>& blocks, std::size_t bytes,
-                                                       BufferMemory memory) {
+// Each block is as large as all before it together, so that a recording needs few.
+std::pair<StagingBlock*, std::size_t> Stream::stage(StagingBlocks& blocks, std::size_t bytes, StagingUse use) {
     const std::size_t padded = (bytes + k_staging_alignment - 1) / k_staging_alignment * k_staging_alignment;
-    auto block = std::ranges::find_if(blocks, [&](const Staging& b) { return b.buffer.bytes() - b.used >= padded; });
-    if (block == blocks.end())
-        block = blocks.insert(block, {Buffer(device_, std::max(k_staging_block, padded), memory)});
+    if (blocks.empty() || blocks.back()->left() < padded) {
+        std::size_t sum = 0;
+        for (const auto& block : blocks) sum += block->bytes;
+        blocks.push_back(device_.staging().lend(std::max(sum, padded), use));
+    }
+    StagingBlock* const block = blocks.back().get();
     const std::size_t offset = block->used;
     block->used += padded;
-    return {&*block, offset};
+    return {block, offset};
 }
 
 Stream::UploadTarget Stream::begin_upload(const Buffer& target, std::size_t offset, std::size_t bytes) {
     check_bytes(target, offset, bytes);
     if (bytes == 0) return {{}, nullptr, 0};
+    device_.host_work().add(HostTask::byte_up, bytes);
     // No stream uses the target, so the host may write into it directly.
     if (target.resource()->mapped && target.resource()->streams == 0)
         return {{target.resource()->mapped + offset, bytes}, nullptr, 0};
-    begin();
-    const auto [block, first] = stage(uploads_, bytes, BufferMemory::upload);
-    return {{block->buffer.resource()->mapped + first, bytes}, block, first};
+    start();
+    const auto [block, first] = stage(uploads_, bytes, StagingUse::upload);
+    return {{block->mapped() + first, bytes}, block, first};
 }
 
 void Stream::end_upload(const UploadTarget& place, Buffer& target, std::size_t offset) {
-    if (place.staging) copy(place.staging->buffer, place.offset, target, offset, place.memory.size());
+    if (!place.staging) return;
+    use(target);
+    add_copy(place.staging->buffer.get(), target.handle(), {place.offset, offset, place.memory.size()},
+             std::array{copy_write(target)});
 }
 
 void Stream::upload_bytes(Buffer& target, std::span<const std::byte> data, std::size_t offset) {
@@ -298,10 +334,12 @@ void Stream::upload_bytes(Buffer& target, std::span<const std::byte> data, std::
 void Stream::download_bytes(const Buffer& source, std::span<std::byte> data, std::size_t offset) {
     check_bytes(source, offset, data.size());
     if (data.empty()) return;
-    begin();
-    const auto [block, begin_byte] = stage(readbacks_, data.size(), BufferMemory::readback);
-    copy(source, offset, block->buffer, begin_byte, data.size());
-    downloads_.push_back({block->buffer.resource()->mapped + begin_byte, data});
+    device_.host_work().add(HostTask::byte_down, data.size());
+    start();
+    const auto [block, begin_byte] = stage(readbacks_, data.size(), StagingUse::readback);
+    use(source);
+    add_copy(source.handle(), block->buffer.get(), {offset, begin_byte, data.size()}, std::array{copy_read(source)});
+    downloads_.push_back({block->mapped() + begin_byte, data});
 }
 
 void Stream::copy(const Buffer& source, std::size_t source_offset, const Buffer& target, std::size_t target_offset,
@@ -313,12 +351,46 @@ void Stream::copy(const Buffer& source, std::size_t source_offset, const Buffer&
     if (source.handle() == target.handle() && !apart)
         throw DeviceError(fmt::format("a copy of {} bytes from byte {} to byte {} of one buffer overlaps itself", bytes,
                                       source_offset, target_offset));
-    begin();
     use(source);
     use(target);
-    order(std::array{copy_read(source), copy_write(target)});
-    const VkBufferCopy region{source_offset, target_offset, bytes};
-    vkCmdCopyBuffer(commands_.handle(), source.handle(), target.handle(), 1, &region);
+    add_copy(source.handle(), target.handle(), {source_offset, target_offset, bytes},
+             std::array{copy_read(source), copy_write(target)});
+}
+
+// Returns whether the region can join the collected ones: regions of one command are copied in any order.
+bool Stream::extends_copies(VkBuffer source, VkBuffer target, const VkBufferCopy& region) const {
+    if (copies_.regions.empty() || copies_.source != source || copies_.target != target || source == target)
+        return false;
+    return region.dstOffset >= copies_.end ||
+           std::ranges::none_of(copies_.regions, [&](const VkBufferCopy& other) { return overlap(region, other); });
+}
+
+// Staging memory needs no barriers: no two transfers of a recording share any. So `accesses` are those of buffers.
+void Stream::add_copy(VkBuffer source, VkBuffer target, const VkBufferCopy& region, std::span<const Access> accesses) {
+    if (extends_copies(source, target, region)) {
+        VkBufferCopy& last = copies_.regions.back();
+        if (last.srcOffset + last.size == region.srcOffset && last.dstOffset + last.size == region.dstOffset)
+            last.size += region.size;
+        else
+            copies_.regions.push_back(region);
+    } else {
+        begin();
+        order(accesses);
+        copies_.source = source;
+        copies_.target = target;
+        copies_.end = 0;
+        copies_.regions.assign(1, region);
+    }
+    copies_.end = std::max(copies_.end, region.dstOffset + region.size);
+}
+
+void Stream::record_copies() {
+    if (copies_.regions.empty()) return;
+    vkCmdCopyBuffer(commands_.handle(), copies_.source, copies_.target,
+                    static_cast<std::uint32_t>(copies_.regions.size()), copies_.regions.data());
+    device_.host_work().add(HostTask::copy);
+    device_.host_work().add(HostTask::copied_region, copies_.regions.size());
+    copies_.regions.clear();
 }
 
 void Stream::fill(const Buffer& target, std::uint32_t word) {
@@ -329,10 +401,12 @@ void Stream::fill(const Buffer& target, std::uint32_t word) {
     vkCmdFillBuffer(commands_.handle(), target.handle(), 0, VK_WHOLE_SIZE, word);
 }
 
-void Stream::submit(const SubmitOrder& order) {
+Ticket Stream::submit(const SubmitOrder& order) {
     begin();
     try {
-        commands_.submit(order);
+        const Ticket ticket = commands_.submit(order);
+        for (const std::shared_ptr<Buffer::Resource>& buffer : buffers_) raise(buffer->last_use, ticket);
+        return ticket;
     } catch (const DeviceError&) {
         release();
         throw;
@@ -378,8 +452,11 @@ void Stream::release() {
     timestamps_.clear();
     descriptors_.reset();
     hazards_.reset();
-    for (Staging& block : uploads_) block.used = 0;
-    for (Staging& block : readbacks_) block.used = 0;
+    copies_.regions.clear();
+    for (StagingBlocks* blocks : {&uploads_, &readbacks_}) {
+        for (std::unique_ptr<StagingBlock>& block : *blocks) device_.staging().give_back(std::move(block));
+        blocks->clear();
+    }
 }
 
 }  // namespace exemplar

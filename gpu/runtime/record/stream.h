@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "gpu/runtime/device/commands.h"
+#include "gpu/runtime/device/staging_pool.h"
 #include "gpu/runtime/kernels/kernel.h"
 #include "gpu/runtime/kernels/threads.h"
 #include "gpu/runtime/record/buffer.h"
@@ -89,6 +90,9 @@ class Stream {
     /// without gaps. The caller must have made its contents visible to copies.
     void copy_image(VkImage image, VkImageAspectFlags aspect, VkExtent2D extent, std::size_t texel_bytes,
                     const Buffer& target);
+    /// The same to the host, for texels of target.size() / (width * height) bytes, a multiple of 4. They arrive at
+    /// wait(), so `target` must live until then.
+    void download_image(VkImage image, VkImageAspectFlags aspect, VkExtent2D extent, std::span<std::byte> target);
 
     /// Copies the color of `source`, `extent` pixels in VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, into `part` of
     /// `target`, in VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL; scales if the sizes differ. The caller must have made the
@@ -121,8 +125,9 @@ class Stream {
     /// Sets every 4 bytes of the buffer to `word`.
     void fill(const Buffer& target, std::uint32_t word);
 
-    /// Submits the recorded work and returns at once; nothing may be recorded until wait().
-    void submit(const SubmitOrder& order = {});
+    /// Submits the recorded work and returns at once; nothing may be recorded until wait(). Returns the submission's
+    /// ticket for Device::wait.
+    Ticket submit(const SubmitOrder& order = {});
     /// Waits until the submitted work is done and downloads have arrived. Throws DeviceLostError if the device was
     /// lost.
     void wait();
@@ -144,21 +149,25 @@ class Stream {
     const std::vector<Barrier>& barriers() const { return barriers_; }
 
   private:
-    struct Staging {
-        Buffer buffer;
-        std::size_t used = 0;
-    };
     struct Download {
         const std::byte* source;
         std::span<std::byte> target;
     };
+    using StagingBlocks = std::vector<std::unique_ptr<StagingBlock>>;
     // Memory that the host writes an upload to: that of the target itself, or staging memory.
     struct UploadTarget {
         std::span<std::byte> memory;
-        Staging* staging;  // null for the target itself
+        StagingBlock* staging;  // null for the target itself
         std::size_t offset;
     };
+    // Regions that one copy command will copy from one buffer to another.
+    struct Copies {
+        VkBuffer source = VK_NULL_HANDLE, target = VK_NULL_HANDLE;
+        VkDeviceSize end = 0;  // of the last byte written
+        std::vector<VkBufferCopy> regions{};
+    };
 
+    void start();
     void begin();
     void release();
     void use(const Buffer& buffer);
@@ -167,14 +176,18 @@ class Stream {
     void order(std::span<const Access> accesses);
     void upload_bytes(Buffer& target, std::span<const std::byte> data, std::size_t offset);
     void download_bytes(const Buffer& source, std::span<std::byte> data, std::size_t offset);
-    std::pair<Staging*, std::size_t> stage(std::vector<Staging>& blocks, std::size_t bytes, BufferMemory memory);
+    void add_copy(VkBuffer source, VkBuffer target, const VkBufferCopy& region, std::span<const Access> accesses);
+    bool extends_copies(VkBuffer source, VkBuffer target, const VkBufferCopy& region) const;
+    void record_copies();
+    std::pair<StagingBlock*, std::size_t> stage(StagingBlocks& blocks, std::size_t bytes, StagingUse use);
     UploadTarget begin_upload(const Buffer& target, std::size_t offset, std::size_t bytes);
     void end_upload(const UploadTarget& place, Buffer& target, std::size_t offset);
 
     Device& device_;
     HazardTracker hazards_;
     std::vector<Barrier> barriers_;
-    std::vector<Staging> uploads_, readbacks_;
+    Copies copies_;
+    StagingBlocks uploads_, readbacks_;
     std::vector<Download> downloads_;
     std::set<std::shared_ptr<Buffer::Resource>> buffers_;
     std::set<std::shared_ptr<const Program>> programs_;

@@ -11,11 +11,10 @@ namespace {
 
 constexpr std::uint32_t k_dispatches_per_pool = 512;
 
-// Writes a timestamp; the barrier on CPU devices is D11 in docs/portability.md.
-void write(const Device& device, VkCommandBuffer commands, VkPipelineStageFlags2 stage, VkQueryPool pool,
-           std::uint32_t query) {
+// Writes a timestamp. Nothing after it may begin earlier, or kernels that do not depend on each other would be charged
+// for each other (and D11 in docs/portability.md).
+void write(VkCommandBuffer commands, VkPipelineStageFlags2 stage, VkQueryPool pool, std::uint32_t query) {
     vkCmdWriteTimestamp2(commands, stage, pool, query);
-    if (device.info().type != DeviceType::cpu) return;
     auto barrier = empty_structure<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);
     barrier.srcStageMask = barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
     auto dependency = empty_structure<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
@@ -46,14 +45,14 @@ void Timestamps::start(VkCommandBuffer commands, std::string_view name) {
     const auto query = static_cast<std::uint32_t>(2 * (dispatches_.size() % k_dispatches_per_pool));
     if (pool == pools_.size()) add_pool();
     if (query == 0) vkCmdResetQueryPool(commands, pools_[pool].get(), 0, 2 * k_dispatches_per_pool);
-    write(device_, commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pools_[pool].get(), query);
+    write(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, pools_[pool].get(), query);
     dispatches_.emplace_back(name);
 }
 
 void Timestamps::stop(VkCommandBuffer commands, VkPipelineStageFlags2 stage) {
     if (!enabled()) return;
     const std::size_t last = dispatches_.size() - 1;
-    write(device_, commands, stage, pools_[last / k_dispatches_per_pool].get(),
+    write(commands, stage, pools_[last / k_dispatches_per_pool].get(),
           static_cast<std::uint32_t>(2 * (last % k_dispatches_per_pool) + 1));
 }
 

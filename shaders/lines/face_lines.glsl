@@ -1,7 +1,7 @@
 // Finds the segments of lines in a face (host/lines/extraction/lines.cpp). The including shader declares
 // `positions`, `faces`, `joined_faces`, `neighbors`, `fields`, `directions`, the constant `k_families` and FaceLineParameters
-// `parameters`, and defines which of the 26 slots of a face to look at, and what is done with each segment:
-//   bool wants(uint slots)
+// `parameters`, and defines in which of the 26 slots of a face to look, and what is done with each segment:
+//   #define when_wanted(slots)    nothing, or the condition of the statement behind it
 //   void emit(uint slot, uint family, uint first_place, uint second_place, vec3 first_end, vec3 second_end, vec2 strength)
 // A slot is a segment that a face may have: one for each zero set, and three each for extrema and edges. They are in the order
 // of the segments. `precise` keeps compilers from rounding differently in different kernels.
@@ -11,9 +11,8 @@
 #include "shaders/lib/when.glsl"
 #include "shaders/shared/lines.h"
 
-// Slots of each family; boundaries that are drawn as contours have the three after the last.
-const uint k_slot_of_family[k_line_families] = uint[](0u, 1u, 2u, 3u, 6u, 9u, 12u, 13u, 14u, 17u, 20u);
-const uint k_outer_contour_slot = 23u;
+const uint k_crease_slot = 14u, k_boundary_slot = 17u, k_edge_contour_slot = 20u;
+const uint k_outer_contour_slot = 23u;  // boundaries that are drawn as contours
 
 // Shrinks [range.x, range.y] to where the linear function with value `first` at 0 and `last` at 1 is positive.
 void clip(float first, float last, inout vec2 range) {
@@ -48,7 +47,7 @@ vec3 on_side(uint side, float t) {
     return point;
 }
 
-void add_zero_set(uint family, mat3x4 corners, mat3 axes) {
+void add_zero_set(uint slot, uint family, mat3x4 corners, mat3 axes) {
     vec3 value = vec3(corners[0].x, corners[1].x, corners[2].x);
     if ((1u << family & k_axis_families) != 0u) {
         for (uint i = 1; i < 3; ++i)
@@ -74,11 +73,11 @@ void add_zero_set(uint family, mat3x4 corners, mat3 axes) {
         const uint after_falls = falls == 2u ? 0u : falls + 1u, after_rises = rises == 2u ? 0u : rises + 1u;
         precise float at_fall = value[falls] / (value[falls] - value[after_falls]);
         precise float at_rise = value[rises] / (value[rises] - value[after_rises]);
-        add_segment(k_slot_of_family[family], family, corners, on_side(falls, at_fall), falls, on_side(rises, at_rise), rises);
+        add_segment(slot, family, corners, on_side(falls, at_fall), falls, on_side(rises, at_rise), rises);
     }
 }
 
-void add_extrema(uint family, mat3x4 corners, mat3 growing, mat3 points) {
+void add_extrema(uint slot, uint family, mat3x4 corners, mat3 growing, mat3 points) {
     when (corners[0].x > 0.0 && corners[1].x > 0.0 && corners[2].x > 0.0) {
         vec3 ends[3];
         uint places[3];
@@ -92,7 +91,6 @@ void add_extrema(uint family, mat3x4 corners, mat3 growing, mat3 points) {
             ends[found] = on_side(i, at);
             places[found++] = i;
         }
-        const uint slot = k_slot_of_family[family];
         if (found == 2u) add_segment(slot, family, corners, ends[0], places[0], ends[1], places[1]);
         if (found == 3u)
             for (uint i = 0; i < 3; ++i)
@@ -193,7 +191,7 @@ void add_creases(uint face, uvec3 corners) {
         if (!(strength > parameters.crease_angle)) continue;
         // On the outline they are contours.
         if ((k_families & 1u << k_edge_contours) != 0u && is_outline(corners, i, others, code % 4u)) continue;
-        emit_side(k_slot_of_family[k_creases] + i, k_creases, i, vec2(0.0, 1.0), strength);
+        emit_side(k_crease_slot + i, k_creases, i, vec2(0.0, 1.0), strength);
     }
 }
 
@@ -211,7 +209,7 @@ void add_edge_contours(uint face, uvec3 corners) {
         when (has_neighbor(sides[i]) && (sides[i] & k_sharp_side) != 0u && owns_edge(face, i, sides[i])) {
             const uvec3 others = texelFetch(faces, int(code / 4u)).xyz;
             const vec2 part = contour_along(corners, i, others, code % 4u, face, code / 4u);
-            if (part.x < part.y) emit_side(k_slot_of_family[k_edge_contours] + i, k_edge_contours, i, part, 1.0);
+            if (part.x < part.y) emit_side(k_edge_contour_slot + i, k_edge_contours, i, part, 1.0);
         }
     }
     if ((k_families & 1u << k_boundaries) == 0u) add_boundaries(k_outer_contour_slot, k_edge_contours, face);
@@ -223,7 +221,7 @@ mat3 three(samplerBuffer source, uint slot, uvec3 corners) {
                 texelFetch(source, int(begin + corners.z)).xyz);
 }
 
-void find_lines_in_field(uint family, uint face, uvec3 corners) {
+void find_lines_in_field(uint slot, uint family, uint face, uvec3 corners) {
     const uint bit = 1u << family, before = bit - 1u;
     const uint begin = bitCount(k_families & k_field_families & before) * parameters.vertices;
     const mat3x4 field = mat3x4(texelFetch(fields, int(begin + corners.x)), texelFetch(fields, int(begin + corners.y)),
@@ -232,33 +230,36 @@ void find_lines_in_field(uint family, uint face, uvec3 corners) {
     if ((bit & k_axis_families) != 0u)
         axes = three(directions, bitCount(k_families & k_axis_families & before), corners);
     if ((bit & k_extremum_families) != 0u)
-        add_extrema(family, field, axes, three(positions, 0u, corners));
+        add_extrema(slot, family, field, axes, three(positions, 0u, corners));
     else
-        add_zero_set(family, field, axes);
+        add_zero_set(slot, family, field, axes);
 }
 
-// Finds the lines of one family in a face; `k_families` decides at compile time whether there are any.
-void find_lines_of(uint family, uint face, uvec3 corners) {
+// Finds the lines of one family in a face, from its first slot on; `k_families` decides at compile time whether there are any.
+void find_lines_of(uint slot, uint family, uint face, uvec3 corners) {
     const uint bit = 1u << family;
     if ((k_families & bit) == 0u) return;
-    const uint slots = ((bit & k_extremum_families) != 0u ? 7u : 1u) << k_slot_of_family[family];
-    when (wants(slots)) find_lines_in_field(family, face, corners);
+    const uint slots = ((bit & k_extremum_families) != 0u ? 7u : 1u) << slot;
+    when_wanted(slots) find_lines_in_field(slot, family, face, corners);
 }
 
 void find_lines(uint face) {
     const uvec3 corners = texelFetch(faces, int(face)).xyz;
-    find_lines_of(k_contours, face, corners);
-    find_lines_of(k_suggestive_contours, face, corners);
-    find_lines_of(k_suggestive_highlights, face, corners);
-    find_lines_of(k_ridges, face, corners);
-    find_lines_of(k_valleys, face, corners);
-    find_lines_of(k_apparent_ridges, face, corners);
-    find_lines_of(k_first_highlights, face, corners);
-    find_lines_of(k_second_highlights, face, corners);
-    if ((k_families & 1u << k_creases) != 0u) when (wants(7u << k_slot_of_family[k_creases])) add_creases(face, corners);
-    if ((k_families & 1u << k_boundaries) != 0u) add_boundaries(k_slot_of_family[k_boundaries], k_boundaries, face);
-    if ((k_families & 1u << k_edge_contours) != 0u)
-        when (wants(7u << k_slot_of_family[k_edge_contours] | 7u << k_outer_contour_slot)) add_edge_contours(face, corners);
+    find_lines_of(0u, k_contours, face, corners);
+    find_lines_of(1u, k_suggestive_contours, face, corners);
+    find_lines_of(2u, k_suggestive_highlights, face, corners);
+    find_lines_of(3u, k_ridges, face, corners);
+    find_lines_of(6u, k_valleys, face, corners);
+    find_lines_of(9u, k_apparent_ridges, face, corners);
+    find_lines_of(12u, k_first_highlights, face, corners);
+    find_lines_of(13u, k_second_highlights, face, corners);
+    if ((k_families & 1u << k_creases) != 0u) {
+        when_wanted(7u << k_crease_slot) add_creases(face, corners);
+    }
+    if ((k_families & 1u << k_boundaries) != 0u) add_boundaries(k_boundary_slot, k_boundaries, face);
+    if ((k_families & 1u << k_edge_contours) != 0u) {
+        when_wanted(7u << k_edge_contour_slot | 7u << k_outer_contour_slot) add_edge_contours(face, corners);
+    }
 }
 
 #endif

@@ -11,9 +11,7 @@ layout(set = 0, binding = 9, std430) writeonly buffer Segments { LineSegmentReco
 
 // Slots of the face that have a segment, and those whose segment is not written yet.
 uint this_face, first_segment, slots, missing;
-bool wants(uint these) {
-    return (slots & these) != 0u;
-}
+#define when_wanted(these) when ((slots & (these)) != 0u)
 void write_segment(uint slot, LineSegmentRecord segment) {
     const uint place = first_segment + bitCount(slots & (1u << slot) - 1u);
     if (place < parameters.max_segments) segments[place] = segment;

@@ -31,6 +31,12 @@ Tuning load_tuning(const DeviceInfo& info) {
     }
 }
 
+// To a driver without its hardware, a device lacks memory but can compile.
+std::vector<DeviceInfo> without_faults(std::vector<DeviceInfo> devices) {
+    for (DeviceInfo& device : devices) device.unusable.clear();
+    return devices;
+}
+
 }  // namespace
 
 bool has_extension(VkPhysicalDevice device, const char* name) {
@@ -45,8 +51,9 @@ bool has_extension(VkPhysicalDevice device, const char* name) {
 Device::Device(const DeviceOptions& options)
     : validating_(wants_validation()),
       instance_(validating_,
-                options.presentation ? options.presentation->instance_extensions : std::vector<std::string>{}) {
-    const std::vector<DeviceInfo> devices = instance_.devices();
+                options.presentation ? options.presentation->instance_extensions : std::vector<std::string>{}),
+      compile_only_(options.compile_only) {
+    const std::vector<DeviceInfo> devices = compile_only_ ? without_faults(instance_.devices()) : instance_.devices();
     const std::size_t index =
         select_device(devices, options.name.empty() ? environment("EXEMPLAR_DEVICE") : options.name);
     info_ = devices[index];
@@ -58,6 +65,7 @@ Device::Device(const DeviceOptions& options)
     tuning_ = load_tuning(info_);
     create(options.presentation.has_value());
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
+    if (compile_only_) return;
     try {
         pipeline_cache_ = std::make_unique<PipelineCache>(device_, info_);
     } catch (...) {
@@ -113,7 +121,8 @@ void Device::create(bool presents) {
 }
 
 Device::~Device() {
-    if (!device_) return;
+    // Mesa's device without hardware crashes when it is waited for or destroyed.
+    if (!device_ || compile_only_) return;
     vkDeviceWaitIdle(device_);
     pipeline_cache_.reset();
     vkDestroyDevice(device_, nullptr);

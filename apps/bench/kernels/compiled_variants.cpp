@@ -30,7 +30,11 @@ const std::vector<std::uint32_t> k_family_sets{0x603, 0x7ff};
 const std::vector<KernelConstants>& all_constants() {
     static const std::vector<KernelConstants> all{
         {"learn/stumps.comp",
-         {{0, "classes", {8}}, {1, "quads", {1}}, {2, "storage", {0}}, {3, "bits", {32}}, {4, "in_parts", {0, 1}}}},
+         {{0, "classes", {2, 8, 24}},
+          {1, "quads", {1}},
+          {2, "storage", {0}},
+          {3, "bits", {32}},
+          {4, "in_parts", {0, 1}}}},
         {"labeling/context_geodesic.comp", {{0, "faces", {1}}}},
         {"imaging/pack.comp", {{0, "masked", {0, 1}}}},
         {"imaging/mask_sums.comp", {{1, "outputs", {4}}}},

@@ -17,7 +17,7 @@ namespace exemplar {
 struct CodeNumber {
     const char* key;     ///< in JSON
     const char* driver;  ///< the name that Mesa's RADV gives it
-    const char* header;  ///< of its column
+    const char* header;  ///< of its column in the printed table; null if it has none
 };
 inline constexpr std::array<CodeNumber, 13> k_code_numbers{
     {{"vgprs", "VGPRs", "VGPRs"},
@@ -28,11 +28,11 @@ inline constexpr std::array<CodeNumber, 13> k_code_numbers{
      {"lds_bytes", "LDS size", "LDS"},
      {"subgroups_per_simd", "Subgroups per SIMD", "subgroups"},
      {"code_bytes", "Code size", "bytes"},
-     {"instructions", "Instructions", "instr."},
-     {"copies", "Copies", "copies"},
-     {"branches", "Branches", "branches"},
+     {"instructions", "Instructions", "instructions"},
+     {"copies", "Copies", nullptr},
+     {"branches", "Branches", nullptr},
      {"latency", "Latency", "latency"},
-     {"inverse_throughput", "Inverse Throughput", "inverse t."}}};
+     {"inverse_throughput", "Inverse Throughput", "1/throughput"}}};
 
 /// The numbers of one variant of a kernel.
 struct CodeStatistics {

@@ -82,29 +82,42 @@ FamilyStatistics compile_for(const std::string& family, const std::string& files
     }
 }
 
-std::string text_of(const CodeStatistics& code, const char* key) {
-    const auto value = code.numbers.find(key);
-    return value == code.numbers.end() ? "-" : std::to_string(value->second);
+/// Returns the rows of a table, the first with the names of its columns.
+std::vector<std::vector<std::string>> table_of(const FamilyStatistics& statistics, const ReportedTimes& times) {
+    std::vector<std::vector<std::string>> rows{{"  kernel", "variant"}};
+    for (const CodeNumber& number : k_code_numbers)
+        if (number.header) rows.front().emplace_back(number.header);
+    if (!times.device.empty()) rows.front().emplace_back("ms");
+    rows.reserve(statistics.kernels.size() + 1);
+    for (const CodeStatistics& code : statistics.kernels) {
+        std::vector<std::string>& row = rows.emplace_back();
+        row = {(code.is_default ? "* " : "  ") + code.kernel, code.variant};
+        for (const CodeNumber& number : k_code_numbers) {
+            if (!number.header) continue;
+            const auto value = code.numbers.find(number.key);
+            row.push_back(value == code.numbers.end() ? "-" : std::to_string(value->second));
+        }
+        if (times.device.empty()) continue;
+        const auto time = times.milliseconds.find(code.kernel);
+        row.push_back(time == times.milliseconds.end() ? "-" : fmt::format("{:.3f}", time->second));
+    }
+    return rows;
 }
 
 void print_statistics(const FamilyStatistics& statistics, const ReportedTimes& times) {
-    std::size_t kernel_width = 6, variant_width = 7;
-    for (const CodeStatistics& code : statistics.kernels) {
-        kernel_width = std::max(kernel_width, code.kernel.size());
-        variant_width = std::max(variant_width, code.variant.size());
-    }
+    constexpr std::size_t k_first_number = 2;  // from here on columns are aligned to the right
+    const std::vector<std::vector<std::string>> rows = table_of(statistics, times);
+    std::vector<std::size_t> widths(rows.front().size());
+    for (const auto& row : rows)
+        for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
     fmt::print("\n{}: {}, {}; * is what runs by default{}\n", statistics.family, statistics.device, statistics.driver,
                times.device.empty() ? "" : "; ms on " + times.device);
-    std::string header = fmt::format("  {:<{}}  {:<{}}", "kernel", kernel_width, "variant", variant_width);
-    for (const CodeNumber& number : k_code_numbers) header += fmt::format("{:>11}", number.header);
-    fmt::print("{}{}\n", header, times.device.empty() ? "" : "         ms");
-    for (const CodeStatistics& code : statistics.kernels) {
-        std::string line = fmt::format("{} {:<{}}  {:<{}}", code.is_default ? '*' : ' ', code.kernel, kernel_width,
-                                       code.variant, variant_width);
-        for (const CodeNumber& number : k_code_numbers) line += fmt::format("{:>11}", text_of(code, number.key));
-        if (const auto time = times.milliseconds.find(code.kernel); time != times.milliseconds.end())
-            line += fmt::format("{:>11.4f}", time->second);
-        fmt::print("{}\n", line);
+    for (const auto& row : rows) {
+        std::string line;
+        for (std::size_t c = 0; c < row.size(); ++c)
+            line += c < k_first_number ? fmt::format("{:<{}}", row[c], widths[c] + 2)
+                                       : fmt::format("{:>{}}  ", row[c], widths[c]);
+        fmt::print("{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
     }
 }
 

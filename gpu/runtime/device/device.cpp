@@ -121,7 +121,7 @@ void Device::create(bool presents) {
 }
 
 Device::~Device() {
-    // Mesa's device without hardware crashes when it is waited for or destroyed.
+    // D20 in docs/portability.md: some devices crash when they are waited for or destroyed.
     if (!device_ || compile_only_) return;
     vkDeviceWaitIdle(device_);
     pipeline_cache_.reset();

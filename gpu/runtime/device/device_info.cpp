@@ -47,7 +47,8 @@ std::string missing_feature(VkPhysicalDevice device, std::uint32_t api_version) 
     if (!find_compute_queue(device)) return "it has no compute queue";
     VkPhysicalDeviceMemoryProperties memory{};
     vkGetPhysicalDeviceMemoryProperties(device, &memory);
-    if (memory.memoryTypeCount == 0) return "it has no memory, as it is a driver without its hardware";
+    if (memory.memoryTypeCount == 0)
+        return "it has no memory: it is a driver without its hardware, as RADV_FORCE_FAMILY asks for";
     return {};
 }
 

@@ -111,6 +111,7 @@ std::vector<ExecutableStatistic> compile(Device& device, const Shader& shader,
     };
     create_layouts(device, program);
     create_pipeline(device, program, shader, interface, VK_NULL_HANDLE);
+    if (!device.captures_statistics()) return {};
     return executable_statistics(device, program.pipeline.get());
 }
 

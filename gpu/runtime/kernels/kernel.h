@@ -43,9 +43,9 @@ class Kernel {
     std::shared_ptr<const Program> program_;
 };
 
-/// Compiles a shader with specialization constants (id and bits), and returns the driver's statistics of its code.
-/// Needs neither the C++ side of its interface nor memory: a device with DeviceOptions::compile_only is enough. Throws
-/// DeviceError if the driver cannot compile it.
+/// Compiles a shader with specialization constants (id and bits), and returns the driver's statistics of its code;
+/// empty without DeviceOptions::statistics. Needs neither the C++ side of the shader's interface nor memory: a device
+/// with DeviceOptions::compile_only is enough. Throws DeviceError if the driver cannot compile the shader.
 std::vector<ExecutableStatistic> compile(Device& device, const Shader& shader,
                                          std::span<const std::pair<std::uint32_t, std::uint32_t>> constants);
 

@@ -165,7 +165,7 @@ void run_statistics(const StatisticsOptions& options) {
     const std::string files = radv_files();
     const std::vector<std::string> names = family_names(options.families);
     if (!options.common.quiet)
-        fmt::print(stderr, "compiling {} variants for each of {}\n", compiled_variants(filter).size(),
+        fmt::print(stderr, "compiling {} variants of kernels for {}\n", compiled_variants(filter).size(),
                    fmt::join(names, ", "));
     std::vector<FamilyStatistics> families(names.size());
     parallel_for(names.size(), [&](std::size_t i) { families[i] = compile_for(names[i], files, options.filter); });

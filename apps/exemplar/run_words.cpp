@@ -25,7 +25,7 @@ std::vector<std::string> environment_with(const std::vector<Variable>& variables
         const std::string_view text = *own, name = text.substr(0, text.find('='));
         if (std::ranges::find(variables, name, &Variable::first) == variables.end()) all.emplace_back(text);
     }
-    for (const auto& [name, value] : variables) all.push_back(name + '=' + value);
+    for (const auto& [name, value] : variables) all.push_back(fmt::format("{}={}", name, value));
     return all;
 }
 

@@ -127,6 +127,13 @@ TEST(CodeChanges, WhatIsAcceptedIsNoFault) {
     EXPECT_FALSE(found[0].is_fault());
 }
 
+TEST(CodeChanges, VariantsOfTuningNeedNoBaseline) {
+    CodeStatistics now = code(16, 8, 1000);
+    now.is_default = false;
+    now.variant = "quads 2";
+    EXPECT_TRUE(changes(now, code(0, 8, 1000)).empty());
+}
+
 TEST(CodeChanges, ANewKernelMayHaveNoScratch) {
     CodeStatistics other = code(0, 8, 1000);
     other.kernel = "b.comp";

@@ -118,7 +118,10 @@ std::vector<CodeChange> changes_between(const FamilyStatistics& now, const Famil
         const auto old_code = std::ranges::find_if(before.kernels, [&](const CodeStatistics& other) {
             return other.kernel == code.kernel && other.variant == code.variant;
         });
-        add_changes(code, old_code == before.kernels.end() ? blameless(code) : *old_code, changes);
+        if (old_code != before.kernels.end())
+            add_changes(code, *old_code, changes);
+        else if (code.is_default)
+            add_changes(code, blameless(code), changes);
     }
     return changes;
 }

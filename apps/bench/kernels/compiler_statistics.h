@@ -70,8 +70,8 @@ struct CodeChange {
     bool is_fault() const { return is_worse && accepted.empty(); }
 };
 
-/// Returns the changes of all numbers that both have. Variants without a baseline are compared with code that needs
-/// neither spills nor scratch.
+/// Returns the changes of all numbers that both have. Default variants that `before` lacks are compared with code that
+/// needs neither spills nor scratch; other variants that it lacks are not compared.
 std::vector<CodeChange> changes_between(const FamilyStatistics& now, const FamilyStatistics& before);
 
 }  // namespace exemplar

@@ -79,6 +79,12 @@ class Reports(WithModel):
         self.call("synth", "cup", "--faces", "500", "--out", "s", "--json", "s.json")
         self.check("synth", self.json("s.json"))
 
+    def test_statistics_of_kernels(self):
+        if "install mesa-vulkan-drivers" in self.start("bench", "shaders", "--statistics", "--filter", "copy").communicate()[1]:
+            self.skipTest("Mesa's driver of AMD's cards is not installed")
+        self.call("bench", "shaders", "--statistics", "--filter", "copy", "--json", "k.json")
+        self.check("bench shaders --statistics", self.json("k.json"))
+
     def test_devices(self):
         self.call("devices", "--no-measure", "--json", "d.json")
         self.check("devices", self.json("d.json"))

@@ -56,6 +56,15 @@ TEST_F(SetupCheck, WithoutDriversThereIsAFault) {
     EXPECT_TRUE(has(check_drivers(machine()), Level::fault, "no Vulkan driver"));
 }
 
+TEST_F(SetupCheck, DriversOfTheEnvironmentPrecedeThoseInstalled) {
+    write_driver("usr/share/vulkan/icd.d/a.json", "libm.so.6");
+    write_driver("etc/vulkan/icd.d/b.json", "libm.so.6");
+    variables_["VK_DRIVER_FILES"] = "/one.json:/other.json";
+    EXPECT_EQ(driver_files(machine()),
+              (std::vector<std::filesystem::path>{"/one.json", "/other.json", root("etc/vulkan/icd.d/b.json"),
+                                                  root("usr/share/vulkan/icd.d/a.json")}));
+}
+
 TEST_F(SetupCheck, DriversThatLoadAreGood) {
     write_driver("usr/share/vulkan/icd.d/some.x86_64.json", "libm.so.6");
     const auto findings = check_drivers(machine());

@@ -72,6 +72,24 @@ Measurement read_measurement(const nlohmann::json& json) {
     return measurement;
 }
 
+struct MeasurementReport {
+    std::string device;
+    std::vector<Measurement> measurements;
+};
+
+MeasurementReport read_report(const std::filesystem::path& path) {
+    try {
+        const nlohmann::json json = parse_json(read_file(path));
+        MeasurementReport report{.device = json.at("device").at("name"), .measurements = {}};
+        for (const nlohmann::json& measurement : json.at("measurements"))
+            report.measurements.push_back(read_measurement(measurement));
+        return report;
+    } catch (const nlohmann::json::exception&) {
+        throw DataError(
+            fmt::format("{}: this is no report of 'exemplar bench shaders'; make one with --json", path.string()));
+    }
+}
+
 void compare_and_time(Device& device, const OperationKind& kind, const KernelFilter& filter,
                       const TimingOptions& options, Measurement& measurement) {
     Profiler profiler;
@@ -166,20 +184,22 @@ nlohmann::ordered_json to_json(const Measurement& measurement, const Device& dev
 }
 
 std::vector<Measurement> read_measurements(const std::filesystem::path& path, const DeviceInfo& device) {
-    try {
-        const nlohmann::json json = parse_json(read_file(path));
-        const std::string name = json.at("device").at("name");
-        if (name != device.name)
-            throw UsageError(fmt::format("{}: it was measured on device '{}', this is '{}'; compare the same device",
-                                         path.string(), name, device.name));
-        std::vector<Measurement> measurements;
-        for (const nlohmann::json& measurement : json.at("measurements"))
-            measurements.push_back(read_measurement(measurement));
-        return measurements;
-    } catch (const nlohmann::json::exception&) {
-        throw DataError(
-            fmt::format("{}: this is no report of 'exemplar bench shaders'; make one with --json", path.string()));
-    }
+    MeasurementReport report = read_report(path);
+    if (report.device != device.name)
+        throw UsageError(fmt::format("{}: it was measured on device '{}', this is '{}'; compare the same device",
+                                     path.string(), report.device, device.name));
+    return std::move(report.measurements);
+}
+
+ReportedTimes read_times(const std::filesystem::path& path) {
+    const MeasurementReport report = read_report(path);
+    ReportedTimes times{.device = report.device, .milliseconds = {}};
+    for (const Measurement& measurement : report.measurements)
+        for (const KernelRow& row : measurement.kernels) {
+            double& longest = times.milliseconds[row.kernel];
+            longest = std::max(longest, row.median_milliseconds());
+        }
+    return times;
 }
 
 }  // namespace exemplar

@@ -64,4 +64,12 @@ nlohmann::ordered_json to_json(const Measurement& measurement, const Device& dev
 /// file, UsageError if it was measured on another device.
 std::vector<Measurement> read_measurements(const std::filesystem::path& path, const DeviceInfo& device);
 
+/// Times of kernels on the device of a report.
+struct ReportedTimes {
+    std::string device;
+    std::map<std::string, double> milliseconds;  ///< of each kernel: the longest of its operations and sizes
+};
+/// Reads the times of a file of to_json. Throws DataError naming the file if it is no such file.
+ReportedTimes read_times(const std::filesystem::path& path);
+
 }  // namespace exemplar

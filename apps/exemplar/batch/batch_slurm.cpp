@@ -1,15 +1,10 @@
 #include "apps/exemplar/batch/batch_slurm.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -19,54 +14,16 @@
 #include <string_view>
 
 #include "apps/exemplar/commands.h"
+#include "apps/exemplar/run_words.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
 #include "host/core/memory_budget.h"
 #include "host/data/catalog/shape_record.h"
 
-extern char** environ;
-
 namespace exemplar {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct ProgramOutput {
-    int code;
-    std::string text;  ///< of both streams
-};
-
-/// Runs a program found in PATH to its end; its words pass no shell.
-ProgramOutput run_words(const std::vector<std::string>& words) {
-    std::array<int, 2> ends{};
-    if (pipe2(ends.data(), O_CLOEXEC) != 0) throw DataError(fmt::format("no pipe: {}", std::strerror(errno)));
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
-    std::vector<char*> arguments;
-    arguments.reserve(words.size() + 1);
-    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-    arguments.push_back(nullptr);
-    pid_t child = 0;
-    const int failed = posix_spawnp(&child, arguments.front(), &actions, nullptr, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    close(ends[1]);
-    ProgramOutput output{failed ? 127 : 0, {}};
-    std::array<char, 4096> bytes{};
-    ssize_t got = 0;
-    while (!failed && ((got = read(ends[0], bytes.data(), bytes.size())) > 0 || (got < 0 && errno == EINTR)))
-        if (got > 0) output.text.append(bytes.data(), static_cast<std::size_t>(got));
-    close(ends[0]);
-    if (failed) {
-        output.text = std::strerror(failed);
-        return output;
-    }
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
-    output.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
-    return output;
-}
 
 std::string first_line(const std::string& text) {
     return text.substr(0, text.find('\n'));
@@ -152,10 +109,6 @@ std::string shell_word(const std::string& text) {
         quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
     }
     return is_plain ? text : quoted + "'";
-}
-
-fs::path this_program() {
-    return fs::read_symlink("/proc/self/exe");
 }
 
 SlurmJob submit_shards(std::span<const fs::path> shards, const SlurmOptions& options,

@@ -49,7 +49,5 @@ std::size_t slurm_task_memory();
 
 /// Quotes a text as one word of a shell.
 std::string shell_word(const std::string& text);
-/// Returns the absolute path of this program.
-std::filesystem::path this_program();
 
 }  // namespace exemplar

@@ -10,6 +10,7 @@
 
 #include "apps/exemplar/batch/batch_shards.h"
 #include "apps/exemplar/catalog/batch_page.h"
+#include "apps/exemplar/run_words.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 #include "host/core/progress.h"

@@ -8,6 +8,7 @@
 #include "apps/bench/kernels/measurement.h"
 #include "apps/bench/kernels/variants.h"
 #include "apps/exemplar/arguments.h"
+#include "apps/exemplar/bench/bench_statistics.h"
 #include "apps/exemplar/commands.h"
 #include "gpu/runtime/device/errors.h"
 #include "host/core/interrupt.h"
@@ -23,7 +24,8 @@ struct ShaderBenchOptions {
     std::filesystem::path baseline;
     std::vector<std::size_t> sizes;
     std::size_t repeats = 7;
-    bool tune = false, list = false;
+    bool tune = false, list = false, statistics = false, in_this_process = false;
+    StatisticsOptions compiling;
 };
 
 /// An operation of one size that is to be measured.
@@ -191,8 +193,20 @@ void measure(Device& device, const std::vector<Task>& tasks, const KernelFilter&
     if (!options.baseline.empty()) compare_with_baseline(measurements, before);
 }
 
+void run_compiler_statistics(const ShaderBenchOptions& options) {
+    if (options.in_this_process) compile_in_this_process(options.filter);
+    if (!options.common.device.empty())
+        throw UsageError("--statistics compiles for cards that need not be there: give --families, not --device");
+    StatisticsOptions compiling = options.compiling;
+    compiling.common = options.common;
+    compiling.filter = options.filter;
+    compiling.baseline = options.baseline;
+    run_statistics(compiling);
+}
+
 void run_shader_bench(const ShaderBenchOptions& options) {
     const auto limits = apply_common_options(options.common);
+    if (options.statistics) return run_compiler_statistics(options);
     if (options.tune && !options.baseline.empty())
         throw UsageError("--tune compares variants with each other, --baseline with another report: give one of both");
     const KernelFilter filter(options.filter);
@@ -200,6 +214,29 @@ void run_shader_bench(const ShaderBenchOptions& options) {
     const std::vector<Task> tasks = tasks_of(options, filter);
     Device device({.name = options.common.device, .statistics = true});
     options.tune ? tune(device, tasks, filter, options) : measure(device, tasks, filter, options);
+}
+
+/// Adds --statistics, which excludes `others`, and the options that belong to it.
+void add_statistics_options(Command& command, ShaderBenchOptions& options, std::initializer_list<Option*> others) {
+    Option* statistics =
+        command.add_flag("--statistics", options.statistics,
+                         "compile all variants with Mesa's compiler of AMD's cards, and print what it tells of them");
+    for (const Option* other : others) statistics->excludes(other);
+    command
+        .add_option("--families", options.compiling.families,
+                    "with --statistics: families of cards, as Mesa names them")
+        ->delimiter(',')
+        ->needs(statistics)
+        ->capture_default_str()
+        ->type_name("NAME");
+    command
+        .add_option("--times", options.compiling.times,
+                    "with --statistics: a report of --json, whose times are printed beside them")
+        ->needs(statistics)
+        ->type_name("FILE");
+    command.add_flag("--in-this-process", options.in_this_process, "compile with this process's driver")
+        ->needs(statistics)
+        ->hide();
 }
 
 }  // namespace
@@ -217,23 +254,26 @@ void add_bench_shaders_command(Command& bench) {
         "Examples:\n"
         "  exemplar bench shaders --filter 'stumps|reproject' --json today.json\n"
         "  exemplar bench shaders --baseline today.json    exits with 1 if a kernel has become slower\n"
-        "  exemplar bench shaders --tune                   finds the fastest variants and keeps them for this device");
+        "  exemplar bench shaders --tune                   finds the fastest variants and keeps them for this device\n"
+        "  exemplar bench shaders --statistics             registers and occupancy on AMD's cards, without a card");
     command
         ->add_option("--filter", options->filter,
                      "only kernels, or operations, whose name this regular expression finds")
         ->type_name("REGEX");
     command->add_option("--baseline", options->baseline, "a report of --json to compare with")->type_name("FILE");
-    command->add_flag(
+    Option* tune = command->add_flag(
         "--tune", options->tune,
         "compare variants of kernels (group sizes, items per invocation, how inputs are read and how many bits they "
         "have) and keep the fastest for this device");
-    command->add_option("--sizes", options->sizes, "how many items, instead of the usual three sizes")
-        ->check(whole_number(64, 4'000'000))
-        ->type_name("N");
-    command->add_option("--repeats", options->repeats, "how often each is timed")
-        ->capture_default_str()
-        ->check(whole_number(1, 1000));
-    command->add_flag("--list", options->list, "print operations and their kernels, and measure nothing");
+    Option* sizes = command->add_option("--sizes", options->sizes, "how many items, instead of the usual three sizes")
+                        ->check(whole_number(64, 4'000'000))
+                        ->type_name("N");
+    Option* repeats = command->add_option("--repeats", options->repeats, "how often each is timed")
+                          ->capture_default_str()
+                          ->check(whole_number(1, 1000));
+    Option* list =
+        command->add_flag("--list", options->list, "print operations and their kernels, and measure nothing");
+    add_statistics_options(*command, *options, {tune, sizes, repeats, list});
     add_device_option(*command, options->common);
     add_common_options(*command, options->common);
     command->callback([options] { run_shader_bench(*options); });

@@ -37,6 +37,8 @@ struct DeviceOptions {
     std::string name{};
     std::optional<PresentationOptions> presentation{};  ///< none: nothing is shown in windows
     bool statistics = false;                            ///< keep the driver's statistics of kernels, if it has any
+    /// Opens devices that cannot run anything, too. compile() is the only use of such a device, and it is never closed.
+    bool compile_only = false;
 };
 
 /// An opened Vulkan device with one queue for compute, copies and drawing. Objects made from it must be destroyed
@@ -130,6 +132,7 @@ class Device {
     std::unique_ptr<PipelineCache> pipeline_cache_;
     Tuning tuning_;
     bool statistics_ = false;
+    bool compile_only_ = false;
     mutable std::mutex statistics_mutex_;
     std::map<std::string, std::vector<ExecutableStatistic>> statistics_of_kernels_;
 };

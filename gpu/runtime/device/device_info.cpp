@@ -46,6 +46,10 @@ std::string missing_feature(VkPhysicalDevice device, std::uint32_t api_version) 
     if (!features13.synchronization2) return "it lacks synchronization2";
     if (!features13.dynamicRendering) return "it lacks dynamic rendering";
     if (!find_compute_queue(device)) return "it has no compute queue";
+    VkPhysicalDeviceMemoryProperties memory{};
+    vkGetPhysicalDeviceMemoryProperties(device, &memory);
+    if (memory.memoryTypeCount == 0)
+        return "it has no memory: it is a driver without its hardware, as RADV_FORCE_FAMILY asks for";
     return {};
 }
 

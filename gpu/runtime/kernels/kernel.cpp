@@ -55,7 +55,17 @@ void check_limits(const Shader& shader, const Reflection& reflection, const Devi
             reflection.push_bytes, info.max_push_constants);
 }
 
-void create_pipeline(Device& device, Program& program, const Shader& shader, const ProgramInterface& interface) {
+Program empty_program(const Device& device, const Shader& shader) {
+    return {.name = std::string(shader.name),
+            .stages = VK_SHADER_STAGE_COMPUTE_BIT,
+            .reflection = reflect(shader),
+            .set_layout = UniqueSetLayout(device.handle()),
+            .layout = UniquePipelineLayout(device.handle()),
+            .pipeline = UniquePipeline(device.handle())};
+}
+
+void create_pipeline(const Device& device, Program& program, const Shader& shader, const ProgramInterface& interface,
+                     VkPipelineCache cache) {
     const Specialization constants(interface);
     const UniqueShaderModule module = make_module(device, shader);
     const VkComputePipelineCreateInfo info{
@@ -73,31 +83,37 @@ void create_pipeline(Device& device, Program& program, const Shader& shader, con
         .layout = program.layout.get(),
         .basePipelineHandle = VK_NULL_HANDLE,
         .basePipelineIndex = -1};
-    check(vkCreateComputePipelines(device.handle(), device.pipeline_cache().handle(), 1, &info, nullptr,
-                                   program.pipeline.put()),
+    check(vkCreateComputePipelines(device.handle(), cache, 1, &info, nullptr, program.pipeline.put()),
           [&] { return fmt::format("compile kernel {}", program.name); });
-    device.name_pipeline(program.pipeline.get(), program.name);
-    if (device.captures_statistics())
-        device.store_statistics(program.name, executable_statistics(device, program.pipeline.get()));
 }
 
 }  // namespace
 
 Kernel::Kernel(Device& device, const Shader& shader, const ProgramInterface& interface) {
-    const auto program = std::make_shared<Program>(Program{.name = std::string(shader.name),
-                                                           .stages = VK_SHADER_STAGE_COMPUTE_BIT,
-                                                           .reflection = reflect(shader),
-                                                           .set_layout = UniqueSetLayout(device.handle()),
-                                                           .layout = UniquePipelineLayout(device.handle()),
-                                                           .pipeline = UniquePipeline(device.handle())});
+    const auto program = std::make_shared<Program>(empty_program(device, shader));
     check_interface(shader, interface, program->reflection);
     ProgramInterface sized = interface;
     choose_group_size(device, *program, sized);
     specialize_local_size(program->reflection, sized);
     check_limits(shader, program->reflection, device.info());
     create_layouts(device, *program);
-    create_pipeline(device, *program, shader, sized);
+    create_pipeline(device, *program, shader, sized, device.pipeline_cache().handle());
+    device.name_pipeline(program->pipeline.get(), program->name);
+    if (device.captures_statistics())
+        device.store_statistics(program->name, executable_statistics(device, program->pipeline.get()));
     program_ = program;
+}
+
+std::vector<ExecutableStatistic> compile(Device& device, const Shader& shader,
+                                         std::span<const std::pair<std::uint32_t, std::uint32_t>> constants) {
+    Program program = empty_program(device, shader);
+    const ProgramInterface interface {
+        .constants = { constants.begin(), constants.end() }
+    };
+    create_layouts(device, program);
+    create_pipeline(device, program, shader, interface, VK_NULL_HANDLE);
+    if (!device.captures_statistics()) return {};
+    return executable_statistics(device, program.pipeline.get());
 }
 
 }  // namespace exemplar

@@ -3,8 +3,12 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string_view>
+#include <utility>
+#include <vector>
 
+#include "gpu/runtime/device/executable_statistics.h"
 #include "gpu/runtime/kernels/program.h"
 
 namespace exemplar {
@@ -38,5 +42,11 @@ class Kernel {
   private:
     std::shared_ptr<const Program> program_;
 };
+
+/// Compiles a shader with specialization constants (id and bits), and returns the driver's statistics of its code;
+/// empty without DeviceOptions::statistics. Needs neither the C++ side of the shader's interface nor memory: a device
+/// with DeviceOptions::compile_only is enough. Throws DeviceError if the driver cannot compile the shader.
+std::vector<ExecutableStatistic> compile(Device& device, const Shader& shader,
+                                         std::span<const std::pair<std::uint32_t, std::uint32_t>> constants);
 
 }  // namespace exemplar

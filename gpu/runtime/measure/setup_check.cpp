@@ -52,6 +52,12 @@ const char* driver_variable(const MachineView& machine) {
     return nullptr;
 }
 
+/// The drivers that a variable names.
+std::vector<path> named_drivers(const MachineView& machine, const char* variable) {
+    const std::vector<std::string> names = split(machine.environment(variable), ':');
+    return {names.begin(), names.end()};
+}
+
 std::vector<path> installed_drivers(const MachineView& machine) {
     std::vector<path> files;
     const auto add = [&](const path& folder) {
@@ -170,6 +176,13 @@ MachineView this_machine() {
             }};
 }
 
+std::vector<path> driver_files(const MachineView& machine) {
+    std::vector<path> files;
+    if (const char* const variable = driver_variable(machine)) files = named_drivers(machine, variable);
+    std::ranges::move(installed_drivers(machine), std::back_inserter(files));
+    return files;
+}
+
 std::vector<Finding> check_loader() {
     if (volkInitialize() == VK_SUCCESS) {
         const std::uint32_t version = volkGetInstanceVersion();
@@ -188,7 +201,7 @@ std::vector<Finding> check_drivers(const MachineView& machine) {
         findings.push_back({Level::remark,
                             fmt::format("{} names the drivers to use: {}", variable, machine.environment(variable)),
                             "unset it to use those that are installed"});
-        for (const std::string& file : split(machine.environment(variable), ':')) files.emplace_back(file);
+        files = named_drivers(machine, variable);
     } else {
         files = installed_drivers(machine);
     }

@@ -29,6 +29,9 @@ struct MachineView {
 };
 MachineView this_machine();
 
+/// Returns the files of drivers (ICD files): those that the environment names, then those installed for the loader.
+std::vector<std::filesystem::path> driver_files(const MachineView& machine);
+
 /// Checks whether there is a Vulkan loader.
 std::vector<Finding> check_loader();
 

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/exemplar/common_options.h"
+
+namespace exemplar {
+
+/// Options of `exemplar bench shaders --statistics`.
+struct StatisticsOptions {
+    CommonOptions common;
+    std::string filter;
+    std::filesystem::path baseline;  ///< a report of earlier statistics; empty: none
+    std::filesystem::path times;     ///< a report of measured times; empty: none
+    std::vector<std::string> families{"NAVI21", "VEGA10"};
+};
+
+/// Compiles the variants of kernels with Mesa's RADV for each family of graphics cards, whose hardware is not needed,
+/// and prints what the compiler tells of them. Throws Error if a default variant is worse than in the baseline.
+void run_statistics(const StatisticsOptions& options);
+
+/// Compiles the variants with the first driver of this process, and prints their statistics as one line of JSON. Does
+/// not return, as Mesa's device without hardware cannot be closed.
+[[noreturn]] void compile_in_this_process(const std::string& filter);
+
+}  // namespace exemplar

@@ -52,8 +52,9 @@ Threads threads_of(const SumParameters& parameters, std::uint32_t outputs) {
 
 }  // namespace
 
-GpuGaussian::GpuGaussian(Device& device, float sigma)
-    : kernel(gaussian_kernel(sigma)), weights(Buffer::of<float>(device, padded_weights(kernel))) {}
+GpuGaussian::GpuGaussian(Device& device, Stream& stream, float sigma) : kernel(gaussian_kernel(sigma)) {
+    weights = uploaded<float>(device, stream, padded_weights(kernel));
+}
 
 GaussianSums::GaussianSums(Device& device)
     : outputs_(chosen_outputs(device, k_sum_outputs)),

@@ -45,7 +45,7 @@ bool has_extension(VkPhysicalDevice device, const char* name) {
 }
 
 Device::Device(const DeviceOptions& options)
-    : switches_(environment_switches()),
+    : switches_(options.switches ? *options.switches : environment_switches()),
       instance_(switches_.validates,
                 options.presentation ? options.presentation->instance_extensions : std::vector<std::string>{}),
       compile_only_(options.compile_only) {

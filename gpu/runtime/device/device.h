@@ -37,6 +37,7 @@ struct DeviceOptions {
     std::string name{};
     std::optional<PresentationOptions> presentation{};  ///< none: nothing is shown in windows
     bool statistics = false;                            ///< keep the driver's statistics of kernels, if it has any
+    std::optional<DeviceSwitches> switches{};           ///< none: those of the environment
     /// Opens devices that cannot run anything, too. compile() is the only use of such a device, and it is never closed.
     bool compile_only = false;
 };

@@ -50,21 +50,6 @@ Buffer::Resource::Resource(Device& owner, std::size_t capacity)
     if (maps && (device.memory_properties(type) & k_mapped_properties) == k_mapped_properties) mapped = memory.mapped();
 }
 
-VkBufferView Buffer::Resource::view(VkFormat format, VkDeviceSize offset, VkDeviceSize range) {
-    const std::lock_guard lock(mutex_);
-    for (const View& view : views_)
-        if (view.format == format && view.offset == offset && view.range == range) return view.handle.get();
-    auto info = empty_structure<VkBufferViewCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO);
-    info.buffer = buffer.get();
-    info.format = format;
-    info.offset = offset;
-    info.range = range;
-    UniqueBufferView view(device.handle());
-    check(vkCreateBufferView(device.handle(), &info, nullptr, view.put()), "make a view of a buffer");
-    device.host_work().add(HostTask::view);
-    return views_.emplace_back(format, offset, range, std::move(view)).handle.get();
-}
-
 Buffer::Buffer(Device& device, std::size_t bytes) : bytes_(bytes) {
     if (const std::uint64_t limit = device.info().max_allocation; bytes > limit)
         throw DeviceLimitError(fmt::format("a buffer of {} is over the limit of {} of device '{}'; split the work",

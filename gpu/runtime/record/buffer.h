@@ -6,10 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <type_traits>
-#include <vector>
 
 #include "gpu/runtime/device/commands.h"
 #include "gpu/runtime/device/memory_allocator.h"
@@ -60,14 +58,11 @@ class Buffer {
     void write(std::span<const std::byte> data, std::size_t offset);
     void read(std::span<std::byte> data, std::size_t offset) const;
 
-    /// The Vulkan objects behind a buffer. Any thread may use them.
-    class Resource {
-      public:
+    /// The Vulkan objects behind a buffer.
+    struct Resource {
         Resource(Device& owner, std::size_t capacity);
         Resource(const Resource&) = delete;
         Resource& operator=(const Resource&) = delete;
-        /// Returns a view of texels, made at the first call and kept.
-        VkBufferView view(VkFormat format, VkDeviceSize offset, VkDeviceSize range);
 
         Device& device;
         const std::uint64_t id;  ///< of no other buffer, not even of one that takes the place of this one
@@ -76,15 +71,6 @@ class Buffer {
         std::byte* mapped = nullptr;             ///< null if the host does not see the memory
         std::atomic<std::uint32_t> streams = 0;  ///< streams that have recorded a use and are not done
         std::atomic<Ticket> last_use = 0;        ///< the last submission that uses it
-
-      private:
-        struct View {
-            VkFormat format;
-            VkDeviceSize offset, range;
-            UniqueBufferView handle;
-        };
-        std::mutex mutex_;
-        std::vector<View> views_;
     };
     const std::shared_ptr<Resource>& resource() const { return resource_; }
 

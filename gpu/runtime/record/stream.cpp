@@ -436,6 +436,11 @@ void Stream::fetch(const Buffer& source, std::span<const HostReadback> parts) {
 
 void Stream::fetch(std::span<const BufferReadback> parts) {
     const auto mapped = [](const BufferReadback& part) { return *part.source && part.source->resource()->mapped; };
+    // One block for all, so that the parts of a buffer are one copy.
+    std::size_t staged = 0;
+    for (const BufferReadback& part : parts)
+        if (!mapped(part)) staged += part.target.size() + k_staging_alignment;
+    if (staged > 0) readbacks_.push_back(device_.staging().lend(staged, StagingUse::readback));
     for (const BufferReadback& part : parts)
         if (!mapped(part)) download_bytes(*part.source, part.target, part.offset);
     finish();

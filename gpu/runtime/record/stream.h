@@ -196,4 +196,13 @@ class Stream {
     Commands commands_;
 };
 
+/// Returns a buffer that holds `values` once the work that `stream` records next runs. Unlike Buffer::of, it costs no
+/// submission of its own.
+template <typename T>
+Buffer uploaded(Device& device, Stream& stream, std::span<const T> values) {
+    Buffer buffer(device, values.size_bytes());
+    stream.upload(buffer, values);
+    return buffer;
+}
+
 }  // namespace exemplar

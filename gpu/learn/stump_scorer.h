@@ -33,9 +33,9 @@ inline constexpr TunableParameter k_stump_bits{"learn/stumps.comp", "bits", k_st
 
 /// Boosted stumps on the device. Only the features that stumps use are uploaded, as floats or as ranks
 /// (k_stump_bits). The rows of all matrices that are scored together are concatenated and cut into tiles that fit
-/// the device's limits, one submission and two copies each. Long classifiers take several dispatches (k_max_iterations).
-/// Probabilities agree with CpuStumpScorer within 1e-5: the order of summation differs, and exp differs between
-/// devices.
+/// the device's limits, one submission and two copies each. Long classifiers take several dispatches
+/// (k_max_iterations). Probabilities agree with CpuStumpScorer within 1e-5: the order of summation differs, and exp
+/// differs between devices.
 class GpuStumpScorer final : public StumpScorer {
   public:
     /// `tile_bytes` limits the size of a tile's features, and of its probabilities, below the device's own limits.

@@ -94,6 +94,7 @@ Device::Device(const ExistingDevice& existing)
       queue_(existing.queue),
       queue_family_(existing.queue_family),
       owns_(false),
+      shares_(existing.shares),
       queue_mutex_(existing.queue_mutex ? existing.queue_mutex : &own_queue_mutex_) {
     if (!info_.unusable.empty())
         throw NoDeviceError(fmt::format("device '{}' cannot be used: {}", info_.name, info_.unusable));
@@ -163,7 +164,9 @@ void Device::create(bool presents) {
     std::vector<const char*> extensions;
     if (presents) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);
     constexpr const char* k_portability_subset = "VK_KHR_portability_subset";  // where offered, it must be enabled
-    if (has_extension(physical_, k_portability_subset)) extensions.push_back(k_portability_subset);
+    for (const char* name :
+         {k_portability_subset, VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME, VK_KHR_EXTERNAL_SEMAPHORE_FD_EXTENSION_NAME})
+        if (has_extension(physical_, name)) extensions.push_back(name);
     if (statistics_) {
         extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
         features13.pNext = &executables;

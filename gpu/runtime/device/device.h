@@ -52,6 +52,8 @@ struct ExistingDevice {
     std::uint32_t queue_family = 0;
     VkPhysicalDeviceVulkan12Features features12{};  ///< as given to vkCreateDevice; `pNext` does not matter
     VkPhysicalDeviceVulkan13Features features13{};
+    /// Whether VK_KHR_external_memory_fd and VK_KHR_external_semaphore_fd are enabled where the device has them.
+    bool shares = false;
     /// Locked while Exemplar uses the queue; null: while Exemplar does, no other thread uses it.
     std::mutex* queue_mutex = nullptr;
     /// Where to look up Vulkan's functions; null: in the system's loader (libvulkan.so.1).
@@ -81,6 +83,8 @@ class Device {
     std::vector<std::string> validation_messages() const { return validation_log()->messages(); }
     /// Returns the same log. It outlives the device, whose end reports objects that were not destroyed.
     std::shared_ptr<const ValidationLog> validation_log() const { return instance_.validation_log(); }
+    /// Whether extensions for sharing memory and semaphores by descriptors are enabled where the device has them.
+    bool enables_sharing() const { return shares_; }
     const DeviceSwitches& switches() const { return switches_; }
     /// Whether operations that the host can do as well are faster there: the device is a CPU, so that the host has
     /// the same cores without the detour (D6 in docs/portability.md). Never with EXEMPLAR_HOST=never.
@@ -147,7 +151,7 @@ class Device {
     VkDevice device_ = VK_NULL_HANDLE;
     VkQueue queue_ = VK_NULL_HANDLE;
     std::uint32_t queue_family_ = 0;
-    bool owns_ = true;
+    bool owns_ = true, shares_ = true;
     std::mutex own_queue_mutex_;
     std::mutex* queue_mutex_ = &own_queue_mutex_;
     UniqueSemaphore timeline_;  // its value is the ticket of the last finished submission

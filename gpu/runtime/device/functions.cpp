@@ -6,10 +6,11 @@
 
 namespace exemplar {
 
-#define EXEMPLAR_DEFINE(name) PFN_##name name = nullptr;
-EXEMPLAR_GLOBAL_FUNCTIONS(EXEMPLAR_DEFINE)
-EXEMPLAR_INSTANCE_FUNCTIONS(EXEMPLAR_DEFINE)
-#undef EXEMPLAR_DEFINE
+#define EXEMPLAR_GLOBAL_FUNCTION(name) PFN_##name name = nullptr;
+#define EXEMPLAR_FUNCTION(name) PFN_##name name = nullptr;
+#include "gpu/runtime/device/functions.def"
+#undef EXEMPLAR_GLOBAL_FUNCTION
+#undef EXEMPLAR_FUNCTION
 PFN_vkGetInstanceProcAddr vkGetInstanceProcAddr = nullptr;
 
 namespace {
@@ -23,9 +24,11 @@ void look_up(PFN_vkGetInstanceProcAddr from, VkInstance instance, const char* na
 }
 
 void load_global_functions() {
-#define EXEMPLAR_LOAD(name) look_up(vkGetInstanceProcAddr, nullptr, #name, name);
-    EXEMPLAR_GLOBAL_FUNCTIONS(EXEMPLAR_LOAD)
-#undef EXEMPLAR_LOAD
+#define EXEMPLAR_GLOBAL_FUNCTION(name) look_up(vkGetInstanceProcAddr, nullptr, #name, name);
+#define EXEMPLAR_FUNCTION(name)
+#include "gpu/runtime/device/functions.def"
+#undef EXEMPLAR_GLOBAL_FUNCTION
+#undef EXEMPLAR_FUNCTION
 }
 
 }  // namespace
@@ -56,9 +59,11 @@ void load_vulkan_functions(VkInstance instance, PFN_vkGetInstanceProcAddr from) 
     if (!from) load_vulkan_loader();
     const std::lock_guard lock(functions_mutex);
     if (!from) from = vkGetInstanceProcAddr;
-#define EXEMPLAR_LOAD(name) look_up(from, instance, #name, name);
-    EXEMPLAR_INSTANCE_FUNCTIONS(EXEMPLAR_LOAD)
-#undef EXEMPLAR_LOAD
+#define EXEMPLAR_GLOBAL_FUNCTION(name)
+#define EXEMPLAR_FUNCTION(name) look_up(from, instance, #name, name);
+#include "gpu/runtime/device/functions.def"
+#undef EXEMPLAR_GLOBAL_FUNCTION
+#undef EXEMPLAR_FUNCTION
 }
 
 }  // namespace exemplar

@@ -6,6 +6,8 @@
 #   --slurm        also installs Slurm and GNU parallel and runs a cluster of two nodes on this machine
 #   --swiftshader  runs the tests of kernels a second time, on the SwiftShader that comes with Debian's Chromium: a driver with
 #                  the least that Vulkan asks for
+#   --card         runs the tests of kernels a second time as on a graphics card: device memory that the host does not see, no kernel
+#                  replaced by the host, fresh memory full of NaN
 #   --package      also builds the Debian packages and installs them into a Debian of their own (as root)
 #   --compare      also installs scikit-learn and XGBoost and compares what they learn
 set -euo pipefail
@@ -13,6 +15,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source apps/setup.sh
 packages=()
 swiftshader=
+card=
 unset EXEMPLAR_BROWSER EXEMPLAR_SLURM EXEMPLAR_PACKAGES EXEMPLAR_COMPARE
 while true; do
     case "${1:-}" in
@@ -25,6 +28,8 @@ while true; do
         --swiftshader)
             packages+=(chromium)
             swiftshader=1 ;;
+        --card)
+            card=1 ;;
         --package)
             packages+=(debootstrap lintian)
             export EXEMPLAR_PACKAGES=$PWD/build-package/packages ;;
@@ -48,6 +53,13 @@ exemplar_build
 [ -z "${EXEMPLAR_PACKAGES:-}" ] || apps/package.sh "$EXEMPLAR_PACKAGES"
 export EXEMPLAR_VALIDATION=${EXEMPLAR_VALIDATION:-1}
 ctest --test-dir "$exemplar_build" --output-on-failure -j "$(nproc)" "$@"
+if [ -n "$card" ]; then
+    echo "The tests of kernels again, as on a graphics card"
+    (
+        export EXEMPLAR_MEMORY=unmapped EXEMPLAR_HOST=never EXEMPLAR_POISON=1
+        ctest --test-dir "$exemplar_build" --output-on-failure -j "$(nproc)" -R '^(gpu\.|parity\.|window\.|apps\.labeling$|apps\.lines$)'
+    )
+fi
 if [ -n "$swiftshader" ]; then
     echo "The tests of kernels again, on SwiftShader"
     export VK_ICD_FILENAMES=/usr/lib/chromium/vk_swiftshader_icd.json

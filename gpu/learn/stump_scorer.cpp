@@ -1,5 +1,7 @@
 #include "gpu/learn/stump_scorer.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <limits>
@@ -7,6 +9,7 @@
 #include <vector>
 
 #include "embedded/learn_stumps_comp.h"
+#include "host/core/errors.h"
 #include "host/core/parallel.h"
 #include "host/learn/boosting/grouped_stumps.h"
 #include "host/learn/boosting/threshold_ranks.h"
@@ -25,6 +28,8 @@ static_assert(shared::k_link_softmax == static_cast<std::uint32_t>(Link::softmax
               shared::k_link_sigmoid == static_cast<std::uint32_t>(Link::sigmoid));
 
 constexpr std::uint32_t k_float_bits = 32;
+// Distances of columns on the device are multiples of the largest group of items that invocations read together.
+constexpr std::size_t k_stride_unit = std::size_t{4} * k_stump_quad_counts.back() * shared::k_stump_neighbors;
 // On a CPU each loaded stump is used for many items, and each load brings many features: D6 in docs/portability.md.
 // For a GPU the host does extra work only if it was measured to pay.
 constexpr std::uint32_t k_quads_on_cpu = 4, k_bits_on_cpu = 8;
@@ -274,9 +279,24 @@ void GpuStumpScorer::score_tile(const Classifier& classifier, std::span<const Sc
                                grouped.bits, rows_of_column.subspan(classifier.feature_bytes(piece.place)));
         });
     });
+    const auto range = [&](InputLayout::Part part) { return BufferRange(input_, part.offset, part.bytes); };
+    dispatch(stream_, classifier, rows, column_bytes,
+             {range(layout.features), range(layout.stumps), range(layout.groups), range(layout.constant),
+              BufferRange(probabilities_, 0, stride * classes * sizeof(float))});
+    std::vector<HostReadback> parts;
+    parts.reserve(pieces.size());
+    for (const Piece& piece : pieces)
+        parts.push_back({piece.place * classes * sizeof(float), std::as_writable_bytes(piece.matrix->out.subspan(
+                                                                    piece.first * classes, piece.rows * classes))});
+    stream_.fetch(probabilities_, parts);
+}
+
+// Records the dispatches over rows of columns that are `column_bytes` apart.
+void GpuStumpScorer::dispatch(Stream& stream, const Classifier& classifier, std::size_t rows, std::size_t column_bytes,
+                              const Bindings& bindings) {
+    const DeviceStumps& grouped = classifier.grouped;
     const std::size_t unit = tile_unit(grouped.bits);
     const std::size_t threads = (rows + unit - 1) / unit * shared::k_stump_neighbors;
-    const auto range = [&](InputLayout::Part part) { return BufferRange(input_, part.offset, part.bytes); };
     for (const GroupRange& part : grouped.parts) {
         const StumpParameters parameters{.rows = static_cast<std::uint32_t>(rows),
                                          .stride = static_cast<std::uint32_t>(column_bytes / sizeof(shared::uvec4)),
@@ -286,17 +306,34 @@ void GpuStumpScorer::score_tile(const Classifier& classifier, std::span<const Sc
                                          .groups = static_cast<std::uint32_t>(grouped.groups.size()),
                                          .link = static_cast<std::uint32_t>(classifier.link),
                                          .scale = classifier.scale};
-        stream_.dispatch(kernel(classifier.class_count, grouped.bits, grouped.parts.size() > 1), threads,
-                         {range(layout.features), range(layout.stumps), range(layout.groups), range(layout.constant),
-                          BufferRange(probabilities_, 0, stride * classes * sizeof(float)), range(layout.features)},
-                         parameters);
+        stream.dispatch(kernel(classifier.class_count, grouped.bits, grouped.parts.size() > 1), threads,
+                        {bindings.features, bindings.stumps, bindings.groups, bindings.constant, bindings.probabilities,
+                         bindings.features},
+                        parameters);
     }
-    std::vector<HostReadback> parts;
-    parts.reserve(pieces.size());
-    for (const Piece& piece : pieces)
-        parts.push_back({piece.place * classes * sizeof(float), std::as_writable_bytes(piece.matrix->out.subspan(
-                                                                    piece.first * classes, piece.rows * classes))});
-    stream_.fetch(probabilities_, parts);
+}
+
+void GpuStumpScorer::record(Stream& stream, const BoostedStumps& classifier, Link link, float scale,
+                            const Buffer& features, std::size_t rows, std::size_t stride, const Buffer& probabilities) {
+    DeviceStumps grouped = group(classifier, k_float_bits);
+    const std::size_t columns = grouped.columns.empty() ? 0 : grouped.columns.back().feature + std::size_t{1};
+    for (GroupedStump& stump : grouped.stumps) stump.column = grouped.columns[stump.column].feature;
+    const std::size_t feature_bytes = columns * stride * sizeof(float),
+                      probability_bytes = stride * classifier.class_count * sizeof(float);
+    if (stride % k_stride_unit != 0 || stride < rows || features.bytes() < feature_bytes ||
+        probabilities.bytes() < probability_bytes)
+        throw UsageError(fmt::format(
+            "{} rows of {} columns, {} floats apart, and {} classes do not fit buffers of {} and {} bytes; the "
+            "distance "
+            "must be a multiple of {}",
+            rows, columns, stride, classifier.class_count, features.bytes(), probabilities.bytes(), k_stride_unit));
+    if (rows == 0) return;
+    const Buffer stumps = uploaded<GroupedStump>(device_, stream, grouped.stumps),
+                 groups = uploaded<StumpGroup>(device_, stream, grouped.groups),
+                 constant = uploaded<float>(device_, stream, grouped.constant);
+    dispatch(stream, {grouped, classifier.class_count, link, scale}, rows, stride * sizeof(float),
+             {BufferRange(features, 0, feature_bytes), stumps, groups, constant,
+              BufferRange(probabilities, 0, probability_bytes)});
 }
 
 std::unique_ptr<StumpScorer> stump_scorer_for(Device& device) {

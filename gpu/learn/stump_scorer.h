@@ -44,11 +44,24 @@ class GpuStumpScorer final : public StumpScorer {
     void probabilities_of_all(const BoostedStumps& classifier, Link link, float scale,
                               std::span<const ScoredMatrix> matrices) override;
 
+    /// Records the scoring of features that are in a buffer already: columns by the numbers that the classifier's stumps
+    /// have, `stride` floats each, a multiple of 256 (at least `rows`), all finite in the first `rows` of a column.
+    /// Writes a probability per class and row, item-major, to `probabilities`, for `stride` rows. Probabilities are those
+    /// of probabilities_of_all. Throws UsageError if a buffer is too small, and as Stream::dispatch.
+    void record(Stream& stream, const BoostedStumps& classifier, Link link, float scale, const Buffer& features,
+                std::size_t rows, std::size_t stride, const Buffer& probabilities);
+
   private:
     // A classifier on the device.
     struct Classifier;
     void score_tile(const Classifier& classifier, std::span<const ScoredMatrix> matrices, std::size_t first,
                     std::size_t rows, std::size_t stride);
+    // What the kernel reads and writes.
+    struct Bindings {
+        BufferRange features, stumps, groups, constant, probabilities;
+    };
+    void dispatch(Stream& stream, const Classifier& classifier, std::size_t rows, std::size_t column_bytes,
+                  const Bindings& bindings);
     const Kernel& kernel(std::uint32_t classes, std::uint32_t bits, bool in_parts);
     std::uint32_t quads_of(std::uint32_t bits) const;
     std::size_t tile_unit(std::uint32_t bits) const;

@@ -20,6 +20,9 @@ struct NodeTransform {
     Vec3 translation = Vec3::Zero();
     Eigen::Quaternionf rotation = Eigen::Quaternionf::Identity();  ///< unit
     Vec3 scale = Vec3::Ones();
+    bool operator==(const NodeTransform& other) const {
+        return translation == other.translation && rotation.coeffs() == other.rotation.coeffs() && scale == other.scale;
+    }
 };
 
 struct RigNode {
@@ -37,6 +40,7 @@ struct Rig : Skin {
 struct Pose {
     std::vector<NodeTransform> nodes;  ///< one per node of the rig
     std::vector<float> weights;        ///< one per morph target
+    bool operator==(const Pose&) const = default;
 };
 
 /// A motion as frames at a constant rate.

@@ -75,6 +75,41 @@ class Consumer(unittest.TestCase):
         self.assertFalse((folder / "gpu_consumer").exists())
         self.check_host(folder / "host_consumer")
 
+    def test_no_symbol_is_vulkans(self):
+        """Libraries beside a loader, or another one's tables of functions, in one program."""
+        libraries = sorted(self.prefix.rglob("libexemplar_*.a"))
+        self.assertGreater(len(libraries), 10 if HAS_GPU else 5)
+        for library in libraries:
+            defined = run("nm", "--defined-only", "--extern-only", library)
+            self.assertNotRegex(defined, r"(?m) [A-Z] vk[A-Z]", library.name)
+
+    def test_the_example_draws_lines_over_pictures_of_its_own(self):
+        if not HAS_GPU:
+            self.skipTest("this build has no programs")
+        program = self.prefix / "bin" / "exemplar"
+        figure, model = self.folder / "figure_001.glb", self.folder / "figure.safetensors"
+        run(program, "synth", "figure", "--vertices", "1000", "--frames", "12", "--out", self.folder)
+        run(program, "curvature", "train", figure, "--out", model, "--augment", "40")
+        folder = self.folder / "embed"
+        run(CMAKE, "-S", HERE.parent.parent / "examples" / "embed_lines", "-B", folder, f"-DCMAKE_PREFIX_PATH={self.prefix}",
+            f"-DCMAKE_CXX_COMPILER={COMPILER}", "-DCMAKE_BUILD_TYPE=Release")
+        run(CMAKE, "--build", folder)
+        # Small enough for a device that has the least that Vulkan asks for. In validation no message is an error.
+        options = [figure, model, "--size", "250x240", "--white", "--validate"]
+        run(folder / "embed_lines", *options, "--out", self.folder / "embedded")
+        run(program, "lines", figure, "--model", model, "--types", "contours,suggestive_contours", "--view", "front", "--frames",
+            "0:1", "--size", "250x240", "--out", self.folder / "alone.png")
+        embedded = sorted((self.folder / "embedded").iterdir())
+        self.assertEqual(len(embedded), 12)
+        self.assertEqual(embedded[0].read_bytes(), (self.folder / "alone.png").read_bytes())
+        swiftshader = pathlib.Path("/usr/lib/chromium/vk_swiftshader_icd.json")
+        if swiftshader.exists():
+            run(folder / "embed_lines", *options, "--frames", "3", "--out", self.folder / "swiftshader",
+                environment={"VK_ICD_FILENAMES": str(swiftshader)})
+            self.assertEqual(len(list((self.folder / "swiftshader").iterdir())), 3)
+        self.assertIn("usage: embed_lines", run(folder / "embed_lines", code=1))
+        self.assertIn("missing.glb", run(folder / "embed_lines", "missing.glb", model, "--out", "x", code=1))
+
     def test_programs_come_with_pages_and_completion(self):
         if not HAS_GPU:
             self.skipTest("this build has no programs")

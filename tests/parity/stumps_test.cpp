@@ -96,6 +96,33 @@ TEST(StumpParity, OddNumbersOfClasses) {
         }
 }
 
+// Features that are in a buffer already, in columns of their own numbers.
+TEST(StumpParity, FeaturesOnTheDevice) {
+    Device& device = test_support::shared_device();
+    GpuStumpScorer scorer(device);
+    Random random(21);
+    for (const std::size_t rows : {1u, 255u, 256u, 1003u}) {
+        SCOPED_TRACE(rows);
+        FeatureMatrix features = random_stump_features(rows, 30, random);
+        for (float& value : features.values)
+            if (!std::isfinite(value)) value = 0;
+        const BoostedStumps classifier = random_stumps(5, 60, 30, random);
+        std::vector<float> expected(rows * 5), actual(rows * 5);
+        CpuStumpScorer().probabilities(classifier, features, Link::softmax, 1, expected);
+        const std::size_t stride = (rows + 255) / 256 * 256;
+        std::vector<float> columns(30 * stride);
+        for (std::size_t c = 0; c < 30; ++c)
+            std::ranges::copy(features.column(c), columns.begin() + static_cast<std::ptrdiff_t>(c * stride));
+        const Buffer input = Buffer::of<float>(device, columns), output(device, 5 * stride * sizeof(float));
+        Stream stream(device);
+        scorer.record(stream, classifier, Link::softmax, 1, input, rows, stride, output);
+        stream.fetch<float>(output, actual);
+        for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_NEAR(actual[i], expected[i], k_stumps_tolerance) << i;
+        for (const std::size_t wrong : {stride - 1, stride / 2, 2 * stride})
+            EXPECT_THROW(scorer.record(stream, classifier, Link::softmax, 1, input, rows, wrong, output), UsageError);
+    }
+}
+
 TEST(StumpParity, TheMostClasses) {
     GpuStumpScorer scorer(test_support::shared_device());
     Random random(8);

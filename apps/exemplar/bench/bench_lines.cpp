@@ -31,13 +31,17 @@ void bench_lines(BenchContext& context, const std::function<void(const BenchRow&
     Device device({.name = context.device_name()});
     AnimationRenderer renderer(device, character.unseen, model.truth, &model);
     const LinePicture picture = picture_of(character);
-    Stream stream(device);
+    // The host records a frame while the device draws the one before.
+    Stream streams[] = {Stream(device), Stream(device)};
     const auto draw_all = [&](CurvatureSource from) {
-        for (const FrameRef& frame : character.unseen_frames) {
-            renderer.record(stream, frame, from);
+        for (std::size_t i = 0; i < character.unseen_frames.size(); ++i) {
+            Stream& stream = streams[i % 2];
+            stream.wait();
+            renderer.record(stream, character.unseen_frames[i], from);
             renderer.view().record(stream, renderer.snapshot(), picture);
-            stream.finish();
+            stream.submit();
         }
+        for (Stream& stream : streams) stream.wait();
     };
     for (const CurvatureSource from : {CurvatureSource::learned, CurvatureSource::estimated}) {
         draw_all(from);  // once untimed: D17 in docs/portability.md

@@ -46,6 +46,7 @@ void SurfaceScene::set_model(std::shared_ptr<const CurvatureModel> model) {
     renderer_ =
         std::make_unique<AnimationRenderer>(device_, document_.animation, measuring_options(model.get()), model.get());
     colored_views_ = styled_views_ = 0;
+    recorded_.reset();
     feature_size_ = model ? model->feature_size : 0;
     model_ = std::move(model);
 }
@@ -82,16 +83,27 @@ LinePicture SurfaceScene::picture_of(const OrbitCamera& camera, VkExtent2D exten
     return picture;
 }
 
+bool SurfaceScene::same(const Recorded& a, const Recorded& b) {
+    return a.source == b.source && a.cut == b.cut && a.shape.vertices.data() == b.shape.vertices.data() &&
+           a.shape.vertices.size() == b.shape.vertices.size() && a.shape.pose == b.shape.pose;
+}
+
 void SurfaceScene::record(Stream& stream, const SurfaceShape& shape, const OrbitCamera& camera,
                           std::span<const VkExtent2D> extents, const ViewSettings& settings) {
     const bool curved = settings.needs_curvature();
     const bool learned = model_ && settings.source != ShownCurvature::estimated;
     if (curved) find_feature_size();
-    renderer_->set_cut_curvature(settings.shows(LineType::creases));
-    renderer_->record(stream, shape,
-                      !curved   ? CurvatureSource::none
-                      : learned ? CurvatureSource::learned
-                                : CurvatureSource::estimated);
+    const Recorded wanted{.shape = shape,
+                          .source = !curved   ? CurvatureSource::none
+                                    : learned ? CurvatureSource::learned
+                                              : CurvatureSource::estimated,
+                          .cut = settings.shows(LineType::creases)};
+    if (!recorded_ || !same(*recorded_, wanted)) {
+        recorded_.reset();
+        renderer_->set_cut_curvature(wanted.cut);
+        renderer_->record(stream, shape, wanted.source);
+        if (extents.size() == 1) recorded_ = wanted;  // the second view has another curvature
+    }
     prepare_views(extents.size(), settings);
     for (std::size_t i = 0; i < extents.size(); ++i) {
         if (i > 0) renderer_->record_again(stream, CurvatureSource::estimated);

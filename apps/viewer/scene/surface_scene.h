@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "apps/viewer/controls/orbit_camera.h"
@@ -35,6 +36,13 @@ class SurfaceScene {
     Canvas& canvas(std::size_t view) { return renderer_->view(view).canvas(); }
 
   private:
+    // What is on the device: while only the camera moves, it stays.
+    struct Recorded {
+        SurfaceShape shape;
+        CurvatureSource source;
+        bool cut;
+    };
+    static bool same(const Recorded& a, const Recorded& b);
     void find_feature_size();
     void prepare_views(std::size_t count, const ViewSettings& settings);
     LinePicture picture_of(const OrbitCamera& camera, VkExtent2D extent, const ViewSettings& settings) const;
@@ -42,6 +50,7 @@ class SurfaceScene {
     Device& device_;
     std::unique_ptr<AnimationRenderer> renderer_;  // made anew for another model
     std::shared_ptr<const CurvatureModel> model_;
+    std::optional<Recorded> recorded_;
     float feature_size_ = 0;  // 0: not yet found
     DeviceStyle style_;
     std::uint64_t style_version_ = 0, colors_version_ = 0;

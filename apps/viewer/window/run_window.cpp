@@ -120,12 +120,12 @@ bool Session::draw(ViewerState& state, InterfaceRequests& requests, bool fails) 
     if (!image) return false;
     if (state.labeling) thumbnails_.follow(*state.labeling, interface_renderer_);
     requests = interface_.lay_out(state, image->extent);
+    renderer_.begin(state.times);
     follow(state);
     record_scene(state, fails);
     record(*image);
-    renderer_.stream().submit(image->order);
+    renderer_.submit(image->order);
     swapchain_.present(*image);
-    renderer_.finish(state.times);
     return true;
 }
 

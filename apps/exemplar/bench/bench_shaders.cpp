@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "apps/bench/kernels/baseline.h"
 #include "apps/bench/kernels/measurement.h"
 #include "apps/bench/kernels/variants.h"
 #include "apps/exemplar/arguments.h"
+#include "apps/exemplar/bench/bench_kernel_table.h"
 #include "apps/exemplar/bench/bench_statistics.h"
 #include "apps/exemplar/commands.h"
 #include "gpu/runtime/device/errors.h"
@@ -75,30 +75,7 @@ void print_measurement(const Measurement& measurement, const Ceilings& ceilings)
         fmt::print("    NOT AS THE REFERENCE: not timed\n");
         return;
     }
-    fmt::print("    {:<34}{:>10}{:>7}{:>10}{:>9}{:>8}{:>10}{:>9}{:>8}\n", "kernel", "ms", "+-%", "MB", "GB/s", "copy",
-               "Mop", "Gop/s", "fma");
-    for (const KernelRow& row : measurement.kernels) {
-        const Shares shares = shares_of(row, ceilings);
-        fmt::print("    {:<34}{:>10.4f}{:>7.1f}{:>10.3f}{:>9.2f}{:>7.1f}%{:>10.3f}{:>9.2f}{:>7.1f}%\n", row.kernel,
-                   row.median_milliseconds(), 100 * relative_error(row.milliseconds), 1e-6 * row.work.bytes,
-                   row.gb_per_s(), 100 * shares.of_copy, 1e-6 * row.work.operations, row.gop_per_s(),
-                   100 * shares.of_multiply_add);
-    }
-}
-
-void print_statistics(const Device& device, const std::vector<Measurement>& measurements) {
-    std::vector<std::string> seen;
-    for (const Measurement& measurement : measurements)
-        for (const KernelRow& row : measurement.kernels) {
-            if (std::ranges::find(seen, row.kernel) != seen.end()) continue;
-            seen.push_back(row.kernel);
-            std::string text;
-            for (const ExecutableStatistic& statistic : device.statistics_of(row.kernel))
-                text += fmt::format("{}{} {}", text.empty() ? "" : ", ", statistic.name, statistic.value);
-            if (text.empty()) continue;
-            if (seen.size() == 1) fmt::print("\nWhat the driver says of its code:\n");
-            fmt::print("    {:<34}{}\n", row.kernel, text);
-        }
+    print_kernel_rows(measurement, ceilings);
 }
 
 void print_comparison(const VariantComparison& comparison) {
@@ -147,26 +124,6 @@ void tune(Device& device, const std::vector<Task>& tasks, const KernelFilter& fi
     write_report(options.common, {{"device", device_json(device, ceilings)}, {"variants", variants}});
 }
 
-/// Throws Error naming those that have become slower.
-void compare_with_baseline(const std::vector<Measurement>& now, const std::vector<Measurement>& before) {
-    const std::vector<Change> changes = changes_between(now, before);
-    if (changes.empty()) throw UsageError("the baseline has none of the kernels and sizes that were measured");
-    fmt::print("\nAgainst the baseline (1.00: as fast; less is faster; the device's own drift is taken away):\n");
-    std::size_t slower = 0;
-    for (const Change& change : changes) {
-        const bool is_slower = change.ratio.is_slower();
-        slower += is_slower;
-        fmt::print("    {:<34}{:<28}{:>9}  {:.2f} +- {:.2f}  (drift {:.2f}){}\n", change.kernel, change.operation,
-                   change.size, change.ratio.value, change.ratio.error * change.ratio.value, change.drift,
-                   is_slower                  ? "  SLOWER"
-                   : change.ratio.is_faster() ? "  faster"
-                                              : "");
-    }
-    if (slower > 0)
-        throw Error(fmt::format("{} of {} kernels are slower than in the baseline, by more than noise and a twentieth",
-                                slower, changes.size()));
-}
-
 void measure(Device& device, const std::vector<Task>& tasks, const KernelFilter& filter,
              const ShaderBenchOptions& options) {
     std::vector<Measurement> before;
@@ -180,17 +137,17 @@ void measure(Device& device, const std::vector<Task>& tasks, const KernelFilter&
     for (const auto& [kind, size] : tasks) {
         check_interrupt();
         print_progress(options, measurements.size(), tasks.size(), watch);
-        measurements.push_back(measure_operation(device, *kind, size, filter, {.repeats = options.repeats}));
+        measurements.push_back(measure_operation(device, *kind, size, filter, {.repeats = options.repeats}, ceilings));
         print_measurement(measurements.back(), ceilings);
         list.push_back(to_json(measurements.back(), device, ceilings));
     }
-    print_statistics(device, measurements);
+    print_driver_statistics(device, measurements);
     write_report(options.common, {{"device", device_json(device, ceilings)}, {"measurements", list}});
     const auto wrong = std::ranges::count_if(measurements, [](const Measurement& m) { return !m.fits(); });
     if (wrong > 0)
         throw DeviceError(fmt::format("{} of {} operations differ from their reference on device '{}'", wrong,
                                       measurements.size(), device.info().name));
-    if (!options.baseline.empty()) compare_with_baseline(measurements, before);
+    if (!options.baseline.empty()) compare_with_earlier(measurements, before);
 }
 
 void run_compiler_statistics(const ShaderBenchOptions& options) {

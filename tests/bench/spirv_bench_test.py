@@ -2,11 +2,14 @@
 
 import array
 import json
+import pathlib
 import shutil
 import struct
 import subprocess
+import sys
 import unittest
 
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "apps"))
 from program import ProgramTest
 
 SAXPY = """#version 450
@@ -32,6 +35,26 @@ COUNTER = """#version 450
 layout(local_size_x = 32) in;
 layout(set = 0, binding = 0) buffer Counter { uint count; uint slots[]; };
 void main() { slots[atomicAdd(count, 1)] = gl_GlobalInvocationID.x; }
+"""
+POINTER = """#version 450
+#extension GL_EXT_buffer_reference : require
+layout(buffer_reference) buffer Node { float value; };
+layout(push_constant) uniform Push { Node first; };
+void main() { first.value = 1.0; }
+"""
+HALF = """#version 450
+#extension GL_EXT_shader_explicit_arithmetic_types : require
+#extension GL_EXT_shader_16bit_storage : require
+layout(local_size_x = 64) in;
+layout(set = 0, binding = 0) readonly buffer X { float16_t x[]; };
+layout(set = 0, binding = 1) buffer Y { double y[]; };
+void main() { y[gl_GlobalInvocationID.x] += double(x[gl_GlobalInvocationID.x]); }
+"""
+TEXELS = """#version 450
+layout(local_size_x = 32) in;
+layout(set = 0, binding = 0) uniform samplerBuffer x;
+layout(set = 0, binding = 1) writeonly buffer Y { float y[]; };
+void main() { y[gl_GlobalInvocationID.x] = texelFetch(x, int(gl_GlobalInvocationID.x)).x; }
 """
 FRAGMENT = "#version 450\nlayout(location = 0) out vec4 color;\nvoid main() { color = vec4(1.0); }\n"
 COUNT = 1000
@@ -149,6 +172,23 @@ class SpirvBench(ProgramTest):
         self.assertIn("(read, written)", text)
         self.wrong("counter.comp", "--groups", "2", "--bind", "0=:260", "--expect", "counter.bin", code=1, says=["of 65 numbers"])
 
+    def test_numbers_of_other_sizes(self):
+        self.write("half.comp", HALF)
+        (self.folder / "h.bin").write_bytes(struct.pack("<64e", *range(64)))
+        (self.folder / "d.bin").write_bytes(struct.pack("<64d", *range(64)))
+        self.bench("half.comp", "--groups", "1", "--bind", "0=h.bin", "--expect", "d.bin")
+        (self.folder / "d.bin").write_bytes(struct.pack("<64d", *range(63), 64))
+        self.wrong("half.comp", "--groups", "1", "--bind", "0=h.bin", "--expect", "d.bin", code=1, says="element 63 (63, expected 64)")
+
+    def test_texels(self):
+        self.write("texels.comp", TEXELS)
+        floats(self.folder / "t.bin", [0.5 * i for i in range(128)])
+        floats(self.folder / "every_fourth.bin", [2.0 * i for i in range(32)])
+        floats(self.folder / "each.bin", [0.5 * i for i in range(32)])
+        self.bench("texels.comp", "--groups", "1", "--bind", "0=t.bin", "--expect", "every_fourth.bin")
+        self.bench("texels.comp", "--groups", "1", "--bind", "0=t.bin", "--texels", "0=4", "--expect", "each.bin")
+        self.wrong("texels.comp", "--groups", "1", "--texels", "0=8", code=2, says=["--texels 0=8", "4 bytes or 16"])
+
     def test_arrays_of_numpy(self):
         header = "{'descr': '<f4', 'fortran_order': False, 'shape': (1000,), }"
         header += " " * (63 - (10 + len(header)) % 64 + 1 - 1) + "\n"
@@ -192,8 +232,24 @@ class SpirvBench(ProgramTest):
         self.wrong("missing.spv", *SIZE, code=1, says="missing.spv")
         self.write("uniform.comp", UNIFORM)
         self.wrong("uniform.comp", "--groups", "1", code=1, says=["uniform.comp", "binding 5 'Settings'", "uniform buffer"])
-        self.write("double.comp", "#version 450\nlayout(binding = 0) buffer X { double x; };\nvoid main() { x *= 2.0; }\n")
-        self.wrong("double.comp", "--groups", "1", code=1, says=["double.comp", "Float64"])
+        self.write("pointer.comp", POINTER)
+        self.wrong("pointer.comp", "--groups", "1", code=1, says=["pointer.comp", "capability"])
+
+    def test_statistics_of_cards_without_a_card(self):
+        self.write("two.comp", SAXPY.replace("factor * x[i]", "exp(factor * x[i])"))
+        call = ["bench", "spirv", "two.comp", "--against", "saxpy.spv", "--spec", "3=1.5", "--statistics", "--families", "navi21"]
+        if "install mesa-vulkan-drivers" in self.start(*call).communicate()[1]:
+            self.skipTest("Mesa's driver of AMD's cards is not installed")
+        text = self.call(*call, "--json", "s.json").stdout
+        self.assertIn("VGPRs", text)
+        report = json.loads((self.folder / "s.json").read_text())
+        kernels = report["families"][0]["kernels"]
+        self.assertEqual([(k["kernel"], k["variant"]) for k in kernels], [("two.comp", "3=1.5"), ("saxpy.spv", "3=1.5")])
+        self.assertGreater(kernels[0]["instructions"], kernels[1]["instructions"])
+        self.assertIn("Nothing has changed", self.call(*call, "--baseline", "s.json").stdout)
+        kernels[0]["inverse_throughput"] = 1
+        (self.folder / "better.json").write_text(json.dumps(report))
+        self.refused(*call, "--baseline", "better.json", code=1, says="worse than in the baseline")
 
     def test_any_flipped_word_is_refused_or_run(self):
         # Whatever is damaged, spirv-val or the check of the module finds it, or it means something else that is valid.

@@ -3,50 +3,59 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <utility>
+
+#include "host/core/half.h"
 
 namespace exemplar {
 namespace {
 
 constexpr double k_infinite_difference = std::numeric_limits<double>::infinity();
 
-double float_difference(float actual, float expected) {
+double float_difference(double actual, double expected) {
     if (actual == expected || (std::isnan(actual) && std::isnan(expected))) return 0;
-    const double apart = std::abs(static_cast<double>(actual) - static_cast<double>(expected));
-    return std::isfinite(apart) ? apart / std::max(1.0, std::abs(static_cast<double>(expected)))
-                                : k_infinite_difference;
+    const double apart = std::abs(actual - expected);
+    return std::isfinite(apart) ? apart / std::max(1.0, std::abs(expected)) : k_infinite_difference;
 }
 
-double scalar_difference(std::uint32_t actual, std::uint32_t expected, ScalarType type) {
+// The number at a place, exactly.
+double number_at(const std::byte* place, ScalarType type) {
+    const auto read = [&]<typename T>(T value) {
+        std::memcpy(&value, place, sizeof value);
+        return value;
+    };
+    switch (type) {
+        case ScalarType::float16:
+            return static_cast<double>(from_half({read(std::uint16_t{})}));
+        case ScalarType::float32:
+            return static_cast<double>(read(float{}));
+        case ScalarType::float64:
+            return read(double{});
+        case ScalarType::int32:
+            return static_cast<double>(read(std::int32_t{}));
+        default:
+            return static_cast<double>(read(std::uint32_t{}));
+    }
+}
+
+bool is_floating(ScalarType type) {
+    return type == ScalarType::float16 || type == ScalarType::float32 || type == ScalarType::float64;
+}
+
+double scalar_difference(double actual, double expected, ScalarType type) {
+    if (is_floating(type)) return float_difference(actual, expected);
     if (actual == expected) return 0;
-    switch (type) {
-        case ScalarType::float32:
-            return float_difference(std::bit_cast<float>(actual), std::bit_cast<float>(expected));
-        case ScalarType::int32:
-            return std::abs(static_cast<double>(std::bit_cast<std::int32_t>(actual)) -
-                            static_cast<double>(std::bit_cast<std::int32_t>(expected)));
-        case ScalarType::uint32:
-            return std::abs(static_cast<double>(actual) - static_cast<double>(expected));
-        default:
-            return k_infinite_difference;
-    }
+    return type == ScalarType::other ? k_infinite_difference : std::abs(actual - expected);
 }
 
-std::string scalar_text(std::uint32_t bits, ScalarType type) {
-    switch (type) {
-        case ScalarType::float32:
-            return fmt::format("{}", std::bit_cast<float>(bits));
-        case ScalarType::int32:
-            return fmt::format("{}", std::bit_cast<std::int32_t>(bits));
-        case ScalarType::uint32:
-            return fmt::format("{}", bits);
-        default:
-            return fmt::format("{:#010x}", bits);
-    }
+std::string scalar_text(double number, ScalarType type) {
+    if (type == ScalarType::float32) return fmt::format("{}", static_cast<float>(number));
+    if (type == ScalarType::other) return fmt::format("{:#010x}", static_cast<std::uint32_t>(number));
+    return fmt::format("{}", number);
 }
 
 // Compares numbers one after the other, and keeps the worst.
@@ -57,10 +66,9 @@ class Comparer {
 
     template <typename Place>
     void compare(std::size_t offset, ScalarType type, Place&& place) {
-        if (offset + 4 > actual_.size()) return;
-        std::uint32_t a = 0, b = 0;
-        std::memcpy(&a, actual_.data() + offset, sizeof a);
-        std::memcpy(&b, expected_.data() + offset, sizeof b);
+        const std::size_t bytes = type == ScalarType::other ? 4 : bytes_of(type);
+        if (offset + bytes > actual_.size()) return;
+        const double a = number_at(actual_.data() + offset, type), b = number_at(expected_.data() + offset, type);
         const double apart = scalar_difference(a, b, type);
         ++result_.numbers;
         result_.differing += apart > tolerance_;

@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 #include <spirv.h>
 
-#include <algorithm>
-#include <array>
 #include <cstring>
 #include <span>
-#include <utility>
 
+#include "gpu/runtime/kernels/capabilities.h"
 #include "host/core/errors.h"
 #include "host/core/text.h"
 
@@ -18,46 +16,6 @@ namespace {
 constexpr std::size_t k_header_words = 5;
 constexpr std::uint32_t k_max_id_bound = 0x3fffff;  // SPIR-V's universal limit
 constexpr std::uint32_t k_newest_version = 0x00010600;
-
-// Capabilities that need no feature of a device beyond Vulkan 1.3.
-constexpr std::array k_free_capabilities{SpvCapabilityMatrix,
-                                         SpvCapabilityShader,
-                                         SpvCapabilitySampledBuffer,
-                                         SpvCapabilityImageQuery,
-                                         SpvCapabilityGroupNonUniform,
-                                         SpvCapabilityGroupNonUniformVote,
-                                         SpvCapabilityGroupNonUniformArithmetic,
-                                         SpvCapabilityGroupNonUniformBallot,
-                                         SpvCapabilityGroupNonUniformShuffle,
-                                         SpvCapabilityGroupNonUniformShuffleRelative,
-                                         SpvCapabilityGroupNonUniformClustered,
-                                         SpvCapabilityGroupNonUniformQuad,
-                                         SpvCapabilitySubgroupBallotKHR,
-                                         SpvCapabilitySubgroupVoteKHR};
-
-constexpr std::array<std::pair<std::uint32_t, std::string_view>, 16> k_capability_names{
-    {{SpvCapabilityFloat16, "Float16"},
-     {SpvCapabilityFloat64, "Float64"},
-     {SpvCapabilityInt64, "Int64"},
-     {SpvCapabilityInt64Atomics, "Int64Atomics"},
-     {SpvCapabilityInt16, "Int16"},
-     {SpvCapabilityInt8, "Int8"},
-     {SpvCapabilityStorageBuffer16BitAccess, "StorageBuffer16BitAccess"},
-     {SpvCapabilityUniformAndStorageBuffer16BitAccess, "UniformAndStorageBuffer16BitAccess"},
-     {SpvCapabilityStorageBuffer8BitAccess, "StorageBuffer8BitAccess"},
-     {SpvCapabilityUniformAndStorageBuffer8BitAccess, "UniformAndStorageBuffer8BitAccess"},
-     {SpvCapabilityVariablePointers, "VariablePointers"},
-     {SpvCapabilityVulkanMemoryModel, "VulkanMemoryModel"},
-     {SpvCapabilityPhysicalStorageBufferAddresses, "PhysicalStorageBufferAddresses"},
-     {SpvCapabilityAtomicFloat32AddEXT, "AtomicFloat32AddEXT"},
-     {SpvCapabilityRuntimeDescriptorArray, "RuntimeDescriptorArray"},
-     {SpvCapabilityStorageImageExtendedFormats, "StorageImageExtendedFormats"}}};
-
-std::string capability_name(std::uint32_t capability) {
-    const auto* known =
-        std::ranges::find(k_capability_names, capability, &std::pair<std::uint32_t, std::string_view>::first);
-    return known == k_capability_names.end() ? fmt::format("number {}", capability) : std::string(known->second);
-}
 
 std::string_view stage_name(std::uint32_t model) {
     switch (model) {
@@ -121,10 +79,10 @@ void check_entry_point(const std::string& name, std::span<const std::uint32_t> i
 }
 
 void check_capability(const std::string& name, std::uint32_t capability) {
-    if (std::ranges::find(k_free_capabilities, static_cast<SpvCapability>(capability)) != k_free_capabilities.end())
-        return;
-    refuse_module(name, fmt::format("it needs the capability {}, which devices are opened without; do without it",
-                                    capability_name(capability)));
+    if (!is_known_capability(capability))
+        refuse_module(name,
+                      fmt::format("it needs the capability {} of SPIR-V, with which no device is opened; do without",
+                                  capability_name(capability)));
 }
 
 // Throws unless all instructions end where the next one begins, the last one with the file.
@@ -160,6 +118,16 @@ std::vector<std::uint32_t> checked_words(const std::string& name, std::string_vi
                                         content.size()));
     check_instructions(name, words);
     return words;
+}
+
+void require_capabilities(const UserShader& shader, const Device& device) {
+    const std::span<const std::uint32_t> words(shader.words);
+    for (std::size_t at = k_header_words; at < words.size(); at += words[at] >> 16) {
+        if ((words[at] & 0xffff) != SpvOpCapability || offers_capability(device.physical(), words[at + 1])) continue;
+        refuse_module(shader.name,
+                      fmt::format("it needs {}, which device '{}' does not offer; choose another with --device",
+                                  capability_name(words[at + 1]), device.info().name));
+    }
 }
 
 }  // namespace exemplar

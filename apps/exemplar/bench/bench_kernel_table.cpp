@@ -8,6 +8,15 @@
 
 namespace exemplar {
 
+void print_ceilings(const Device& device, const Ceilings& ceilings) {
+    fmt::print(
+        "{}, subgroups of {}: copies {:.1f} GB/s, multiply-adds {:.1f} GFLOP/s, shared memory {:.1f} GB/s, cached "
+        "texels "
+        "{:.1f} GB/s, atomics {:.2f} Gop/s, launch {:.4f} ms\n",
+        device.info().name, device.info().subgroup_size, ceilings.copy_gb_per_s, ceilings.fma_gflop_per_s,
+        ceilings.shared_gb_per_s, ceilings.texel_gb_per_s, ceilings.atomic_gop_per_s, 1e-3 * ceilings.launch_us);
+}
+
 void print_kernel_rows(const Measurement& measurement, const Ceilings& ceilings) {
     fmt::print("    {:<34}{:>10}{:>7}{:>10}{:>9}{:>8}{:>10}{:>9}{:>8}\n", "kernel", "ms", "+-%", "MB", "GB/s", "copy",
                "Mop", "Gop/s", "fma");
@@ -18,6 +27,18 @@ void print_kernel_rows(const Measurement& measurement, const Ceilings& ceilings)
                    row.gb_per_s(), 100 * shares.of_copy, 1e-6 * row.work.operations, row.gop_per_s(),
                    100 * shares.of_multiply_add);
     }
+    constexpr double k_large_share = 0.1;
+    for (const KernelRow& row : measurement.kernels)
+        if (const double share = 1e-3 * ceilings.launch_us / row.median_milliseconds(); share > k_large_share)
+            fmt::print("    {}: the launch alone takes {:.0f}% of its time\n", row.kernel,
+                       std::min(100.0, 100 * share));
+}
+
+std::string statistics_text(const std::vector<ExecutableStatistic>& statistics) {
+    std::string text;
+    for (const ExecutableStatistic& statistic : statistics)
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", statistic.name, statistic.value);
+    return text;
 }
 
 void print_driver_statistics(const Device& device, const std::vector<Measurement>& measurements) {
@@ -26,9 +47,7 @@ void print_driver_statistics(const Device& device, const std::vector<Measurement
         for (const KernelRow& row : measurement.kernels) {
             if (std::ranges::find(seen, row.kernel) != seen.end()) continue;
             seen.push_back(row.kernel);
-            std::string text;
-            for (const ExecutableStatistic& statistic : device.statistics_of(row.kernel))
-                text += fmt::format("{}{} {}", text.empty() ? "" : ", ", statistic.name, statistic.value);
+            const std::string text = statistics_text(device.statistics_of(row.kernel));
             if (text.empty()) continue;
             if (seen.size() == 1) fmt::print("\nWhat the driver says of its code:\n");
             fmt::print("    {:<34}{}\n", row.kernel, text);

@@ -24,6 +24,7 @@ struct ShaderBenchOptions {
     std::filesystem::path baseline;
     std::vector<std::size_t> sizes;
     std::size_t repeats = 7;
+    double seconds = 600;
     bool tune = false, list = false, statistics = false, in_this_process = false;
     StatisticsOptions compiling;
 };
@@ -86,6 +87,8 @@ void print_comparison(const VariantComparison& comparison) {
         fmt::print(", {}: {:.4f} ({:.2f}x){}", value, median(milliseconds), median(milliseconds) / as_is,
                    comparison.chosen == value ? " <- taken" : "");
     fmt::print("{}\n", comparison.chosen ? "" : "; stays as it is");
+    for (const auto& [value, statistics] : comparison.statistics)
+        if (!statistics.empty()) fmt::print("    {}: {}\n", value, statistics_text(statistics));
 }
 
 /// Prints progress between the tables, as a line rewritten in place would disturb them.
@@ -129,15 +132,16 @@ void measure(Device& device, const std::vector<Task>& tasks, const KernelFilter&
     std::vector<Measurement> before;
     if (!options.baseline.empty()) before = read_measurements(options.baseline, device.info());
     const Ceilings ceilings = measure_ceilings(device);
-    fmt::print("{}: copies {:.1f} GB/s, multiply-adds {:.1f} GFLOP/s\n", device.info().name, ceilings.copy_gb_per_s,
-               ceilings.fma_gflop_per_s);
+    print_ceilings(device, ceilings);
     std::vector<Measurement> measurements;
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    const TimingOptions timing{.repeats = options.repeats,
+                               .wall_seconds = options.seconds / static_cast<double>(tasks.size())};
     const Stopwatch watch;
     for (const auto& [kind, size] : tasks) {
         check_interrupt();
         print_progress(options, measurements.size(), tasks.size(), watch);
-        measurements.push_back(measure_operation(device, *kind, size, filter, {.repeats = options.repeats}, ceilings));
+        measurements.push_back(measure_operation(device, *kind, size, filter, timing, ceilings));
         print_measurement(measurements.back(), ceilings);
         list.push_back(to_json(measurements.back(), device, ceilings));
     }
@@ -151,14 +155,14 @@ void measure(Device& device, const std::vector<Task>& tasks, const KernelFilter&
 }
 
 void run_compiler_statistics(const ShaderBenchOptions& options) {
-    if (options.in_this_process) compile_in_this_process(options.filter);
+    const KernelFilter filter(options.filter);
+    if (options.in_this_process) compile_in_this_process(compiled_variants(filter));
     if (!options.common.device.empty())
         throw UsageError("--statistics compiles for cards that need not be there: give --families, not --device");
     StatisticsOptions compiling = options.compiling;
     compiling.common = options.common;
-    compiling.filter = options.filter;
     compiling.baseline = options.baseline;
-    run_statistics(compiling);
+    run_statistics(compiling, {"bench", "shaders", "--statistics", "--in-this-process", "--filter", options.filter});
 }
 
 void run_shader_bench(const ShaderBenchOptions& options) {
@@ -228,9 +232,12 @@ void add_bench_shaders_command(Command& bench) {
     Option* repeats = command->add_option("--repeats", options->repeats, "how often each is timed")
                           ->capture_default_str()
                           ->check(whole_number(1, 1000));
+    Option* seconds = command->add_option("--seconds", options->seconds, "how long timing may take, preparing aside")
+                          ->capture_default_str()
+                          ->check(in_range(0.1, 86400.0));
     Option* list =
         command->add_flag("--list", options->list, "print operations and their kernels, and measure nothing");
-    add_statistics_options(*command, *options, {tune, sizes, repeats, list});
+    add_statistics_options(*command, *options, {tune, sizes, repeats, seconds, list});
     add_device_option(*command, options->common);
     add_common_options(*command, options->common);
     command->callback([options] { run_shader_bench(*options); });

@@ -9,6 +9,7 @@
 #include "apps/exemplar/bench/spirv_job.h"
 #include "apps/exemplar/commands.h"
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/kernels/capabilities.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
 
@@ -193,7 +194,8 @@ void add_measurement(nlohmann::ordered_json& report, const Measurement& measurem
 }
 
 void measure_spirv(const SpirvOptions& options, const SpirvJob& job) {
-    Device device({.name = options.common.device, .statistics = true});
+    Device device({.name = options.common.device, .statistics = true, .features = compute_features()});
+    for (const SpirvVersion& version : job.versions) require_capabilities(version.shader, device);
     std::vector<Measurement> before;
     if (!options.baseline.empty()) before = read_measurements(options.baseline, device.info());
     const auto run = prepare(device, job);
@@ -214,8 +216,8 @@ void measure_spirv(const SpirvOptions& options, const SpirvJob& job) {
     Measurement measurement = time_kernels(device, kernels, work_of(options, job, run->contents),
                                            {.repeats = options.repeats, .wall_seconds = options.seconds}, ceilings);
     measurement.size = thread_count(job.versions[0]);
-    fmt::print("\n{}: copies {:.1f} GB/s, multiply-adds {:.1f} GFLOP/s\n", device.info().name, ceilings.copy_gb_per_s,
-               ceilings.fma_gflop_per_s);
+    fmt::print("\n");
+    print_ceilings(device, ceilings);
     print_kernel_rows(measurement, ceilings);
     print_ratio(measurement);
     print_driver_statistics(device, {measurement});
@@ -226,6 +228,7 @@ void measure_spirv(const SpirvOptions& options, const SpirvJob& job) {
 
 void run_spirv_bench(const SpirvOptions& options) {
     const auto limits = apply_common_options(options.common);
+    if (options.statistics) return run_spirv_statistics(options);
     const SpirvJob job = read_spirv_job(options);
     check_interrupt();
     measure_spirv(options, job);
@@ -301,6 +304,22 @@ void add_timing_options(Command& command, SpirvOptions& options) {
     command.add_option("--baseline", options.baseline, "a report of --json to compare with")->type_name("FILE");
 }
 
+void add_compiler_options(Command& command, SpirvOptions& options) {
+    Option* statistics = command.add_flag("--statistics", options.statistics,
+                                          "run nothing: compile with Mesa's compiler of AMD's cards, without a card, "
+                                          "and print what it tells of the code");
+    command
+        .add_option("--families", options.compiling.families,
+                    "with --statistics: families of cards, as Mesa names them")
+        ->delimiter(',')
+        ->needs(statistics)
+        ->capture_default_str()
+        ->type_name("NAME");
+    command.add_flag("--in-this-process", options.in_this_process, "compile with this process's driver")
+        ->needs(statistics)
+        ->hide();
+}
+
 }  // namespace
 
 void add_bench_spirv_command(Command& bench) {
@@ -314,10 +333,12 @@ void add_bench_spirv_command(Command& bench) {
         "Examples:\n"
         "  exemplar bench spirv saxpy.comp --invocations 1M --push 1048576,2 --bind 0=random:1M --bind 1=random:1M\n"
         "  exemplar bench spirv new.spv --against old.spv --groups 4096 --bind 0=in.bin --json new.json\n"
-        "  exemplar bench spirv new.spv --groups 4096 --bind 0=in.bin --expect 1=out.bin --baseline new.json");
+        "  exemplar bench spirv new.spv --groups 4096 --bind 0=in.bin --expect 1=out.bin --baseline new.json\n"
+        "  exemplar bench spirv new.spv --statistics --families NAVI21    registers and occupancy, without a card");
     add_input_options(*command, *options);
     add_check_options(*command, *options);
     add_timing_options(*command, *options);
+    add_compiler_options(*command, *options);
     add_device_option(*command, options->common);
     add_common_options(*command, options->common);
     command->callback([options] { run_spirv_bench(*options); });

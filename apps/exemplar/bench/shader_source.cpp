@@ -77,7 +77,8 @@ void validate(const std::string& name, std::string_view content) {
     const ScratchFolder folder;
     const std::filesystem::path file = folder.path() / "shader.spv";
     write_file_atomically(file, [&](std::ostream& out) { out << content; });
-    const ProgramOutput run = run_words({"spirv-val", "--target-env", "vulkan1.3", file.string()});
+    const ProgramOutput run =
+        run_words({"spirv-val", "--target-env", "vulkan1.3", "--scalar-block-layout", file.string()});
     if (run.code == 0 || run.code == k_not_installed) return;
     throw ShaderError(
         fmt::format("{}: spirv-val refuses it, so no driver is given it: {}", name, telling_line(run.text, "error")));

@@ -1,6 +1,7 @@
 #include "apps/exemplar/bench/spirv_job.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -87,35 +88,55 @@ void require_same_outputs(const SpirvVersion& version, const SpirvVersion& other
     }
 }
 
-}  // namespace
-
-SpirvJob read_spirv_job(const SpirvOptions& options) {
-    if (options.groups.empty() == options.invocations.empty())
-        throw UsageError("say how many invocations there are: --groups X,Y,Z (workgroups) or --invocations X,Y,Z");
+/// Loads one shader or two, and gives them the names that tables show.
+std::vector<UserShader> load_shaders(const SpirvOptions& options) {
     std::vector<UserShader> shaders{load_user_shader(options.shader, options.includes)};
-    if (!options.against.empty()) {
-        shaders.push_back(load_user_shader(options.against, options.includes));
-        const auto names = table_names(options.shader, options.against);
-        for (std::size_t i = 0; i < 2; ++i) shaders[i].name = names[i];
-    } else {
+    if (options.against.empty()) {
         shaders[0].name = options.shader.filename().string();
+        return shaders;
     }
-    SpirvJob job;
-    job.sources.reserve(options.binds.size());
-    for (const std::string& text : options.binds) job.sources.push_back(parse_binding("--bind", text));
+    shaders.push_back(load_user_shader(options.against, options.includes));
+    const auto names = table_names(options.shader, options.against);
+    for (std::size_t i = 0; i < 2; ++i) shaders[i].name = names[i];
+    return shaders;
+}
+
+/// Returns the numbers of each shader. Throws ShaderError if a shader binds what kernels cannot bind.
+std::vector<ShaderScalars> scalars_of(const std::vector<UserShader>& shaders) {
     std::vector<ShaderScalars> scalars;
     scalars.reserve(shaders.size());
     for (const UserShader& shader : shaders) {
         static_cast<void>(reflect(shader.shader()));
         scalars.push_back(reflect_scalars(shader.shader()));
     }
+    return scalars;
+}
+
+/// Returns the specialization constants of the first shader (0) or the other one (1).
+Constants constants_of(const SpirvOptions& options, const std::vector<ShaderScalars>& scalars, std::size_t which) {
+    Constants constants;
+    const ShaderScalars* other = scalars.size() > 1 ? &scalars[1 - which] : nullptr;
+    set_constants(constants, "--spec", options.specs, scalars[which], other);
+    if (which > 0) set_constants(constants, "--against-spec", options.against_specs, scalars[which], nullptr);
+    return constants;
+}
+
+}  // namespace
+
+SpirvJob read_spirv_job(const SpirvOptions& options) {
+    if (options.groups.empty() == options.invocations.empty())
+        throw UsageError("say how many invocations there are: --groups X,Y,Z (workgroups) or --invocations X,Y,Z");
+    std::vector<UserShader> shaders = load_shaders(options);
+    const std::vector<ShaderScalars> scalars = scalars_of(shaders);
+    SpirvJob job;
+    job.sources.reserve(options.binds.size());
+    for (const std::string& text : options.binds) job.sources.push_back(parse_binding("--bind", text));
+    job.versions.reserve(shaders.size());
     for (std::size_t i = 0; i < shaders.size(); ++i) {
-        UserDispatch dispatch{.constants = {}, .texel_bytes = {}, .restores = !options.keeps};
+        UserDispatch dispatch{
+            .constants = constants_of(options, scalars, i), .texel_bytes = {}, .restores = !options.keeps};
         set_size(dispatch, options, i > 0);
         set_texels(dispatch, options);
-        set_constants(dispatch.constants, "--spec", options.specs, scalars[i],
-                      shaders.size() > 1 ? &scalars[1 - i] : nullptr);
-        if (i > 0) set_constants(dispatch.constants, "--against-spec", options.against_specs, scalars[i], nullptr);
         UserInterface interface(shaders[i], dispatch);
         const std::string push = i > 0 && scalars[i].push.empty() ? std::string() : options.push;
         Bytes pushed = push_bytes(push, scalars[i].push, interface.reflection.push_bytes);
@@ -124,6 +145,37 @@ SpirvJob read_spirv_job(const SpirvOptions& options) {
     for (const std::string& text : options.expects) job.expected.push_back(expected_file(text, job.versions[0]));
     if (job.versions.size() > 1) require_same_outputs(job.versions[0], job.versions[1]);
     return job;
+}
+
+void run_spirv_statistics(const SpirvOptions& options) {
+    const std::vector<UserShader> shaders = load_shaders(options);
+    const std::vector<ShaderScalars> scalars = scalars_of(shaders);
+    std::vector<Shader> views;
+    std::vector<CompiledVariant> variants;
+    views.reserve(shaders.size());
+    variants.reserve(shaders.size());
+    for (std::size_t i = 0; i < shaders.size(); ++i) {
+        views.push_back(shaders[i].shader());
+        std::vector<std::string> own = options.specs;
+        if (i > 0) own.insert(own.end(), options.against_specs.begin(), options.against_specs.end());
+        variants.push_back({.kernel = &views.back(),
+                            .name = fmt::format("{}", fmt::join(own, ", ")),
+                            .is_default = true,
+                            .constants = constants_of(options, scalars, i)});
+    }
+    if (options.in_this_process) compile_in_this_process(variants);
+    std::vector<std::string> child{"bench", "spirv", options.shader.string(), "--statistics", "--in-this-process"};
+    const auto repeat = [&](const std::string& option, const std::vector<std::string>& values) {
+        for (const std::string& value : values) child.insert(child.end(), {option, value});
+    };
+    if (!options.against.empty()) repeat("--against", {options.against.string()});
+    repeat("--spec", options.specs);
+    repeat("--against-spec", options.against_specs);
+    for (const std::filesystem::path& include : options.includes) repeat("--include", {include.string()});
+    StatisticsOptions compiling = options.compiling;
+    compiling.common = options.common;
+    compiling.baseline = options.baseline;
+    run_statistics(compiling, child);
 }
 
 }  // namespace exemplar

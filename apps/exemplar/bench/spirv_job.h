@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/bench/spirv/user_measurement.h"
+#include "apps/exemplar/bench/bench_statistics.h"
 #include "apps/exemplar/common_options.h"
 
 namespace exemplar {
@@ -23,7 +24,8 @@ struct SpirvOptions {
     double bytes = 0, operations = 0;  ///< of a dispatch; 0: the bytes bound, no operations
     std::size_t repeats = 7;
     double seconds = 10;
-    bool keeps = false;
+    bool keeps = false, statistics = false, in_this_process = false;
+    StatisticsOptions compiling;
     std::filesystem::path baseline;
 };
 
@@ -45,5 +47,8 @@ struct SpirvJob {
 /// Reads the shaders, and the options by what they declare. Throws UsageError, ShaderError or DataError, which name the
 /// option or file and the mend.
 SpirvJob read_spirv_job(const SpirvOptions& options);
+
+/// Prints what the compiler of graphics cards tells of the shaders (--statistics).
+void run_spirv_statistics(const SpirvOptions& options);
 
 }  // namespace exemplar

@@ -31,6 +31,18 @@ struct PresentationOptions {
     std::function<bool(VkInstance, VkPhysicalDevice, std::uint32_t family)> can_present;
 };
 
+/// Features of Vulkan 1.0 to 1.3.
+struct DeviceFeatures {
+    DeviceFeatures();  ///< none
+    VkPhysicalDeviceFeatures core{};
+    VkPhysicalDeviceVulkan11Features v11{};
+    VkPhysicalDeviceVulkan12Features v12{};
+    VkPhysicalDeviceVulkan13Features v13{};
+};
+
+/// Returns the features that a device offers.
+DeviceFeatures offered_features(VkPhysicalDevice device);
+
 struct DeviceOptions {
     /// What select_device accepts: an index, a UUID, a PCI address or part of a name. Empty: the environment variable
     /// EXEMPLAR_DEVICE, else the best device.
@@ -39,6 +51,8 @@ struct DeviceOptions {
     bool statistics = false;                            ///< keep the driver's statistics of kernels, if it has any
     /// Opens devices that cannot run anything, too. compile() is the only use of such a device, and it is never closed.
     bool compile_only = false;
+    /// Features to enable in addition to those that Exemplar needs, where the device offers them.
+    DeviceFeatures features{};
 };
 
 /// An opened Vulkan device with one queue for compute, copies and drawing. Objects made from it must be destroyed
@@ -110,7 +124,7 @@ class Device {
 
   private:
     void require_presentation(const PresentationOptions& presentation) const;
-    void create(bool presents);
+    void create(bool presents, DeviceFeatures features);
     void create_tools();
     void destroy();
     DeviceSwitches switches_;

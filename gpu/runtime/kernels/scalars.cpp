@@ -22,6 +22,10 @@ ScalarType scalar_type(spvc_basetype type) {
             return ScalarType::uint32;
         case SPVC_BASETYPE_BOOLEAN:
             return ScalarType::boolean;
+        case SPVC_BASETYPE_FP16:
+            return ScalarType::float16;
+        case SPVC_BASETYPE_FP64:
+            return ScalarType::float64;
         default:
             return ScalarType::other;
     }
@@ -85,7 +89,8 @@ class ScalarLister {
                 std::swap(columns, rows);
             parts.push_back({columns, stride});
         }
-        if (rows > 1) parts.push_back({rows, 4});
+        const ScalarType scalar = scalar_type(spvc_type_get_basetype(type));
+        if (rows > 1) parts.push_back({rows, bytes_of(scalar)});
         return parts;
     }
 
@@ -170,10 +175,27 @@ std::string_view to_string(ScalarType type) {
             return "uint";
         case ScalarType::boolean:
             return "bool";
+        case ScalarType::float16:
+            return "half";
+        case ScalarType::float64:
+            return "double";
         case ScalarType::other:
             break;
     }
     return "another type";
+}
+
+std::size_t bytes_of(ScalarType type) {
+    switch (type) {
+        case ScalarType::float16:
+            return 2;
+        case ScalarType::float64:
+            return 8;
+        case ScalarType::other:
+            return 0;
+        default:
+            return 4;
+    }
 }
 
 ShaderScalars reflect_scalars(const Shader& shader) {

@@ -15,11 +15,15 @@ enum class ScalarType {
     int32,
     uint32,
     boolean,  ///< of specialization constants only; 4 bytes, 0 or 1
-    other,    ///< of another size than 4 bytes
+    float16,
+    float64,
+    other,  ///< integers of another size than 4 bytes
 };
 
-/// "float", "int", "uint", "bool" or "another type".
+/// "float", "int", "uint", "bool", "half", "double" or "another type".
 std::string_view to_string(ScalarType type);
+/// Returns the bytes of a number; 0 for another type.
+std::size_t bytes_of(ScalarType type);
 
 /// A number in a block, at any depth of its structures, arrays, vectors and matrices.
 struct ReflectedScalar {

@@ -17,7 +17,11 @@ struct KnownCapability {
     VkBool32& (*feature)(DeviceFeatures&);
 };
 
-#define EXEMPLAR_FEATURE(part, member) [](DeviceFeatures& features) -> VkBool32& { return features.part.member; }
+template <auto Part, auto Member>
+VkBool32& feature_of(DeviceFeatures& features) {
+    return features.*Part.*Member;
+}
+
 constexpr std::array<KnownCapability, 33> k_known_capabilities{
     {{SpvCapabilityMatrix, "Matrix", nullptr},
      {SpvCapabilityShader, "Shader", nullptr},
@@ -31,35 +35,44 @@ constexpr std::array<KnownCapability, 33> k_known_capabilities{
      {SpvCapabilityGroupNonUniformShuffleRelative, "GroupNonUniformShuffleRelative", nullptr},
      {SpvCapabilityGroupNonUniformClustered, "GroupNonUniformClustered", nullptr},
      {SpvCapabilityGroupNonUniformQuad, "GroupNonUniformQuad", nullptr},
-     {SpvCapabilityFloat64, "Float64", EXEMPLAR_FEATURE(core, shaderFloat64)},
-     {SpvCapabilityInt64, "Int64", EXEMPLAR_FEATURE(core, shaderInt64)},
-     {SpvCapabilityInt16, "Int16", EXEMPLAR_FEATURE(core, shaderInt16)},
+     {SpvCapabilityFloat64, "Float64", feature_of<&DeviceFeatures::core, &VkPhysicalDeviceFeatures::shaderFloat64>},
+     {SpvCapabilityInt64, "Int64", feature_of<&DeviceFeatures::core, &VkPhysicalDeviceFeatures::shaderInt64>},
+     {SpvCapabilityInt16, "Int16", feature_of<&DeviceFeatures::core, &VkPhysicalDeviceFeatures::shaderInt16>},
      {SpvCapabilityStorageBuffer16BitAccess, "StorageBuffer16BitAccess",
-      EXEMPLAR_FEATURE(v11, storageBuffer16BitAccess)},
+      feature_of<&DeviceFeatures::v11, &VkPhysicalDeviceVulkan11Features::storageBuffer16BitAccess>},
      {SpvCapabilityUniformAndStorageBuffer16BitAccess, "UniformAndStorageBuffer16BitAccess",
-      EXEMPLAR_FEATURE(v11, uniformAndStorageBuffer16BitAccess)},
-     {SpvCapabilityStoragePushConstant16, "StoragePushConstant16", EXEMPLAR_FEATURE(v11, storagePushConstant16)},
+      feature_of<&DeviceFeatures::v11, &VkPhysicalDeviceVulkan11Features::uniformAndStorageBuffer16BitAccess>},
+     {SpvCapabilityStoragePushConstant16, "StoragePushConstant16",
+      feature_of<&DeviceFeatures::v11, &VkPhysicalDeviceVulkan11Features::storagePushConstant16>},
      {SpvCapabilityVariablePointersStorageBuffer, "VariablePointersStorageBuffer",
-      EXEMPLAR_FEATURE(v11, variablePointersStorageBuffer)},
-     {SpvCapabilityVariablePointers, "VariablePointers", EXEMPLAR_FEATURE(v11, variablePointers)},
-     {SpvCapabilityFloat16, "Float16", EXEMPLAR_FEATURE(v12, shaderFloat16)},
-     {SpvCapabilityInt8, "Int8", EXEMPLAR_FEATURE(v12, shaderInt8)},
-     {SpvCapabilityStorageBuffer8BitAccess, "StorageBuffer8BitAccess", EXEMPLAR_FEATURE(v12, storageBuffer8BitAccess)},
+      feature_of<&DeviceFeatures::v11, &VkPhysicalDeviceVulkan11Features::variablePointersStorageBuffer>},
+     {SpvCapabilityVariablePointers, "VariablePointers",
+      feature_of<&DeviceFeatures::v11, &VkPhysicalDeviceVulkan11Features::variablePointers>},
+     {SpvCapabilityFloat16, "Float16",
+      feature_of<&DeviceFeatures::v12, &VkPhysicalDeviceVulkan12Features::shaderFloat16>},
+     {SpvCapabilityInt8, "Int8", feature_of<&DeviceFeatures::v12, &VkPhysicalDeviceVulkan12Features::shaderInt8>},
+     {SpvCapabilityStorageBuffer8BitAccess, "StorageBuffer8BitAccess",
+      feature_of<&DeviceFeatures::v12, &VkPhysicalDeviceVulkan12Features::storageBuffer8BitAccess>},
      {SpvCapabilityUniformAndStorageBuffer8BitAccess, "UniformAndStorageBuffer8BitAccess",
-      EXEMPLAR_FEATURE(v12, uniformAndStorageBuffer8BitAccess)},
-     {SpvCapabilityStoragePushConstant8, "StoragePushConstant8", EXEMPLAR_FEATURE(v12, storagePushConstant8)},
-     {SpvCapabilityInt64Atomics, "Int64Atomics", EXEMPLAR_FEATURE(v12, shaderBufferInt64Atomics)},
-     {SpvCapabilityVulkanMemoryModel, "VulkanMemoryModel", EXEMPLAR_FEATURE(v12, vulkanMemoryModel)},
+      feature_of<&DeviceFeatures::v12, &VkPhysicalDeviceVulkan12Features::uniformAndStorageBuffer8BitAccess>},
+     {SpvCapabilityStoragePushConstant8, "StoragePushConstant8",
+      feature_of<&DeviceFeatures::v12, &VkPhysicalDeviceVulkan12Features::storagePushConstant8>},
+     {SpvCapabilityInt64Atomics, "Int64Atomics",
+      feature_of<&DeviceFeatures::v12, &VkPhysicalDeviceVulkan12Features::shaderBufferInt64Atomics>},
+     {SpvCapabilityVulkanMemoryModel, "VulkanMemoryModel",
+      feature_of<&DeviceFeatures::v12, &VkPhysicalDeviceVulkan12Features::vulkanMemoryModel>},
      {SpvCapabilityVulkanMemoryModelDeviceScope, "VulkanMemoryModelDeviceScope",
-      EXEMPLAR_FEATURE(v12, vulkanMemoryModelDeviceScope)},
-     {SpvCapabilityDotProductInputAll, "DotProductInputAll", EXEMPLAR_FEATURE(v13, shaderIntegerDotProduct)},
-     {SpvCapabilityDotProductInput4x8Bit, "DotProductInput4x8Bit", EXEMPLAR_FEATURE(v13, shaderIntegerDotProduct)},
+      feature_of<&DeviceFeatures::v12, &VkPhysicalDeviceVulkan12Features::vulkanMemoryModelDeviceScope>},
+     {SpvCapabilityDotProductInputAll, "DotProductInputAll",
+      feature_of<&DeviceFeatures::v13, &VkPhysicalDeviceVulkan13Features::shaderIntegerDotProduct>},
+     {SpvCapabilityDotProductInput4x8Bit, "DotProductInput4x8Bit",
+      feature_of<&DeviceFeatures::v13, &VkPhysicalDeviceVulkan13Features::shaderIntegerDotProduct>},
      {SpvCapabilityDotProductInput4x8BitPacked, "DotProductInput4x8BitPacked",
-      EXEMPLAR_FEATURE(v13, shaderIntegerDotProduct)},
-     {SpvCapabilityDotProduct, "DotProduct", EXEMPLAR_FEATURE(v13, shaderIntegerDotProduct)},
+      feature_of<&DeviceFeatures::v13, &VkPhysicalDeviceVulkan13Features::shaderIntegerDotProduct>},
+     {SpvCapabilityDotProduct, "DotProduct",
+      feature_of<&DeviceFeatures::v13, &VkPhysicalDeviceVulkan13Features::shaderIntegerDotProduct>},
      {SpvCapabilityDemoteToHelperInvocationEXT, "DemoteToHelperInvocation",
-      EXEMPLAR_FEATURE(v13, shaderDemoteToHelperInvocation)}}};
-#undef EXEMPLAR_FEATURE
+      feature_of<&DeviceFeatures::v13, &VkPhysicalDeviceVulkan13Features::shaderDemoteToHelperInvocation>}}};
 
 const KnownCapability* known_capability(std::uint32_t capability) {
     const auto found = std::ranges::find(k_known_capabilities, capability, &KnownCapability::capability);

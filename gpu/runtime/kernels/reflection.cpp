@@ -60,7 +60,9 @@ ReflectedBinding reflect_storage(const Shader& shader, const SpirvModule& module
     binding.reads = std::ranges::find(list, SpvDecorationNonReadable) == list.end();
 
     const spvc_type block = module.type(resource.base_type_id);
-    const unsigned last = spvc_type_get_num_member_types(block) - 1;
+    const unsigned members = spvc_type_get_num_member_types(block);
+    if (members == 0) return binding;
+    const unsigned last = members - 1;
     const spvc_type_id tail = spvc_type_get_member_type(block, last);
     if (spvc_type_get_num_array_dimensions(module.type(tail)) == 0) return binding;
     unsigned stride = 0;
@@ -91,6 +93,7 @@ void reflect_bindings(const Shader& shader, const SpirvModule& module, Reflectio
 void reflect_push_constants(const SpirvModule& module, Reflection& result) {
     for (const spvc_reflected_resource& resource : module.resources(SPVC_RESOURCE_TYPE_PUSH_CONSTANT)) {
         spvc_type block = module.type(resource.base_type_id);
+        if (spvc_type_get_num_member_types(block) == 0) continue;
         module.require(spvc_compiler_get_declared_struct_size(module.compiler(), block, &result.push_bytes));
         const spvc_type_id first = spvc_type_get_member_type(block, 0);
         const bool wraps_structure = spvc_type_get_num_member_types(block) == 1 &&

@@ -51,7 +51,7 @@ class ScalarLister {
             const char* name =
                 spvc_compiler_get_member_name(module_.compiler(), spvc_type_get_base_type_id(type), member);
             const std::string own = *name ? name : fmt::format("member {}", member);
-            add_member(type, member, prefix.empty() ? own : prefix + "." + own, offset + at);
+            add_member(type, member, prefix.empty() ? own : fmt::format("{}.{}", prefix, own), offset + at);
         }
     }
 

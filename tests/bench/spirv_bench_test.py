@@ -56,6 +56,30 @@ layout(set = 0, binding = 0) uniform samplerBuffer x;
 layout(set = 0, binding = 1) writeonly buffer Y { float y[]; };
 void main() { y[gl_GlobalInvocationID.x] = texelFetch(x, int(gl_GlobalInvocationID.x)).x; }
 """
+NESTED = """#version 450
+struct Light { ivec3 place; float powers[2]; };
+layout(local_size_x = 1) in;
+layout(push_constant, std430) uniform Push { uint count; mat2x3 turn; Light light; vec2 last; };
+layout(set = 0, binding = 0) writeonly buffer Out { float values[]; };
+void main() {
+    values[0] = float(count);
+    for (uint i = 0; i < 6; ++i) values[1 + i] = turn[i / 3][i % 3];
+    for (uint i = 0; i < 3; ++i) values[7 + i] = float(light.place[i]);
+    for (uint i = 0; i < 2; ++i) { values[10 + i] = light.powers[i]; values[12 + i] = last[i]; }
+}
+"""
+STRUCTURES = """#version 450
+struct Point { vec3 place; int index; };
+layout(local_size_x = 32) in;
+layout(constant_id = 0) const int extra = 0;
+layout(set = 0, binding = 0, std430) writeonly buffer Out { uint count; Point points[]; };
+void main() {
+    const int i = int(gl_GlobalInvocationID.x);
+    if (i == 0) count = 32;
+    points[i].place = vec3(i, 2 * i, i == 5 ? 3.0 + extra : 3.0);
+    points[i].index = i;
+}
+"""
 FRAGMENT = "#version 450\nlayout(location = 0) out vec4 color;\nvoid main() { color = vec4(1.0); }\n"
 COUNT = 1000
 SIZE = ["--invocations", COUNT, "--push", f"{COUNT},2"]
@@ -171,6 +195,21 @@ class SpirvBench(ProgramTest):
         text = self.bench("counter.comp", "--groups", "2", "--bind", "0=:260").stdout
         self.assertIn("(read, written)", text)
         self.wrong("counter.comp", "--groups", "2", "--bind", "0=:260", "--expect", "counter.bin", code=1, says=["of 65 numbers"])
+
+    def test_push_constants_are_listed_in_the_order_of_memory(self):
+        self.write("nested.comp", NESTED)
+        floats(self.folder / "nested.bin", [float(i) for i in range(1, 15)])
+        numbers = ",".join(map(str, range(1, 15)))
+        self.bench("nested.comp", "--groups", "1", "--push", numbers, "--bind", "0=:56", "--expect", "nested.bin")
+        self.wrong("nested.comp", "--groups", "1", "--push", "1", code=2,
+                   says=["uint count", "float turn[1][2]", "int light.place[2]", "float light.powers[1]", "float last[1]"])
+
+    def test_members_of_structures_are_named(self):
+        self.write("structures.comp", STRUCTURES)
+        given = ["--against", "structures.comp", "--groups", "1"]
+        self.bench("structures.comp", *given)
+        self.wrong("structures.comp", *given, "--against-spec", "0=2", code=1,
+                   says=["1 of 129 numbers", "element 5.place[2] (3, expected 5)"])
 
     def test_numbers_of_other_sizes(self):
         self.write("half.comp", HALF)

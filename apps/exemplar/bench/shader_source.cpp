@@ -20,19 +20,19 @@ namespace {
 constexpr int k_not_installed = 127;
 
 /// A folder that is deleted at the end.
-class ScratchFolder {
+class CompilerFolder {
   public:
-    ScratchFolder() {
+    CompilerFolder() {
         std::string name = (std::filesystem::temp_directory_path() / "exemplar-spirv-XXXXXX").string();
         if (!mkdtemp(name.data())) throw DataError(fmt::format("{}: cannot be made; set TMPDIR", name));
         path_ = name;
     }
-    ~ScratchFolder() {
+    ~CompilerFolder() {
         std::error_code error;
         std::filesystem::remove_all(path_, error);
     }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
+    CompilerFolder(const CompilerFolder&) = delete;
+    CompilerFolder& operator=(const CompilerFolder&) = delete;
     const std::filesystem::path& path() const { return path_; }
 
   private:
@@ -44,7 +44,7 @@ std::string telling_line(const std::string& text, std::string_view word) {
     std::string first;
     for (std::size_t begin = 0; begin < text.size();) {
         const std::size_t end = std::min(text.find('\n', begin), text.size());
-        const std::string line = without_controls(std::string_view(text).substr(begin, end - begin));
+        std::string line = without_controls(std::string_view(text).substr(begin, end - begin));
         if (lower_case(line).find(word) != std::string::npos) return line;
         if (first.empty()) first = line;
         begin = end + 1;
@@ -53,7 +53,7 @@ std::string telling_line(const std::string& text, std::string_view word) {
 }
 
 std::string compiled_glsl(const std::filesystem::path& path, const std::vector<std::filesystem::path>& includes) {
-    const ScratchFolder folder;
+    const CompilerFolder folder;
     const std::string output = (folder.path() / "shader.spv").string();
     // With 1.3, local sizes from specialization constants would need a feature that devices are opened without.
     std::vector<std::string> words{"glslangValidator", "--quiet", "--target-env", "vulkan1.2", "-S", "comp"};
@@ -74,7 +74,7 @@ std::string compiled_glsl(const std::filesystem::path& path, const std::vector<s
 }
 
 void validate(const std::string& name, std::string_view content) {
-    const ScratchFolder folder;
+    const CompilerFolder folder;
     const std::filesystem::path file = folder.path() / "shader.spv";
     write_file_atomically(file, [&](std::ostream& out) { out << content; });
     const ProgramOutput run =

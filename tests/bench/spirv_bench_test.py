@@ -151,6 +151,12 @@ class SpirvBench(ProgramTest):
         message = self.wrong("broken.comp", *SIZE, code=1, says=["broken.comp", "'nothing'", "glslangValidator"])
         self.assertIn("broken.comp:11", message)
 
+    def test_tools_that_are_not_installed(self):
+        self.addCleanup(self.environment.update, PATH=self.environment["PATH"])
+        self.environment["PATH"] = "/nonexistent"
+        self.wrong("saxpy.comp", *SIZE, code=2, says=["saxpy.comp", "glslang-tools"])
+        self.assertIn("spirv-tools", self.call("bench", "spirv", "saxpy.spv", *SIZE, "--seconds", "0.5").stderr)
+
     def test_two_versions_are_compared(self):
         self.write("wide.comp", SAXPY.replace("local_size_x = 64", "local_size_x = 128"))
         text = self.bench("saxpy.spv", "--against", "wide.comp", *SIZE, "--json", "two.json").stdout

@@ -66,8 +66,8 @@ MeasurementReport read_report(const std::filesystem::path& path) {
             report.measurements.push_back(read_measurement(measurement));
         return report;
     } catch (const nlohmann::json::exception&) {
-        throw DataError(
-            fmt::format("{}: this is no report of 'exemplar bench shaders'; make one with --json", path.string()));
+        throw DataError(fmt::format(
+            "{}: this is no report of 'exemplar bench shaders' or 'bench spirv'; make one with --json", path.string()));
     }
 }
 

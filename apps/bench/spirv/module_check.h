@@ -15,6 +15,7 @@ class Device;
 struct UserShader {
     std::string name;  ///< of its file, for messages and tables
     std::vector<std::uint32_t> words;
+    bool is_validated = false;  ///< by spirv-val
     Shader shader() const { return {name, words}; }
 };
 

@@ -230,6 +230,9 @@ void run_spirv_bench(const SpirvOptions& options) {
     const auto limits = apply_common_options(options.common);
     if (options.statistics) return run_spirv_statistics(options);
     const SpirvJob job = read_spirv_job(options);
+    if (!job.versions[0].shader.is_validated && !options.common.quiet)
+        fmt::print(stderr,
+                   "spirv-val is not installed (on Debian spirv-tools), so a damaged shader may crash the driver\n");
     check_interrupt();
     measure_spirv(options, job);
 }

@@ -73,13 +73,15 @@ std::string compiled_glsl(const std::filesystem::path& path, const std::vector<s
     return read_file(output);
 }
 
-void validate(const std::string& name, std::string_view content) {
+/// Returns whether spirv-val is installed; throws if it finds a fault.
+bool validate(const std::string& name, std::string_view content) {
     const CompilerFolder folder;
     const std::filesystem::path file = folder.path() / "shader.spv";
     write_file_atomically(file, [&](std::ostream& out) { out << content; });
     const ProgramOutput run =
         run_words({"spirv-val", "--target-env", "vulkan1.3", "--scalar-block-layout", file.string()});
-    if (run.code == 0 || run.code == k_not_installed) return;
+    if (run.code == k_not_installed) return false;
+    if (run.code == 0) return true;
     throw ShaderError(
         fmt::format("{}: spirv-val refuses it, so no driver is given it: {}", name, telling_line(run.text, "error")));
 }
@@ -95,7 +97,7 @@ UserShader load_user_shader(const std::filesystem::path& path, const std::vector
     const std::string source = read_file(path);
     const std::string content = is_glsl(path) ? compiled_glsl(path, includes) : source;
     UserShader shader{.name = name, .words = checked_words(name, content)};
-    validate(name, content);
+    shader.is_validated = validate(name, content);
     return shader;
 }
 

@@ -13,9 +13,12 @@ extern const Shader ${symbol};
 ")
 file(WRITE ${folder}/${symbol}.cpp "#include \"embedded/${symbol}.h\"
 
+#include \"gpu/runtime/device/tuning.h\"
+
 namespace exemplar::shaders {
 static constexpr std::uint32_t ${symbol}_words[] = {
 ${words}};
 extern const Shader ${symbol}{\"${name}\", ${symbol}_words};
+[[maybe_unused]] static const bool ${symbol}_is_noted = note_shader(\"${name}\", ${symbol}_words);
 }
 ")

@@ -19,7 +19,7 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PICTURE = ROOT / 'docs' / 'architecture.svg'
 TOPS = ('host', 'gpu', 'apps', 'python')
-LIBRARIES = ('apps/bench/kernels',)  # rooms that are libraries of their own and get a box
+LIBRARIES = ('apps/bench/kernels', 'apps/bench/spirv')  # rooms that are libraries of their own and get a box
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
 
 WIDTH, MARGIN = 1200, 20  # all lengths are in pixels

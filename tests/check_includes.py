@@ -49,7 +49,7 @@ ROOMS = {
     'host/synth': ['modeling', 'shapes', 'animations', 'damage', 'arrangements', 'hatching'],
     'gpu/curvature': ['surface', 'learned', ''],
     'gpu/runtime': ['device', 'kernels', 'record', 'measure'],
-    'apps/bench': ['kernels', ''],
+    'apps/bench': ['kernels', 'spirv', ''],
     'apps/exemplar': ['', 'parts', 'label', 'category', 'catalog', 'batch', 'curvature', 'lines', 'hatch', 'bench', 'demo'],
     'apps/viewer': ['controls', 'painting', 'scene', 'window', ''],
 }

@@ -53,6 +53,7 @@ void add_catalog_merge_command(Command& catalog);
 void add_demo_command(Command& app);
 void add_bench_command(Command& app);
 void add_bench_shaders_command(Command& bench);
+void add_bench_spirv_command(Command& bench);
 void add_bench_outlines_command(Command& bench);
 
 }  // namespace exemplar

@@ -1,6 +1,7 @@
 """What --json writes is what docs/formats.md says. Needs a Vulkan device (a software one will do)."""
 
 import re
+import shutil
 import unittest
 
 from program import (WithModel, DOCS, QUICK)
@@ -10,7 +11,8 @@ class Reports(WithModel):
     """docs/formats.md says all keys of every report, and no others."""
 
     OPEN = {"stumps_per_family", "share_per_family", "seconds_per_family"}  # their keys are names of families
-    OPTIONAL = {"error", "unusable_because", "copy_gb_per_s", "fma_gflop_per_s", "subgroup_size", "thesis"}
+    OPTIONAL = {"error", "unusable_because", "copy_gb_per_s", "fma_gflop_per_s", "shared_gb_per_s", "texel_gb_per_s", "atomic_gop_per_s",
+                "launch_us", "driver_statistics", "subgroup_size", "thesis"}
 
     def keys(self, value):
         if isinstance(value, dict):
@@ -84,6 +86,18 @@ class Reports(WithModel):
             self.skipTest("Mesa's driver of AMD's cards is not installed")
         self.call("bench", "shaders", "--statistics", "--filter", "copy", "--json", "k.json")
         self.check("bench shaders --statistics", self.json("k.json"))
+
+    def test_shaders_of_the_user(self):
+        if not shutil.which("glslangValidator"):
+            self.skipTest("glslangValidator is not installed")
+        (self.folder / "double.comp").write_text("#version 450\nlayout(binding = 0) buffer X { float x[]; };\n"
+                                                 "void main() { x[gl_GlobalInvocationID.x] *= 2.0; }\n")
+        self.call("bench", "spirv", "double.comp", "--against", "double.comp", "--groups", "9", "--seconds", "0.5", "--json", "b.json")
+        report = self.json("b.json")
+        for kernel in report["measurements"][0]["kernels"]:
+            kernel.pop("driver_statistics", None)  # its keys are the driver's
+        report["measurements"][0]["references_ms"] = None
+        self.check("bench spirv", {**report, "device": None})
 
     def test_devices(self):
         self.call("devices", "--no-measure", "--json", "d.json")

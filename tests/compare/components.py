@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares principal and independent components on samples whose sources are known (thesis Sec. 2.5, Fig. 2.6).
 
-    tests/compare/components.py [--sets 10] [--picture docs/compare_components.png]
+    tests/compare/components.py [--sets 10] [--picture docs/results/compare_components.png]
 
 Samples are sums of known bases times independent sources, and noise. The bases are bumps on a grid, as folds of a cloth
 are local, and some of them overlap. Printed are, as means over data sets, how well each true basis is matched by one that

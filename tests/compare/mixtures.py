@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares mixtures of regressions on data whose truth is known (thesis Secs. 2.2.4 and 2.2.5, Fig. 2.3).
 
-    tests/compare/mixtures.py [--sets 10] [--picture docs/compare_mixtures.png]
+    tests/compare/mixtures.py [--sets 10] [--picture docs/results/compare_mixtures.png]
 
   parabolas   samples of two parabolas at once, as in the figure. Exemplar has no mixture of such: one fit by its least squares
               beside the thesis' expectation maximization (EM, Eqs. 2.26-2.32)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares regressions on data whose truth is known (thesis Fig. 2.2 and Sec. 2.4.3).
 
-    tests/compare/regressions.py [--sets 30] [--picture docs/compare_regressions.png]
+    tests/compare/regressions.py [--sets 30] [--picture docs/results/compare_regressions.png]
 
 Three truths, each learned from noisy samples by Exemplar's regressions and by those of scikit-learn and XGBoost:
   curve       a sine by powers of x up to the tenth

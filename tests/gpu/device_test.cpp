@@ -119,6 +119,10 @@ TEST(Device, MeasuresItsCeilings) {
     EXPECT_LT(ceilings.copy_gb_per_s, 1e5);
     EXPECT_GT(ceilings.fma_gflop_per_s, 0.01);
     EXPECT_LT(ceilings.fma_gflop_per_s, 1e7);
+    EXPECT_GT(ceilings.shared_gb_per_s, 0.01);
+    EXPECT_GT(ceilings.texel_gb_per_s, 0.01);
+    EXPECT_GT(ceilings.atomic_gop_per_s, 1e-4);
+    EXPECT_EQ(ceilings.launch_us > 0, shared_device().info().timestamp_period > 0);
 }
 
 TEST(Buffer, OverTheLimitNamesSizeAndLimit) {

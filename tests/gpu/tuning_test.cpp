@@ -40,6 +40,29 @@ TEST(TuningTest, IsKeptInAFile) {
     EXPECT_EQ(Tuning::load(path), tuning);
 }
 
+TEST(TuningTest, ForgetsWhatWasFoundForAnotherShader) {
+    const TemporaryFolder folder;
+    const std::filesystem::path path = folder.path() / "tuning.json";
+    static constexpr std::array<std::uint32_t, 2> k_words{1, 2};
+    note_shader("noted/kernel.comp", k_words);
+    Tuning tuning;
+    tuning.set("noted/kernel.comp", "group", 128);
+    tuning.set("other/kernel.comp", "group", 64);
+    tuning.save(path);
+    EXPECT_EQ(Tuning::load(path), tuning);
+
+    std::string text = read_file(path);
+    const std::size_t hash = text.find("noted/kernel.comp\": \"") + 21;
+    text[hash] = text[hash] == '0' ? '1' : '0';
+    write_file_atomically(path, [&](std::ostream& out) { out << text; });
+    EXPECT_FALSE(Tuning::load(path).find("noted/kernel.comp", "group"));
+    EXPECT_EQ(Tuning::load(path).find("other/kernel.comp", "group"), 64u);
+
+    write_file_atomically(path,
+                          [](std::ostream& out) { out << R"({"kernels": {"noted/kernel.comp": {"group": 32}}})"; });
+    EXPECT_TRUE(Tuning::load(path).empty()) << "a file without hashes";
+}
+
 TEST(TuningTest, DamagedFilesAreRefusedByName) {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder.path() / "tuning.json";

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <filesystem>
 #include <regex>
+#include <span>
 
+#include "apps/bench/kernels/references.h"
 #include "apps/bench/kernels/statistics.h"
-#include "embedded/runtime_copy_comp.h"
-#include "embedded/runtime_multiply_add_comp.h"
 #include "gpu/runtime/device/errors.h"
 #include "host/core/errors.h"
 #include "host/core/files.h"
@@ -16,25 +16,6 @@
 
 namespace exemplar {
 namespace {
-
-// Small enough to take little time beside what they are timed with, and far above the cost of a dispatch.
-constexpr std::size_t k_reference_vectors = 100'000, k_reference_items = 16'384;
-
-struct Reference {
-    Profiler profiler;
-    Operation operation;
-};
-
-std::unique_ptr<Reference> prepare_reference(Device& device, const Shader& kernel, std::size_t size) {
-    for (const OperationKind& kind : operation_kinds())
-        if (kind.kernels.front() == &kernel) {
-            auto reference = std::make_unique<Reference>();
-            reference->operation = kind.prepare(device, reference->profiler, size);
-            reference->operation.run();
-            return reference;
-        }
-    throw Error("no such reference");
-}
 
 nlohmann::ordered_json statistics_json(const Device& device, const std::string& kernel) {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
@@ -85,31 +66,27 @@ MeasurementReport read_report(const std::filesystem::path& path) {
             report.measurements.push_back(read_measurement(measurement));
         return report;
     } catch (const nlohmann::json::exception&) {
-        throw DataError(
-            fmt::format("{}: this is no report of 'exemplar bench shaders'; make one with --json", path.string()));
+        throw DataError(fmt::format(
+            "{}: this is no report of 'exemplar bench shaders' or 'bench spirv'; make one with --json", path.string()));
     }
 }
 
 void compare_and_time(Device& device, const OperationKind& kind, const KernelFilter& filter,
-                      const TimingOptions& options, Measurement& measurement) {
+                      const TimingOptions& options, const Ceilings& ceilings, Measurement& measurement) {
     Profiler profiler;
     const Operation operation = kind.prepare(device, profiler, measurement.size);
     operation.run();
     operation.run();
     measurement.differences = operation.differences();
     if (!measurement.fits()) return;
-    const auto copy = prepare_reference(device, shaders::runtime_copy_comp, k_reference_vectors),
-               multiply_add = prepare_reference(device, shaders::runtime_multiply_add_comp, k_reference_items);
-    const std::vector<OperationTimes> times =
-        time_in_turns(std::vector<Timed>{{"operation", &operation, &profiler},
-                                         {"copy", &copy->operation, &copy->profiler},
-                                         {"multiply_add", &multiply_add->operation, &multiply_add->profiler}},
-                      options);
+    const References references(device, ceilings);
+    std::vector<Timed> timed{{"operation", &operation, &profiler}};
+    references.append(timed);
+    const std::vector<OperationTimes> times = time_in_turns(timed, options);
     for (auto& [kernel, work] : operation.work())
         if (filter.wants(kind, kernel) && times[0].kernels.contains(kernel))
             measurement.kernels.push_back({kernel, times[0].kernels.at(kernel), work});
-    for (const OperationTimes& reference : {times[1], times[2]})
-        measurement.references.insert(reference.kernels.begin(), reference.kernels.end());
+    measurement.references = references.times(std::span(times).subspan(1));
 }
 
 }  // namespace
@@ -156,13 +133,13 @@ bool KernelFilter::wants(const OperationKind& kind, std::string_view kernel) con
 }
 
 Measurement measure_operation(Device& device, const OperationKind& kind, std::size_t size, const KernelFilter& filter,
-                              const TimingOptions& options) {
+                              const TimingOptions& options, const Ceilings& ceilings) {
     Measurement measurement;
     measurement.operation = kind.name;
     measurement.items = kind.items;
     measurement.size = size;
     try {
-        compare_and_time(device, kind, filter, options, measurement);
+        compare_and_time(device, kind, filter, options, ceilings, measurement);
     } catch (const DeviceLimitError& error) {
         measurement.refused = error.what();
     }

@@ -54,9 +54,9 @@ class KernelFilter {
 };
 
 /// Prepares an operation, runs it twice and compares it with its reference. Times it unless it exceeds the device's
-/// limits or differs from the reference.
+/// limits or differs from the reference. The ceilings tell how large the kernels for comparison must be.
 Measurement measure_operation(Device& device, const OperationKind& kind, std::size_t size, const KernelFilter& filter,
-                              const TimingOptions& options);
+                              const TimingOptions& options, const Ceilings& ceilings);
 
 nlohmann::ordered_json to_json(const Measurement& measurement, const Device& device, const Ceilings& ceilings);
 

@@ -1,10 +1,17 @@
 // The kernels that ceilings are measured with.
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "apps/bench/kernels/operation.h"
+#include "embedded/runtime_atomics_comp.h"
 #include "embedded/runtime_copy_comp.h"
+#include "embedded/runtime_empty_comp.h"
 #include "embedded/runtime_multiply_add_comp.h"
+#include "embedded/runtime_shared_memory_comp.h"
+#include "embedded/runtime_texels_comp.h"
 #include "gpu/runtime/kernels/kernel.h"
 #include "gpu/runtime/record/buffer.h"
 #include "gpu/runtime/record/stream.h"
@@ -88,16 +95,150 @@ struct MultiplyAdd {
     Stream stream;
 };
 
+// Differences of whole numbers.
+Difference difference_of_counts(std::string of, std::span<const std::uint32_t> actual,
+                                std::span<const std::uint32_t> expected) {
+    double largest = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        largest = std::max(largest, std::abs(static_cast<double>(actual[i]) - static_cast<double>(expected[i])));
+    return {std::move(of), largest, 0};
+}
+
+struct Launching {
+    Launching(Device& device, Profiler& profiler, std::size_t size)
+        : threads(size), kernel(device, shaders::runtime_empty_comp), stream(device, &profiler) {}
+    void run() {
+        stream.dispatch(kernel, threads, {});
+        stream.finish();
+    }
+    std::vector<Difference> differences() const { return {{"nothing", 0, 0}}; }
+    std::map<std::string, Work> work() const { return {{"runtime/empty.comp", {.bytes = 0, .operations = 0}}}; }
+    std::size_t threads;
+    Kernel kernel;
+    Stream stream;
+};
+
+constexpr shared::RoundParameters k_repeated_reads{.rounds = 16};
+constexpr std::uint32_t k_reads = 16 * shared::k_reads_per_round;
+
+// Returns the sums of the vectors (j, j + 1, j + 2, j + 3) that each item reads: j from its own one on, modulo `count`.
+std::vector<std::uint32_t> sums_of_reads(std::size_t items, std::uint32_t group, std::uint32_t count) {
+    std::vector<std::uint32_t> sums(items, 0);
+    for (std::size_t i = 0; i < items; ++i)
+        for (std::uint32_t read = 0; read < k_reads; ++read)
+            sums[i] += 4 * ((static_cast<std::uint32_t>(i) % group + read) % count) + 6;
+    return sums;
+}
+
+struct SharedReading {
+    SharedReading(Device& device, Profiler& profiler, std::size_t size)
+        : result(device, size * sizeof(std::uint32_t)),
+          kernel(device, shaders::runtime_shared_memory_comp, {.push_constants = layout_of<shared::RoundParameters>()}),
+          stream(device, &profiler) {}
+    std::size_t items() const { return result.bytes() / sizeof(std::uint32_t); }
+    void run() {
+        stream.dispatch(kernel, items(), {result}, k_repeated_reads);
+        stream.finish();
+    }
+    std::vector<Difference> differences() const {
+        std::vector<std::uint32_t> sums(items());
+        result.download(std::span(sums));
+        const std::uint32_t group = kernel.local_size()[0];
+        return {difference_of_counts("sums", sums, sums_of_reads(sums.size(), group, shared::k_shared_vectors))};
+    }
+    std::map<std::string, Work> work() const {
+        const auto count = static_cast<double>(items());
+        return {{"runtime/shared_memory.comp", {.bytes = 4 * count, .operations = 4 * count * k_reads}}};
+    }
+    Buffer result;
+    Kernel kernel;
+    Stream stream;
+};
+
+struct TexelReading {
+    TexelReading(Device& device, Profiler& profiler, std::size_t size)
+        : texels(device, std::size_t{16} * shared::k_texels_read),
+          result(device, size * sizeof(std::uint32_t)),
+          kernel(device, shaders::runtime_texels_comp,
+                 {.push_constants = layout_of<shared::RoundParameters>(),
+                  .elements = {layout_of<std::array<std::uint32_t, 4>>()}}),
+          stream(device, &profiler) {
+        std::vector<std::uint32_t> values(std::size_t{4} * shared::k_texels_read);
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<std::uint32_t>(i / 4 + i % 4);
+        texels.upload(std::span<const std::uint32_t>(values));
+    }
+    std::size_t items() const { return result.bytes() / sizeof(std::uint32_t); }
+    void run() {
+        stream.dispatch(kernel, items(), {texels, result}, k_repeated_reads);
+        stream.finish();
+    }
+    std::vector<Difference> differences() const {
+        std::vector<std::uint32_t> sums(items());
+        result.download(std::span(sums));
+        return {difference_of_counts("sums", sums,
+                                     sums_of_reads(sums.size(), shared::k_texels_read, shared::k_texels_read))};
+    }
+    std::map<std::string, Work> work() const {
+        const auto count = static_cast<double>(items());
+        return {{"runtime/texels.comp",
+                 {.bytes = 16.0 * shared::k_texels_read + 4 * count, .operations = 4 * count * k_reads}}};
+    }
+    Buffer texels, result;
+    Kernel kernel;
+    Stream stream;
+};
+
+struct AtomicCounting {
+    AtomicCounting(Device& device, Profiler& profiler, std::size_t size)
+        : counters(device, size * sizeof(std::uint32_t)),
+          kernel(device, shaders::runtime_atomics_comp, {.push_constants = layout_of<shared::RoundParameters>()}),
+          stream(device, &profiler) {}
+    std::size_t items() const { return counters.bytes() / sizeof(std::uint32_t); }
+    void run() {
+        stream.fill(counters, 0);
+        stream.dispatch(kernel, items(), {counters}, k_repeated_reads);
+        stream.finish();
+    }
+    std::vector<Difference> differences() const {
+        std::vector<std::uint32_t> counts(items());
+        counters.download(std::span(counts));
+        return {
+            difference_of_counts("counts", counts, std::vector<std::uint32_t>(counts.size(), k_repeated_reads.rounds))};
+    }
+    std::map<std::string, Work> work() const {
+        const auto count = static_cast<double>(items());
+        return {{"runtime/atomics.comp", {.bytes = 8 * count, .operations = count * k_repeated_reads.rounds}}};
+    }
+    Buffer counters;
+    Kernel kernel;
+    Stream stream;
+};
+
 }  // namespace
 
 std::vector<OperationKind> runtime_operations() {
-    return {{"copying", "vec4s", {100'000, 1'000'000}, {&shaders::runtime_copy_comp}, {}, prepare_as<Copying>},
-            {"multiply-adds",
-             "items",
-             {16'384, 131'072},
-             {&shaders::runtime_multiply_add_comp},
-             {},
-             prepare_as<MultiplyAdd>}};
+    return {
+        {"launching", "items", {64, 16'384}, {&shaders::runtime_empty_comp}, {}, prepare_as<Launching>},
+        {"reads of shared memory",
+         "items",
+         {16'384, 131'072},
+         {&shaders::runtime_shared_memory_comp},
+         {},
+         prepare_as<SharedReading>},
+        {"reads of texels", "items", {16'384, 131'072}, {&shaders::runtime_texels_comp}, {}, prepare_as<TexelReading>},
+        {"atomic additions",
+         "counters",
+         {16'384, 131'072},
+         {&shaders::runtime_atomics_comp},
+         {},
+         prepare_as<AtomicCounting>},
+        {"copying", "vec4s", {100'000, 1'000'000}, {&shaders::runtime_copy_comp}, {}, prepare_as<Copying>},
+        {"multiply-adds",
+         "items",
+         {16'384, 131'072},
+         {&shaders::runtime_multiply_add_comp},
+         {},
+         prepare_as<MultiplyAdd>}};
 }
 
 }  // namespace exemplar

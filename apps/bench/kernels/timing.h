@@ -20,7 +20,10 @@ struct OperationTimes {
 
 struct TimingOptions {
     std::size_t repeats = 7;
-    double seconds = 0.02;  ///< minimum device time of a repeat
+    double seconds = 0.02;  ///< minimum device time of a repeat, less where wall_seconds bounds it
+    /// Bound of the time that passes, the host's work included. Where even single runs take longer, there are fewer
+    /// repeats, but no less than three.
+    double wall_seconds = 60;
 };
 
 /// An operation to be timed; its kernels report to `profiler`.

@@ -16,6 +16,7 @@ struct Variant {
     std::optional<std::uint32_t> value;
     Profiler profiler;
     Operation operation;
+    std::map<std::string, std::vector<ExecutableStatistic>> statistics;  // by kernel
     std::string name() const { return value ? std::to_string(*value) : "as it is"; }
 };
 
@@ -45,6 +46,7 @@ std::unique_ptr<Variant> prepare_variant(Device& device, const OperationKind& ki
     variant->operation.run();
     variant->operation.run();
     device.tuning() = kept;
+    for (const std::string& kernel : kernels) variant->statistics[kernel] = device.statistics_of(kernel);
     for (const Difference& difference : variant->operation.differences())
         if (!difference.fits())
             throw DeviceError(fmt::format(
@@ -81,8 +83,12 @@ std::vector<VariantComparison> time_variants(Device& device, const OperationKind
                                                        .size = size,
                                                        .as_is = times_of(0),
                                                        .milliseconds = {},
+                                                       .statistics = {},
                                                        .chosen = std::nullopt});
-        for (std::size_t i = 1; i < variants.size(); ++i) comparison.milliseconds[*variants[i]->value] = times_of(i);
+        for (std::size_t i = 1; i < variants.size(); ++i) {
+            comparison.milliseconds[*variants[i]->value] = times_of(i);
+            comparison.statistics[*variants[i]->value] = variants[i]->statistics[kernel];
+        }
     }
     return comparisons;
 }
@@ -143,8 +149,13 @@ nlohmann::ordered_json to_json(const VariantComparison& comparison) {
         {"size", comparison.size},
         {"ms_as_it_was", comparison.as_is}};
     json["variants"] = nlohmann::ordered_json::array();
-    for (const auto& [value, milliseconds] : comparison.milliseconds)
+    for (const auto& [value, milliseconds] : comparison.milliseconds) {
         json["variants"].push_back({{"value", value}, {"ms_of_repeats", milliseconds}});
+        const auto statistics = comparison.statistics.find(value);
+        if (statistics == comparison.statistics.end()) continue;
+        for (const ExecutableStatistic& statistic : statistics->second)
+            json["variants"].back()["driver_statistics"][statistic.name] = statistic.value;
+    }
     json["chosen"] = comparison.chosen ? nlohmann::ordered_json(*comparison.chosen) : nlohmann::ordered_json();
     return json;
 }

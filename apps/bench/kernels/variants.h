@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/bench/kernels/measurement.h"
+#include "gpu/runtime/device/executable_statistics.h"
 
 namespace exemplar {
 
@@ -16,6 +17,7 @@ struct VariantComparison {
     std::size_t size = 0;
     std::vector<double> as_is;                                  ///< milliseconds per repeat, with the current value
     std::map<std::uint32_t, std::vector<double>> milliseconds;  ///< by value
+    std::map<std::uint32_t, std::vector<ExecutableStatistic>> statistics;  ///< of the driver, by value
     std::optional<std::uint32_t> chosen;  ///< the fastest, if it beats the current one beyond noise and by 1/20
 };
 

@@ -99,6 +99,7 @@ void add_bench_command(Command& app) {
     add_device_option(*command, options->common);
     add_common_options(*command, options->common);
     add_bench_shaders_command(*command);
+    add_bench_spirv_command(*command);
     add_bench_outlines_command(*command);
     // Without a subcommand of its own.
     command->callback([options, command] {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "apps/bench/kernels/baseline.h"
 #include "apps/bench/kernels/measurement.h"
 #include "apps/bench/kernels/variants.h"
 #include "apps/exemplar/arguments.h"
+#include "apps/exemplar/bench/bench_kernel_table.h"
 #include "apps/exemplar/bench/bench_statistics.h"
 #include "apps/exemplar/commands.h"
 #include "gpu/runtime/device/errors.h"
@@ -24,6 +24,7 @@ struct ShaderBenchOptions {
     std::filesystem::path baseline;
     std::vector<std::size_t> sizes;
     std::size_t repeats = 7;
+    double seconds = 600;
     bool tune = false, list = false, statistics = false, in_this_process = false;
     StatisticsOptions compiling;
 };
@@ -75,30 +76,7 @@ void print_measurement(const Measurement& measurement, const Ceilings& ceilings)
         fmt::print("    NOT AS THE REFERENCE: not timed\n");
         return;
     }
-    fmt::print("    {:<34}{:>10}{:>7}{:>10}{:>9}{:>8}{:>10}{:>9}{:>8}\n", "kernel", "ms", "+-%", "MB", "GB/s", "copy",
-               "Mop", "Gop/s", "fma");
-    for (const KernelRow& row : measurement.kernels) {
-        const Shares shares = shares_of(row, ceilings);
-        fmt::print("    {:<34}{:>10.4f}{:>7.1f}{:>10.3f}{:>9.2f}{:>7.1f}%{:>10.3f}{:>9.2f}{:>7.1f}%\n", row.kernel,
-                   row.median_milliseconds(), 100 * relative_error(row.milliseconds), 1e-6 * row.work.bytes,
-                   row.gb_per_s(), 100 * shares.of_copy, 1e-6 * row.work.operations, row.gop_per_s(),
-                   100 * shares.of_multiply_add);
-    }
-}
-
-void print_statistics(const Device& device, const std::vector<Measurement>& measurements) {
-    std::vector<std::string> seen;
-    for (const Measurement& measurement : measurements)
-        for (const KernelRow& row : measurement.kernels) {
-            if (std::ranges::find(seen, row.kernel) != seen.end()) continue;
-            seen.push_back(row.kernel);
-            std::string text;
-            for (const ExecutableStatistic& statistic : device.statistics_of(row.kernel))
-                text += fmt::format("{}{} {}", text.empty() ? "" : ", ", statistic.name, statistic.value);
-            if (text.empty()) continue;
-            if (seen.size() == 1) fmt::print("\nWhat the driver says of its code:\n");
-            fmt::print("    {:<34}{}\n", row.kernel, text);
-        }
+    print_kernel_rows(measurement, ceilings);
 }
 
 void print_comparison(const VariantComparison& comparison) {
@@ -109,6 +87,8 @@ void print_comparison(const VariantComparison& comparison) {
         fmt::print(", {}: {:.4f} ({:.2f}x){}", value, median(milliseconds), median(milliseconds) / as_is,
                    comparison.chosen == value ? " <- taken" : "");
     fmt::print("{}\n", comparison.chosen ? "" : "; stays as it is");
+    for (const auto& [value, statistics] : comparison.statistics)
+        if (!statistics.empty()) fmt::print("    {}: {}\n", value, statistics_text(statistics));
 }
 
 /// Prints progress between the tables, as a line rewritten in place would disturb them.
@@ -147,61 +127,42 @@ void tune(Device& device, const std::vector<Task>& tasks, const KernelFilter& fi
     write_report(options.common, {{"device", device_json(device, ceilings)}, {"variants", variants}});
 }
 
-/// Throws Error naming those that have become slower.
-void compare_with_baseline(const std::vector<Measurement>& now, const std::vector<Measurement>& before) {
-    const std::vector<Change> changes = changes_between(now, before);
-    if (changes.empty()) throw UsageError("the baseline has none of the kernels and sizes that were measured");
-    fmt::print("\nAgainst the baseline (1.00: as fast; less is faster; the device's own drift is taken away):\n");
-    std::size_t slower = 0;
-    for (const Change& change : changes) {
-        const bool is_slower = change.ratio.is_slower();
-        slower += is_slower;
-        fmt::print("    {:<34}{:<28}{:>9}  {:.2f} +- {:.2f}  (drift {:.2f}){}\n", change.kernel, change.operation,
-                   change.size, change.ratio.value, change.ratio.error * change.ratio.value, change.drift,
-                   is_slower                  ? "  SLOWER"
-                   : change.ratio.is_faster() ? "  faster"
-                                              : "");
-    }
-    if (slower > 0)
-        throw Error(fmt::format("{} of {} kernels are slower than in the baseline, by more than noise and a twentieth",
-                                slower, changes.size()));
-}
-
 void measure(Device& device, const std::vector<Task>& tasks, const KernelFilter& filter,
              const ShaderBenchOptions& options) {
     std::vector<Measurement> before;
     if (!options.baseline.empty()) before = read_measurements(options.baseline, device.info());
     const Ceilings ceilings = measure_ceilings(device);
-    fmt::print("{}: copies {:.1f} GB/s, multiply-adds {:.1f} GFLOP/s\n", device.info().name, ceilings.copy_gb_per_s,
-               ceilings.fma_gflop_per_s);
+    print_ceilings(device, ceilings);
     std::vector<Measurement> measurements;
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    const TimingOptions timing{.repeats = options.repeats,
+                               .wall_seconds = options.seconds / static_cast<double>(tasks.size())};
     const Stopwatch watch;
     for (const auto& [kind, size] : tasks) {
         check_interrupt();
         print_progress(options, measurements.size(), tasks.size(), watch);
-        measurements.push_back(measure_operation(device, *kind, size, filter, {.repeats = options.repeats}));
+        measurements.push_back(measure_operation(device, *kind, size, filter, timing, ceilings));
         print_measurement(measurements.back(), ceilings);
         list.push_back(to_json(measurements.back(), device, ceilings));
     }
-    print_statistics(device, measurements);
+    print_driver_statistics(device, measurements);
     write_report(options.common, {{"device", device_json(device, ceilings)}, {"measurements", list}});
     const auto wrong = std::ranges::count_if(measurements, [](const Measurement& m) { return !m.fits(); });
     if (wrong > 0)
         throw DeviceError(fmt::format("{} of {} operations differ from their reference on device '{}'", wrong,
                                       measurements.size(), device.info().name));
-    if (!options.baseline.empty()) compare_with_baseline(measurements, before);
+    if (!options.baseline.empty()) compare_with_earlier(measurements, before);
 }
 
 void run_compiler_statistics(const ShaderBenchOptions& options) {
-    if (options.in_this_process) compile_in_this_process(options.filter);
+    const KernelFilter filter(options.filter);
+    if (options.in_this_process) compile_in_this_process(compiled_variants(filter));
     if (!options.common.device.empty())
         throw UsageError("--statistics compiles for cards that need not be there: give --families, not --device");
     StatisticsOptions compiling = options.compiling;
     compiling.common = options.common;
-    compiling.filter = options.filter;
     compiling.baseline = options.baseline;
-    run_statistics(compiling);
+    run_statistics(compiling, {"bench", "shaders", "--statistics", "--in-this-process", "--filter", options.filter});
 }
 
 void run_shader_bench(const ShaderBenchOptions& options) {
@@ -271,9 +232,12 @@ void add_bench_shaders_command(Command& bench) {
     Option* repeats = command->add_option("--repeats", options->repeats, "how often each is timed")
                           ->capture_default_str()
                           ->check(whole_number(1, 1000));
+    Option* seconds = command->add_option("--seconds", options->seconds, "how long timing may take, preparing aside")
+                          ->capture_default_str()
+                          ->check(in_range(0.1, 86400.0));
     Option* list =
         command->add_flag("--list", options->list, "print operations and their kernels, and measure nothing");
-    add_statistics_options(*command, *options, {tune, sizes, repeats, list});
+    add_statistics_options(*command, *options, {tune, sizes, repeats, seconds, list});
     add_device_option(*command, options->common);
     add_common_options(*command, options->common);
     command->callback([options] { run_shader_bench(*options); });

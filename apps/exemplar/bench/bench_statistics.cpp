@@ -1,4 +1,5 @@
-// exemplar bench shaders --statistics: what the compiler of graphics cards tells of kernels, without a card.
+// --statistics of exemplar bench shaders and bench spirv: what the compiler of graphics cards tells of kernels, without
+// a card.
 
 #include "apps/exemplar/bench/bench_statistics.h"
 
@@ -13,6 +14,7 @@
 #include "apps/bench/kernels/compiler_statistics.h"
 #include "apps/exemplar/run_words.h"
 #include "gpu/runtime/device/errors.h"
+#include "gpu/runtime/kernels/capabilities.h"
 #include "gpu/runtime/measure/setup_check.h"
 #include "host/core/errors.h"
 #include "host/core/interrupt.h"
@@ -55,14 +57,15 @@ std::vector<std::string> family_names(const std::vector<std::string>& words) {
 }
 
 /// Runs this program again with a driver that takes itself for one of a card of the family.
-FamilyStatistics compile_for(const std::string& family, const std::string& files, const std::string& filter) {
-    const ProgramOutput output = run_words(
-        {this_program().string(), "bench", "shaders", "--statistics", "--in-this-process", "--filter", filter},
-        {{"RADV_FORCE_FAMILY", family},
-         {"VK_ICD_FILENAMES", files},
-         {"VK_DRIVER_FILES", files},
-         {"EXEMPLAR_VALIDATION", "0"},
-         {"EXEMPLAR_DEVICE", "0"}});
+FamilyStatistics compile_for(const std::string& family, const std::string& files,
+                             const std::vector<std::string>& child) {
+    std::vector<std::string> words{this_program().string()};
+    words.insert(words.end(), child.begin(), child.end());
+    const ProgramOutput output = run_words(words, {{"RADV_FORCE_FAMILY", family},
+                                                   {"VK_ICD_FILENAMES", files},
+                                                   {"VK_DRIVER_FILES", files},
+                                                   {"EXEMPLAR_VALIDATION", "0"},
+                                                   {"EXEMPLAR_DEVICE", "0"}});
     check_interrupt();
     if (output.text.find("Unknown family") != std::string::npos)
         throw UsageError(
@@ -157,18 +160,15 @@ void compare_with_baseline(const std::vector<FamilyStatistics>& now, const std::
 
 }  // namespace
 
-void run_statistics(const StatisticsOptions& options) {
-    const KernelFilter filter(options.filter);
+void run_statistics(const StatisticsOptions& options, const std::vector<std::string>& child) {
     std::vector<FamilyStatistics> before;
     if (!options.baseline.empty()) before = read_statistics(options.baseline);
     const ReportedTimes times = options.times.empty() ? ReportedTimes{} : read_times(options.times);
     const std::string files = radv_files();
     const std::vector<std::string> names = family_names(options.families);
-    if (!options.common.quiet)
-        fmt::print(stderr, "compiling {} variants of kernels for {}\n", compiled_variants(filter).size(),
-                   fmt::join(names, ", "));
+    if (!options.common.quiet) fmt::print(stderr, "compiling for {}\n", fmt::join(names, ", "));
     std::vector<FamilyStatistics> families(names.size());
-    parallel_for(names.size(), [&](std::size_t i) { families[i] = compile_for(names[i], files, options.filter); });
+    parallel_for(names.size(), [&](std::size_t i) { families[i] = compile_for(names[i], files, child); });
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const FamilyStatistics& family : families) {
         print_statistics(family, times);
@@ -178,10 +178,9 @@ void run_statistics(const StatisticsOptions& options) {
     if (!options.baseline.empty()) compare_with_baseline(families, before, options);
 }
 
-void compile_in_this_process(const std::string& filter) {
-    const std::vector<CompiledVariant> variants = compiled_variants(KernelFilter(filter));
+void compile_in_this_process(const std::vector<CompiledVariant>& variants) {
     // Never deleted: if compiling fails, the driver would crash before the error is printed.
-    Device& device = *new Device({.statistics = true, .compile_only = true});  // NOLINT
+    Device& device = *new Device({.statistics = true, .compile_only = true, .features = compute_features()});  // NOLINT
     if (!device.captures_statistics())
         throw DeviceError(fmt::format("'{}' tells no statistics of its code", device.info().name));
     FamilyStatistics statistics{

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 
@@ -42,12 +43,38 @@ std::string missing_feature(const ExistingDevice& existing) {
     return {};
 }
 
+// Drops the features of a structure that a device does not offer. After the structure's type and chain, all members are
+// VkBool32.
+template <typename Features>
+void keep_offered(Features& features, const Features& offered, std::size_t first) {
+    auto* const own = reinterpret_cast<unsigned char*>(&features);
+    const auto* const other = reinterpret_cast<const unsigned char*>(&offered);
+    for (std::size_t i = first; i < sizeof(Features); ++i) own[i] &= other[i];
+}
+
 }  // namespace
 
 void require_features(VkPhysicalDeviceVulkan12Features& features12, VkPhysicalDeviceVulkan13Features& features13) {
     features12.timelineSemaphore = VK_TRUE;
     features13.synchronization2 = VK_TRUE;
     features13.dynamicRendering = VK_TRUE;
+}
+
+DeviceFeatures::DeviceFeatures() {
+    v11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES;
+    v12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
+    v13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
+}
+
+DeviceFeatures offered_features(VkPhysicalDevice device) {
+    DeviceFeatures offered;
+    offered.v11.pNext = &offered.v12;
+    offered.v12.pNext = &offered.v13;
+    auto all = empty_structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &offered.v11);
+    vkGetPhysicalDeviceFeatures2(device, &all);
+    offered.core = all.features;
+    offered.v11.pNext = offered.v12.pNext = nullptr;
+    return offered;
 }
 
 bool has_extension(VkPhysicalDevice device, const char* name) {
@@ -74,7 +101,7 @@ Device::Device(const DeviceOptions& options)
     if (options.presentation) require_presentation(*options.presentation);
     statistics_ = options.statistics && has_executable_statistics(physical_);
     tuning_ = load_tuning(info_);
-    create(options.presentation.has_value());
+    create(options.presentation.has_value(), options.features);
     vkGetDeviceQueue(device_, queue_family_, 0, &queue_);
     if (compile_only_) return;
     try {
@@ -141,7 +168,12 @@ void Device::require_presentation(const PresentationOptions& presentation) const
         fmt::format("device '{}' cannot show images in a window; choose another with --device", info_.name));
 }
 
-void Device::create(bool presents) {
+void Device::create(bool presents, DeviceFeatures features) {
+    const DeviceFeatures offered = offered_features(physical_);
+    keep_offered(features.core, offered.core, 0);
+    keep_offered(features.v11, offered.v11, offsetof(VkPhysicalDeviceVulkan11Features, storageBuffer16BitAccess));
+    keep_offered(features.v12, offered.v12, offsetof(VkPhysicalDeviceVulkan12Features, samplerMirrorClampToEdge));
+    keep_offered(features.v13, offered.v13, offsetof(VkPhysicalDeviceVulkan13Features, robustImageAccess));
     const float priority = 1.0f;
     const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                         .pNext = nullptr,
@@ -149,15 +181,14 @@ void Device::create(bool presents) {
                                         .queueFamilyIndex = queue_family_,
                                         .queueCount = 1,
                                         .pQueuePriorities = &priority};
-    auto features13 =
-        empty_structure<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
-    auto features12 = empty_structure<VkPhysicalDeviceVulkan12Features>(
-        VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &features13);
-    require_features(features12, features13);
-    auto features =
-        empty_structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &features12);
+    require_features(features.v12, features.v13);
+    features.v11.pNext = &features.v12;
+    features.v12.pNext = &features.v13;
+    auto enabled =
+        empty_structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &features.v11);
     // Accesses out of bounds then do no harm before the validation layer reports them; all devices offer it.
-    features.features.robustBufferAccess = switches_.validates ? VK_TRUE : VK_FALSE;
+    features.core.robustBufferAccess = switches_.validates ? VK_TRUE : VK_FALSE;
+    enabled.features = features.core;
     auto executables = empty_structure<VkPhysicalDevicePipelineExecutablePropertiesFeaturesKHR>(
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR);
     executables.pipelineExecutableInfo = VK_TRUE;
@@ -169,10 +200,10 @@ void Device::create(bool presents) {
         if (has_extension(physical_, name)) extensions.push_back(name);
     if (statistics_) {
         extensions.push_back(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME);
-        features13.pNext = &executables;
+        features.v13.pNext = &executables;
     }
     const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-                                  .pNext = &features,
+                                  .pNext = &enabled,
                                   .flags = 0,
                                   .queueCreateInfoCount = 1,
                                   .pQueueCreateInfos = &queue,

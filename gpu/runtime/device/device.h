@@ -31,6 +31,18 @@ struct PresentationOptions {
     std::function<bool(VkInstance, VkPhysicalDevice, std::uint32_t family)> can_present;
 };
 
+/// Features of Vulkan 1.0 to 1.3.
+struct DeviceFeatures {
+    DeviceFeatures();  ///< none
+    VkPhysicalDeviceFeatures core{};
+    VkPhysicalDeviceVulkan11Features v11{};
+    VkPhysicalDeviceVulkan12Features v12{};
+    VkPhysicalDeviceVulkan13Features v13{};
+};
+
+/// Returns the features that a device offers.
+DeviceFeatures offered_features(VkPhysicalDevice device);
+
 struct DeviceOptions {
     /// What select_device accepts: an index, a UUID, a PCI address or part of a name. Empty: the environment variable
     /// EXEMPLAR_DEVICE, else the best device.
@@ -40,6 +52,8 @@ struct DeviceOptions {
     std::optional<DeviceSwitches> switches{};           ///< none: those of the environment
     /// Opens devices that cannot run anything, too. compile() is the only use of such a device, and it is never closed.
     bool compile_only = false;
+    /// Features to enable in addition to those that Exemplar needs, where the device offers them.
+    DeviceFeatures features{};
 };
 
 /// A device that the program around Exemplar has opened, of Vulkan 1.3 and with the features that require_features
@@ -138,7 +152,7 @@ class Device {
 
   private:
     void require_presentation(const PresentationOptions& presentation) const;
-    void create(bool presents);
+    void create(bool presents, DeviceFeatures features);
     void create_tools();
     void wait_for_own_work();
     void destroy();

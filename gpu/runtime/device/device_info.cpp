@@ -286,6 +286,10 @@ nlohmann::ordered_json to_json(const DeviceReport& report) {
     if (report.ceilings) {
         json["copy_gb_per_s"] = report.ceilings->copy_gb_per_s;
         json["fma_gflop_per_s"] = report.ceilings->fma_gflop_per_s;
+        json["shared_gb_per_s"] = report.ceilings->shared_gb_per_s;
+        json["texel_gb_per_s"] = report.ceilings->texel_gb_per_s;
+        json["atomic_gop_per_s"] = report.ceilings->atomic_gop_per_s;
+        json["launch_us"] = report.ceilings->launch_us;
     }
     return json;
 }

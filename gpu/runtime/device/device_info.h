@@ -51,9 +51,13 @@ struct DeviceInfo {
 
 /// Peak speeds measured on the device. Speeds of kernels are reported as shares of them.
 struct Ceilings {
-    double copy_gb_per_s = 0.0;    ///< 10^9 bytes per second, read plus written, by a copying kernel or the
-                                   ///< driver's copy command, whichever is faster
-    double fma_gflop_per_s = 0.0;  ///< float32 fused multiply-adds, two operations each, 10^9 per second
+    double copy_gb_per_s = 0.0;     ///< 10^9 bytes per second, read plus written, by a copying kernel or the
+                                    ///< driver's copy command, whichever is faster
+    double fma_gflop_per_s = 0.0;   ///< float32 fused multiply-adds, two operations each, 10^9 per second
+    double shared_gb_per_s = 0.0;   ///< reads of shared memory, 16 bytes each
+    double texel_gb_per_s = 0.0;    ///< reads of 16 KiB of texels, 16 bytes each, which caches hold
+    double atomic_gop_per_s = 0.0;  ///< additions to 4 MiB of a storage buffer, each to another place, 10^9 per second
+    double launch_us = 0.0;         ///< microseconds of a dispatch that does nothing, by timestamps; 0 without them
 };
 
 /// Everything `exemplar devices` prints of one device.
@@ -91,7 +95,7 @@ std::string_view to_string(DeviceType type);
 /// Describes a report as JSON. Sizes are in bytes, speeds in the unit that the key ends with.
 nlohmann::ordered_json to_json(const DeviceReport& report);
 
-/// Measures the rates of copies and fused multiply-adds: the best of several runs after a warm-up.
+/// Measures the peak rates: the best of several runs after a warm-up, each of many dispatches in one submission.
 Ceilings measure_ceilings(Device& device);
 
 /// Returns the DeviceInfo of a physical device of a loaded instance.

@@ -1,6 +1,7 @@
 #include "gpu/runtime/device/tuning.h"
 
 #include <fmt/format.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -13,6 +14,25 @@
 #include "host/core/json_text.h"
 
 namespace exemplar {
+namespace {
+
+std::map<std::string_view, std::span<const std::uint32_t>>& noted_shaders() {
+    static std::map<std::string_view, std::span<const std::uint32_t>> shaders;
+    return shaders;
+}
+
+// Returns the hash of a kernel's SPIR-V; an empty text for a kernel that is not part of this program.
+std::string shader_hash(std::string_view kernel) {
+    const auto shader = noted_shaders().find(kernel);
+    if (shader == noted_shaders().end()) return {};
+    return fmt::format("{:016x}", XXH3_64bits(shader->second.data(), shader->second.size_bytes()));
+}
+
+}  // namespace
+
+bool note_shader(std::string_view name, std::span<const std::uint32_t> words) {
+    return noted_shaders().emplace(name, words).second;
+}
 
 std::optional<std::uint32_t> Tuning::find(std::string_view kernel, std::string_view parameter) const {
     const auto of_kernel = kernels_.find(kernel);
@@ -45,7 +65,13 @@ Tuning Tuning::load(const std::filesystem::path& path) {
     std::error_code error;
     if (path.empty() || !std::filesystem::exists(path, error)) return tuning;
     try {
-        tuning.kernels_ = parse_json(read_file(path)).at("kernels").get<decltype(kernels_)>();
+        const nlohmann::json json = parse_json(read_file(path));
+        tuning.kernels_ = json.at("kernels").get<decltype(kernels_)>();
+        const auto hashes = json.value("shaders", std::map<std::string, std::string>());
+        std::erase_if(tuning.kernels_, [&](const auto& kernel) {
+            const auto hash = hashes.find(kernel.first);
+            return hash == hashes.end() || hash->second != shader_hash(kernel.first);
+        });
     } catch (const nlohmann::json::exception&) {
         throw DataError(
             fmt::format("{}: this is no tuning of kernels; delete it, or write it anew with 'exemplar bench "
@@ -56,7 +82,9 @@ Tuning Tuning::load(const std::filesystem::path& path) {
 }
 
 void Tuning::save(const std::filesystem::path& path) const {
-    const std::string text = json_text(nlohmann::json{{"kernels", kernels_}}, 2);
+    std::map<std::string, std::string> hashes;
+    for (const auto& [kernel, parameters] : kernels_) hashes[kernel] = shader_hash(kernel);
+    const std::string text = json_text(nlohmann::json{{"kernels", kernels_}, {"shaders", hashes}}, 2);
     write_file_atomically(path, [&](std::ostream& out) { out << text << '\n'; });
 }
 

@@ -31,6 +31,10 @@ inline constexpr std::array<std::uint32_t, 6> k_group_sizes{16, 32, 64, 128, 256
 inline constexpr TunableParameter k_group_size{"", "group", k_group_sizes};
 inline constexpr std::uint32_t k_group_size_constant = 100;
 
+/// Notes the SPIR-V of an embedded shader, so that tuning files forget what was found for another version of it.
+/// Embedded shaders call it before main(). Returns true.
+bool note_shader(std::string_view name, std::span<const std::uint32_t> words);
+
 /// Fastest known kernel variants of one device (`exemplar bench shaders --tune`). Parameters without an entry use the
 /// kernel's default.
 class Tuning {
@@ -46,8 +50,9 @@ class Tuning {
     void forget(std::string_view kernel, std::string_view parameter);
     bool empty() const { return kernels_.empty(); }
 
-    /// Reads a file written by save(); a missing file gives an empty tuning. Throws DataError, which names the file
-    /// and the remedy, if it is damaged.
+    /// Reads a file written by save(); a missing file gives an empty tuning. Leaves out kernels whose SPIR-V has
+    /// changed since, and all of a file without the hashes of SPIR-V, as earlier versions wrote it. Throws DataError,
+    /// which names the file and the remedy, if it is damaged.
     static Tuning load(const std::filesystem::path& path);
     /// Throws DataError if the file cannot be written.
     void save(const std::filesystem::path& path) const;

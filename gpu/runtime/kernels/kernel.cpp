@@ -17,10 +17,12 @@ void specialize_local_size(Reflection& reflection, const ProgramInterface& inter
             if (reflection.local_size_ids[axis] == id) reflection.local_size[axis] = value;
 }
 
-// Sets the tuned workgroup size, if there is one, of a kernel that leaves its size to the host. Otherwise the
-// shader's default stays.
+// Sets the tuned workgroup size, if there is one, of a kernel that leaves its size to the host and of which
+// `interface` does not say it. Otherwise the shader's default stays.
 void choose_group_size(const Device& device, const Program& program, ProgramInterface& interface) {
     if (program.reflection.local_size_ids[0] != k_group_size_constant) return;
+    for (const auto& [id, value] : interface.constants)
+        if (id == k_group_size_constant) return;
     const DeviceInfo& info = device.info();
     const std::uint32_t size = device.tuning().choose(program.name, k_group_size, program.reflection.local_size[0]);
     if (size <= info.max_invocations && size <= info.max_group_size[0])

@@ -15,13 +15,6 @@ using shared::SumParameters;
 using shared::vec4;
 
 constexpr std::size_t k_quad = 4;
-// Number of pixels per invocation; each loaded pixel is used for all of them. D6 in docs/portability.md.
-constexpr std::uint32_t k_outputs_on_cpu = 8, k_outputs_on_gpu = 4;
-
-std::uint32_t chosen_outputs(const Device& device, const TunableParameter& parameter) {
-    return device.tuning().choose(parameter,
-                                  device.info().type == DeviceType::cpu ? k_outputs_on_cpu : k_outputs_on_gpu);
-}
 
 std::size_t quads_of(const GaussianKernel& kernel) {
     return (kernel.weights.size() + k_quad - 1) / k_quad;
@@ -56,8 +49,8 @@ GpuGaussian::GpuGaussian(Device& device, float sigma)
     : kernel(gaussian_kernel(sigma)), weights(Buffer::of<float>(device, padded_weights(kernel))) {}
 
 GaussianSums::GaussianSums(Device& device)
-    : outputs_(chosen_outputs(device, k_sum_outputs)),
-      mask_outputs_(chosen_outputs(device, k_mask_outputs)),
+    : outputs_(device.choose(k_sum_outputs)),
+      mask_outputs_(device.choose(k_mask_outputs)),
       mask_(device, shaders::imaging_mask_sums_comp,
             {.push_constants = layout_of<SumParameters>(),
              .elements = {layout_of<float>(), layout_of<vec4>(), layout_of<vec4>()},

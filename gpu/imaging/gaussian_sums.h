@@ -12,10 +12,11 @@
 
 namespace exemplar {
 
-/// Variants of the number of pixels per invocation.
+/// Numbers of pixels per invocation; each loaded pixel is used for all of them. D6 in docs/portability.md.
 inline constexpr std::array<std::uint32_t, 4> k_outputs_per_invocation{2, 4, 8, 16};
-inline constexpr TunableParameter k_sum_outputs{"imaging/weighted_sums.comp", "outputs", k_outputs_per_invocation};
-inline constexpr TunableParameter k_mask_outputs{"imaging/mask_sums.comp", "outputs", k_outputs_per_invocation};
+inline constexpr TunableParameter k_sum_outputs{"imaging/weighted_sums.comp", "outputs", k_outputs_per_invocation, 8,
+                                                4};
+inline constexpr TunableParameter k_mask_outputs{"imaging/mask_sums.comp", "outputs", k_outputs_per_invocation, 8, 8};
 
 /// A Gaussian with its weights in a device buffer.
 struct GpuGaussian {

@@ -18,17 +18,17 @@
 
 namespace exemplar {
 
-/// Quads (four items) per invocation; at least those of a texel, which holds more of them with features of fewer
-/// bits.
+/// Quads (four items) per invocation. On a CPU each loaded stump is used for many items (D6 in docs/portability.md),
+/// and for at least those of a texel, which holds more of them with features of fewer bits.
 inline constexpr std::array<std::uint32_t, 4> k_stump_quad_counts{1, 2, 4, 8};
-inline constexpr TunableParameter k_stump_quads{"learn/stumps.comp", "quads", k_stump_quad_counts};
+inline constexpr TunableParameter k_stump_quads{"learn/stumps.comp", "quads", k_stump_quad_counts, 4, 1};
 /// How features are read: as texels (0) or from a storage buffer (1).
 inline constexpr std::array<std::uint32_t, 2> k_stump_readings{0, 1};
-inline constexpr TunableParameter k_stump_storage{"learn/stumps.comp", "storage", k_stump_readings};
+inline constexpr TunableParameter k_stump_storage{"learn/stumps.comp", "storage", k_stump_readings, 0, 0};
 /// Bits of a feature: 32 for a float, 16 or 8 for its rank among the classifier's thresholds, which the host
-/// computes during the upload. Probabilities are the same, bit for bit.
+/// computes during the upload. Probabilities are the same, bit for bit. A byte is a quarter of a float's upload.
 inline constexpr std::array<std::uint32_t, 3> k_stump_feature_bits{8, 16, 32};
-inline constexpr TunableParameter k_stump_bits{"learn/stumps.comp", "bits", k_stump_feature_bits,
+inline constexpr TunableParameter k_stump_bits{"learn/stumps.comp",     "bits", k_stump_feature_bits, 8, 8,
                                                TuningMetric::end_to_end};
 
 /// Boosted stumps on the device. Only the features that stumps use are uploaded, as floats or as ranks

@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#include "shaders/lib/loops.glsl"
 #include "shaders/shared/image_filters.h"
 
 // Sums a line's pixels times a Gaussian and the powers 0 to k_orders - 1 of the offset, in units of sigma. An
@@ -33,7 +34,7 @@ void main() {
     vec4 sums[k_orders * k_outputs];
     [[unroll]] for (uint i = 0; i < k_orders * k_outputs; ++i) sums[i] = vec4(0.0);
 
-    [[dont_unroll]] for (uint quad = 0; quad < parameters.quads; ++quad) {
+    keep_loop for (uint quad = 0; quad < parameters.quads; ++quad) {
         const vec4 four = texelFetch(weights, int(quad));
         [[unroll]] for (uint i = 0; i < 4; ++i) window[k_outputs - 1 + i] = pixel_at(line, next++);
         [[unroll]] for (uint tap = 0; tap < 4; ++tap) {

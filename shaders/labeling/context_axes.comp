@@ -1,6 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#include "shaders/lib/loops.glsl"
 #include "shaders/labeling/context_bins.glsl"
 #include "shaders/shared/context.h"
 
@@ -51,7 +52,7 @@ void main() {
     uint before[k_context_bins + 1], behind[k_context_bins + 1];
     before[k_context_bins] = 0;
     behind[k_context_bins] = parameters.samples;
-    [[dont_unroll]] for (uint b = k_context_bins - 1; b > 0; --b) {
+    keep_loop for (uint b = k_context_bins - 1; b > 0; --b) {
         before[b] = count_before(axis * parameters.samples, p, parameters.edges[axis][b - 1]);
         behind[b] = max(first_behind(axis * parameters.samples, p, parameters.edges[axis][b - 1]), before[b]);
     }
@@ -62,10 +63,10 @@ void main() {
         const uint first = (axis * blocks + block) * (parameters.samples + 1);
         const uint first_class = k_context_class_block * block;
         const uint classes = min(k_context_class_block, parameters.classes - first_class);
-        [[dont_unroll]] for (uint b = 0; b < k_context_bins; ++b) {
+        keep_loop for (uint b = 0; b < k_context_bins; ++b) {
             const vec4 mass = (prefix(first + behind[b + 1]) - prefix(first + behind[b])) +
                               (prefix(first + before[b]) - prefix(first + before[b + 1]));
-            [[dont_unroll]] for (uint c = 0; c < classes; ++c)
+            keep_loop for (uint c = 0; c < classes; ++c)
                 histograms[histogram_column(axis, b, parameters.classes, first_class + c) * parameters.faces + face] = mass[c];
         }
     }

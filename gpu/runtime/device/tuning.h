@@ -21,7 +21,8 @@ enum class TuningMetric { kernel_time, end_to_end };
 struct TunableParameter {
     std::string_view kernel;  ///< as "learn/stumps.comp"; empty for k_group_size, which is for any kernel
     std::string_view name;
-    std::span<const std::uint32_t> values;  ///< all possible values
+    std::span<const std::uint32_t> values;    ///< all possible values
+    std::uint32_t on_cpus = 0, on_cards = 0;  ///< defaults; k_group_size has none, as shaders declare their size
     TuningMetric judged = TuningMetric::kernel_time;
 };
 

@@ -46,8 +46,10 @@ class GaussianSums {
     void record_mask(Stream& stream, const GpuGaussian& gaussian, Size size, const Buffer& in, const Buffer& out);
 
   private:
-    std::uint32_t outputs_, mask_outputs_;  // pixels per invocation
-    std::array<Kernel, 4> by_count_;        // by the number of planes, starting with 1
+    const Kernel& kernel_for(Axis axis, std::size_t planes);
+    Device& device_;
+    std::uint32_t outputs_, mask_outputs_;          // pixels per invocation
+    std::array<std::array<Kernel, 4>, 2> kernels_;  // by axis and the number of planes, starting with 1; made when used
     Kernel mask_;
 };
 

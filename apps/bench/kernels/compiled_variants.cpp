@@ -34,7 +34,7 @@ const std::vector<KernelConstants>& all_constants() {
         {"labeling/context_geodesic.comp", {{0, "faces", {}}}},
         {"imaging/pack.comp", {{0, "masked", {0, 1}}}},
         {"imaging/mask_sums.comp", {{1, "outputs", {}}}},
-        {"imaging/weighted_sums.comp", {{0, "orders", {1, 2, 3, 4}}, {1, "outputs", {}}}},
+        {"imaging/weighted_sums.comp", {{0, "orders", {1, 2, 3, 4}}, {1, "outputs", {}}, {2, "along_x", {0, 1}}}},
         {"curvature/curvature.comp", {{0, "smoothed", {0, 1}}}},
         {"curvature/derivative.comp", {{0, "smoothed", {0, 1}}}},
         {"curvature/reproject.comp", {{0, "principal", {0, 1}}, {1, "quads", {}}}},

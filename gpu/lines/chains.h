@@ -24,6 +24,9 @@ class GpuChains {
     /// A shared::LinePoint each, in the order of chains' first segments; GpuLineExtraction::counts() has their
     /// number.
     const Buffer& points() const { return points_; }
+    /// Points of chains that begin before each segment, in its group of k_count_group segments; and before each group.
+    const Buffer& point_counts() const { return point_counts_; }
+    const Buffer& point_groups() const { return point_groups_; }
     const GpuLineExtraction& lines() const { return lines_; }
 
   private:

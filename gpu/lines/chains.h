@@ -16,8 +16,8 @@ class GpuChains {
     /// `lines` must live as long as this.
     explicit GpuChains(GpuLineExtraction& lines);
 
-    /// Records the chaining of the segments that `lines` found on `vertices`, in a picture of this size. Up to 27
-    /// dispatches, five and one per doubling of lines().room(), rounded up to an even number; jumps that the number
+    /// Records the chaining of the segments that `lines` found on `vertices`, in a picture of this size. Up to 17
+    /// dispatches, five and one per quadrupling of lines().room(), rounded up to an even number; jumps that the number
     /// of segments does not need do nothing.
     void record(Stream& stream, const Buffer& vertices, const Camera& camera, int width, int height);
 

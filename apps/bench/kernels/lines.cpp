@@ -245,7 +245,7 @@ struct LineDrawing {
 
 // Kernels over vertices and faces read each vertex' fields once: 8 families of a vec4, 5 with a direction. The
 // comments of kernels over segments and points list what they read; data read by earlier kernels may come from
-// caches. Jumps double, so chains take log2 of their number of segments.
+// caches. Each jump quadruples, so chains take half the log2 of their number of segments.
 std::map<std::string, Work> LineDrawing::work() const {
     const Drawn drawn = download(renderer);
     const auto vertices = static_cast<double>(torus.mesh.vertex_count()),

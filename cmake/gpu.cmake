@@ -5,9 +5,23 @@ pkg_check_modules(SPIRV_CROSS REQUIRED IMPORTED_TARGET spirv-cross-c-shared)
 find_program(EXEMPLAR_GLSLANG glslangValidator REQUIRED)
 find_program(EXEMPLAR_SPIRV_VAL spirv-val REQUIRED)
 
+# exemplar_shader_module(SHADER SPIRV TITLE DEFINITION...): compiles one shader and validates it.
+function(exemplar_shader_module shader spirv title)
+  add_custom_command(
+    OUTPUT ${spirv}
+    COMMAND ${EXEMPLAR_GLSLANG} --quiet --target-env vulkan1.2 ${ARGN} -I${PROJECT_SOURCE_DIR} --depfile ${spirv}.d -o ${spirv}
+            ${shader}
+    COMMAND ${EXEMPLAR_SPIRV_VAL} --target-env vulkan1.2 ${spirv}
+    DEPENDS ${shader}
+    DEPFILE ${spirv}.d
+    COMMENT "Compiling shader ${title}"
+    VERBATIM)
+endfunction()
+
 # exemplar_shaders(TARGET FOLDER): compiles every shader of shaders/FOLDER for Vulkan 1.2 (with 1.3, local sizes from
 # specialization constants need maintenance4), validates it and embeds it in TARGET. shaders/learn/stumps.comp becomes
-# the value exemplar::shaders::learn_stumps_comp, declared in "embedded/learn_stumps_comp.h".
+# the value exemplar::shaders::learn_stumps_comp, declared in "embedded/learn_stumps_comp.h". Each is compiled for cards
+# and, with EXEMPLAR_CPU defined, for CPU drivers; if both are equal, one is embedded.
 function(exemplar_shaders target folder)
   set(root ${PROJECT_SOURCE_DIR}/shaders)
   set(embedded ${PROJECT_BINARY_DIR}/shaders/embedded)
@@ -17,19 +31,14 @@ function(exemplar_shaders target folder)
     cmake_path(RELATIVE_PATH shader BASE_DIRECTORY ${root} OUTPUT_VARIABLE name)
     string(MAKE_C_IDENTIFIER ${name} symbol)
     set(spirv ${PROJECT_BINARY_DIR}/shaders/${symbol}.spv)
-    add_custom_command(
-      OUTPUT ${spirv}
-      COMMAND ${EXEMPLAR_GLSLANG} --quiet --target-env vulkan1.2 -I${PROJECT_SOURCE_DIR} --depfile ${spirv}.d -o ${spirv} ${shader}
-      COMMAND ${EXEMPLAR_SPIRV_VAL} --target-env vulkan1.2 ${spirv}
-      DEPENDS ${shader}
-      DEPFILE ${spirv}.d
-      COMMENT "Compiling shader ${name}"
-      VERBATIM)
+    set(cpu_spirv ${PROJECT_BINARY_DIR}/shaders/${symbol}_cpu.spv)
+    exemplar_shader_module(${shader} ${spirv} "${name}")
+    exemplar_shader_module(${shader} ${cpu_spirv} "${name} for CPU drivers" -DEXEMPLAR_CPU)
     add_custom_command(
       OUTPUT ${embedded}/${symbol}.cpp ${embedded}/${symbol}.h
-      COMMAND ${CMAKE_COMMAND} -D spirv=${spirv} -D name=${name} -D symbol=${symbol} -D folder=${embedded}
-              -P ${PROJECT_SOURCE_DIR}/cmake/embed_shader.cmake
-      DEPENDS ${spirv} ${PROJECT_SOURCE_DIR}/cmake/embed_shader.cmake
+      COMMAND ${CMAKE_COMMAND} -D spirv=${spirv} -D cpu_spirv=${cpu_spirv} -D name=${name} -D symbol=${symbol}
+              -D folder=${embedded} -P ${PROJECT_SOURCE_DIR}/cmake/embed_shader.cmake
+      DEPENDS ${spirv} ${cpu_spirv} ${PROJECT_SOURCE_DIR}/cmake/embed_shader.cmake
       VERBATIM)
     target_sources(${target} PRIVATE ${embedded}/${symbol}.cpp ${embedded}/${symbol}.h)
   endforeach()

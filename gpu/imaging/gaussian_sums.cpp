@@ -15,13 +15,6 @@ using shared::SumParameters;
 using shared::vec4;
 
 constexpr std::size_t k_quad = 4;
-// Number of pixels per invocation; each loaded pixel is used for all of them. D6 in docs/portability.md.
-constexpr std::uint32_t k_outputs_on_cpu = 8, k_outputs_on_gpu = 4;
-
-std::uint32_t chosen_outputs(const Device& device, const TunableParameter& parameter) {
-    return device.tuning().choose(parameter,
-                                  device.info().type == DeviceType::cpu ? k_outputs_on_cpu : k_outputs_on_gpu);
-}
 
 std::size_t quads_of(const GaussianKernel& kernel) {
     return (kernel.weights.size() + k_quad - 1) / k_quad;
@@ -46,8 +39,10 @@ SumParameters sum_parameters(const GaussianKernel& kernel, GaussianSums::Axis ax
             .unused = 0};
 }
 
-Threads threads_of(const SumParameters& parameters, std::uint32_t outputs) {
-    return {parameters.lines, (parameters.pixels + outputs - 1) / outputs};
+// Neighboring invocations have pixels that are near in memory.
+Threads threads_of(const SumParameters& parameters, GaussianSums::Axis axis, std::uint32_t outputs) {
+    const std::uint32_t per_line = (parameters.pixels + outputs - 1) / outputs;
+    return axis == GaussianSums::Axis::x ? Threads(per_line, parameters.lines) : Threads(parameters.lines, per_line);
 }
 
 }  // namespace
@@ -57,18 +52,25 @@ GpuGaussian::GpuGaussian(Device& device, Stream& stream, float sigma) : kernel(g
 }
 
 GaussianSums::GaussianSums(Device& device)
-    : outputs_(chosen_outputs(device, k_sum_outputs)),
-      mask_outputs_(chosen_outputs(device, k_mask_outputs)),
+    : device_(device),
+      outputs_(device.choose(k_sum_outputs)),
+      mask_outputs_(device.choose(k_mask_outputs)),
       mask_(device, shaders::imaging_mask_sums_comp,
             {.push_constants = layout_of<SumParameters>(),
              .elements = {layout_of<float>(), layout_of<vec4>(), layout_of<vec4>()},
-             .constants = {{1, mask_outputs_}}}) {
+             .constants = {{1, mask_outputs_}}}) {}
+
+const Kernel& GaussianSums::kernel_for(Axis axis, std::size_t planes) {
+    const bool along_x = axis == Axis::x;
+    Kernel& kernel = kernels_[along_x ? 1 : 0].at(planes - 1);
     const StructLayout four = layout_of<vec4>();
-    for (std::uint32_t i = 0; i < by_count_.size(); ++i)
-        by_count_[i] = Kernel(device, shaders::imaging_weighted_sums_comp,
-                              {.push_constants = layout_of<SumParameters>(),
-                               .elements = {four, four, four, four, four, four},
-                               .constants = {{0, i + 1}, {1, outputs_}}});
+    if (!kernel)
+        kernel =
+            Kernel(device_, shaders::imaging_weighted_sums_comp,
+                   {.push_constants = layout_of<SumParameters>(),
+                    .elements = {four, four, four, four, four, four},
+                    .constants = {{0, static_cast<std::uint32_t>(planes)}, {1, outputs_}, {2, along_x ? 1u : 0u}}});
+    return kernel;
 }
 
 void GaussianSums::record(Stream& stream, const GpuGaussian& gaussian, Axis axis, Size size, const Buffer& in,
@@ -76,14 +78,14 @@ void GaussianSums::record(Stream& stream, const GpuGaussian& gaussian, Axis axis
     const SumParameters parameters = sum_parameters(gaussian.kernel, axis, size);
     // Planes that a kernel does not write must be bound nevertheless.
     const auto plane = [&](std::size_t k) -> const Buffer& { return *out[std::min(k, out.size() - 1)]; };
-    stream.dispatch(by_count_.at(out.size() - 1), threads_of(parameters, outputs_),
+    stream.dispatch(kernel_for(axis, out.size()), threads_of(parameters, axis, outputs_),
                     {in, gaussian.weights, plane(0), plane(1), plane(2), plane(3)}, parameters);
 }
 
 void GaussianSums::record_mask(Stream& stream, const GpuGaussian& gaussian, Size size, const Buffer& in,
                                const Buffer& out) {
     const SumParameters parameters = sum_parameters(gaussian.kernel, Axis::x, size);
-    stream.dispatch(mask_, threads_of(parameters, mask_outputs_), {in, gaussian.weights, out}, parameters);
+    stream.dispatch(mask_, threads_of(parameters, Axis::x, mask_outputs_), {in, gaussian.weights, out}, parameters);
 }
 
 }  // namespace exemplar

@@ -12,10 +12,11 @@
 
 namespace exemplar {
 
-/// Variants of the number of pixels per invocation.
+/// Numbers of pixels per invocation; each loaded pixel is used for all of them. D6 in docs/portability.md.
 inline constexpr std::array<std::uint32_t, 4> k_outputs_per_invocation{2, 4, 8, 16};
-inline constexpr TunableParameter k_sum_outputs{"imaging/weighted_sums.comp", "outputs", k_outputs_per_invocation};
-inline constexpr TunableParameter k_mask_outputs{"imaging/mask_sums.comp", "outputs", k_outputs_per_invocation};
+inline constexpr TunableParameter k_sum_outputs{"imaging/weighted_sums.comp", "outputs", k_outputs_per_invocation, 8,
+                                                4};
+inline constexpr TunableParameter k_mask_outputs{"imaging/mask_sums.comp", "outputs", k_outputs_per_invocation, 8, 8};
 
 /// A Gaussian with its weights in a device buffer.
 struct GpuGaussian {
@@ -45,8 +46,10 @@ class GaussianSums {
     void record_mask(Stream& stream, const GpuGaussian& gaussian, Size size, const Buffer& in, const Buffer& out);
 
   private:
-    std::uint32_t outputs_, mask_outputs_;  // pixels per invocation
-    std::array<Kernel, 4> by_count_;        // by the number of planes, starting with 1
+    const Kernel& kernel_for(Axis axis, std::size_t planes);
+    Device& device_;
+    std::uint32_t outputs_, mask_outputs_;          // pixels per invocation
+    std::array<std::array<Kernel, 4>, 2> kernels_;  // by axis and the number of planes, starting with 1; made when used
     Kernel mask_;
 };
 

@@ -28,6 +28,10 @@ static_assert(shared::k_filter_no_face == k_no_face && shared::k_filter_images =
 
 using Word = std::uint32_t;
 
+// Pixels of a column per invocation of mask_box.comp. A barrier of a CPU driver takes as long as many pixels (D7 in
+// docs/portability.md), and the iterations stay below those of D1.
+constexpr Word k_box_rows_on_cpus = 1024, k_box_rows_on_cards = 32;
+
 // Makes a kernel whose push constants are Parameters and whose buffers have elements of these types.
 template <typename Parameters, typename... Elements>
 Kernel kernel_of(Device& device, const Shader& shader, std::vector<std::pair<Word, Word>> constants = {}) {
@@ -55,7 +59,7 @@ ImageParameters parameters_of(int width, int height, Word count, const PixelBox&
             .box_width = static_cast<Word>(box.width),
             .box_height = static_cast<Word>(box.height),
             .images = count,
-            .unused = 0};
+            .rows = 0};
 }
 
 ImageParameters parameters_of(const GpuMaskedImages& images) {
@@ -165,8 +169,11 @@ GpuMaskedImages GpuImageFilters::masked(const GpuImages& images, const Buffer& f
     // Left, top, right and bottom; the latter two are exclusive.
     std::array<Word, 4> bounds{static_cast<Word>(images.width), static_cast<Word>(images.height), 0, 0};
     const Buffer device_bounds = uploaded<Word>(device_, stream_, bounds);
-    stream_.dispatch(box_, Threads(static_cast<Word>(images.height)), {face, device_bounds},
-                     parameters_of(images.width, images.height, images.count, {}));
+    const auto width = static_cast<Word>(images.width), height = static_cast<Word>(images.height);
+    ImageParameters parameters = parameters_of(images.width, images.height, images.count, {});
+    parameters.rows = device_.runs_card_kernels() ? k_box_rows_on_cards : k_box_rows_on_cpus;
+    stream_.dispatch(box_, Threads(width, (height + parameters.rows - 1) / parameters.rows), {face, device_bounds},
+                     parameters);
     stream_.fetch<Word>(device_bounds, bounds);
     std::optional<PixelBox> box;
     if (bounds[2] != 0)

@@ -26,9 +26,6 @@ static_assert(shared::k_context_bins == k_context_bins && shared::k_context_axes
 // A texel's lanes: the inner bin edges of an axis, and the classes of a block.
 static_assert(k_context_bins - 1 == 4 && k_class_block == 4);
 
-// On a CPU each loaded sample is used for many faces: D6 in docs/portability.md.
-constexpr std::uint32_t k_faces_on_cpu = 4;
-
 vec4 to_vec4(const std::array<float, k_context_bins - 1>& edges) {
     return {edges[0], edges[1], edges[2], edges[3]};
 }
@@ -191,8 +188,7 @@ void add_fetched(const BufferReadback& part, std::vector<BufferReadback>& parts)
 GpuContextHistograms::GpuContextHistograms(Device& device, Profiler* profiler, std::size_t tile_bytes)
     : device_(device),
       tile_bytes_(buffer_limit(device.info(), tile_bytes)),
-      faces_per_thread_(
-          device.tuning().choose(k_context_faces, device.info().type == DeviceType::cpu ? k_faces_on_cpu : 1)),
+      faces_per_thread_(device.choose(k_context_faces)),
       stream_(device, profiler),
       geodesic_kernel_(device, shaders::labeling_context_geodesic_comp,
                        {.push_constants = layout_of<GeodesicContextParameters>(),

@@ -18,9 +18,10 @@ namespace exemplar {
 /// Maximum bytes of a tile's largest buffer, unless the device's limits are lower.
 constexpr std::size_t k_context_tile_bytes = std::size_t{256} << 20;
 
-/// Faces per invocation.
+/// Faces per invocation. On a CPU each loaded sample is used for many faces: D6 in docs/portability.md.
 inline constexpr std::array<std::uint32_t, 4> k_faces_per_invocation{1, 2, 4, 8};
-inline constexpr TunableParameter k_context_faces{"labeling/context_geodesic.comp", "faces", k_faces_per_invocation};
+inline constexpr TunableParameter k_context_faces{"labeling/context_geodesic.comp", "faces", k_faces_per_invocation, 4,
+                                                  1};
 
 /// Contextual label histograms on the device. Meshes are cut into parts that fit the device's limits; as many parts
 /// as fit together are one submission. Values agree with CpuContextHistograms within 1e-5 of a total mass of 1 with

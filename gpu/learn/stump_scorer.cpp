@@ -30,9 +30,6 @@ static_assert(shared::k_link_softmax == static_cast<std::uint32_t>(Link::softmax
 constexpr std::uint32_t k_float_bits = 32;
 // Distances of columns on the device are multiples of the largest group of items that invocations read together.
 constexpr std::size_t k_stride_unit = std::size_t{4} * k_stump_quad_counts.back() * shared::k_stump_neighbors;
-// On a CPU each loaded stump is used for many items, and each load brings many features: D6 in docs/portability.md.
-// For a GPU the host does extra work only if it was measured to pay.
-constexpr std::uint32_t k_quads_on_cpu = 4, k_bits_on_cpu = 8;
 
 // Groups of stumps [first, end).
 struct GroupRange {
@@ -187,6 +184,11 @@ InputLayout layout_of_input(const DeviceStumps& grouped, std::size_t feature_byt
     return layout;
 }
 
+// Returns the layout of a texel of features. On cards it has the ranks of no more than one invocation's items.
+StructLayout feature_texel(std::uint32_t bits, bool on_card) {
+    return on_card && bits != k_float_bits ? layout_of<std::uint32_t>() : layout_of<shared::uvec4>();
+}
+
 template <typename T>
 void write_part(const std::vector<T>& values, InputLayout::Part part, std::span<std::byte> memory) {
     std::ranges::copy(std::as_bytes(std::span(values)), memory.subspan(part.offset).begin());
@@ -196,9 +198,9 @@ void write_part(const std::vector<T>& values, InputLayout::Part part, std::span<
 
 GpuStumpScorer::GpuStumpScorer(Device& device, Profiler* profiler, std::size_t tile_bytes)
     : device_(device),
-      quads_(device.tuning().choose(k_stump_quads, device.info().type == DeviceType::cpu ? k_quads_on_cpu : 1)),
-      from_storage_(device.tuning().choose(k_stump_storage, 0)),
-      bits_(device.tuning().choose(k_stump_bits, device.info().type == DeviceType::cpu ? k_bits_on_cpu : k_float_bits)),
+      quads_(device.choose(k_stump_quads)),
+      from_storage_(device.choose(k_stump_storage)),
+      bits_(device.choose(k_stump_bits)),
       tile_bytes_(buffer_limit(device.info(), tile_bytes)),
       stream_(device, profiler) {}
 
@@ -210,10 +212,10 @@ struct GpuStumpScorer::Classifier {
     std::size_t feature_bytes(std::size_t rows) const { return rows * grouped.bits / 8; }  // of one column
 };
 
-// Returns the quads per invocation. An invocation reads whole texels; with ranks, a texel holds more items, so it
-// reads half as many texels.
+// Returns the quads per invocation. On a CPU an invocation reads whole texels; with ranks, a texel holds more items, so
+// it reads half as many texels.
 std::uint32_t GpuStumpScorer::quads_of(std::uint32_t bits) const {
-    if (bits == k_float_bits) return quads_;
+    if (bits == k_float_bits || device_.runs_card_kernels()) return quads_;
     return std::min(std::max(quads_ / 2, 1u) * (k_float_bits / bits), k_stump_quad_counts.back());
 }
 
@@ -227,7 +229,9 @@ std::size_t GpuStumpScorer::tile_unit(std::uint32_t bits) const {
 std::size_t GpuStumpScorer::rows_per_tile(const Classifier& classifier, std::size_t rows) const {
     const std::size_t unit = tile_unit(classifier.grouped.bits);
     const std::size_t columns = std::max<std::size_t>(classifier.grouped.columns.size(), 1);
-    const std::size_t bytes = std::min<std::size_t>(tile_bytes_, 16 * device_.info().max_texels);
+    const std::size_t bytes =
+        std::min<std::size_t>(tile_bytes_, feature_texel(classifier.grouped.bits, device_.runs_card_kernels()).bytes *
+                                               device_.info().max_texels);
     const std::size_t most = std::min(8 * bytes / (columns * classifier.grouped.bits),
                                       tile_bytes_ / (classifier.class_count * sizeof(float)));
     return std::min(std::max(most / unit * unit, unit), (rows + unit - 1) / unit * unit);
@@ -235,13 +239,16 @@ std::size_t GpuStumpScorer::rows_per_tile(const Classifier& classifier, std::siz
 
 const Kernel& GpuStumpScorer::kernel(std::uint32_t classes, std::uint32_t bits, bool in_parts) {
     Kernel& kernel = kernels_[{classes, bits, in_parts}];
-    if (!kernel)
+    if (!kernel) {
+        const bool on_card = device_.runs_card_kernels();
         kernel = Kernel(
             device_, shaders::learn_stumps_comp,
             {.push_constants = layout_of<StumpParameters>(),
-             .elements = {layout_of<shared::uvec4>(), layout_of<shared::uvec4>(), layout_of<shared::uvec4>(),
-                          layout_of<float>(), layout_of<float>(), layout_of<shared::uvec4>()},
+             .elements = {feature_texel(bits, on_card), layout_of<shared::uvec4>(), layout_of<shared::uvec4>(),
+                          layout_of<float>(), layout_of<float>(),
+                          on_card ? layout_of<std::uint32_t>() : layout_of<shared::uvec4>()},
              .constants = {{0, classes}, {1, quads_of(bits)}, {2, from_storage_}, {3, bits}, {4, in_parts ? 1U : 0U}}});
+    }
     return kernel;
 }
 

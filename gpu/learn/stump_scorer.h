@@ -18,17 +18,17 @@
 
 namespace exemplar {
 
-/// Quads (four items) per invocation; at least those of a texel, which holds more of them with features of fewer
-/// bits.
+/// Quads (four items) per invocation. On a CPU each loaded stump is used for many items (D6 in docs/portability.md),
+/// and for at least those of a texel, which holds more of them with features of fewer bits.
 inline constexpr std::array<std::uint32_t, 4> k_stump_quad_counts{1, 2, 4, 8};
-inline constexpr TunableParameter k_stump_quads{"learn/stumps.comp", "quads", k_stump_quad_counts};
+inline constexpr TunableParameter k_stump_quads{"learn/stumps.comp", "quads", k_stump_quad_counts, 4, 1};
 /// How features are read: as texels (0) or from a storage buffer (1).
 inline constexpr std::array<std::uint32_t, 2> k_stump_readings{0, 1};
-inline constexpr TunableParameter k_stump_storage{"learn/stumps.comp", "storage", k_stump_readings};
+inline constexpr TunableParameter k_stump_storage{"learn/stumps.comp", "storage", k_stump_readings, 0, 0};
 /// Bits of a feature: 32 for a float, 16 or 8 for its rank among the classifier's thresholds, which the host
-/// computes during the upload. Probabilities are the same, bit for bit.
+/// computes during the upload. Probabilities are the same, bit for bit. A byte is a quarter of a float's upload.
 inline constexpr std::array<std::uint32_t, 3> k_stump_feature_bits{8, 16, 32};
-inline constexpr TunableParameter k_stump_bits{"learn/stumps.comp", "bits", k_stump_feature_bits,
+inline constexpr TunableParameter k_stump_bits{"learn/stumps.comp",     "bits", k_stump_feature_bits, 8, 8,
                                                TuningMetric::end_to_end};
 
 /// Boosted stumps on the device. Only the features that stumps use are uploaded, as floats or as ranks
@@ -44,10 +44,10 @@ class GpuStumpScorer final : public StumpScorer {
     void probabilities_of_all(const BoostedStumps& classifier, Link link, float scale,
                               std::span<const ScoredMatrix> matrices) override;
 
-    /// Records the scoring of features that are in a buffer already: columns by the numbers that the classifier's stumps
-    /// have, `stride` floats each, a multiple of 256 (at least `rows`), all finite in the first `rows` of a column.
-    /// Writes a probability per class and row, item-major, to `probabilities`, for `stride` rows. Probabilities are those
-    /// of probabilities_of_all. Throws UsageError if a buffer is too small, and as Stream::dispatch.
+    /// Records the scoring of features that are in a buffer already: columns by the numbers that the classifier's
+    /// stumps have, `stride` floats each, a multiple of 256 (at least `rows`), all finite in the first `rows` of a
+    /// column. Writes a probability per class and row, item-major, to `probabilities`, for `stride` rows. Probabilities
+    /// are those of probabilities_of_all. Throws UsageError if a buffer is too small, and as Stream::dispatch.
     void record(Stream& stream, const BoostedStumps& classifier, Link link, float scale, const Buffer& features,
                 std::size_t rows, std::size_t stride, const Buffer& probabilities);
 

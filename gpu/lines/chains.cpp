@@ -41,7 +41,8 @@ GpuChains::GpuChains(GpuLineExtraction& lines) : lines_(lines) {
     point_kernel_ = Kernel(device, shaders::lines_points_comp,
                            {.elements = {layout_of<uvec4>(), k_word, k_word, layout_of<uvec4>(), layout_of<vec4>()}});
     const std::size_t needed = room > 1 ? static_cast<std::size_t>(std::bit_width(room - 1)) : 0;
-    rounds_ = needed + needed % 2;
+    rounds_ = (needed + 1) / 2;
+    rounds_ += rounds_ % 2;
     picture_ends_ = Buffer(device, 2 * room * sizeof(vec4));
     links_ = Buffer(device, 2 * room * sizeof(std::uint32_t));
     nodes_ = Buffer(device, 4 * room * sizeof(uvec4));

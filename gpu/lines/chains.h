@@ -16,14 +16,17 @@ class GpuChains {
     /// `lines` must live as long as this.
     explicit GpuChains(GpuLineExtraction& lines);
 
-    /// Records the chaining of the segments that `lines` found on `vertices`, in a picture of this size. Up to 27
-    /// dispatches, five and one per doubling of lines().room(), rounded up to an even number; jumps that the number
+    /// Records the chaining of the segments that `lines` found on `vertices`, in a picture of this size. Up to 17
+    /// dispatches, five and one per quadrupling of lines().room(), rounded up to an even number; jumps that the number
     /// of segments does not need do nothing.
     void record(Stream& stream, const Buffer& vertices, const Camera& camera, int width, int height);
 
     /// A shared::LinePoint each, in the order of chains' first segments; GpuLineExtraction::counts() has their
     /// number.
     const Buffer& points() const { return points_; }
+    /// Points of chains that begin before each segment, in its group of k_count_group segments; and before each group.
+    const Buffer& point_counts() const { return point_counts_; }
+    const Buffer& point_groups() const { return point_groups_; }
     const GpuLineExtraction& lines() const { return lines_; }
 
   private:

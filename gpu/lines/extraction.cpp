@@ -25,7 +25,7 @@ using shared::FieldParameters;
 using shared::uvec4;
 using shared::vec4;
 
-constexpr std::size_t k_max_segments = std::size_t{1} << shared::k_line_rounds;
+constexpr std::size_t k_max_segments = std::size_t{1} << shared::k_segment_bits;
 
 std::size_t divide_up(std::size_t count, std::size_t size) {
     return (count + size - 1) / size;

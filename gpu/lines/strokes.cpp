@@ -84,11 +84,12 @@ GpuStrokes::GpuStrokes(const GpuChains& chains) : chains_(chains) {
         {.push_constants = layout_of<StrokeParameters>(),
          .elements = {layout_of<float>(), layout_of<uvec4>(), layout_of<uvec4>(), layout_of<uvec4>(), layout_of<vec4>(),
                       layout_of<vec4>(), layout_of<vec4>(), layout_of<uvec4>(), layout_of<vec4>()}});
-    stroke_kernel_ = Kernel(device, shaders::lines_strokes_comp,
-                            {.push_constants = layout_of<StrokeParameters>(),
-                             .elements = {layout_of<uvec4>(), layout_of<std::uint32_t>(), layout_of<uvec4>(),
-                                          layout_of<uvec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(),
-                                          layout_of<uvec4>(), layout_of<std::uint32_t>()}});
+    stroke_kernel_ =
+        Kernel(device, shaders::lines_strokes_comp,
+               {.push_constants = layout_of<StrokeParameters>(),
+                .elements = {layout_of<uvec4>(), layout_of<std::uint32_t>(), layout_of<uvec4>(), layout_of<uvec4>(),
+                             layout_of<vec4>(), layout_of<vec4>(), layout_of<vec4>(), layout_of<uvec4>(),
+                             layout_of<std::uint32_t>(), layout_of<std::uint32_t>(), layout_of<std::uint32_t>()}});
     visible_ = Buffer(device, 2 * room * sizeof(std::uint32_t));
     strokes_ = Buffer(device, 2 * room * sizeof(vec4));
     looks_ = Buffer(device, sizeof(StrokeLooks));
@@ -115,8 +116,8 @@ void GpuStrokes::record(Stream& stream, const GpuCurvedSurface& snapshot, const 
         parameters);
     stream.dispatch_indirect(stroke_kernel_, counts, k_points,
                              {chains_.points(), visible_, lines.segments(), faces, snapshot.vertices, first, second,
-                              lines.surface().neighbors(), inks ? inks->of_faces() : faces, counts, looks_, strokes_,
-                              inks ? inks->inks() : looks_},
+                              lines.surface().neighbors(), inks ? inks->of_faces() : faces, chains_.point_counts(),
+                              chains_.point_groups(), counts, looks_, strokes_, inks ? inks->inks() : looks_},
                              parameters);
 }
 

@@ -21,36 +21,51 @@ struct Round {
     uint waiting;  // tried lists that are not exhausted
 };
 
-bool has_won(uint i) {
-    return i < counts.trials && (trials[i].state & (k_open_trial | k_lost_trial)) == k_open_trial;
+shared Round all;
+
+// Counters as the round left them.
+uint trial_count, front_count;
+bool in_blocks;
+
+// What became of the i-th list of the front or, if holes were tried, of the i-th trial.
+struct Outcome {
+    bool won;
+    bool kept;
+    bool waiting;
+};
+
+bool is_win(uint state) {
+    return (state & (k_open_trial | k_lost_trial)) == k_open_trial;
 }
+
 // Lists that were not tried stay; a part leaves the front when it has a stroke.
-bool is_kept(uint i) {
-    if (counts.in_blocks != 0u || i >= counts.front) return false;
-    if (i >= counts.trials) return true;
-    const bool is_part = (lists[parameters.blocks + i].kind & k_source_mask) == k_part_source;
-    return (trials[i].state & k_pending_trial) != 0u && !(is_part && has_won(i));
+Outcome outcome(uint i) {
+    const bool tried = i < trial_count;
+    const uint state = tried ? trials[i].state : 0u;
+    const bool won = is_win(state), waiting = (state & k_pending_trial) != 0u;
+    bool kept = !in_blocks && i < front_count && (waiting || !tried);
+    if (kept && won) kept = (lists[parameters.blocks + i].kind & k_source_mask) != k_part_source;
+    return Outcome(won, kept, waiting);
 }
 
 Round measured(uint items) {
     Round own = Round(0u, 0u, 0u, 0u);
     for (uint i = gl_LocalInvocationID.x; i < items; i += k_end_round_group) {
-        if (has_won(i)) {
+        const Outcome result = outcome(i);
+        if (result.won) {
             own.won += 1u;
             own.points += trials[i].count;
         }
-        if (is_kept(i)) own.kept += 1u;
-        if (i < counts.trials && (trials[i].state & k_pending_trial) != 0u) own.waiting += 1u;
+        own.kept += uint(result.kept);
+        own.waiting += uint(result.waiting);
     }
-    Round all;
-    exclusive_sum(own.won);
-    all.won = group_total;
-    exclusive_sum(own.points);
-    all.points = group_total;
-    exclusive_sum(own.kept);
-    all.kept = group_total;
-    exclusive_sum(own.waiting);
-    all.waiting = group_total;
+    if (gl_LocalInvocationID.x == 0u) all = Round(0u, 0u, 0u, 0u);
+    barrier();
+    if (own.won != 0u) atomicAdd(all.won, own.won);
+    if (own.points != 0u) atomicAdd(all.points, own.points);
+    if (own.kept != 0u) atomicAdd(all.kept, own.kept);
+    if (own.waiting != 0u) atomicAdd(all.waiting, own.waiting);
+    barrier();
     return all;
 }
 
@@ -59,17 +74,18 @@ void compact(uint items) {
     Round before = Round(counts.strokes, counts.points, parameters.blocks, 0u);
     for (uint begin = 0; begin < items; begin += k_end_round_group) {
         const uint i = begin + gl_LocalInvocationID.x;
-        const bool won = has_won(i), kept = is_kept(i);
+        const Outcome result = outcome(i);
+        const bool won = result.won, kept = result.kept;
         SeedQueueRecord list = SeedQueueRecord(0u, 0u, 0u, 0u);
         if (kept) list = lists[parameters.blocks + i];
         // Where strokes are a pixel apart, the clearance map may miss a stroke at its own seed: it would be placed
         // again forever.
         if (won) ++list.next;
-        if (won && counts.in_blocks != 0u) ++lists[i].next;
+        if (won && in_blocks) ++lists[i].next;
         const uint count = won ? trials[i].count : 0u;
-        // Both counts are below 2^16.
-        const uint counted = exclusive_sum((won ? 1u : 0u) | (kept ? 1u << 16 : 0u)), total = group_total;
-        const uint first = before.points + exclusive_sum(count), points = group_total;
+        // Won and kept ones are below 2^16.
+        const uvec2 sums = exclusive_sums(uvec2((won ? 1u : 0u) | (kept ? 1u << 16 : 0u), count));
+        const uint counted = sums.x, total = group_totals.x, first = before.points + sums.y, points = group_totals.y;
         memoryBarrierBuffer();
         barrier();
         if (kept) lists[before.kept + (counted >> 16)] = list;
@@ -89,10 +105,11 @@ void compact(uint items) {
 
 // Appends the lists of the new strokes' sides and ends to the lists that stay.
 void extend(uint kept) {
-    for (uint i = gl_LocalInvocationID.x; i < counts.trials; i += k_end_round_group) {
-        if (!has_won(i)) continue;
+    for (uint i = gl_LocalInvocationID.x; i < trial_count; i += k_end_round_group) {
+        const uint state = trials[i].state;
+        if (!is_win(state)) continue;
         const uint target = parameters.blocks + kept + 4u * (trials[i].claim - counts.strokes);
-        const uint layer = trials[i].state & ~((1u << k_layer_shift) - 1u);
+        const uint layer = state & ~((1u << k_layer_shift) - 1u);
         for (uint source = k_left_side_source; source <= k_last_end_source; ++source)
             lists[target + source - k_left_side_source] = SeedQueueRecord(layer | source, trials[i].target, trials[i].count, 0u);
     }
@@ -127,9 +144,12 @@ void set_up_next_round(Round round, uint placing) {
 
 void main() {
     const uint placing = counts.candidate_groups[0];
-    if (counts.trials == 0u || counts.full != 0u) return;
+    trial_count = counts.trials;
+    front_count = counts.front;
+    in_blocks = counts.in_blocks != 0u;
+    if (trial_count == 0u || counts.full != 0u) return;
 
-    const uint items = counts.in_blocks != 0u ? counts.trials : counts.front;
+    const uint items = in_blocks ? trial_count : front_count;
     const Round round = measured(items);
     const uint full = missing_room(round);
     if (full == 0u) {

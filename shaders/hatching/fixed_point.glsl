@@ -19,9 +19,22 @@ uint floor_sqrt(uint n) {
     return root + uint((root + 1u) * (root + 1u) <= n);
 }
 
+// Return a / b if it is below 2^20. Devices have no instruction for a division of integers. That of floats is at most
+// one off here; the correction is exact.
+uint quotient(uint a, uint b) {
+    uint result = uint(float(a) * (1.0 / float(b)));
+    result -= uint(result * b > a);
+    return result + uint((result + 1u) * b <= a);
+}
+uvec2 quotient(uvec2 a, uint b) {
+    uvec2 result = uvec2(vec2(a) * (1.0 / float(b)));
+    result -= uvec2(greaterThan(result * b, a));
+    return result + uvec2(lessThanEqual((result + 1u) * b, a));
+}
+
 // Returns a / b rounded to nearest, halves away from zero.
 ivec2 rounded_quotient(ivec2 a, uint b) {
-    return sign(a) * ivec2((uvec2(abs(a)) + b / 2u) / b);
+    return sign(a) * ivec2(quotient(uvec2(abs(a)) + b / 2u, b));
 }
 
 // Returns the unit vector along a vector, times k_unit; zero for a zero vector.

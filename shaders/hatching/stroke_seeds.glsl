@@ -4,7 +4,6 @@
 #define EXEMPLAR_STROKE_SEEDS_GLSL
 #include "shaders/hatching/clearance.glsl"
 #include "shaders/hatching/orientations.glsl"
-#include "shaders/lib/when.glsl"
 
 const int k_side_cosine = 11585;
 const uint k_side_stride = 2;
@@ -101,10 +100,10 @@ Place part_place(SeedQueueRecord list, uint i) {
 Place place_of(SeedQueueRecord list, uint i) {
     const uint source = source_of(list);
     Place place = Place(ivec2(0), ivec2(0), false, false);
-    when (is_side(source)) place = side_place(list, i);
-    when (source == k_first_end_source || source == k_last_end_source) place = end_place(list);
-    when (source == k_block_source) place = hole_place(list, i);
-    when (source == k_part_source) place = part_place(list, i);
+    if (is_side(source)) place = side_place(list, i);
+    if (source == k_first_end_source || source == k_last_end_source) place = end_place(list);
+    if (source == k_block_source) place = hole_place(list, i);
+    if (source == k_part_source) place = part_place(list, i);
     return place;
 }
 
@@ -117,8 +116,8 @@ bool seed_at(SeedQueueRecord list, uint i, out ivec2 point, out ivec2 way) {
     point = place.point;
     way = ivec2(0);
     bool clear = place.valid && direction_word(texel, layer) != 0u;
-    when (clear) clear = is_clear(layer, place.point, spacing_of(texel), share);
-    when (clear) way = direction_at(layer, place.point, place.heading);
+    if (clear) clear = is_clear(layer, place.point, spacing_of(texel), share);
+    if (clear) way = direction_at(layer, place.point, place.heading);
     return way != ivec2(0) && (!place.parallel || dot_of(way, place.heading) >= k_side_cosine * k_unit);
 }
 

@@ -70,7 +70,7 @@ int distance_to_line(ivec2 point, ivec2 from, ivec2 to) {
     const bool on_line = all(bvec2(along > 0, along < dot_of(line, line)));
     const ivec2 end = mix((point - to) >> k_itself_bits, begin, bvec2(along <= 0));
     const int size = length_of_way(mix(end, line, bvec2(on_line)));
-    return mix(size, abs(cross_of(begin, line)) / max(size, 1), on_line);
+    return mix(size, int(quotient(uint(abs(cross_of(begin, line))), uint(max(size, 1)))), on_line);
 }
 
 // Returns whether a point is within the test distance of the stroke itself, except the last two test distances

@@ -1,6 +1,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#include "shaders/lib/loops.glsl"
+#include "shaders/lib/tables.glsl"
 #include "shaders/shared/image_filters.h"
 
 // Does what weighted_sums.comp does for the mask, which is one number per pixel: lane k of the result has the power
@@ -9,7 +11,7 @@ layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 1) const uint k_outputs = 4;
 layout(push_constant) uniform Push { SumParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer inside;   // 1 or 0
-layout(set = 0, binding = 1) uniform samplerBuffer weights;  // in groups of four
+layout(set = 0, binding = 1) vec4_table(Weights, weights);   // in groups of four
 layout(set = 0, binding = 2, std430) writeonly buffer Orders { vec4 orders[]; };
 
 float inside_at(uint line, int place) {
@@ -19,7 +21,7 @@ float inside_at(uint line, int place) {
 }
 
 void main() {
-    const uint line = gl_GlobalInvocationID.x, first = gl_GlobalInvocationID.y * k_outputs;
+    const uint line = gl_GlobalInvocationID.y, first = gl_GlobalInvocationID.x * k_outputs;
     if (line >= parameters.lines || first >= parameters.pixels) return;
     int next = int(first) - int(parameters.radius);
     float window[k_outputs + 3];
@@ -27,8 +29,8 @@ void main() {
     vec4 sums[k_outputs];
     [[unroll]] for (uint i = 0; i < k_outputs; ++i) sums[i] = vec4(0.0);
 
-    [[dont_unroll]] for (uint quad = 0; quad < parameters.quads; ++quad) {
-        const vec4 four = texelFetch(weights, int(quad));
+    keep_loop for (uint quad = 0; quad < parameters.quads; ++quad) {
+        const vec4 four = table_entry(weights, quad);
         [[unroll]] for (uint i = 0; i < 4; ++i) window[k_outputs - 1 + i] = inside_at(line, next++);
         [[unroll]] for (uint tap = 0; tap < 4; ++tap) {
             const float offset = (float(4 * quad + tap) - float(parameters.radius)) * parameters.inverse_sigma;

@@ -1,15 +1,18 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
+#include "shaders/lib/loops.glsl"
 #include "shaders/shared/image_filters.h"
 
 // Sums a line's pixels times a Gaussian and the powers 0 to k_orders - 1 of the offset, in units of sigma. An
 // invocation computes k_outputs pixels of one line (y), so that each loaded pixel is used for all of them. The
 // window holds the pixels that four weights of all outputs need, and moves on by four. Neighboring invocations (x)
-// have neighboring lines. Pixels outside of the line are zero.
+// have pixels that are near in memory: of one line along x, of neighboring lines along y. Pixels outside of the line
+// are zero.
 layout(local_size_x = 64, local_size_x_id = 100) in;
 layout(constant_id = 0) const uint k_orders = 1;
 layout(constant_id = 1) const uint k_outputs = 4;
+layout(constant_id = 2) const bool k_along_x = false;
 layout(push_constant) uniform Push { SumParameters parameters; };
 layout(set = 0, binding = 0) uniform samplerBuffer image;
 layout(set = 0, binding = 1) uniform samplerBuffer weights;  // in groups of four
@@ -25,7 +28,8 @@ vec4 pixel_at(uint line, int place) {
 }
 
 void main() {
-    const uint line = gl_GlobalInvocationID.x, first = gl_GlobalInvocationID.y * k_outputs;
+    const uvec2 place = k_along_x ? gl_GlobalInvocationID.yx : gl_GlobalInvocationID.xy;
+    const uint line = place.x, first = place.y * k_outputs;
     if (line >= parameters.lines || first >= parameters.pixels) return;
     int next = int(first) - int(parameters.radius);  // the pixel to load next
     vec4 window[k_outputs + 3];
@@ -33,7 +37,7 @@ void main() {
     vec4 sums[k_orders * k_outputs];
     [[unroll]] for (uint i = 0; i < k_orders * k_outputs; ++i) sums[i] = vec4(0.0);
 
-    [[dont_unroll]] for (uint quad = 0; quad < parameters.quads; ++quad) {
+    keep_loop for (uint quad = 0; quad < parameters.quads; ++quad) {
         const vec4 four = texelFetch(weights, int(quad));
         [[unroll]] for (uint i = 0; i < 4; ++i) window[k_outputs - 1 + i] = pixel_at(line, next++);
         [[unroll]] for (uint tap = 0; tap < 4; ++tap) {
@@ -49,10 +53,10 @@ void main() {
 
     [[unroll]] for (uint i = 0; i < k_outputs; ++i) {
         if (first + i >= parameters.pixels) break;
-        const uint place = line * parameters.line_step + (first + i) * parameters.step;
-        order0[place] = sums[i];
-        if (k_orders > 1) order1[place] = sums[k_outputs + i];
-        if (k_orders > 2) order2[place] = sums[2 * k_outputs + i];
-        if (k_orders > 3) order3[place] = sums[3 * k_outputs + i];
+        const uint to = line * parameters.line_step + (first + i) * parameters.step;
+        order0[to] = sums[i];
+        if (k_orders > 1) order1[to] = sums[k_outputs + i];
+        if (k_orders > 2) order2[to] = sums[2 * k_outputs + i];
+        if (k_orders > 3) order3[to] = sums[3 * k_outputs + i];
     }
 }

@@ -1,24 +1,27 @@
-// Exclusive prefix sum over a workgroup: exclusive_sum returns the sum of `count` over the invocations before this one,
-// and sets `group_total` to the sum over all. For large workgroups: takes log2 of their size steps.
+// Exclusive prefix sums of two numbers at once over a workgroup: exclusive_sums returns the sums of `counts` over the
+// invocations before this one, and sets `group_totals` to the sums over all. For large workgroups: takes log2 of their
+// size steps.
 #ifndef EXEMPLAR_GROUP_SCAN_GLSL
 #define EXEMPLAR_GROUP_SCAN_GLSL
 
-shared uint group_sums[gl_WorkGroupSize.x];
-uint group_total;
+shared uvec2 group_sums[2][gl_WorkGroupSize.x];  // of the steps in turns, so that a step needs one barrier
+uvec2 group_totals;
 
-uint exclusive_sum(uint count) {
+uvec2 exclusive_sums(uvec2 counts) {
     const uint own = gl_LocalInvocationID.x;
+    uvec2 sums = counts;
+    uint turn = 0u;
     barrier();
-    group_sums[own] = count;
+    group_sums[0][own] = sums;
     for (uint reach = 1u; reach < gl_WorkGroupSize.x; reach *= 2u) {
         barrier();
-        const uint before = own < reach ? 0u : group_sums[own - reach];
-        barrier();
-        group_sums[own] += before;
+        if (own >= reach) sums += group_sums[turn][own - reach];
+        turn ^= 1u;
+        group_sums[turn][own] = sums;
     }
     barrier();
-    group_total = group_sums[gl_WorkGroupSize.x - 1u];
-    return group_sums[own] - count;
+    group_totals = group_sums[turn][gl_WorkGroupSize.x - 1u];
+    return sums - counts;
 }
 
 #endif

@@ -11,7 +11,7 @@ layout(set = 0, binding = 7, std430) writeonly buffer Groups { uint groups[]; };
 layout(set = 0, binding = 8, std430) writeonly buffer Slots { uint slots_of_faces[]; };  // a bit per segment
 
 uint found = 0;
-#define when_wanted(slots)
+#define if_wanted(slots)
 void emit(uint slot, uint family, uint first_place, uint second_place, vec3 first_end, vec3 second_end, vec2 strength) {
     found |= 1u << slot;
 }

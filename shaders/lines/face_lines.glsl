@@ -1,14 +1,13 @@
 // Finds the segments of lines in a face (host/lines/extraction/lines.cpp). The including shader declares
 // `positions`, `faces`, `joined_faces`, `neighbors`, `fields`, `directions`, the constant `k_families` and FaceLineParameters
 // `parameters`, and defines in which of the 26 slots of a face to look, and what is done with each segment:
-//   #define when_wanted(slots)    nothing, or the condition of the statement behind it
+//   #define if_wanted(slots)    nothing, or the condition of the statement behind it
 //   void emit(uint slot, uint family, uint first_place, uint second_place, vec3 first_end, vec3 second_end, vec2 strength)
 // A slot is a segment that a face may have: one for each zero set, and three each for extrema and edges. They are in the order
 // of the segments. `precise` keeps compilers from rounding differently in different kernels.
 #ifndef EXEMPLAR_FACE_LINES_GLSL
 #define EXEMPLAR_FACE_LINES_GLSL
 #include "shaders/lib/eye.glsl"
-#include "shaders/lib/when.glsl"
 #include "shaders/shared/lines.h"
 
 const uint k_crease_slot = 14u, k_boundary_slot = 17u, k_edge_contour_slot = 20u;
@@ -62,7 +61,7 @@ void add_zero_set(uint slot, uint family, mat3x4 corners, mat3 axes) {
         if (largest < 0.0 && axes[0] != vec3(0.0)) value = -value;
     }
     const bvec3 above = greaterThan(value, vec3(0.0));
-    when (any(above) && !all(above)) {
+    if (any(above) && !all(above)) {
         // Around the face, values become positive on one side and negative on another.
         uint falls = 0, rises = 0;
         for (uint i = 0; i < 3; ++i) {
@@ -78,7 +77,7 @@ void add_zero_set(uint slot, uint family, mat3x4 corners, mat3 axes) {
 }
 
 void add_extrema(uint slot, uint family, mat3x4 corners, mat3 growing, mat3 points) {
-    when (corners[0].x > 0.0 && corners[1].x > 0.0 && corners[2].x > 0.0) {
+    if (corners[0].x > 0.0 && corners[1].x > 0.0 && corners[2].x > 0.0) {
         vec3 ends[3];
         uint places[3];
         uint found = 0;
@@ -206,7 +205,7 @@ void add_edge_contours(uint face, uvec3 corners) {
     const uvec3 sides = texelFetch(neighbors, int(face)).xyz;
     for (uint i = 0; i < 3; ++i) {
         const uint code = sides[i] & k_max_side_code;
-        when (has_neighbor(sides[i]) && (sides[i] & k_sharp_side) != 0u && owns_edge(face, i, sides[i])) {
+        if (has_neighbor(sides[i]) && (sides[i] & k_sharp_side) != 0u && owns_edge(face, i, sides[i])) {
             const uvec3 others = texelFetch(faces, int(code / 4u)).xyz;
             const vec2 part = contour_along(corners, i, others, code % 4u, face, code / 4u);
             if (part.x < part.y) emit_side(k_edge_contour_slot + i, k_edge_contours, i, part, 1.0);
@@ -240,7 +239,7 @@ void find_lines_of(uint slot, uint family, uint face, uvec3 corners) {
     const uint bit = 1u << family;
     if ((k_families & bit) == 0u) return;
     const uint slots = ((bit & k_extremum_families) != 0u ? 7u : 1u) << slot;
-    when_wanted(slots) find_lines_in_field(slot, family, face, corners);
+    if_wanted(slots) find_lines_in_field(slot, family, face, corners);
 }
 
 void find_lines(uint face) {
@@ -254,11 +253,11 @@ void find_lines(uint face) {
     find_lines_of(12u, k_first_highlights, face, corners);
     find_lines_of(13u, k_second_highlights, face, corners);
     if ((k_families & 1u << k_creases) != 0u) {
-        when_wanted(7u << k_crease_slot) add_creases(face, corners);
+        if_wanted(7u << k_crease_slot) add_creases(face, corners);
     }
     if ((k_families & 1u << k_boundaries) != 0u) add_boundaries(k_boundary_slot, k_boundaries, face);
     if ((k_families & 1u << k_edge_contours) != 0u) {
-        when_wanted(7u << k_edge_contour_slot | 7u << k_outer_contour_slot) add_edge_contours(face, corners);
+        if_wanted(7u << k_edge_contour_slot | 7u << k_outer_contour_slot) add_edge_contours(face, corners);
     }
 }
 

@@ -31,7 +31,7 @@ void put_segments(uint total) {
     counts.trace_groups = folded_groups(max(segments, previous));
     counts.node_groups = folded_groups(2u * segments);
     // Enough rounds for the longest possible chain. Their number is even, so that the result is in the first buffer.
-    uint rounds = segments > 1u ? uint(findMSB(segments - 1u)) + 1u : 0u;
+    uint rounds = segments > 1u ? uint(findMSB(segments - 1u)) / 2u + 1u : 0u;
     rounds += rounds & 1u;
     for (uint i = 0; i < k_line_rounds; ++i) {
         const uint groups[3] = folded_groups(i < rounds ? 2u * segments : 0u);

@@ -11,7 +11,7 @@ layout(set = 0, binding = 9, std430) writeonly buffer Segments { LineSegmentReco
 
 // Slots of the face that have a segment, and those whose segment is not written yet.
 uint this_face, first_segment, slots, missing;
-#define when_wanted(these) when ((slots & (these)) != 0u)
+#define if_wanted(these) if ((slots & (these)) != 0u)
 void write_segment(uint slot, LineSegmentRecord segment) {
     const uint place = first_segment + bitCount(slots & (1u << slot) - 1u);
     if (place < parameters.max_segments) segments[place] = segment;
@@ -29,7 +29,7 @@ void main() {
     this_face = linear_thread();
     if (this_face >= parameters.faces) return;
     slots = missing = slots_of_faces[this_face];
-    when (slots != 0u) {
+    if (slots != 0u) {
         first_segment = groups[this_face / k_count_group] + (counts[this_face] >> 8);
         find_lines(this_face);
     }

@@ -17,36 +17,32 @@ layout(set = 0, binding = 5) uniform samplerBuffer first;
 layout(set = 0, binding = 6) uniform samplerBuffer second;
 layout(set = 0, binding = 7) uniform usamplerBuffer neighbors;
 layout(set = 0, binding = 8) uniform usamplerBuffer face_inks;  // index of an ink per face, if there are some
-layout(set = 0, binding = 9, std430) readonly buffer Counts { LineCounts counts; };
-layout(set = 0, binding = 10, std430) readonly buffer Looks { StrokeLook looks[]; };  // per family
-layout(set = 0, binding = 12, std430) readonly buffer Inks { vec4 inks[]; };  // color; factor of the width
+layout(set = 0, binding = 9) uniform usamplerBuffer point_counts;   // points of chains before each segment in its group
+layout(set = 0, binding = 10) uniform usamplerBuffer point_groups;  // and before its group
+layout(set = 0, binding = 11, std430) readonly buffer Counts { LineCounts counts; };
+layout(set = 0, binding = 12, std430) readonly buffer Looks { StrokeLook looks[]; };  // per family
+layout(set = 0, binding = 14, std430) readonly buffer Inks { vec4 inks[]; };  // color; factor of the width
 // Two per point: position, width, opacity; normal, index of the ink.
-layout(set = 0, binding = 11, std430) writeonly buffer Strokes { vec4 strokes[]; };
+layout(set = 0, binding = 13, std430) writeonly buffer Strokes { vec4 strokes[]; };
 #include "shaders/lines/segments.glsl"
 #include "shaders/lines/stroke_points.glsl"
 
 const uint k_max_taper_points = 64;
 
-uint kind_of(int point) {
-    return texelFetch(points, 2 * point + 1).x;
-}
-bool is_first(int point) {
-    return (kind_of(point) & k_point_first) != 0u;
-}
-bool is_last(int point) {
-    return (kind_of(point) & k_point_last) != 0u;
+// Returns the first point of the chain that begins with a segment, or else of the next chain; the number of all points
+// behind the last segment.
+int first_point(uint segment) {
+    if (segment >= counts.segments) return int(counts.points);
+    return int(texelFetch(point_groups, int(segment / k_count_group)).x + texelFetch(point_counts, int(segment)).x);
 }
 
 // Returns the previous or next point. Wraps around on closed chains, whose last point is the first; stays at the end
 // of open ones.
 int neighbor(int point, int way) {
-    const uint kind = kind_of(point);
-    if ((kind & (way > 0 ? k_point_last : k_point_first)) == 0u) return point + way;
-    if ((kind & k_point_closed) == 0u) return point;
-    do
-        point -= way;
-    while ((kind_of(point) & (way > 0 ? k_point_first : k_point_last)) == 0u);
-    return point + way;
+    const uvec2 kind_and_chain = texelFetch(points, 2 * point + 1).xy;
+    if ((kind_and_chain.x & (way > 0 ? k_point_last : k_point_first)) == 0u) return point + way;
+    if ((kind_and_chain.x & k_point_closed) == 0u) return point;
+    return way > 0 ? first_point(kind_and_chain.y) + 1 : first_point(kind_and_chain.y + 1u) - 2;
 }
 
 vec2 place_of_point(int point) {

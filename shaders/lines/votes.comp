@@ -1,7 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/dispatch.glsl"
-#include "shaders/lib/when.glsl"
 #include "shaders/shared/coherence.h"
 
 // Finds the line of the previous frame nearest to each piece of a chain: of its family, in its face or else,
@@ -131,10 +130,10 @@ void main() {
     const float size = length(way), along = here.w + 0.5 * size;
     Match match = Match(k_nowhere, 0.0, true, -1.0);
     look_in(texelFetch(segments, int(2u * segment)).x, family, middle, way, match);
-    when (match.away == k_nowhere) look_beside(segment, family, middle, way, match);
+    if (match.away == k_nowhere) look_beside(segment, family, middle, way, match);
     const bool found = match.away < k_nowhere;
     const vec2 own = found ? vote(match, along, size, period) : vec2(0.0);
     matches[2u * index] = floatBitsToUint(vec4(match.texture_at, match.drawn, period, 0.0));
     matches[2u * index + 1u] = uvec4(floatBitsToUint(vec3(own, along)), 2u * chain + (match.along ? 0u : 1u));
-    when (own != vec2(0.0)) add_vote(chain, own, match.along);
+    if (own != vec2(0.0)) add_vote(chain, own, match.along);
 }

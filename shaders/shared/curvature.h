@@ -89,6 +89,9 @@ struct FeatureParameters {
     uint input_texels;  // including the constant 1, four per texel
 };
 
+// Invocations that add up a row on cards (shaders/lib/row_lanes.glsl).
+const uint k_row_group = 64;
+
 struct ComponentParameters {
     uint components;
 };

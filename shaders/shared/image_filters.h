@@ -14,7 +14,7 @@ struct ImageParameters {
     uint box_width;
     uint box_height;
     uint images;  // 1 to 4
-    uint unused;
+    uint rows;  // of a column that an invocation of mask_box.comp reads
 };
 
 // Parameters of weighted sums along lines of pixels.
@@ -49,7 +49,7 @@ const uint k_filter_images = 4;
 const uint k_filter_no_face = 0xFFFFFFFFu;  // exemplar::k_no_face
 
 #ifdef __cplusplus
-EXEMPLAR_LAYOUT(ImageParameters, width, height, box_x, box_y, box_width, box_height, images, unused)
+EXEMPLAR_LAYOUT(ImageParameters, width, height, box_x, box_y, box_width, box_height, images, rows)
 EXEMPLAR_LAYOUT(SumParameters, pixels, lines, step, line_step, radius, quads, inverse_sigma, unused)
 EXEMPLAR_LAYOUT(DerivativeParameters, image, inverse_sigma, unit_xx, unit_xy, min_spread)
 EXEMPLAR_LAYOUT(OrientationParameters, image, noise, unused0, unused1, unused2)

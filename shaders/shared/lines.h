@@ -79,7 +79,8 @@ const uint k_place_corner = 3;
 const uint k_place_inside = 6;
 
 // Counts that the device computes, and the arguments of indirect commands.
-const uint k_line_rounds = 22;  // rounds of pointer jumping: chains of up to 2^22 segments
+const uint k_segment_bits = 22;  // chains have up to 2^22 segments
+const uint k_line_rounds = 12;   // rounds of pointer jumping: half as many, and even
 struct LineCounts {
     uint segments;
     uint points;
@@ -90,7 +91,7 @@ struct LineCounts {
     uint node_groups[3];
     uint point_groups[3];
     uint draw[4];
-    uint round_groups[66];
+    uint round_groups[36];
 };
 
 struct ScanParameters {

@@ -22,7 +22,7 @@ struct StumpGroup {
 
 struct StumpParameters {
     uint rows;
-    uint stride;       // texels between feature columns: at least threads x texels per thread
+    uint stride;       // groups of four words between feature columns; at least those of all threads
     uint threads;      // invocations that have work, a multiple of k_stump_neighbors
     uint first_group;  // this dispatch adds groups [first_group, end_group)
     uint end_group;

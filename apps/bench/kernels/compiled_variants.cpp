@@ -10,8 +10,8 @@
 namespace exemplar {
 namespace {
 
-// A specialization constant. If it has the name of a tunable parameter, its value here is the default of graphics
-// cards, and the parameter's other values are its variants. Otherwise programs use all of the values.
+// A specialization constant, and the values that programs use. A constant with the name of a tunable parameter has
+// none here: its default is TunableParameter::on_cards, and the parameter's other values are its variants.
 struct KernelConstant {
     std::uint32_t id;
     std::string_view name;
@@ -30,18 +30,14 @@ const std::vector<std::uint32_t> k_family_sets{0x603, 0x7ff};
 const std::vector<KernelConstants>& all_constants() {
     static const std::vector<KernelConstants> all{
         {"learn/stumps.comp",
-         {{0, "classes", {2, 8, 24}},
-          {1, "quads", {1}},
-          {2, "storage", {0}},
-          {3, "bits", {32}},
-          {4, "in_parts", {0, 1}}}},
-        {"labeling/context_geodesic.comp", {{0, "faces", {1}}}},
+         {{0, "classes", {2, 8, 24}}, {1, "quads", {}}, {2, "storage", {}}, {3, "bits", {}}, {4, "in_parts", {0, 1}}}},
+        {"labeling/context_geodesic.comp", {{0, "faces", {}}}},
         {"imaging/pack.comp", {{0, "masked", {0, 1}}}},
-        {"imaging/mask_sums.comp", {{1, "outputs", {4}}}},
-        {"imaging/weighted_sums.comp", {{0, "orders", {1, 2, 3, 4}}, {1, "outputs", {4}}}},
+        {"imaging/mask_sums.comp", {{1, "outputs", {}}}},
+        {"imaging/weighted_sums.comp", {{0, "orders", {1, 2, 3, 4}}, {1, "outputs", {}}, {2, "along_x", {0, 1}}}},
         {"curvature/curvature.comp", {{0, "smoothed", {0, 1}}}},
         {"curvature/derivative.comp", {{0, "smoothed", {0, 1}}}},
-        {"curvature/reproject.comp", {{0, "principal", {0, 1}}, {1, "quads", {1}}}},
+        {"curvature/reproject.comp", {{0, "principal", {0, 1}}, {1, "quads", {}}}},
         {"lines/fields.comp", {{0, "families", k_family_sets}}},
         {"lines/apparent_ridges.comp", {{0, "families", {0x7ff}}}},
         {"lines/count.comp", {{0, "families", k_family_sets}}},
@@ -85,19 +81,11 @@ void combine(std::vector<CompiledVariant>& variants, const KernelConstant& const
         for (const std::uint32_t value : constant.values)
             combined.push_back(with_constant(variant, constant, value, true));
         if (!parameter) continue;
+        combined.push_back(with_constant(variant, constant, parameter->on_cards, true));
         for (const std::uint32_t value : parameter->values)
-            if (value != constant.values.front()) combined.push_back(with_constant(variant, constant, value, false));
+            if (value != parameter->on_cards) combined.push_back(with_constant(variant, constant, value, false));
     }
     variants = std::move(combined);
-}
-
-std::uint32_t value_of(const CompiledVariant& variant, std::uint32_t id) {
-    return std::ranges::find(variant.constants, id, &std::pair<std::uint32_t, std::uint32_t>::first)->second;
-}
-
-// An invocation of stumps.comp reads whole texels of 32 / bits quads.
-bool reads_part_of_texel(const CompiledVariant& variant) {
-    return variant.kernel->name == "learn/stumps.comp" && value_of(variant, 1) % (32 / value_of(variant, 3)) != 0;
 }
 
 void add_group_sizes(std::vector<CompiledVariant>& variants) {
@@ -117,7 +105,6 @@ std::vector<CompiledVariant> variants_of(const OperationKind& kind, const Shader
     std::vector<CompiledVariant> variants{{.kernel = &kernel, .name = {}, .is_default = true, .constants = {}}};
     for (const KernelConstant& constant : constants_of(kernel.name))
         combine(variants, constant, parameter_of(kind, kernel.name, constant.name));
-    std::erase_if(variants, reads_part_of_texel);
     add_group_sizes(variants);
     return variants;
 }

@@ -245,13 +245,13 @@ struct LineDrawing {
 
 // Kernels over vertices and faces read each vertex' fields once: 8 families of a vec4, 5 with a direction. The
 // comments of kernels over segments and points list what they read; data read by earlier kernels may come from
-// caches. Jumps double, so chains take log2 of their number of segments.
+// caches. Each jump quadruples, so chains take half the log2 of their number of segments.
 std::map<std::string, Work> LineDrawing::work() const {
     const Drawn drawn = download(renderer);
     const auto vertices = static_cast<double>(torus.mesh.vertex_count()),
                faces = static_cast<double>(torus.mesh.face_count()),
                segments = static_cast<double>(drawn.segments.size()), points = static_cast<double>(drawn.points.size());
-    const double groups = (faces + segments) / shared::k_count_group, jumps = std::ceil(std::log2(segments + 1));
+    const double groups = (faces + segments) / shared::k_count_group, jumps = std::ceil(std::log2(segments + 1) / 2);
     constexpr double k_fields = 16 * (8 + 5);
     const double pixels = static_cast<double>(picture.view.width) * picture.view.height;
     const auto of = [](double count, double bytes, double operations) {
@@ -265,7 +265,7 @@ std::map<std::string, Work> LineDrawing::work() const {
             {"lines/segments.comp", {.bytes = faces * 4 + segments * (16 + 3 * 32 + 32), .operations = segments * 60}},
             {"lines/links.comp", of(segments, 32 + 16 + 3 * 16 + 16 + 32 + 8, 100)},
             {"lines/nodes.comp", of(2 * segments, 8 + 32 + 32, 5)},
-            {"lines/jump.comp", of(2 * segments * jumps, 64 + 32, 4)},
+            {"lines/jump.comp", of(2 * segments * jumps, 128 + 32, 12)},
             {"lines/rank.comp", of(segments, 64 + 16 + 4, 20)},
             {"lines/points.comp", of(segments, 16 + 32 + 32 + 32, 5)},
             {"lines/visibility.comp", {.bytes = points * (32 + 32 + 8) + 4 * pixels, .operations = points * 100}},

@@ -10,6 +10,7 @@
 
 #include "embedded/curvature_components_comp.h"
 #include "embedded/curvature_features_comp.h"
+#include "gpu/curvature/learned/row_threads.h"
 #include "gpu/curvature/surface/texels.h"
 #include "host/core/errors.h"
 #include "shaders/shared/curvature.h"
@@ -94,6 +95,7 @@ std::vector<float> padded_weights(const ComponentRegression& regression, std::si
 GpuComponentPredictor::GpuComponentPredictor(Device& device, const ComponentRegression& regression)
     : input_texels_(regression.input_count / 4 + 1),
       component_count_(regression.components.size()),
+      component_threads_(row_threads(device, component_count_)),
       feature_kernel_(device, shaders::curvature_features_comp,
                       {.push_constants = layout_of<FeatureParameters>(),
                        .elements = {layout_of<uvec4>(), layout_of<float>(), layout_of<vec4>(), layout_of<vec4>(),
@@ -119,7 +121,7 @@ void GpuComponentPredictor::record(Stream& stream, const Buffer& pose, std::size
                     FeatureParameters{.features = static_cast<std::uint32_t>(feature_count_),
                                       .first_input = static_cast<std::uint32_t>(first_input),
                                       .input_texels = static_cast<std::uint32_t>(input_texels_)});
-    stream.dispatch(component_kernel_, component_count_, {component_table_, coefficients_, features_, components_},
+    stream.dispatch(component_kernel_, component_threads_, {component_table_, coefficients_, features_, components_},
                     ComponentParameters{static_cast<std::uint32_t>(component_count_)});
 }
 

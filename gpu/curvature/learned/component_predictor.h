@@ -26,7 +26,7 @@ class GpuComponentPredictor {
     std::size_t padded_inputs() const { return 4 * input_texels_; }
 
   private:
-    std::size_t input_texels_, feature_count_ = 0, component_count_;
+    std::size_t input_texels_, feature_count_ = 0, component_count_, component_threads_;
     Kernel feature_kernel_, component_kernel_;
     Buffer feature_table_, weights_, features_, component_table_, coefficients_, components_;
 };

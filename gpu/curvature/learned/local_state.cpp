@@ -6,6 +6,7 @@
 
 #include "embedded/curvature_local_state_comp.h"
 #include "embedded/curvature_patch_rotations_comp.h"
+#include "gpu/curvature/learned/row_threads.h"
 #include "gpu/curvature/surface/texels.h"
 #include "host/core/errors.h"
 #include "host/core/half.h"
@@ -83,6 +84,7 @@ LocalInputs gather_inputs(const LocalShapeState& state, const PoseRange& range) 
 GpuLocalState::GpuLocalState(Device& device, const CurvatureModel& model, std::size_t padded_inputs)
     : patch_count_(model.state.controls.size()),
       input_count_(model.state.input_count),
+      input_threads_(row_threads(device, input_count_)),
       unit_(checked_state(model).unit),
       rotation_kernel_(device, shaders::curvature_patch_rotations_comp,
                        {.push_constants = layout_of<PatchParameters>(),
@@ -110,7 +112,7 @@ GpuLocalState::GpuLocalState(Device& device, const CurvatureModel& model, std::s
 void GpuLocalState::record(Stream& stream, const Buffer& vertices, const Buffer& normals) {
     stream.dispatch(rotation_kernel_, patch_count_, {corners_, vertices, rotations_},
                     PatchParameters{static_cast<std::uint32_t>(patch_count_)});
-    stream.dispatch(input_kernel_, input_count_,
+    stream.dispatch(input_kernel_, input_threads_,
                     {table_, members_, weights_, biases_, rotations_, vertices, normals, inputs_},
                     LocalInputParameters{static_cast<std::uint32_t>(input_count_), 1.0f / unit_});
 }

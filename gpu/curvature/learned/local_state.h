@@ -27,7 +27,7 @@ class GpuLocalState {
     const Buffer& rotations() const { return rotations_; }
 
   private:
-    std::size_t patch_count_, input_count_;
+    std::size_t patch_count_, input_count_, input_threads_;
     float unit_;
     Kernel rotation_kernel_, input_kernel_;
     Buffer corners_, table_, members_, weights_, biases_;

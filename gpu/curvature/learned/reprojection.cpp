@@ -23,11 +23,6 @@ static_assert(sizeof(CurvatureTile) == 16);
 // The kernel has copies.
 static_assert(k_min_flatness == 1e-6f && k_min_divisor == 0.2f);
 
-// On a CPU a loaded component serves a whole tile: D6 in docs/portability.md.
-std::uint32_t suitable_quads(const Device& device) {
-    return device.tuning().choose(k_reprojected_quads, device.info().type == DeviceType::cpu ? k_tile_quads : 1);
-}
-
 Kernel make_kernel(Device& device, AttributeSet set, std::uint32_t quads) {
     return {
         device,
@@ -44,7 +39,7 @@ GpuReprojection::GpuReprojection(Device& device, const BasisTiles& tiles, std::s
                                  const ReprojectionOptions& options)
     : vertex_count_(tiles.vertex_count),
       scale_(tiles.scale),
-      quads_(options.quads != 0 ? options.quads : suitable_quads(device)),
+      quads_(options.quads != 0 ? options.quads : device.choose(k_reprojected_quads)),
       kernel_(make_kernel(device, tiles.set, quads_)) {
     if (quads_ != 1 && quads_ != 2 && quads_ != k_tile_quads)
         throw UsageError(fmt::format("vertices are re-projected by 4, 8 or 16, not by 4 x {}", quads_));

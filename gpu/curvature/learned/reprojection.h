@@ -16,9 +16,10 @@
 
 namespace exemplar {
 
-/// Vertices per invocation, in quads of four.
+/// Vertices per invocation, in quads of four. On a CPU a loaded component serves a whole tile: D6 in
+/// docs/portability.md.
 inline constexpr std::array<std::uint32_t, 3> k_reprojection_quads{1, 2, 4};
-inline constexpr TunableParameter k_reprojected_quads{"curvature/reproject.comp", "quads", k_reprojection_quads};
+inline constexpr TunableParameter k_reprojected_quads{"curvature/reproject.comp", "quads", k_reprojection_quads, 4, 1};
 
 struct ReprojectionOptions {
     /// Maximum texels (16 bytes each) of the bases per dispatch; the device's limit applies, too.

@@ -103,6 +103,8 @@ class Device {
     /// Whether operations that the host can do as well are faster there: the device is a CPU, so that the host has
     /// the same cores without the detour (D6 in docs/portability.md). Never with EXEMPLAR_HOST=never.
     bool host_is_faster() const { return info_.type == DeviceType::cpu && switches_.prefers_host; }
+    /// Whether kernels are those for cards (Shader::words, TunableParameter::on_cards), not those for CPU drivers.
+    bool runs_card_kernels() const { return info_.type != DeviceType::cpu || switches_.prefers_card_kernels; }
 
     VkInstance instance() const { return instance_.handle(); }
     VkPhysicalDevice physical() const { return physical_; }
@@ -114,6 +116,10 @@ class Device {
     /// if EXEMPLAR_TUNING=0 is in the environment or that file is damaged.
     Tuning& tuning() { return tuning_; }
     const Tuning& tuning() const { return tuning_; }
+    /// Returns the value of a parameter that was found fastest, else the default of such devices.
+    std::uint32_t choose(const TunableParameter& parameter) const {
+        return tuning_.choose(parameter, runs_card_kernels() ? parameter.on_cards : parameter.on_cpus);
+    }
 
     /// Whether pipelines are to be made with VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR.
     bool captures_statistics() const { return statistics_; }

@@ -34,6 +34,7 @@ DeviceSwitches environment_switches() {
     return {.validates = wants_validation(),
             .maps_memory = !is_set("EXEMPLAR_MEMORY", "unmapped"),
             .prefers_host = !is_set("EXEMPLAR_HOST", "never"),
+            .prefers_card_kernels = is_set("EXEMPLAR_KERNELS", "card"),
             .poisons = is_set("EXEMPLAR_POISON", "1")};
 }
 

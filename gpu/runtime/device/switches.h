@@ -8,7 +8,9 @@ struct DeviceSwitches {
     bool maps_memory = true;   ///< false by EXEMPLAR_MEMORY=unmapped: as on a graphics card, the host cannot see
                                ///< the device's memory, and everything is copied through staging memory
     bool prefers_host = true;  ///< false by EXEMPLAR_HOST=never: run kernels also where the host is faster
-    bool poisons = false;      ///< EXEMPLAR_POISON=1: fill fresh memory with 0xff: NaN, and indices out of range
+    bool prefers_card_kernels = false;  ///< EXEMPLAR_KERNELS=card: run the build of shaders for cards, with the
+                                        ///< parameters for cards, also on a CPU device
+    bool poisons = false;  ///< EXEMPLAR_POISON=1: fill fresh memory with 0xff: NaN, and indices out of range
 };
 
 /// Reads the switches. Throws UsageError naming a value that is not known.

@@ -4,6 +4,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <system_error>
@@ -16,8 +17,11 @@
 namespace exemplar {
 namespace {
 
-std::map<std::string_view, std::span<const std::uint32_t>>& noted_shaders() {
-    static std::map<std::string_view, std::span<const std::uint32_t>> shaders;
+// The builds of a shader, for cards and for CPU drivers.
+using ShaderBuilds = std::array<std::span<const std::uint32_t>, 2>;
+
+std::map<std::string_view, ShaderBuilds>& noted_shaders() {
+    static std::map<std::string_view, ShaderBuilds> shaders;
     return shaders;
 }
 
@@ -25,13 +29,17 @@ std::map<std::string_view, std::span<const std::uint32_t>>& noted_shaders() {
 std::string shader_hash(std::string_view kernel) {
     const auto shader = noted_shaders().find(kernel);
     if (shader == noted_shaders().end()) return {};
-    return fmt::format("{:016x}", XXH3_64bits(shader->second.data(), shader->second.size_bytes()));
+    XXH64_hash_t hash = 0;
+    for (const std::span<const std::uint32_t> words : shader->second)
+        hash = XXH3_64bits_withSeed(words.data(), words.size_bytes(), hash);
+    return fmt::format("{:016x}", hash);
 }
 
 }  // namespace
 
-bool note_shader(std::string_view name, std::span<const std::uint32_t> words) {
-    return noted_shaders().emplace(name, words).second;
+bool note_shader(std::string_view name, std::span<const std::uint32_t> words,
+                 std::span<const std::uint32_t> cpu_words) {
+    return noted_shaders().emplace(name, ShaderBuilds{words, cpu_words}).second;
 }
 
 std::optional<std::uint32_t> Tuning::find(std::string_view kernel, std::string_view parameter) const {

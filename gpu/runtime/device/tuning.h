@@ -21,7 +21,8 @@ enum class TuningMetric { kernel_time, end_to_end };
 struct TunableParameter {
     std::string_view kernel;  ///< as "learn/stumps.comp"; empty for k_group_size, which is for any kernel
     std::string_view name;
-    std::span<const std::uint32_t> values;  ///< all possible values
+    std::span<const std::uint32_t> values;    ///< all possible values
+    std::uint32_t on_cpus = 0, on_cards = 0;  ///< defaults; k_group_size has none, as shaders declare their size
     TuningMetric judged = TuningMetric::kernel_time;
 };
 
@@ -33,7 +34,7 @@ inline constexpr std::uint32_t k_group_size_constant = 100;
 
 /// Notes the SPIR-V of an embedded shader, so that tuning files forget what was found for another version of it.
 /// Embedded shaders call it before main(). Returns true.
-bool note_shader(std::string_view name, std::span<const std::uint32_t> words);
+bool note_shader(std::string_view name, std::span<const std::uint32_t> words, std::span<const std::uint32_t> cpu_words);
 
 /// Fastest known kernel variants of one device (`exemplar bench shaders --tune`). Parameters without an entry use the
 /// kernel's default.

@@ -128,16 +128,17 @@ struct FixedState {
 DrawPipeline::DrawPipeline(Device& device, const Shader& vertex, const Shader& fragment,
                            const ProgramInterface& interface, const DrawState& state) {
     require_graphics(device);
+    const Shader vertex_build = build_for(device, vertex), fragment_build = build_for(device, fragment);
     const auto program = std::make_shared<Program>(
         Program{.name = std::string(vertex.name),
                 .stages = VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
-                .reflection = merged(reflect_part(vertex, interface), reflect_part(fragment, interface)),
+                .reflection = merged(reflect_part(vertex_build, interface), reflect_part(fragment_build, interface)),
                 .set_layout = UniqueSetLayout(device.handle()),
                 .layout = UniquePipelineLayout(device.handle()),
                 .pipeline = UniquePipeline(device.handle())});
     create_layouts(device, *program);
-    const UniqueShaderModule vertex_module = make_module(device, vertex);
-    const UniqueShaderModule fragment_module = make_module(device, fragment);
+    const UniqueShaderModule vertex_module = make_module(device, vertex_build);
+    const UniqueShaderModule fragment_module = make_module(device, fragment_build);
     const Specialization constants(interface);
     const std::array stages{stage_info(VK_SHADER_STAGE_VERTEX_BIT, vertex_module, constants),
                             stage_info(VK_SHADER_STAGE_FRAGMENT_BIT, fragment_module, constants)};

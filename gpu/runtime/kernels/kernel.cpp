@@ -93,14 +93,15 @@ void create_pipeline(const Device& device, Program& program, const Shader& shade
 }  // namespace
 
 Kernel::Kernel(Device& device, const Shader& shader, const ProgramInterface& interface) {
-    const auto program = std::make_shared<Program>(empty_program(device, shader));
-    check_interface(shader, interface, program->reflection);
+    const Shader build = build_for(device, shader);
+    const auto program = std::make_shared<Program>(empty_program(device, build));
+    check_interface(build, interface, program->reflection);
     ProgramInterface sized = interface;
     choose_group_size(device, *program, sized);
     specialize_local_size(program->reflection, sized);
-    check_limits(shader, program->reflection, device.info());
+    check_limits(build, program->reflection, device.info());
     create_layouts(device, *program);
-    create_pipeline(device, *program, shader, sized, device.pipeline_cache().handle());
+    create_pipeline(device, *program, build, sized, device.pipeline_cache().handle());
     device.name_pipeline(program->pipeline.get(), program->name);
     if (device.captures_statistics())
         device.store_statistics(program->name, executable_statistics(device, program->pipeline.get()));
@@ -109,12 +110,13 @@ Kernel::Kernel(Device& device, const Shader& shader, const ProgramInterface& int
 
 std::vector<ExecutableStatistic> compile(Device& device, const Shader& shader,
                                          std::span<const std::pair<std::uint32_t, std::uint32_t>> constants) {
-    Program program = empty_program(device, shader);
+    const Shader build = build_for(device, shader);
+    Program program = empty_program(device, build);
     const ProgramInterface interface {
         .constants = { constants.begin(), constants.end() }
     };
     create_layouts(device, program);
-    create_pipeline(device, program, shader, interface, VK_NULL_HANDLE);
+    create_pipeline(device, program, build, interface, VK_NULL_HANDLE);
     if (!device.captures_statistics()) return {};
     return executable_statistics(device, program.pipeline.get());
 }

@@ -102,6 +102,11 @@ Specialization::Specialization(const ProgramInterface& interface) : info_{} {
              values_.data()};
 }
 
+Shader build_for(const Device& device, const Shader& shader) {
+    const auto words = device.runs_card_kernels() ? shader.words : shader.cpu_words;
+    return {.name = shader.name, .words = words, .cpu_words = words};
+}
+
 UniqueShaderModule make_module(const Device& device, const Shader& shader) {
     auto info = empty_structure<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
     info.codeSize = shader.words.size_bytes();

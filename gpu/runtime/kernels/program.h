@@ -63,7 +63,10 @@ class Specialization {
     VkSpecializationInfo info_;
 };
 
-/// Creates a shader module. It may be destroyed once the pipelines are made.
+/// Returns the shader with the module for the device as its only one.
+Shader build_for(const Device& device, const Shader& shader);
+
+/// Creates a shader module from Shader::words. It may be destroyed once the pipelines are made.
 UniqueShaderModule make_module(const Device& device, const Shader& shader);
 
 }  // namespace exemplar

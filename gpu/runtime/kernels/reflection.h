@@ -51,8 +51,8 @@ struct Reflection {
     std::vector<std::uint32_t> constant_ids;                     ///< all specialization constants
 };
 
-/// Reads a shader's interface. Throws ShaderError if it is not valid SPIR-V, uses a descriptor set other than 0 or
-/// binds anything but storage buffers and texel buffers.
+/// Reads a shader's interface from Shader::words. Throws ShaderError if it is not valid SPIR-V, uses a descriptor set
+/// other than 0 or binds anything but storage buffers and texel buffers.
 Reflection reflect(const Shader& shader);
 
 /// Throws ShaderError, naming the first difference, if a C++ structure differs from the shader's.

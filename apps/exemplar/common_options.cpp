@@ -9,7 +9,9 @@
 namespace exemplar {
 
 void add_device_option(Command& command, CommonOptions& options) {
-    command.add_option("--device", options.device, "Vulkan device: index, part of its name, uuid:HEX or pci:ADDRESS (see 'exemplar devices')")
+    command
+        .add_option("--device", options.device,
+                    "Vulkan device: index, part of its name, uuid:HEX or pci:ADDRESS (see 'exemplar devices')")
         ->type_name("NAME");
 }
 

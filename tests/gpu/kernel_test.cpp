@@ -66,8 +66,8 @@ TEST(Reflection, ReadsTexelBuffers) {
 
 TEST(Reflection, RefusesDamagedModules) {
     const std::vector<std::uint32_t> words = {0x07230203u, 0x00010500u, 0u};
-    EXPECT_THROW(reflect({"damaged", words}), ShaderError);
-    EXPECT_THROW(reflect({"empty", {}}), ShaderError);
+    EXPECT_THROW(reflect({"damaged", words, words}), ShaderError);
+    EXPECT_THROW(reflect({"empty", {}, {}}), ShaderError);
 }
 
 TEST(Kernel, RunsWithSharedStructuresAndConstants) {

@@ -44,7 +44,7 @@ TEST(TuningTest, ForgetsWhatWasFoundForAnotherShader) {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder.path() / "tuning.json";
     static constexpr std::array<std::uint32_t, 2> k_words{1, 2};
-    note_shader("noted/kernel.comp", k_words);
+    note_shader("noted/kernel.comp", k_words, k_words);
     Tuning tuning;
     tuning.set("noted/kernel.comp", "group", 128);
     tuning.set("other/kernel.comp", "group", 64);

@@ -54,8 +54,18 @@ double sum_operations(double pixels) {
 // Derivatives of random images, the worst case for floats, in a mask.
 struct Derivatives {
     Derivatives(Device& device, Profiler& profiler, std::size_t pixels)
-        : images(random_images(side_of(pixels), random)), faces(disc(images.width)), filters(device, &profiler) {}
-    void run() { actual = filters.derivatives(images, faces, k_sigma); }
+        : images(random_images(side_of(pixels), random)),
+          faces(disc(images.width)),
+          filters(device, &profiler),
+          stream(device, &profiler),
+          on_device{images.width, images.height, k_images, Buffer::of<float>(device, images.values)},
+          face(Buffer::of<std::uint32_t>(device, faces)) {}
+    // Of images on the device, where the box of the mask is found too.
+    void run() {
+        const GpuMaskedImages inside = filters.masked(on_device, face);
+        filters.record_derivatives(stream, inside, k_sigma, derivatives);
+        actual = derivatives.fetch(stream);
+    }
     std::vector<Difference> differences() const {
         const ImageDerivatives expected = CpuImageFilters().derivatives(images, faces, k_sigma);
         const auto of = [](const char* name, const ImageStack& a, const ImageStack& b, double tolerance) {
@@ -100,6 +110,10 @@ struct Derivatives {
     std::vector<std::uint32_t> faces;
     ImageDerivatives actual;
     GpuImageFilters filters;
+    Stream stream;
+    GpuImages on_device;
+    Buffer face;
+    GpuImageDerivatives derivatives;
 };
 
 struct Blur {

@@ -16,7 +16,7 @@ struct UserShader {
     std::string name;  ///< of its file, for messages and tables
     std::vector<std::uint32_t> words;
     bool is_validated = false;  ///< by spirv-val
-    Shader shader() const { return {name, words}; }
+    Shader shader() const { return {name, words, words}; }
 };
 
 /// Returns the words of a SPIR-V file that a driver can be given: its header and the lengths of its instructions are

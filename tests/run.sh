@@ -6,8 +6,8 @@
 #   --slurm        also installs Slurm and GNU parallel and runs a cluster of two nodes on this machine
 #   --swiftshader  runs the tests of kernels a second time, on the SwiftShader that comes with Debian's Chromium: a driver with
 #                  the least that Vulkan asks for
-#   --card         runs the tests of kernels a second time as on a graphics card: device memory that the host does not see, no kernel
-#                  replaced by the host, fresh memory full of NaN
+#   --card         runs the tests of kernels a second time as on a graphics card: device memory that the host does not see, the
+#                  kernels for cards, none replaced by the host, fresh memory full of NaN
 #   --package      also builds the Debian packages and installs them into a Debian of their own (as root)
 #   --compare      also installs scikit-learn and XGBoost and compares what they learn
 set -euo pipefail
@@ -56,7 +56,7 @@ ctest --test-dir "$exemplar_build" --output-on-failure -j "$(nproc)" "$@"
 if [ -n "$card" ]; then
     echo "The tests of kernels again, as on a graphics card"
     (
-        export EXEMPLAR_MEMORY=unmapped EXEMPLAR_HOST=never EXEMPLAR_POISON=1
+        export EXEMPLAR_MEMORY=unmapped EXEMPLAR_HOST=never EXEMPLAR_KERNELS=card EXEMPLAR_POISON=1
         ctest --test-dir "$exemplar_build" --output-on-failure -j "$(nproc)" -R '^(gpu\.|parity\.|window\.|apps\.labeling$|apps\.lines$)'
     )
 fi
